@@ -72,8 +72,9 @@ void VdbArguments::add_files_to(CLI::App& app) {
         ->type_name("NAME")
         ->check(one_of({"blosc", "zip", "none"}));
     app.add_option("--memory", memory_bytes,
-                   "write parts whose grids take no more than this, e.g. 2G: NAME_0000.vdb and so on, and NAME.json, "
-                   "which lists them; of bricks, what the command takes in all (default 1G)")
+                   "make the grids in parts that take no more than this, e.g. 2G. If all together take no more, NAME.vdb has "
+                   "them, else NAME_0000.vdb and so on; NAME.json lists the file or the files, and join makes one of them. Of "
+                   "bricks also what the cells about a part take (default 1G)")
         ->type_name("BYTES")
         ->transform(CLI::AsSizeValue(false));
     app.add_flag("--nano", nano, "also write a NanoVDB file, NAME.nvdb; needs a build with NanoVDB");

@@ -249,9 +249,9 @@ std::vector<VdbGrid> grids_of_bricks(const BricksToVoxels& what, std::size_t mem
 }
 
 void write_bricks_vdb(const BricksToVoxels& what, const VdbOutput& output, Report& report) {
-    const double memory = static_cast<double>(output.memory_bytes > 0 ? output.memory_bytes : kDefaultMemory);
-    const BlockPlan plan(what, memory, {});
-    VdbParts parts(output);
+    const std::uint64_t memory = output.memory_bytes > 0 ? output.memory_bytes : kDefaultMemory;
+    const BlockPlan plan(what, static_cast<double>(memory), {});
+    VdbParts parts(output, memory);
     Json grids = Json::array();
     make_blocks(what, plan, report, [&](const std::vector<VdbGrid>& made) {
         if (!has_voxels(made)) return;
@@ -260,11 +260,8 @@ void write_bricks_vdb(const BricksToVoxels& what, const VdbOutput& output, Repor
     });
     const std::string input = report.json().at("input");
     if (parts.active_voxels() == 0) throw no_voxels(input, "try a smaller --voxel-size");
-    report["output"] = parts.finish(input, what.options.voxel_size_world);
-    report["voxel_size"] = what.options.voxel_size_world;
-    report["active_voxels"] = parts.active_voxels();
-    report["grids"] = grids;
-    report["parts"] = parts.count();
+    parts.finish(input, what.options.voxel_size_world, report);
+    if (!report.json().contains("grids")) report["grids"] = grids;
 }
 
 }  // namespace subvol::cli

@@ -27,8 +27,8 @@ struct BricksToVoxels {
 [[nodiscard]] std::vector<VdbGrid> grids_of_bricks(const BricksToVoxels& what, std::size_t memory_bytes, const Share& share,
                                                    Report& report);
 
-/// Writes NAME_0000.vdb and so on, each with the voxels of a block, and NAME.json that lists them. Together their leaves are
-/// those of the whole mesh.
+/// Writes NAME.vdb, or where the grids do not fit into the memory (1 GB unless `output` says another) parts, each with the
+/// voxels of a block, and NAME.json that lists them. Together their leaves are those of the whole mesh.
 void write_bricks_vdb(const BricksToVoxels& what, const VdbOutput& output, Report& report);
 
 }  // namespace subvol::cli

@@ -105,14 +105,14 @@ void write_frame(int frame, std::span<const VdbGrid> grids, const VdbOutput& out
 void write_parts(const std::string& input, const HexMesh& mesh, std::span<const std::string> fields,
                  const RasterizeOptions& options, const VdbOutput& output, Report& report,
                  const std::function<void(std::vector<VdbGrid>&)>& prepare) {
-    VdbParts parts(output);
+    VdbParts parts(output, output.memory_bytes);
     double voxel_size_world = 0;
     // The parts are written between the stages of the rasterizer, whose own time is what is left.
     const detail::Stopwatch whole;
     double writing = 0;
     rasterize_parts(mesh, fields, options, output.memory_bytes, [&](GridPart part) {
         prepare(part.grids);
-        report["voxel_size"] = voxel_size_world = part.grids.front().report().voxel_size_world;
+        voxel_size_world = part.grids.front().report().voxel_size_world;
         Json grids = Json::array();
         for (const VdbGrid& grid : part.grids) grids.push_back(about(grid.report(), output));
         const detail::Stopwatch one;
@@ -122,9 +122,7 @@ void write_parts(const std::string& input, const HexMesh& mesh, std::span<const 
     if (parts.active_voxels() == 0) throw no_voxels(input, finer_voxels(mesh));
     report.add_seconds("rasterize", whole.seconds() - writing);
     report.add_seconds("write", writing);
-    report["output"] = parts.finish(input, voxel_size_world);
-    report["active_voxels"] = parts.active_voxels();
-    report["parts"] = parts.count();
+    parts.finish(input, voxel_size_world, report);
 }
 
 }  // namespace subvol::cli

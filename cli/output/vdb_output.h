@@ -32,7 +32,7 @@ struct VdbOutput {
 /// The error that nothing would be written. hint: what helps
 [[nodiscard]] Error no_voxels(const std::string& input, const std::string& hint);
 
-/// Rasterizes and writes slab by slab: NAME_0000.vdb and so on, and NAME.json that lists them.
+/// Rasterizes and writes slab by slab, in the memory of `output`: what VdbParts says.
 ///
 /// input:   the name of the mesh, for NAME.json
 /// prepare: changes the grids of each slab before they are written

@@ -1,53 +1,138 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vdb_parts.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <iomanip>
+#include <optional>
+#include <set>
 
+#include "quantities.h"
 #include "subvol/detail/vdb_file.h"
+#include "subvol/error.h"
+#include "subvol/join_grids.h"
+#include "subvol/vdb_contents.h"
 #include "subvol/version.h"
 #include "text.h"
 
 namespace subvol::cli {
 namespace {
 
+namespace fs = std::filesystem;
+
 Json corner(const Vec3& p) {
     return {p.x, p.y, p.z};
 }
 
-/// Writes a text into a file that is committed later. path: its final name, for error messages
-void write_text(const detail::AtomicFile& file, const std::filesystem::path& path, const std::string& text) {
-    std::ofstream out(file.path(), std::ios::binary);
-    out << text;
-    out.close();
-    if (!out) throw Error(ErrorCode::Io, "cannot be written; the disk may be full", path.string());
+Json entry_of(const std::string& file, const GridReport& first) {
+    Json entry{{"file", file}, {"active_voxels", first.active_voxels}};
+    if (first.active_voxels > 0) entry["bounds"] = {corner(first.bounds.lower), corner(first.bounds.upper)};
+    return entry;
+}
+
+/// The parts that the list of an earlier run names. Nothing if there is another file with the name of the list.
+std::optional<std::set<std::string>> parts_of_list(const fs::path& list) {
+    std::set<std::string> parts;
+    std::error_code error;
+    if (!fs::exists(list, error)) return parts;
+    if (!fs::is_regular_file(list, error)) return {};
+    std::ifstream in(list, std::ios::binary);
+    const Json json = Json::parse(in, nullptr, false);
+    if (!json.is_object() || !json.contains("voxel_size") || !json.contains("parts") || !json["parts"].is_array()) return {};
+    for (const Json& part : json["parts"]) {
+        if (!part.is_object() || !part.contains("file") || !part["file"].is_string()) return {};
+        parts.insert(part["file"].get<std::string>());
+    }
+    return parts;
+}
+
+[[noreturn]] void refuse_list(const fs::path& list) {
+    throw Error(ErrorCode::InvalidInput, "exists and is no list of grids; the list of the parts would have this name",
+                list.string(), "another name for -o");
 }
 
 }  // namespace
 
+VdbParts::VdbParts(const VdbOutput& output, std::uint64_t memory_bytes)
+    : output_(output), list_file_(fs::path(output.path).replace_extension(".json")), memory_bytes_(memory_bytes) {
+    if (always_listed() && !parts_of_list(list_file_)) refuse_list(list_file_);
+}
+
 void VdbParts::write(std::span<const VdbGrid> grids, std::size_t number, const Json& more) {
-    const std::filesystem::path path(output_.path);
+    const fs::path path(output_.path);
     const std::string name = text(path.stem().string(), "_", std::setw(4), std::setfill('0'), number, ".vdb");
-    const GridReport& first = grids.front().report();
     detail::write_vdb(files_.emplace_back(path.parent_path() / name), name, grids, output_.compression);
+    const GridReport& first = grids.front().report();
     active_voxels_ += first.active_voxels;
-    Json entry{{"file", name}, {"active_voxels", first.active_voxels}};
+    for (const VdbGrid& grid : grids) bytes_ += grid.report().bytes;
+    Json entry = entry_of(name, first);
     entry.update(more);
-    if (first.active_voxels > 0) entry["bounds"] = {corner(first.bounds.lower), corner(first.bounds.upper)};
     list_.push_back(std::move(entry));
 }
 
-std::string VdbParts::finish(const std::string& input, double voxel_size_world) {
-    const std::filesystem::path list = std::filesystem::path(output_.path).replace_extension(".json");
+void VdbParts::finish(const std::string& input, double voxel_size_world, Report& report) {
+    const bool whole = count() == 1 || bytes_ <= memory_bytes_;
+    if (whole) {
+        write_whole(report);
+    } else {
+        check_names();
+        report.note(text("the grids take ", bytes_text(static_cast<double>(bytes_)), ", more than the ",
+                         bytes_text(static_cast<double>(memory_bytes_)), " of --memory: they are in ", counted(count(), "file"),
+                         ", which ", list_file_.string(), " lists; `subvol join` makes ", output_.path, " of it in memory"));
+    }
+    report["parts"] = count();
+    report["active_voxels"] = active_voxels_;
+    report["voxel_size"] = voxel_size_world;
+    std::error_code error;
+    if (whole && !always_listed()) {
+        const auto old = parts_of_list(list_file_);
+        if (old && !old->empty()) report.warn(text(list_file_.string(), " and its parts are those of an earlier run"));
+        return;
+    }
     const Json json{{"input", input},
                     {"version", SUBVOL_VERSION},
                     {"voxel_size", voxel_size_world},
                     {"active_voxels", active_voxels_},
                     {"parts", list_}};
-    write_text(files_.emplace_back(list), list, json.dump(2) + "\n");
+    // The list first: it says whose the parts are, should this process end between two of them.
+    detail::write_text_file(list_file_, json.dump(2) + "\n");
     for (detail::AtomicFile& file : files_) file.commit();
-    return list.string();
+    if (whole) return;
+    report["output"] = list_file_.string();
+    if (fs::exists(output_.path, error)) report.warn(text(output_.path, " is that of an earlier run"));
+}
+
+/// Parts that fit into the memory together, or that are only one, become the file that was asked for.
+void VdbParts::write_whole(Report& report) {
+    std::vector<VdbGrid> grids = report.timed("join", [&] {
+        std::vector<std::vector<VdbGrid>> of_grids;  // of each grid its parts
+        for (const detail::AtomicFile& file : files_) {
+            std::vector<VdbGrid> read = read_vdb_contents(file.path().string()).grids;
+            of_grids.resize(std::max(of_grids.size(), read.size()));
+            for (std::size_t g = 0; g < read.size(); ++g) of_grids[g].push_back(std::move(read[g]));
+        }
+        std::vector<VdbGrid> joined;
+        for (std::vector<VdbGrid>& parts : of_grids) joined.push_back(join_grids(std::move(parts)));
+        return joined;
+    });
+    files_.clear();
+    write_reported(grids, output_, report);
+    list_ = Json::array({entry_of(fs::path(output_.path).filename().string(), grids.front().report())});
+}
+
+/// The user has not given the names of parts: only those of an earlier run are replaced.
+void VdbParts::check_names() const {
+    const auto old = parts_of_list(list_file_);
+    if (!old) refuse_list(list_file_);
+    const fs::path folder = fs::path(output_.path).parent_path();
+    for (const Json& part : list_) {
+        const auto name = part.at("file").get<std::string>();
+        std::error_code error;
+        if (old->contains(name) || !fs::exists(folder / name, error)) continue;
+        throw Error(ErrorCode::InvalidInput, "exists and is no part of grids that an earlier run has listed",
+                    (folder / name).string(), "another name for -o, or more --memory");
+    }
 }
 
 }  // namespace subvol::cli

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <deque>
+#include <filesystem>
 #include <span>
 #include <string>
 
@@ -12,12 +14,17 @@
 
 namespace subvol::cli {
 
-/// Grids in several files, NAME_0000.vdb and so on, and NAME.json that lists them. All of these files appear, or none.
+/// Grids that are made part by part: NAME.vdb if all of them fit into the memory, else NAME_0000.vdb and so on, and NAME.json,
+/// which lists them. With --memory there always is a list, so that scripts find the file or the files. All of these files
+/// appear, or none.
 class VdbParts {
 public:
-    explicit VdbParts(const VdbOutput& output) : output_(output) {}
+    /// memory_bytes: what the grids may take together
+    ///
+    /// throws: Error(InvalidInput) if there is a NAME.json that is no such list
+    VdbParts(const VdbOutput& output, std::uint64_t memory_bytes);
 
-    /// Writes the file with a number.
+    /// Writes the part with a number.
     ///
     /// more: for the list, beside the file's name, its active voxels and their bounds
     void write(std::span<const VdbGrid> grids, std::size_t number, const Json& more = Json::object());
@@ -25,14 +32,22 @@ public:
     [[nodiscard]] std::size_t count() const { return list_.size(); }
     [[nodiscard]] std::uint64_t active_voxels() const { return active_voxels_; }
 
-    /// Writes the list; then all files have their names. Returns the list's.
-    std::string finish(const std::string& input, double voxel_size_world);
+    /// Gives the files their names, which the report says.
+    ///
+    /// throws: Error(InvalidInput) if there are files with the names of parts or of the list that are not of an earlier run
+    void finish(const std::string& input, double voxel_size_world, Report& report);
 
 private:
+    [[nodiscard]] bool always_listed() const { return output_.memory_bytes > 0; }
+    void write_whole(Report& report);
+    void check_names() const;
+
     const VdbOutput& output_;
+    std::filesystem::path list_file_;
+    std::uint64_t memory_bytes_;
     std::deque<detail::AtomicFile> files_;
     Json list_ = Json::array();
-    std::uint64_t active_voxels_ = 0;
+    std::uint64_t active_voxels_ = 0, bytes_ = 0;
 };
 
 }  // namespace subvol::cli

@@ -35,10 +35,10 @@ std::vector<VdbGrid> kernel_sums(const HexMesh& mesh, const RasterizeOptions& op
 
 std::vector<VdbGrid> grids_of_points(const std::string& input, std::vector<std::string> fields, const CommonOptions& common,
                                      const CLI::App& app, const RasterizeOptions& options, Report& report) {
+    refuse_mesh_options(app, "needs a mesh; these are points that have been sampled already");
     refuse_options(app,
-                   {"--density", "--other-cells", "--curved", "--cell-values", "--step", "--time", "--blocks", "--weld",
-                    "--weld-distance", "--sharp", "--scheme", "--tension", "--levels", "--crease-angle", "--per-edge",
-                    "--cell-ids", "--coverage", "--budget", "--memory"},
+                   {"--scheme", "--tension", "--levels", "--crease-angle", "--per-edge", "--cell-ids", "--coverage", "--budget",
+                    "--memory"},
                    "needs a mesh; these are points that have been sampled already");
     const RbfVolume volume = read_points_input(input, report);
     if (fields.empty()) fields.push_back(common.field.value_or(volume.channels.front().name));

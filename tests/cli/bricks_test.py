@@ -89,7 +89,12 @@ class SameAsTheWhole(InFolder):
                               (["--resolution", 40, "--scheme", "bsxw"], [(3, "random")])):
             whole = self.run_ok("vdb", BALL, "-o", "whole.vdb", *options, "--json").json()
             for cut in self.cuts(cuts):
-                parts = self.run_ok("vdb", "b.bricks", "-o", "parts.vdb", "--memory", "4M", *options, "--json").json()
+                (self.folder / "parts.vdb").unlink(missing_ok=True)
+                parts = self.run_ok("vdb", "b.bricks", "-o", "parts.vdb", "--memory", "1M", *options, "--json").json()
+                self.assertEqual(parts["output"], "parts.json" if parts["parts"] > 1 else "parts.vdb", cut)
+                one = self.run_ok("vdb", "b.bricks", "-o", "one.vdb", *options, "--json").json()
+                self.assertEqual([one["output"], one["parts"]], ["one.vdb", 1])
+                self.assertFalse((self.folder / "one.json").exists())
                 self.assertEqual(parts["active_voxels"], whole["active_voxels"], cut)
                 self.assertEqual(parts["voxel_size"], whole["voxel_size"])
                 listed = json.loads((self.folder / "parts.json").read_text())["parts"]
@@ -99,8 +104,9 @@ class SameAsTheWhole(InFolder):
                 for part in listed[::max(1, len(listed) // 2)]:  # a few; the leaves of all are compared below
                     self.assertEqual(self.values_in(part["file"]), self.values_in("whole.vdb", part["file"]), cut)
                 self.run_ok("join", "parts.json", "-o", "joined.vdb", "--quiet")
-                hashes = [self.run_ok("info", name, "--json").json()["grids"][0]["hash"] for name in ("joined.vdb", "whole.vdb")]
-                self.assertEqual(hashes[0], hashes[1], cut)
+                hashes = [self.run_ok("info", name, "--json").json()["grids"][0]["hash"]
+                          for name in ("joined.vdb", "one.vdb", "whole.vdb")]
+                self.assertEqual(hashes, hashes[-1:] * 3, cut)
                 for part in listed:
                     os.remove(self.folder / part["file"])
 
@@ -116,6 +122,35 @@ class SameAsTheWhole(InFolder):
         places = [(x, y, z) for flip in (1, -1) for x, y, z in zip(centre[0], centre[1][::flip], centre[2])]
         here = at(where or grid, places)
         return [value for value, known in zip(at(grid, places), here) if known is not None]
+
+    def test_the_file_that_was_asked_for(self):
+        """The grids are in NAME.vdb wherever they fit into the memory; parts have a list, and no other file is replaced."""
+        self.run_ok("vdb", BALL, "-o", "whole.vdb", "--resolution", 60, "--half", "--quiet")
+        self.run_ok("split", BALL, "-o", "b.bricks", "--bricks", 3, "--quiet")
+        wanted = self.run_ok("info", "whole.vdb", "--json").json()["grids"]
+        for name, memory in (("a.vdb", []), ("b.vdb", ["--memory", "2G"])):
+            self.run_ok("vdb", "b.bricks", "-o", name, "--resolution", 60, "--half", *memory, "--quiet")
+            self.assertEqual(self.run_ok("info", name, "--json").json()["grids"], wanted)
+        self.assertEqual(self.files(), ["a.vdb", "b.bricks", "b.json", "b.vdb", "whole.vdb"])
+        self.assertEqual([part["file"] for part in json.loads((self.folder / "b.json").read_text())["parts"]], ["b.vdb"])
+        few = ["vdb", "b.bricks", "--resolution", 60, "--memory", "300K", "-o"]
+        parts = self.run_ok(*few, "a.vdb", "--json").json()
+        self.assertGreater(parts["parts"], 1)
+        self.assertEqual(parts["output"], "a.json")
+        self.assertIn("a.vdb is that of an earlier run", "".join(parts["warnings"]))
+        again = subvol(*few, "a.vdb", folder=self.folder)
+        self.assertEqual(again.code, 0, again.err)  # the parts of an earlier run are replaced
+        self.assertIn("a.json lists; `subvol join` makes a.vdb", again.err)
+        before = self.files()
+        (self.folder / "scene.json").write_text('{"camera": "mine"}')
+        (self.folder / "shots_0001.vdb").write_text("mine")
+        for name, said in (("scene.vdb", "scene.json: exists and is no list"), ("shots.vdb", "shots_0001.vdb: exists and is no part")):
+            refused = subvol(*few, name, folder=self.folder)
+            self.assertEqual(refused.code, 2)
+            self.assertIn(said, refused.err)
+        self.assertEqual((self.folder / "scene.json").read_text(), '{"camera": "mine"}')
+        self.assertEqual((self.folder / "shots_0001.vdb").read_text(), "mine")
+        self.assertEqual(self.files(), sorted([*before, "scene.json", "shots_0001.vdb"]))
 
     def test_figures(self):
         whole = self.run_ok("info", BALL, "--json").json()
@@ -307,6 +342,53 @@ class WhatGoesWrong(InFolder):
         self.assert_said("'12x' is not a resolution (2..4096)", "split", "model:twist:12x", "-o", "a.bricks")
         self.assert_said("bricks along a side", "split", "model:twist:4", "-o", "a.bricks", "--bricks", 101)
         self.assert_said("too few for a brick", "split", "model:twist:4", "-o", "a.bricks", "--memory", "10K")
+
+    def everything(self):
+        return {str(path.relative_to(self.folder)): path.read_bytes() if path.is_file() else b"" for path in self.folder.rglob("*")}
+
+    def test_what_others_have_made_is_not_replaced(self):
+        site = self.folder / "web"
+        (site / "src").mkdir(parents=True)
+        for name, text in (("index.json", '{"name": "my site"}'), ("index.html", "<html>"), ("src/main.js", "main()")):
+            (site / name).write_text(text)
+        thesis = self.folder / "n.bricks.unfinished"
+        thesis.mkdir()
+        (thesis / "progress.json").write_text('{"steps": 3}')
+        (thesis / "thesis.txt").write_text("two years")
+        self.run_ok("split", "model:twist:4", "-o", "own.bricks", "--bricks", 2, "--quiet")
+        (self.folder / "own.bricks" / "pictures").mkdir()
+        (self.folder / "own.bricks" / "notes.txt").write_text("mine")
+        before = self.everything()
+        for folder, said in (("web", "is no folder of bricks"), ("n.bricks", "thesis.txt"), ("own.bricks", "none of its bricks")):
+            self.assert_said(said, "split", "model:twist:4", "-o", folder, "--bricks", 3)
+            self.assert_said(said, "split", "model:ball:2", "-o", folder, "--bricks", 3)
+        self.assertEqual(self.everything(), before)
+
+    def test_what_is_put_into_an_unfinished_folder_meanwhile_stays(self):
+        running = subprocess.Popen([COMMAND, "split", "model:twist:40", "-o", "m.bricks", "--bricks", "64", "--quiet"],
+                                   cwd=self.folder, stderr=subprocess.PIPE, text=True)
+        unfinished = self.folder / "m.bricks.unfinished"
+        while running.poll() is None and not (unfinished / "brick_00002.vtu").exists():
+            pass
+        running.send_signal(signal.SIGSTOP)
+        (unfinished / "notes.txt").write_text("mine")
+        running.send_signal(signal.SIGCONT)
+        said = running.communicate()[1]
+        self.assertEqual(running.returncode, 2, said)
+        self.assertIn('holds "notes.txt"', said)
+        self.assertEqual((unfinished / "notes.txt").read_text(), "mine")
+        os.rename(unfinished / "notes.txt", self.folder / "notes.txt")
+        again = self.run_ok("split", "model:twist:40", "-o", "m.bricks", "--bricks", 64, "--json").json()
+        self.assertEqual(again["kept"], 64)
+
+    def test_a_link_to_a_folder_stays_a_link(self):
+        (self.folder / "disk").mkdir()
+        (self.folder / "l.bricks").symlink_to("disk/real.bricks")
+        for count in (2, 3):
+            self.run_ok("split", "model:twist:4", "-o", "l.bricks", "--bricks", count, "--quiet")
+            self.assertTrue((self.folder / "l.bricks").is_symlink())
+            self.assertEqual(self.run_ok("info", "disk/real.bricks", "--json").json()["bricks"], count)
+        self.assertEqual(os.listdir(self.folder / "disk"), ["real.bricks"])
 
     def test_a_full_disk(self):
         def small_files():
