@@ -2,12 +2,14 @@
 """Blender add-on: File › Import › Hexahedral mesh. The command `subvol` turns the mesh into OpenVDB grids, which become a volume
 object with a material that emits and absorbs light as `subvol render` does. For Blender 3.4 and later; docs/blender.md."""
 
+import hashlib
 import json
 import math
 import os
 import re
 import shutil
 import subprocess
+import tempfile
 from pathlib import Path
 
 import bpy
@@ -154,25 +156,36 @@ def make_material(name, grid, low, high, transfer_function="", unit=1.0, density
     return material
 
 
+def source_of(path):
+    """What a mesh is known by: the whole path of its file, however it was given, or "model:NAME"."""
+    return path if path.startswith("model:") else os.path.realpath(bpy.path.abspath(path))
+
+
 def folder_for_grids(given):
+    """The folder, and whether Blender deletes it when it ends."""
     if given:
-        return Path(bpy.path.abspath(given))
-    beside = Path(bpy.data.filepath).parent / "volumes" if bpy.data.filepath else Path(bpy.app.tempdir or "/tmp")
-    return beside
+        return Path(bpy.path.abspath(given)), False
+    if bpy.data.filepath:
+        return Path(bpy.data.filepath).parent / "volumes", False
+    return Path(bpy.app.tempdir or tempfile.gettempdir()), True
 
 
 def import_mesh(path, *, fields="", resolution=200, steps="", velocity=False, transfer_function="", scale=1.0, up="Z",
-                density_scale=1.0, folder="", command="", arguments=()):
+                density_scale=1.0, folder="", command="", arguments=(), warn=print):
     """Imports a mesh file, or "model:NAME", and returns the object. A second import of the same file replaces the grids of its
-    object, and keeps its material and its place.
+    object, and keeps its material and its place. Each mesh has a folder of its own for its grids: files of one name in two places
+    are two meshes.
 
     steps:     of a series: "all", "N" or "A-B"; they become the frames of a sequence
     velocity:  also a grid of velocities, for motion blur
     up:        the axis that is up in the file
-    arguments: more options of `subvol vdb`"""
+    arguments: more options of `subvol vdb`
+    warn:      gets a sentence if the grids will not be there when Blender is started again"""
     command = find_command(command)
     name = re.sub(r"[^\w.-]+", "_", path.split(":", 1)[1] if path.startswith("model:") else Path(path).stem)
-    to = folder_for_grids(folder)
+    source = source_of(path)
+    of_all, passing = folder_for_grids(folder)
+    to = of_all / f"{name}-{hashlib.sha256(os.fsencode(source)).hexdigest()[:8]}"
     to.mkdir(parents=True, exist_ok=True)
     sequence = steps == "all" or "-" in steps
     output = to / (f"{name}_####.vdb" if sequence else f"{name}.vdb")
@@ -186,7 +199,7 @@ def import_mesh(path, *, fields="", resolution=200, steps="", velocity=False, tr
     made = run_subvol(command, "vdb", path, "-o", output, *options, *arguments)
     frames = made.get("frames") or [{"frame": None, "output": str(output), "grids": made["grids"]}]
 
-    known = [o for o in bpy.data.objects if o.type == "VOLUME" and o.get("subvol_source") == path]
+    known = [o for o in bpy.data.objects if o.type == "VOLUME" and source_of(o.get("subvol_source", "model:")) == source]
     obj = known[0] if known else None
     if obj is None:
         volume = bpy.data.volumes.new(name)
@@ -194,7 +207,7 @@ def import_mesh(path, *, fields="", resolution=200, steps="", velocity=False, tr
         bpy.context.collection.objects.link(obj)
         obj.scale = (scale,) * 3
         obj.rotation_euler = (math.radians(90) if up == "Y" else 0, 0, 0)
-        obj["subvol_source"] = path
+        obj["subvol_source"] = source
     volume = obj.data
     volume.filepath = frames[0]["output"]
     volume.is_sequence = sequence
@@ -217,6 +230,8 @@ def import_mesh(path, *, fields="", resolution=200, steps="", velocity=False, tr
         info = run_subvol(command, "info", path)["bounds"] if not arguments else [[0, 0, 0], [1, 1, 1]]
         diagonal = math.dist(*info)
         volume.materials.append(make_material(name, scalars[0], low, high, transfer_function, diagonal / 100, density_scale))
+    if passing:
+        warn(f"The grids of {name} are in {to}, which Blender deletes when it ends: save the .blend, then import the mesh again")
     return obj
 
 
@@ -241,7 +256,7 @@ class ImportHexahedralMesh(bpy.types.Operator, ImportHelper):
         try:
             obj = import_mesh(self.filepath, fields=self.fields, resolution=self.resolution, steps=self.steps, velocity=self.velocity,
                               transfer_function=self.transfer_function, scale=self.scale, up=self.up,
-                              density_scale=self.density_scale)
+                              density_scale=self.density_scale, warn=lambda text: self.report({"WARNING"}, text))
         except SubvolError as error:
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
