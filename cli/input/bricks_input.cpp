@@ -12,9 +12,6 @@
 namespace subvol::cli {
 namespace {
 
-constexpr std::initializer_list<const char*> kOfFiles{"--density", "--other-cells", "--curved", "--cell-values",   "--step",
-                                                      "--time",    "--blocks",      "--weld",   "--weld-distance", "--sharp"};
-
 const BrickField* find(const Bricks& bricks, const std::string& name) {
     const auto found = std::ranges::find(bricks.fields, name, &BrickField::name);
     return found == bricks.fields.end() ? nullptr : &*found;
@@ -27,7 +24,7 @@ bool is_bricks_input(const std::string& input) {
 }
 
 Bricks open_bricks_input(const std::string& input, const CLI::App& app, Report& report) {
-    refuse_options(app, kOfFiles, "is settled when a mesh is split; this is a folder of bricks");
+    refuse_mesh_options(app, "is settled when a mesh is split; this is a folder of bricks");
     Bricks bricks = open_bricks(input);
     report["input"] = input;
     report["cells"] = bricks.cells;

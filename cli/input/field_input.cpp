@@ -38,7 +38,10 @@ HexMesh refined(const HexMesh& mesh, const RefineArguments& refine, Report& repo
 }
 
 FieldInput mesh_field(const std::string& input, const CommonOptions& options, const RefineArguments& refine, Report& report) {
-    auto mesh = std::make_shared<HexMesh>(with_selected_field(load_mesh(input, options, report), options, report));
+    CommonOptions own = is_model(input) ? CommonOptions() : options;  // how a file is read concerns the other field then
+    own.density = options.density;
+    own.field = options.field;
+    auto mesh = std::make_shared<HexMesh>(with_selected_field(load_mesh(input, own, report), own, report));
     const std::string name = mesh->attributes.front().name;
     auto field = std::make_shared<MeshField>(refined(*mesh, refine, report), name);
     return {field->view(), field, mesh, name};

@@ -66,13 +66,27 @@ std::optional<double> curved_tolerance(const CommonOptions& options) {
     return tolerance;
 }
 
+/// Options that change how a file is read, and have no effect on a model.
+void refuse_of_files(const CommonOptions& options) {
+    const CommonOptions unset;
+    const char* given = options.weld                               ? "--weld"
+                        : options.weld_distance_world              ? "--weld-distance"
+                        : options.other_cells != unset.other_cells ? "--other-cells"
+                        : options.curved != unset.curved           ? "--curved"
+                        : options.cell_values != unset.cell_values ? "--cell-values"
+                                                                   : nullptr;
+    if (given != nullptr) throw Error(ErrorCode::InvalidInput, "says how a file is read; this is a model", given);
+}
+
 /// For what is not done brick by brick.
 HexMesh mesh_of_bricks(const std::string& input, const CommonOptions& options, Report& report) {
+    const CommonOptions unset;
     const bool of_files = options.weld || options.weld_distance_world || !options.sharp.empty() || options.step ||
-                          options.time || !options.blocks.empty();
+                          options.time || !options.blocks.empty() || options.other_cells != unset.other_cells ||
+                          options.curved != unset.curved || options.cell_values != unset.cell_values;
     if (of_files) {
         throw Error(ErrorCode::InvalidInput, "is a folder of bricks: how a file is read is settled when it is split", input,
-                    "no --weld, --sharp, --step, --time and --blocks");
+                    "no --weld, --weld-distance, --sharp, --step, --time, --blocks, --other-cells, --curved and --cell-values");
     }
     const Bricks bricks = open_bricks(input);
     report.warn(text("all ", counted(bricks.bricks.size(), "brick"), " (", counted(bricks.cells, "cell"),
@@ -108,6 +122,7 @@ ReadResult read_input(const std::string& input, const CommonOptions& options, Re
         return read;
     }
     const bool model = is_model(input);
+    if (model) refuse_of_files(options);
     if (model && !options.sharp.empty()) throw Error(ErrorCode::InvalidInput, "a model has no groups", "--sharp");
     if (model && (options.step || options.time)) throw Error(ErrorCode::InvalidInput, "a model has no steps", "--step, --time");
     if (model && !options.blocks.empty()) throw Error(ErrorCode::InvalidInput, "a model has no blocks", "--blocks");
@@ -135,6 +150,32 @@ HexMesh load_mesh(const std::string& input, const CommonOptions& options, Report
         return std::move(read.mesh);
     }
     return used_mesh(std::move(read.mesh), options);
+}
+
+std::vector<FieldInfo> chosen_fields(const ReadResult& read, const CommonOptions& options) {
+    if (!options.density && !options.field) return read.fields;
+    HexMesh mesh = read.mesh;
+    if (mesh.cells.empty()) {
+        mesh.points = read.sheets.points;
+        mesh.attributes = read.sheets.attributes;
+        if (options.density) put_density_first(mesh, *options.density);
+    } else {
+        mesh = used_mesh(std::move(mesh), options);
+    }
+    const std::string name = options.density ? "density" : *options.field;
+    const auto range = [](const std::vector<double>& values) { return std::ranges::minmax(values); };
+    std::vector<FieldInfo> fields = read.fields;
+    if (options.density) {
+        const auto [min, max] = range(mesh.attributes.front().values);
+        std::erase_if(fields, [&](const FieldInfo& field) { return field.name == name; });
+        fields.insert(fields.begin(), {name, "point", 1, min, max});
+        return fields;
+    }
+    const auto found = std::ranges::find(fields, name, &FieldInfo::name);
+    if (found != fields.end()) return {*found};
+    const SelectedField selected = select_field(mesh, name);  // a component; or there is none of that name
+    const auto [min, max] = range(selected.scalar.values);
+    return {{name, "point", 1, min, max}};
 }
 
 void warn_of_sheets(const Sheets& sheets, Report& report) {

@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "common_options.h"
 #include "picture_arguments.h"
@@ -34,6 +35,11 @@ enum class SheetsAlone { Refuse, Take };
 /// alone:  Take: sheets without cells give a mesh of their points and fields without cells
 [[nodiscard]] HexMesh load_mesh(const std::string& input, const CommonOptions& options, Report& report,
                                 Sheets* sheets = nullptr, SheetsAlone alone = SheetsAlone::Refuse);
+
+/// The fields of what `read_input` returned: with --density that one first, with --field that one alone.
+///
+/// throws: Error(InvalidInput) if the expression has no value at a point, or if there is no such field
+[[nodiscard]] std::vector<FieldInfo> chosen_fields(const ReadResult& read, const CommonOptions& options);
 
 /// Says that sheets and curves are left out, if there are any.
 void warn_of_sheets(const Sheets& sheets, Report& report);

@@ -14,14 +14,17 @@
 namespace subvol::cli {
 namespace {
 
-constexpr std::initializer_list<const char*> kOfMeshes{
-    "--density",      "--other-cells",    "--curved",        "--cell-values",    "--step",     "--time",
-    "--blocks",       "--weld",           "--weld-distance", "--sharp",          "--per-edge", "--centers",
-    "--spacing",      "--spacing-voxels", "--correction",    "--scheme",         "--tension",  "--levels",
-    "--crease-angle", "--tolerance",      "--footprint",     "--footprint-size", "--values",   "--kernel",
-    "--value-kernel", "--threshold",      "--reduce",        "--refine",         "--seconds"};
+constexpr std::initializer_list<const char*> kOfSampling{
+    "--per-edge",     "--centers",      "--spacing",   "--spacing-voxels", "--correction",     "--scheme", "--tension",
+    "--levels",       "--crease-angle", "--tolerance", "--footprint",      "--footprint-size", "--values", "--kernel",
+    "--value-kernel", "--threshold",    "--reduce",    "--refine",         "--seconds"};
 
 constexpr const char* kNeedsMesh = "needs a mesh; these are points that have been sampled already";
+
+void refuse_sampling(const CLI::App& app) {
+    refuse_mesh_options(app, kNeedsMesh);
+    refuse_options(app, kOfSampling, kNeedsMesh);
+}
 
 [[noreturn]] void refuse_field(const std::string& name, const std::vector<std::string>& names, const std::string& input) {
     throw Error(ErrorCode::InvalidInput, "there is no field '" + name + "'" + detail::did_you_mean(name, names), input,
@@ -43,7 +46,7 @@ RbfVolume read_points_input(const std::string& input, Report& report) {
 }
 
 RbfVolume load_all_points(const std::string& input, const CLI::App& app, Report& report) {
-    refuse_options(app, kOfMeshes, kNeedsMesh);
+    refuse_sampling(app);
     return read_points_input(input, report);
 }
 
@@ -64,7 +67,7 @@ bool holds_levels(const std::string& input) {
 
 LevelsInput open_levels(const std::string& input, const CommonOptions& options, const std::optional<std::string>& second,
                         std::uint64_t cache_bytes, const CLI::App& app, Report& report) {
-    refuse_options(app, kOfMeshes, kNeedsMesh);
+    refuse_sampling(app);
     report["input"] = input;
     LevelsInput levels{report.timed("read", [&] { return KernelFile(input, cache_bytes); }), {}};
     const KernelFileContents& contents = levels.file.contents();

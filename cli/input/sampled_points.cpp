@@ -13,10 +13,8 @@ namespace subvol::cli {
 namespace {
 
 constexpr std::initializer_list<const char*> kOfMeshesOnly{
-    "--density",      "--other-cells", "--curved",    "--cell-values",    "--step",    "--time",
-    "--blocks",       "--per-edge",    "--centers",   "--scheme",         "--tension", "--levels",
-    "--crease-angle", "--tolerance",   "--footprint", "--footprint-size", "--values",  "--value-kernel",
-    "--reduce",       "--refine",      "--seconds",   "--color-field"};
+    "--per-edge",       "--centers", "--scheme",       "--tension", "--levels", "--crease-angle", "--tolerance",  "--footprint",
+    "--footprint-size", "--values",  "--value-kernel", "--reduce",  "--refine", "--seconds",      "--color-field"};
 
 RbfVolume without_invisible(RbfVolume volume, const SampleArguments& arguments, const std::optional<TransferFunction>& seen,
                             Report& report) {
@@ -117,6 +115,7 @@ RbfVolume sample_tets_reported(const HexMesh& mesh, const SampleArguments& argum
 
 RbfVolume sample_reported(const VdbGrid& grid, const SampleArguments& arguments, const std::optional<TransferFunction>& seen,
                           const CLI::App& app, Report& report) {
+    refuse_mesh_options(app, "needs a mesh; this is a grid of voxels");
     refuse_options(app, kOfMeshesOnly, "needs a mesh; this is a grid of voxels");
     const SampleOptions options = arguments.options(box_of(grid.report()), {});
     VoxelSampleResult sampled = report.timed("sample", [&] {

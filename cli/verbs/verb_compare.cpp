@@ -56,6 +56,10 @@ public:
                         "two pictures or two fields can be compared");
         }
         refuse_options_of(pictures ? "Fields" : "Pictures");
+        if (a != InputKind::Mesh && b != InputKind::Mesh) {
+            refuse_mesh_options(app(), text("needs a mesh; these are ", pictures ? "pictures" : "points or grids"));
+        }
+        if (pictures) refuse_options(app(), {"--field"}, "is for fields; these are pictures");
         pictures_.check();
         std::vector<Demand> demands;
         const auto names = pictures ? pictures_.names() : fields_.names(b == InputKind::Mesh);

@@ -79,6 +79,9 @@ public:
                         ranks() != nullptr ? "info in several processes" : "--part");
         }
         set_refinement();
+        if (!input_.empty() && (holds_points(input_) || is_vdb_file(input_))) {
+            refuse_mesh_options(app(), "needs a mesh; these are points or grids");
+        }
         if (list_fields_) return list_fields(report);
         if (gl_) describe_gl(report);
         if (input_.empty()) {
@@ -132,10 +135,15 @@ private:
         } else if (is_vdb_file(input_)) {
             for (const VdbGrid& grid : read_vdb(input_)) list(grid.report().name);
         } else {
-            for (const FieldInfo& field : read_input(input_, common(), report).fields) list(field.name);
+            for (const FieldInfo& field : chosen_fields(read_input(input_, common(), report), common())) list(field.name);
         }
         report.all_said();
         return 0;
+    }
+
+    /// Whether this is the field that --field names, or the one whose component it names; without --field all are shown.
+    [[nodiscard]] bool shows(const std::string& name) const {
+        return !common().field || *common().field == name || common().field->starts_with(name + ".");
     }
 
     void refuse_at(const std::string& what) const {
@@ -146,7 +154,8 @@ private:
     void describe_mesh(Report& report) {
         refuse_at("a mesh");
         const SheetsAlone alone = shares(share_) ? SheetsAlone::Refuse : SheetsAlone::Take;
-        const ReadResult read = read_input(input_, common(), report, alone);
+        ReadResult read = read_input(input_, common(), report, alone);
+        read.fields = chosen_fields(read, common());
         if (!is_model(input_)) put_steps(read, report);
         detail::MeshShare about;
         if (shares(share_)) {
@@ -194,6 +203,7 @@ private:
     void describe_bricks(Report& report) {
         refuse_at("bricks");
         const Bricks bricks = open_bricks_input(input_, app(), report);
+        if (common().field) (void)named_brick_field(bricks, *common().field, true);  // refuses what does not exist
         const Share share = share_of(share_);
         const detail::MeshShare about = joined(share, report, [&] {
             const auto [begin, end] = share.range(bricks.bricks.size());
@@ -207,6 +217,7 @@ private:
         report["bytes"] = bytes;
         report["fields"] = Json::array();
         for (const BrickField& field : bricks.fields) {
+            if (!shows(field.name)) continue;
             report["fields"].push_back({{"name", field.name},
                                         {"location", "point"},
                                         {"components", field.channels},
@@ -253,7 +264,11 @@ private:
     /// The head of a file with levels of detail; nothing else is read.
     void describe_levels(Report& report) {
         report["input"] = input_;
-        const KernelFileContents contents = report.timed("read", [&] { return KernelFile(input_).contents(); });
+        KernelFileContents contents = report.timed("read", [&] { return KernelFile(input_).contents(); });
+        if (common().field) {
+            const LevelsInput levels = open_levels(input_, common(), {}, 0, app(), report);
+            contents.channels = {contents.channels[levels.channels.front()]};
+        }
         report["points"] = contents.kernels;
         report["kernel"] = Json::parse(subvol::to_json(contents.kernel));
         report["bounds"] = json_of(contents.bounds);
@@ -269,7 +284,8 @@ private:
     void describe_points(Report& report) {
         refuse_at("points");
         if (holds_levels(input_)) return describe_levels(report);
-        const RbfVolume volume = read_points_input(input_, report);
+        RbfVolume volume = read_points_input(input_, report);
+        if (common().field) volume.channels = {volume.channels[find_channel(volume, *common().field, input_)]};
         report["kernel"] = Json::parse(subvol::to_json(volume.kernel));
         report["bounds"] = json_of(volume.bounds);
         report["boundary_triangles"] = volume.boundary.triangles.size();
@@ -282,9 +298,11 @@ private:
     void describe_grids(Report& report) {
         report["input"] = input_;
         const VdbContents contents = report.timed("read", [&] { return read_vdb_contents(input_); });
+        if (common().field) (void)select_grid(contents, common().field, input_);  // refuses what does not exist
         report["grids"] = Json::array();
         for (const VdbGrid& grid : contents.grids) {
             const GridReport& about = grid.report();
+            if (!shows(about.name)) continue;
             report["grids"].push_back({{"name", about.name},
                                        {"kind", about.kind},
                                        {"active_voxels", about.active_voxels},
@@ -295,7 +313,9 @@ private:
                                        {"bytes", about.bytes},
                                        {"hash", detail::hex_digits(hash_of_grid(grid))}});
         }
-        for (const auto& [name, type] : contents.others) report["grids"].push_back({{"name", name}, {"kind", type}});
+        for (const auto& [name, type] : contents.others) {
+            if (shows(name)) report["grids"].push_back({{"name", name}, {"kind", type}});
+        }
         if (points_.empty()) return;
         const std::vector<VdbGrid> scalars = probed(contents);
         for (const std::string& point : points_) {

@@ -239,6 +239,7 @@ private:
             throw Error(ErrorCode::InvalidInput, "a grid has no cells", "--method " + arguments_.method,
                         "use grid, splat or sheets");
         }
+        refuse_mesh_options(app(), "needs a mesh; this is a grid of voxels");
         const VdbGrid grid = load_grid(input_, common(), report);
         const Box box = box_of(grid.report());
         const ShownField field{grid.report().name, {grid.report().min, grid.report().max}};
