@@ -2,14 +2,13 @@
 #include "places_input.h"
 
 #include <array>
-#include <cerrno>
 #include <cmath>
-#include <fstream>
 #include <optional>
-#include <system_error>
+#include <sstream>
 
 #include "subvol/detail/number_text.h"
 #include "subvol/detail/printable.h"
+#include "subvol/detail/read_file.h"
 #include "subvol/error.h"
 #include "text.h"
 
@@ -45,8 +44,7 @@ std::optional<std::array<std::size_t, 3>> columns_of(const std::vector<std::stri
 }  // namespace
 
 std::vector<Vec3> read_places(const std::string& path) {
-    std::ifstream in(path);
-    if (!in) throw Error(ErrorCode::Io, "cannot be read: " + std::generic_category().message(errno), path);
+    std::istringstream in(detail::read_text(path));
     std::vector<Vec3> places;
     std::array<std::size_t, 3> columns{0, 1, 2};
     std::string line;
@@ -73,7 +71,6 @@ std::vector<Vec3> read_places(const std::string& path) {
         }
         places.push_back(place);
     }
-    if (in.bad()) throw Error(ErrorCode::Io, "cannot be read to its end", path);
     if (places.empty()) throw Error(ErrorCode::InvalidInput, "has no places", path, "lines of three numbers, as in 1,2,3");
     return places;
 }

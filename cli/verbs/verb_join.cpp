@@ -2,8 +2,8 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <optional>
+#include <set>
 
 #include "mesh_figures.h"
 #include "mesh_lines.h"
@@ -13,6 +13,7 @@
 #include "subvol/detail/atomic_file.h"
 #include "subvol/detail/picture_part.h"
 #include "subvol/detail/points_range.h"
+#include "subvol/detail/read_file.h"
 #include "subvol/detail/surface_io.h"
 #include "subvol/detail/surface_share.h"
 #include "subvol/error.h"
@@ -135,16 +136,20 @@ private:
     void join_listed_grids(Report& report) {
         const std::string& list = parts_.front();
         if (parts_.size() > 1) throw Error(ErrorCode::InvalidInput, "is one part too many: a list names all files", parts_[1]);
-        std::ifstream file(list, std::ios::binary);
-        const Json json = Json::parse(file, nullptr, false);
+        const Json json = Json::parse(detail::read_text(list), nullptr, false);
         const Json files = json.is_object() && json.contains("parts") ? json["parts"] : Json();
         std::vector<std::string> names;
         std::vector<std::size_t> order;
+        std::set<std::string> listed;
         for (const Json& entry : files.is_array() ? files : Json::array()) {
             if (!entry.is_object() || !entry.contains("file") || !entry["file"].is_string()) break;
             const std::filesystem::path name = std::filesystem::path(entry["file"].get<std::string>()).filename();
             order.push_back(names.size());
             names.push_back((std::filesystem::path(list).parent_path() / name).string());
+            if (!detail::not_regular(names.back()).empty()) {
+                throw Error(ErrorCode::InvalidInput, "is not a regular file", names.back());
+            }
+            if (!listed.insert(names.back()).second) throw Error(ErrorCode::InvalidInput, "is listed twice", names.back());
         }
         if (names.empty() || names.size() != files.size()) {
             throw Error(ErrorCode::InvalidInput, "is no list of grids in several files", list,
@@ -274,8 +279,7 @@ private:
         check_output(output_, {".json"});
         std::vector<Json> read;
         for (const std::string& part : parts_) {
-            std::ifstream file(part, std::ios::binary);
-            read.push_back(Json::parse(file, nullptr, false));
+            read.push_back(Json::parse(detail::read_text(part), nullptr, false));
             if (!read.back().is_object()) throw Error(ErrorCode::InvalidInput, "is not one object of JSON", part);
         }
         std::size_t at = 0;

@@ -2,10 +2,6 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
-#include <cerrno>
-#include <fstream>
-#include <iterator>
-#include <system_error>
 #include <utility>
 
 #include "bricks_input.h"
@@ -21,6 +17,7 @@
 #include "sampled_points.h"
 #include "splat_arguments.h"
 #include "steps.h"
+#include "subvol/detail/read_file.h"
 #include "subvol/error.h"
 #include "subvol/image_io.h"
 #include "subvol/mesh_series.h"
@@ -46,11 +43,8 @@ constexpr std::array kOfTheState{"--clip",    "--clip-box", "--slice", "--around
                                  "--state",   "--json",     "--quiet", "--progress"};
 
 std::string text_of(const std::string& file) {
-    std::ifstream stream(file, std::ios::binary);
-    if (!stream) throw Error(ErrorCode::Io, "cannot be read: " + std::generic_category().message(errno), file);
-    std::string text{std::istreambuf_iterator<char>(stream), {}};
-    if (stream.bad() || text.empty())
-        throw Error(ErrorCode::InvalidInput, "is empty or cannot be read", file, "a JSON array of actions");
+    std::string text = detail::read_text(file);
+    if (text.empty()) throw Error(ErrorCode::InvalidInput, "is empty", file, "a JSON array of actions");
     return text;
 }
 

@@ -9,6 +9,7 @@
 
 #include "subvol/camera.h"
 #include "subvol/detail/printable.h"
+#include "subvol/detail/read_file.h"
 #include "subvol/error.h"
 #include "subvol/model.h"
 
@@ -32,7 +33,11 @@ const std::vector<Key>& light_keys() {
 }
 
 /// A hash of a file that a case depends on, as a part of the case's values: a changed file is another case.
-std::string content_of(const fs::path& file) {
+std::string content_of(const fs::path& file, const std::string& path) {
+    std::error_code none;
+    if (!fs::is_directory(file, none) && !not_regular(file).empty()) {
+        refuse(path, "'" + printable(file.string()) + "' is not a regular file");
+    }
     std::ifstream in(file, std::ios::binary);
     std::ostringstream bytes;
     bytes << in.rdbuf();
@@ -81,7 +86,7 @@ public:
                     read.contains("model") ? as_text(read.at("model")) : name_of_file(as_text(read.at("file")));
                 if (read.contains("file")) {
                     const std::string file = resolved(as_text(read.at("file")));
-                    const std::string content = content_of(file);
+                    const std::string content = content_of(file, in(path, "file"));
                     if (content.empty()) refuse(in(path, "file"), "'" + printable(file) + "' cannot be read");
                     values["input.file"] = file;
                     values["input.content"] = content;
@@ -163,7 +168,7 @@ public:
         const std::size_t end = named.find(".json");
         if (end == std::string::npos) return;
         const std::string file = resolved(named.substr(0, end + 5));
-        const std::string content = content_of(file);
+        const std::string content = content_of(file, path);
         if (content.empty()) refuse(path, "'" + printable(file) + "' cannot be read");
         values[key] = file + named.substr(end + 5);
         values[key + ".content"] = content;

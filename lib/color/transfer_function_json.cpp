@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <fstream>
-#include <ios>
 #include <nlohmann/json.hpp>
 #include <utility>
 
@@ -9,6 +7,7 @@
 #include "knot_values.h"
 #include "subvol/color_map_file.h"
 #include "subvol/detail/printable.h"
+#include "subvol/detail/read_file.h"
 #include "subvol/error.h"
 #include "subvol/srgb.h"
 #include "subvol/transfer_function.h"
@@ -43,15 +42,11 @@ json map_named(const json& maps, const std::string& name, const std::string& fil
 }
 
 json read_color_map(const std::string& file, const std::string& name) {
-    std::ifstream stream(file);
-    if (!stream) throw Error(ErrorCode::Io, "cannot be opened", file);
     json document;
     try {
-        document = json::parse(stream);
+        document = json::parse(read_text(file));
     } catch (const json::exception& e) {
         refuse(file, parser_message(e.what()));
-    } catch (const std::ios_base::failure&) {  // for example, it is a folder
-        throw Error(ErrorCode::Io, "cannot be read", file, "a JSON file");
     }
     // ParaView writes an array of colour maps; a single map without the array is accepted too.
     if (document.is_object()) document = json::array({std::move(document)});

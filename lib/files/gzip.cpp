@@ -52,11 +52,8 @@ std::optional<std::string> gunzipped(std::string_view bytes) {
 std::string read_maybe_gzipped(const std::filesystem::path& path) {
     std::error_code none;
     const std::filesystem::path packed = path.string() + ".gz";
-    const bool plain = std::filesystem::exists(path, none) || !std::filesystem::exists(packed, none);
-    const std::filesystem::path& file = plain ? path : packed;
-    std::string bytes = read_regular(file);
-    if (plain) return bytes;
-    auto text = gunzipped(bytes);
+    if (std::filesystem::exists(path, none) || !std::filesystem::exists(packed, none)) return read_regular(path);
+    auto text = gunzipped(read_regular(packed));
     if (!text) throw Error(ErrorCode::InvalidInput, "not a whole gzip file", packed.string());
     return std::move(*text);
 }

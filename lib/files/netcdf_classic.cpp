@@ -3,6 +3,7 @@
 #include <array>
 #include <optional>
 
+#include "named_files.h"
 #include "netcdf_source.h"
 #include "text_scanner.h"
 
@@ -49,6 +50,8 @@ public:
         expect(variable.begin <= end && (record == 0 || record_bytes_ <= (end - variable.begin) / record));
         const std::size_t begin = variable.begin + record * record_bytes_;
         expect(offset <= end && offset + count <= (end - begin) / size);
+        // Variables may lie at the same place.
+        named_.take({}, in.size(), count * size, [&] { return in.place_of(std::min(variable.begin, end)); });
         in.seek(begin + offset * size);
         std::string bytes(in.bytes(count * size, {"values"}));
         if (std::endian::native == kOrder) return bytes;
@@ -187,6 +190,7 @@ private:
     std::vector<std::string> names_;
     std::optional<std::size_t> unlimited_;
     std::size_t record_bytes_ = 0;
+    mutable NamedFiles named_;
 };
 
 }  // namespace

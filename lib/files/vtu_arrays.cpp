@@ -175,6 +175,14 @@ std::uint64_t VtuArrays::header_number(const pugi::xml_node& array, ByteSource& 
     return static_cast<std::uint64_t>(integer_from(*bytes, encoding_.header, encoding_.order));
 }
 
+// there: of the whole text if that is where the bytes are counted, else of the array at this offset
+void VtuArrays::count(NamedFiles& counts, const pugi::xml_node& array, std::size_t there, std::size_t taken) const {
+    const bool whole = &counts == &encoded_;
+    const auto offset = array.attribute("offset");
+    const std::string source = whole ? "" : offset ? offset.as_string() : std::to_string(array.offset_debug());
+    counts.take(source, there, taken, [&] { return in_.place_of(place(array)); });
+}
+
 void VtuArrays::fail_bytes(const pugi::xml_node& array, std::uint64_t bytes, const ByteSource& from) const {
     fail(array, "its " + std::to_string(bytes) + " bytes go beyond the end of the data or are damaged",
          "at most " + std::to_string(from.left()) + " bytes are left");
@@ -194,6 +202,10 @@ VtuArrays::Layout VtuArrays::layout(const pugi::xml_node& array, ByteSource& fro
     if (first > from.left() / size_of(encoding_.header)) {
         fail(array, "its " + std::to_string(first) + " compressed blocks go beyond the end of the data");
     }
+    if (block > 0 && first - 1 > (std::numeric_limits<std::uint64_t>::max() - last) / block) {
+        fail(array, "its " + std::to_string(first) + " compressed blocks of " + std::to_string(block) + " bytes are too many");
+    }
+    count(encoded_, array, text_.size(), first * size_of(encoding_.header));
     Layout layout{.bytes = (first - 1) * block + last, .block = block, .last = last};
     for (std::uint64_t b = 0; b < first; ++b) layout.compressed.push_back(header_number(array, from));
     return layout;
@@ -203,6 +215,10 @@ void VtuArrays::each_block(const pugi::xml_node& array, const TakeBytes& take) c
     ByteSource from = source(array);
     const Layout found = layout(array, from);
     const std::size_t size = size_of(type_of(array));
+    const bool plain = encoding_.compressor == Compressor::None;
+    for (const std::uint64_t compressed : found.compressed)
+        count(encoded_, array, text_.size(), std::min(compressed, from.left()));
+    count(plain ? encoded_ : decoded_, array, plain ? text_.size() : found.bytes, found.bytes);
     std::string bytes;  // the beginning of a value that ends in the next block
     const auto take_whole = [&](std::string_view block) {
         bytes += block;
@@ -210,7 +226,7 @@ void VtuArrays::each_block(const pugi::xml_node& array, const TakeBytes& take) c
         take(std::string_view(bytes).substr(0, whole));
         bytes.erase(0, whole);
     };
-    if (encoding_.compressor == Compressor::None) {
+    if (plain) {
         plain_blocks(array, found.bytes, std::move(from), take_whole);
     } else {
         compressed_blocks(array, found, std::move(from), take_whole);

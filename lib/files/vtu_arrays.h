@@ -11,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include "named_files.h"
 #include "number_type.h"
 #include "text_scanner.h"
 #include "vtu_bytes.h"
@@ -88,6 +89,7 @@ private:
     [[nodiscard]] ByteSource source(const pugi::xml_node& array) const;
     [[nodiscard]] std::uint64_t header_number(const pugi::xml_node& array, ByteSource& from) const;
     [[nodiscard]] Layout layout(const pugi::xml_node& array, ByteSource& from) const;
+    void count(NamedFiles& counts, const pugi::xml_node& array, std::size_t there, std::size_t taken) const;
     [[noreturn]] void fail_bytes(const pugi::xml_node& array, std::uint64_t bytes, const ByteSource& from) const;
     void each_block(const pugi::xml_node& array, const TakeBytes& take) const;
     void plain_blocks(const pugi::xml_node& array, std::uint64_t size, ByteSource from, const TakeBytes& take) const;
@@ -98,6 +100,7 @@ private:
     const TextScanner& in_;
     const XmlTags& tags_;
     const VtuEncoding& encoding_;
+    mutable NamedFiles encoded_, decoded_;  // arrays may name the same appended bytes
 };
 
 /// The value of an attribute that is a count or an offset; VTK may put white space around it. Nothing if it is missing or not

@@ -4,8 +4,6 @@
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
-#include <fstream>
-#include <ios>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string_view>
@@ -14,6 +12,7 @@
 #include "camera_axes.h"
 #include "subvol/detail/number_text.h"
 #include "subvol/detail/printable.h"
+#include "subvol/detail/read_file.h"
 #include "subvol/error.h"
 
 namespace subvol {
@@ -74,15 +73,11 @@ void read_vector(const nlohmann::json& object, const std::string& file, const ch
 }
 
 nlohmann::json read_json_object(const std::string& file) {
-    std::ifstream stream(file);
-    if (!stream) throw Error(ErrorCode::Io, "cannot be opened", file);
     nlohmann::json json;
     try {
-        json = nlohmann::json::parse(stream);
+        json = nlohmann::json::parse(detail::read_text(file));
     } catch (const nlohmann::json::exception& e) {
         throw Error(ErrorCode::InvalidInput, detail::parser_message(e.what()), file);
-    } catch (const std::ios_base::failure&) {  // for example, it is a folder
-        throw Error(ErrorCode::Io, "cannot be read", file, "a JSON file");
     }
     if (!json.is_object()) throw Error(ErrorCode::InvalidInput, "is not a JSON object", file);
     return json;

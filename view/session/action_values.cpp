@@ -7,6 +7,7 @@
 #include "subvol/detail/near_name.h"
 #include "subvol/detail/number_text.h"
 #include "subvol/detail/printable.h"
+#include "subvol/detail/read_file.h"
 #include "subvol/error.h"
 
 namespace subvol::detail {
@@ -59,6 +60,15 @@ bool flag(const Json& value) {
 std::string word(const Json& value) {
     if (!value.is_string()) refuse(value, "a text in quotes");
     return value.get<std::string>();
+}
+
+std::string readable_word(const Json& value) {
+    std::string read = word(value);
+    constexpr std::string_view kEnd = ".json";  // after it a colour map of the file may be named
+    const std::size_t end = read.find(kEnd);
+    const std::string file = end == std::string::npos ? read : read.substr(0, end + kEnd.size());
+    if (!not_regular(file).empty()) throw Error(ErrorCode::InvalidInput, "is not a regular file", file);
+    return read;
 }
 
 std::string word_of(const Json& value, const std::vector<std::string>& words) {

@@ -18,6 +18,8 @@ namespace subvol::detail {
 [[nodiscard]] Vec3 vector(const Json& value);
 [[nodiscard]] bool flag(const Json& value);
 [[nodiscard]] std::string word(const Json& value);
+/// The name of a file to read, or of anything else: not that of a pipe or device, which may have no end.
+[[nodiscard]] std::string readable_word(const Json& value);
 [[nodiscard]] std::string word_of(const Json& value, const std::vector<std::string>& words);
 
 /// The value of a key of an object, or `fallback` if the object does not have it.

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Actions that wait, pick, and write or read files.
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 
 #include "seen_view.h"
 #include "subvol/color_map_file.h"
 #include "subvol/detail/atomic_file.h"
 #include "subvol/detail/printable.h"
+#include "subvol/detail/read_file.h"
 #include "subvol/error.h"
 #include "view_actions.h"
 
@@ -81,10 +80,8 @@ void save_state(Session& session, const Json& file) {
 }
 
 void load_state(Session& session, const Json& file) {
-    const std::string path = word(file);
-    std::ifstream stream(path, std::ios::binary);
-    if (!stream) throw Error(ErrorCode::Io, "cannot be opened", path);
-    const std::string text{std::istreambuf_iterator<char>(stream), {}};
+    const std::string path = readable_word(file);
+    const std::string text = read_text(path);
     const Json json = parsed(text, path);
     if (!json.is_object()) throw Error(ErrorCode::InvalidInput, "is not the state of a session", path);
     const Json known = json_of(session.state);

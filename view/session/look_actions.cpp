@@ -52,7 +52,7 @@ void look(Session& session, const Json& name) {
 }
 
 void tf(Session& session, const Json& name) {
-    edit_state(session, [&](ViewState& next) { next.look.colors = word(name); });
+    edit_state(session, [&](ViewState& next) { next.look.colors = readable_word(name); });
 }
 
 void range(Session& session, const Json& value) {

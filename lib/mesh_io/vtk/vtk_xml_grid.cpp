@@ -99,7 +99,7 @@ VtkExtent extent_of(const VtkXml& xml, const pugi::xml_node& piece) {
 }
 
 void add_grid_points(const VtkXml& xml, VtkGrid kind, const pugi::xml_node& piece, const VtkExtent& extent, MeshFile& into) {
-    if (extent.grid.point_count() > most_points(xml.most_bytes())) {
+    if (into.points.size() + extent.grid.point_count() > most_points(xml.most_bytes())) {  // of all pieces
         xml.fail_at(piece, size_text(extent.grid) + " are more than the file can have values for");
     }
     const auto position = xml.place(piece);

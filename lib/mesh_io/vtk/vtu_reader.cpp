@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <limits>
+#include <map>
 #include <pugixml.hpp>
+#include <tuple>
+#include <utility>
 
 #include "assemble.h"
 #include "formats.h"
@@ -41,14 +44,13 @@ private:
     void read_pieces(bool may_be_empty) {
         const pugi::xml_node grid = xml_.data_set();
         if (xml_.is_older_than(2, 1)) sorter_.set_old_order();
-        std::size_t pieces = 0;
         for (const auto& piece : grid.children("Piece")) {
+            ++pieces_;
             read_piece(piece);
-            ++pieces;
         }
-        if (pieces == 0) xml_.fail_at(grid, "there is no Piece element");
-        if (pieces > 1)
-            found_.warnings.push_back(std::to_string(pieces) + " pieces put together" +
+        if (pieces_ == 0) xml_.fail_at(grid, "there is no Piece element");
+        if (pieces_ > 1)
+            found_.warnings.push_back(std::to_string(pieces_) + " pieces put together" +
                                       (options_.weld ? "" : "; points where they touch stay apart without welding"));
         drop_partial_arrays();
         sorter_.report(may_be_empty ? std::nullopt : std::optional(file_));
@@ -180,17 +182,16 @@ private:
     // The values of a piece follow those of the piece before. An array that an earlier piece lacks is started anew, and removed
     // at the end.
     std::vector<double>& values_of(const std::string& name, bool at_cells, std::size_t components, std::size_t before) {
-        const auto continues = [&](const FileArray& array) {
-            return array.at_cells == at_cells && array.name == name && array.values.size() == before * components &&
-                   static_cast<std::size_t>(array.components) == components;
-        };
-        auto array = found_.arrays.end();
-        if (before > 0) array = std::find_if(found_.arrays.begin(), found_.arrays.end(), continues);
-        if (array == found_.arrays.end()) {
-            found_.arrays.push_back({name, static_cast<int>(components), at_cells, {}});
-            array = found_.arrays.end() - 1;
+        Alike& alike = alike_[{name, at_cells, components}];
+        if (std::exchange(alike.piece, pieces_) != pieces_) alike.next = 0;
+        while (alike.next < alike.places.size()) {
+            std::vector<double>& values = found_.arrays[alike.places[alike.next++]].values;
+            if (values.size() == before * components) return values;
         }
-        return array->values;
+        alike.places.push_back(found_.arrays.size());
+        alike.next = alike.places.size();
+        found_.arrays.push_back({name, static_cast<int>(components), at_cells, {}});
+        return found_.arrays.back().values;
     }
 
     void drop_partial_arrays() {
@@ -209,7 +210,13 @@ private:
     const VtuArrays& arrays_;
     MeshFile found_;
     VtkCellSorter sorter_;
-    std::size_t cells_before_ = 0;
+    std::size_t cells_before_ = 0, pieces_ = 0;
+    // The arrays of a name: those of a piece belong to them in their order.
+    struct Alike {
+        std::vector<std::size_t> places;
+        std::size_t next = 0, piece = 0;
+    };
+    std::map<std::tuple<std::string, bool, std::size_t>, Alike> alike_;
 };
 
 }  // namespace

@@ -27,6 +27,9 @@ const std::map<std::string, std::size_t, std::less<>> kNodes{{"point", 1},    {"
                                                              {"tetra10", 10}, {"pyramid5", 5}, {"pyramid13", 13}, {"penta6", 6},
                                                              {"penta15", 15}, {"hexa8", 8},    {"hexa20", 20}};
 
+// A uniform block lists no points: with its cells it is much more than its few numbers.
+constexpr std::size_t kBytesOfBlockPoint = 64;
+
 // Elements of one type of a part.
 struct Group {
     std::string type;
@@ -150,7 +153,7 @@ private:
         add_axes(data, part, count);
     }
 
-    static void read_block(EnsightData& data, Part& part, const std::string& line) {
+    void read_block(EnsightData& data, Part& part, const std::string& line) {
         if (!part.found.points.empty()) data.fail("part " + in_quotes(part.name) + " has coordinates already");
         const auto sizes = data.integers(3, "sizes of a block");
         if (std::ranges::any_of(sizes, [](std::int64_t size) { return size < 1 || size > 1 << 30; }))
@@ -160,6 +163,7 @@ private:
         const std::size_t points = grid.point_count(), cells = grid.cell_count();
         if (points == kNone || points > most_points(data.in().size()))
             data.fail("there are more points than the file can have values");
+        named_.take({}, 0, points * kBytesOfBlockPoint, [&] { return data.place(); });
         part.structured = true;
         part.elements = cells;
         if (line.find("rectilinear") != std::string::npos || line.find("uniform") != std::string::npos) {

@@ -32,6 +32,10 @@ public:
     [[nodiscard]] std::vector<double> values(const pugi::xml_node& item);
     /// The values of all data items of an element, which has so many of them.
     [[nodiscard]] std::vector<std::vector<double>> items(const pugi::xml_node& element, std::size_t count);
+    /// Counts bytes that are made of few numbers; fails if they are too many for this file.
+    void make(const pugi::xml_node& node, std::size_t bytes) {
+        named_.take({}, 0, bytes, [&] { return place_of(node); });
+    }
     /// The numbers of an attribute such as Dimensions; empty if there is none.
     [[nodiscard]] std::vector<std::size_t> sizes(const pugi::xml_node& node, const char* attribute) const;
 

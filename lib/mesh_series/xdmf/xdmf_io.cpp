@@ -188,6 +188,8 @@ private:
             if (!sizes.empty()) values = std::max(values, file_.values(file_.child(array, "DataItem")).size());
         }
         if (grid.point_count() > most_points(8 * values)) file_.fail_at(topology, "its points are more than its values");
+        constexpr std::size_t kBytesOfPoint = 64;  // with its cell
+        file_.make(topology, grid.point_count() * kBytesOfPoint);
         const auto items = file_.items(geometry, 2);
         if (items[0].size() != 3 || items[1].size() != 3) file_.fail_at(geometry, "an origin and a spacing are needed");
         std::array<std::vector<double>, 3> cuts;

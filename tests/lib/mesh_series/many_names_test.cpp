@@ -88,7 +88,7 @@ TEST_F(ManyNames, ManyArraysInOneFileAndInPieces) {
 }
 
 TEST_F(ManyNames, ManyBlocks) {
-    constexpr int kBlocks = 3000;
+    constexpr int kBlocks = 1000;
     HexMesh mesh = make_box(1, 1, 1);
     std::string list = "<VTKFile type=\"vtkMultiBlockDataSet\"><vtkMultiBlockDataSet>";
     for (int k = 0; k < kBlocks; ++k) {
@@ -98,7 +98,7 @@ TEST_F(ManyNames, ManyBlocks) {
     }
     const ReadResult result = read_mesh(write("a.vtm", list + "</vtkMultiBlockDataSet></VTKFile>"));
     ASSERT_EQ(result.blocks.size(), std::size_t{kBlocks / 2});
-    EXPECT_EQ(result.blocks.back().name, "b1499");
+    EXPECT_EQ(result.blocks.back().name, "b499");
     EXPECT_EQ(result.blocks.back().cells, 2u);
     EXPECT_NEAR(inspect(result.mesh).volume, kBlocks, 1e-9);
 }
