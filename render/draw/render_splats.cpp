@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <utility>
 #include <vector>
 
@@ -36,11 +37,8 @@ SplatMethod resolved(const SplatOptions& options) {
 /// Draws sheets in its own context, which is current only while it draws.
 class SheetDrawer {
 public:
-    explicit SheetDrawer(std::optional<int> device) : context_(device) { sheets_.emplace(); }
-    ~SheetDrawer() {
-        const detail::GlScope scope(context_);
-        sheets_.reset();
-    }
+    explicit SheetDrawer(std::optional<int> device) : context_(device), sheets_(std::make_unique<detail::GlSheets>()) {}
+    ~SheetDrawer() { detail::free_in(context_, sheets_); }
     SheetDrawer(const SheetDrawer&) = delete;
     SheetDrawer& operator=(const SheetDrawer&) = delete;
 
@@ -52,7 +50,7 @@ public:
 
 private:
     detail::GlContext context_;
-    std::optional<detail::GlSheets> sheets_;
+    std::unique_ptr<detail::GlSheets> sheets_;
 };
 
 std::unique_ptr<SheetDrawer> make_sheet_drawer(const SplatOptions& options) {

@@ -16,12 +16,12 @@ constexpr int kMostErrors = 64;  // a lost context, or none, may report errors w
 
 OpenedGl open_gl(std::optional<int> index) {
     GlFinder finder;
-    const EglContext before = EglContext::current();
+    const EglState before = EglState::current();
     while (const auto opened = finder.next()) {
         if (!index || opened->device.index == *index) return *opened;
         opened->context.destroy();
     }
-    (void)before.make_current();
+    before.restore();
     throw_no_gl(index);
 }
 
@@ -52,12 +52,8 @@ std::string reset_message(GLenum status) {
 GlContext::GlContext(std::optional<int> device) : opened_(open_gl(device)) {
 }
 
-void GlContext::release() const {
-    if (EglContext::current() == opened_.context) (void)EglContext{}.make_current();
-}
-
 GlScope::GlScope(const GlContext& context) {
-    if (context.opened_.context.make_current()) return;
+    if (context.make_current()) return;
     throw Error(ErrorCode::MissingCapability, "the GL context is in use by another thread", context.renderer());
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <memory>
 #include <string>
 
 #include "gl_display.h"
@@ -22,15 +23,17 @@ public:
     [[nodiscard]] const std::string& renderer() const { return opened_.device.renderer; }
     [[nodiscard]] bool hardware() const { return opened_.device.hardware; }
 
+    /// Makes it current on this thread; false if another thread uses it.
+    [[nodiscard]] bool make_current() const { return opened_.context.make_current(); }
+
     /// Releases it from this thread, so that another thread can use it. Does nothing if it is not current here.
-    void release() const;
+    void release() const { opened_.context.release(); }
 
 private:
-    friend class GlScope;
     OpenedGl opened_;
 };
 
-/// Makes a context current on this thread; at the end of the scope the one from before is current again.
+/// Makes a context current on this thread; at the end of the scope EGL is as it was before.
 class GlScope {
 public:
     /// throws: Error(MissingCapability) if the context is current on another thread
@@ -39,6 +42,17 @@ public:
 private:
     KeepCurrent keep_;
 };
+
+/// Frees what lives in a context, for destructors: throws nothing. If another thread uses the context, it cannot be freed and
+/// is given up.
+template <class T>
+void free_in(const GlContext& context, std::unique_ptr<T>& owned) {
+    const KeepCurrent keep;
+    if (context.make_current())
+        owned.reset();
+    else
+        (void)owned.release();
+}
 
 /// throws: Error(MissingCapability) with the hint `allowed` if the current context cannot draw a picture of that size
 void check_picture_size(int width, int height, const char* allowed);

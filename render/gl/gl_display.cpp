@@ -79,10 +79,26 @@ std::vector<Candidate> find_candidates() {
     return hardware;
 }
 
+/// Binds an API of EGL for the calls of a scope.
+class BoundApi {
+public:
+    explicit BoundApi(EGLenum api) : before_(eglQueryAPI()), bound_(eglBindAPI(api) == EGL_TRUE) {}
+    ~BoundApi() { eglBindAPI(before_); }
+    BoundApi(const BoundApi&) = delete;
+    BoundApi& operator=(const BoundApi&) = delete;
+
+    [[nodiscard]] bool bound() const { return bound_; }
+
+private:
+    EGLenum before_;
+    bool bound_;
+};
+
 /// A current context, which reports a lost device if the driver can; a null one if the display does not work.
 EglContext make_context(EGLDisplay display) {
     if (display == EGL_NO_DISPLAY || !eglInitialize(display, nullptr, nullptr)) return {};
-    if (!eglBindAPI(EGL_OPENGL_API)) return {};
+    const BoundApi api(EGL_OPENGL_API);
+    if (!api.bound()) return {};
     constexpr std::array<EGLint, 11> kAttributes{
         EGL_CONTEXT_MAJOR_VERSION,
         4,
@@ -142,24 +158,49 @@ GlDevice describe() {
 
 }  // namespace
 
-EglContext EglContext::current() {
-    if (!opengl_installed()) return {};
-    eglBindAPI(EGL_OPENGL_API);
-    return {eglGetCurrentDisplay(), eglGetCurrentContext()};
+bool EglContext::make_current() const {
+    if (!context) return false;
+    const BoundApi api(EGL_OPENGL_API);
+    return eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, context) == EGL_TRUE;
 }
 
-bool EglContext::make_current() const {
-    if (!opengl_installed()) return !context;  // none was made, so none is current
-    eglBindAPI(EGL_OPENGL_API);                // a new thread has another API bound
-    if (context) return eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, context) == EGL_TRUE;
-    const EglContext old = current();
-    return !old.context || eglMakeCurrent(old.display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT) == EGL_TRUE;
+void EglContext::release() const {
+    if (!context) return;
+    const BoundApi api(EGL_OPENGL_API);
+    if (eglGetCurrentContext() == context) eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
 }
 
 void EglContext::destroy() const {
     if (!context) return;
-    if (current() == *this) (void)EglContext{}.make_current();
+    release();
     eglDestroyContext(display, context);  // the display stays open: others may use it, and eglTerminate leaks in Mesa
+}
+
+EglState EglState::current() {
+    EglState state;
+    if (!opengl_installed()) return state;
+    // The API that is bound need not be that of the context.
+    for (const EGLenum api : {eglQueryAPI(), EGLenum{EGL_OPENGL_API}, EGLenum{EGL_OPENGL_ES_API}}) {
+        const BoundApi bound(api);
+        state.api_ = api;
+        state.context_ = {eglGetCurrentDisplay(), eglGetCurrentContext()};
+        state.draw_ = eglGetCurrentSurface(EGL_DRAW);
+        state.read_ = eglGetCurrentSurface(EGL_READ);
+        if (state.context_.context) break;
+    }
+    return state;
+}
+
+void EglState::restore() const {
+    if (!opengl_installed()) return;  // none was made, so none is current
+    if (context_.context) {
+        const BoundApi bound(api_);
+        eglMakeCurrent(context_.display, draw_, read_, context_.context);
+    } else {
+        const BoundApi bound(EGL_OPENGL_API);
+        const EGLDisplay display = eglGetCurrentDisplay();
+        if (display != EGL_NO_DISPLAY) eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+    }
 }
 
 struct GlFinder::State {

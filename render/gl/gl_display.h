@@ -8,34 +8,48 @@
 
 namespace subvol::detail {
 
-/// Handles of an EGL context and its display. They are not owned: whoever opened the context destroys it.
+/// Handles of an EGL context of ours, which has no surfaces, and its display. They are not owned: whoever opened the context
+/// destroys it. No member changes the API that is bound on this thread.
 struct EglContext {
     void* display = nullptr;
     void* context = nullptr;
 
-    /// The context of this thread; null if there is none.
-    [[nodiscard]] static EglContext current();
-
-    /// Makes it current on this thread; a null context releases the current one.
+    /// Makes it current on this thread.
     ///
     /// returns: false if EGL refuses, for example because the context is current on another thread
     [[nodiscard]] bool make_current() const;
 
-    void destroy() const;
+    /// Releases it from this thread, if it is current here.
+    void release() const;
 
-    bool operator==(const EglContext&) const = default;
+    void destroy() const;
 };
 
-/// Makes the context of this thread current again at the end of a scope that opens, uses or closes others.
+/// The context that is current in EGL on this thread, whoever made it so, with its surfaces.
+class EglState {
+public:
+    [[nodiscard]] static EglState current();
+
+    /// Makes it current again, in place of a context of ours.
+    void restore() const;
+
+private:
+    unsigned int api_ = 0;  // under which the context was found
+    EglContext context_;
+    void* draw_ = nullptr;
+    void* read_ = nullptr;
+};
+
+/// Leaves EGL on this thread as it was at the end of a scope that opens, uses or closes contexts: a caller may be drawing.
 class KeepCurrent {
 public:
     KeepCurrent() = default;
-    ~KeepCurrent() { (void)before_.make_current(); }
+    ~KeepCurrent() { before_.restore(); }
     KeepCurrent(const KeepCurrent&) = delete;
     KeepCurrent& operator=(const KeepCurrent&) = delete;
 
 private:
-    EglContext before_ = EglContext::current();
+    EglState before_ = EglState::current();
 };
 
 struct OpenedGl {

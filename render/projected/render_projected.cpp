@@ -69,9 +69,8 @@ struct ProjectedRenderer::State {
     template <class Build>
     State(const std::optional<int>& device, Progress* progress, const Build& build);
     ~State() {
-        const detail::GlScope scope(context);
-        lists.reset();
-        drawer.reset();
+        free_in(context, lists);
+        free_in(context, drawer);
     }
     State(const State&) = delete;
     State& operator=(const State&) = delete;
@@ -88,8 +87,8 @@ struct ProjectedRenderer::State {
     Box box;
     ProjectedReport built;
     detail::GlContext context;
-    std::optional<GlTets> drawer;
-    std::optional<detail::GlTetLists> lists;
+    std::unique_ptr<GlTets> drawer;
+    std::unique_ptr<detail::GlTetLists> lists;
 };
 
 template <class Build>
@@ -99,8 +98,8 @@ ProjectedRenderer::State::State(const std::optional<int>& device, Progress* prog
     tets = build();
     check_count("tetrahedra", tets.tets.size(), kMostTets);
     box = bounds_of(tets);
-    drawer.emplace();
-    lists.emplace(*drawer);
+    drawer = std::make_unique<GlTets>();
+    lists = std::make_unique<detail::GlTetLists>(*drawer);
     context.release();
     built.device = context.renderer();
     built.tets = tets.tets.size();

@@ -45,8 +45,8 @@ namespace subvol::detail {
 
 namespace {
 
-constexpr std::size_t kPixel_bytes = 20;  // for each pixel of the picture: colour, opacity, depth
-constexpr std::size_t kState_bytes = 96;  // for each pixel, between dispatches
+constexpr std::size_t kPixel_bytes = 16;  // for each pixel of the picture
+constexpr std::size_t kState_bytes = 64;  // for each pixel, between dispatches
 constexpr std::size_t kEnds_bytes = 32;   // for each interval
 
 std::string decimal(float value) {
@@ -239,7 +239,8 @@ void GlSplatter::State::draw_pass(Progress* progress) {
     picture_.bind(11);
     const std::uint32_t tiles = frame_.tiles(), at_once = std::min(tiles, tuning_.most_tiles);
     const bool whole = frame_.end_batch - frame_.first_batch == frame_.batches;  // no pass needs the states of another
-    kept_.grow(sizeof(std::uint32_t) + at_once * tile_pixels() * sums_bytes());
+    const auto pixels = static_cast<std::size_t>(frame_.width) * static_cast<std::size_t>(frame_.height);
+    kept_.grow(sizeof(std::uint32_t) + pixels * sizeof(float) + at_once * tile_pixels() * sums_bytes());
     kept_.bind(12);
     states_.grow((whole ? at_once : tiles) * tile_pixels() * kState_bytes);
     states_.bind(13);
@@ -340,10 +341,9 @@ bool GlSplatter::State::fits_bins(int first, int end) const {
 
 Drawn GlSplatter::State::read(const View& view) {
     Drawn drawn{Image(view.width(), view.height()), {}};
-    const std::size_t bytes = drawn.image.rgba.size() * sizeof(float);
-    picture_.read(bytes, drawn.image.rgba.data());
+    picture_.read(drawn.image.rgba.size() * sizeof(float), drawn.image.rgba.data());
     drawn.depth.resize(drawn.image.rgba.size() / 4);
-    picture_.read(drawn.depth.size() * sizeof(float), drawn.depth.data(), bytes);
+    kept_.read(drawn.depth.size() * sizeof(float), drawn.depth.data(), sizeof(std::uint32_t));
     return drawn;
 }
 
@@ -355,13 +355,7 @@ GlSplatter::GlSplatter(const SplatScene& scene, std::optional<int> device, const
 }
 
 GlSplatter::~GlSplatter() {
-    if (!state_) return;
-    try {
-        const GlScope scope(state_->context);  // its buffers are freed in it
-        state_.reset();
-    } catch (const Error&) {
-        (void)state_.release();  // the context is in use by another thread: its buffers cannot be freed
-    }
+    if (state_) free_in(state_->context, state_);
 }
 
 GlSplatter::GlSplatter(GlSplatter&&) noexcept = default;

@@ -25,7 +25,7 @@ struct GlTuning {
     int batch = kBatch;
     std::size_t most_buffer_bytes = std::size_t{1} << 31;
     std::size_t most_entries = std::size_t{1} << 26;
-    std::uint32_t most_tiles = 2048;
+    std::uint32_t most_tiles = 1024;
     std::uint32_t most_steps = 1U << 14;
     bool boundary_on_device = false;
 };

@@ -8,15 +8,12 @@
 // done (splat_sums.glsl). What a thread does for the intervals of its own ray is limited by their number.
 layout(local_size_x = kTile, local_size_y = kTile) in;
 layout(std430, binding = 2) readonly buffer Ranges { vec2 ranges[]; };
-layout(std430, binding = 11) writeonly buffer Picture { float picture[]; };  // colours of all pixels, then depths
+layout(std430, binding = 11) writeonly buffer Picture { vec4 picture[]; };
 struct State {
-    vec4 color;      // opacity in the last component
-    vec4 going;      // depth, enter, exit; weight on the last sheet
-    vec4 on_last;    // x, color, light
-    vec4 range;      // of the tile's batch `ranged`
-    uvec4 at;        // interval, next end; entry of the sum; whether there is a value on the last sheet
-    ivec4 to_do;     // of the tile: next batch, job; bits: whether ends are found, whether the batch before was passed over;
-                     // the batch of `range`
+    vec4 color;    // opacity in the last component
+    vec4 going;    // depth, enter, exit; weight on the last sheet
+    vec4 on_last;  // x, color, light
+    uvec4 at;      // interval; next end, and a bit: whether there is a value on the last sheet; a word of the tile's state
 };
 layout(std430, binding = 13) buffer States { State states[]; };  // of the pixels of tiles, between dispatches
 uniform uvec2 tile_range;  // the tiles of this dispatch: first, end
@@ -81,6 +78,8 @@ void start_pixel(uint tile) {
 #endif
 }
 
+uint tile_word(uint which) { return states[state_id - gl_LocalInvocationIndex + which].at.z; }
+
 void load_state() {
     next_batch_id = first_batch;
     if (first_batch == 0 && !resumed) return;
@@ -89,34 +88,33 @@ void load_state() {
     enter_z = s.going.y;
     exit_z = s.going.z;
     interval = s.at.x;
-    next_end = s.at.y;
-    last = Sheet(s.on_last.x, s.at.w != 0u, s.going.w, s.on_last.y, s.on_last.zw);
+    next_end = s.at.y >> 1;
+    last = Sheet(s.on_last.x, (s.at.y & 1u) != 0u, s.going.w, s.on_last.y, s.on_last.zw);
     if (!resumed) return;
-    range = s.range.xy;
-    entry = s.at.z;
-    next_batch_id = s.to_do.x;
-    job = s.to_do.y;
-    ends_found = (s.to_do.z & 1) != 0;
-    passed_over = (s.to_do.z & 2) != 0;
-    ranged = s.to_do.w;
+    job = int(tile_word(0u));
+    next_batch_id = int(tile_word(1u));
+    entry = tile_word(2u);
+    ends_found = tile_word(3u) != 0u;
+    passed_over = tile_word(4u) != 0u;
+    ranged = int(tile_word(5u));
+    range = uintBitsToFloat(uvec2(tile_word(6u), tile_word(7u)));
     if (entry > 0u) take_sums();
 }
 
 void store_state() {
     if (entry > 0u) keep_sums();
+    uint words[8] = uint[](uint(job), uint(next_batch_id), entry, uint(ends_found), uint(passed_over), uint(ranged),
+                           floatBitsToUint(range.x), floatBitsToUint(range.y));
     states[state_id] = State(vec4(beam.color, beam.opacity), vec4(beam.depth, enter_z, exit_z, last.weight),
-                             vec4(last.x, last.color, last.light), vec4(range, 0.0, 0.0),
-                             uvec4(interval, next_end, entry, last.known ? 1u : 0u),
-                             ivec4(next_batch_id, job, (ends_found ? 1 : 0) | (passed_over ? 2 : 0), ranged));
+                             vec4(last.x, last.color, last.light),
+                             uvec4(interval, next_end << 1 | uint(last.known), words[gl_LocalInvocationIndex & 7u], 0u));
 }
 
 void write_pixel() {
     if (!in_picture) return;
-    uint pixels = uint(size.x) * uint(size.y);
     precise float mean_depth = middle_depth + beam.depth / (beam.opacity > 0.0 ? beam.opacity : 1.0);
-    for (uint k = 0u; k < 3u; ++k) picture[4u * pixel_id + k] = beam.color[k];
-    picture[4u * pixel_id + 3u] = beam.opacity;
-    picture[4u * pixels + pixel_id] = beam.opacity > 0.0 ? mean_depth : uintBitsToFloat(0x7f800000u);
+    picture[pixel_id] = vec4(beam.color, beam.opacity);
+    kept[pixel_id] = beam.opacity > 0.0 ? mean_depth : uintBitsToFloat(0x7f800000u);
 }
 
 // The first batch of which the pixel needs a sheet: with the sheet before its interval, and a little for rounding.
@@ -344,7 +342,7 @@ void main() {
     }
     barrier();
     state_id = (tile - first_state) * kPixels + gl_LocalInvocationIndex;
-    sums_id = group_number() * kPixels * kKeptSums + gl_LocalInvocationIndex;
+    sums_id = uint(size.x) * uint(size.y) + group_number() * kPixels * kKeptSums + gl_LocalInvocationIndex;
     start_pixel(tile);
     load_state();
     if (resumed && job == kDone) return;
@@ -356,7 +354,7 @@ void main() {
     }
     if (job == kDone && end_batch == batches) {
         write_pixel();
-        states[state_id].to_do.y = kDone;
+        states[state_id].at.z = uint(kDone);
     } else {
         store_state();
     }

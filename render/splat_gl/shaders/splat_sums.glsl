@@ -9,7 +9,7 @@ layout(std430, binding = 4) readonly buffer BinSplats { uint bin_splats[]; };
 layout(std430, binding = 10) readonly buffer KernelTable { float kernel_table[]; };
 layout(std430, binding = 12) buffer Kept {
     uint batches_left;  // of all tiles that are not done
-    float kept_sums[];  // of sums that have to be continued
+    float kept[];       // the depths of the picture; then sums that have to be continued
 };
 
 const uint kPixels = uint(kTile) * uint(kTile);
@@ -239,13 +239,13 @@ const uint kKeptSums = kSums * uint(kBatch);
 void keep_sums() {
     for (int k = 0; k < kBatch; ++k) {
         uint to = sums_id + uint(k) * kSums * kPixels;
-        kept_sums[to] = weights[k];
-        kept_sums[to + kPixels] = values[k];
+        kept[to] = weights[k];
+        kept[to + kPixels] = values[k];
 #if COLORED
-        kept_sums[to + 2u * kPixels] = colors[k];
+        kept[to + 2u * kPixels] = colors[k];
 #endif
 #if SHADED
-        for (uint a = 0u; a < 3u; ++a) kept_sums[to + (kSums - 3u + a) * kPixels] = gradient_sums[k][a];
+        for (uint a = 0u; a < 3u; ++a) kept[to + (kSums - 3u + a) * kPixels] = gradient_sums[k][a];
 #endif
     }
 }
@@ -253,13 +253,13 @@ void keep_sums() {
 void take_sums() {
     for (int k = 0; k < kBatch; ++k) {
         uint from = sums_id + uint(k) * kSums * kPixels;
-        weights[k] = kept_sums[from];
-        values[k] = kept_sums[from + kPixels];
+        weights[k] = kept[from];
+        values[k] = kept[from + kPixels];
 #if COLORED
-        colors[k] = kept_sums[from + 2u * kPixels];
+        colors[k] = kept[from + 2u * kPixels];
 #endif
 #if SHADED
-        for (uint a = 0u; a < 3u; ++a) gradient_sums[k][a] = kept_sums[from + (kSums - 3u + a) * kPixels];
+        for (uint a = 0u; a < 3u; ++a) gradient_sums[k][a] = kept[from + (kSums - 3u + a) * kPixels];
 #endif
     }
 }

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <memory>
 #include <numeric>
 #include <thread>
 #include <vector>
@@ -118,6 +119,24 @@ TEST_F(GlContexts, GoFromThreadToThread) {
     }
     const GlScope scope(context);
     EXPECT_EQ(doubled({8}), std::vector<std::uint32_t>{16});
+}
+
+TEST_F(GlContexts, AreNotTakenFromAnotherThreadByADestructor) {
+    struct Inhabitant {
+        ~Inhabitant() { ++*freed; }
+        int* freed;
+    };
+    int freed = 0;
+    const GlContext context;
+    std::unique_ptr<Inhabitant> first(new Inhabitant{&freed}), second(new Inhabitant{&freed});
+    Inhabitant* const given_up = first.get();
+    std::thread([&] { detail::free_in(context, first); }).join();
+    EXPECT_EQ(freed, 0) << "the context is current here";
+    EXPECT_EQ(first, nullptr);
+    context.release();
+    std::thread([&] { detail::free_in(context, second); }).join();
+    EXPECT_EQ(freed, 1);
+    delete given_up;
 }
 
 TEST_F(GlContexts, WorkOnSeveralThreadsAtOnce) {

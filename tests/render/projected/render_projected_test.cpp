@@ -126,6 +126,39 @@ TEST_F(RenderProjected, CentroidsAreWrongWhereTheyAreCounted) {
     EXPECT_LE(changed, *wrong.report.violations);
 }
 
+/// A bar of cells, seen along its axis.
+HexMesh long_bar(Index cells) {
+    HexMesh mesh = test::make_box(1, 1, cells);
+    for (Vec3& p : mesh.points) p.z *= 0.02;
+    return mesh;
+}
+
+TEST_F(RenderProjected, ListsOfManyTetrahedraAreSorted) {
+    // Mesa's software ends all loops of a thread after 65,535 iterations; insertion of as many in the wrong order takes more.
+    const HexMesh mesh = long_bar(400);
+    const auto values = evaluate(mesh, [](const Vec3& p) { return 0.5 + 0.4 * std::sin(3 * p.z); });
+    const View view({.eye = {0.5, 0.5, -3}, .target = {0.5, 0.5, 0}, .up = {0, 1, 0}, .ortho_height = 0.9}, 8, 8);
+    const Optics optics = ramp_optics(5);
+    const auto rays = render_tets(valued(mesh, values), {}, view, optics).image;
+    for (const ProjectedOrder order : {ProjectedOrder::Lists, ProjectedOrder::Havs}) {
+        const auto drawn = render_projected(valued(mesh, values), {}, view, optics, {.order = order});
+        EXPECT_GT(drawn.report.fragments, 64u * 800u) << "more than 400 tetrahedra on each ray";
+        EXPECT_LT(largest_difference(drawn.image, rays), kGlTol);
+    }
+    // A wide window takes a long way from the wrong order; that of the lists is right, and so the picture does not change.
+    const auto wide =
+        render_projected(valued(mesh, values), {}, view, optics, {.order = ProjectedOrder::Havs, .kbuffer = 65536});
+    EXPECT_LT(largest_difference(wide.image, rays), kGlTol);
+}
+
+TEST_F(RenderProjected, FunctionsWithTooManyKnotsAreRefused) {
+    TransferFunction function{.color = {{0, {1, 1, 1}}}, .opacity = {}};
+    for (int i = 0; i <= 2048; ++i) function.opacity.push_back({i / 2048.0, i % 2 == 0 ? 0.1 : 0.2});
+    const HexMesh mesh = test::box(1);
+    const std::vector<double> ones(mesh.points.size(), 1.0);
+    EXPECT_THROW((void)render_projected(valued(mesh, ones), {}, slanted_view(8), Optics(function, 1)), Error);
+}
+
 TEST_F(RenderProjected, ListsCountEveryDepthOnceWhereCellsFoldOver) {
     // The colour of a fold depends on which of the cells is drawn, its opacity does not.
     const HexMesh mesh = test::jittered_box(5, 0.9, 4);
