@@ -7,6 +7,17 @@
 namespace subvol::python {
 namespace {
 
+/// What numpy makes, or the error if it cannot.
+template <class Make>
+auto or_error(const Make& make, const Error& otherwise) {
+    try {
+        return make();
+    } catch (py::error_already_set& error) {
+        if (error.matches(PyExc_TypeError) || error.matches(PyExc_ValueError)) throw otherwise;
+        throw;
+    }
+}
+
 std::string shape_of(const py::array& array) {
     std::string text = "(";
     for (py::ssize_t d = 0; d < array.ndim(); ++d) text += (d > 0 ? ", " : "") + std::to_string(array.shape(d));
@@ -15,11 +26,7 @@ std::string shape_of(const py::array& array) {
 
 /// Any array of numbers, as numpy makes it of what was given.
 py::array array_of(const py::handle& given, bool integers, const std::string& what) {
-    py::array array = py::array::ensure(given);
-    if (!array) {
-        PyErr_Clear();
-        throw Error(ErrorCode::InvalidInput, "cannot be made an array", what, "an array of numbers");
-    }
+    py::array array = array_from(given, {ErrorCode::InvalidInput, "cannot be made an array", what, "an array of numbers"});
     const char kind = array.dtype().kind();
     const bool right = kind == 'i' || kind == 'u' || (kind == 'f' && !integers);
     if (right || array.size() == 0) return array;
@@ -29,12 +36,8 @@ py::array array_of(const py::handle& given, bool integers, const std::string& wh
 
 template <class T>
 py::array_t<T> converted(const py::array& array, const std::string& what) {
-    auto result = py::array_t<T, py::array::c_style | py::array::forcecast>::ensure(array);
-    if (!result) {
-        PyErr_Clear();
-        throw Error(ErrorCode::InvalidInput, "cannot be converted", what, "an array of numbers");
-    }
-    return result;
+    return or_error([&] { return py::array_t<T, py::array::c_style | py::array::forcecast>(array); },
+                    {ErrorCode::InvalidInput, "cannot be converted", what, "an array of numbers"});
 }
 
 void check_columns(const py::array& array, py::ssize_t columns, const std::string& what) {
@@ -43,6 +46,10 @@ void check_columns(const py::array& array, py::ssize_t columns, const std::strin
 }
 
 }  // namespace
+
+py::array array_from(const py::handle& given, const Error& otherwise) {
+    return or_error([&] { return py::array(py::module_::import("numpy").attr("asarray")(given)); }, otherwise);
+}
 
 template <class T>
 py::array_t<T> rows_of(const py::handle& given, py::ssize_t columns, const std::string& what) {

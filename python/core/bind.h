@@ -15,7 +15,6 @@
 #include "subvol/camera.h"
 #include "subvol/error.h"
 #include "subvol/hex_mesh.h"
-#include "subvol/image.h"
 #include "subvol/optics.h"
 #include "subvol/progress.h"
 #include "subvol/refine.h"
@@ -25,13 +24,6 @@ namespace subvol::python {
 
 namespace py = pybind11;
 
-/// What a renderer returns to Python: the class Image there. report: counts and seconds, under the names of the command's JSON
-struct Picture {
-    Image image;
-    std::vector<float> depth{};
-    py::dict report{};
-};
-
 /// A surface of triangles as arrays: (n,3) float64 and (m,3) integers.
 struct SurfaceArrays {
     py::array points;
@@ -40,6 +32,10 @@ struct SurfaceArrays {
 
 // Arrays that come in. `what` is their name in messages. Numbers of any width and stride are accepted; text, objects and
 // complex numbers are refused with Error(InvalidInput), as is another shape. Arrays of the type T in C order are read in place.
+
+/// The array that numpy makes of it, copied only if it must be. TypeError and ValueError, by which numpy says that it cannot,
+/// become the Error; what the object's own code raises besides, KeyboardInterrupt and MemoryError too, passes on.
+[[nodiscard]] py::array array_from(const py::handle& given, const Error& otherwise);
 
 /// Rows of N numbers each.
 template <class T>

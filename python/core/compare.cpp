@@ -6,6 +6,7 @@
 #include <tbb/parallel_for.h>
 
 #include "bind.h"
+#include "picture.h"
 #include "subvol/field_metrics.h"
 #include "subvol/flip.h"
 #include "subvol/image_metrics.h"
@@ -89,7 +90,20 @@ py::dict difference_of(const Field& test, const Field& reference, std::size_t sa
     figures["gradient_rmse"] = difference.gradient_rmse;
     figures["samples"] = difference.samples;
     figures["uncovered"] = difference.uncovered;
+    figures["coverage"] = difference.coverage();
     return figures;
+}
+
+/// Two pictures of the same pixels; the ones given, if they are that.
+py::tuple common_of(const py::object& test, const py::object& reference) {
+    const auto &a = test.cast<const Picture&>(), &b = reference.cast<const Picture&>();
+    const auto of_a = a.windows(), of_b = b.windows();
+    if (of_a.data == of_b.data && of_a.display == of_b.display) return py::make_tuple(test, reference);
+    CommonPixels common = [&] {
+        const py::gil_scoped_release without_gil;
+        return common_pixels({a.image, of_a.data, of_a.display, {}}, {b.image, of_b.data, of_b.display, {}});
+    }();
+    return py::make_tuple(Picture{.image = std::move(common.a)}, Picture{.image = std::move(common.b)});
 }
 
 py::dict metrics_of(const Picture& a, const Picture& b) {
@@ -123,6 +137,7 @@ void bind_compare(py::module_& module) {
         .def("__repr__", [](const Field& field) { return "<subvol.Field: " + field.name + ">"; });
     module.def("compare_fields", &difference_of, py::arg("test"), py::arg("reference"), py::arg("samples"), py::arg("seed"),
                py::arg("gradients"), py::arg("progress"));
+    module.def("common_pixels", &common_of, py::arg("test"), py::arg("reference"));
     module.def("compare_images", &metrics_of, py::arg("test"), py::arg("reference"));
     module.def(
         "ssim",
@@ -146,7 +161,9 @@ void bind_compare(py::module_& module) {
         py::arg("test"), py::arg("reference"));
     module.def(
         "heatmap",
-        [](const Picture& a, const Picture& b, double scale) { return Picture{difference_heatmap(a.image, b.image, scale)}; },
+        [](const Picture& a, const Picture& b, double scale) {
+            return Picture{.image = difference_heatmap(a.image, b.image, scale)};
+        },
         py::arg("test"), py::arg("reference"), py::arg("scale"));
 }
 

@@ -3,6 +3,7 @@
 #include <cstring>
 
 #include "bind.h"
+#include "picture.h"
 #include "subvol/camera_fit.h"
 #include "subvol/image_io.h"
 #include "subvol/legend.h"
@@ -62,16 +63,15 @@ std::string camera_text(const Camera& camera) {
 }
 
 Picture picture_from(const py::object& given) {
-    py::array array = py::array::ensure(given);
-    PyErr_Clear();
-    const bool right =
-        array && array.ndim() == 3 && (array.shape(2) == 3 || array.shape(2) == 4) && array.dtype().kind() == 'f';
+    const Error no_picture(ErrorCode::InvalidInput, "is not a picture", "image",
+                           "real numbers of linear light, (height, width, 3 or 4)");
+    const py::array array = array_from(given, no_picture);
+    const bool right = array.ndim() == 3 && (array.shape(2) == 3 || array.shape(2) == 4) && array.dtype().kind() == 'f';
     if (!right || array.shape(0) > 65536 || array.shape(1) > 65536 || array.size() == 0) {
-        throw Error(ErrorCode::InvalidInput, "is not a picture", "image",
-                    "real numbers of linear light, (height, width, 3 or 4)");
+        throw no_picture;
     }
     const py::array_t<float, py::array::c_style | py::array::forcecast> floats(array);
-    Picture picture{Image(static_cast<int>(array.shape(1)), static_cast<int>(array.shape(0)))};
+    Picture picture{.image = Image(static_cast<int>(array.shape(1)), static_cast<int>(array.shape(0)))};
     const py::ssize_t channels = array.shape(2);
     const float* from = floats.data();
     for (float* to = picture.image.rgba.data(); to != picture.image.rgba.data() + picture.image.rgba.size(); to += 4) {
@@ -135,6 +135,56 @@ void bind_default_looks(py::module_& module) {
         py::arg("mesh"), py::arg("look"), py::arg("knots"), py::arg("opacity_unit"));
 }
 
+py::tuple window_tuple(const PixelWindow& window) {
+    return py::make_tuple(window.left, window.top, window.width, window.height);
+}
+
+PixelWindow window_from(const py::handle& given) {
+    const auto numbers = given.cast<std::array<int, 4>>();
+    return {numbers[0], numbers[1], numbers[2], numbers[3]};
+}
+
+/// The memory of an Image, read-only.
+py::array pixels_of(const py::object& self) {
+    const auto& image = self.cast<const Picture&>().image;
+    return view(image.rgba.data(), {image.height, image.width, 4}, self);
+}
+
+py::tuple state_of(const py::object& self) {
+    const auto& picture = self.cast<const Picture&>();
+    const py::object array = pixels_of(self).attr("copy")();
+    if (!picture.part) return py::make_tuple(array);
+    return py::make_tuple(array, window_tuple(picture.part->data), window_tuple(picture.part->display));
+}
+
+Picture picture_from_state(const py::tuple& state) {
+    Picture picture = picture_from(state[0]);
+    if (state.size() > 1) picture.part = Picture::Windows{window_from(state[1]), window_from(state[2])};
+    return picture;
+}
+
+Picture picture_from_file(const std::string& path) {
+    Picture picture;
+    const py::gil_scoped_release without_gil;
+    PlacedImage read = read_placed_image(path);
+    if (!read.whole()) picture.part = Picture::Windows{read.data_window, read.display_window};
+    picture.image = std::move(read.image);
+    return picture;
+}
+
+void write_picture(const Picture& p, const py::object& given, const py::object& background) {
+    const auto path = py::module_::import("subvol._arguments").attr("path_bytes")(given).cast<std::string>();
+    const Vec3 behind = background_of(p, background);
+    const py::gil_scoped_release without_gil;
+    const bool exr = std::filesystem::path(path).extension() == ".exr";
+    const auto depth = exr ? std::span<const float>(p.depth) : std::span<const float>();
+    if (p.part) {
+        write_placed_image(path, {p.image, p.part->data, p.part->display}, behind, depth);
+    } else {
+        write_image(path, p.image, behind, depth);
+    }
+}
+
 void bind_image(py::module_& module) {
     py::class_<Picture>(module, "Image", py::buffer_protocol(),
                         "A picture in linear light: RGBA floats, premultiplied, rows from the top.")
@@ -145,6 +195,15 @@ void bind_image(py::module_& module) {
             return py::buffer_info(picture.image.rgba.data(), word, py::format_descriptor<float>::format(), 3,
                                    {height, width, py::ssize_t(4)}, {4 * width * word, 4 * word, word}, true);
         })
+        .def(
+            "__array__",  // for those who call it; numpy takes the memory itself
+            [](const py::object& self, const py::object& dtype, const py::object& copy) -> py::object {
+                const py::array pixels = pixels_of(self);
+                if (dtype.is_none() && !copy.equal(py::bool_(true))) return pixels;
+                return pixels.attr("astype")(dtype.is_none() ? py::object(pixels.dtype()) : dtype,
+                                             py::arg("copy") = copy.equal(py::bool_(true)));
+            },
+            py::arg("dtype") = py::none(), py::arg("copy") = py::none())
         .def_property_readonly("width", [](const Picture& p) { return p.image.width; })
         .def_property_readonly("height", [](const Picture& p) { return p.image.height; })
         .def_property_readonly("depth",
@@ -153,34 +212,18 @@ void bind_image(py::module_& module) {
                                    if (p.depth.empty()) return py::none();
                                    return view(p.depth.data(), {p.image.height, p.image.width}, self);
                                })
+        .def_property_readonly("data_window", [](const Picture& p) { return window_tuple(p.windows().data); })
+        .def_property_readonly("display_window", [](const Picture& p) { return window_tuple(p.windows().display); })
         .def_property_readonly("report", [](const Picture& p) { return p.report; })
         .def("png", &png_of, py::arg("background") = py::none())
         .def("_repr_png_", [](const Picture& p) { return png_of(p, py::none()); })
-        .def(
-            "write",
-            [](const Picture& p, const py::object& given, const py::object& background) {
-                const auto path = py::module_::import("subvol._arguments").attr("path_bytes")(given).cast<std::string>();
-                const Vec3 behind = background_of(p, background);
-                const py::gil_scoped_release without_gil;
-                const bool exr = std::filesystem::path(path).extension() == ".exr";
-                write_image(path, p.image, behind, exr ? std::span<const float>(p.depth) : std::span<const float>());
-            },
-            py::arg("path"), py::arg("background") = py::none())
+        .def("write", &write_picture, py::arg("path"), py::arg("background") = py::none())
         .def("__repr__",
              [](const Picture& p) {
                  return "<subvol.Image: " + std::to_string(p.image.width) + " x " + std::to_string(p.image.height) + " pixels>";
              })
-        .def(py::pickle([](const py::object& self) { return py::make_tuple(py::array::ensure(self).attr("copy")()); },
-                        [](const py::tuple& state) { return picture_from(state[0]); }));
-    module.def(
-        "read_image",
-        [](const std::string& path) {
-            Picture picture;
-            const py::gil_scoped_release without_gil;
-            picture.image = read_image(path);
-            return picture;
-        },
-        py::arg("path"));
+        .def(py::pickle(&state_of, &picture_from_state));
+    module.def("read_image", &picture_from_file, py::arg("path"));
 }
 
 }  // namespace

@@ -32,11 +32,11 @@ py::dict fields_of(const py::object& self) {
 
 Attribute attribute_of(const std::string& name, const py::handle& given, std::size_t points) {
     const std::string what = "fields['" + name + "']";
-    const py::array array = py::array::ensure(given);
-    PyErr_Clear();
-    const bool flat = !array || array.ndim() != 2;
+    const py::array array =
+        array_from(given, {ErrorCode::InvalidInput, "cannot be made an array", what, "an array of numbers"});
+    const bool flat = array.ndim() != 2;
     const py::ssize_t channels = flat ? 1 : array.shape(1);
-    const py::array_t<double> rows = flat ? numbers<double>(given, what) : rows_of<double>(given, channels, what);
+    const py::array_t<double> rows = flat ? numbers<double>(array, what) : rows_of<double>(array, channels, what);
     if (channels < 1 || static_cast<std::size_t>(rows.shape(0)) != points) {
         throw Error(ErrorCode::InvalidInput, "has " + std::to_string(rows.shape(0)) + " rows", what,
                     "one for each of the " + std::to_string(points) + " points");

@@ -62,7 +62,9 @@ public:
         return fine;
     }
 
-    [[nodiscard]] py::array apply_to_array(const py::array& given, const py::object& out) const {
+    [[nodiscard]] py::array apply_to_array(const py::object& values, const py::object& out) const {
+        const py::array given =
+            array_from(values, {ErrorCode::InvalidInput, "cannot be made an array", "values", "an array of numbers"});
         return py::isinstance<py::array_t<float>>(given) ? apply_to<float>(given, out) : apply_to<double>(given, out);
     }
 

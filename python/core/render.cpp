@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bind.h"
+#include "picture.h"
 #include "subvol/boundary_shading.h"
 #include "subvol/boundary_values.h"
 #include "subvol/kernel_hierarchy.h"

@@ -40,11 +40,7 @@ py::dict report_of(const VdbGrid& grid) {
 }
 
 py::tuple values_at(const VdbGrid& grid, const py::object& at) {
-    const auto rows = py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(at);
-    if (!rows || rows.ndim() != 2 || rows.shape(1) != 3) {
-        PyErr_Clear();
-        throw Error(ErrorCode::InvalidInput, "is not a list of places", "at", "(n, 3)");
-    }
+    const py::array_t<double> rows = rows_of<double>(at, 3, "at");
     const auto count = static_cast<std::size_t>(rows.shape(0));
     py::array_t<double> values(rows.shape(0));
     py::array_t<bool> inside(rows.shape(0));

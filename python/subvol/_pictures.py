@@ -201,7 +201,8 @@ def _channel(names: list[str], field: Optional[str]) -> int:
 
 
 def read_image(path: Path) -> Image:
-    """Reads a picture of any common format as linear premultiplied floats."""
+    """Reads a picture of any common format as linear premultiplied floats. Of a part of a larger picture it has the pixels of the part;
+    `data_window` and `display_window` say where they are."""
     return _core.read_image(path_bytes(path))
 
 
@@ -217,12 +218,13 @@ def _as_image(given: Union[Image, npt.ArrayLike]) -> Image:
 class ImageComparison:
     """Differences over red, green and blue of all pixels, for a peak of 1: mse, rmse, mae, max, psnr (infinite for equal pictures).
 
+    Parts of pictures (`Image.data_window`) are compared where they overlap.
     ssim and flip, and their maps (height, width), are computed when they are asked for.
     """
 
     def __init__(self, test: Image, reference: Image) -> None:
-        self._test, self._reference = test, reference
-        figures = _core.compare_images(test, reference)
+        self._test, self._reference = _core.common_pixels(test, reference)
+        figures = _core.compare_images(self._test, self._reference)
         self.mse = figures["mse"]
         self.rmse = figures["rmse"]
         self.mae = figures["mae"]
@@ -263,7 +265,10 @@ class ImageComparison:
 
 class FieldComparison:
     """Differences of two fields at random places of the reference, in the field's unit: l1, l2, linf; gradient_rmse per world length;
-    samples: places where both have a value; uncovered: places where only the reference has one."""
+    samples: places where both have a value; uncovered: places where only the reference has one; coverage: the share of the first.
+
+    The differences are over the places where both have a value, so a coverage below 1 says that they are about a part of the reference;
+    of fields without a place in common they are nan."""
 
     def __init__(self, figures: dict[str, Any]) -> None:
         self.l1: float = figures["l1"]
@@ -272,19 +277,24 @@ class FieldComparison:
         self.gradient_rmse: float = figures["gradient_rmse"]
         self.samples: int = figures["samples"]
         self.uncovered: int = figures["uncovered"]
+        self.coverage: float = figures["coverage"]
 
     def __repr__(self) -> str:
-        return f"<subvol.FieldComparison: l2 {self.l2:.3g}, linf {self.linf:.3g}, {self.samples} samples>"
+        return f"<subvol.FieldComparison: l2 {self.l2:.3g}, linf {self.linf:.3g}, {self.samples} of {self.samples + self.uncovered} places>"
 
 
 def compare_images(test: Union[Image, npt.ArrayLike], reference: Union[Image, npt.ArrayLike]) -> ImageComparison:
-    """The distance between two pictures of the same size: Images, or arrays of linear floats (height, width, 3 or 4)."""
+    """The distance between two pictures of the same size: Images, or arrays of linear floats (height, width, 3 or 4).
+
+    Images of files with parts of one picture (crops) are compared where they overlap; if they do not, InvalidInput is raised."""
     return ImageComparison(_as_image(test), _as_image(reference))
 
 
 def compare_fields(test: Union[HexMesh, RbfVolume, Field], reference: Union[HexMesh, RbfVolume, Field], field: Optional[str] = None,
                    *, samples: int = 100_000, seed: int = 0, gradients: bool = True, progress: Progress = None) -> FieldComparison:
-    """The distance between two fields: of meshes (their limit), of points, or given as Field."""
+    """The distance between two fields: of meshes (their limit), of points, or given as Field.
+
+    Both are compared where both have a value: see `coverage` of the result. gradients=False: gradient_rmse is nan."""
     a, b = as_field(test, field), as_field(reference, field)
     with listening(progress) as listener:
         return FieldComparison(_core.compare_fields(a, b, samples, seed, gradients, listener))

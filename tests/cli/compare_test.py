@@ -176,7 +176,7 @@ class Fields(InFolder):
         # Without a demand it measures only, and says the same.
         done = self.run_ok("compare", "slab.mesh", "cube.mesh", *options, "--json")
         self.assertIs(done.json()["passed"], False)
-        self.assertIn("of 2000 places", done.err)
+        self.assertIn("of 2000 places", done.json()["warnings"][0])
         figures = self.compared("slab.mesh", "cube.mesh", *options, "--coverage", 0.2, "--fail-under", "linf=1e-9")
         self.assertIs(figures["passed"], True)
         self.assertIn("passed", self.run_ok("compare", "slab.mesh", "cube.mesh", *options, "--coverage", 0, "--fail-under", "linf=1").out)

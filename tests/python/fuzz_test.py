@@ -1,7 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Whatever is given to a call: an exception, or a result; never a crash. Each trial is a few values at random."""
 import os
+import pickle
 import random
+import subprocess
+import sys
 import warnings
 
 import numpy as np
@@ -127,3 +130,88 @@ def test_objects_without_a_constructor_are_refused():
             if hasattr(kind, name):
                 with pytest.raises((TypeError, RuntimeError, ValueError)):
                     getattr(empty, name)
+
+
+NEVER_MADE = """
+import copy, inspect, pickle, sys
+import numpy as np, subvol
+from subvol import _core, _grids
+
+OURS = {"IndexError", "StopIteration"}
+for module in (_core, _grids):
+    for name, kind in vars(module).items():
+        if not isinstance(kind, type) or kind.__module__.split(".")[0] != "subvol":
+            continue
+        for made in (kind, type("Of" + name, (kind,), {})):
+            empty = made.__new__(made)
+            uses = [(use, lambda use=use: use(empty)) for use in (np.asarray, np.array, memoryview, bytes, repr, str, hash, bool, len, list, float,
+                                                                  copy.copy, copy.deepcopy, pickle.dumps, vars)]
+            uses += [(use, lambda use=use: use(empty, empty)) for use in (np.add, np.stack, lambda a, b: a == b, lambda a, b: a in b)]
+            for at in dir(empty):
+                if at in ("__init__", "__class__", "__init_subclass__", "__subclasshook__", "__setstate__"):
+                    continue
+                for arguments in ((), (None,), (empty,), ([0],), ("x",), (1, 2), (empty, empty)):
+                    uses.append((at, lambda at=at, arguments=arguments: getattr(empty, at)(*arguments)))
+            for function in list(vars(module).values()) + [subvol.render, subvol.subdivide, subvol.sample, subvol.write_mesh, subvol.compare]:
+                if callable(function) and not isinstance(function, type):
+                    uses += [(function, lambda f=function, n=n: f(*[empty] * n)) for n in (1, 2, 3)]
+            for use, call in uses:
+                try:
+                    call()
+                except Exception:
+                    pass
+            if hasattr(kind, "__array__"):
+                for use in (np.asarray, memoryview):
+                    try:
+                        use(empty)
+                    except TypeError as error:
+                        assert "initialised" in str(error) or "compatible" in str(error), error
+                    else:
+                        sys.exit(f"{name}: {use} took it")
+print("alive")
+"""
+
+
+def test_objects_that_were_never_made_can_be_used_for_nothing():
+    done = subprocess.run([sys.executable, "-c", NEVER_MADE], capture_output=True, text=True, timeout=1800)
+    assert done.returncode == 0 and done.stdout.endswith("alive\n"), (done.returncode, done.stdout[-500:], done.stderr[-2000:])
+
+
+@pytest.mark.parametrize("protocol", range(6))
+def test_every_protocol_of_pickling(protocol, ball):
+    image = subvol.Image(np.ones((2, 3, 4)))
+    assert np.array_equal(pickle.loads(pickle.dumps(image, protocol)), np.asarray(image))
+    assert np.array_equal(pickle.loads(pickle.dumps(ball, protocol)).points, ball.points)
+    with pytest.raises(TypeError, match="pickle"):
+        pickle.dumps(subvol.as_field(ball, "density"), protocol)
+
+
+@pytest.mark.parametrize("exception", [KeyboardInterrupt, MemoryError, RecursionError, SystemExit, ZeroDivisionError])
+def test_exceptions_of_given_objects_pass_on(exception, cube, ball_points):
+    class Guest:
+        def __array__(self, dtype=None, copy=None):
+            raise exception("by the guest")
+
+    class Row:
+        """A sequence whose numbers raise it."""
+        def __len__(self):
+            return 3
+
+        def __getitem__(self, index):
+            raise exception("by the guest")
+
+    grid = subvol.rasterize(cube, voxel_size=.5)[0]
+    fill = np.zeros((2, 2, 3))
+    for call in (lambda guest: subvol.HexMesh(guest, cube.cells), lambda guest: subvol.HexMesh(cube.points, guest),
+                 lambda guest: subvol.HexMesh(cube.points, cube.cells, {"x": guest}),
+                 lambda guest: subvol.HexMesh(cube.points, cube.cells, creases=guest),
+                 lambda guest: subvol.RbfVolume(guest, ball_points.frames, dict(ball_points.values)),
+                 lambda guest: subvol.RbfVolume(ball_points.centers, ball_points.frames, {"x": guest}),
+                 lambda guest: subvol.Image(guest), lambda guest: subvol.compare(fill, guest), lambda guest: subvol.write_image(guest, "no.png"),
+                 lambda guest: subvol.probe(cube, guest), lambda guest: subvol.as_field(cube, "x").values(guest), lambda guest: grid.values(guest),
+                 lambda guest: subvol.evaluate_limit(cube, guest, [[.5, .5, .5]]), lambda guest: subvol.Camera(guest, [0, 0, 0]),
+                 lambda guest: subvol.Refinement(cube, 1).apply(guest), lambda guest: subvol.render(cube, size=(8, 8), clip=guest)):
+        with pytest.raises(exception, match="by the guest"):
+            call(Guest())
+    with pytest.raises(exception, match="by the guest"):
+        subvol.HexMesh(Row(), cube.cells)

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Pictures and their distance."""
+import pickle
 import struct
 import zlib
 
@@ -136,6 +137,39 @@ def test_pictures_are_compared():
             subvol.compare(a, wrong)
 
 
+def test_parts_of_pictures_are_compared_where_they_overlap(tmp_path, command):
+    whole = tmp_path / "whole.exr"
+    command("render", "model:ball:3", "-o", whole, "--size", "48x40", "--look", "volume")
+    for part in (1, 2):
+        command("render", "model:ball:3", "-o", tmp_path / f"{part}.exr", "--size", "48x40", "--look", "volume", "--part", f"{part}/2")
+    one, two, all_rows = (subvol.read_image(path) for path in (tmp_path / "1.exr", tmp_path / "2.exr", whole))
+    assert all_rows.data_window == all_rows.display_window == one.display_window == (0, 0, 48, 40)
+    assert one.data_window == (0, 0, 48, one.height) and two.data_window == (0, one.height, 48, 40 - one.height)
+    for call in (subvol.compare, subvol.compare_images):
+        with pytest.raises(subvol.InvalidInput, match="no pixel in common"):
+            call(one, two)
+    for part in (one, two):
+        for a, b in ((part, all_rows), (all_rows, part)):
+            same = subvol.compare(a, b)
+            assert same.max == 0 and same.flip == 0 and same.ssim_map.shape == (part.height, 48) and same.heatmap().width == 48
+    # The windows are kept in files and in pickles; an array has none.
+    two.write(tmp_path / "again.exr")
+    for again in (subvol.read_image(tmp_path / "again.exr"), pickle.loads(pickle.dumps(two))):
+        assert again.data_window == two.data_window and again.display_window == two.display_window
+        with pytest.raises(subvol.InvalidInput, match="no pixel in common"):
+            subvol.compare(one, again)
+    with pytest.raises(subvol.InvalidInput, match="display window"):
+        subvol.compare(one, np.asarray(one))
+
+
+def test_infinite_pixels_are_white_and_no_numbers_black(tmp_path):
+    row = np.array([np.inf, np.nan, 3e38, -1], "f4")
+    picture = np.repeat(row[None, :, None], 3, axis=2)
+    subvol.write_image(picture, tmp_path / "a.png")
+    back = np.asarray(subvol.read_image(tmp_path / "a.png"))
+    assert back[0, :, :3].tolist() == [[1] * 3, [0] * 3, [1] * 3, [0] * 3]
+
+
 def test_fields_are_compared(cube):
     doubled = subvol.HexMesh(cube.points, cube.cells, {"x": 2 * cube.fields["x"]})
     difference = subvol.compare(doubled, cube, field="x", samples=20_000)
@@ -143,6 +177,21 @@ def test_fields_are_compared(cube):
     assert difference.l2 == pytest.approx(3 ** -.5, abs=.01)
     assert difference.gradient_rmse == pytest.approx(1, abs=1e-6) and difference.uncovered == 0
     assert subvol.compare(cube, cube, field="x", samples=100).linf == 0
+    assert np.isnan(subvol.compare(cube, cube, field="x", samples=100, gradients=False).gradient_rmse)
+
+
+def test_coverage_says_how_much_of_the_reference_was_compared(cube):
+    quarter = subvol.HexMesh(cube.points * [.25, 1, 1], cube.cells, {"x": cube.points[:, 0] * .25})
+    part = subvol.compare(quarter, cube, field="x", samples=2000)
+    assert part.linf < 1e-9 and part.coverage == part.samples / 2000 == pytest.approx(.25, abs=.05)
+    assert subvol.compare(cube, quarter, field="x", samples=200).coverage == 1
+    assert f"{part.samples} of 2000" in repr(part)
+    far = subvol.HexMesh(cube.points + 50, cube.cells, {"x": cube.fields["x"]})
+    none = subvol.compare_fields(far, cube, field="x", samples=100)
+    assert none.samples == 0 and none.coverage == 0 and np.isnan([none.l1, none.l2, none.linf, none.gradient_rmse]).all()
+
+
+def test_other_things_than_fields_are_refused(cube):
     with pytest.raises(subvol.InvalidInput):
         subvol.compare(cube, np.zeros((2, 2, 4)))
     with pytest.raises(subvol.InvalidInput):

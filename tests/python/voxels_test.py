@@ -18,6 +18,15 @@ def test_the_grid_of_a_linear_field(tmp_path):
     assert np.array(grid.bounds).shape == (2, 3)
 
 
+def test_voxels_of_other_places_are_not_compared(cube):
+    far = subvol.HexMesh(cube.points + 100, cube.cells, dict(cube.fields))
+    one, other, finer = (subvol.rasterize(mesh, voxel_size=size, fields=["x"])[0] for mesh, size in ((cube, .25), (far, .25), (cube, .125)))
+    difference = one.difference(other)
+    assert difference["voxels"] == 0 and np.isnan(difference["rms"]) and np.isnan(difference["max"])
+    with pytest.raises(subvol.InvalidInput, match="other voxels"):
+        one.difference(finer)
+
+
 def test_files_are_the_grids_in_memory(tmp_path, ball):
     (made,) = subvol.rasterize(ball, resolution=24)
     subvol.write_vdb(ball, tmp_path / "a.vdb", resolution=24)

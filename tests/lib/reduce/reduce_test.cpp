@@ -144,6 +144,11 @@ TEST(Reduce, RefusesWrongOptionsAndSamples) {
     refuse("iterations", [&] { (void)refine_rbf(volume, samples, {.iterations = 0}); });
     refuse("ridge", [&] { (void)refine_rbf(volume, samples, {.ridge = 0}); });
     refuse("no channel", [&] { (void)refine_rbf(RbfVolume{}, samples); });
+    FieldSamples elsewhere = samples;
+    for (Vec3& x : elsewhere.points) x += Vec3(100);
+    const ErrorAtSamples nowhere = error_at_samples(volume, elsewhere);  // an error of nothing is none of 0
+    EXPECT_EQ(nowhere.uncovered, samples.size());
+    EXPECT_TRUE(std::isnan(nowhere.rmse) && std::isnan(nowhere.max_abs));
     samples.values[3] = INFINITY;
     refuse("sample 3", [&] { (void)error_at_samples(volume, samples); });
     samples.values.pop_back();

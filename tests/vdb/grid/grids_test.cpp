@@ -4,8 +4,10 @@
 #include "openvdb_grids.h"
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 
+#include "subvol/error.h"
 #include "subvol/model.h"
 #include "subvol/rasterize.h"
 #include "subvol/vdb_grid.h"
@@ -40,6 +42,20 @@ TEST(VdbRefined, StreamedFitsTheWholeMesh) {
         EXPECT_LT(difference.max, 2e-2);
         EXPECT_LT(difference.rms, 2e-4);
     }
+}
+
+TEST(VdbGrids, VoxelsOfOtherPlacesAreNotCompared) {
+    const auto box = with_field(jittered_box_mesh(2), "f", kWave);
+    HexMesh far = box;
+    for (Vec3& p : far.points) p += Vec3(100);
+    const auto grid_of = [&](const HexMesh& mesh, double h) {
+        return std::move(rasterize(mesh, kField, {.voxel_size_world = h}).front());
+    };
+    const VdbGrid grid = grid_of(box, 0.25);
+    const GridDifference nothing = compare_voxels(grid, grid_of(far, 0.25));
+    EXPECT_EQ(nothing.voxels, 0u);
+    EXPECT_TRUE(std::isnan(nothing.rms) && std::isnan(nothing.max));
+    EXPECT_THROW((void)compare_voxels(grid, grid_of(box, 0.125)), Error);  // an index is another place
 }
 
 TEST(VdbRefined, SameForAnyNumberOfThreads) {
