@@ -208,7 +208,8 @@ ErrorAtSamples error_at_samples(const RbfVolume& volume, const FieldSamples& sam
         weight += samples.weights[i];
         result.max_abs = std::max(result.max_abs, std::abs(error));
     }
-    result.rmse = weight > 0 ? std::sqrt(sum / weight) : 0;
+    result.rmse = std::sqrt(sum / weight);
+    if (result.uncovered == samples.size()) result.max_abs = NAN;
     return result;
 }
 

@@ -51,6 +51,10 @@ VdbGrid sample_at_voxels(const VdbGrid& where, const std::string& name,
 }
 
 GridDifference compare_voxels(const VdbGrid& a, const VdbGrid& b) {
+    if (floats_of(a).transform() != floats_of(b).transform()) {
+        throw Error(ErrorCode::InvalidInput, "the two have other voxels: their sizes, or their places, differ",
+                    "grid \"" + a.report().name + "\"", "grids of one transform");
+    }
     const openvdb::FloatGrid::ConstAccessor other(floats_of(b).constTree());
     GridDifference result;
     double squares = 0;
@@ -65,7 +69,8 @@ GridDifference compare_voxels(const VdbGrid& a, const VdbGrid& b) {
             ++result.voxels;
         }
     }
-    if (result.voxels > 0) result.rms = std::sqrt(squares / static_cast<double>(result.voxels));
+    if (result.voxels == 0) return {.rms = NAN, .max = NAN};
+    result.rms = std::sqrt(squares / static_cast<double>(result.voxels));
     return result;
 }
 

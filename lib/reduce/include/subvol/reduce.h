@@ -14,7 +14,7 @@ namespace subvol {
 /// How far the field of an RBF volume is from samples.
 ///
 /// rmse:      root of the mean squared error over the volume
-/// uncovered: samples where the field has no value; they do not count for rmse
+/// uncovered: samples where the field has no value; they do not count for the others, which are NaN if there are no more
 struct ErrorAtSamples {
     double rmse = 0;
     double max_abs = 0;

@@ -61,11 +61,12 @@ private:
     detail::VdbDataPointer data_;
 };
 
-/// The differences of two grids of floats at the voxels that are active in both.
+/// The differences of two grids of floats at the voxels that are active in both; NaN if there is none.
 struct GridDifference {
     std::size_t voxels = 0;
     double rms = 0, max = 0;
 };
+/// throws: Error(InvalidInput) if the voxels are not floats, or the transforms differ: an index is another place then
 [[nodiscard]] GridDifference compare_voxels(const VdbGrid& a, const VdbGrid& b);
 
 enum class VdbCompression { None, Zip, Blosc };
