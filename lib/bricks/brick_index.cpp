@@ -9,8 +9,10 @@
 #include <set>
 #include <string_view>
 
+#include "brick_folder.h"
 #include "brick_layers.h"
 #include "subvol/detail/byte_hash.h"
+#include "subvol/detail/printable.h"
 #include "subvol/error.h"
 #include "subvol/version.h"
 
@@ -68,6 +70,82 @@ std::vector<BrickField> fields_from(const Json& json) {
         fields.push_back(std::move(field));
     }
     return fields;
+}
+
+bool is_sound(const Box& box) {
+    for (int d = 0; d < 3; ++d) {
+        if (!std::isfinite(box.lower[d]) || !std::isfinite(box.upper[d]) || box.lower[d] > box.upper[d]) return false;
+    }
+    return true;
+}
+
+bool encloses(const Box& outer, const Box& inner) {
+    for (int d = 0; d < 3; ++d) {
+        if (!(outer.lower[d] <= inner.lower[d] && inner.upper[d] <= outer.upper[d])) return false;
+    }
+    return true;
+}
+
+/// What the entry of a brick says contradicts itself.
+void check_entry(const Brick& brick) {
+    // A point of a part belongs to one of its cells, and no sum over a million bricks overflows.
+    constexpr std::uint64_t kMostCells = std::uint64_t{1} << 40;
+    // A name is used to read and to remove: never anything outside of the folder, and no other file in it.
+    if (!is_brick_name(brick.file)) throw std::invalid_argument("file");
+    if (brick.cells == 0 || brick.cells > brick.stored_cells || brick.stored_cells > kMostCells) {
+        throw std::invalid_argument("cells");
+    }
+    if (brick.points > brick.stored_points || brick.stored_points > 8 * brick.stored_cells) {
+        throw std::invalid_argument("points");
+    }
+    if (!is_sound(brick.bounds) || !is_sound(brick.reach) || !encloses(brick.reach, brick.bounds)) {
+        throw std::invalid_argument("bounds");
+    }
+}
+
+bool same_names(const std::vector<BrickField>& a, const std::vector<BrickField>& b) {
+    return std::ranges::equal(
+        a, b, [](const BrickField& x, const BrickField& y) { return x.name == y.name && x.channels == y.channels; });
+}
+
+bool same_ranges(const std::vector<BrickField>& a, const std::vector<BrickField>& b) {
+    return std::ranges::equal(a, b, [](const BrickField& x, const BrickField& y) { return x.min == y.min && x.max == y.max; });
+}
+
+[[noreturn]] void refuse(const std::string& what, const std::string& file) {
+    throw Error(ErrorCode::InvalidInput, what, file, "split the mesh again");
+}
+
+void check_distinct(const Bricks& bricks, const std::string& file) {
+    std::set<std::string_view> files;
+    std::set<std::uint64_t> hashes;
+    for (const Brick& brick : bricks.bricks) {
+        if (!files.insert(brick.file).second) refuse("names the brick " + brick.file + " twice", file);
+        if (!hashes.insert(brick.hash).second) refuse("has the same hash for " + brick.file + " as for another brick", file);
+    }
+}
+
+/// The bricks together are what the index says of the mesh.
+void check_whole(const Bricks& bricks, const std::string& file) {
+    for (const Brick& brick : bricks.bricks) {
+        if (!same_names(brick.fields, bricks.fields)) refuse("gives " + brick.file + " other fields than the mesh", file);
+    }
+    Bricks sum = bricks;
+    sum_up(sum);
+    const auto check_count = [&](std::uint64_t counted, std::uint64_t said, const char* what) {
+        if (counted == said) return;
+        refuse(
+            "says that the mesh has " + std::to_string(said) + " " + what + ", and its bricks own " + std::to_string(counted),
+            file);
+    };
+    check_count(sum.cells, bricks.cells, "cells");
+    check_count(sum.points, bricks.points, "points");
+    if (sum.bounds.lower != bricks.bounds.lower || sum.bounds.upper != bricks.bounds.upper) {
+        refuse("gives the mesh other bounds than its bricks have together", file);
+    }
+    if (!same_ranges(sum.fields, bricks.fields)) {
+        refuse("gives the mesh other ranges of fields than its bricks have together", file);
+    }
 }
 
 void merge(std::vector<BrickField>& into, const std::vector<BrickField>& fields) {
@@ -202,7 +280,6 @@ Bricks bricks_from_json(const std::string& text, const std::string& file, bool u
         if (layers < 1 || layers > kMostHaloLayers) throw std::invalid_argument("halo_layers");
         bricks.halo_layers = static_cast<int>(layers);
         bricks.fields = fields_from(json.at("fields"));
-        std::set<std::string> files;
         for (const Json& entry : json.at("bricks")) {
             Brick brick{.file = entry.at("file"),
                         .cells = count_from(entry.at("cells")),
@@ -214,11 +291,14 @@ Bricks bricks_from_json(const std::string& text, const std::string& file, bool u
                         .bytes = count_from(entry.at("bytes")),
                         .hash = from_hex(entry.at("hash")),
                         .fields = fields_from(entry.at("fields"))};
-            // A name is used to read and to remove: never anything outside of the folder, and no other file in it.
-            if (!is_brick_name(brick.file) || !files.insert(brick.file).second) throw std::invalid_argument("file");
+            check_entry(brick);
             bricks.bricks.push_back(std::move(brick));
         }
-        if (bricks.bricks.empty() && !unfinished) throw std::invalid_argument("bricks");
+        if (bricks.bricks.size() > kMostBricks) throw std::invalid_argument("bricks");
+        check_distinct(bricks, file);
+        if (unfinished) return bricks;
+        if (bricks.bricks.empty()) throw std::invalid_argument("bricks");
+        check_whole(bricks, file);
         return bricks;
     } catch (const std::exception& error) {
         if (const auto* ours = dynamic_cast<const Error*>(&error)) throw *ours;
@@ -230,16 +310,39 @@ void check_files(const Bricks& bricks) {
     for (const Brick& brick : bricks.bricks) {
         const std::filesystem::path file = bricks.path / brick.file;
         std::error_code error;
-        const auto bytes = std::filesystem::file_size(file, error);
-        if (error) {
+        const auto status = std::filesystem::symlink_status(file, error);
+        if (!std::filesystem::exists(status)) {
             throw Error(ErrorCode::InvalidInput, "a brick is missing: " + brick.file, bricks.path.string(),
                         "split the mesh again");
         }
+        if (!std::filesystem::is_regular_file(status)) {
+            throw Error(ErrorCode::InvalidInput, "is a brick in the index and no regular file", file.string(),
+                        "split the mesh again");
+        }
+        const auto bytes = std::filesystem::file_size(file, error);
+        if (error) throw Error(ErrorCode::Io, "cannot be read: " + error.message(), file.string());
         if (bytes != brick.bytes) {
             throw Error(ErrorCode::InvalidInput,
                         "has " + std::to_string(bytes) + " bytes, in the index it has " + std::to_string(brick.bytes),
                         file.string(), "split the mesh again");
         }
+    }
+}
+
+void check_contents(const Brick& about, const BrickMesh& read, const std::string& file) {
+    const Brick found = describe(read);
+    // The reach is computed with roundings, which another program may have made otherwise.
+    const Vec3 roundings(1e-9 * about.reach.diagonal());
+    const bool same = found.stored_cells == about.stored_cells && found.stored_points == about.stored_points &&
+                      found.cells == about.cells && found.points == about.points && found.bounds.lower == about.bounds.lower &&
+                      found.bounds.upper == about.bounds.upper &&
+                      encloses({about.reach.lower - roundings, about.reach.upper + roundings}, found.reach);
+    if (!same) throw Error(ErrorCode::InvalidInput, "has not the counts and bounds that the index gives", file);
+    if (!same_names(found.fields, about.fields)) {
+        throw Error(ErrorCode::InvalidInput, "has not the fields that the index gives", file);
+    }
+    if (!same_ranges(found.fields, about.fields)) {
+        throw Error(ErrorCode::InvalidInput, "has not the ranges of fields that the index gives", file);
     }
 }
 

@@ -16,8 +16,8 @@ inline constexpr const char* kBricksIndex = "index.json";
 ///
 /// file:       for messages
 /// unfinished: there may be no bricks yet, and so no bounds
-/// throws:     Error(InvalidInput) if the text is malformed or of a later version, or if its files are not different ones with
-///             the names of bricks
+/// throws:     Error(InvalidInput) if the text is malformed or of a later version, or contradicts itself: a file named twice or
+///             with another name than a brick's, counts, bounds or ranges that are not those of the bricks together
 [[nodiscard]] std::string bricks_to_json(const Bricks& bricks);
 [[nodiscard]] Bricks bricks_from_json(const std::string& text, const std::string& file, bool unfinished = false);
 
@@ -31,7 +31,10 @@ void sum_up(Bricks& bricks);
 /// What the index says of a brick, apart from its file.
 [[nodiscard]] Brick describe(const BrickMesh& brick);
 
-/// throws: Error(InvalidInput) if a file of the index is missing or has another length
+/// throws: Error(InvalidInput) if a file of the index is missing, no regular file (a link, for example) or has another length
 void check_files(const Bricks& bricks);
+
+/// throws: Error(InvalidInput) if a brick that was read is not what the index says of it
+void check_contents(const Brick& about, const BrickMesh& read, const std::string& file);
 
 }  // namespace subvol::detail

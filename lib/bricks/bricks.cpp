@@ -36,14 +36,7 @@ BrickMesh read_brick(const Bricks& bricks, std::size_t brick) {
     const Brick& about = bricks.bricks.at(brick);
     const std::filesystem::path file = bricks.path / about.file;
     BrickMesh read = read_brick_file(file, about.hash, bricks.id);
-    const bool fits = read.mesh.cells.size() == about.stored_cells && read.mesh.points.size() == about.stored_points &&
-                      read.mesh.attributes.size() == bricks.fields.size();
-    if (!fits) throw Error(ErrorCode::InvalidInput, "has not the counts that the index gives", file.string());
-    for (std::size_t f = 0; f < bricks.fields.size(); ++f) {
-        const Attribute& field = read.mesh.attributes[f];
-        if (field.name == bricks.fields[f].name && field.channels == bricks.fields[f].channels) continue;
-        throw Error(ErrorCode::InvalidInput, "has not the fields that the index gives", file.string());
-    }
+    check_contents(about, read, file.string());
     return read;
 }
 

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <fstream>
+#include <nlohmann/json.hpp>
 #include <set>
 
 #include "../temp_folder.h"
@@ -252,6 +253,54 @@ TEST_F(BricksTest, DamageIsSaidInOneSentence) {
         put(index, other);
         EXPECT_NE(error_of(open_all).find("is not an index of bricks"), std::string::npos) << wrong;
     }
+}
+
+TEST_F(BricksTest, AnIndexThatContradictsItselfOrItsBricksIsRefused) {
+    const std::filesystem::path folder = path("t.bricks"), index = folder / "index.json";
+    const HexMesh mesh = make_model("twist", 6);
+    const Bricks sound = split_mesh(folder, mesh, {.bricks = 3}).bricks;
+    const nlohmann::json list = nlohmann::json::parse(read_bytes(index));
+    const auto said_of = [&](const auto& change) {
+        nlohmann::json changed = list;
+        change(changed);
+        std::ofstream(index, std::ios::binary) << changed.dump();
+        return error_of([&] {
+            const Bricks bricks = open_bricks(folder);
+            for (std::size_t b = 0; b < bricks.bricks.size(); ++b) (void)read_brick(bricks, b);
+        });
+    };
+    using Json = nlohmann::json;
+    EXPECT_EQ(said_of([](Json&) {}), "no error");
+    const auto expect = [&](const char* sentence, const auto& change) {
+        const std::string said = said_of(change);
+        EXPECT_NE(said.find(sentence), std::string::npos) << said;
+    };
+    expect("names the brick brick_00000.vtu twice", [](Json& j) { j["bricks"][1] = j["bricks"][0]; });
+    expect("has the same hash", [](Json& j) { j["bricks"][1]["hash"] = j["bricks"][0]["hash"]; });
+    for (const std::string& name : {std::string("../t.bricks/brick_00000.vtu"), std::string("brick_00000.vtu\0x", 17),
+                                    folder.string() + "/brick_00000.vtu", std::string(".."), std::string()}) {
+        expect("is not an index of bricks", [&](Json& j) { j["bricks"][0]["file"] = name; });
+    }
+    expect("says that the mesh has 215 cells, and its bricks own 216", [](Json& j) { j["cells"] = 215; });
+    expect("says that the mesh has 344 points, and its bricks own 343", [](Json& j) { j["points"] = 344; });
+    expect("other bounds", [](Json& j) { j["bounds"][1][0] = 1e3; });
+    expect("other ranges", [](Json& j) { j["fields"][0]["max"][0] = 1e3; });
+    expect("other fields", [](Json& j) { j["bricks"][1]["fields"][0]["name"] = "none"; });
+    expect("is not an index of bricks", [](Json& j) { j["bricks"][0]["cells"] = 0; });
+    expect("is not an index of bricks", [](Json& j) { j["bricks"][0]["stored_cells"] = 1; });
+    expect("is not an index of bricks", [](Json& j) { j["bricks"][0]["points"] = std::uint64_t{1} << 63U; });
+    expect("is not an index of bricks", [](Json& j) { j["bricks"][0]["reach"] = {{0, 0, 0}, {0, 0, 0}}; });
+    // Sums that are right, of numbers that are wrong, are found when the bricks are read.
+    expect("has not the counts and bounds that the index gives", [](Json& j) {
+        j["bricks"][0]["cells"] = j["bricks"][0]["cells"].get<int>() - 1;
+        j["bricks"][1]["cells"] = j["bricks"][1]["cells"].get<int>() + 1;
+    });
+    expect("has not the counts and bounds that the index gives",
+           [](Json& j) { j["bricks"][0]["reach"] = j["bricks"][0]["bounds"]; });
+    const std::filesystem::path first = folder / sound.bricks[0].file;
+    std::filesystem::rename(first, path("elsewhere.vtu"));
+    std::filesystem::create_symlink(path("elsewhere.vtu"), first);
+    expect("no regular file", [](Json&) {});
 }
 
 TEST_F(BricksTest, NothingElseIsOverwritten) {
