@@ -4,58 +4,101 @@
 #include <zlib.h>
 
 #include <algorithm>
+#include <limits>
 
+#include "subvol/detail/read_file.h"
 #include "subvol/error.h"
-#include "text_scanner.h"
 
 namespace subvol::detail {
 
-std::optional<std::string> gunzipped(std::string_view bytes) {
-    constexpr std::size_t kMost = std::size_t{1} << 30;  // of bytes that zlib is given at a time
-    constexpr int kGzip = 15 + 16;
-    z_stream stream{};
-    if (inflateInit2(&stream, kGzip) != Z_OK) return std::nullopt;
-    struct End {
-        z_stream* stream;
-        ~End() { inflateEnd(stream); }
-    } end{&stream};
-    std::string text;
-    int status = Z_OK;
-    while (!bytes.empty()) {
-        const std::size_t given = std::min(bytes.size(), kMost);
-        stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data()));
-        stream.avail_in = static_cast<uInt>(given);
-        while (stream.avail_in > 0) {
-            if (status == Z_STREAM_END && inflateReset(&stream) != Z_OK) return std::nullopt;
-            const std::size_t before = text.size(), room = std::clamp<std::size_t>(text.size(), 1 << 16, kMost);
-            text.resize(before + room);
-            stream.next_out = reinterpret_cast<Bytef*>(text.data() + before);
-            stream.avail_out = static_cast<uInt>(room);
-            status = inflate(&stream, Z_NO_FLUSH);
-            text.resize(before + room - stream.avail_out);
-            if (status != Z_OK && status != Z_STREAM_END && status != Z_BUF_ERROR) return std::nullopt;
+namespace {
+
+constexpr std::size_t kStart = std::size_t{1} << 20;
+constexpr const char* kNotWhole = "not a whole gzip file";
+constexpr std::size_t kAlways = std::size_t{64} << 20;
+
+/// Decompresses the members of a gzip file piece by piece.
+class Gunzip {
+public:
+    explicit Gunzip(std::string_view bytes) : bytes_(bytes) {
+        constexpr int kGzip = 15 + 16;
+        if (inflateInit2(&stream_, kGzip) != Z_OK) throw std::bad_alloc();
+    }
+    ~Gunzip() { inflateEnd(&stream_); }
+    Gunzip(const Gunzip&) = delete;
+    Gunzip& operator=(const Gunzip&) = delete;
+
+    /// Appends bytes to a text. Returns whether there may be more.
+    bool append_to(std::string& text) {
+        constexpr std::size_t kMost = std::size_t{1} << 30;  // of bytes that zlib is given at a time
+        if (stream_.avail_in == 0 && !bytes_.empty()) {
+            stream_.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes_.data()));
+            stream_.avail_in = static_cast<uInt>(std::min(bytes_.size(), kMost));
+            bytes_.remove_prefix(stream_.avail_in);
         }
-        bytes.remove_prefix(given);
+        if (status_ == Z_STREAM_END) {
+            if (stream_.avail_in == 0) return false;
+            if (inflateReset(&stream_) != Z_OK) status_ = Z_DATA_ERROR;
+        }
+        const std::size_t before = text.size(), room = std::clamp<std::size_t>(before, std::size_t{1} << 16, kStart);
+        text.resize(before + room);
+        stream_.next_out = reinterpret_cast<Bytef*>(text.data() + before);
+        stream_.avail_out = static_cast<uInt>(room);
+        if (status_ != Z_DATA_ERROR) status_ = inflate(&stream_, Z_NO_FLUSH);
+        text.resize(before + room - stream_.avail_out);
+        return status_ == Z_OK || status_ == Z_STREAM_END;
     }
-    while (status == Z_OK) {  // what the last bytes still hold
-        const std::size_t before = text.size();
-        text.resize(before + (1 << 16));
-        stream.next_out = reinterpret_cast<Bytef*>(text.data() + before);
-        stream.avail_out = 1 << 16;
-        status = inflate(&stream, Z_NO_FLUSH);
-        text.resize(before + (1 << 16) - stream.avail_out);
+
+    /// Whether the last member ended with its checksum.
+    [[nodiscard]] bool whole() const { return status_ == Z_STREAM_END; }
+
+private:
+    std::string_view bytes_;
+    z_stream stream_{};
+    int status_ = Z_OK;
+};
+
+bool is_gzipped(const std::filesystem::path& path, std::filesystem::path& packed) {
+    std::error_code none;
+    packed = path.string() + ".gz";
+    return !std::filesystem::exists(path, none) && std::filesystem::exists(packed, none);
+}
+
+}  // namespace
+
+std::string read_maybe_gzipped(const std::filesystem::path& path, const MostBytes& most) {
+    std::filesystem::path packed;
+    if (!is_gzipped(path, packed)) return read_regular(path);
+    const std::string bytes = read_regular(packed);
+    Gunzip in(bytes);
+    std::string text;
+    std::size_t limit = 0;
+    while (in.append_to(text)) {
+        if (text.size() < kStart) continue;
+        if (limit == 0) limit = std::max(kAlways, most(text));
+        if (text.size() > limit) {
+            throw Error(ErrorCode::InvalidInput,
+                        "its " + std::to_string(bytes.size()) + " bytes decompress to more than what it says is in it needs",
+                        packed.string(), "at most " + std::to_string(limit) + " bytes");
+        }
     }
-    if (status != Z_STREAM_END) return std::nullopt;
+    if (!in.whole()) throw Error(ErrorCode::InvalidInput, kNotWhole, packed.string());
     return text;
 }
 
-std::string read_maybe_gzipped(const std::filesystem::path& path) {
-    std::error_code none;
-    const std::filesystem::path packed = path.string() + ".gz";
-    if (std::filesystem::exists(path, none) || !std::filesystem::exists(packed, none)) return read_regular(path);
-    auto text = gunzipped(read_regular(packed));
-    if (!text) throw Error(ErrorCode::InvalidInput, "not a whole gzip file", packed.string());
-    return std::move(*text);
+std::string start_of_maybe_gzipped(const std::filesystem::path& path, std::size_t bytes) {
+    std::filesystem::path packed;
+    const bool is_packed = is_gzipped(path, packed);
+    const std::filesystem::path& file = is_packed ? packed : path;
+    if (const std::string wrong = not_regular(file); !wrong.empty()) throw Error(ErrorCode::InvalidInput, wrong, file.string());
+    std::string text = read_range(file, 0, bytes);
+    if (!is_packed) return text;
+    std::string start;
+    Gunzip in(text);
+    while (start.size() < bytes && in.append_to(start)) {
+    }
+    if (start.empty() && !in.whole()) throw Error(ErrorCode::InvalidInput, kNotWhole, packed.string());
+    return start.substr(0, bytes);
 }
 
 }  // namespace subvol::detail

@@ -1,19 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
-#include <optional>
+#include <functional>
 #include <string>
 #include <string_view>
 
 namespace subvol::detail {
 
-/// The contents of a gzip file, of all its members. Nothing if it is damaged.
-[[nodiscard]] std::optional<std::string> gunzipped(std::string_view bytes);
+/// From the beginning of a text, the most bytes that it can have: a megabyte of gzip may stand for a gigabyte.
+using MostBytes = std::function<std::size_t(std::string_view beginning)>;
 
-/// The whole file of that name, or what the file of that name with .gz contains.
+/// The whole file of that name, or what the file of that name with .gz contains, in all its members.
 ///
-/// throws: Error(Io) if neither can be read, Error(InvalidInput) if the second is damaged
-[[nodiscard]] std::string read_maybe_gzipped(const std::filesystem::path& path);
+/// most:   of what is compressed; asked after the first megabyte, of which no text of more than 64 MB is made unless it says so
+/// throws: Error(Io) if neither can be read, Error(InvalidInput) if the second is damaged or contains more than `most`
+[[nodiscard]] std::string read_maybe_gzipped(const std::filesystem::path& path, const MostBytes& most);
+
+/// The first bytes of that file.
+///
+/// throws: as `read_maybe_gzipped`
+[[nodiscard]] std::string start_of_maybe_gzipped(const std::filesystem::path& path, std::size_t bytes);
 
 }  // namespace subvol::detail

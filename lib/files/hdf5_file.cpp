@@ -59,6 +59,12 @@ std::string Hdf5File::bytes(const std::string& path, const Hdf5Dataset& dataset,
         counts[0] = count;
     }
     if (row == 0 || count == 0) return {};
+    constexpr std::size_t kLargeChunk = std::size_t{64} << 20, kMostWasted = 16;
+    if (dataset.compressed_chunk > kLargeChunk && dataset.compressed_chunk / kMostWasted > row * count) {
+        fail(in_quotes(path) + " has chunks of " + std::to_string(dataset.compressed_chunk) + " bytes, of which " +
+                 std::to_string(row * count) + " are needed",
+             "smaller chunks, as h5repack makes them");
+    }
     auto bytes = source_->values(path, dataset, starts, counts);
     if (!bytes || bytes->size() != row * count) fail(in_quotes(path) + " cannot be read: the file is damaged");
     return *std::move(bytes);

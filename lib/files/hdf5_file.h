@@ -14,11 +14,13 @@
 
 namespace subvol::detail {
 
-/// A dataset of an HDF5 file. lengths: of its dimensions, the slowest first; most_bytes: of values that its storage can have
+/// A dataset of an HDF5 file. lengths: of its dimensions, the slowest first; most_bytes: of values that its storage can have;
+/// compressed_chunk: the bytes that are decompressed together, 0 if nothing is compressed
 struct Hdf5Dataset {
     NumberType type = NumberType::Float64;
     std::vector<std::size_t> lengths;
     std::size_t most_bytes = 0;
+    std::size_t compressed_chunk = 0;
 };
 
 /// An open HDF5 file. Paths are those inside of it, such as "/VTKHDF/Points".

@@ -7,13 +7,14 @@
 namespace subvol::detail {
 
 /// A dataset of an HDF5 file. type: the number of a NumberType, or -1 if it does not consist of numbers in this file; stored:
-/// the bytes of its storage; filtered: they may be compressed
+/// the bytes of its storage; filtered: they may be compressed, each `chunk` bytes alone
 struct Hdf5Shape {
     static constexpr unsigned kMostRank = 8;
     int type = -1;
     unsigned rank = 0;
     std::uint64_t lengths[kMostRank] = {};
     std::uint64_t stored = 0;
+    std::uint64_t chunk = 0;
     bool filtered = false;
 };
 

@@ -82,7 +82,8 @@ public:
         const std::size_t stored = std::min<std::size_t>(shape.stored, size_);
         return Hdf5Dataset{static_cast<NumberType>(shape.type),
                            {shape.lengths, shape.lengths + shape.rank},
-                           stored * (shape.filtered ? kMostOfDeflate : 1)};
+                           stored * (shape.filtered ? kMostOfDeflate : 1),
+                           shape.filtered ? shape.chunk : 0};
     }
 
     [[nodiscard]] std::optional<std::string> values(const std::string& path, const Hdf5Dataset& dataset,

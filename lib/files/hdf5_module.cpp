@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // The module subvol_hdf5.so: HDF5's library, which is 5 MB and brings those of compression and of the network.
 #include <hdf5.h>
+#include <zlib.h>
 
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <vector>
 
 #include "hdf5_functions.h"
 #include "number_type.h"
@@ -125,6 +127,82 @@ int number_type(hid_t type) {
     }
 }
 
+// The bytes of a chunk; 0 if there are no chunks.
+std::uint64_t chunk_bytes(hid_t properties, hid_t type) {
+    std::array<hsize_t, H5S_MAX_RANK> lengths{};
+    const int rank = H5Pget_layout(properties) == H5D_CHUNKED ? H5Pget_chunk(properties, H5S_MAX_RANK, lengths.data()) : 0;
+    if (rank <= 0) return 0;
+    std::uint64_t bytes = H5Tget_size(type);
+    for (int d = 0; d < rank; ++d) bytes *= lengths[static_cast<std::size_t>(d)];  // below 2^32, as the library demands
+    return bytes;
+}
+
+// Whether what deflate made of some bytes becomes at most `most` bytes.
+bool inflates_to(std::size_t most, std::vector<Bytef>& packed, std::size_t size) {
+    std::vector<Bytef> piece(1 << 16);
+    z_stream stream{};
+    if (inflateInit(&stream) != Z_OK) return false;
+    stream.next_in = packed.data();
+    stream.avail_in = static_cast<uInt>(size);  // of a chunk, below 2^32
+    int status = Z_OK;
+    while (status == Z_OK && stream.total_out <= most) {
+        stream.next_out = piece.data();
+        stream.avail_out = static_cast<uInt>(piece.size());
+        status = inflate(&stream, Z_NO_FLUSH);
+    }
+    const bool sound = stream.total_out <= most;  // what is damaged is found by the library
+    inflateEnd(&stream);
+    return sound;
+}
+
+// The library decompresses a chunk to its end, however much that is and however few numbers the chunk has: a megabyte becomes a
+// gigabyte. Chunks that may become that large are decompressed without being kept first.
+bool chunk_is_sound(hid_t dataset, hid_t properties, const hsize_t* place, std::size_t bytes) {
+    constexpr std::size_t kMostOfDeflate = 1040, kHarmless = std::size_t{64} << 20, kOfFilters = 1 << 12;
+    hsize_t stored = 0;
+    if (H5Dget_chunk_storage_size(dataset, place, &stored) < 0 || stored <= kHarmless / kMostOfDeflate) return true;
+    if (stored > bytes + bytes / 64 + kOfFilters) return false;
+    std::vector<Bytef> packed(stored);
+    std::uint32_t left_out = 0;
+    if (H5Dread_chunk(dataset, H5P_DEFAULT, place, &left_out, packed.data()) < 0) return false;
+    std::size_t size = stored;
+    for (int f = H5Pget_nfilters(properties) - 1; f >= 0; --f) {
+        if ((left_out >> f & 1U) != 0) continue;
+        const H5Z_filter_t filter =
+            H5Pget_filter2(properties, static_cast<unsigned>(f), nullptr, nullptr, nullptr, 0, nullptr, nullptr);
+        if (filter == H5Z_FILTER_DEFLATE) return inflates_to(bytes + kOfFilters, packed, size);
+        if (filter != H5Z_FILTER_FLETCHER32) break;  // another compression
+        size -= std::min<std::size_t>(size, 4);
+    }
+    return true;
+}
+
+// The same of all chunks that a block of values touches.
+bool chunks_are_sound(hid_t dataset, hid_t properties, hid_t type, const std::array<hsize_t, Hdf5Shape::kMostRank>& first,
+                      const std::array<hsize_t, Hdf5Shape::kMostRank>& count) {
+    if (H5Pget_layout(properties) != H5D_CHUNKED || H5Pget_nfilters(properties) <= 0) return true;
+    std::array<hsize_t, Hdf5Shape::kMostRank> chunk{}, place{};
+    const int rank = H5Pget_chunk(properties, Hdf5Shape::kMostRank, chunk.data());
+    if (rank <= 0 || rank > static_cast<int>(Hdf5Shape::kMostRank)) return false;
+    const auto dimensions = static_cast<std::size_t>(rank);
+    const std::size_t bytes = chunk_bytes(properties, type);
+    for (std::size_t d = 0; d < dimensions; ++d) {
+        if (count[d] == 0) return true;
+        place[d] = first[d] / chunk[d] * chunk[d];
+    }
+    for (;;) {
+        if (!chunk_is_sound(dataset, properties, place.data(), bytes)) return false;
+        std::size_t d = dimensions;
+        while (d > 0) {
+            --d;
+            place[d] += chunk[d];
+            if (place[d] < first[d] + count[d]) break;
+            place[d] = first[d] / chunk[d] * chunk[d];
+            if (d == 0) return true;
+        }
+    }
+}
+
 // Whether its values are in this file.
 bool is_here(hid_t properties) {
     const H5D_layout_t layout = H5Pget_layout(properties);
@@ -147,6 +225,7 @@ int shape(std::int64_t file, const char* path, Hdf5Shape* into) {
     std::copy(lengths.begin(), lengths.end(), into->lengths);
     into->stored = H5Dget_storage_size(dataset);
     into->filtered = H5Pget_nfilters(properties) != 0;
+    into->chunk = chunk_bytes(properties, type);
     return 0;
 }
 
@@ -161,6 +240,8 @@ int read(std::int64_t file, const char* path, unsigned rank, const std::uint64_t
     std::array<hsize_t, Hdf5Shape::kMostRank> first{}, count{};
     std::copy_n(starts, rank, first.begin());
     std::copy_n(lengths, rank, count.begin());
+    const Handle properties(H5Dget_create_plist(dataset), H5Pclose);
+    if (!chunks_are_sound(dataset, properties, type, first, count)) return -1;
     if (H5Sselect_hyperslab(space, H5S_SELECT_SET, first.data(), nullptr, count.data(), nullptr) < 0) return -1;
     const Handle memory(H5Screate_simple(static_cast<int>(rank), count.data(), nullptr), H5Sclose);
     return H5Dread(dataset, native_type(static_cast<NumberType>(number)), memory, space, H5P_DEFAULT, into);

@@ -21,6 +21,8 @@ struct NetcdfFunctions {
     decltype(&nc_inq_var) inq_var;
     decltype(&nc_inq_attname) inq_attname;
     decltype(&nc_inq_att) inq_att;
+    decltype(&nc_inq_var_chunking) inq_var_chunking;
+    decltype(&nc_inq_var_deflate) inq_var_deflate;
 };
 
 }  // namespace subvol::detail

@@ -64,14 +64,32 @@ public:
             }
             count *= counts[d];
         }
+        if (count == 0) return {};
+        check_chunks(variable, count);
         std::string bytes(count, '\0');
-        if (count > 0) check(library().get_vara(id_, variable.number, start.data(), counts.data(), bytes.data()));
+        check(library().get_vara(id_, variable.number, start.data(), counts.data(), bytes.data()));
         return bytes;
     }
 
     [[nodiscard]] std::size_t growth() const override { return kMostOfDeflate; }
 
 private:
+    /// Whole chunks are decompressed, however few of their values are needed.
+    void check_chunks(const NetcdfVariable& variable, std::size_t needed) const {
+        constexpr std::size_t kLargeChunk = std::size_t{64} << 20, kMostWasted = 16;
+        int storage = NC_CONTIGUOUS, shuffled = 0, deflated = 0, level = 0;
+        std::vector<std::size_t> lengths(std::max<std::size_t>(1, variable.lengths.size()));
+        check(library().inq_var_chunking(id_, variable.number, &storage, lengths.data()));
+        check(library().inq_var_deflate(id_, variable.number, &shuffled, &deflated, &level));
+        if (storage != NC_CHUNKED) return;
+        std::size_t chunk = size_of(variable.type);
+        for (const std::size_t length : lengths) chunk *= length;  // below 2^32, as HDF5 demands
+        if (deflated == 0 || chunk <= kLargeChunk || chunk / kMostWasted <= needed) return;
+        throw Error(ErrorCode::InvalidInput,
+                    "has chunks of " + std::to_string(chunk) + " bytes, of which " + std::to_string(needed) + " are needed",
+                    std::string(file_), "smaller chunks, as nccopy -c makes them");
+    }
+
     void read_catalog() {
         int count = 0;
         check(library().inq_nvars(id_, &count));

@@ -22,6 +22,8 @@ const subvol::detail::NetcdfFunctions* subvol_netcdf() {
         .inq_var = &nc_inq_var,
         .inq_attname = &nc_inq_attname,
         .inq_att = &nc_inq_att,
+        .inq_var_chunking = &nc_inq_var_chunking,
+        .inq_var_deflate = &nc_inq_var_deflate,
     };
     return &functions;
 }

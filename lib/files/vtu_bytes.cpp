@@ -32,8 +32,10 @@ bool unzip(std::string_view bytes, std::string& into) {
     return uncompress(reinterpret_cast<Bytef*>(into.data()), &size, from, bytes.size()) == Z_OK && size == into.size();
 }
 
+constexpr std::uint64_t kMostDictionary = std::uint64_t{128} << 20;  // twice what the strongest preset needs
+
 bool unpack_lzma(std::string_view bytes, std::string& into) {
-    std::uint64_t dictionary_limit = std::uint64_t{128} << 20;  // twice what the strongest preset needs
+    std::uint64_t dictionary_limit = kMostDictionary;
     std::size_t read = 0;
     std::size_t written = 0;
     const auto result =
@@ -137,6 +139,33 @@ std::optional<std::string> decompressed(Compressor compressor, std::string_view 
                                                        : unpack_lz4(bytes, result);
     if (!good) return std::nullopt;
     return result;
+}
+
+struct LzmaReader::Stream {
+    lzma_stream lzma = LZMA_STREAM_INIT;
+    bool ended = false;
+};
+
+void LzmaReader::End::operator()(Stream* stream) const {
+    lzma_end(&stream->lzma);
+    delete stream;
+}
+
+LzmaReader::LzmaReader(std::string_view bytes) : stream_(new Stream), piece_(std::size_t{1} << 16, '\0') {
+    if (lzma_stream_decoder(&stream_->lzma, kMostDictionary, 0) != LZMA_OK) throw std::bad_alloc();
+    stream_->lzma.next_in = reinterpret_cast<const std::uint8_t*>(bytes.data());
+    stream_->lzma.avail_in = bytes.size();
+}
+
+std::optional<std::string_view> LzmaReader::next() {
+    if (stream_->ended) return std::string_view();
+    lzma_stream& lzma = stream_->lzma;
+    lzma.next_out = reinterpret_cast<std::uint8_t*>(piece_.data());
+    lzma.avail_out = piece_.size();
+    const lzma_ret result = lzma_code(&lzma, LZMA_FINISH);
+    stream_->ended = result == LZMA_STREAM_END;
+    if (result != LZMA_OK && !stream_->ended) return std::nullopt;
+    return std::string_view(piece_).substr(0, piece_.size() - lzma.avail_out);
 }
 
 std::string compressed_numbers(std::string_view bytes) {

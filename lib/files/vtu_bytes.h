@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -40,6 +41,24 @@ enum class Compressor { None, Zlib, Lzma, Lz4 };
 
 /// Decompresses a block. Nothing if the bytes are damaged or if their decompressed size is not `size`.
 [[nodiscard]] std::optional<std::string> decompressed(Compressor compressor, std::string_view bytes, std::size_t size);
+
+/// Decompresses what `compressed_numbers` has made piece by piece, so that no more is in memory than what has been asked for.
+class LzmaReader {
+public:
+    explicit LzmaReader(std::string_view bytes);
+
+    /// The next bytes, which are valid until the next call; empty at the end, after the checksum has been compared. Nothing if
+    /// the bytes are damaged.
+    [[nodiscard]] std::optional<std::string_view> next();
+
+private:
+    struct Stream;
+    struct End {
+        void operator()(Stream* stream) const;
+    };
+    std::unique_ptr<Stream, End> stream_;
+    std::string piece_;
+};
 
 /// Bytes that `decompressed` with Compressor::Lzma turns back, with a checksum: small numbers, most of them 0, become smallest.
 [[nodiscard]] std::string compressed_numbers(std::string_view bytes);

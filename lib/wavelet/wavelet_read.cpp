@@ -14,16 +14,20 @@ namespace {
 
 class Contents {
 public:
-    Contents(std::string_view bytes, const std::string& file) : bytes_(bytes), file_(file) {}
+    /// more: where the bytes after these come from; length: of all
+    Contents(std::string_view bytes, const std::string& file, LzmaReader* more = nullptr, std::uint64_t length = 0)
+        : bytes_(bytes), file_(file), more_(more), length_left_(more == nullptr ? bytes.size() : length) {}
 
     [[noreturn]] void fail(const std::string& what, const std::string& allowed = {}) const {
         throw Error(ErrorCode::InvalidInput, what, file_, allowed);
     }
 
     std::uint64_t byte() {
-        if (bytes_.empty()) fail("the contents end too early");
+        if (length_left_ == 0) fail("the contents end too early");
+        if (bytes_.empty()) load_more();
         const auto b = static_cast<unsigned char>(bytes_.front());
         bytes_.remove_prefix(1);
+        --length_left_;
         return b;
     }
 
@@ -43,7 +47,7 @@ public:
     /// How many things follow, each of at least so many bytes.
     std::size_t count(const char* of, std::size_t bytes_each) {
         const std::uint64_t n = number();
-        if (n > bytes_.size() / bytes_each) fail(std::to_string(n) + " " + of + " do not fit into the file");
+        if (n > length_left_ / bytes_each) fail(std::to_string(n) + " " + of + " do not fit into the file");
         return n;
     }
 
@@ -55,8 +59,8 @@ public:
 
     std::string text() {
         const std::size_t n = count("bytes of a name", 1);
-        std::string t(bytes_.substr(0, n));
-        bytes_.remove_prefix(n);
+        std::string t;
+        for (std::size_t i = 0; i < n; ++i) t += static_cast<char>(byte());
         return t;
     }
 
@@ -66,11 +70,29 @@ public:
         return static_cast<Index>(n);
     }
 
-    [[nodiscard]] std::size_t left() const { return bytes_.size(); }
+    [[nodiscard]] std::size_t left() const { return length_left_; }
+
+    /// Everything has been read, and there is nothing else.
+    void expect_end() {
+        if (left() > 0) fail(std::to_string(left()) + " bytes follow the last array");
+        if (more_ == nullptr) return;
+        const auto rest = more_->next();
+        if (!bytes_.empty() || !rest || !rest->empty()) fail(kDamaged);
+    }
+
+    static constexpr const char* kDamaged = "the compressed contents are damaged";
 
 private:
+    void load_more() {
+        const auto piece = more_ == nullptr ? std::nullopt : more_->next();
+        if (!piece || piece->empty()) fail(kDamaged);
+        bytes_ = *piece;
+    }
+
     std::string_view bytes_;
     const std::string& file_;
+    LzmaReader* more_;
+    std::uint64_t length_left_;
 };
 
 SchemeOptions read_scheme(Contents& in) {
@@ -81,12 +103,22 @@ SchemeOptions read_scheme(Contents& in) {
     return scheme;
 }
 
+/// Refuses a last cell that no mesh has: few bytes of a compressed file can stand for millions of them.
+void check_cell(const HexMesh& mesh, const Contents& in) {
+    const auto& cell = mesh.cells.back();
+    std::array<Index, 8> sorted = cell;
+    std::ranges::sort(sorted);
+    const bool twice = std::ranges::adjacent_find(sorted) != sorted.end();
+    if (!twice && (mesh.cells.size() < 2 || cell != mesh.cells[mesh.cells.size() - 2])) return;
+    in.fail("cell " + std::to_string(mesh.cells.size() - 1) + (twice ? " has a corner twice" : " is there twice"));
+}
+
 /// The control mesh; its points are all at the origin.
 HexMesh read_control_mesh(Contents& in) {
     HexMesh mesh;
     const std::size_t points = in.count("points", 3);
     const std::size_t cells = in.count("cells", 8);
-    mesh.points.assign(points, Vec3(0));
+    if (points > 8 * cells) in.fail(std::to_string(points) + " points are more than the corners of the cells");
     std::array<std::int64_t, 8> corners{};
     for (std::size_t c = 0; c < cells; ++c) {
         auto& cell = mesh.cells.emplace_back();
@@ -99,7 +131,9 @@ HexMesh read_control_mesh(Contents& in) {
             corners[k] += change;
             cell[k] = static_cast<Index>(corners[k]);
         }
+        check_cell(mesh, in);
     }
+    mesh.points.assign(points, Vec3(0));
     mesh.creases.resize(in.count("creases", 2));
     for (auto& crease : mesh.creases) {
         for (Index& p : crease) p = in.point(points);
@@ -175,14 +209,15 @@ HexMesh read_arrays(const WaveletBasis& basis, Contents& in) {
         }
         for (std::size_t i = 0; i < values.size(); i += 3) mesh.points.emplace_back(values[i], values[i + 1], values[i + 2]);
     }
-    if (in.left() > 0) in.fail(std::to_string(in.left()) + " bytes follow the last array");
+    in.expect_end();
     return mesh;
 }
 
 }  // namespace
 
-HexMesh mesh_of_wavelets(std::string_view contents, const std::string& file) {
-    Contents in(contents, file);
+namespace {
+
+HexMesh read_contents(Contents& in, const std::string& file) {
     const SchemeOptions scheme = read_scheme(in);
     const int levels = read_levels(in);
     try {
@@ -217,6 +252,13 @@ HexMesh mesh_of_wavelets(std::string_view contents, const std::string& file) {
     }
 }
 
+}  // namespace
+
+HexMesh mesh_of_wavelets(std::string_view contents, const std::string& file) {
+    Contents in(contents, file);
+    return read_contents(in, file);
+}
+
 HexMesh read_wavelet_mesh(std::string_view text, const std::string& file) {
     const std::size_t head = kWaveletMagic.size() + 8;
     if (text.size() < head || !text.starts_with(kWaveletMagic)) {
@@ -226,8 +268,23 @@ HexMesh read_wavelet_mesh(std::string_view text, const std::string& file) {
     for (std::size_t k = 0; k < 8; ++k) {
         length |= std::uint64_t{static_cast<unsigned char>(text[kWaveletMagic.size() + k])} << 8 * k;
     }
-    const auto contents = decompressed(Compressor::Lzma, text.substr(head), length);
-    if (!contents) throw Error(ErrorCode::InvalidInput, "the compressed contents are damaged", file);
+    // What is longer is read as it is decompressed, so that what is no mesh ends it; no mesh of which there are so many details
+    // has so little to say.
+    constexpr std::uint64_t kAtOnce = std::uint64_t{64} << 20, kMostGrowth = 1000;
+    const std::string_view packed = text.substr(head);
+    if (length > 4 * kAtOnce && length / kMostGrowth > packed.size()) {
+        throw Error(ErrorCode::InvalidInput,
+                    std::string(Contents::kDamaged) + ": " + std::to_string(packed.size()) + " bytes say that they are " +
+                        std::to_string(length),
+                    file, "at most a thousand times as many, or 256 MB");
+    }
+    if (length > kAtOnce) {
+        LzmaReader more(packed);
+        Contents in({}, file, &more, length);
+        return read_contents(in, file);
+    }
+    const auto contents = decompressed(Compressor::Lzma, packed, length);
+    if (!contents) throw Error(ErrorCode::InvalidInput, Contents::kDamaged, file);
     return mesh_of_wavelets(*contents, file);
 }
 

@@ -107,7 +107,7 @@ private:
 
     void read_field(const fs::path& path, const std::string& name) {
         constexpr std::size_t kHeader = 4096;
-        if (std::string_view(read_maybe_gzipped(path)).substr(0, kHeader).find("FoamFile") == std::string_view::npos) return;
+        if (start_of_maybe_gzipped(path, kHeader).find("FoamFile") == std::string::npos) return;
         FoamText text(path);
         const std::size_t components = components_of_class(text.type());
         if (components == 0) return;

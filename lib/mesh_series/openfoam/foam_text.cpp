@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <limits>
 
 #include "gzip.h"
 
@@ -16,10 +17,27 @@ bool is_space(char c) {
     return c == ' ' || c == '\t' || c == '\n' || c == '\r' || c == '\f' || c == '\v';
 }
 
+/// What a file can have in bytes, by the largest count of a list in its beginning.
+std::size_t most_bytes(std::string_view beginning) {
+    constexpr std::size_t kBytesOfEntry = 512;  // nine numbers as text, or a face of 40 points
+    std::size_t largest = 0;
+    for (std::size_t open = beginning.find('('); open != std::string_view::npos; open = beginning.find('(', open + 1)) {
+        std::size_t end = open;
+        while (end > 0 && is_space(beginning[end - 1])) --end;
+        std::size_t begin = end;
+        while (begin > 0 && beginning[begin - 1] >= '0' && beginning[begin - 1] <= '9') --begin;
+        std::size_t count = 0;
+        if (std::from_chars(beginning.data() + begin, beginning.data() + end, count).ec == std::errc()) {
+            largest = std::max(largest, std::min(count, std::numeric_limits<std::size_t>::max() / kBytesOfEntry));
+        }
+    }
+    return kBytesOfEntry * largest;
+}
+
 }  // namespace
 
 FoamText::FoamText(const std::filesystem::path& path)
-    : file_(path.string()), text_(read_maybe_gzipped(path)), in_(text_, file_, TextScanner::Comments::None) {
+    : file_(path.string()), text_(read_maybe_gzipped(path, most_bytes)), in_(text_, file_, TextScanner::Comments::None) {
     read_header();
 }
 

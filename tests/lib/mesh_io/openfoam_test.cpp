@@ -341,6 +341,17 @@ TEST_F(OpenFoam, WrongFilesGetASentence) {
     EXPECT_THAT(error(), HasSubstr("q.gz: not a whole gzip file"));
 }
 
+// Seventy kilobytes that are seventy megabytes of blanks after a list of two points.
+TEST_F(OpenFoam, ALittleFileDoesNotBecomeALargeText) {
+    const Form form{.gzipped = true};
+    write("a.foam", "");
+    put_mesh("constant/polyMesh", box(1), {});
+    std::filesystem::remove(path("constant/polyMesh/points"));
+    put("constant/polyMesh/points",
+        header("vectorField", form) + "2\n((0 0 0)" + std::string(std::size_t{70} << 20, ' ') + "(1 1 1))", form);
+    EXPECT_THAT(error(), AllOf(HasSubstr("points.gz"), HasSubstr("decompress to more than what it says is in it needs")));
+}
+
 }  // namespace openfoam_test
 
 }  // namespace subvol::test

@@ -2,6 +2,7 @@
 // VTKHDF files, written by HDF5's library.
 
 #include <gmock/gmock.h>
+#include <zlib.h>
 
 #include <functional>
 
@@ -178,6 +179,26 @@ TEST_F(VtkHdf, WrongFilesGetASentence) {
     EXPECT_THAT(error_of([&] { static_cast<void>(read_mesh(path("no.vtkhdf"))); }), HasSubstr("damaged or not complete"));
     write("no.vtkhdf", "text");
     EXPECT_THAT(error_of([&] { static_cast<void>(read_mesh(path("no.vtkhdf"))); }), HasSubstr("not an HDF5 file"));
+}
+
+// What HDF5's library would decompress to its end: a hundred megabytes for eight numbers.
+TEST_F(VtkHdf, AChunkDoesNotBecomeMoreThanItsNumbers) {
+    const std::string zeros(std::size_t{100} << 20, '\0');
+    std::string packed(compressBound(zeros.size()), '\0');
+    uLongf size = packed.size();
+    ASSERT_EQ(compress2(reinterpret_cast<Bytef*>(packed.data()), &size, reinterpret_cast<const Bytef*>(zeros.data()),
+                        zeros.size(), 9),
+              Z_OK);
+    packed.resize(size);
+    const auto said = [&](std::vector<hsize_t> chunk) {
+        return error([&](Hdf5Writer& file) {
+            start(file, {row(1)});
+            file.put_packed("/VTKHDF/PointData/T", {8}, chunk, packed);
+        });
+    };
+    EXPECT_THAT(said({8}), HasSubstr("\"/VTKHDF/PointData/T\" cannot be read: the file is damaged"));
+    EXPECT_THAT(said({1 << 14}), HasSubstr("\"/VTKHDF/PointData/T\" cannot be read: the file is damaged"));
+    EXPECT_THAT(said({zeros.size() / 8}), HasSubstr("has chunks of 104857600 bytes, of which 64 are needed"));
 }
 
 TEST_F(VtkHdf, RealFile) {

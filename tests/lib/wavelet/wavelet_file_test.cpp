@@ -137,6 +137,53 @@ TEST_F(WaveletFile, DamageIsFound) {
     EXPECT_NE(error_of([&] { read(longer); }).find("damaged"), std::string::npos);
 }
 
+/// A file of zeros, or of an endless row of cells, is refused before it takes the memory that it asks for.
+TEST_F(WaveletFile, ManyBytesFromFewAreRefused) {
+    const auto file = [&](const std::string& start, std::size_t length) {
+        std::string contents = start + std::string(length - start.size(), '\0');
+        std::string head(detail::kWaveletMagic);
+        for (int k = 0; k < 8; ++k) head += static_cast<char>(length >> 8 * k & 255);
+        return write("bomb.svw", head + detail::compressed_numbers(contents));
+    };
+    const auto said = [&](const std::filesystem::path& path) { return error_of([&] { (void)read_mesh(path); }); };
+    constexpr std::size_t kMany = std::size_t{70} << 20;
+    EXPECT_NE(said(file("", kMany)).find("the number of levels is 0"), std::string::npos);
+    // A scheme, a tension, one level, a million points, eight million cells of equal corners.
+    const std::string scheme(9, '\0');
+    const auto count = [](std::uint64_t n) {
+        std::string bytes;
+        for (; n >= 128; n >>= 7) bytes += static_cast<char>(n & 127 | 128);
+        return bytes + static_cast<char>(n);
+    };
+    EXPECT_NE(said(file(scheme + '\1' + count(1'000'000) + count(8'000'000), kMany)).find("cell 0 has a corner twice"),
+              std::string::npos);
+    EXPECT_NE(said(file(scheme + '\1' + count(20'000'000) + count(2), kMany)).find("more than the corners"), std::string::npos);
+    const std::string cell{'\0', '\2', '\2', '\2', '\2', '\2', '\2', '\2'}, same{'\15'};
+    EXPECT_NE(said(file(scheme + '\1' + count(1'000'000) + count(8'000'000) + cell + same + cell.substr(1), kMany))
+                  .find("cell 1 is there twice"),
+              std::string::npos);
+    // A length that its few bytes cannot have is refused without looking at them.
+    std::string longer = test::read_bytes(file("", kMany));
+    longer[detail::kWaveletMagic.size() + 3] = '\x20';  // 512 MB and more
+    EXPECT_NE(said(write("long.svw", longer)).find("at most a thousand times as many"), std::string::npos);
+}
+
+TEST_F(WaveletFile, LongContentsAreReadPieceByPiece) {
+    const std::string text(200'000, 'a'), packed = detail::compressed_numbers(text);
+    detail::LzmaReader reader(packed);
+    std::string all;
+    for (auto piece = reader.next(); piece && !piece->empty(); piece = reader.next()) all += *piece;
+    EXPECT_EQ(all, text);
+    EXPECT_TRUE(reader.next()->empty());
+    std::string damaged = packed;
+    damaged[packed.size() - 10] ^= 1;
+    detail::LzmaReader other(damaged);
+    std::optional<std::string_view> piece;
+    do piece = other.next();
+    while (piece && !piece->empty());
+    EXPECT_FALSE(piece) << "the checksum is compared";
+}
+
 /// Contents that anyone could compress: they are refused with a sentence, or they are a mesh.
 TEST_F(WaveletFile, HostileContentsAreRefused) {
     write_wavelet_file(path("ball.svw"), fine_ball(1), {.tolerance = 1e-2});
