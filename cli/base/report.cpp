@@ -31,7 +31,7 @@ std::string for_people(const Json& value) {
     if (!value.is_structured()) return value.dump();
     std::vector<std::string> parts;
     for (const auto& [key, part] : value.items())
-        parts.push_back(value.is_object() ? key + " " + for_people(part) : for_people(part));
+        parts.push_back(value.is_object() ? detail::printable(key) + " " + for_people(part) : for_people(part));
     return value.is_array() ? "(" + join(parts) + ")" : join(parts);
 }
 
@@ -57,7 +57,7 @@ std::vector<std::string> columns_of(const Json& rows) {
     }
     std::vector<std::string> lines(rows.size() + 1);
     for (const std::string& key : keys) {
-        std::vector<std::string> cells{key};
+        std::vector<std::string> cells{detail::printable(key)};
         for (const Json& row : rows) {
             const bool bytes = key == "bytes" && row.contains(key);
             cells.push_back(!row.contains(key) ? "" : bytes ? bytes_text(row[key].get<double>()) : for_people(row[key]));
@@ -82,9 +82,9 @@ void print_table(const Json& json) {
         }
         const bool bytes = (key.ends_with("bytes") || key.starts_with("bytes_")) && value.is_number();
         const std::string name = key.ends_with("_bytes") ? key.substr(0, key.size() - 6) + "_memory" : key;
-        lines.emplace_back(name, key == "seconds" && value.is_object() ? stages(value)
-                                 : bytes                               ? bytes_text(value.get<double>())
-                                                                       : for_people(value));
+        lines.emplace_back(detail::printable(name), key == "seconds" && value.is_object() ? stages(value)
+                                                    : bytes                               ? bytes_text(value.get<double>())
+                                                                                          : for_people(value));
     }
     std::cout << aligned(lines);
 }
@@ -103,7 +103,7 @@ Report::Report(const CommonOptions& options)
 
 void Report::warn(const std::string& text) {
     if (text.empty()) return;
-    const std::string warning = detail::printable(text);  // whichever library it comes from
+    const std::string warning = detail::printable_message(text);  // whichever library it comes from
     Json& warnings = json_["warnings"];
     if (std::ranges::find(warnings, Json(warning)) != warnings.end()) return;  // already reported, for another frame
     warnings.push_back(warning);
@@ -115,7 +115,7 @@ void Report::warn(const std::string& text) {
 void Report::note(const std::string& note) {
     if (print_json_ || quiet_) return;
     progress_.clear();
-    std::cerr << "subvol: " << detail::printable(note) << '\n';
+    std::cerr << "subvol: " << detail::printable_message(note) << '\n';
 }
 
 void Report::add_seconds(const std::string& stage, double seconds) {

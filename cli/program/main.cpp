@@ -35,7 +35,7 @@ namespace {
 
 using subvol::Error;
 using subvol::ErrorCode;
-using subvol::detail::printable;
+using subvol::detail::printable_message;
 
 constexpr int kBadInput = 2;
 constexpr int kEnvironment = 3;
@@ -74,7 +74,7 @@ bool speaks() {
 int complain(const Error& error, int code, bool json) {
     if (!speaks()) return code;
     subvol::cli::say_at_last([&] {
-        std::cerr << "subvol: " + printable(error.what()) + "\n";  // in one go: mpirun may write between two
+        std::cerr << "subvol: " + printable_message(error.what()) + "\n";  // in one go: mpirun may write between two
         if (json) std::cout << subvol::cli::error_json(error, code) << std::endl;
     });
     return code;

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <optional>
 
 #include "manual.h"
 #include "subvol/detail/near_name.h"
@@ -76,42 +75,11 @@ std::string usage_name(const CLI::App& verb, const std::string& name) {
     return name;
 }
 
-/// The parser's range, such as "0.000000 to 1.000000", in short numbers. A least value that it rounded to 0 is above it if 0 is
-/// refused.
-std::string range_text(const std::string& range, const std::string& value) {
-    constexpr double kAny = 1e100;  // ranges of any positive number end at the largest double
-    const std::size_t to = range.find(" to ");
-    const auto low = detail::number_from(range.substr(0, to));
-    const auto high = to == std::string::npos ? std::nullopt : detail::number_from(range.substr(to + 4));
-    if (!low || !high) return range;
-    if (*high > kAny) return "more than 0";
-    const bool above = *low == 0 && detail::number_from(value) == 0;
-    return above ? "more than 0, at most " + detail::number_text(*high)
-                 : detail::number_text(*low) + " to " + detail::number_text(*high);
-}
-
-/// The parser's words about a number, which read "Value two not in range 0 to 10" or "Number less or equal to 0: -1".
-std::optional<Error> of_a_number(const std::string& option, const std::string& words) {
-    const std::string begin = "Value ", middle = " not in range ", few = "Number less ";
-    if (const std::size_t at = words.find(middle); words.starts_with(begin) && at != std::string::npos) {
-        const std::string value = words.substr(begin.size(), at - begin.size());
-        return Error(ErrorCode::InvalidInput,
-                     "'" + detail::shortened(value) + (detail::number_from(value) ? "' is out of range" : "' is not a number"),
-                     option, range_text(words.substr(at + middle.size()), value));
-    }
-    if (!words.starts_with(few)) return std::nullopt;
-    std::string value = words.substr(words.rfind(": ") + 2);
-    std::erase_if(value, [](char c) { return c == '(' || c == ')'; });
-    const bool zero = words.find("than 0") != std::string::npos;
-    return Error(ErrorCode::InvalidInput, "'" + value + "' is out of range", option, zero ? "0 or more" : "more than 0");
-}
-
 /// "OPTION: words (allowed)" in its parts.
 Error of_an_option(const std::string& message) {
     const std::size_t colon = message.find(": "), open = message.rfind(" (");
     if (colon == std::string::npos) return {ErrorCode::InvalidInput, message};
     const std::string option = message.substr(0, colon);
-    if (const auto number = of_a_number(option, message.substr(colon + 2))) return *number;
     if (open == std::string::npos || open < colon || message.back() != ')')
         return {ErrorCode::InvalidInput, message.substr(colon + 2), option};
     return {ErrorCode::InvalidInput, message.substr(colon + 2, open - colon - 2), option,
@@ -170,7 +138,10 @@ Error explained(const CLI::App& program, const CLI::ParseError& error) {
 
 std::string error_json(const Error& error, int code) {
     nlohmann::ordered_json json;
-    json["error"] = {{"code", code}, {"what", error.message()}, {"where", error.where()}, {"allowed", error.allowed()}};
+    json["error"] = {{"code", code},
+                     {"what", detail::printable_message(error.message())},
+                     {"where", detail::printable_message(error.where())},
+                     {"allowed", detail::printable_message(error.allowed())}};
     return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
 }
 

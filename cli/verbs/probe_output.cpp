@@ -7,6 +7,7 @@
 #include "quantities.h"
 #include "subvol/detail/atomic_file.h"
 #include "subvol/detail/number_text.h"
+#include "subvol/detail/printable.h"
 #include "subvol/error.h"
 #include "subvol/plot.h"
 #include "text.h"
@@ -86,7 +87,7 @@ void write_csv(const ProbeResult& found, const std::vector<Vec3>& places, const 
     for (const ProbedField& field : found.fields) {
         for (std::size_t c = 0; c < field.channels; ++c) {
             const std::string name = field.name + (field.channels > 1 ? text(".", c) : "");
-            for (const char* end : {"", "_dx", "_dy", "_dz"}) table += "," + quoted(name + end);
+            for (const char* end : {"", "_dx", "_dy", "_dz"}) table += "," + quoted(detail::printable(name + end));
         }
     }
     table += "\n";

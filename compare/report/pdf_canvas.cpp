@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "subvol/detail/number_text.h"
+#include "subvol/detail/printable.h"
 
 namespace subvol::detail {
 
@@ -209,7 +210,7 @@ std::string PdfCanvas::file(const std::string& title) const {
                                                coordinate(size_.y) +
                                                "] /Contents 4 0 R /Resources << /Font << /F 6 0 R /S 7 0 R >> >> >>",
                                            stream("", page_),
-                                           "<< /Title " + title_hex(title) + " /Producer (OpenSubVol) >>",
+                                           "<< /Title " + title_hex(printable(title)) + " /Producer (OpenSubVol) >>",
                                            "<< /Type /Font /Subtype /Type1 /BaseFont /Helvetica /Encoding /WinAnsiEncoding >>",
                                            "<< /Type /Font /Subtype /Type1 /BaseFont /Symbol >>"};
     std::string file = "%PDF-1.4\n%\xe2\xe3\xcf\xd3\n";

@@ -2,16 +2,51 @@
 #include "subvol/detail/printable.h"
 
 #include <algorithm>
+#include <array>
+#include <cctype>
 
 namespace subvol::detail {
 
 namespace {
 
+// The code of a character that is valid UTF-8.
+char32_t code_of(std::string_view character) {
+    const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(character[i]); };
+    constexpr std::array<unsigned, 5> kLeadBits{0, 0x7F, 0x1F, 0x0F, 0x07};
+    char32_t code = byte(0) & kLeadBits[character.size()];
+    for (std::size_t i = 1; i < character.size(); ++i) code = code << 6U | (byte(i) & 0x3FU);
+    return code;
+}
+
+// What a terminal obeys, what changes the direction or the place of the text about it, what is not seen, and what is no
+// character: XML has no way to hold some of these, and a name with others looks like another name.
+bool is_hidden(char32_t code) {
+    struct Codes {
+        char32_t first, last;
+    };
+    constexpr std::array<Codes, 16> kHidden{{{0, 0x1F},             // controls
+                                             {0x7F, 0x9F},          // delete, and controls again
+                                             {0xAD, 0xAD},          // a hyphen that is seen at the end of a line only
+                                             {0x34F, 0x34F},        // joins characters without being seen
+                                             {0x61C, 0x61C},        // a mark of direction
+                                             {0x115F, 0x1160},      // fillers without width
+                                             {0x180B, 0x180F},      // selectors and a separator without width
+                                             {0x200B, 0x200F},      // spaces and joiners without width, marks of direction
+                                             {0x2028, 0x202E},      // ends of lines and paragraphs, embedded directions
+                                             {0x2060, 0x206F},      // more joiners and directions
+                                             {0x3164, 0x3164},      // a filler
+                                             {0xFDD0, 0xFDEF},      // no characters
+                                             {0xFEFF, 0xFEFF},      // the byte order mark
+                                             {0xFFA0, 0xFFA0},      // a filler
+                                             {0xFFF0, 0xFFFB},      // notes between lines
+                                             {0xE0000, 0xE0FFF}}};  // tags and selectors
+    const bool no_character = (code & 0xFFFEU) == 0xFFFE;
+    return no_character || std::ranges::any_of(kHidden, [=](const Codes& c) { return c.first <= code && code <= c.last; });
+}
+
 // A printable character is copied, anything else is written as the codes of its bytes.
 void append_printable(std::string& result, std::string_view character, bool valid) {
-    const auto first = static_cast<unsigned char>(character[0]);
-    const bool control = first < ' ' || first == 0x7F || (first == 0xC2 && static_cast<unsigned char>(character[1]) < 0xA0);
-    if (valid && !control) {
+    if (valid && !is_hidden(code_of(character))) {
         result += character;
         return;
     }
@@ -58,11 +93,37 @@ std::string printable(std::string_view text) {
     return printable_start(text, text.size(), cut);
 }
 
-std::string shortened(std::string_view text) {
-    constexpr std::size_t kLongest = 40;
+bool is_printable(std::string_view character) {
+    const std::size_t length = utf8_length(character);
+    return length > 0 && length == character.size() && !is_hidden(code_of(character));
+}
+
+std::string shortened(std::string_view text, std::size_t longest) {
     bool cut = false;
-    const std::string start = printable_start(text, kLongest, cut);
+    const std::string start = printable_start(text, longest, cut);
     return cut ? start + "…" : start;
+}
+
+std::string printable_message(std::string_view text) {
+    constexpr std::size_t kLongest = 80;
+    const auto is_letter = [&](std::size_t i) {
+        return i < text.size() && (std::isalnum(static_cast<unsigned char>(text[i])) != 0 || (text[i] & 0x80) != 0);
+    };
+    std::string result;
+    std::size_t copied = 0;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        const char quote = text[i];
+        if ((quote != '"' && quote != '\'') || (i > 0 && is_letter(i - 1))) continue;  // an apostrophe follows a letter
+        std::size_t end = text.find(quote, i + 1);
+        while (end != std::string_view::npos && is_letter(end + 1)) end = text.find(quote, end + 1);
+        if (end == std::string_view::npos) break;
+        if (end - i > kLongest) {
+            result += printable(text.substr(copied, i + 1 - copied)) + shortened(text.substr(i + 1, end - i - 1), kLongest);
+            copied = end;
+        }
+        i = end;
+    }
+    return result + printable(text.substr(copied));
 }
 
 std::string in_quotes(std::string_view text) {

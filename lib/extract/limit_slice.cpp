@@ -137,7 +137,7 @@ void add_lines(const LimitSlice& slice, double value, std::vector<ContourLine>& 
 void write_csv(detail::OutputFile& out, const LimitSlice& slice) {
     using detail::exact_text;
     std::string table = "x,y,z,column,row,cell,";
-    for (const char c : slice.field) table += c == ',' || c == '"' || c == '\n' || c == '\r' ? '_' : c;
+    for (const char c : detail::printable(slice.field)) table += c == ',' || c == '"' || c == '\n' || c == '\r' ? '_' : c;
     table += ",dx,dy,dz\n";
     for (std::size_t p = 0; p < slice.values.size(); ++p) {
         if (slice.cells[p] == kNone) continue;
@@ -222,6 +222,12 @@ LimitSlice detail::empty_slice(const Box& box, const Vec3& point, const Vec3& no
     const double step = std::max(std::max(size.x, size.y) / options.resolution, 1e-300);
     slice.width = std::clamp(static_cast<int>(std::ceil(size.x / step - 1e-6)), 1, options.resolution);
     slice.height = std::clamp(static_cast<int>(std::ceil(size.y / step - 1e-6)), 1, options.resolution);
+    constexpr std::int64_t kMostPlaces = std::int64_t{1} << 28;  // as the pixels of a picture
+    if (std::int64_t{slice.width} * slice.height > kMostPlaces) {
+        throw Error(ErrorCode::InvalidInput,
+                    std::to_string(slice.width) + " x " + std::to_string(slice.height) + " places are too many", "slice",
+                    "at most 2^28; a lower resolution");
+    }
     slice.right = step * right;
     slice.down = step * down;
     const Vec2 middle = 0.5 * (part.lower + part.upper);

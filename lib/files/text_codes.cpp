@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "subvol/detail/text_codes.h"
 
+#include <algorithm>
+
+#include "subvol/detail/printable.h"
+
 namespace subvol::detail {
 
 std::string base64(std::string_view bytes) {
@@ -18,7 +22,11 @@ std::string base64(std::string_view bytes) {
 
 std::string xml_escaped(std::string_view text, XmlQuotes quotes) {
     std::string result;
-    for (const char c : text) {
+    while (!text.empty()) {
+        const std::size_t length = std::max<std::size_t>(utf8_length(text), 1);
+        const std::string_view character = text.substr(0, length);
+        text.remove_prefix(length);
+        const char c = character.front();
         if (c == '&') {
             result += "&amp;";
         } else if (c == '<') {
@@ -29,8 +37,10 @@ std::string xml_escaped(std::string_view text, XmlQuotes quotes) {
             result += "&quot;";
         } else if (c == '\'' && quotes == XmlQuotes::Any) {
             result += "&#39;";
-        } else {
+        } else if (c == '\n' || c == '\t' || c == '\r') {
             result += c;
+        } else {
+            result += printable(character);  // XML cannot hold most controls, even as the numbers of characters
         }
     }
     return result;

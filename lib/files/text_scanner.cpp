@@ -184,9 +184,16 @@ std::string as_utf8(std::string_view text) {
 }
 
 std::string without_controls(std::string_view text) {
-    std::string result(text);
-    for (char& c : result) {
-        if (static_cast<unsigned char>(c) < ' ') c = '_';
+    std::string result;
+    while (!text.empty()) {
+        const std::size_t length = std::max<std::size_t>(utf8_length(text), 1);
+        const std::string_view character = text.substr(0, length);
+        if (is_printable(character)) {
+            result += character;
+        } else {
+            result += '_';
+        }
+        text.remove_prefix(length);
     }
     return result;
 }

@@ -86,7 +86,7 @@ private:
 /// The text itself if it is UTF-8; otherwise it is converted from Latin-1.
 [[nodiscard]] std::string as_utf8(std::string_view text);
 
-/// The text with an underscore in place of each control character.
+/// The text with an underscore in place of each character that is not printable.
 [[nodiscard]] std::string without_controls(std::string_view text);
 
 /// "1 hexahedron", "8 hexahedra"

@@ -13,6 +13,7 @@
 
 #include "knot_values.h"
 #include "output_file.h"
+#include "subvol/detail/printable.h"
 #include "subvol/detail/round_ticks.h"
 #include "subvol/error.h"
 #include "subvol/srgb.h"
@@ -117,7 +118,7 @@ private:
 
     static pugi::xml_node append_text(pugi::xml_node svg, double x, double y, const char* anchor, const std::string& text) {
         pugi::xml_node node = append(svg, "text", {{"x", number(x)}, {"y", number(y)}, {"text-anchor", anchor}});
-        node.text().set(text.c_str());
+        node.text().set(detail::printable(text).c_str());
         return node;
     }
 

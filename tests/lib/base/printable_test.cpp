@@ -5,6 +5,9 @@
 
 #include <nlohmann/json.hpp>
 
+#include "subvol/detail/text_codes.h"
+#include "text_scanner.h"
+
 namespace subvol::test {
 
 namespace printable_test {
@@ -31,6 +34,50 @@ TEST(Printable, WhatIsNotUtf8IsWrittenAsBytes) {
     EXPECT_EQ(printable("\xC0\xAF"), "\\xc0\\xaf") << "longer than needed";
     EXPECT_EQ(printable("\xED\xA0\x80"), "\\xed\\xa0\\x80") << "half of a pair of UTF-16";
     EXPECT_EQ(printable("\xF4\x90\x80\x80"), "\\xf4\\x90\\x80\\x80") << "beyond the last code";
+}
+
+// Marks of direction, ends of lines, what is not seen and what is no character: U+200F, U+202E, U+2066, U+061C, U+2028, U+200B,
+// U+FEFF, U+FFFE, U+FFFF, U+FDD0, U+1FFFE, U+E0041.
+TEST(Printable, WhatHidesOrTurnsTextIsWrittenAsBytes) {
+    for (const auto& [text, shown] : {std::pair{"a\u200Fb", "a\\xe2\\x80\\x8fb"},
+                                      {"a\u202Eb", "a\\xe2\\x80\\xaeb"},
+                                      {"\u2066", "\\xe2\\x81\\xa6"},
+                                      {"\u061C", "\\xd8\\x9c"},
+                                      {"\u2028", "\\xe2\\x80\\xa8"},
+                                      {"\u200B", "\\xe2\\x80\\x8b"},
+                                      {"\uFEFF", "\\xef\\xbb\\xbf"},
+                                      {"\uFFFE", "\\xef\\xbf\\xbe"},
+                                      {"\uFFFF", "\\xef\\xbf\\xbf"},
+                                      {"\uFDD0", "\\xef\\xb7\\x90"},
+                                      {"\U0001FFFE", "\\xf0\\x9f\\xbf\\xbe"},
+                                      {"\U000E0041", "\\xf3\\xa0\\x81\\x81"}}) {
+        EXPECT_EQ(printable(text), shown);
+        EXPECT_FALSE(is_printable("\u202E"));
+    }
+    EXPECT_TRUE(is_printable("\u2026"));
+    EXPECT_FALSE(is_printable("ab")) << "two characters";
+}
+
+TEST(Printable, WhatAMessageQuotesIsCutAtEightyCharacters) {
+    const std::string most(80, 'x'), more = most + "x";
+    EXPECT_EQ(printable_message("field \"" + most + "\": is not there"), "field \"" + most + "\": is not there");
+    EXPECT_EQ(printable_message("field \"" + more + "\": is not there"), "field \"" + most + "…\": is not there");
+    EXPECT_EQ(printable_message("'" + more + "' is unknown ('" + most + "' is not)"),
+              "'" + most + "…' is unknown ('" + most + "' is not)");
+    std::string greek, start;
+    for (int i = 0; i < 90; ++i) (i < 80 ? start : greek) += "σ";
+    EXPECT_EQ(printable_message("\"" + start + greek + "\""), "\"" + start + "…\"") << "characters, not bytes";
+    const std::string apostrophes = "the mesh's file " + more + " isn't the user's";
+    EXPECT_EQ(printable_message(apostrophes), apostrophes) << "apostrophes quote nothing";
+    EXPECT_EQ(printable_message("a\x1b \"b"), "a\\x1b \"b");
+}
+
+// XML 1.0 cannot hold controls, even as the numbers of characters; a page's paragraphs have lines.
+TEST(Printable, XmlHoldsWhatIsWrittenIntoIt) {
+    EXPECT_EQ(xml_escaped(std::string("a\0<\x1b>\uFFFE&\"\u202E", 13)),
+              "a\\x00&lt;\\x1b&gt;\\xef\\xbf\\xbe&amp;&quot;\\xe2\\x80\\xae");
+    EXPECT_EQ(xml_escaped("one\n\ttwo σ"), "one\n\ttwo σ");
+    EXPECT_EQ(without_controls(std::string("a\0\u202E\xFFσ", 8)), "a___σ");
 }
 
 // JSON accepts every text that has become printable.
