@@ -34,6 +34,10 @@ Grids rasterize(const HexMesh& mesh, std::span<const std::string> fields, const 
     return vdb().rasterize(mesh, fields, options);
 }
 
+void check_voxels(const HexMesh& mesh, const RasterizeOptions& options) {
+    vdb().check_voxels(mesh, options);
+}
+
 RefinementTables rasterization_tables(const HexMesh& mesh, const RasterizeOptions& options) {
     return vdb().rasterization_tables(mesh, options);
 }

@@ -27,6 +27,7 @@ namespace subvol::cli {
 /// those throw: the type `Error` exists twice, in the command and in the module, but with one name, and by that it is caught.
 struct VdbFunctions {
     std::vector<VdbGrid> (*rasterize)(const HexMesh&, std::span<const std::string>, const RasterizeOptions&);
+    void (*check_voxels)(const HexMesh&, const RasterizeOptions&);
     RefinementTables (*rasterization_tables)(const HexMesh&, const RasterizeOptions&);
     void (*rasterize_parts)(const HexMesh&, std::span<const std::string>, const RasterizeOptions&, std::size_t,
                             const std::function<void(GridPart)>&);

@@ -75,6 +75,10 @@ double MeshGrids::voxel_size_world(const HexMesh& mesh) const {
 
 RasterizeOptions MeshGrids::set_up(const HexMesh& mesh, Report& report) {
     const double voxel_size = voxel_size_world(mesh);
+    RasterizeOptions options = this->options(report);
+    options.voxel_size_world = voxel_size;
+    options.level_set = asked_.level_set();
+    check_voxels(mesh, options);
     RefineOptions refinement = refine_.options(0, report);
     int levels = refinement.levels;
     if (refine_.levels) {
@@ -84,12 +88,9 @@ RasterizeOptions MeshGrids::set_up(const HexMesh& mesh, Report& report) {
         limit_ = reported_limit(mesh, refinement, voxel_size, report);
         levels = finest_level(limit_);
     }
-    RasterizeOptions options = this->options(report);
-    options.voxel_size_world = voxel_size;
     options.refine = refinement;
     options.on_limit = !interpolates(refinement.scheme.kind);
     options.limit = refine_.levels ? nullptr : &limit_;
-    options.level_set = asked_.level_set();
     if (options.level_set && mesh.find_attribute(options.level_set->name)) {
         throw Error(ErrorCode::InvalidInput, "the mesh has a field of this name", options.level_set->name,
                     "--sdf with another name");

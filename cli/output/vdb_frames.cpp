@@ -55,6 +55,7 @@ void write_frames(MeshGrids& maker, const FramesToGrids& what, const VdbArgument
         if (velocity) add_velocity(std::move(*velocity), mesh, times.empty() ? frames_per_second : 1);
         LimitCells of_this;  // with tables the first limit serves all meshes with the same cells
         if (of_first && !options.tables && (asked.velocity || frame > what.all.first)) {
+            check_voxels(mesh, options);
             of_this = reported_limit(mesh, options.refine, options.voxel_size_world, report);
             options.limit = &of_this;
         } else {

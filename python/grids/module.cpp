@@ -84,6 +84,7 @@ py::tuple rasterize_mesh(const HexMesh& mesh, const std::vector<std::string>& fi
     LimitCells limit;
     std::vector<VdbGrid> grids = result_of(progress, [&](Progress* listener) {
         refinement.progress = listener;
+        check_voxels(mesh, {.voxel_size_world = voxel_size});
         if (!levels) limit = limit_for_voxels(mesh, refinement, voxel_size);
         RasterizeOptions options{.voxel_size_world = voxel_size,
                                  .refine = refinement,

@@ -20,7 +20,8 @@ constexpr double kMaxBrickEntries = 5e7;  // a few GB
 
 [[noreturn]] void throw_too_fine(double voxel_size, const std::string& why, double right_size) {
     throw Error(ErrorCode::InvalidInput, why, "voxel size " + number_text(voxel_size),
-                "at least " + number_text(right_size) + " would be right");
+                std::isfinite(right_size) ? "at least " + number_text(right_size) + " would be right"
+                                          : "a mesh whose volume is a finite number");
 }
 
 /// all: the sum of absolute volumes; oriented: the sum of signed volumes

@@ -9,6 +9,7 @@
 #include "boundary_triangles.h"
 #include "brick_filler.h"
 #include "brick_grids.h"
+#include "check_voxels.h"
 #include "coverage.h"
 #include "distance_band.h"
 #include "grid_setup.h"
@@ -245,6 +246,13 @@ std::vector<VoxelBox> slabs_of(const CellRequest& request, std::size_t bytes_per
 }
 
 }  // namespace
+
+void check_voxels(const HexMesh& mesh, const RasterizeOptions& options) {
+    const ToVoxels to_voxels = to_voxels_of(bounds(mesh), options);
+    (void)check_voxel_count(mesh, to_voxels);
+    check_representable(to_voxels.voxel_size);
+    if (options.level_set) check_level_set(options);
+}
 
 std::vector<VdbGrid> rasterize(const HexMesh& mesh, std::span<const std::string> fields, const RasterizeOptions& options) {
     return MeshRasterizer(make_request(mesh, fields, options), options).run();

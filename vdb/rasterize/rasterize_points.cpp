@@ -90,6 +90,8 @@ VoxelBricks voxels_near(const RbfVolume& volume, const ToVoxels& to_voxels, std:
         const Vec3 reach(std::sqrt(xx), std::sqrt(yy), std::sqrt(zz));  // of the support ellipsoid, along the axes
         const Box box = in_voxels({volume.centers[i] - reach, volume.centers[i] + reach}, to_voxels);
         const auto leaf = [](double voxel) { return static_cast<int>(std::floor(voxel)) & ~(kLeafSide - 1); };
+        const Vec3 side = box.size();
+        if (!(side.x * side.y * side.z <= kMostVoxels)) throw_too_fine(to_voxels);  // before a leaf of it is made
         for (int x = leaf(box.lower.x); x <= box.upper.x; x += kLeafSide) {
             for (int y = leaf(box.lower.y); y <= box.upper.y; y += kLeafSide) {
                 for (int z = leaf(box.lower.z); z <= box.upper.z; z += kLeafSide) {

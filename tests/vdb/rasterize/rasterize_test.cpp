@@ -230,6 +230,23 @@ TEST(Rasterize, RefusesWhatCannotBe) {
     invalid(f, {.resolution = 4}, "at least 1.45e-5");  // OpenVDB itself would throw a foreign exception
 }
 
+TEST(Rasterize, VoxelsAreCheckedWithoutMakingAny) {
+    const auto mesh = with_field(box_mesh(1), "f", kOne);
+    const auto refused = [&](const RasterizeOptions& options, const std::string& says) {
+        EXPECT_EQ(code_of([&] { check_voxels(mesh, options); }, says), ErrorCode::InvalidInput);
+    };
+    EXPECT_NO_THROW(check_voxels(mesh, {.resolution = 20}));
+    refused({.voxel_size_world = std::nan("")}, "not positive");
+    refused({.voxel_size_world = 1e-5}, "at least 0.0008");
+    refused({.voxel_size_world = 1e-10}, "32 bits");
+    refused({.resolution = 1 << 20}, "2e9 voxels");
+    refused({.resolution = 10, .level_set = LevelSetOptions{.half_width_voxels = std::nan("")}}, "half width");
+    auto huge = mesh;
+    for (auto& p : huge.points) p *= 1e200;
+    EXPECT_EQ(code_of([&] { check_voxels(huge, {.voxel_size_world = 1e195}); }, "a mesh whose volume is a finite number"),
+              ErrorCode::InvalidInput);
+}
+
 class Impatient : public Progress {
 public:
     void report(std::string_view, double fraction) override { last_ = fraction; }

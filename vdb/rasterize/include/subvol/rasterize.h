@@ -77,6 +77,12 @@ struct RasterizeOptions {
 [[nodiscard]] std::vector<VdbGrid> rasterize(const HexMesh& mesh, std::span<const std::string> fields,
                                              const RasterizeOptions& options = {});
 
+/// What `rasterize` checks first, of the mesh and of the voxels of the options: before a level of the limit is looked for,
+/// which small voxels make expensive.
+///
+/// throws: Error(InvalidInput) as `rasterize`
+void check_voxels(const HexMesh& mesh, const RasterizeOptions& options);
+
 /// The refinement of the options as tables, for meshes with the same cells whose points and values differ: frames of a
 /// sequence. The meshes must not have unused points.
 ///
