@@ -12,6 +12,7 @@
 #include "limit_place.h"
 #include "piece_tree.h"
 #include "space_order.h"
+#include "subvol/detail/number_text.h"
 #include "subvol/detail/parallel_each.h"
 #include "subvol/error.h"
 
@@ -60,8 +61,9 @@ struct LimitProbe::State {
 
     void check_options() const {
         validate(mesh);
-        if (!(options.reach_world >= 0)) {
-            throw Error(ErrorCode::InvalidInput, "the reach is " + std::to_string(options.reach_world), "probe", "at least 0");
+        if (!(options.reach_world >= 0 && std::isfinite(options.reach_world))) {
+            throw Error(ErrorCode::InvalidInput, "the reach is " + detail::number_text(options.reach_world), "probe",
+                        "a length of 0 or more");
         }
     }
 

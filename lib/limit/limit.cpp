@@ -23,7 +23,7 @@ using detail::LimitExtent;
 namespace {
 
 void check(const LimitOptions& options) {
-    if (!(options.tolerance >= 0) || options.max_levels < 2 || options.max_levels > 20) {
+    if (!(options.tolerance >= 0 && std::isfinite(options.tolerance)) || options.max_levels < 2 || options.max_levels > 20) {
         throw Error(ErrorCode::InvalidInput, "the tolerance or the number of levels is out of range", "limit",
                     "tolerance >= 0, 2 to 20 levels");
     }

@@ -38,8 +38,9 @@ void check(const SampleOptions& options) {
         throw Error(ErrorCode::InvalidInput, "the tolerance is " + detail::number_text(options.tolerance), {},
                     "a positive number");
     }
-    if (options.footprint && !(options.footprint->spacing_px > 0 && options.footprint->least_cell_px >= 0)) {
-        throw Error(ErrorCode::InvalidInput, "the footprint's spacing is not positive");
+    if (options.footprint && !(options.footprint->spacing_px > 0 && std::isfinite(options.footprint->spacing_px) &&
+                               options.footprint->least_cell_px >= 0 && std::isfinite(options.footprint->least_cell_px))) {
+        throw Error(ErrorCode::InvalidInput, "the footprint's spacing is not a positive number of pixels");
     }
     validate(options.kernel);
     validate(options.value_kernel);

@@ -28,7 +28,7 @@ void check(const DenseOptions& options) {
         throw Error(ErrorCode::InvalidInput, "the number of levels is " + std::to_string(levels), {},
                     "0 to " + std::to_string(kMostLevels));
     }
-    if (!(options.image_tolerance > 0)) {
+    if (!(options.image_tolerance > 0 && std::isfinite(options.image_tolerance))) {
         throw Error(ErrorCode::InvalidInput, "the tolerance of the image is " + number_text(options.image_tolerance), {},
                     "more than 0");
     }

@@ -2,6 +2,7 @@
 #include "subvol/progressive.h"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <string>
 
@@ -55,7 +56,7 @@ private:
 };
 
 void check_seconds(double seconds) {
-    if (seconds > 0) return;
+    if (seconds > 0 && std::isfinite(seconds)) return;
     throw Error(ErrorCode::InvalidInput, "the time is " + number_text(seconds), {}, "a positive number of seconds");
 }
 

@@ -18,7 +18,7 @@ namespace {
 
 void check(const Voxels& grid, const GridOptions& options) {
     check_samples(options.samples);
-    if (!(options.tolerance > 0)) {
+    if (!(options.tolerance > 0 && std::isfinite(options.tolerance))) {
         throw Error(ErrorCode::InvalidInput, "the tolerance is " + number_text(options.tolerance), {}, "a positive number");
     }
     const double volume = glm::determinant(grid.to_world());
