@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "numbers.h"
 #include "subvol/error.h"
 #include "text.h"
 
@@ -26,13 +27,16 @@ void ClipArguments::add_to(CLI::App& app) {
                    "cut away what lies on the side of this plane to which its normal points: a point and the normal "
                    "(repeatable)")
         ->type_name("PX,PY,PZ,NX,NY,NZ")
+        ->transform(number_list(6, "0,0,0,0,0,1: a point of the plane and its normal"))
         ->allow_extra_args(false);
     app.add_option("--clip-box", box, "cut away what lies outside this box: its lower and its upper corner")
-        ->type_name("X0,Y0,Z0,X1,Y1,Z1");
+        ->type_name("X0,Y0,Z0,X1,Y1,Z1")
+        ->transform(number_list(6, "0,0,0,1,1,1: the lower corner, then the upper one"));
     app.add_option("--slice", slices,
                    "draw the volume on this plane alone, opaque and in the colours of its values: a point and the normal "
                    "(repeatable)")
         ->type_name("PX,PY,PZ,NX,NY,NZ")
+        ->transform(number_list(6, "0,0,0,0,0,1: a point of the plane and its normal"))
         ->allow_extra_args(false);
     app.add_flag("--around", around_slices, "draw the volume around the slices too, as --look says")->needs("--slice");
 }

@@ -5,12 +5,14 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
-#include <sstream>
+#include <limits>
 
 #include "choices.h"
+#include "numbers.h"
 #include "outputs.h"
 #include "subvol/camera_fit.h"
 #include "subvol/detail/near_name.h"
+#include "subvol/detail/printable.h"
 #include "subvol/error.h"
 #include "subvol/legend.h"
 #include "subvol/srgb.h"
@@ -19,16 +21,26 @@
 namespace subvol::cli {
 
 PictureSize parse_size(const std::string& option, const std::string& text) {
-    std::istringstream in(text);
-    PictureSize size;
-    char cross = 'x';
-    in >> size.width;
-    size.height = size.width;
-    if (!in.fail() && !in.eof()) in >> cross >> size.height;
-    if (in.fail() || !in.eof() || cross != 'x' || size.width < 1 || size.height < 1) {
-        throw Error(ErrorCode::InvalidInput, "'" + text + "' is not a picture size", option, "write it as 640x480 or 512");
+    constexpr int kMostSide = 65536;  // as `View` allows
+    constexpr std::int64_t kMostPixels = std::int64_t{1} << 28;
+    const std::size_t cross = text.find('x');
+    const auto side = [&](std::string_view digits) -> std::int64_t {
+        std::int64_t number = 0;
+        const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
+        const bool digits_only = !digits.empty() && digits.find_first_not_of("0123456789") == std::string_view::npos;
+        if (!digits_only || number == 0) {
+            throw Error(ErrorCode::InvalidInput, "'" + detail::shortened(text) + "' is not a picture size", option,
+                        "write it as 640x480 or 512");
+        }
+        return error == std::errc() ? number : std::numeric_limits<std::int64_t>::max();
+    };
+    const std::int64_t width = side(std::string_view(text).substr(0, cross));
+    const std::int64_t height = cross == std::string::npos ? width : side(std::string_view(text).substr(cross + 1));
+    if (width > kMostSide || height > kMostSide || width * height > kMostPixels) {
+        throw Error(ErrorCode::InvalidInput, "'" + detail::shortened(text) + "' is too large a picture", option,
+                    "1 to 65536 pixels a side, 268435456 in all");
     }
-    return size;
+    return {static_cast<int>(width), static_cast<int>(height)};
 }
 
 Vec3 parse_background(const std::string& text) {
@@ -100,7 +112,7 @@ void PictureArguments::add_camera_to(CLI::App& app) {
         ->excludes(place);
     app.add_option("--views", views, "4: one picture of four, from the front, the side, above and iso")
         ->type_name("N")
-        ->check(CLI::IsMember({4}))
+        ->transform(whole_number(4, 4))
         ->excludes("--view")
         ->excludes(place);
     app.add_flag("--fit", fit, "move the camera along its line of sight until the whole box is in the picture");
@@ -110,10 +122,10 @@ void PictureArguments::add_camera_to(CLI::App& app) {
                    "N pictures of one turn about the camera's up axis; -o NAME.png (or .exr) writes NAME_0000.png and so on, "
                    ".mp4, .webm and .gif write a video (with the program ffmpeg)")
         ->type_name("N")
-        ->check(CLI::Range(1, 100000));
+        ->transform(whole_number(1, 100000));
     app.add_option("--fps", frames_per_second, "pictures per second of a video (default 30)")
         ->type_name("N")
-        ->check(CLI::Range(1, 240));
+        ->transform(whole_number(1, 240));
 }
 
 void PictureArguments::add_light_to(CLI::App& app) {
@@ -144,7 +156,7 @@ void PictureArguments::add_light_to(CLI::App& app) {
     app.add_option("--opacity-unit", opacity_unit_world,
                    "the world distance over which an opacity acts (default: 1/100 of the bounding box's diagonal)")
         ->type_name("D")
-        ->check(CLI::PositiveNumber);
+        ->transform(positive_number());
     app.add_option("--legend", legend,
                    "a colour bar with the opacities and the field's name, at the right of the picture, or in a file of its own")
         ->type_name("[FILE.svg]")
@@ -181,8 +193,17 @@ bool PictureArguments::paints_boundary(const CLI::App& app, const RefineArgument
     return true;
 }
 
+Camera camera_of_option(const std::string& option, const std::string& text, const Box& box, double aspect) {
+    try {
+        return parse_camera(text, box, aspect);
+    } catch (const Error& error) {
+        const std::string where = error.where().empty() ? "" : error.where() + ": ";
+        throw Error(error.code(), where + error.message(), option, error.allowed());
+    }
+}
+
 Camera PictureArguments::make_camera(const Box& box, std::span<const Vec3> points, double aspect) const {
-    Camera given = parse_camera(camera.value_or(view), box, aspect);
+    Camera given = camera_of_option(camera ? "--camera" : "--view", camera.value_or(view), box, aspect);
     const bool made_orthographic = orthographic && given.ortho_height == 0;
     if (made_orthographic) given = orthographic_camera(given, box, aspect);
     // A named view shows the whole box, so all pictures of its turntable do.
@@ -234,7 +255,12 @@ LookOptions PictureArguments::look_options(const Range& field) const {
                         .clamp = clamp};
     const Range range = shown_range(field);
     if (transfer_range && *transfer_range != "field") options.range = range;
-    if (opacity) options.opacity = parse_opacity(*opacity, range.min, range.max);
+    if (!opacity) return options;
+    try {
+        options.opacity = parse_opacity(*opacity, range.min, range.max);
+    } catch (const Error& error) {
+        throw Error(error.code(), error.where() + ": " + error.message(), "--opacity", error.allowed());
+    }
     return options;
 }
 
@@ -249,7 +275,7 @@ std::vector<Vec3> PictureArguments::framed_points(const HexMesh& mesh, const Opt
 void PictureArguments::check() const {
     const Box any{{0, 0, 0}, {1, 1, 1}};
     const auto [width, height] = parse_size("--size", size);
-    (void)parse_camera(camera.value_or(view), any, static_cast<double>(width) / height);
+    (void)camera_of_option(camera ? "--camera" : "--view", camera.value_or(view), any, static_cast<double>(width) / height);
     (void)find_transfer_function(colors_of({.look = look, .colors = transfer_function.value_or("")}), {0, 1}, false);
     (void)background_color();
     if (views && (width % 2 != 0 || height % 2 != 0)) {

@@ -39,6 +39,9 @@ struct PictureSize {
 /// throws: Error(InvalidInput)
 [[nodiscard]] PictureSize parse_size(const std::string& option, const std::string& text);
 
+/// As `parse_camera`; what is wrong names the option.
+[[nodiscard]] Camera camera_of_option(const std::string& option, const std::string& text, const Box& box, double aspect);
+
 /// The box of the points that are not transparent; the pawn, for example, fills only a small part of its block.
 [[nodiscard]] Box visible_bounds(const HexMesh& mesh, const Optics& optics);
 

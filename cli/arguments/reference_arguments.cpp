@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 
 #include "choices.h"
+#include "numbers.h"
 #include "subvol/error.h"
 #include "text.h"
 
@@ -12,11 +13,11 @@ namespace subvol::cli {
 void ReferenceArguments::add_to(CLI::App& app) {
     app.add_option("--samples", samples, "n x n rays per pixel (default 1; 2 for --look solid)")
         ->type_name("N")
-        ->check(CLI::Range(1, 16));
+        ->transform(whole_number(1, 16));
     app.add_option("--tolerance-image", image_tolerance,
                    "dense, without --levels: raise the level until the RMS of the picture's change is less (default 1e-3)")
         ->type_name("RMS")
-        ->check(CLI::PositiveNumber);
+        ->transform(positive_number());
     app.add_option("--order", order,
                    "pt: how the tetrahedra are sorted: topological (by shared faces, the default), centroid, "
                    "lists (one per pixel) or havs (faces by centroid, then a k-buffer per pixel)")
@@ -24,12 +25,12 @@ void ReferenceArguments::add_to(CLI::App& app) {
         ->check(offered({"topological", "centroid", "lists", "havs"}));
     app.add_option("--kbuffer", kbuffer, "havs: entries of the k-buffer (default 6)")
         ->type_name("K")
-        ->check(CLI::Range(1, 65536));
+        ->transform(whole_number(1, 65536));
     app.add_option("--lod", lod,
                    "splat: merge kernels as long as they are narrower than so many pixels, such as 2 (default 0: never); "
                    "havs: the fraction of the interior faces that is drawn (default 1)")
         ->type_name("PIXELS|F")
-        ->check(CLI::NonNegativeNumber);
+        ->transform(not_negative_number());
 }
 
 ProjectedOrder ReferenceArguments::projected_order() const {

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "choices.h"
+#include "numbers.h"
 #include "subvol/error.h"
 #include "subvol/limit.h"
 #include "text.h"
@@ -49,16 +50,16 @@ void RefineArguments::add_scheme_to(CLI::App& app) {
         ->check(offered({"mcq", "cc", "bsxw", "linear", "tetoct", "boxspline"}));
     app.add_option("--tension", tension, "of mcq: 0 is linear; the default, 1/16, reproduces cubics")
         ->type_name("W")
-        ->check(CLI::Range(0.0, 0.125));
+        ->transform(number_in(0.0, 0.125));
     app.add_option("--crease-angle", crease_angle_deg,
                    "keep boundary edges sharp that bend by more than this, in degrees (tetoct, boxspline: 60)")
         ->type_name("DEG")
-        ->check(CLI::Range(0.0, 180.0));
+        ->transform(number_in(0.0, 180.0));
 }
 
 void RefineArguments::add_to(CLI::App& app, const std::string& levels_help) {
     add_scheme_to(app);
-    app.add_option("--levels", levels, levels_help)->type_name("L")->check(CLI::Range(0, 10));
+    app.add_option("--levels", levels, levels_help)->type_name("L")->transform(whole_number(0, 10));
 }
 
 RefineOptions RefineArguments::options(int default_levels, Report& report) const {

@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 
 #include "choices.h"
+#include "numbers.h"
 #include "render_method.h"
 #include "text.h"
 
@@ -32,7 +33,7 @@ void RenderArguments::add_to(CLI::App& app) {
                    "of bricks: what kernels or cells take while a part of the picture is drawn; of .svk files with --lod: "
                    "what is kept for the next frame (default 1G)")
         ->type_name("BYTES")
-        ->transform(CLI::AsSizeValue(false));
+        ->transform(byte_count());
 }
 
 void RenderArguments::settle(bool has_cells, bool in_bricks) {

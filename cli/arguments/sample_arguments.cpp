@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "choices.h"
+#include "numbers.h"
 #include "picture_arguments.h"
 #include "subvol/error.h"
 #include "text.h"
@@ -34,20 +35,20 @@ Kernel kernel_from(const std::string& text, const char* fallback) {
 
 void SampleArguments::add_to(CLI::App& app) {
     auto* edges = app.add_option("--per-edge", per_edge, "sample intervals per cell edge; 1 is one kernel per control point");
-    edges->type_name("N")->check(CLI::Range(1, 64));
+    edges->type_name("N")->transform(whole_number(1, 64));
     auto* world = app.add_option("--spacing", spacing_world,
                                  "distance between samples in world units, instead of --per-edge; for a grid, "
                                  "rounded to whole voxels (default: one kernel per voxel)");
-    world->type_name("H")->check(CLI::PositiveNumber)->excludes(edges);
+    world->type_name("H")->transform(positive_number())->excludes(edges);
     app.add_option("--spacing-voxels", spacing_voxels, "the same in units of 1/200 of the longest side of the bounding box")
         ->type_name("S")
-        ->check(CLI::PositiveNumber)
+        ->transform(positive_number())
         ->excludes(edges)
         ->excludes(world);
     app.add_option("--tolerance", tolerance,
                    "instead: as many samples as an error of the field below E needs, in the field's unit")
         ->type_name("E")
-        ->check(CLI::PositiveNumber)
+        ->transform(positive_number())
         ->excludes(edges)
         ->excludes(world);
     app.add_flag("--centers", centers,
@@ -78,7 +79,7 @@ void SampleArguments::add_to(CLI::App& app) {
     auto* reduce = app.add_option("--reduce", reduce_rmse,
                                   "instead: as few kernels as a root mean square error of RMSE needs, in the field's unit");
     reduce->type_name("RMSE")
-        ->check(CLI::PositiveNumber)
+        ->transform(positive_number())
         ->excludes(edges)
         ->excludes(world)
         ->excludes("--spacing-voxels")
@@ -113,7 +114,8 @@ bool SampleArguments::drops_invisible() const {
 Footprint SampleArguments::footprint_of(const Box& box) const {
     const PictureSize size = parse_size("--footprint-size", footprint_size);
     const double aspect = static_cast<double>(size.width) / size.height;
-    return {.camera = parse_camera(footprint, box, aspect), .width_px = size.width, .height_px = size.height};
+    return {
+        .camera = camera_of_option("--footprint", footprint, box, aspect), .width_px = size.width, .height_px = size.height};
 }
 
 }  // namespace subvol::cli

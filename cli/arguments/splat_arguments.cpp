@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "choices.h"
+#include "numbers.h"
 #include "subvol/error.h"
 #include "subvol/gl_device.h"
 #include "text.h"
@@ -23,16 +24,16 @@ void SplatArguments::add_to(CLI::App& app) {
         ->check(offered({"auto", "gl", "cpu"}));
     app.add_option("--device", device, "the OpenGL device's number in `info --gl` (default: the first GPU)")
         ->type_name("N")
-        ->check(CLI::NonNegativeNumber);
+        ->transform(whole_number(0, 1000));
     app.add_option("--sheets", sheets, "splat: number of planes over the volume's depth (default: as many as the kernels need)")
         ->type_name("N")
-        ->check(CLI::Range(2, 65536));
+        ->transform(whole_number(2, 65536));
     app.add_flag("--shade", shade, "splat: light on surfaces of equal value, from the eye and from the upper left");
     app.add_flag("--shadows", shadows, "splat: the volume shadows itself from the light at the upper left");
     app.add_option("--ambient-occlusion", ambient_occlusion,
                    "splat: darken hollows that are narrower than this part of the box's diagonal, such as .1")
         ->type_name("R")
-        ->check(CLI::Range(0.0, 1.0));
+        ->transform(number_in(0.0, 1.0));
     app.add_option("--color-field", color_field, "splat: take the colours from this field; opacities stay those of --field")
         ->type_name("NAME");
     app.add_flag("--plain-sums", plain_sums, "splat: add kernels up without dividing by the sum of their weights");
@@ -45,7 +46,7 @@ void SplatArguments::add_to(CLI::App& app) {
                    "the best picture within this time; splat: first coarse, then with the mesh sampled for the view; "
                    "pt: first the faces of the boundary, then more and more of those inside")
         ->type_name("S")
-        ->check(CLI::PositiveNumber)
+        ->transform(positive_number())
         ->excludes("--turntable")
         ->excludes("--levels")
         ->excludes("--reduce")

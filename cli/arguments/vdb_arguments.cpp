@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 
 #include "choices.h"
+#include "numbers.h"
 
 namespace subvol::cli {
 
@@ -15,15 +16,15 @@ constexpr const char* kDefaultLevelSet = "sdf";
 
 void VdbArguments::add_sizes_to(CLI::App& app) {
     auto* by_size = app.add_option("--voxel-size", voxel_size, "edge of a voxel in world units");
-    by_size->type_name("H")->check(CLI::PositiveNumber);
+    by_size->type_name("H")->transform(positive_number());
     auto* by_resolution =
         app.add_option("--resolution", resolution, "voxels along the longest side of the bounding box (default 200)");
-    by_resolution->type_name("N")->check(CLI::Range(1, 1 << 20))->excludes(by_size);
+    by_resolution->type_name("N")->transform(whole_number(1, 1 << 20))->excludes(by_size);
     auto* by_grid = app.add_option("--like", like, "use the transform of the first grid in this .vdb file");
     by_grid->type_name("FILE")->excludes(by_size)->excludes(by_resolution);
     app.add_option("--budget", budget_bytes, "choose voxels so that the grids take about this much memory, e.g. 500M")
         ->type_name("BYTES")
-        ->transform(CLI::AsSizeValue(false))
+        ->transform(byte_count())
         ->excludes(by_size)
         ->excludes(by_resolution)
         ->excludes(by_grid);
@@ -42,7 +43,7 @@ void VdbArguments::add_grids_to(CLI::App& app) {
         ->allow_extra_args(false);
     app.add_flag("--clamp", clamp, "keep values within the range of the field: interpolating schemes overshoot");
     app.add_option("--up", up, "the axis that is up: z, or y as in most programs for pictures (default z)")->type_name("AXIS");
-    app.add_option("--scale", scale, "multiply all coordinates by this")->type_name("S")->check(CLI::PositiveNumber);
+    app.add_option("--scale", scale, "multiply all coordinates by this")->type_name("S")->transform(positive_number());
     app.add_flag("--cell-ids", cell_numbers, "also write a grid: the number of the control cell");
     app.add_flag("--mask", mask, "also write a grid: a mask of the volume");
     app.add_flag("--error", error,
@@ -54,7 +55,7 @@ void VdbArguments::add_grids_to(CLI::App& app) {
     level_set_option->type_name("[NAME]")->expected(0, 1);
     app.add_option("--half-width", level_set_asked.half_width_voxels, "the band's reach to either side, in voxels (default 3)")
         ->type_name("N")
-        ->check(CLI::Range(1.0, 1000.0))
+        ->transform(number_in(1.0, 1000.0))
         ->needs(level_set_option);
     app.add_flag("--half", half, "store floats in 16 bits");
     app.add_option("--from", from,
@@ -64,7 +65,7 @@ void VdbArguments::add_grids_to(CLI::App& app) {
         ->check(offered({"mesh", "points"}));
     app.add_option("--per-edge", per_edge, "with --from points: sample intervals per edge")
         ->type_name("N")
-        ->check(CLI::Range(1, 64));
+        ->transform(whole_number(1, 64));
 }
 
 void VdbArguments::add_files_to(CLI::App& app) {
@@ -76,7 +77,7 @@ void VdbArguments::add_files_to(CLI::App& app) {
                    "them, else NAME_0000.vdb and so on; NAME.json lists the file or the files, and join makes one of them. Of "
                    "bricks also what the cells about a part take (default 1G)")
         ->type_name("BYTES")
-        ->transform(CLI::AsSizeValue(false));
+        ->transform(byte_count());
     app.add_flag("--nano", nano, "also write a NanoVDB file, NAME.nvdb; needs a build with NanoVDB");
 }
 
@@ -94,7 +95,7 @@ void VdbArguments::add_frames_to(CLI::App& app) {
                      "steps per unit of their time");
     app.add_option("--fps", frames_per_second, "with --velocity: in world units per second, at this many frames per second")
         ->type_name("F")
-        ->check(CLI::PositiveNumber)
+        ->transform(positive_number())
         ->needs(asks_velocity);
 }
 

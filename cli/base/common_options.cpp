@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 
 #include "choices.h"
+#include "numbers.h"
 #include "subvol/error.h"
 
 namespace subvol::cli {
@@ -21,17 +22,14 @@ void add_mesh_options(CLI::App& app, CommonOptions& options) {
     app.add_option("--weld-distance", options.weld_distance_world, "join points of a file that are no farther apart than this")
         ->group(group)
         ->type_name("D")
-        ->check(CLI::PositiveNumber);
+        ->transform(positive_number());
     app.add_option(
            "--curved,--curved-tolerance", options.curved,
            "split curved hexahedra into smaller ones, to within this part T of the mesh's size from their true shape, and "
            "400 T of the fields' ranges (default 5e-6); corners: use nothing but their corners")
         ->group(group)
         ->type_name("T|corners")
-        ->check([](const std::string& text) {
-            return text == "corners" || CLI::PositiveNumber(text).empty() ? ""
-                                                                          : text + " is no positive number and not corners";
-        });
+        ->transform(number_or("corners", positive_number()));
     app.add_option("--cell-values", options.cell_values,
                    "values at cells become values at points: fit (so that the volume has the cells' means; the default for "
                    "OpenFOAM) or mean (of the cells around each point; the default for all others)")
@@ -45,6 +43,7 @@ void add_mesh_options(CLI::App& app, CommonOptions& options) {
     app.add_option("--time", options.time, "the step of a series whose time is nearest to this")
         ->group(group)
         ->type_name("T")
+        ->transform(any_number())
         ->excludes(step);
     app.add_option("--blocks", options.blocks, "the named parts of the mesh to read (info lists them; default: all)")
         ->group(group)
@@ -76,14 +75,17 @@ void add_common_options(CLI::App& app, CommonOptions& options, Reads reads) {
     app.add_option("--threads", options.threads, "number of threads (0: all); results do not depend on it")
         ->group(group)
         ->type_name("N")
-        ->check(CLI::Range(0, 4096));
+        ->transform(whole_number(0, 4096));
     app.add_flag("--json", options.json, "print one JSON object on standard output, also if there is an error")->group(group);
     app.add_flag("--quiet", options.quiet, "print nothing but errors (and the JSON object)")->group(group);
     app.add_option("--progress", options.progress, "show a progress bar on standard error: auto (on a terminal), on, off")
         ->group(group)
         ->type_name("WHEN")
         ->check(one_of({"auto", "on", "off"}));
-    app.add_option("--seed", options.seed, "seed of the random numbers that place samples")->group(group)->type_name("N");
+    app.add_option("--seed", options.seed, "seed of the random numbers that place samples")
+        ->group(group)
+        ->type_name("N")
+        ->transform(seed_number());
 }
 
 void refuse_options(const CLI::App& app, std::initializer_list<const char*> names, const std::string& reason) {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "numbers.h"
 #include "subvol/error.h"
 #include "text.h"
 

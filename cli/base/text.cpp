@@ -48,12 +48,6 @@ std::vector<double> parse_numbers(const std::string& option, const std::string& 
     return numbers;
 }
 
-double parse_number(const std::string& option, const std::string& value) {
-    const auto number = detail::number_from(value);
-    if (!number || !std::isfinite(*number)) throw Error(ErrorCode::InvalidInput, "'" + value + "' is not a number", option);
-    return *number;
-}
-
 void check_choice(const std::string& option, const std::string& value, const std::vector<std::string>& supported) {
     if (std::ranges::find(supported, value) != supported.end()) return;
     throw Error(ErrorCode::InvalidInput, "'" + value + "' is unknown" + detail::did_you_mean(value, supported), option,

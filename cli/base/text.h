@@ -31,11 +31,6 @@ template <class... Part>
 [[nodiscard]] std::vector<double> parse_numbers(const std::string& option, const std::string& value, std::size_t count,
                                                 const std::string& example);
 
-/// option: named in the error
-///
-/// throws: Error(InvalidInput) if it is not a finite number
-[[nodiscard]] double parse_number(const std::string& option, const std::string& value);
-
 /// throws: Error(InvalidInput) unless `value` is one of `supported`
 void check_choice(const std::string& option, const std::string& value, const std::vector<std::string>& supported);
 

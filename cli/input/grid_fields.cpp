@@ -5,6 +5,7 @@
 #include <cmath>
 #include <tuple>
 
+#include "numbers.h"
 #include "subvol/detail/near_name.h"
 #include "subvol/error.h"
 #include "text.h"

@@ -2,6 +2,7 @@
 #include "sampled_points.h"
 
 #include "grid_input.h"
+#include "numbers.h"
 #include "subvol/error.h"
 #include "subvol/reduce.h"
 #include "subvol/sample_mixed.h"

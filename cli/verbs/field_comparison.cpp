@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 
 #include "field_input.h"
+#include "numbers.h"
 #include "subvol/error.h"
 #include "subvol/field_metrics.h"
 #include "subvol/field_places.h"
@@ -16,20 +17,21 @@ void FieldComparison::add_to(CLI::App& app) {
     app.add_option("--samples", samples, "number of random places in the second field's domain (default 100000; see --seed)")
         ->group(group)
         ->type_name("N")
-        ->check(CLI::Range(1, 100'000'000));
+        ->transform(whole_number(1, 100'000'000));
     app.add_option("--coverage", least_coverage,
                    "the least share of these places at which the first field must have a value, too, for any demand to be met "
                    "(default 0.99)")
         ->group(group)
         ->type_name("SHARE")
-        ->check(CLI::Range(0.0, 1.0));
+        ->transform(number_in(0.0, 1.0));
     app.add_option("--iso", iso, "also the Hausdorff distance between the isosurfaces of this value (hausdorff)")
         ->group(group)
-        ->type_name("V");
+        ->type_name("V")
+        ->transform(any_number());
     app.add_option("--resolution", resolution, "cells along the longest side for mass and isosurfaces (default 128)")
         ->group(group)
         ->type_name("N")
-        ->check(CLI::Range(2, 2000));
+        ->transform(whole_number(2, 2000));
     refine.add_to(app, "compare meshes at this level; omitted: at a level within tolerance of the limit");
     for (const char* name : {"--scheme", "--tension", "--levels", "--crease-angle"}) app.get_option(name)->group(group);
 }

@@ -7,6 +7,7 @@
 
 #include "choices.h"
 #include "input.h"
+#include "numbers.h"
 #include "outputs.h"
 #include "subvol/error.h"
 #include "subvol/image_io.h"
@@ -64,11 +65,11 @@ void PictureComparison::add_to(CLI::App& app) {
     app.add_option("--heatmap-scale", heatmap_scale, "the value of the last colour (default: the largest value)")
         ->group(group)
         ->type_name("V")
-        ->check(CLI::PositiveNumber);
+        ->transform(positive_number());
     app.add_option("--ppd", pixels_per_degree, "flip: pixels per degree of the viewer's sight (default 67.02)")
         ->group(group)
         ->type_name("N")
-        ->check(CLI::Range(1.0, 1000.0));
+        ->transform(number_in(1.0, 1000.0));
     app.add_flag("--hdr", hdr, "also HDR-FLIP (hdr_flip), over all exposures that the second picture needs")->group(group);
     app.add_flag("--oiio", oiio, "also the figures of OpenImageIO's idiff: warnings, failures, Yee's perceptual failures")
         ->group(group);
@@ -81,11 +82,12 @@ void PictureComparison::add_to(CLI::App& app) {
                    "measure separately within N pixels of the second picture's silhouette, and inside it")
         ->group(group)
         ->type_name("N")
-        ->check(CLI::Range(1, 1000));
+        ->transform(whole_number(1, 1000));
     app.add_option("--background", background,
                    "with --edge-band: the background of pictures without alpha (linear RGB; default black)")
         ->group(group)
-        ->type_name("R,G,B");
+        ->type_name("R,G,B")
+        ->transform(number_list(3, "0,0,0"));
 }
 
 void PictureComparison::check() const {

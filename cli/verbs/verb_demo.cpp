@@ -6,6 +6,7 @@
 #include <iomanip>
 
 #include "input.h"
+#include "numbers.h"
 #include "outputs.h"
 #include "picture_arguments.h"
 #include "subvol/detail/atomic_file.h"
@@ -96,7 +97,7 @@ public:
         app()
             .add_option("--resolution", resolution_, "cells along a model's main direction (default: the model's own)")
             ->type_name("N")
-            ->check(CLI::Range(2, 512));
+            ->transform(whole_number(2, 512));
         app().add_option("--size", size_, "size of the pictures (default 512x512)")->type_name("WxH");
     }
 

@@ -5,6 +5,7 @@
 #include "choices.h"
 #include "fit_tables.h"
 #include "kernel_shapes.h"
+#include "numbers.h"
 #include "refine_arguments.h"
 #include "subvol/detail/near_name.h"
 #include "subvol/error.h"
@@ -50,9 +51,15 @@ public:
         app()
             .add_option("--level", level_, "samples of the basis function: 2^L per unit (default 5)")
             ->type_name("L")
-            ->check(CLI::Range(0, 6));
-        app().add_option("--extent", options_.extent, "the distance at which bc and cardinal end (default 2)")->type_name("R");
-        app().add_option("--terms", options_.terms, "number of gaussians in a sum, 1 to 6 (default 2)")->type_name("N");
+            ->transform(whole_number(0, 6));
+        app()
+            .add_option("--extent", options_.extent, "the distance at which bc and cardinal end (default 2)")
+            ->type_name("R")
+            ->transform(number_in(1e-3, 3.0));
+        app()
+            .add_option("--terms", options_.terms, "number of gaussians in a sum, 1 to 6 (default 2)")
+            ->type_name("N")
+            ->transform(whole_number(1, 6));
         app().add_flag("--sign-slip", options_.sign_slip,
                        "fit bc with the sign error of the paper's fits in the inner cubic coefficient");
     }

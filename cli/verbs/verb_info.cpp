@@ -9,6 +9,7 @@
 #include "input.h"
 #include "mesh_figures.h"
 #include "mesh_lines.h"
+#include "numbers.h"
 #include "part_note.h"
 #include "points_input.h"
 #include "share.h"
@@ -51,6 +52,7 @@ public:
             .add_option("--at", points_,
                         "print the values of a .vdb file's grids there, or of the one that --field names (repeatable)")
             ->type_name("X,Y,Z")
+            ->transform(number_list(3, "1,2,3"))
             ->allow_extra_args(false);
         refine_.scheme.clear();
         app()
@@ -60,13 +62,13 @@ public:
         app()
             .add_option("--levels", refine_.levels, "of --scheme (default 2)")
             ->type_name("L")
-            ->check(CLI::Range(0, 8))
+            ->transform(whole_number(0, 8))
             ->needs("--scheme");
         app()
             .add_option("--crease-angle", refine_.crease_angle_deg,
                         "of --scheme: boundary edges that bend by more are sharp (default 60)")
             ->type_name("DEG")
-            ->check(CLI::Range(0.0, 180.0))
+            ->transform(number_in(0.0, 180.0))
             ->needs("--scheme");
         share_.add_to(app(), "the figures of some cells of a mesh, with --json");
     }

@@ -3,6 +3,7 @@
 #include <iomanip>
 
 #include "input.h"
+#include "numbers.h"
 #include "outputs.h"
 #include "subvol/error.h"
 #include "subvol/mesh_io.h"
@@ -25,7 +26,7 @@ public:
         app()
             .add_option("--resolution", resolution_, "cells along the main direction, 2..512")
             ->type_name("N")
-            ->check(CLI::Range(2, 512));
+            ->transform(whole_number(2, 512));
         app().add_flag("--list", list_, "list the models");
     }
 

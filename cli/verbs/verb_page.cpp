@@ -6,6 +6,7 @@
 #include "choices.h"
 #include "grid_fields.h"
 #include "input.h"
+#include "numbers.h"
 #include "outputs.h"
 #include "picture_arguments.h"
 #include "refine_arguments.h"
@@ -46,7 +47,7 @@ public:
                         "the page's size (default 24e6): kernels are rounded, then merged, until it fits; the page says the "
                         "error")
             ->type_name("B")
-            ->check(CLI::Range(1e4, 2e9));
+            ->transform(number_in(1e4, 2e9));
         app().add_option("--title", title_, "the page's title (default: the file's name)")->type_name("TEXT");
         app().add_flag("--no-reference", no_reference_, "without the picture of `render` to compare with");
         add_picture_options();
@@ -110,7 +111,7 @@ private:
             .add_option("--opacity-unit", picture_.opacity_unit_world,
                         "the world distance over which an opacity acts (default: 1/100 of the box's diagonal)")
             ->type_name("D")
-            ->check(CLI::PositiveNumber);
+            ->transform(positive_number());
         app().add_option("--unit", unit_, "the first field's unit, for the legend")->type_name("TEXT");
     }
 

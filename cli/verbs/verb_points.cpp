@@ -8,6 +8,7 @@
 #include "grid_fields.h"
 #include "grid_input.h"
 #include "input.h"
+#include "numbers.h"
 #include "outputs.h"
 #include "part_note.h"
 #include "picture_arguments.h"
@@ -96,18 +97,20 @@ public:
                         "merge neighbouring kernels as long as the values at their centres change by at most ERROR, in the "
                         "field's unit: few kernels where the field is smooth")
             ->type_name("ERROR")
-            ->check(CLI::PositiveNumber);
+            ->transform(positive_number());
         app()
             .add_option(
                 "--wavelet-tolerance", wavelet_tolerance_,
                 "write control values and wavelet details (.svw) instead of kernels, with a root mean square error of at "
                 "most T, in parts of the field's range: for refined meshes and structured grids")
-            ->type_name("T");
+            ->type_name("T")
+            ->transform(number_in(1e-15, 1.0));
         app()
             .add_option("--wavelet-point-tolerance", wavelet_point_tolerance_,
                         "the same for the points, in parts of the mesh's longest side (default: a tenth of "
                         "--wavelet-tolerance, and less where cells would be inverted)")
-            ->type_name("T");
+            ->type_name("T")
+            ->transform(number_in(1e-15, 1.0));
         refine_.add_to(app(), "sample the refined mesh of this level instead of the limit");
         share_.add_to(app(), "a range of the points in their order, of bricks, or of the steps");
         set_essentials({"--output", "--field", "--per-edge", "--spacing", "--tolerance", "--footprint", "--threshold",

@@ -5,6 +5,7 @@
 #include "block_cells.h"
 #include "bricks_input.h"
 #include "input.h"
+#include "numbers.h"
 #include "outputs.h"
 #include "places_input.h"
 #include "probe_output.h"
@@ -35,20 +36,24 @@ public:
                "fields with value and gradient of each. Outside there is nothing: null. stats: whole and parts, with "
                "volume and for each field integral, mean, min, max, their places, and a histogram.") {
         app().add_option("FILE", input_, input_help())->required();
-        app().add_option("--at", at_, "a place in world units (repeatable)")->type_name("X,Y,Z")->allow_extra_args(false);
+        app()
+            .add_option("--at", at_, "a place in world units (repeatable)")
+            ->type_name("X,Y,Z")
+            ->transform(number_list(3, "1,2,3"))
+            ->allow_extra_args(false);
         auto* line = app().add_option("--line", line_, "places on a line, from its first end to its second");
-        line->type_name("X0,Y0,Z0,X1,Y1,Z1");
+        line->type_name("X0,Y0,Z0,X1,Y1,Z1")->transform(number_list(6, "0,0,0,1,1,1: its two ends"));
         app()
             .add_option("--count", count_, "how many places on the line (default 200)")
             ->type_name("N")
-            ->check(CLI::Range(2, 100000000))
+            ->transform(whole_number(2, 100000000))
             ->needs(line);
         app().add_option("--points", points_, "a table of places: three numbers a line, or columns x, y, z")->type_name("FILE");
         auto* stats = app().add_flag("--stats", stats_, "integral, mean, extremes with their places, histogram; by block too");
         app()
             .add_option("--bins", bins_, "intervals of the histogram (default 32)")
             ->type_name("N")
-            ->check(CLI::Range(1, 100000))
+            ->transform(whole_number(1, 100000))
             ->needs(stats);
         app()
             .add_option("-o,--output", output_, "a table of all fields (.csv), or a plot along the line (.svg)")

@@ -4,6 +4,7 @@
 
 #include "bricks_input.h"
 #include "input.h"
+#include "numbers.h"
 #include "outputs.h"
 #include "picture_arguments.h"
 #include "places_input.h"
@@ -35,21 +36,23 @@ public:
         app().add_option("-o,--output", output_, "the file to write (.png, .exr, .vtp, .csv)")->type_name("FILE")->required();
         app()
             .add_option("--plane", plane_, "a point of the plane and its normal (default: the box's centre, and z)")
-            ->type_name("PX,PY,PZ,NX,NY,NZ");
+            ->type_name("PX,PY,PZ,NX,NY,NZ")
+            ->transform(number_list(6, "0,0,0,0,0,1: a point of the plane and its normal"));
         app()
             .add_option("--resolution", resolution_, "places along the longer side (default 512)")
             ->type_name("N")
-            ->check(CLI::Range(2, 20000));
+            ->transform(whole_number(2, 20000));
         app()
             .add_option("--contours", contours_, "lines at this many values between the least and the largest on the plane")
             ->type_name("N")
-            ->check(CLI::Range(1, 1000));
+            ->transform(whole_number(1, 1000));
         app()
             .add_option("--tf", function_, "the colours: a preset, or a colour map of ParaView (default viridis)")
             ->type_name("FILE|NAME");
         app()
             .add_option("--range", range_, "the values of the first and of the last colour (default: those on the plane)")
-            ->type_name("MIN,MAX");
+            ->type_name("MIN,MAX")
+            ->transform(number_list(2, "0,1"));
         app()
             .add_option("--background", background_, "the colour outside the volume, of a .png (default white)")
             ->type_name("COLOR");

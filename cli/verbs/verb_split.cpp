@@ -4,6 +4,7 @@
 
 #include "choices.h"
 #include "input.h"
+#include "numbers.h"
 #include "quantities.h"
 #include "subvol/error.h"
 #include "subvol/expression.h"
@@ -31,19 +32,19 @@ public:
         app().add_option("FILE", input_, input_help())->required();
         app().add_option("-o,--output", output_, "the folder to write, for example big.bricks")->type_name("DIR")->required();
         auto* bricks = app().add_option("--bricks", options_.bricks, "how many bricks");
-        bricks->type_name("N")->check(CLI::Range(1, 1000000));
+        bricks->type_name("N")->transform(whole_number(1, 1000000));
         app()
             .add_option("--memory", options_.memory_bytes,
                         "instead: bricks so small that a command takes about this much for one (default 1G)")
             ->type_name("BYTES")
-            ->transform(CLI::AsSizeValue(false))
+            ->transform(byte_count())
             ->excludes(bricks);
         app()
             .add_option(
                 "--halo", options_.halo_layers,
                 "layers of cells about each brick (default 3; kernels of cc and bsxw need 4, and --correction full one more)")
             ->type_name("N")
-            ->check(CLI::Range(1, 16));
+            ->transform(whole_number(1, 16));
         app()
             .add_option("--by", by_, "blocks (compact, the default), slabs (slices of the longest side), random (for tests)")
             ->type_name("SHAPE")

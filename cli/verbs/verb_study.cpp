@@ -11,6 +11,7 @@
 #include "child_process.h"
 #include "input.h"
 #include "kept_studies.h"
+#include "numbers.h"
 #include "outputs.h"
 #include "quantities.h"
 #include "study_host.h"
@@ -67,7 +68,7 @@ public:
         app()
             .add_option("--jobs", jobs_, "cases that run at the same time, unless costs are measured (default: one per core)")
             ->type_name("N")
-            ->check(CLI::Range(1, 1024));
+            ->transform(whole_number(1, 1024));
         auto* resume = app().add_flag(
             "--resume", resume_, "keep the cases that an earlier run of this version finished in the folder (the default)");
         app().add_flag("--fresh", fresh_, "run all cases again")->excludes(resume);

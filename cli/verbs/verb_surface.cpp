@@ -5,6 +5,7 @@
 
 #include "bricks_input.h"
 #include "input.h"
+#include "numbers.h"
 #include "outputs.h"
 #include "part_note.h"
 #include "picture_arguments.h"
@@ -43,7 +44,7 @@ public:
             ->type_name("FILE")
             ->required();
         auto* iso = app().add_option("--iso", isos_, "the value of an isosurface (repeatable)");
-        iso->type_name("V")->allow_extra_args(false);
+        iso->type_name("V")->transform(any_number())->allow_extra_args(false);
         app().add_flag("--boundary", boundary_, "the boundary of the volume (the default without --iso)");
         app()
             .add_flag("--cap", cap_,
@@ -53,8 +54,11 @@ public:
             .add_option("--tolerance", tolerance_,
                         "how far triangles may lie from the limit, as a part of the longest side of the box (default 1e-3)")
             ->type_name("E")
-            ->check(CLI::Range(1e-9, 1.0));
-        app().add_option("--max-level", max_level_, "refine no further (default 6)")->type_name("L")->check(CLI::Range(1, 8));
+            ->transform(number_in(1e-9, 1.0));
+        app()
+            .add_option("--max-level", max_level_, "refine no further (default 6)")
+            ->type_name("L")
+            ->transform(whole_number(1, 8));
         app().add_flag("--keep-slivers", keep_slivers_, "leave triangles with small angles as they are");
         app()
             .add_option("--color-field", color_field_, "colour the points by this field (default in .ply, .obj, .glb: none)")

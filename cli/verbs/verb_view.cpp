@@ -9,6 +9,7 @@
 #include "clip_arguments.h"
 #include "grid_input.h"
 #include "input.h"
+#include "numbers.h"
 #include "outputs.h"
 #include "picture_arguments.h"
 #include "points_input.h"
@@ -70,7 +71,7 @@ public:
         app()
             .add_option("--samples", samples_, "n x n rays for each pixel (default: 2 for solids, else 1)")
             ->type_name("N")
-            ->check(CLI::Range(1, 16));
+            ->transform(whole_number(1, 16));
         sample_.add_to(app());
         clip_.add_to(app());
         refine_.add_to(app(), "show the refined mesh of this level (default for tets: 1; for the others: the limit)");

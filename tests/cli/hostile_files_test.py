@@ -53,6 +53,42 @@ class HostileFiles(InFolder):
             with self.subTest(words):
                 self.assert_refused(*words, naming=f"bad.vdb: is not a whole OpenVDB file: at byte {at + 8}, a block of 60000 bytes")
 
+    def test_voxels_that_cannot_be(self):
+        # Before a level of the limit is looked for that fits them, which takes gigabytes.
+        for words in (["--voxel-size", "1e-9"], ["--voxel-size", "1e-99"], ["--resolution", "1048576"], ["--budget", "1000P"],
+                      ["--resolution", "4000", "--sdf", "--half-width", "nan"], ["--scale", "1e-90"]):
+            with self.subTest(words):
+                self.assert_refused("vdb", "model:ball:4", "-o", "a.vdb", *words, naming="a" if "nan" in words else "voxel")
+
+    def test_transforms_that_cannot_be(self):
+        data = self.grid()
+        edge = struct.pack("<d", 0.1)
+        self.assertGreaterEqual(data.count(edge), 3)
+        for wrong in (float("nan"), float("inf"), 0.0, 5e-324, 1e-300, 1e300, -1e300):
+            for count in (-1, 1):  # all edges, or one
+                with self.subTest(wrong=wrong, count=count):
+                    self.write("bad.vdb", data.replace(edge, struct.pack("<d", wrong), count))
+                    self.assert_refused("vdb", "model:ball:4", "-o", "a.vdb", "--like", "bad.vdb", naming="voxel")
+
+    def test_names_that_hide_or_turn_text(self):
+        name = "a&#x1b;[2J&#7;b&#x202e;x&#x2028;&#xfffe;"
+        self.run_ok("model", "ball", "-o", "a.vtu", "--resolution", "2", "--density", "x+y")
+        text = (self.folder / "a.vtu").read_bytes()
+        self.write("a.vtu", text.replace(b'Name="density"', f'Name="{name}"'.encode()))
+        forbidden = "[\x00-\x08\x0b-\x1f\x7f\u202a-\u202e\u2028\u2029\ufffe\uffff]"
+        for words in (["info", "a.vtu"], ["info", "a.vtu", "--field", "none"], ["render", "a.vtu", "-o", "a.png", "--size", "16", "--legend", "l.svg"],
+                      ["subdivide", "a.vtu", "-o", "b.vtu"], ["points", "a.vtu", "-o", "b.vtp"], ["points", "a.vtu", "-o", "b.ply"],
+                      ["probe", "a.vtu", "--at", "0,0,0", "-o", "b.csv"], ["page", "a.vtu", "-o", "b.html"]):
+            with self.subTest(words):
+                done = subvol(*words, folder=self.folder)
+                self.assertNotRegex(done.out + done.err, forbidden)
+        for written in ("l.svg", "b.vtu", "b.vtp", "b.ply", "b.csv", "b.html"):
+            with self.subTest(written):
+                content = (self.folder / written).read_bytes().decode("utf-8", "replace")
+                head = content.split("<AppendedData")[0].split("end_header")[0]
+                self.assertNotRegex(head, forbidden)
+        self.assertEqual(subvol("info", "b.vtu", folder=self.folder).code, 0)
+
     def test_a_length_that_the_file_does_not_have(self):
         data = self.grid()
         for text in (b"density", b"Tree_float_5_4_3", b"subvol_input"):
