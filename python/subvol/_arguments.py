@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import json
+import math
 import os
 import warnings
 from collections.abc import Mapping
-from typing import Any, Union
+from typing import Any, Optional, Union
 
 from ._errors import InvalidInput, SubvolWarning
 
@@ -22,6 +23,14 @@ def path_bytes(path: Path) -> bytes:
     if b"\0" in name:
         raise InvalidInput(f"{path!r}: has a zero byte", repr(path), "the name of a file")
     return name
+
+
+def check_numbers(least: float = -math.inf, **numbers: Optional[float]) -> None:
+    """Refuses what is not finite or below `least`, also where a call would not look at it. None is an argument that is not given."""
+    for name, number in numbers.items():
+        if number is not None and not (math.isfinite(number) and number >= least):
+            allowed = "a finite number" if least == -math.inf else f"{least:g} or more"
+            raise InvalidInput(f"{name}: {number} is out of range ({allowed})", name, allowed)
 
 
 def extension(path: Path) -> str:

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core
-from ._arguments import Path, path_bytes, warn
+from ._arguments import Path, check_numbers, path_bytes, warn
 from ._colors import TransferFunction, _camera_of, _is_lit, _knots_of, _look_of, _range_of
 from ._core import Camera, Field, HexMesh, Image, RbfVolume
 from ._errors import InvalidInput
@@ -77,6 +77,9 @@ def render(what: Drawable, *, method: str = "splat", view: str = "iso", camera: 
     Returns an Image: `numpy.asarray(image)` is (height, width, 4) float32, linear, premultiplied, without a copy. Its `report` has
     counts and seconds.
     """
+    check_numbers(tension=tension)
+    check_numbers(0, opacity_unit=opacity_unit, ambient_occlusion=ambient_occlusion, lod=lod, crease_angle=crease_angle, seconds=seconds,
+                  image_tolerance=image_tolerance)
     if method not in ("splat", "sheets", "footprints", "tets", "pt", "dense", "grid"):
         raise InvalidInput(f"method: '{method}' is not known (splat, sheets, footprints, tets, pt, dense or grid)", "method",
                            "splat, sheets, footprints, tets, pt, dense or grid")

@@ -6,7 +6,7 @@ import json
 from typing import Any, Optional
 
 from . import _core
-from ._arguments import TET_SCHEMES, Kernel, Path, extension, kernel_json, path_bytes, warn
+from ._arguments import TET_SCHEMES, Kernel, Path, check_numbers, extension, kernel_json, path_bytes, warn
 from ._core import Camera, HexMesh, RbfVolume
 from ._errors import InvalidInput
 from ._progress import Progress, listening
@@ -37,6 +37,8 @@ def sample(mesh: HexMesh, field: Optional[str] = None, per_edge: int = 1, *, cen
     correction: what a kernel has beside its value: "none", "gradient", "second", "full"
     values:     between control points: "scheme", "cubic" or "paper"
     """
+    check_numbers(tension=tension)
+    check_numbers(0, spacing=spacing, tolerance=tolerance, crease_angle=crease_angle)
     chosen = _selected(mesh, field)
     if scheme in TET_SCHEMES:
         if per_edge != 1 or centers or spacing > 0 or tolerance > 0 or footprint is not None or values != "scheme":
