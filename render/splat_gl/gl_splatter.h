@@ -18,8 +18,9 @@ namespace subvol::detail {
 /// most_buffer_bytes:  limit for a buffer, if the device has no lower one
 /// most_entries:       limit for the pairs of a bin and a kernel
 /// most_tiles:         limit for the tiles of a dispatch
-/// most_steps:         a thread of a dispatch ends soon after so many iterations of loops; at least 64 for each sheet of a batch
-/// boundary_on_device: rasterize the boundary with OpenGL even if it is software, which is slower than the CPU's rasterizer
+/// most_steps:         a thread of a dispatch ends soon after so many iterations of loops; at least 64 for each sheet of a
+///                     batch
+/// boundary_on_device: rasterize the boundary with OpenGL even if it is software, where the CPU's rasterizer is faster
 struct GlTuning {
     int tile_px = 16;
     int batch = kBatch;

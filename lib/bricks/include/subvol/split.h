@@ -52,12 +52,12 @@ struct SplitResult {
 /// and in ParaView, where vtkGhostType marks the halo.
 ///
 /// The bricks are written beside the folder, which appears when all are there. A run that was interrupted is continued by the
-/// same call: finished bricks with the right hash are kept. A folder of bricks is replaced if it holds nothing but the index and
-/// what that lists, file by file; anything else is not. A link to a folder stays a link.
+/// same call: finished bricks with the right hash are kept. A folder of bricks is replaced if it holds nothing but the index
+/// and what that lists, file by file; anything else is not. A link to a folder stays a link.
 ///
 /// mesh:   valid; points that no cell uses are left out, and fields with the names GlobalNodeId and vtkGhostType
-/// throws: Error(InvalidInput) for options out of range, or if `folder`, or NAME.unfinished beside it, exists and holds anything
-///         else than bricks; Error(Io)
+/// throws: Error(InvalidInput) for options out of range, or if `folder`, or NAME.unfinished beside it, exists and holds
+///         anything else than bricks; Error(Io)
 SplitResult split_mesh(const std::filesystem::path& folder, HexMesh mesh, const SplitOptions& options = {});
 
 /// The same for given bricks. brick_of_cell: one number for each cell; numbers without cells make no brick
