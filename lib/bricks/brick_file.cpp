@@ -140,7 +140,6 @@ void turn_into_owned(std::vector<std::uint8_t>& ghosts) {
     for (std::uint8_t& flag : ghosts) flag = flag == 0;
 }
 
-/// Whether a file is a brick of another folder.
 /// The id of the folder that a brick belongs to; nothing if the text is no brick.
 std::optional<std::uint64_t> id_of(std::string_view text, const std::string& file) {
     try {
