@@ -118,12 +118,10 @@ def write_pieces(folder, points, cells, values, shape):
 
 
 def hashes(runner, source, column, counts, with_ranks):
-    """One process (of bricks, what it writes as one file), then shares, then ranks."""
+    """One process, then shares, then ranks."""
     verb, extension, options = COLUMNS[column]
-    found = {}
-    if verb != "vdb" or not source.endswith(".bricks"):  # of bricks one process writes a list of blocks
-        runner.run(verb, source, "-o", "one" + extension, *options, "--quiet")
-        found["one process"] = runner.hash_of("one" + extension)
+    runner.run(verb, source, "-o", "one" + extension, *options, "--quiet")
+    found = {"one process": runner.hash_of("one" + extension)}
     for count in counts:
         parts = [f"p{part}{OF_SHARES.get(verb, extension)}" for part in range(1, count + 1)]
         for part, name in enumerate(parts, 1):

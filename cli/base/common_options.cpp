@@ -96,10 +96,15 @@ void refuse_options(const CLI::App& app, std::initializer_list<const char*> name
 }
 
 void refuse_mesh_options(const CLI::App& app, const std::string& reason) {
-    refuse_options(app,
-                   {"--density", "--other-cells", "--curved", "--cell-values", "--step", "--time", "--blocks", "--weld",
-                    "--weld-distance", "--sharp"},
-                   reason);
+    refuse_options(app, {"--density"}, reason);
+    refuse_file_options(app, reason);
+}
+
+void refuse_file_options(const CLI::App& app, const std::string& reason) {
+    refuse_options(
+        app,
+        {"--other-cells", "--curved", "--cell-values", "--step", "--time", "--blocks", "--weld", "--weld-distance", "--sharp"},
+        reason);
 }
 
 }  // namespace subvol::cli

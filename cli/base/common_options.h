@@ -45,7 +45,10 @@ void add_common_options(CLI::App& app, CommonOptions& options, Reads reads);
 /// throws: Error(InvalidInput) if one of `names` was given
 void refuse_options(const CLI::App& app, std::initializer_list<const char*> names, const std::string& reason);
 
-/// Refuses the options that say how the file of a mesh is read, and --density, whose expression needs a mesh. throws: as above
+/// Refuses the options that say how the file of a mesh is read. throws: as above
+void refuse_file_options(const CLI::App& app, const std::string& reason);
+
+/// The same, and --density, whose expression needs a mesh.
 void refuse_mesh_options(const CLI::App& app, const std::string& reason);
 
 }  // namespace subvol::cli

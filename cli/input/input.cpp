@@ -208,6 +208,14 @@ HexMesh used_mesh(HexMesh read, const CommonOptions& options) {
     return mesh;
 }
 
+HexMesh with_written_field(HexMesh mesh, const CommonOptions& options) {
+    if (!options.field) return mesh;
+    const Attribute* whole = mesh.find_attribute(*options.field);
+    Attribute chosen = whole != nullptr ? *whole : select_field(mesh, options.field).scalar;
+    mesh.attributes = {std::move(chosen)};
+    return mesh;
+}
+
 HexMesh with_selected_field(HexMesh mesh, const CommonOptions& options, Report& report,
                             const std::optional<std::string>& second) {
     SelectedField selected = select_field(mesh, options.density ? std::optional<std::string>("density") : options.field);

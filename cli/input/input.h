@@ -50,6 +50,9 @@ void warn_of_sheets(const Sheets& sheets, Report& report);
 /// A mesh that was read, without the unused points; --density becomes the first attribute.
 [[nodiscard]] HexMesh used_mesh(HexMesh read, const CommonOptions& options);
 
+/// The mesh as it is written: with --field that one alone, vectors as they are. throws: Error(InvalidInput) if there is none
+[[nodiscard]] HexMesh with_written_field(HexMesh mesh, const CommonOptions& options);
+
 /// The mesh with only the field that the options select, as a scalar, and with the field `second` if that is given.
 [[nodiscard]] HexMesh with_selected_field(HexMesh mesh, const CommonOptions& options, Report& report,
                                           const std::optional<std::string>& second = {});

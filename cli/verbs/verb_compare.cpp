@@ -5,6 +5,7 @@
 
 #include "field_comparison.h"
 #include "field_input.h"
+#include "input.h"
 #include "picture_comparison.h"
 #include "quantities.h"
 #include "subvol/bricks.h"
@@ -59,6 +60,7 @@ public:
         if (a != InputKind::Mesh && b != InputKind::Mesh) {
             refuse_mesh_options(app(), text("needs a mesh; these are ", pictures ? "pictures" : "points or grids"));
         }
+        if (is_model(a_) && is_model(b_)) refuse_file_options(app(), "says how a file is read; these are models");
         if (pictures) refuse_options(app(), {"--field"}, "is for fields; these are pictures");
         pictures_.check();
         std::vector<Demand> demands;

@@ -123,6 +123,7 @@ private:
         if (input_.empty()) throw Error(ErrorCode::InvalidInput, "a FILE is needed", "--list-fields");
         report["fields"] = Json::array();
         const auto list = [&](const std::string& name) {
+            if (!shows(name)) return;
             report["fields"].push_back({{"name", name}});
             report.say(name);
         };
@@ -138,6 +139,9 @@ private:
             for (const VdbGrid& grid : read_vdb(input_)) list(grid.report().name);
         } else {
             for (const FieldInfo& field : chosen_fields(read_input(input_, common(), report), common())) list(field.name);
+        }
+        if (report.json().at("fields").empty() && common().field) {
+            throw Error(ErrorCode::InvalidInput, "there is no field '" + *common().field + "'", input_, "--list-fields alone");
         }
         report.all_said();
         return 0;

@@ -74,7 +74,7 @@ public:
 
 private:
     SplitResult cut(Report& report) {
-        if (input_.starts_with(kTwist) && options_.shape != BrickShape::Random && !common().density) {
+        if (input_.starts_with(kTwist) && options_.shape != BrickShape::Random && !common().density && !common().field) {
             int resolution = 0;
             const char *begin = input_.data() + kTwist.size(), *end = input_.data() + input_.size();
             const auto [stop, error] = std::from_chars(begin, end, resolution);
@@ -90,12 +90,16 @@ private:
             const ReadOptions read = read_options(input_, common());
             PiecesOptions pieces{.read = read, .change = {}, .about_change = common().density.value_or("")};
             if (common().density) pieces.change = [&](HexMesh mesh) { return used_mesh(std::move(mesh), common()); };
+            if (common().field) {  // never together with --density
+                pieces.change = [&](HexMesh mesh) { return with_written_field(std::move(mesh), common()); };
+                pieces.about_change = "field " + *common().field;
+            }
             PiecesSplit split = report.timed("split", [&] { return split_pieces(output_, input_, pieces, options_); });
             for (const std::string& warning : split.warnings) report.warn(warning);
             if (split.result) return std::move(*split.result);
             if (!split.held_whole.empty()) report.note(text("all pieces are held in memory: ", split.held_whole));
         }
-        HexMesh mesh = load_mesh(input_, common(), report);
+        HexMesh mesh = with_written_field(load_mesh(input_, common(), report), common());
         return report.timed("split", [&] { return split_mesh(output_, std::move(mesh), options_); });
     }
 

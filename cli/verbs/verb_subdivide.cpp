@@ -44,7 +44,13 @@ public:
         check_output(output_, {".vtu", ".mesh"});
         report.if_long("fewer --levels");
         Sheets sheets;
-        const HexMesh mesh = load_mesh(input_, common(), report, &sheets);
+        const HexMesh mesh = with_written_field(load_mesh(input_, common(), report, &sheets), common());
+        if (common().field && !sheets.empty()) {
+            HexMesh of_sheets;
+            of_sheets.points = sheets.points;
+            of_sheets.attributes = std::move(sheets.attributes);
+            sheets.attributes = with_written_field(std::move(of_sheets), common()).attributes;
+        }
         HexMesh fine = refine_reported(mesh, options, on_limit_ ? Vertices::OnTheLimit : Vertices::OfTheLevel, report);
         keep_in_range(mesh, fine, report);
         if (!sheets.empty() && output_.ends_with(".mesh")) {
@@ -66,7 +72,7 @@ private:
         if (clamp_) throw Error(ErrorCode::InvalidInput, "the schemes of tetrahedra do not overshoot as others do", "--clamp");
         check_output(output_, {".vtu"});
         report.if_long("fewer --levels");
-        const HexMesh mesh = load_mesh(input_, common(), report);
+        const HexMesh mesh = with_written_field(load_mesh(input_, common(), report), common());
         const MixedMesh fine = tets.refined(mesh, 1, on_limit_ ? Vertices::OnTheLimit : Vertices::OfTheLevel, report);
         report.timed("write", [&] { write_mixed_mesh(output_, fine); });
         report["output"] = output_;

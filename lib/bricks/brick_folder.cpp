@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <functional>
 
 #include "brick_file.h"
@@ -84,12 +85,13 @@ std::vector<std::string> files_of_bricks(const fs::path& folder) {
     return names;
 }
 
-/// The permissions, and where that is allowed the group, of the folder that another one replaces.
-void keep_access(const fs::path& from, const fs::path& to) {
+/// The permissions, and where that is allowed the group, of a file or folder that another one replaces. False if there is none.
+bool keep_access(const fs::path& from, const fs::path& to) {
     struct stat before {};
-    if (::stat(from.c_str(), &before) != 0) return;
+    if (::stat(from.c_str(), &before) != 0) return false;
     (void)!::chown(to.c_str(), static_cast<uid_t>(-1), before.st_gid);
     (void)::chmod(to.c_str(), before.st_mode & 07777);
+    return true;
 }
 
 /// Gives a folder the name of another, which must hold bricks only, and is removed when that has been done.
@@ -99,7 +101,10 @@ void replace_folder(const fs::path& made, const fs::path& folder) {
     std::vector<std::string> names;
     if (fs::exists(folder, ignored)) {
         names = files_of_bricks(folder);  // once more: something may have been put there meanwhile
-        keep_access(folder, made);
+        for_each_entry(made, [&](const std::string& name, bool) {
+            if (!keep_access(folder / name, made / name)) (void)keep_access(folder / kBricksIndex, made / name);
+        });
+        (void)keep_access(folder, made);
         for (int k = 0; old.empty() || fs::exists(fs::symlink_status(old, ignored)); ++k)
             old = with_suffix(folder, ".old" + std::to_string(k));
         fs::rename(folder, old, error);
@@ -126,6 +131,7 @@ void check_target(const fs::path& folder) {
     const fs::file_status status = fs::status(target, error);
     if (status.type() == fs::file_type::none) fail(target, error);
     if (fs::exists(status)) (void)files_of_bricks(target);
+    if (fs::exists(status) && ::access(target.c_str(), W_OK | X_OK) != 0) fail(target, {errno, std::generic_category()});
     if (!above.empty() && !fs::is_directory(above, error)) {
         throw Error(ErrorCode::Io, "the folder \"" + above.string() + "\" does not exist", target.string());
     }
@@ -140,6 +146,7 @@ BricksWriter::BricksWriter(fs::path folder, std::uint64_t id, int halo_layers)
     } else {
         fs::create_directory(work_, error);
         if (error) fail(work_, error);
+        (void)keep_access(place_, work_);  // from the beginning
     }
     done_.id = id;
     done_.halo_layers = halo_layers;

@@ -114,12 +114,12 @@ void keep_list([[maybe_unused]] const fs::path& from, [[maybe_unused]] int to) {
 
 /// Gives a new file the permissions, and where that is allowed the owner and the group, of the file that it replaces.
 void keep_access(const fs::path& from, int to) {
-    struct stat before {
-    }, made{};
+    struct stat before {};
+    struct stat made {};
     if (::stat(from.c_str(), &before) != 0 || ::fstat(to, &made) != 0) return;
     mode_t mode = before.st_mode & 0777;
     if (made.st_gid != before.st_gid && ::fchown(to, static_cast<uid_t>(-1), before.st_gid) != 0) {
-        mode = (mode & ~070U) | (mode & 070U & mode << 3);  // another group gets no more than everybody
+        mode = (mode & ~070U) | (mode & 070U & (mode << 3));  // another group gets no more than everybody
     } else {
         keep_list(from, to);
     }
@@ -135,8 +135,8 @@ bool may(const fs::path& path, int what) {
 /// Whether a file is in a folder such as /tmp, where only its owner, the folder's and root may replace it, and this is another
 /// user.
 bool is_kept_by_its_folder(const fs::path& file) {
-    struct stat folder {
-    }, about{};
+    struct stat folder {};
+    struct stat about {};
     if (::stat(folder_of(file).c_str(), &folder) != 0 || ::stat(file.c_str(), &about) != 0) return false;
     const uid_t user = ::geteuid();
     return (folder.st_mode & S_ISVTX) != 0 && user != 0 && user != folder.st_uid && user != about.st_uid;

@@ -7,7 +7,7 @@ import subprocess
 import threading
 import unittest
 
-from command import COMMAND, InFolder, subvol
+from command import COMMAND, TWO_FIELDS, InFolder, subvol
 
 POINTS = ["points", "model:ball:2"]
 SMALL = ["--size", "16x16", "--backend", "cpu", "--quiet"]
@@ -126,6 +126,17 @@ class WhatInfoShows(InFolder):
             self.assertEqual(len(self.run_ok("info", name, "--field", "density", "--json").json()["channels"]), 1)
             self.assert_refused("nothing", "info", name, "--field", "nothing")
 
+    def test_the_field_that_is_written(self):
+        (self.folder / "two.vtk").write_text(TWO_FIELDS)
+        for command, name in ((["subdivide", "--levels", 1], "a.vtu"), (["split", "--bricks", 1], "a.bricks")):
+            for field, components in (("Temp", 1), ("V", 3)):
+                self.run_ok(*command, "two.vtk", "-o", name, "--field", field)
+                self.assertEqual([(one["name"], one["components"]) for one in self.fields(name)], [(field, components)])
+            self.assert_refused("nothing", *command, "two.vtk", "-o", name, "--field", "nothing")
+            self.assertEqual(self.run_ok("info", name, "--list-fields", "--field", "V").out, "V\n")
+            self.assert_refused("nothing", "info", name, "--list-fields", "--field", "nothing")
+        self.assert_refused("nothing", "split", "model:twist:4", "-o", "b.bricks", "--field", "nothing")
+
     def test_options_without_effect_are_refused(self):
         self.run_ok(*WRITERS["a.vdb"], "-o", "a.vdb")
         self.run_ok(*POINTS, "-o", "a.ply")
@@ -136,7 +147,7 @@ class WhatInfoShows(InFolder):
         for option in of_files:
             for command in (["info", "model:ball:2"], ["subdivide", "model:ball:2", "-o", "a.vtu"],
                             ["render", "model:ball:2", "-o", "b.png"], ["probe", "model:ball:2", "--at", "0,0,0"],
-                            ["split", "model:ball:2", "-o", "b.bricks"]):
+                            ["split", "model:ball:2", "-o", "b.bricks"], ["compare", "model:ball:2", "model:ball:2"]):
                 self.assert_refused("", *command, *option)
         for option in (*of_files, ["--density", "x"]):
             for command in (["info", "a.vdb"], ["info", "a.ply"], ["info", "a.svk"], ["info", "a.vdb", "--list-fields"],

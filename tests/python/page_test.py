@@ -25,6 +25,21 @@ def test_a_page_is_one_file(tmp_path):
         subvol.page(mesh, look="isosurface")
 
 
+def test_a_page_replaces_a_file_as_it_is(tmp_path):
+    page = subvol.page(subvol.model("ball", 2))
+    private = tmp_path / "private.html"
+    private.write_text("before")
+    private.chmod(0o600)
+    (tmp_path / "link.html").symlink_to("private.html")
+    page.write(tmp_path / "link.html")
+    assert (tmp_path / "link.html").is_symlink()
+    assert private.read_text() == page.html
+    assert private.stat().st_mode & 0o777 == 0o600
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["link.html", "private.html"]
+    with pytest.raises(OSError, match="does not exist"):
+        page.write(tmp_path / "no" / "page.html")
+
+
 def test_a_notebook_shows_it():
     page = subvol.page(subvol.model("ball", 4), look="volume", tf="coolwarm")
     frame = page._repr_html_()

@@ -187,10 +187,18 @@ TEST_F(BrickFolder, ALinkStaysALink) {
 TEST_F(BrickFolder, AReplacedFolderKeepsItsPermissions) {
     ASSERT_EQ(split("t.bricks/"), "no error");
     ASSERT_EQ(::chmod(path("t.bricks").c_str(), 02750), 0);
+    ASSERT_EQ(::chmod(path("t.bricks/brick_00000.vtu").c_str(), 0600), 0);
+    ASSERT_EQ(::chmod(path("t.bricks/index.json").c_str(), 0640), 0);
     ASSERT_EQ(split("t.bricks", 3), "no error");
-    struct stat now {};
-    ASSERT_EQ(::stat(path("t.bricks").c_str(), &now), 0);
-    EXPECT_EQ(now.st_mode & 07777, 02750U);
+    const std::map<std::string, mode_t> wanted{{".", 02750},
+                                               {"brick_00000.vtu", 0600},
+                                               {"brick_00002.vtu", 0640},  // a new one has those of the index
+                                               {"index.json", 0640}};
+    for (const auto& [name, mode] : wanted) {
+        struct stat now {};
+        ASSERT_EQ(::stat((path("t.bricks") / name).c_str(), &now), 0);
+        EXPECT_EQ(now.st_mode & 07777, mode) << name;
+    }
     EXPECT_EQ(file_count(), 1U);
 }
 
