@@ -89,7 +89,7 @@ std::vector<pugi::xml_node> XdmfFile::at_path(const pugi::xml_node& node, std::s
 }
 
 void XdmfFile::visit(const pugi::xml_node& node, std::size_t count) const {
-    constexpr std::size_t kMostVisited = 100'000'000;
+    constexpr std::size_t kMostVisited = 30'000'000;
     visited_ += count;
     if (visited_ > kMostVisited) fail_at(node, "its elements refer to others too often");
 }

@@ -164,6 +164,7 @@ private:
         if (kind == "3DSMESH") {
             read_points(geometry, found);
         } else if (kind == "3DRECTMESH") {
+            expect_values(topology, grid);
             const auto cuts = file_.items(geometry, 3);
             if (cuts[0].size() != grid.points[0] || cuts[1].size() != grid.points[1] || cuts[2].size() != grid.points[2]) {
                 file_.fail_at(geometry, "its planes are not those of " + size_text(grid));
@@ -180,9 +181,9 @@ private:
         cells_ = grid.cell_count();
     }
 
-    void read_even_points(const pugi::xml_node& topology, const pugi::xml_node& geometry, const StructuredGrid& grid,
-                          MeshFile& found) {
-        std::size_t values = 0;  // of the arrays: a grid without any is small
+    // Few numbers make many points: they may be as many as the values of the arrays, and some more.
+    void expect_values(const pugi::xml_node& topology, const StructuredGrid& grid) {
+        std::size_t values = 0;
         for (const auto& array : file_.children(topology.parent(), "Attribute")) {
             const auto sizes = file_.sizes(file_.child(array, "DataItem"), "Dimensions");
             if (!sizes.empty()) values = std::max(values, file_.values(file_.child(array, "DataItem")).size());
@@ -190,6 +191,11 @@ private:
         if (grid.point_count() > most_points(8 * values)) file_.fail_at(topology, "its points are more than its values");
         constexpr std::size_t kBytesOfPoint = 64;  // with its cell
         file_.make(topology, grid.point_count() * kBytesOfPoint);
+    }
+
+    void read_even_points(const pugi::xml_node& topology, const pugi::xml_node& geometry, const StructuredGrid& grid,
+                          MeshFile& found) {
+        expect_values(topology, grid);
         const auto items = file_.items(geometry, 2);
         if (items[0].size() != 3 || items[1].size() != 3) file_.fail_at(geometry, "an origin and a spacing are needed");
         std::array<std::vector<double>, 3> cuts;

@@ -233,6 +233,13 @@ TEST_F(Xdmf, WrongFilesGetASentenceWithTheLine) {
     EXPECT_THAT(error(grid("<Topology TopologyType=\"3DCoRectMesh\" Dimensions=\"9000 9000 9\"/><Geometry "
                            "GeometryType=\"ORIGIN_DXDYDZ\"/>")),
                 HasSubstr("its points are more than its values"));
+    const std::string plane = "<DataItem Reference=\"/Xdmf/Domain/DataItem\"/>";
+    std::string planes;
+    for (int k = 0; k < 1000; ++k) planes += std::to_string(k) + " ";
+    EXPECT_THAT(error("<DataItem Dimensions=\"1000\">" + planes + "</DataItem>" +
+                      grid("<Topology TopologyType=\"3DRectMesh\" Dimensions=\"1000 1000 1000\"/><Geometry>" + plane + plane +
+                           plane + "</Geometry>")),
+                HasSubstr("its points are more than its values"));
     const std::string heavy = "<Geometry GeometryType=\"XYZ\"><DataItem Dimensions=\"8 3\" Format=\"HDF\">";
     EXPECT_THAT(error(grid(topology(mesh) + heavy + "a.h5:/x</DataItem></Geometry>")), HasSubstr("there is no file \"a.h5\""));
     EXPECT_THAT(error(grid("<Topology Reference=\"//Grid//Grid//*\"/>" + geometry(mesh))),
