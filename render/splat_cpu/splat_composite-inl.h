@@ -33,6 +33,21 @@ constexpr int kMostSteps = 96;
 /// Of a stretch between two sheets, where optical depths are summed.
 constexpr float kMostDepth = 50;
 
+/// 1 − exp(−x) of optical depths x ≥ 0, with all digits where they are small; the same as opacity_of in exp_log.glsl.
+HWY_ATTR inline Floats opacity_of(Floats depth) {
+    const Lanes d;
+    const auto set = [&](float value) HWY_ATTR { return hn::Set(d, value); };
+    const auto x = hn::Max(hn::Neg(depth), set(-87));
+    const auto n = hn::Floor(hn::MulAdd(x, set(1.44269504f), set(0.5f)));
+    const auto r = hn::MulAdd(n, set(2.12194440e-4f), hn::MulAdd(n, set(-0.693359375f), x));
+    auto p = hn::MulAdd(r, hn::MulAdd(r, set(1.0f / 5040), set(1.0f / 720)), set(1.0f / 120));
+    p = hn::MulAdd(r, hn::MulAdd(r, hn::MulAdd(r, p, set(1.0f / 24)), set(1.0f / 6)), set(0.5f));
+    p = hn::MulAdd(hn::Mul(r, r), p, r);  // exp(r) − 1
+    const IntLanes i;
+    const auto power = hn::BitCast(d, hn::ShiftLeft<23>(hn::Add(hn::ConvertTo(i, n), hn::Set(i, 127))));
+    return hn::Sub(hn::Sub(set(1), power), hn::Mul(p, power));
+}
+
 /// Composites a volume that is opaque from its boundary on: whether all light ends within the skin.
 inline bool see_boundary(const SplatFrame& frame, BlockState& state, std::size_t lane, const IntervalEnd& end) {
     if (!(end.x < 0.5f * kUnknownValue)) return false;
@@ -308,12 +323,11 @@ private:
     /// Adds the light of stretches with the mean extinction and emission `mean`.
     HWY_ATTR void add_light(Mask seen, const End& e0, const End& e1, Floats mean[4], Floats length, Floats middle) {
         const Lanes d;
-        // exp(−x) − 1: the difference of exp(−x) to 1 would have no digits where a stretch is thin.
-        const auto change = hn::Expm1(d, hn::Neg(hn::Mul(length, mean[0])));
+        const auto opacity = opacity_of(hn::Mul(length, mean[0]));
         // Rounding must not leave light where there is none, nor make a colour brighter than 1.
         const auto visible = hn::And(seen, hn::Gt(mean[0], hn::Zero(d)));
         for (std::size_t c = 1; c < 4; ++c) mean[c] = hn::Min(mean[c], mean[0]);
-        const auto light = hn::IfThenElseZero(visible, hn::Mul(hn::Sub(opacity_, hn::Set(d, 1.0f)), change));
+        const auto light = hn::IfThenElseZero(visible, hn::Mul(hn::Sub(hn::Set(d, 1.0f), opacity_), opacity));
         if constexpr (!kPlain) {
             if (frame_.scene->color_channel) take_second_color(e0, e1, mean);
         }

@@ -152,5 +152,21 @@ TEST(Footprints, RefuseWhatTheyDoNotKnow) {
     expect_error(ErrorCode::InvalidInput, "radial", [&] { Splatter(separable, kFootprints); });
 }
 
+TEST(Footprints, OfThinVolumesAddUp) {
+    // Each takes less of the light than a float next to 1 can tell.
+    constexpr int kMany = 500;
+    std::vector<Vec3> centers;
+    for (int i = 0; i < kMany; ++i) centers.push_back({0, -1 + 2.0 * i / kMany, 0});
+    const View view({.eye = {0, -10, 0}, .target = {0, 0, 0}, .up = {0, 0, 1}, .ortho_height = 2}, 3, 3);
+    const auto opacity = [&](const std::vector<Vec3>& at, double unit) {
+        const RbfVolume volume = kernels_at(at, std::vector<float>(at.size(), .5F), CompactKernel{.radius = 1.43});
+        const Optics optics({.color = {{0, {1, 1, 1}}}, .opacity = {{0, .5}}}, unit);
+        return double{render_splats(volume, view, optics, kFootprints).image.pixel(1, 1)[3]};
+    };
+    const double one = opacity({{0, 0, 0}}, 1e8);
+    EXPECT_GT(one, 0);
+    EXPECT_NEAR(opacity(centers, 1e8), kMany * one, 1e-4 * kMany * one);
+}
+
 }  // namespace footprints_test
 }  // namespace subvol::test

@@ -3,9 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <numbers>
+#include <optional>
 #include <random>
 
 #include "splat_scenes.h"
+#include "subvol/gl_device.h"
 #include "subvol/splat.h"
 
 namespace subvol::test {
@@ -211,6 +213,32 @@ TEST(SplatClosedForm, CellCenteredPointsWithoutABoundaryFillTheirBox) {
             if (x > 1 && x < kCells - 1) {
                 EXPECT_GT(alpha, 1 - std::pow(.8, kCells - .5)) << x;
                 EXPECT_LT(alpha, 1 - std::pow(.8, kCells + .5)) << x;
+            }
+        }
+    }
+}
+
+TEST(SplatClosedForm, ThinVolumesKeepTheirLightHoweverManySheets) {
+    // A sheet takes less of the light than a float next to 1 can tell.
+    HexMesh mesh = test::box(4);
+    add_field(mesh, "f", [](const Vec3& p) { return .5 + .1 * p.x; });
+    const RbfVolume volume = sample_rbf_points(mesh).volume;
+    const View view({.eye = {.5, -3, .5}, .target = {.5, .5, .5}, .up = {0, 0, 1}, .ortho_height = .8}, 4, 4);
+    std::vector<SplatOptions> ways{{.method = SplatMethod::Cpu}, {.method = SplatMethod::Cpu, .shading = Shading{}}};
+    if (find_gl_device()) ways.insert(ways.end(), {{.method = SplatMethod::Gl}, {.method = SplatMethod::Sheets}});
+    for (const double unit : {1e4, 1e9, 1e20}) {
+        const Optics optics({.color = {{0, {1, .5, .25}}}, .opacity = {{0, .5}}}, unit);
+        const double expected = -std::expm1(-std::log(2.0) / unit);  // the rays are 1 long
+        for (SplatOptions& options : ways) {
+            options.sheets = 1024;
+            const SplatResult drawn = render_splats(volume, view, optics, options);
+            for (std::size_t i = 0; i < drawn.image.rgba.size(); i += 4) {
+                // Floats are rounded in each of the sums, to both sides.
+                EXPECT_NEAR(double{drawn.image.rgba[i + 3]}, expected, 1e-4 * expected);
+                if (!options.shading) {
+                    EXPECT_NEAR(double{drawn.image.rgba[i + 1]}, .5 * expected, 1e-4 * expected);
+                }
+                EXPECT_NEAR(drawn.depth[i / 4], 3.5f, 1e-2f) << "the middle of the box";
             }
         }
     }
