@@ -128,7 +128,7 @@ PixelIntervals scene_intervals(const SplatScene& scene, const View& view, const 
         boundary_intervals(scene.volume->boundary, view, static_cast<double>(sheets.near) + middle, middle);
     if (!scene.clip.empty()) intervals = clip_intervals(intervals, view, scene.clip, middle);
     const bool inside = std::ranges::find(intervals.triangles, PixelIntervals::kNoTriangle) != intervals.triangles.end();
-    return scene.solid && view.perspective() && inside ? with_material_at_eye(intervals) : intervals;
+    return scene.solid && inside ? with_material_at_eye(intervals) : intervals;
 }
 
 }  // namespace subvol::detail

@@ -14,8 +14,7 @@ namespace subvol::detail {
                                             double middle);
 
 /// The intervals in which the rays of a picture are inside what is left of a scene's volume. No offsets if there is neither a
-/// boundary nor a clip. Where the eye is inside a solid, a slice at the nearest depth shows the material there (Shading);
-/// parallel rays see it anyway, within a pixel's width.
+/// boundary nor a clip. Where the eye is inside a solid, a slice at the nearest depth shows the material there (Shading).
 [[nodiscard]] PixelIntervals scene_intervals(const SplatScene& scene, const View& view, const SheetStack& sheets);
 
 }  // namespace subvol::detail

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "boundary_intervals.h"
 #include "kernel_axes.h"
 #include "sheet_count.h"
 #include "subvol/detail/number_text.h"
@@ -256,8 +257,8 @@ void set_clip(SplatScene& scene, const Clip& clip) {
 
 bool is_solid(const SplatScene& scene, const Optics& optics) {
     if (!scene.shading || scene.half_weight > 0) return false;
-    const double deep = static_cast<double>(kOpaqueDepth) / (kNearest * scene.diagonal);
-    return std::ranges::all_of(optics.knots(), [&](double knot) { return optics.extinction(knot) > deep; });
+    const double least = static_cast<double>(kOpaqueDepth) / (kSolidSkin * scene.diagonal);
+    return std::ranges::all_of(optics.knots(), [&](double knot) { return optics.extinction(knot) > least; });
 }
 
 Classification classify(const SplatScene& scene, const Optics& optics) {

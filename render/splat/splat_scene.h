@@ -41,6 +41,8 @@ inline constexpr float kAimedDepth = 0.45f;
 inline constexpr float kOpaqueDepth = 9.2103404f;
 /// A volume is opaque where a ray enters it if all light ends within this part of a pixel; what lies deeper is not sampled.
 inline constexpr float kSkin_px = 0.05f;
+/// The same for the eye inside a volume, where a pixel has no width: in parts of the volume's diagonal.
+inline constexpr double kSolidSkin = 1e-3;
 /// The gradient at which shading has half its effect, in parts of the range for each diagonal of the volume.
 inline constexpr float kLeastChange = 0.25f;
 /// The number of sheets that are summed together; the picture does not depend on it.
@@ -123,8 +125,7 @@ struct Classification {
     [[nodiscard]] std::array<float, 3> color_at(float x) const;
 };
 
-/// Whether a lit volume with a boundary is opaque, whatever its values: all light ends within the depth before which nothing is
-/// seen.
+/// Whether a lit volume with a boundary is opaque, whatever its values: all light ends within kSolidSkin.
 [[nodiscard]] bool is_solid(const SplatScene& scene, const Optics& optics);
 
 /// throws: Error(InvalidInput) if ranges or extinctions are beyond 32-bit floats, or the range is lost in the rounding of

@@ -2,6 +2,8 @@
 // Volumes that are cut open: every renderer against a field with a closed form, and against itself.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "lib/expect_error.h"
 #include "lib/test_meshes.h"
 #include "reference_methods.h"
@@ -350,10 +352,10 @@ TEST(ClippedSolid, CapsAreLitByTheirPlane) {
 TEST(SolidFromInside, EveryMethodShowsTheMaterialAtTheEyeWithoutLight) {
     HexMesh mesh = box_about_origin();
     test::add_field(mesh, "f", linear);
-    const Optics solid({.color = smooth_optics().function().color, .opacity = {{0, 1}}}, 1e-6 * bounds(mesh).diagonal());
     const RbfVolume volume = sample_rbf_points(mesh, {.per_edge = 2}).volume;
     const Clip behind{.planes = {{{0.6, 0, 0}, {1, 0, 0}}}};
-    for (const double ortho_height : {0.0, 0.5}) {
+    for (const auto& [ortho_height, unit] : {std::pair{0.0, 1e-6}, {0.5, 1e-6}, {0.0, 1e-3}, {0.5, 1e-3}}) {
+        const Optics solid({.color = smooth_optics().function().color, .opacity = {{0, 1}}}, unit * bounds(mesh).diagonal());
         const Camera camera{.eye = {.1, .2, -.1}, .target = {1, .4, .3}, .up = {0, 0, 1}, .ortho_height = ortho_height};
         const View view(camera, 20, 16);
         for (const Clip& clip : {Clip{}, behind}) {
@@ -368,7 +370,7 @@ TEST(SolidFromInside, EveryMethodShowsTheMaterialAtTheEyeWithoutLight) {
                                 std::abs(static_cast<double>(image.pixel(x, y)[static_cast<std::size_t>(c)]) - color[c]));
                     }
                 }
-                EXPECT_LT(worst, 2e-3) << what << ", " << ortho_height;  // values of kernels; the nearest depth
+                EXPECT_LT(worst, 2e-3) << what << ", " << ortho_height << ", " << unit;  // values of kernels; the nearest depth
             };
             std::vector<SplatMethod> methods{SplatMethod::Cpu};
             if (!gl_devices().empty()) methods.insert(methods.end(), {SplatMethod::Gl, SplatMethod::Sheets});

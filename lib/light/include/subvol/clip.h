@@ -20,8 +20,8 @@ struct CutPlane {
 ///
 /// planes:        each removes what lies on the side to which its normal points
 /// box:           removes what lies outside
-/// slices:        planes that are drawn where they are inside the (cut) volume: opaque, without light, in the colours of the
-///                values there
+/// slices:        planes that are drawn where they are inside the (cut) volume or on its faces (to 2e-6 of its diagonal):
+///                opaque, without light, in the colours of the values there
 /// around_slices: whether the volume is drawn too where there are slices; if not, the slices are drawn alone
 struct Clip {
     std::vector<CutPlane> planes{};
