@@ -11,6 +11,8 @@
 
 namespace subvol {
 
+using detail::finite;
+
 namespace {
 
 void check(const CutPlane& plane, const char* kind, std::size_t number) {
