@@ -133,6 +133,8 @@ project(subvol_optional LANGUAGES CXX)
 set(CMAKE_CXX_STANDARD 20)
 ${find}
 add_library(works ${kind} works.cpp)
+target_compile_options(works PRIVATE -fno-sanitize=all) # clang links their libraries into programs only
+target_link_options(works PRIVATE -fno-sanitize=all)
 target_link_libraries(works PRIVATE ${subvol_link_${name}})
 if(NOT ${kind} STREQUAL OBJECT)
   target_link_options(works PRIVATE LINKER:--no-undefined)

@@ -18,6 +18,13 @@ auto or_error(const Make& make, const Error& otherwise) {
     }
 }
 
+/// numpy takes a sequence whose length raises an exception for an object, and drops the exception: this raises it again.
+void raise_of_lengths(const py::array& objects) {
+    for (const py::handle object : objects.attr("ravel")()) {
+        if (PySequence_Check(object.ptr()) != 0 && PySequence_Size(object.ptr()) < 0) throw py::error_already_set();
+    }
+}
+
 std::string shape_of(const py::array& array) {
     std::string text = "(";
     for (py::ssize_t d = 0; d < array.ndim(); ++d) text += (d > 0 ? ", " : "") + std::to_string(array.shape(d));
@@ -48,7 +55,13 @@ void check_columns(const py::array& array, py::ssize_t columns, const std::strin
 }  // namespace
 
 py::array array_from(const py::handle& given, const Error& otherwise) {
-    return or_error([&] { return py::array(py::module_::import("numpy").attr("asarray")(given)); }, otherwise);
+    return or_error(
+        [&] {
+            py::array array(py::module_::import("numpy").attr("asarray")(given));
+            if (array.dtype().kind() == 'O') raise_of_lengths(array);
+            return array;
+        },
+        otherwise);
 }
 
 template <class T>

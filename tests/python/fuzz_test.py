@@ -200,6 +200,10 @@ def test_exceptions_of_given_objects_pass_on(exception, cube, ball_points):
         def __getitem__(self, index):
             raise exception("by the guest")
 
+    class Unmeasured(Row):
+        def __len__(self):
+            raise exception("by the guest")
+
     grid = subvol.rasterize(cube, voxel_size=.5)[0]
     fill = np.zeros((2, 2, 3))
     for call in (lambda guest: subvol.HexMesh(guest, cube.cells), lambda guest: subvol.HexMesh(cube.points, guest),
@@ -213,5 +217,6 @@ def test_exceptions_of_given_objects_pass_on(exception, cube, ball_points):
                  lambda guest: subvol.Refinement(cube, 1).apply(guest), lambda guest: subvol.render(cube, size=(8, 8), clip=guest)):
         with pytest.raises(exception, match="by the guest"):
             call(Guest())
-    with pytest.raises(exception, match="by the guest"):
-        subvol.HexMesh(Row(), cube.cells)
+    for guest in (Row(), [Row()], Unmeasured(), [Unmeasured()] * 3):
+        with pytest.raises(exception, match="by the guest"):
+            subvol.HexMesh(guest, cube.cells)
