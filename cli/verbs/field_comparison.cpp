@@ -79,7 +79,7 @@ Figures FieldComparison::measure(const std::string& test, const std::string& ref
     report["samples"] = errors.samples;
     report["uncovered"] = errors.uncovered;
     report["coverage"] = errors.coverage();
-    if (errors.coverage() < least_coverage) {
+    if (!(errors.coverage() >= least_coverage)) {
         report.warn(text("the figures are of a part of the reference: ", test, " has values at ", errors.samples, " of ",
                          errors.samples + errors.uncovered, " places in ", reference, ", less than --coverage ",
                          least_coverage));

@@ -92,7 +92,7 @@ private:
             faults.push_back(text(demands_[i], " is not met by ", std::setprecision(6), figures.at(demands[i].metric)));
         }
         const double coverage = report.json().value("coverage", 1.0);
-        if (coverage < fields_.least_coverage) faults.push_back(text("a coverage of ", std::setprecision(3), coverage));
+        if (!(coverage >= fields_.least_coverage)) faults.push_back(text("a coverage of ", std::setprecision(3), coverage));
         return faults;
     }
 
