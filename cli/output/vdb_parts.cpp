@@ -2,6 +2,7 @@
 #include "vdb_parts.h"
 
 #include <algorithm>
+#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <iomanip>
@@ -29,6 +30,15 @@ Json entry_of(const std::string& file, const GridReport& first) {
     Json entry{{"file", file}, {"active_voxels", first.active_voxels}};
     if (first.active_voxels > 0) entry["bounds"] = {corner(first.bounds.lower), corner(first.bounds.upper)};
     return entry;
+}
+
+/// path: the final name, for messages
+void write_text(const detail::AtomicFile& file, const fs::path& path, const std::string& text) {
+    std::FILE* const stream = file.open();
+    const bool written = std::fwrite(text.data(), 1, text.size(), stream) == text.size();
+    if (std::fclose(stream) != 0 || !written) {
+        throw Error(ErrorCode::Io, "cannot be written; the disk may be full", path.string());
+    }
 }
 
 /// The parts that the list of an earlier run names. Nothing if there is another file with the name of the list.
@@ -73,52 +83,59 @@ void VdbParts::write(std::span<const VdbGrid> grids, std::size_t number, const J
 
 void VdbParts::finish(const std::string& input, double voxel_size_world, Report& report) {
     const bool whole = count() == 1 || bytes_ <= memory_bytes_;
+    std::vector<VdbGrid> grids;
     if (whole) {
-        write_whole(report);
+        grids = report.timed("join", [&] { return joined(); });
+        files_.clear();
+        list_ = Json::array({entry_of(fs::path(output_.path).filename().string(), grids.front().report())});
     } else {
         check_names();
-        report.note(text("the grids take ", bytes_text(static_cast<double>(bytes_)), ", more than the ",
-                         bytes_text(static_cast<double>(memory_bytes_)), " of --memory: they are in ", counted(count(), "file"),
-                         ", which ", list_file_.string(), " lists; `subvol join` makes ", output_.path, " of it in memory"));
     }
+    // All files are on the disk before the first one has its name.
+    std::optional<detail::AtomicFile> list;
+    if (!whole || always_listed()) {
+        const Json json{{"input", input},
+                        {"version", SUBVOL_VERSION},
+                        {"voxel_size", voxel_size_world},
+                        {"active_voxels", active_voxels_},
+                        {"parts", list_}};
+        write_text(list.emplace(list_file_), list_file_, json.dump(2) + "\n");
+    }
+    if (whole) write_reported(grids, output_, report);
+    if (list) list->commit();  // before the parts: it says whose they are, should this process end between two of them
+    for (detail::AtomicFile& file : files_) file.commit();
     report["parts"] = count();
     report["active_voxels"] = active_voxels_;
     report["voxel_size"] = voxel_size_world;
-    std::error_code error;
-    if (whole && !always_listed()) {
-        const auto old = parts_of_list(list_file_);
-        if (old && !old->empty()) report.warn(text(list_file_.string(), " and its parts are those of an earlier run"));
-        return;
-    }
-    const Json json{{"input", input},
-                    {"version", SUBVOL_VERSION},
-                    {"voxel_size", voxel_size_world},
-                    {"active_voxels", active_voxels_},
-                    {"parts", list_}};
-    // The list first: it says whose the parts are, should this process end between two of them.
-    detail::write_text_file(list_file_, json.dump(2) + "\n");
-    for (detail::AtomicFile& file : files_) file.commit();
-    if (whole) return;
-    report["output"] = list_file_.string();
-    if (fs::exists(output_.path, error)) report.warn(text(output_.path, " is that of an earlier run"));
+    if (!whole) report["output"] = list_file_.string();
+    warn(whole, report);
 }
 
-/// Parts that fit into the memory together, or that are only one, become the file that was asked for.
-void VdbParts::write_whole(Report& report) {
-    std::vector<VdbGrid> grids = report.timed("join", [&] {
-        std::vector<std::vector<VdbGrid>> of_grids;  // of each grid its parts
-        for (const detail::AtomicFile& file : files_) {
-            std::vector<VdbGrid> read = read_vdb_contents(file.path().string()).grids;
-            of_grids.resize(std::max(of_grids.size(), read.size()));
-            for (std::size_t g = 0; g < read.size(); ++g) of_grids[g].push_back(std::move(read[g]));
-        }
-        std::vector<VdbGrid> joined;
-        for (std::vector<VdbGrid>& parts : of_grids) joined.push_back(join_grids(std::move(parts)));
-        return joined;
-    });
-    files_.clear();
-    write_reported(grids, output_, report);
-    list_ = Json::array({entry_of(fs::path(output_.path).filename().string(), grids.front().report())});
+/// What a user who has asked for one file should know.
+void VdbParts::warn(bool whole, Report& report) const {
+    if (!whole) {
+        report.warn(text("the grids take ", bytes_text(static_cast<double>(bytes_)), ", more than the ",
+                         bytes_text(static_cast<double>(memory_bytes_)), " of --memory: they are in ", counted(count(), "file"),
+                         ", which ", list_file_.string(), " lists; `subvol join` makes ", output_.path, " of it in memory"));
+        std::error_code error;
+        if (fs::exists(output_.path, error)) report.warn(text(output_.path, " is that of an earlier run"));
+    } else if (!always_listed()) {
+        const auto old = parts_of_list(list_file_);
+        if (old && !old->empty()) report.warn(text(list_file_.string(), " and its parts are those of an earlier run"));
+    }
+}
+
+/// All parts together.
+std::vector<VdbGrid> VdbParts::joined() const {
+    std::vector<std::vector<VdbGrid>> of_grids;  // of each grid its parts
+    for (const detail::AtomicFile& file : files_) {
+        std::vector<VdbGrid> read = read_vdb_contents(file.path().string()).grids;
+        of_grids.resize(std::max(of_grids.size(), read.size()));
+        for (std::size_t g = 0; g < read.size(); ++g) of_grids[g].push_back(std::move(read[g]));
+    }
+    std::vector<VdbGrid> grids;
+    for (std::vector<VdbGrid>& parts : of_grids) grids.push_back(join_grids(std::move(parts)));
+    return grids;
 }
 
 /// The user has not given the names of parts: only those of an earlier run are replaced.

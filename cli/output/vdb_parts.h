@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "report.h"
 #include "subvol/detail/atomic_file.h"
@@ -39,7 +40,8 @@ public:
 
 private:
     [[nodiscard]] bool always_listed() const { return output_.memory_bytes > 0; }
-    void write_whole(Report& report);
+    [[nodiscard]] std::vector<VdbGrid> joined() const;
+    void warn(bool whole, Report& report) const;
     void check_names() const;
 
     const VdbOutput& output_;
