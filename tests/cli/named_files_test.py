@@ -47,7 +47,7 @@ class NamedFiles(InFolder):
         instance = "*INSTANCE, NAME=i, PART=P\n*END INSTANCE\n"
         self.write("a.inp", part.format(900000) + instance * 100)
         self.assert_refused("info", "a.inp", naming="its instances have too many nodes, elements and members of sets")
-        self.write("a.inp", part.format(100) + instance * 40000)
+        self.write("a.inp", part.format(10000) + instance * 200)
         self.assert_refused("info", "a.inp", naming="a.inp, line ")
 
     def test_pipes_devices_and_folders_behind_names(self):
@@ -64,7 +64,7 @@ class NamedFiles(InFolder):
                 self.assert_refused("study", "s.json", "-o", "out", naming="is not a regular file")
                 self.write("s.json", study.format('{"model": "ball", "resolution": 2}', f'"{kind}.json"', ""))
                 self.assert_refused("study", "s.json", "-o", "out", naming="is not a regular file")
-                for action in ("load_state", "colors"):
+                for action in ("load_state", "tf"):
                     self.write("view.json", f'[{{"{action}": "{kind}.json"}}]')
                     self.assert_refused("view", "model:ball:2", "--script", "view.json", naming="is not a regular file")
 

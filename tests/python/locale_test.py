@@ -21,9 +21,9 @@ HOST = textwrap.dedent("""
         assert [mesh.fields["f"][0] for _, mesh in series] == [0.25, 0.5], name
     mesh = subvol.read_mesh("a.pvd")
     assert len(mesh.cells) == 1 and mesh.points[:, 0].max() == 1.5
-    subvol.write_mesh("comma.mesh", mesh)
-    points = subvol.sample(mesh, density="0.5*x + 0.25")
-    subvol.write_points("comma.ply", points)
+    subvol.write_mesh(mesh, "comma.mesh")
+    points = subvol.sample(mesh)
+    subvol.write_points(points, "comma.ply")
 """)
 
 
@@ -51,7 +51,7 @@ def write_steps(folder):
     (folder / "a.xdmf").write_text('<Xdmf><Domain><Grid GridType="Collection" CollectionType="Temporal">\n' + grids +
                                    "</Grid></Domain></Xdmf>")
     for step in (0, 1):
-        subvol.write_mesh(folder / f"t{step}.vtu", subvol.read_mesh(folder / "a.xdmf", step=step))
+        subvol.write_mesh(subvol.read_mesh(folder / "a.xdmf", step=step), folder / f"t{step}.vtu")
     (folder / "a.pvd").write_text('<VTKFile type="Collection"><Collection><DataSet timestep="0.25" file="t0.vtu"/>'
                                   '<DataSet timestep="0.5" file="t1.vtu"/></Collection></VTKFile>')
 
@@ -61,7 +61,7 @@ def test_files_mean_the_same_in_a_host_with_a_comma(tmp_path, german):
     done = subprocess.run([sys.executable, "-c", HOST], cwd=tmp_path, env=german, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
     mesh = subvol.read_mesh(tmp_path / "a.pvd")
-    subvol.write_mesh(tmp_path / "point.mesh", mesh)
-    subvol.write_points(tmp_path / "point.ply", subvol.sample(mesh, density="0.5*x + 0.25"))
+    subvol.write_mesh(mesh, tmp_path / "point.mesh")
+    subvol.write_points(subvol.sample(mesh), tmp_path / "point.ply")
     for name in ("mesh", "ply"):
         assert (tmp_path / f"comma.{name}").read_bytes() == (tmp_path / f"point.{name}").read_bytes()
