@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "hdf5_file.h"
 
+#include <algorithm>
+#include <system_error>
+#include <utility>
+
 #include "subvol/detail/printable.h"
 #include "subvol/error.h"
 #include "text_scanner.h"
@@ -26,6 +30,20 @@ std::size_t rows_of(const Hdf5Dataset& dataset) {
 }
 
 }  // namespace
+
+Hdf5File::Hdf5File(std::unique_ptr<Hdf5Source> source, std::string file) : source_(std::move(source)), file_(std::move(file)) {
+    std::error_code none;
+    const auto size = std::filesystem::file_size(file_, none);
+    if (!none) there_ = size;
+}
+
+// Links may give one dataset any number of names.
+void Hdf5File::count_read(const Hdf5Dataset& dataset, std::size_t bytes) const {
+    there_ = std::max(there_, dataset.most_bytes);
+    read_ += bytes;
+    if (read_ <= NamedFiles::kFewBytes || (read_ - NamedFiles::kFewBytes) / most_times_ <= there_) return;
+    fail("what it names again and again is too much", "at most " + std::to_string(most_times_) + " times its bytes are read");
+}
 
 Hdf5Dataset Hdf5File::dataset(const std::string& path) const {
     auto found = source_->find(path);
@@ -65,6 +83,7 @@ std::string Hdf5File::bytes(const std::string& path, const Hdf5Dataset& dataset,
                  std::to_string(row * count) + " are needed",
              "smaller chunks, as h5repack makes them");
     }
+    count_read(dataset, row * count);
     auto bytes = source_->values(path, dataset, starts, counts);
     if (!bytes || bytes->size() != row * count) fail(in_quotes(path) + " cannot be read: the file is damaged");
     return *std::move(bytes);

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "named_files.h"
 #include "number_type.h"
 
 namespace subvol::detail {
@@ -55,7 +56,10 @@ public:
 /// Never reads more values than the storage of a dataset can have. A row is all values at a place along the first dimension.
 class Hdf5File {
 public:
-    Hdf5File(std::unique_ptr<Hdf5Source> source, std::string file) : source_(std::move(source)), file_(std::move(file)) {}
+    Hdf5File(std::unique_ptr<Hdf5Source> source, std::string file);
+
+    /// From now on values may be read as often as tables have columns, of which each may be an array of its own.
+    void allow_columns() { most_times_ = 256; }
 
     [[nodiscard]] bool has(const std::string& path) const { return source_->find(path).has_value(); }
     [[nodiscard]] std::vector<std::string> names(const std::string& group) const { return source_->names(group); }
@@ -85,8 +89,12 @@ private:
     [[nodiscard]] std::string bytes(const std::string& path, const Hdf5Dataset& dataset, std::size_t first,
                                     std::size_t count) const;
 
+    void count_read(const Hdf5Dataset& dataset, std::size_t bytes) const;
+
     std::unique_ptr<Hdf5Source> source_;
     std::string file_;
+    std::size_t most_times_ = NamedFiles::kMostTimes;
+    mutable std::size_t there_ = 0, read_ = 0;  // bytes of the file or its largest dataset, and those that were read
 };
 
 }  // namespace subvol::detail

@@ -5,14 +5,20 @@
 
 #include <algorithm>
 #include <array>
-
-#include "subvol/detail/number_text.h"
+#include <charconv>
 
 namespace subvol::detail {
 
 namespace {
 
 constexpr double kMessage_s = 4;
+
+/// As printf's %.*g, the same in every locale.
+std::string text_of(double number, int digits) {
+    std::array<char, 40> text{};
+    const auto [end, error] = std::to_chars(text.data(), text.data() + text.size(), number, std::chars_format::general, digits);
+    return {text.data(), end};
+}
 
 /// A combo box of words. returns: the one that was chosen now; empty: none
 std::string choose(const char* label, const std::string& current, const std::vector<std::string>& words) {
@@ -53,7 +59,7 @@ void draw_what(WindowHost& host, WindowMemory& memory) {
     if (times.size() < 2) return;
     int step = static_cast<int>(state.step);
     ImGui::SetNextItemWidth(-0.34F * ImGui::GetContentRegionAvail().x);
-    const std::string time = std::to_string(step) + "   t = " + number_text(times[state.step], 5);
+    const std::string time = std::to_string(step) + "   t = " + text_of(times[state.step], 5);
     if (ImGui::SliderInt("step", &step, 0, static_cast<int>(times.size()) - 1, time.c_str()))
         run(host, memory, "step", std::to_string(step));
     ImGui::SameLine();
@@ -166,7 +172,7 @@ void run_and_tell(WindowHost& host, WindowMemory& memory, const std::string& nam
 }
 
 std::string json_text(double number) {
-    return number_text(number, 10);
+    return text_of(number, 10);
 }
 
 std::string json_text(double a, double b) {

@@ -181,7 +181,10 @@ XdmfFile::Dataset XdmfFile::dataset_of(const pugi::xml_node& item) {
     }
     const std::filesystem::path path = beside(item, text.substr(0, colon));
     auto& file = heavy_[NamedFiles::identity(path)];
-    if (!file) file = std::make_unique<Hdf5File>(open_hdf5(path), path.string());
+    if (!file) {
+        file = std::make_unique<Hdf5File>(open_hdf5(path), path.string());
+        file->allow_columns();
+    }
     return {file.get(), std::filesystem::path(text.substr(colon + 1)).lexically_normal().string()};
 }
 

@@ -58,6 +58,7 @@ public:
         node("/Base/" + name + "/ZoneType", "ZoneType_t", "Structured");
         coordinates("/Base/" + name + "/GridCoordinates", mesh.points);
     }
+    void link(const std::string& object, const std::string& name) { file_.link(object, name); }
     void zone(const std::vector<Vec3>& points, std::int64_t cells) {
         node("/Base/Zone", "Zone_t", Numbers{static_cast<std::int64_t>(points.size()), cells, 0});
         node("/Base/Zone/ZoneType", "ZoneType_t", "Unstructured");
@@ -83,6 +84,17 @@ protected:
         return error_of([&] { static_cast<void>(read_mesh(path("bad.cgns"))); });
     }
 };
+
+TEST_F(Cgns, OneZoneByManyNamesIsRefused) {
+    EXPECT_THAT(error([](CgnsWriter& file) {
+                    HexMesh mesh = make_box(40, 40, 40);
+                    file.node("/Base/Zone", "Zone_t", Numbers{41, 41, 41, 40, 40, 40, 0, 0, 0});
+                    file.node("/Base/Zone/ZoneType", "ZoneType_t", "Structured");
+                    file.coordinates("/Base/Zone/GridCoordinates", mesh.points);
+                    for (int k = 0; k < 200; ++k) file.link("/Base/Zone", "/Base/Zone" + std::to_string(k));
+                }),
+                HasSubstr("bad.cgns: what it names again and again is too much"));
+}
 
 TEST_F(Cgns, StructuredZonesAreBlocksThatAreJoined) {
     {

@@ -63,6 +63,11 @@ public:
         H5Sclose(space);
     }
 
+    /// Another name of an object.
+    void link(const std::string& object, const std::string& name) {
+        checked(H5Lcreate_hard(file_, object.c_str(), file_, name.c_str(), groups_, H5P_DEFAULT));
+    }
+
     void attribute(const std::string& object, const std::string& name, const std::vector<std::int64_t>& values) {
         const hsize_t count = values.size();
         const hid_t space = H5Screate_simple(1, &count, nullptr);
