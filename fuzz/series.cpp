@@ -33,10 +33,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     folder.put(data, size);
     const char letter = size == 0 ? 'd' : static_cast<char>(data[0]);
     return fuzz::run([&] {
-        const ReadResult result = letter == 's'   ? detail::read_collection(folder.path("a.series"), {})
-                                  : letter == 'p' ? detail::read_collection(folder.path("a.pvtu"), {})
-                                  : letter == 'm' ? detail::read_collection(folder.path("a.vtm"), {})
-                                                  : detail::read_collection(folder.path("a.pvd"), {});
+        const char* name = letter == 's' ? "a.series" : letter == 'p' ? "a.pvtu" : letter == 'm' ? "a.vtm" : "a.pvd";
+        const ReadResult result = detail::read_collection(folder.path(name), {});
         validate(result.mesh);
         static_cast<void>(inspect(result.mesh));
     });

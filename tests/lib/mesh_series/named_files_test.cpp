@@ -130,6 +130,26 @@ TEST_F(NamedFiles, TheSameBytesAgainAndAgainAreRefused) {
     EXPECT_THAT(error("a.xdmf", xdmf(300000)), HasSubstr("what is named again and again is too much"));
 }
 
+// A small file whose arrays are all at the same place in it.
+TEST_F(NamedFiles, ArraysThatShareAppendedDataAreRefused) {
+    const HexMesh mesh = make_box(29, 29, 29);
+    const std::uint64_t size = mesh.points.size() * sizeof(Vec3);
+    std::string data(reinterpret_cast<const char*>(&size), sizeof size);
+    data.append(reinterpret_cast<const char*>(mesh.points.data()), size);
+    const auto text = [&](int arrays) {
+        const std::string extent = "Extent=\"0 29 0 29 0 29\">";
+        const std::string here = "type=\"Float64\" NumberOfComponents=\"3\" format=\"appended\" offset=\"0\"/>";
+        return "<VTKFile type=\"StructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">"
+               "<StructuredGrid Whole" +
+               extent + "<Piece " + extent + "<Points><DataArray " + here + "</Points><PointData>" +
+               repeated("<DataArray Name=\"a\" " + here, arrays) +
+               "</PointData></Piece></StructuredGrid><AppendedData encoding=\"raw\">_" + data + "</AppendedData></VTKFile>";
+    };
+    write("a.vts", text(3));
+    EXPECT_EQ(read_mesh(path("a.vts")).mesh.attributes.size(), 3u);
+    EXPECT_THAT(error("a.vts", text(200)), HasSubstr("a.vts, line 1: what is named again and again is too much"));
+}
+
 TEST_F(NamedFiles, CopiesOfADeckAreInProportionToIt) {
     const std::string part = "*PART, NAME=P\n" + kElement + "*END PART\n";
     const std::string instance = "*INSTANCE, NAME=i, PART=P\n*END INSTANCE\n";
@@ -168,6 +188,18 @@ TEST_F(NamedFiles, OnlyRegularFilesAreReadBehindANameAndNamesEndNowhere) {
                     HasSubstr(wrong));
         EXPECT_THAT(error_of([&] { static_cast<void>(detail::read_regular(path(name))); }), HasSubstr("not a regular file"));
     }
+    // Files that lie beside another, or in its folder.
+    const HexMesh cube = make_box(1, 1, 1);
+    std::string grid = "2 2 2\n";
+    for (int a = 0; a < 3; ++a) {
+        for (const Vec3& x : cube.points) grid += number(x[a]) + " ";
+    }
+    ASSERT_EQ(::mkfifo(path("a.q").c_str(), 0600), 0);
+    EXPECT_THAT(error("a.xyz", grid), HasSubstr("\"a.q\" is not a regular file"));
+    std::filesystem::create_directories(path("constant/polyMesh"));
+    write("constant/polyMesh/faces", "");
+    ASSERT_EQ(::mkfifo(path("constant/polyMesh/points").c_str(), 0600), 0);
+    EXPECT_THAT(error("a.foam", ""), HasSubstr("\"points\" is not a regular file"));
     write_cubes("b.vtu");
     EXPECT_THAT(error("a.vtu.series", R"({"files": [{"name": "b.vtu\u0000../../etc/passwd"}]})"),
                 HasSubstr("entry 0 of \"files\": the name \"b.vtu\\x00../../etc/passwd\" has a zero byte"));
