@@ -37,7 +37,7 @@ inline constexpr double kNearest = 1e-4;
 [[nodiscard]] PixelIntervals boundary_intervals(const Surface& surface, const View& view, double near, double middle);
 
 /// The most intervals of a ray that shaders go through: a dispatch must not take any time that a scene asks for.
-inline constexpr std::uint32_t kMostGlIntervals = 1024;
+inline constexpr std::uint32_t kMostGlIntervals = 4096;
 
 /// throws: Error(MissingCapability) if a ray has more of them
 void check_for_gl(const PixelIntervals& intervals);
