@@ -196,7 +196,7 @@ TEST_F(VtkHdf, AChunkDoesNotBecomeMoreThanItsNumbers) {
             file.put_packed("/VTKHDF/PointData/T", {8}, chunk, packed);
         });
     };
-    EXPECT_THAT(said({8}), HasSubstr("\"/VTKHDF/PointData/T\" cannot be read: the file is damaged"));
+    EXPECT_THAT(said({1 << 11}), HasSubstr("\"/VTKHDF/PointData/T\" cannot be read: the file is damaged"));
     EXPECT_THAT(said({1 << 14}), HasSubstr("\"/VTKHDF/PointData/T\" cannot be read: the file is damaged"));
     EXPECT_THAT(said({zeros.size() / 8}), HasSubstr("has chunks of 104857600 bytes, of which 64 are needed"));
 }
