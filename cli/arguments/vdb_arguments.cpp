@@ -85,7 +85,8 @@ void VdbArguments::add_frames_to(CLI::App& app) {
     app.add_option("--frames", frames,
                    "a sequence: A-B, or N for 1-N. In FILE and --output a row of # is replaced by the number of the frame, "
                    "padded with zeros to that many digits")
-        ->type_name("A-B");
+        ->type_name("A-B")
+        ->transform(frame_range());
     app.add_option("--to", to,
                    "a sequence from FILE to this mesh of the same cells: points and values are interpolated linearly")
         ->type_name("FILE");

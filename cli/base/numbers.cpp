@@ -143,6 +143,24 @@ CLI::Validator number_list(std::size_t count, const std::string& example) {
     return {check, "", "numbers"};
 }
 
+CLI::Validator frame_range() {
+    const auto check = [](std::string& text) -> std::string {
+        constexpr int kMostFrames = 1'000'000;
+        const auto number_in = [](std::string_view digits) {
+            int number = -1;
+            const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
+            return error == std::errc() && end == digits.data() + digits.size() ? number : -1;
+        };
+        const std::size_t dash = text.find('-');
+        const std::string_view all = text;
+        const int first = dash == std::string::npos ? 1 : number_in(all.substr(0, dash));
+        const int last = number_in(dash == std::string::npos ? all : all.substr(dash + 1));
+        if (first < 0 || last < first) return refusal(text, "is not a range of frames", "1-10, or 10 for the same");
+        return last - first < kMostFrames ? "" : refusal(text, "has too many frames", "at most a million");
+    };
+    return {check, "", "frames"};
+}
+
 CLI::Validator byte_count() {
     constexpr std::uint64_t kMost = std::uint64_t{1} << 60;
     const auto check = [](std::string& text) -> std::string {

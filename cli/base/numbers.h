@@ -27,6 +27,8 @@ namespace subvol::cli {
 [[nodiscard]] CLI::Validator number_or(const std::string& word, const CLI::Validator& number);
 /// So many numbers with commas between them. example: what would be right
 [[nodiscard]] CLI::Validator number_list(std::size_t count, const std::string& example);
+/// "3-12", or "12" for "1-12": numbers of frames, at most a million.
+[[nodiscard]] CLI::Validator frame_range();
 /// "500M", "1G", "1048576": in units of 1024, 1024² and so on.
 [[nodiscard]] CLI::Validator byte_count();
 

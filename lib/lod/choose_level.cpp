@@ -2,6 +2,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 #include "node_test.h"
@@ -91,7 +92,7 @@ KernelCut cut_of(const KernelHierarchy& hierarchy, const View* view, const Level
 
 detail::NodeTest::NodeTest(const View* view, const LevelOptions& options, std::size_t kernels, std::size_t channels)
     : view_(view), options_(options), single_(kernels == 1) {
-    if (!(options.pixels >= 0)) {
+    if (!(options.pixels >= 0 && std::isfinite(options.pixels))) {
         throw Error(ErrorCode::InvalidInput, "the width of kernels is " + detail::number_text(options.pixels) + " pixels", {},
                     "0 or more");
     }

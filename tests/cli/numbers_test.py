@@ -13,7 +13,7 @@ GIVEN = {
     "subdivide": ["model:ball:2", "-o", "a.vtu"],
     "fit": [],
     "points": ["model:ball:2", "-o", "a.ply"],
-    "vdb": ["model:ball:2", "-o", "a_#.vdb"],
+    "vdb": ["model:ball:2", "-o", "a.vdb"],
     "render": ["model:ball:2", "-o", "a.png"],
     "view": ["model:ball:2", "--screenshot", "a.png"],
     "page": ["model:ball:2", "-o", "a.html"],
