@@ -78,7 +78,7 @@ def render(what: Drawable, *, method: str = "splat", view: str = "iso", camera: 
     counts and seconds.
     """
     check_numbers(tension=tension)
-    check_numbers(0, opacity_unit=opacity_unit, ambient_occlusion=ambient_occlusion, lod=lod, crease_angle=crease_angle, seconds=seconds,
+    check_numbers(0, opacity_unit=opacity_unit, ambient_occlusion=ambient_occlusion, crease_angle=crease_angle, seconds=seconds,
                   image_tolerance=image_tolerance)
     if method not in ("splat", "sheets", "footprints", "tets", "pt", "dense", "grid"):
         raise InvalidInput(f"method: '{method}' is not known (splat, sheets, footprints, tets, pt, dense or grid)", "method",
