@@ -10,7 +10,7 @@ import subvol
 # Each function with what it needs besides the argument.
 CALLS = {
     "evaluate_limit": lambda mesh, points, folder, **more: subvol.evaluate_limit(mesh, [0], [[.5, .5, .5]], **more),
-    "points_error": lambda mesh, points, folder, **more: subvol.points_error(mesh, points, **more),
+    "points_error": lambda mesh, points, folder, **more: subvol.points_error(points, mesh, **more),
     "probe": lambda mesh, points, folder, **more: subvol.probe(mesh, [[0, 0, 0]], **more),
     "measure": lambda mesh, points, folder, **more: subvol.measure(mesh, **more),
     "slice": lambda mesh, points, folder, **more: subvol.slice(mesh, **{"point": (0, 0, 0), "normal": (0, 0, 1), "resolution": 8, **more}),
