@@ -127,6 +127,7 @@ void replace_folder(const fs::path& made, const fs::path& folder) {
 
 void check_target(const fs::path& folder) {
     const fs::path target = place_of(folder), above = target.parent_path();
+    if (target.empty()) throw Error(ErrorCode::InvalidInput, "the folder of bricks has no name");
     std::error_code error;
     const fs::file_status status = fs::status(target, error);
     if (status.type() == fs::file_type::none) fail(target, error);

@@ -73,6 +73,8 @@ TEST_F(BrickFolder, AnotherFolderWithAnIndexIsNotReplaced) {
     expect_refused("is no folder of bricks", "empty");
     (void)write("file", "text");
     expect_refused("is no folder of bricks", "file");
+    EXPECT_NE(error_of([&] { (void)split_mesh("", mesh_, {.bricks = 2}); }).find("has no name"), std::string::npos);
+    EXPECT_FALSE(fs::exists(".unfinished"));
 }
 
 TEST_F(BrickFolder, WhatIsNoneOfItsBricksStaysAndIsNamed) {
