@@ -274,18 +274,38 @@ private:
         Vec3 position{0.0};
     };
 
-    /// Goes from each start to the best of the places around it, which are nearer each time that it is the best itself.
+    /// Fields are searched some at a time: all of those in question are evaluated at the places of each.
     void search(std::span<const Sums* const> of, std::vector<PartMeasure>& found) const {
+        constexpr std::size_t kTogether = 16;
+        const std::size_t count = mesh_.attributes.size();
+        std::size_t first = 0;
+        for (std::size_t a = 0; a < count; a += kTogether) {
+            const auto begin = mesh_.attributes.begin() + static_cast<std::ptrdiff_t>(a);
+            const auto end = mesh_.attributes.begin() + static_cast<std::ptrdiff_t>(std::min(a + kTogether, count));
+            std::size_t channels = 0;
+            for (auto field = begin; field != end; ++field) channels += static_cast<std::size_t>(field->channels);
+            if (count <= kTogether) return search(mesh_, 0, channels, of, found);
+            const HexMesh some{mesh_.points, mesh_.cells, {begin, end}, mesh_.creases, mesh_.sharp_faces};
+            search(some, first, channels, of, found);
+            first += channels;
+        }
+    }
+
+    /// Goes from each start to the best of the places around it, which are nearer each time that it is the best itself.
+    ///
+    /// fields: have so many channels, which are those from the first one on
+    void search(const HexMesh& fields, std::size_t first, std::size_t channels, std::span<const Sums* const> of,
+                std::vector<PartMeasure>& found) const {
         std::vector<Search> searches;
         for (std::size_t p = 0; p < of.size(); ++p) {
-            for (std::size_t c = 0; c < channels_; ++c) {
+            for (std::size_t c = first; c < first + channels; ++c) {
                 for (const Start& start : of[p]->extremes[c].low) searches.push_back({p, c, false, start});
                 for (const Start& start : of[p]->extremes[c].high) searches.push_back({p, c, true, start});
             }
         }
         for (Search& one : searches) one.best.value = one.high ? -INFINITY : INFINITY;
         std::vector<LimitQuery> queries(27 * searches.size());
-        const LimitEvaluator limit(mesh_, {.scheme = options_.scheme});
+        const LimitEvaluator limit(fields, {.scheme = options_.scheme});
         for (int round = 0; round < kMostRounds && !searches.empty(); ++round) {
             report_progress(options_.progress, "extremes", static_cast<double>(round) / kMostRounds);
             for (std::size_t q = 0; q < queries.size(); ++q) {
@@ -295,7 +315,7 @@ private:
                 queries[q] = {from.place.cell, glm::clamp(from.place.uvw + offset, Vec3(0.0), Vec3(1.0))};
             }
             const LimitSamples samples = limit.at(queries);
-            for (std::size_t s = 0; s < searches.size(); ++s) step(searches[s], 27 * s, queries, samples);
+            for (std::size_t s = 0; s < searches.size(); ++s) step(searches[s], first, 27 * s, queries, samples);
         }
         for (const Search& one : searches) {
             FieldMeasure& field = found[one.part].fields[one.channel];
@@ -306,10 +326,11 @@ private:
         }
     }
 
-    void step(Search& one, std::size_t first, std::span<const LimitQuery> queries, const LimitSamples& samples) const {
+    void step(Search& one, std::size_t channel, std::size_t first, std::span<const LimitQuery> queries,
+              const LimitSamples& samples) const {
         std::size_t best = 27;
         for (std::size_t n = 0; n < 27; ++n) {
-            const double value = value_of(samples, first + n, one.channel);
+            const double value = value_of(samples, first + n, one.channel - channel);
             if (one.high ? value <= one.best.value : value >= one.best.value) continue;
             one.best.value = value;
             best = n;

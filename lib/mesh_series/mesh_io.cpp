@@ -2,6 +2,7 @@
 #include "subvol/mesh_io.h"
 
 #include <cmath>
+#include <map>
 
 #include "format_table.h"
 #include "formats.h"
@@ -53,10 +54,11 @@ std::vector<std::string> list_extensions(bool writable_only) {
 // Puts the fitted fields in the place of those that were read.
 void fit_fields(ReadResult& result) {
     const CellMeansFit fit = fit_cell_means(result.mesh, result.cell_means, result.cell_parts);
-    for (const Attribute& fitted : fit.fields) {
-        for (Attribute& attribute : result.mesh.attributes) {
-            if (attribute.name == fitted.name) attribute.values = fitted.values;
-        }
+    std::map<std::string_view, const Attribute*> fitted;
+    for (const Attribute& field : fit.fields) fitted.emplace(field.name, &field);
+    for (Attribute& attribute : result.mesh.attributes) {
+        const auto found = fitted.find(attribute.name);
+        if (found != fitted.end()) attribute.values = found->second->values;
     }
     const auto percent = [](double part) { return number_text(100 * part, 2) + " %"; };
     result.warnings.push_back(counted(fit.fields.size(), "cell array", "cell arrays") +
