@@ -74,7 +74,11 @@ bool speaks() {
 int complain(const Error& error, int code, bool json) {
     if (!speaks()) return code;
     subvol::cli::say_at_last([&] {
-        std::cerr << "subvol: " + printable_message(error.what()) + "\n";  // in one go: mpirun may write between two
+        // Of its parts, as what() ends at a zero byte.
+        const std::string where = error.where().empty() ? "" : error.where() + ": ";
+        const std::string allowed = error.allowed().empty() ? "" : " (" + error.allowed() + ")";
+        std::cerr << "subvol: " + printable_message(where + error.message() + allowed) +
+                         "\n";  // in one go: mpirun may write between two
         if (json) std::cout << subvol::cli::error_json(error, code) << std::endl;
     });
     return code;

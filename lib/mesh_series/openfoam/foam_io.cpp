@@ -45,8 +45,9 @@ public:
         : case_(of), part_(part), step_(step), options_(options), named_(named) {}
 
     MeshFile read() {
-        read_points();
-        read_cells();
+        FoamMesh mesh = read_faces();
+        read_points(mesh);
+        add_cells(std::move(mesh));
         if (case_.decomposed) read_numbers();
         if (step_ < case_.folders.size()) {
             const fs::path folder = case_.parts[part_] / case_.folders[step_];
@@ -58,9 +59,23 @@ public:
 private:
     [[nodiscard]] fs::path file(const std::string& name) const { return case_.mesh_file(part_, step_, name); }
 
-    void read_points() {
+    // Before the points, so that no file contains more of anything than the others say.
+    [[nodiscard]] FoamMesh read_faces() {
+        FoamMesh mesh;
+        mesh.owner = FoamText(file("owner")).labels();
+        mesh.neighbour = FoamText(file("neighbour"), mesh.owner.size()).labels();
+        FoamText faces(file("faces"), mesh.owner.size() + 1);
+        mesh.faces = faces.faces();
+        take(file("faces"), faces, 0);
+        return mesh;
+    }
+
+    void read_points(const FoamMesh& mesh) {
+        constexpr std::size_t kUnused = 1000;  // points of no face, which are harmless
+        const auto& used = mesh.faces.points;
+        const std::int64_t last = used.empty() ? 0 : std::max<std::int64_t>(0, *std::ranges::max_element(used));
         const fs::path path = file("points");
-        FoamText text(path);
+        FoamText text(path, 2 * static_cast<std::size_t>(last) + kUnused);
         const auto values = text.reals(3);
         for (std::size_t i = 0; i + 2 < values.size(); i += 3) add_point(found_, {values[i], values[i + 1], values[i + 2]}, 0);
         points_ = found_.points.size();
@@ -68,17 +83,11 @@ private:
         if (points_ >= kNone / 2) text.fail("there are too many points");
     }
 
-    void read_cells() {
-        FoamMesh mesh;
-        FoamText faces(file("faces"));
-        mesh.faces = faces.faces();
-        take(file("faces"), faces, 0);
-        mesh.owner = FoamText(file("owner")).labels();
-        mesh.neighbour = FoamText(file("neighbour")).labels();
+    void add_cells(FoamMesh mesh) {
         const std::string name = file("faces").string();
-        check_foam_mesh(mesh, points_,
-                        [&](const std::string& message) { throw Error(ErrorCode::InvalidInput, message, name); });
-        if (mesh.cells >= kNone / 2) faces.fail("there are too many cells");
+        const auto fail = [&](const std::string& message) { throw Error(ErrorCode::InvalidInput, message, name); };
+        check_foam_mesh(mesh, points_, fail);
+        if (mesh.cells >= kNone / 2) fail("there are too many cells");
         cells_ = mesh.cells;
         add_foam_cells(mesh, options_.other_cells == OtherCells::Ignore, found_);
         const std::string of_points = file("points").string();

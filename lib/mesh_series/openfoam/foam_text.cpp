@@ -17,8 +17,8 @@ bool is_space(char c) {
     return c == ' ' || c == '\t' || c == '\n' || c == '\r' || c == '\f' || c == '\v';
 }
 
-/// What a file can have in bytes, by the largest count of a list in its beginning.
-std::size_t most_bytes(std::string_view beginning) {
+/// What a file can have in bytes, by the largest count of a list in its beginning, and by what others say.
+std::size_t most_bytes(std::string_view beginning, std::size_t most_entries) {
     constexpr std::size_t kBytesOfEntry = 512;  // nine numbers as text, or a face of 40 points
     std::size_t largest = 0;
     for (std::size_t open = beginning.find('('); open != std::string_view::npos; open = beginning.find('(', open + 1)) {
@@ -31,13 +31,15 @@ std::size_t most_bytes(std::string_view beginning) {
             largest = std::max(largest, std::min(count, std::numeric_limits<std::size_t>::max() / kBytesOfEntry));
         }
     }
-    return kBytesOfEntry * largest;
+    return kBytesOfEntry * std::min(largest, most_entries);
 }
 
 }  // namespace
 
-FoamText::FoamText(const std::filesystem::path& path)
-    : file_(path.string()), text_(read_maybe_gzipped(path, most_bytes)), in_(text_, file_, TextScanner::Comments::None) {
+FoamText::FoamText(const std::filesystem::path& path, std::size_t most_entries)
+    : file_(path.string()),
+      text_(read_maybe_gzipped(path, [=](std::string_view beginning) { return most_bytes(beginning, most_entries); })),
+      in_(text_, file_, TextScanner::Comments::None) {
     read_header();
 }
 

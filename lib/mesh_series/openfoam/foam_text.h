@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <limits>
 #include <span>
 #include <string>
 #include <vector>
@@ -28,7 +29,9 @@ struct FoamFaces {
 class FoamText {
 public:
     /// Reads the file, or the one with .gz, and its header.
-    explicit FoamText(const std::filesystem::path& path);
+    ///
+    /// most_entries: that a list of the file can have, as others say
+    explicit FoamText(const std::filesystem::path& path, std::size_t most_entries = std::numeric_limits<std::size_t>::max());
     FoamText(const FoamText&) = delete;
     FoamText& operator=(const FoamText&) = delete;
 

@@ -349,7 +349,13 @@ TEST_F(OpenFoam, ALittleFileDoesNotBecomeALargeText) {
     std::filesystem::remove(path("constant/polyMesh/points"));
     put("constant/polyMesh/points",
         header("vectorField", form) + "2\n((0 0 0)" + std::string(std::size_t{70} << 20, ' ') + "(1 1 1))", form);
-    EXPECT_THAT(error(), AllOf(HasSubstr("points.gz"), HasSubstr("decompress to more than what it says is in it needs")));
+    const auto refused = AllOf(HasSubstr("points.gz"), HasSubstr("decompress to more than what it says is in it needs"));
+    EXPECT_THAT(error(), refused);
+    // As many points as it says, of which the faces name twelve.
+    std::string many;
+    for (int i = 0; i < 9'000'000; ++i) many += "(0 0 0)\n";
+    put("constant/polyMesh/points", header("vectorField", form) + "9000000\n(" + many + ")", form);
+    EXPECT_THAT(error(), refused);
 }
 
 }  // namespace openfoam_test
