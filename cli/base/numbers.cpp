@@ -164,7 +164,7 @@ CLI::Validator frame_range() {
 CLI::Validator byte_count() {
     constexpr std::uint64_t kMost = std::uint64_t{1} << 60;
     const auto check = [](std::string& text) -> std::string {
-        const std::string range = "a number of bytes from 1 to 1024P, such as 500M or 2G";
+        const std::string range = "a number of bytes from 0 to 1024P, such as 500M or 2G";
         std::uint64_t number = 0;
         const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), number);
         const std::size_t length = static_cast<std::size_t>(stop - text.data());
@@ -174,7 +174,7 @@ CLI::Validator byte_count() {
             const auto other = number_of(text);
             return refusal(text, other && !std::isnan(*other) ? "is out of range" : "is not a number of bytes", range);
         }
-        if (error != std::errc() || number < 1 || number > kMost / *unit) return refusal(text, "is out of range", range);
+        if (error != std::errc() || number > kMost / *unit) return refusal(text, "is out of range", range);
         text = std::to_string(number * *unit);
         return {};
     };
