@@ -9,6 +9,11 @@ uniform bool resumed;
 
 const uint kListThreads = 64u;
 const uint kListSteps = 4096u;
+#if CLIPPED
+#define kSegmentSteps (1u + uint(plane_counts.x + plane_counts.y))  // besides those that the integration counts
+#else
+#define kSegmentSteps 1u
+#endif
 
 uint thread_number() { return gl_WorkGroupID.y * gl_NumWorkGroups.x * kListThreads + gl_GlobalInvocationID.x; }
 

@@ -38,7 +38,7 @@ void main() {
     vec2 slope = slope_of(id);
     float ray_length = perspective ? sqrt(1.0 + dot(slope, slope)) : 1.0;
     for (; s.next < end && steps < kListSteps; ++s.next) {
-        ++steps;
+        steps += kSegmentSteps;
         vec4 segment = segments[s.next];
         check_order(s, segment, ranks[s.next]);
         float from = max(s.done, segment.x);

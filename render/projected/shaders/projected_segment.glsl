@@ -30,6 +30,7 @@ float mean_extinction(float b0, float b1) {
 int knots_up_to(float x) {
     int low = 0, high = kKnots;
     while (low < high) {
+        ++steps;
         int middle = (low + high) / 2;
         if (knots[middle].value.x <= x) low = middle + 1;
         else high = middle;

@@ -151,6 +151,23 @@ TEST_F(RenderProjected, ListsOfManyTetrahedraAreSorted) {
     EXPECT_LT(largest_difference(wide.image, rays), kGlTol);
 }
 
+TEST_F(RenderProjected, LongListsTakeAnyNumberOfStepsForASegment) {
+    // Each segment is looked for among many knots, and cut by many planes that miss the bar.
+    const HexMesh mesh = long_bar(1500);
+    const auto values = evaluate(mesh, [](const Vec3& p) { return 0.5 + 0.4 * std::sin(p.z); });
+    const View view({.eye = {0.5, 0.5, -3}, .target = {0.5, 0.5, 0}, .up = {0, 1, 0}, .ortho_height = 0.9}, 4, 4);
+    TransferFunction function{.color = {{0, {1, 1, 0.5}}}, .opacity = {}};
+    for (int i = 0; i <= 500; ++i) function.opacity.push_back({i / 500.0, i % 2 == 0 ? 0.3 : 0.2});
+    const Optics optics(function, 40);
+    Clip clip;
+    for (int i = 0; i < 20; ++i) clip.planes.push_back({.point = {0.001 * i, 0, 0}, .normal = {-1, 0, 0}});
+    const auto rays = render_tets(valued(mesh, values), {}, view, optics, {.clip = clip}).image;
+    for (const ProjectedOrder order : {ProjectedOrder::Lists, ProjectedOrder::Havs}) {
+        const auto drawn = render_projected(valued(mesh, values), {}, view, optics, {.order = order, .clip = clip});
+        EXPECT_LT(largest_difference(drawn.image, rays), kGlTol);
+    }
+}
+
 TEST_F(RenderProjected, FunctionsWithTooManyKnotsAreRefused) {
     TransferFunction function{.color = {{0, {1, 1, 1}}}, .opacity = {}};
     for (int i = 0; i <= 2048; ++i) function.opacity.push_back({i / 2048.0, i % 2 == 0 ? 0.1 : 0.2});
