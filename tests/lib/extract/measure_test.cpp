@@ -110,6 +110,30 @@ TEST(Measure, IsTheSameForAnyNumberOfThreads) {
     EXPECT_EQ(integral(1), integral(4));
 }
 
+// More than are searched together; one of them a vector.
+TEST(Measure, EachOfManyFieldsHasItsOwnExtremes) {
+    HexMesh mesh = test::make_box(2, 1, 1);
+    constexpr int kFields = 40, kVector = 20;
+    for (int k = 0; k < kFields; ++k) {
+        test::add_field(mesh, "f" + std::to_string(k), [&](const Vec3& p) { return (k + 1) * p.x - k * p.z; });
+    }
+    Attribute vector{"v", 3, {}};
+    for (const Vec3& p : mesh.points) vector.values.insert(vector.values.end(), {p.x, 5 * p.y, 7 * p.z});
+    mesh.attributes.insert(mesh.attributes.begin() + kVector, vector);
+    const LimitMeasure found = measure_limit(mesh, {.bins = 2});
+    ASSERT_EQ(found.whole.fields.size(), std::size_t{kFields + 3});
+    for (std::size_t f = 0; f < found.whole.fields.size(); ++f) {
+        const FieldMeasure& field = found.whole.fields[f];
+        if (field.name.starts_with("v")) continue;
+        const double k = std::stoi(field.name.substr(1));
+        EXPECT_NEAR(field.max.value, 2 * (k + 1), 1e-4) << field.name;  // values of pieces are floats
+        EXPECT_NEAR(field.min.value, -k, 1e-4) << field.name;
+    }
+    EXPECT_NEAR(found.whole.fields[kVector].max.value, 2, 1e-5);
+    EXPECT_NEAR(found.whole.fields[kVector + 1].max.value, 5, 1e-5);
+    EXPECT_NEAR(found.whole.fields[kVector + 2].max.value, 7, 1e-5);
+}
+
 TEST(Measure, RefusesOptionsOutOfRange) {
     const HexMesh mesh = test::make_box(1, 1, 1);
     test::expect_error(ErrorCode::InvalidInput, "tolerance", [&] { (void)measure_limit(mesh, {.tolerance = 0}); });
