@@ -105,7 +105,8 @@ CLI::Validator not_negative_number() {
 CLI::Validator any_number() {
     const auto check = [](std::string& text) -> std::string {
         const auto value = number_of(text);
-        if (!value || std::isnan(*value)) return detail::in_quotes(text) + " is not a number";
+        if (!value) return detail::in_quotes(text) + " is not a number";
+        if (std::isnan(*value)) return detail::in_quotes(text) + " is not a finite number";
         if (std::abs(*value) > kMostNumber) return refusal(text, "is out of range", kAnyNumber);
         text = detail::number_text(*value, std::numeric_limits<double>::max_digits10);
         return {};
