@@ -197,9 +197,9 @@ TEST_F(NamedFiles, OnlyRegularFilesAreReadBehindANameAndNamesEndNowhere) {
     ASSERT_EQ(::mkfifo(path("a.q").c_str(), 0600), 0);
     EXPECT_THAT(error("a.xyz", grid), HasSubstr("\"a.q\" is not a regular file"));
     std::filesystem::create_directories(path("constant/polyMesh"));
-    write("constant/polyMesh/faces", "");
-    ASSERT_EQ(::mkfifo(path("constant/polyMesh/points").c_str(), 0600), 0);
-    EXPECT_THAT(error("a.foam", ""), HasSubstr("\"points\" is not a regular file"));
+    for (const char* name : {"faces", "points"}) write(std::string("constant/polyMesh/") + name, "");
+    ASSERT_EQ(::mkfifo(path("constant/polyMesh/owner").c_str(), 0600), 0);
+    EXPECT_THAT(error("a.foam", ""), HasSubstr("\"owner\" is not a regular file"));
     write_cubes("b.vtu");
     EXPECT_THAT(error("a.vtu.series", R"({"files": [{"name": "b.vtu\u0000../../etc/passwd"}]})"),
                 HasSubstr("entry 0 of \"files\": the name \"b.vtu\\x00../../etc/passwd\" has a zero byte"));
