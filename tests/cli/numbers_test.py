@@ -104,7 +104,7 @@ class Numbers(InFolder):
         self.assertEqual(self.run_ok("model", "ball", "-o", "a.vtu", "--resolution", "010", "--json").json()["cells"],
                          self.run_ok("model", "ball", "-o", "b.vtu", "--resolution", "+10", "--json").json()["cells"])
         self.run_ok("info", "model:ball:2", "--seed", "18446744073709551615")
-        self.run_ok("info", "model:ball:2", "--curved", "corners")
+        self.run_ok("info", "a.vtu", "--curved", "corners")
         self.run_ok("split", "model:ball:2", "-o", "a.bricks", "--memory", "2MiB")
 
 
