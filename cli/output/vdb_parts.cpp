@@ -41,7 +41,10 @@ void write_text(const detail::AtomicFile& file, const fs::path& path, const std:
     }
 }
 
-/// The parts that the list of an earlier run names. Nothing if there is another file with the name of the list.
+constexpr const char* kEarlier = "earlier_parts";
+
+/// The parts that the list of an earlier run names, its own and those that were there before. Nothing if there is another file
+/// with the name of the list.
 std::optional<std::set<std::string>> parts_of_list(const fs::path& list) {
     std::set<std::string> parts;
     std::error_code error;
@@ -54,6 +57,9 @@ std::optional<std::set<std::string>> parts_of_list(const fs::path& list) {
         if (!part.is_object() || !part.contains("file") || !part["file"].is_string()) return {};
         parts.insert(part["file"].get<std::string>());
     }
+    for (const Json& part : json.value(kEarlier, Json::array())) {
+        if (part.is_string()) parts.insert(part.get<std::string>());
+    }
     return parts;
 }
 
@@ -65,8 +71,11 @@ std::optional<std::set<std::string>> parts_of_list(const fs::path& list) {
 }  // namespace
 
 VdbParts::VdbParts(const VdbOutput& output, std::uint64_t memory_bytes)
-    : output_(output), list_file_(fs::path(output.path).replace_extension(".json")), memory_bytes_(memory_bytes) {
-    if (always_listed() && !parts_of_list(list_file_)) refuse_list(list_file_);
+    : output_(output),
+      list_file_(fs::path(output.path).replace_extension(".json")),
+      earlier_(parts_of_list(list_file_)),
+      memory_bytes_(memory_bytes) {
+    if (always_listed() && !earlier_) refuse_list(list_file_);
 }
 
 void VdbParts::write(std::span<const VdbGrid> grids, std::size_t number, const Json& more) {
@@ -76,6 +85,7 @@ void VdbParts::write(std::span<const VdbGrid> grids, std::size_t number, const J
     const GridReport& first = grids.front().report();
     active_voxels_ += first.active_voxels;
     for (const VdbGrid& grid : grids) bytes_ += grid.report().bytes;
+    if (!earlier_ && count() > 0 && bytes_ > memory_bytes_) refuse_list(list_file_);
     Json entry = entry_of(name, first);
     entry.update(more);
     list_.push_back(std::move(entry));
@@ -94,11 +104,17 @@ void VdbParts::finish(const std::string& input, double voxel_size_world, Report&
     // All files are on the disk before the first one has its name.
     std::optional<detail::AtomicFile> list;
     if (!whole || always_listed()) {
-        const Json json{{"input", input},
-                        {"version", SUBVOL_VERSION},
-                        {"voxel_size", voxel_size_world},
-                        {"active_voxels", active_voxels_},
-                        {"parts", list_}};
+        Json json{{"input", input},
+                  {"version", SUBVOL_VERSION},
+                  {"voxel_size", voxel_size_world},
+                  {"active_voxels", active_voxels_},
+                  {"parts", list_}};
+        const Json earlier = earlier_parts();
+        if (!earlier.empty()) {
+            json[kEarlier] = earlier;
+            report.warn(text(counted(earlier.size(), "part"), " of an earlier run, as ", earlier.front().get<std::string>(),
+                             ", remain beside ", output_.path));
+        }
         write_text(list.emplace(list_file_), list_file_, json.dump(2) + "\n");
     }
     if (whole) write_reported(grids, output_, report);
@@ -120,8 +136,8 @@ void VdbParts::warn(bool whole, Report& report) const {
         std::error_code error;
         if (fs::exists(output_.path, error)) report.warn(text(output_.path, " is that of an earlier run"));
     } else if (!always_listed()) {
-        const auto old = parts_of_list(list_file_);
-        if (old && !old->empty()) report.warn(text(list_file_.string(), " and its parts are those of an earlier run"));
+        if (earlier_ && !earlier_->empty())
+            report.warn(text(list_file_.string(), " and its parts are those of an earlier run"));
     }
 }
 
@@ -138,15 +154,27 @@ std::vector<VdbGrid> VdbParts::joined() const {
     return grids;
 }
 
+/// The parts of earlier runs that this one does not replace. They are not removed: something else may have their names by now.
+Json VdbParts::earlier_parts() const {
+    Json names = Json::array();
+    std::error_code error;
+    for (const std::string& name : earlier_.value_or(std::set<std::string>())) {
+        const bool replaced = std::ranges::any_of(list_, [&](const Json& part) { return part.at("file") == name; });
+        if (!replaced && fs::path(name).filename() == name && fs::exists(list_file_.parent_path() / name, error)) {
+            names.push_back(name);
+        }
+    }
+    return names;
+}
+
 /// The user has not given the names of parts: only those of an earlier run are replaced.
 void VdbParts::check_names() const {
-    const auto old = parts_of_list(list_file_);
-    if (!old) refuse_list(list_file_);
+    if (!earlier_) refuse_list(list_file_);
     const fs::path folder = fs::path(output_.path).parent_path();
     for (const Json& part : list_) {
         const auto name = part.at("file").get<std::string>();
         std::error_code error;
-        if (old->contains(name) || !fs::exists(folder / name, error)) continue;
+        if (earlier_->contains(name) || !fs::exists(folder / name, error)) continue;
         throw Error(ErrorCode::InvalidInput, "exists and is no part of grids that an earlier run has listed",
                     (folder / name).string(), "another name for -o, or more --memory");
     }

@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <deque>
 #include <filesystem>
+#include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <vector>
@@ -16,17 +18,18 @@
 namespace subvol::cli {
 
 /// Grids that are made part by part: NAME.vdb if all of them fit into the memory, else NAME_0000.vdb and so on, and NAME.json,
-/// which lists them. With --memory there always is a list, so that scripts find the file or the files. All of these files
-/// appear, or none.
+/// which lists them. With --memory there always is a list, so that scripts find the file or the files. If one
+/// of these files cannot be written, none appears.
 class VdbParts {
 public:
     /// memory_bytes: what the grids may take together
     ///
-    /// throws: Error(InvalidInput) if there is a NAME.json that is no such list
+    /// throws: Error(InvalidInput) if there is a NAME.json that is no such list, and there has to be one
     VdbParts(const VdbOutput& output, std::uint64_t memory_bytes);
 
     /// Writes the part with a number.
     ///
+    /// throws: as the constructor, as soon as the grids do not fit into the memory
     /// more: for the list, beside the file's name, its active voxels and their bounds
     void write(std::span<const VdbGrid> grids, std::size_t number, const Json& more = Json::object());
 
@@ -42,10 +45,12 @@ private:
     [[nodiscard]] bool always_listed() const { return output_.memory_bytes > 0; }
     [[nodiscard]] std::vector<VdbGrid> joined() const;
     void warn(bool whole, Report& report) const;
+    [[nodiscard]] Json earlier_parts() const;
     void check_names() const;
 
     const VdbOutput& output_;
     std::filesystem::path list_file_;
+    std::optional<std::set<std::string>> earlier_;  // parts of earlier runs; nothing if NAME.json is another file
     std::uint64_t memory_bytes_;
     std::deque<detail::AtomicFile> files_;
     Json list_ = Json::array();

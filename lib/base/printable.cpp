@@ -24,22 +24,24 @@ bool is_hidden(char32_t code) {
     struct Codes {
         char32_t first, last;
     };
-    constexpr std::array<Codes, 16> kHidden{{{0, 0x1F},             // controls
-                                             {0x7F, 0x9F},          // delete, and controls again
-                                             {0xAD, 0xAD},          // a hyphen that is seen at the end of a line only
-                                             {0x34F, 0x34F},        // joins characters without being seen
-                                             {0x61C, 0x61C},        // a mark of direction
-                                             {0x115F, 0x1160},      // fillers without width
-                                             {0x180B, 0x180F},      // selectors and a separator without width
-                                             {0x200B, 0x200F},      // spaces and joiners without width, marks of direction
-                                             {0x2028, 0x202E},      // ends of lines and paragraphs, embedded directions
-                                             {0x2060, 0x206F},      // more joiners and directions
-                                             {0x3164, 0x3164},      // a filler
-                                             {0xFDD0, 0xFDEF},      // no characters
-                                             {0xFEFF, 0xFEFF},      // the byte order mark
-                                             {0xFFA0, 0xFFA0},      // a filler
-                                             {0xFFF0, 0xFFFB},      // notes between lines
-                                             {0xE0000, 0xE0FFF}}};  // tags and selectors
+    constexpr std::array<Codes, 17> kHidden{
+        {{0, 0x1F},             // controls
+         {0x7F, 0x9F},          // delete, and controls again
+         {0xAD, 0xAD},          // a hyphen that is seen at the end of a line only
+         {0x34F, 0x34F},        // joins characters without being seen
+         {0x61C, 0x61C},        // a mark of direction
+         {0x115F, 0x1160},      // fillers without width
+         {0x180E, 0x180E},      // a separator without width
+         {0x200B, 0x200B},      // a space without width; joiners (0x200C, 0x200D) are orthography
+         {0x200E, 0x200F},      // marks of direction
+         {0x2028, 0x202E},      // ends of lines and paragraphs, embedded directions
+         {0x2060, 0x206F},      // more joiners and directions
+         {0x3164, 0x3164},      // a filler
+         {0xFDD0, 0xFDEF},      // no characters
+         {0xFEFF, 0xFEFF},      // the byte order mark
+         {0xFFA0, 0xFFA0},      // a filler
+         {0xFFF0, 0xFFFB},      // notes between lines
+         {0xE0000, 0xE0FFF}}};  // tags and selectors
     const bool no_character = (code & 0xFFFEU) == 0xFFFE;
     return no_character || std::ranges::any_of(kHidden, [=](const Codes& c) { return c.first <= code && code <= c.last; });
 }

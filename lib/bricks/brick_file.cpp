@@ -24,6 +24,7 @@ namespace {
 
 constexpr std::uint8_t kHexahedron = 12;
 constexpr std::uint8_t kGhost = 1;  // VTK's duplicate cell, and duplicate point
+constexpr const char* kStart = "<?xml version=\"1.0\"?>\n<VTKFile";
 constexpr const char* kId = "subvol_bricks";
 constexpr const char* kCreases = "subvol_creases";
 constexpr const char* kSharpFaces = "subvol_sharp_faces";
@@ -199,7 +200,7 @@ WrittenBrick write_brick_file(const std::filesystem::path& path, const BrickMesh
     const auto tuples = [](std::size_t n) { return " NumberOfTuples=\"" + std::to_string(n) + "\""; };
     RawArrays arrays;
     const std::string order = std::endian::native == std::endian::little ? "LittleEndian" : "BigEndian";
-    std::string text = "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"" + order +
+    std::string text = std::string(kStart) + " type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"" + order +
                        "\" header_type=\"UInt64\">\n<UnstructuredGrid>\n<FieldData>\n";
     text += arrays.element("Int64", kId, 1, std::span<const std::uint64_t>(&id, 1), tuples(1));
     text += arrays.element(kIndexType, kCreases, 2, flat(mesh.creases), tuples(mesh.creases.size()));
@@ -251,7 +252,11 @@ BrickMesh read_brick_file(const std::filesystem::path& path, std::uint64_t hash,
 }
 
 bool is_brick_of(const std::filesystem::path& path, std::uint64_t id) {
-    return id_of(read_text(path), path.string()) == id;
+    const std::string text = read_text(path);
+    // A loss of power may leave nothing, zeros or the beginning of what was not yet on the disk.
+    const bool torn = text.find_first_not_of('\0') == std::string::npos || text.starts_with(kStart);
+    const auto found = id_of(text, path.string());
+    return found ? *found == id : torn;
 }
 
 std::uint64_t hash_of_file(const std::filesystem::path& path) {

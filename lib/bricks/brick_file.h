@@ -28,7 +28,7 @@ WrittenBrick write_brick_file(const std::filesystem::path& path, const BrickMesh
 /// throws: Error(InvalidInput) unless the file has this hash and was written by `write_brick_file` for this folder
 [[nodiscard]] BrickMesh read_brick_file(const std::filesystem::path& path, std::uint64_t hash, std::uint64_t id);
 
-/// Whether a file was written by `write_brick_file` for this folder; throws: Error(Io)
+/// Whether a file was written by `write_brick_file` for this folder, or is what a loss of power left of one; throws: Error(Io)
 [[nodiscard]] bool is_brick_of(const std::filesystem::path& path, std::uint64_t id);
 
 /// The hash of a file; throws: Error(Io)

@@ -85,15 +85,6 @@ std::vector<std::string> files_of_bricks(const fs::path& folder) {
     return names;
 }
 
-/// The permissions, and where that is allowed the group, of a file or folder that another one replaces. False if there is none.
-bool keep_access(const fs::path& from, const fs::path& to) {
-    struct stat before {};
-    if (::stat(from.c_str(), &before) != 0) return false;
-    (void)!::chown(to.c_str(), static_cast<uid_t>(-1), before.st_gid);
-    (void)::chmod(to.c_str(), before.st_mode & 07777);
-    return true;
-}
-
 /// Gives a folder the name of another, which must hold bricks only, and is removed when that has been done.
 void replace_folder(const fs::path& made, const fs::path& folder) {
     std::error_code error, ignored;
@@ -184,8 +175,9 @@ void BricksWriter::take_up(std::uint64_t id, int halo_layers) {
     } catch (const std::exception&) {
         refuse("is no unfinished folder of bricks");
     }
+    std::ranges::sort(done_.bricks, {}, &Brick::file);
     for (const std::string& name : bricks) {  // also those that were written after the list
-        const bool listed = std::ranges::find(done_.bricks, name, &Brick::file) != done_.bricks.end();
+        const bool listed = std::ranges::binary_search(done_.bricks, name, {}, &Brick::file);
         if (!listed && !is_brick_of(work_ / name, done_.id)) {
             refuse("is no unfinished folder of bricks: it holds " + in_quotes(name) + " of another mesh");
         }

@@ -39,7 +39,9 @@ Hdf5File::Hdf5File(std::unique_ptr<Hdf5Source> source, std::string file) : sourc
 
 // Links may give one dataset any number of names.
 void Hdf5File::count_read(const Hdf5Dataset& dataset, std::size_t bytes) const {
-    there_ = std::max(there_, dataset.most_bytes);
+    if (met_.insert(dataset.address).second) {
+        there_ += std::min(dataset.most_bytes, rows_of(dataset) * columns_of(dataset) * size_of(dataset.type));
+    }
     read_ += bytes;
     if (read_ <= NamedFiles::kFewBytes || (read_ - NamedFiles::kFewBytes) / most_times_ <= there_) return;
     fail("what it names again and again is too much", "at most " + std::to_string(most_times_) + " times its bytes are read");

@@ -6,6 +6,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <vector>
@@ -16,12 +17,13 @@
 namespace subvol::detail {
 
 /// A dataset of an HDF5 file. lengths: of its dimensions, the slowest first; most_bytes: of values that its storage can have;
-/// compressed_chunk: the bytes that are decompressed together, 0 if nothing is compressed
+/// compressed_chunk: the bytes that are decompressed together, 0 if nothing is compressed; address: the same by all names of it
 struct Hdf5Dataset {
     NumberType type = NumberType::Float64;
     std::vector<std::size_t> lengths;
     std::size_t most_bytes = 0;
     std::size_t compressed_chunk = 0;
+    std::uint64_t address = 0;
 };
 
 /// An open HDF5 file. Paths are those inside of it, such as "/VTKHDF/Points".
@@ -94,7 +96,8 @@ private:
     std::unique_ptr<Hdf5Source> source_;
     std::string file_;
     std::size_t most_times_ = NamedFiles::kMostTimes;
-    mutable std::size_t there_ = 0, read_ = 0;  // bytes of the file or its largest dataset, and those that were read
+    mutable std::set<std::uint64_t> met_;       // addresses of datasets
+    mutable std::size_t there_ = 0, read_ = 0;  // bytes of the file and of these datasets, and those that were read
 };
 
 }  // namespace subvol::detail

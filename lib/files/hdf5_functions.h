@@ -15,6 +15,7 @@ struct Hdf5Shape {
     std::uint64_t lengths[kMostRank] = {};
     std::uint64_t stored = 0;
     std::uint64_t chunk = 0;
+    std::uint64_t address = 0;  // in the file: the same by all names of a dataset
     bool filtered = false;
 };
 

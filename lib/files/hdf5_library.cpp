@@ -83,7 +83,8 @@ public:
         return Hdf5Dataset{static_cast<NumberType>(shape.type),
                            {shape.lengths, shape.lengths + shape.rank},
                            stored * (shape.filtered ? kMostOfDeflate : 1),
-                           shape.filtered ? shape.chunk : 0};
+                           shape.filtered ? shape.chunk : 0,
+                           shape.address};
     }
 
     [[nodiscard]] std::optional<std::string> values(const std::string& path, const Hdf5Dataset& dataset,

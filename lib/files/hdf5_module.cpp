@@ -203,6 +203,19 @@ bool chunks_are_sound(hid_t dataset, hid_t properties, hid_t type, const std::ar
     }
 }
 
+std::uint64_t address_of(hid_t dataset) {
+#if H5_VERSION_GE(1, 12, 0)
+    H5O_info2_t about{};
+    if (H5Oget_info3(dataset, &about, H5O_INFO_BASIC) < 0) return 0;
+    std::uint64_t address = 0;
+    std::memcpy(&address, &about.token, sizeof address);
+    return address;
+#else
+    H5O_info_t about{};
+    return H5Oget_info(dataset, &about) < 0 ? 0 : about.addr;
+#endif
+}
+
 // Whether its values are in this file.
 bool is_here(hid_t properties) {
     const H5D_layout_t layout = H5Pget_layout(properties);
@@ -226,6 +239,7 @@ int shape(std::int64_t file, const char* path, Hdf5Shape* into) {
     into->stored = H5Dget_storage_size(dataset);
     into->filtered = H5Pget_nfilters(properties) != 0;
     into->chunk = chunk_bytes(properties, type);
+    into->address = address_of(dataset);
     return 0;
 }
 

@@ -112,12 +112,13 @@ void keep_list([[maybe_unused]] const fs::path& from, [[maybe_unused]] int to) {
 #endif
 }
 
-/// Gives a new file the permissions, and where that is allowed the owner and the group, of the file that it replaces.
-void keep_access(const fs::path& from, int to) {
+/// As the function of two paths; `to` is open.
+bool keep_access(const fs::path& from, int to) {
     struct stat before {};
     struct stat made {};
-    if (::stat(from.c_str(), &before) != 0 || ::fstat(to, &made) != 0) return;
-    mode_t mode = before.st_mode & 0777;
+    if (::stat(from.c_str(), &before) != 0) return false;
+    if (::fstat(to, &made) != 0) return true;
+    mode_t mode = before.st_mode & (S_ISDIR(made.st_mode) ? 07777 : 0777);
     if (made.st_gid != before.st_gid && ::fchown(to, static_cast<uid_t>(-1), before.st_gid) != 0) {
         mode = (mode & ~070U) | (mode & 070U & (mode << 3));  // another group gets no more than everybody
     } else {
@@ -125,6 +126,7 @@ void keep_access(const fs::path& from, int to) {
     }
     if (made.st_uid != before.st_uid) (void)!::fchown(to, before.st_uid, static_cast<gid_t>(-1));
     (void)::fchmod(to, mode);  // where it fails, the file stays one that only its owner may read
+    return true;
 }
 
 /// Whether this process may do something with a file, as it is now: as root, everything.
@@ -143,6 +145,12 @@ bool is_kept_by_its_folder(const fs::path& file) {
 }
 
 }  // namespace
+
+bool keep_access(const fs::path& from, const fs::path& to) {
+    const OpenFile made(to, O_RDONLY | O_NOFOLLOW);
+    if (made.number() < 0) fail_to_write(to, {errno, std::generic_category()});
+    return keep_access(from, made.number());
+}
 
 OutputPlace output_place(const fs::path& target) {
     constexpr int kMostLinks = 40;  // as Linux
@@ -248,7 +256,7 @@ void AtomicFile::commit(Sync sync) {
         // Opened again: whoever wrote to the path may have put another file there.
         const OpenFile written(temporary_, O_RDONLY | O_NOFOLLOW);
         if (written.number() < 0) fail_to_write(target_, {errno, std::generic_category()});
-        keep_access(place_.file, written.number());
+        (void)keep_access(place_.file, written.number());
         // Some file systems have nothing to sync.
         const bool synced = sync == Sync::Later || ::fsync(written.number()) == 0 || errno == EINVAL || errno == ENOTSUP;
         if (!synced) fail_to_write(target_, {errno, std::generic_category()});

@@ -64,7 +64,7 @@ std::string read_text(const std::filesystem::path& path) {
         return text;
     }
     constexpr std::size_t kChunk = 1 << 20;
-    text.reserve(kMostWithoutSize + 1);  // of which only what is read takes memory
+    if (!S_ISREG(about.st_mode)) text.reserve(kMostWithoutSize + 1);  // of which only what is read takes memory
     while (read_to(std::min(text.size() + kChunk, kMostWithoutSize + 1))) {
         if (text.size() <= kMostWithoutSize) continue;
         throw Error(ErrorCode::InvalidInput, "does not end within 200 MB", path.string(), "a file, which may be larger");

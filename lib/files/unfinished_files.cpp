@@ -75,13 +75,18 @@ UnfinishedFile::~UnfinishedFile() {
 }
 
 void remove_unfinished_files() noexcept {
-    for (const Block* block = &first_block; block != nullptr; block = block->next) {
-        for (const UnfinishedFile::Place& place : block->places) {
-            if (place.state != State::Held) continue;
-            (void)unlink(place.file.data());
-            if (place.folder[0] != '\0') (void)rmdir(place.folder.data());
+    const auto for_each_held = [](const auto& remove) {
+        for (const Block* block = &first_block; block != nullptr; block = block->next) {
+            for (const UnfinishedFile::Place& place : block->places) {
+                if (place.state == State::Held) remove(place);
+            }
         }
-    }
+    };
+    for_each_held([](const UnfinishedFile::Place& place) { (void)unlink(place.file.data()); });
+    // A folder is removed once it is empty: files of other places may have been in it.
+    for_each_held([](const UnfinishedFile::Place& place) {
+        if (place.folder[0] != '\0') (void)rmdir(place.folder.data());
+    });
     if (auto* const remove_others = of_module.load()) remove_others();
 }
 

@@ -213,10 +213,6 @@ HexMesh read_arrays(const WaveletBasis& basis, Contents& in) {
     return mesh;
 }
 
-}  // namespace
-
-namespace {
-
 HexMesh read_contents(Contents& in, const std::string& file) {
     const SchemeOptions scheme = read_scheme(in);
     const int levels = read_levels(in);
@@ -270,13 +266,13 @@ HexMesh read_wavelet_mesh(std::string_view text, const std::string& file) {
     }
     // What is longer is read as it is decompressed, so that what is no mesh ends it; no mesh of which there are so many details
     // has so little to say.
-    constexpr std::uint64_t kAtOnce = std::uint64_t{64} << 20, kMostGrowth = 1000;
+    constexpr std::uint64_t kAtOnce = std::uint64_t{64} << 20, kMostGrowth = 8192;  // LZMA packs zeros 6,800 : 1
     const std::string_view packed = text.substr(head);
     if (length > 4 * kAtOnce && length / kMostGrowth > packed.size()) {
         throw Error(ErrorCode::InvalidInput,
                     std::string(Contents::kDamaged) + ": " + std::to_string(packed.size()) + " bytes say that they are " +
                         std::to_string(length),
-                    file, "at most a thousand times as many, or 256 MB");
+                    file, "at most 8192 times as many, or 256 MB");
     }
     if (length > kAtOnce) {
         LzmaReader more(packed);

@@ -58,7 +58,7 @@ class HostileFiles(InFolder):
         for words in (["--voxel-size", "1e-9"], ["--voxel-size", "1e-99"], ["--resolution", "1048576"], ["--budget", "1000P"],
                       ["--resolution", "4000", "--sdf", "--half-width", "nan"], ["--scale", "1e-90"]):
             with self.subTest(words):
-                self.assert_refused("vdb", "model:ball:4", "-o", "a.vdb", *words, naming="a" if "nan" in words else "voxel")
+                self.assert_refused("vdb", "model:ball:4", "-o", "a.vdb", *words, naming="--half-width" if "nan" in words else "voxel")
 
     def test_transforms_that_cannot_be(self):
         data = self.grid()

@@ -66,7 +66,8 @@ std::string readable_word(const Json& value) {
     std::string read = word(value);
     constexpr std::string_view kEnd = ".json";  // after it a colour map of the file may be named
     const std::size_t end = read.find(kEnd);
-    const std::string file = end == std::string::npos ? read : read.substr(0, end + kEnd.size());
+    if (end == std::string::npos) return read;  // the name of a preset
+    const std::string file = read.substr(0, end + kEnd.size());
     if (!not_regular(file).empty()) throw Error(ErrorCode::InvalidInput, "is not a regular file", file);
     return read;
 }

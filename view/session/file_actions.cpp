@@ -80,8 +80,8 @@ void save_state(Session& session, const Json& file) {
 }
 
 void load_state(Session& session, const Json& file) {
-    const std::string path = readable_word(file);
-    const std::string text = read_text(path);
+    const std::string path = word(file);
+    const std::string text = read_regular(path);
     const Json json = parsed(text, path);
     if (!json.is_object()) throw Error(ErrorCode::InvalidInput, "is not the state of a session", path);
     const Json known = json_of(session.state);

@@ -24,7 +24,7 @@ namespace {
 
 // A line could ask for any number of nodes, elements and members of sets. What is made is in proportion to the deck's bytes.
 constexpr std::size_t kFewMade = std::size_t{1} << 20, kFewMembers = std::size_t{1} << 22;
-constexpr std::size_t kMadeOfByte = 4;
+constexpr std::size_t kMadeOfByte = 16;
 constexpr std::size_t kMostIncluded = 10000;
 
 std::vector<std::string_view> fields_of(std::string_view line) {

@@ -36,7 +36,6 @@ struct Group {
     std::size_t first, count;
 };
 
-//
 // first_groups: of each type; arrays: where those are that are at points and at cells, by their names
 struct Part {
     MeshFile found;

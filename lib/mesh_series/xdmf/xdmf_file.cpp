@@ -163,7 +163,8 @@ std::vector<double> XdmfFile::words(const pugi::xml_node& item) {
     return values;
 }
 
-std::filesystem::path XdmfFile::beside(const pugi::xml_node& item, const std::string& file) const {
+std::filesystem::path XdmfFile::beside(const pugi::xml_node& item, const std::string& file) {
+    named_.count([&] { return place_of(item); });
     return named_file(path_.parent_path(), file, [&] { return place_of(item); });
 }
 

@@ -58,7 +58,7 @@ private:
     [[nodiscard]] std::vector<double> of_binary(const pugi::xml_node& item, std::size_t count);
     [[nodiscard]] std::vector<double> of_slab(const pugi::xml_node& item);
     void take(const pugi::xml_node& item, const std::string& source, std::size_t there, std::size_t taken);
-    [[nodiscard]] std::filesystem::path beside(const pugi::xml_node& item, const std::string& file) const;
+    [[nodiscard]] std::filesystem::path beside(const pugi::xml_node& item, const std::string& file);
 
     std::string_view text_;
     std::filesystem::path path_;

@@ -52,9 +52,10 @@ TEST(Printable, WhatHidesOrTurnsTextIsWrittenAsBytes) {
                                       {"\U0001FFFE", "\\xf0\\x9f\\xbf\\xbe"},
                                       {"\U000E0041", "\\xf3\\xa0\\x81\\x81"}}) {
         EXPECT_EQ(printable(text), shown);
-        EXPECT_FALSE(is_printable("\u202E"));
+        EXPECT_FALSE(is_printable(text)) << shown;
     }
     EXPECT_TRUE(is_printable("\u2026"));
+    EXPECT_EQ(printable("می\u200Cشود"), "می\u200Cشود") << "a joiner that Persian is written with";
     EXPECT_FALSE(is_printable("ab")) << "two characters";
 }
 

@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 #include <sys/stat.h>
 
-#include <chrono>
+#include <ctime>
 
 #include "lib/mesh_io/mesh_texts.h"
 #include "lib/temp_folder.h"
@@ -215,7 +215,7 @@ TEST_F(NamedFiles, OnlyRegularFilesAreReadBehindANameAndNamesEndNowhere) {
 TEST_F(NamedFiles, LongListsTakeTimeInProportion) {
     write_cubes("a.vtu");
     constexpr int kEntries = 100000;
-    const auto begin = std::chrono::steady_clock::now();
+    const std::clock_t begin = std::clock();
     std::string entries;
     for (int k = 0; k < kEntries; ++k) {
         entries += "<DataSet timestep=\"" + std::to_string(k) + ".5\" file=\"a.vtu\"/>\n" + std::string(100, ' ') + "\n";
@@ -230,7 +230,7 @@ TEST_F(NamedFiles, LongListsTakeTimeInProportion) {
     write("s.vtp", "");
     write("c.vtm", list("vtkMultiBlockDataSet", "<DataSet file=\"a.vtu\"/>" + repeated("<DataSet file=\"b.vtm\"/>\n", 100)));
     EXPECT_EQ(read_mesh(path("c.vtm")).mesh.cells.size(), 1u);
-    EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(60));
+    EXPECT_LT((std::clock() - begin) / CLOCKS_PER_SEC, 60) << "CPU seconds";
 }
 
 }  // namespace named_files_test

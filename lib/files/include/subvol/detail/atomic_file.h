@@ -88,6 +88,12 @@ private:
 /// Whether a file has a name as AtomicFile gives to temporary files: a process that was killed leaves one behind.
 [[nodiscard]] bool is_temporary_name(std::string_view name);
 
+/// Gives a file or folder the permissions, and where that is allowed the owner, the group and the access control list, of the
+/// one that it replaces.
+///
+/// returns: false if there is nothing that it replaces; throws: Error(Io) if `to` cannot be opened
+bool keep_access(const std::filesystem::path& from, const std::filesystem::path& to);
+
 /// Waits until everything in a folder, and on its file system, is on the disk. throws: Error(Io)
 void sync_files_in(const std::filesystem::path& folder);
 
