@@ -141,6 +141,10 @@ class SameAsTheWhole(InFolder):
         again = subvol(*few, "a.vdb", folder=self.folder)
         self.assertEqual(again.code, 0, again.err)  # the parts of an earlier run are replaced
         self.assertIn("a.json lists; `subvol join` makes a.vdb", again.err)
+        # In one file meanwhile: the parts are still known as those of an earlier run.
+        whole = subvol("vdb", "b.bricks", "--resolution", 60, "--memory", "2G", "-o", "a.vdb", folder=self.folder)
+        self.assertIn(f"{parts['parts']} parts of an earlier run, as a_0000.vdb, remain beside a.vdb", whole.err)
+        self.run_ok(*few, "a.vdb")
         before = self.files()
         (self.folder / "scene.json").write_text('{"camera": "mine"}')
         (self.folder / "shots_0001.vdb").write_text("mine")
