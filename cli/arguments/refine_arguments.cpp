@@ -1,33 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "refine_arguments.h"
 
-#include <unistd.h>
-
 #include <CLI/CLI.hpp>
 #include <cmath>
 
 #include "choices.h"
 #include "numbers.h"
+#include "subvol/detail/refined_memory.h"
 #include "subvol/error.h"
 #include "subvol/limit.h"
 #include "text.h"
 
 namespace subvol::cli {
-namespace {
-
-/// During the last refinement: about 70 bytes for each new cell (with one field), and 600 bytes for each cell of the parent
-/// mesh with its topology, which becomes eight new cells.
-constexpr double kBytesPerCell = 70 + 600.0 / 8;
-
-}  // namespace
 
 void check_memory(int level, double cells, double bytes_per_cell) {
-    const double memory = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
-    if (level == 0 || cells * bytes_per_cell < memory) return;
-    throw Error(ErrorCode::MissingCapability,
-                text("level ", level, " has ", cells, " cells, which need about ", std::ceil(cells * bytes_per_cell / 1e9),
-                     " GB of memory; this machine has ", std::floor(memory / 1e9)),
-                "--levels");
+    detail::check_memory(level, cells, bytes_per_cell, "--levels");
 }
 
 Scheme scheme_named(const std::string& name) {
@@ -69,7 +56,8 @@ RefineOptions RefineArguments::options(int default_levels, Report& report) const
 }
 
 HexMesh refine_reported(const HexMesh& mesh, const RefineOptions& options, Vertices vertices, Report& report) {
-    check_memory(options.levels, static_cast<double>(mesh.cells.size()) * std::pow(8.0, options.levels), kBytesPerCell);
+    check_memory(options.levels, static_cast<double>(mesh.cells.size()) * std::pow(8.0, options.levels),
+                 detail::kBytesOfRefinedCell);
     HexMesh fine = report.timed("refine", [&] {
         HexMesh refined = refine(mesh, options);
         return vertices == Vertices::OnTheLimit ? on_limit(std::move(refined), options.scheme.kind) : refined;

@@ -32,10 +32,7 @@ struct RefineArguments {
     [[nodiscard]] RefineOptions options(int default_levels, Report& report) const;
 };
 
-/// A few levels too many would fill the memory, and the system would kill the program without a message.
-///
-/// cells:  of that level
-/// throws: Error(MissingCapability) if the machine does not have the memory for it; level 0 is always taken
+/// As `detail::check_memory`; the error names --levels.
 void check_memory(int level, double cells, double bytes_per_cell);
 
 enum class Vertices { OfTheLevel, OnTheLimit };

@@ -4,12 +4,13 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <iomanip>
 #include <optional>
 #include <set>
 
 #include "quantities.h"
+#include "subvol/detail/json_depth.h"
+#include "subvol/detail/read_file.h"
 #include "subvol/detail/vdb_file.h"
 #include "subvol/error.h"
 #include "subvol/join_grids.h"
@@ -50,8 +51,11 @@ std::optional<std::set<std::string>> parts_of_list(const fs::path& list) {
     std::error_code error;
     if (!fs::exists(list, error)) return parts;
     if (!fs::is_regular_file(list, error)) return {};
-    std::ifstream in(list, std::ios::binary);
-    const Json json = Json::parse(in, nullptr, false);
+    Json json;
+    try {
+        json = Json::parse(detail::of_limited_depth(detail::read_text(list), list.string()), nullptr, false);
+    } catch (const Error&) {  // it cannot be read, or is no list of ours
+    }
     if (!json.is_object() || !json.contains("voxel_size") || !json.contains("parts") || !json["parts"].is_array()) return {};
     for (const Json& part : json["parts"]) {
         if (!part.is_object() || !part.contains("file") || !part["file"].is_string()) return {};

@@ -246,7 +246,9 @@ int main(int argc, char** argv) {
     try {
         return run(program, arguments);
     } catch (const CLI::Success& wanted) {  // --help, --version
-        return speaks() ? program.exit(wanted) : 0;
+        const int code = speaks() ? program.exit(wanted) : 0;
+        if (std::cout.flush()) return code;
+        return complain(Error(ErrorCode::Io, "could not be written", "standard output"), kBadInput, json);
     } catch (const Said& error) {
         return error.code;
     } catch (...) {

@@ -10,6 +10,7 @@
 #include <numeric>
 
 #include "subvol/detail/byte_hash.h"
+#include "subvol/detail/json_depth.h"
 #include "subvol/error.h"
 #include "subvol/version.h"
 #include "text.h"
@@ -78,7 +79,7 @@ std::string text_of(const PartNote& note) {
 }
 
 PartNote note_from(const std::string& text, const std::string& file) {
-    const Json json = Json::parse(text, nullptr, false);
+    const Json json = Json::parse(detail::of_limited_depth(text, file), nullptr, false);
     const auto is_text = [&](const char* key) { return json.contains(key) && json[key].is_string(); };
     const auto is_number = [&](const char* key) { return json.contains(key) && json[key].is_number_integer(); };
     const bool proper = json.is_object() && is_number("part") && is_number("of") && is_text("verb") && is_text("input") &&

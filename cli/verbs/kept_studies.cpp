@@ -5,6 +5,8 @@
 #include <fstream>
 
 #include "subvol/detail/atomic_file.h"
+#include "subvol/detail/json_depth.h"
+#include "subvol/detail/read_file.h"
 #include "subvol/error.h"
 #include "text.h"
 
@@ -16,8 +18,8 @@ namespace fs = std::filesystem;
 constexpr const char* kFile = "study.json";
 
 KeptStudy read_kept(const fs::path& folder) {
-    std::ifstream in(folder / kFile);
-    const Json json = Json::parse(in);
+    const std::string file = (folder / kFile).string();
+    const Json json = Json::parse(detail::of_limited_depth(detail::read_regular(file), file));
     const Study study = parse_study(json.at("study").dump(), json.at("file").get<std::string>());
     return {finished_results(study, folder), json.at("command").get<std::string>()};
 }

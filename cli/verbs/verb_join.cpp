@@ -11,6 +11,7 @@
 #include "part_note.h"
 #include "subvol/brick_points.h"
 #include "subvol/detail/atomic_file.h"
+#include "subvol/detail/json_depth.h"
 #include "subvol/detail/picture_part.h"
 #include "subvol/detail/points_range.h"
 #include "subvol/detail/read_file.h"
@@ -136,7 +137,7 @@ private:
     void join_listed_grids(Report& report) {
         const std::string& list = parts_.front();
         if (parts_.size() > 1) throw Error(ErrorCode::InvalidInput, "is one part too many: a list names all files", parts_[1]);
-        const Json json = Json::parse(detail::read_text(list), nullptr, false);
+        const Json json = Json::parse(detail::of_limited_depth(detail::read_text(list), list), nullptr, false);
         const Json files = json.is_object() && json.contains("parts") ? json["parts"] : Json();
         std::vector<std::string> names;
         std::vector<std::size_t> order;
@@ -279,7 +280,7 @@ private:
         check_output(output_, {".json"});
         std::vector<Json> read;
         for (const std::string& part : parts_) {
-            read.push_back(Json::parse(detail::read_text(part), nullptr, false));
+            read.push_back(Json::parse(detail::of_limited_depth(detail::read_text(part), part), nullptr, false));
             if (!read.back().is_object()) throw Error(ErrorCode::InvalidInput, "is not one object of JSON", part);
         }
         std::size_t at = 0;

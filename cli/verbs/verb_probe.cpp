@@ -46,7 +46,7 @@ public:
         app()
             .add_option("--count", count_, "how many places on the line (default 200)")
             ->type_name("N")
-            ->transform(whole_number(2, 100000000))
+            ->transform(whole_number(2, 10000000))
             ->needs(line);
         app().add_option("--points", points_, "a table of places: three numbers a line, or columns x, y, z")->type_name("FILE");
         auto* stats = app().add_flag("--stats", stats_, "integral, mean, extremes with their places, histogram; by block too");

@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "study_keys.h"
+#include "subvol/detail/json_depth.h"
 #include "subvol/detail/number_text.h"
 #include "subvol/error.h"
 
@@ -98,7 +99,7 @@ std::string to_json(const StudyCase& of) {
 
 StudyCase study_case_from_json(std::string_view text) {
     try {
-        const auto json = detail::Json::parse(text);
+        const auto json = detail::Json::parse(detail::of_limited_depth(text, "study"));
         StudyCase made{.id = json.at("id").get<std::string>(), .name = json.at("name").get<std::string>(), .values = {}};
         for (const auto& [key, value] : json.at("values").items()) made.values[key] = value_from(value);
         return made;

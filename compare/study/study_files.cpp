@@ -6,6 +6,7 @@
 
 #include "study_keys.h"
 #include "subvol/detail/atomic_file.h"
+#include "subvol/detail/json_depth.h"
 #include "subvol/error.h"
 #include "subvol/study_run.h"
 #include "subvol/version.h"
@@ -99,7 +100,7 @@ std::string to_json(const CaseResult& result) {
 
 CaseResult case_result_from_json(std::string_view text) {
     try {
-        return result_from(Json::parse(text));
+        return result_from(Json::parse(of_limited_depth(text, "study")));
     } catch (const nlohmann::json::exception& error) {
         throw Error(ErrorCode::InvalidInput, std::string("is not a result: ") + error.what(), "study");
     }
@@ -121,7 +122,7 @@ std::optional<CaseResult> read_finished_case(const fs::path& file, const StudyCa
     std::ostringstream text;
     text << in.rdbuf();
     try {
-        const Json json = Json::parse(text.str());
+        const Json json = Json::parse(of_limited_depth(text.str(), file.string()));
         if (json.at("id").get<std::string>() != of.id || json.at("program").get<std::string>() != kProgram) return {};
         CaseResult result = result_from(json);
         if (!result.failure.empty()) return {};

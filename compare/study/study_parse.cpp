@@ -7,6 +7,7 @@
 
 #include "study_keys.h"
 #include "study_scenes.h"
+#include "subvol/detail/json_depth.h"
 #include "subvol/detail/printable.h"
 #include "subvol/error.h"
 
@@ -197,7 +198,7 @@ private:
 Study parse_study(std::string_view text, const fs::path& file) {
     detail::Json json;
     try {
-        json = detail::Json::parse(text);
+        json = detail::Json::parse(detail::of_limited_depth(text, file.string()));
     } catch (const nlohmann::json::exception& error) {
         throw Error(ErrorCode::InvalidInput, "is not JSON: " + detail::parser_message(error.what()), file.string());
     }

@@ -242,8 +242,8 @@ BrickMesh read_brick_file(const std::filesystem::path& path, std::uint64_t hash,
     const std::string text = read_regular(path);
     ByteHash found;
     found.add(text);
-    if (found.value() != hash) {
-        const bool foreign = id_of(text, path.string()).value_or(id) != id;
+    const bool foreign = id_of(text, path.string()).value_or(id) != id;
+    if (foreign || found.value() != hash) {
         throw Error(ErrorCode::InvalidInput,
                     foreign ? "is a brick of another mesh" : "has changed since the index was written, or is damaged",
                     path.string(), "split the mesh again");

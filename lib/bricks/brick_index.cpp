@@ -12,6 +12,7 @@
 #include "brick_folder.h"
 #include "brick_layers.h"
 #include "subvol/detail/byte_hash.h"
+#include "subvol/detail/json_depth.h"
 #include "subvol/detail/printable.h"
 #include "subvol/error.h"
 #include "subvol/version.h"
@@ -263,11 +264,11 @@ std::string bricks_to_json(const Bricks& bricks) {
 }
 
 Bricks bricks_from_json(const std::string& text, const std::string& file, bool unfinished) {
-    const Json json = Json::parse(text, nullptr, false);
+    const Json json = Json::parse(of_limited_depth(text, file), nullptr, false);
     if (json.is_discarded()) throw Error(ErrorCode::InvalidInput, "not well-formed JSON", file);
     try {
         if (json.at("format") != "OpenSubVol bricks") throw std::invalid_argument("format");
-        if (const int version = json.at("version"); version != kBricksFormat) {
+        if (const std::uint64_t version = count_from(json.at("version")); version != kBricksFormat) {
             throw Error(ErrorCode::InvalidInput, "has version " + std::to_string(version) + " of the format of bricks", file,
                         "this program reads version " + std::to_string(kBricksFormat) + "; split the mesh again");
         }
@@ -329,14 +330,21 @@ void check_files(const Bricks& bricks) {
     }
 }
 
-void check_contents(const Brick& about, const BrickMesh& read, const std::string& file) {
+void check_contents(const Bricks& bricks, const Brick& about, const BrickMesh& read, const std::string& file) {
+    if (!read.cell_numbers.empty() && read.cell_numbers.back() >= bricks.cells) {
+        throw Error(ErrorCode::InvalidInput,
+                    "has cell " + std::to_string(read.cell_numbers.back()) + " of the mesh, and by the index the mesh has " +
+                        std::to_string(bricks.cells) + " cells",
+                    file, "split the mesh again");
+    }
     const Brick found = describe(read);
     // The reach is computed with roundings, which another program may have made otherwise.
-    const Vec3 roundings(1e-9 * about.reach.diagonal());
+    const Vec3 roundings(1e-9 * found.reach.diagonal());
     const bool same = found.stored_cells == about.stored_cells && found.stored_points == about.stored_points &&
                       found.cells == about.cells && found.points == about.points && found.bounds.lower == about.bounds.lower &&
                       found.bounds.upper == about.bounds.upper &&
-                      encloses({about.reach.lower - roundings, about.reach.upper + roundings}, found.reach);
+                      encloses({about.reach.lower - roundings, about.reach.upper + roundings}, found.reach) &&
+                      encloses({found.reach.lower - roundings, found.reach.upper + roundings}, about.reach);
     if (!same) throw Error(ErrorCode::InvalidInput, "has not the counts and bounds that the index gives", file);
     if (!same_names(found.fields, about.fields)) {
         throw Error(ErrorCode::InvalidInput, "has not the fields that the index gives", file);

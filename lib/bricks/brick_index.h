@@ -35,6 +35,6 @@ void sum_up(Bricks& bricks);
 void check_files(const Bricks& bricks);
 
 /// throws: Error(InvalidInput) if a brick that was read is not what the index says of it
-void check_contents(const Brick& about, const BrickMesh& read, const std::string& file);
+void check_contents(const Bricks& bricks, const Brick& about, const BrickMesh& read, const std::string& file);
 
 }  // namespace subvol::detail

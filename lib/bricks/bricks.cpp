@@ -11,6 +11,7 @@
 #include "subvol/detail/bricks_share.h"
 #include "subvol/detail/gather_cells.h"
 #include "subvol/detail/inspect_part.h"
+#include "subvol/detail/read_file.h"
 #include "subvol/error.h"
 #include "text_scanner.h"
 #include "topology_parts.h"
@@ -26,7 +27,7 @@ bool is_bricks(const std::filesystem::path& path) {
 
 Bricks open_bricks(const std::filesystem::path& path) {
     const std::filesystem::path index = path / kBricksIndex;
-    Bricks bricks = bricks_from_json(read_text(index), index.string());
+    Bricks bricks = bricks_from_json(read_regular(index), index.string());
     bricks.path = path;
     check_files(bricks);
     return bricks;
@@ -36,7 +37,7 @@ BrickMesh read_brick(const Bricks& bricks, std::size_t brick) {
     const Brick& about = bricks.bricks.at(brick);
     const std::filesystem::path file = bricks.path / about.file;
     BrickMesh read = read_brick_file(file, about.hash, bricks.id);
-    check_contents(about, read, file.string());
+    check_contents(bricks, about, read, file.string());
     return read;
 }
 

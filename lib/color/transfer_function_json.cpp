@@ -6,6 +6,7 @@
 #include "curves.h"
 #include "knot_values.h"
 #include "subvol/color_map_file.h"
+#include "subvol/detail/json_depth.h"
 #include "subvol/detail/printable.h"
 #include "subvol/detail/read_file.h"
 #include "subvol/error.h"
@@ -44,7 +45,7 @@ json map_named(const json& maps, const std::string& name, const std::string& fil
 json read_color_map(const std::string& file, const std::string& name) {
     json document;
     try {
-        document = json::parse(read_text(file));
+        document = json::parse(of_limited_depth(read_text(file), file));
     } catch (const json::exception& e) {
         refuse(file, parser_message(e.what()));
     }

@@ -2,6 +2,7 @@
 #include <nlohmann/json.hpp>
 
 #include "kernel_fields.h"
+#include "subvol/detail/json_depth.h"
 #include "subvol/detail/printable.h"
 #include "subvol/error.h"
 
@@ -38,7 +39,7 @@ void read(const std::string& name, const json& item, std::vector<double>& values
 json parse_object(std::string_view text) {
     json object;
     try {
-        object = json::parse(text);
+        object = json::parse(detail::of_limited_depth(text));
     } catch (const json::exception& e) {
         refuse("not JSON: " + detail::parser_message(e.what()));
     }

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "camera_axes.h"
+#include "subvol/detail/json_depth.h"
 #include "subvol/detail/number_text.h"
 #include "subvol/detail/printable.h"
 #include "subvol/detail/read_file.h"
@@ -75,7 +76,7 @@ void read_vector(const nlohmann::json& object, const std::string& file, const ch
 nlohmann::json read_json_object(const std::string& file) {
     nlohmann::json json;
     try {
-        json = nlohmann::json::parse(detail::read_text(file));
+        json = nlohmann::json::parse(detail::of_limited_depth(detail::read_text(file), file));
     } catch (const nlohmann::json::exception& e) {
         throw Error(ErrorCode::InvalidInput, detail::parser_message(e.what()), file);
     }

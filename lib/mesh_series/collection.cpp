@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 
+#include "subvol/detail/json_depth.h"
 #include "subvol/detail/number_text.h"
 #include "subvol/detail/printable.h"
 #include "subvol/error.h"
@@ -110,7 +111,7 @@ Collection read_series_list(const std::filesystem::path& path) {
     const auto fail = [&](const std::string& message) {
         throw Error(ErrorCode::InvalidInput, message, file, R"({"files": [{"name": "a.vtu", "time": 0}, …]} is needed)");
     };
-    const auto json = nlohmann::json::parse(text, nullptr, false);
+    const auto json = nlohmann::json::parse(of_limited_depth(text, file), nullptr, false);
     if (json.is_discarded()) fail("not well-formed JSON");
     if (!json.is_object() || !json.contains("files") || !json["files"].is_array()) fail("it has no list \"files\"");
     Steps steps;

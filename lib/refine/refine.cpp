@@ -1,10 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "subvol/refine.h"
 
+#include <unistd.h>
+
+#include <cmath>
+
 #include "child_topology.h"
 #include "patch.h"
 #include "refine_steps.h"
 #include "scheme_rows.h"
+#include "subvol/detail/number_text.h"
+#include "subvol/detail/refined_memory.h"
 #include "subvol/error.h"
 
 namespace subvol {
@@ -81,6 +87,16 @@ void check_cells(const HexMesh& mesh, std::span<const Index> cells) {
 
 }  // namespace
 
+void detail::check_memory(int level, double cells, double bytes_per_cell, const std::string& where) {
+    const double memory = static_cast<double>(::sysconf(_SC_PHYS_PAGES)) * static_cast<double>(::sysconf(_SC_PAGESIZE));
+    if (level == 0 || cells * bytes_per_cell < memory) return;
+    throw Error(ErrorCode::MissingCapability,
+                "level " + std::to_string(level) + " has " + number_text(cells) + " cells, which need about " +
+                    number_text(std::ceil(cells * bytes_per_cell / 1e9)) + " GB of memory; this machine has " +
+                    number_text(std::floor(memory / 1e9)),
+                where);
+}
+
 void detail::check_levels(int levels) {
     if (levels < 0 || levels > 10) {
         throw Error(ErrorCode::InvalidInput, "the number of levels is " + std::to_string(levels), {}, "0 to 10");
@@ -110,6 +126,8 @@ detail::RefinedPoints detail::refine_points(HexMesh control, Topology topology, 
 HexMesh refine(const HexMesh& mesh, const RefineOptions& options) {
     HexMesh control = detail::control_mesh(mesh, options.scheme, options.levels);
     if (options.levels == 0) return control;
+    detail::check_memory(options.levels, static_cast<double>(control.cells.size()) * std::pow(8.0, options.levels),
+                         detail::kBytesOfRefinedCell);
     report_progress(options.progress, "topology", 0);
     Topology topology = build_topology(control);
     detail::RefinedPoints refined = detail::refine_points(std::move(control), std::move(topology), options);

@@ -146,7 +146,7 @@ def render(what: Drawable, *, method: str = "splat", view: str = "iso", camera: 
     framed = _core.framed_points(mesh, kind, knots, unit) if isinstance(what, HexMesh) else None
     eye = _camera_of(view, camera, bounds, framed, size, ortho)
     scene = _core.Scene(eye, (int(size[0]), int(size[1])), knots, unit, _planes_of(clip, "clip"), _box_of(clip_box),
-                        _planes_of(slice, "slice"), around)
+                        _planes_of(slice, "slice"), bool(around))
     way = backend if method == "splat" else method
 
     with listening(progress) as listener:

@@ -123,6 +123,50 @@ class SameAsTheWhole(InFolder):
         here = at(where or grid, places)
         return [value for value, known in zip(at(grid, places), here) if known is not None]
 
+    def test_a_finished_folder_whose_name_ends_as_that_of_an_unfinished_one_stays(self):
+        self.run_ok("split", BALL, "-o", "run.unfinished", "--bricks", 2, "--quiet")
+        before = sorted(path.name for path in (self.folder / "run.unfinished").iterdir())
+        refused = subvol("split", "model:ball:5", "-o", "run", "--bricks", 2, folder=self.folder)
+        self.assertEqual(refused.code, 2)
+        self.assertIn("run.unfinished: exists and is a finished folder of bricks", refused.err)
+        self.assertEqual(sorted(path.name for path in (self.folder / "run.unfinished").iterdir()), before)
+
+    def test_an_index_that_lies_is_refused(self):
+        self.run_ok("split", BALL, "-o", "b.bricks", "--bricks", 3, "--quiet")
+        file = self.folder / "b.bricks" / "index.json"
+        sound = file.read_text()
+
+        def without_the_last(index):
+            last = index["bricks"].pop()
+            index["cells"] -= last["cells"]
+            index["points"] -= last["points"]
+            corners = [brick["bounds"] for brick in index["bricks"]]
+            index["bounds"] = [[f(c[k][d] for c in corners) for d in range(3)] for k, f in ((0, min), (1, max))]
+            for f, field in enumerate(index["fields"]):
+                for key, choose in (("min", min), ("max", max)):
+                    values = [brick["fields"][f][key] for brick in index["bricks"]]
+                    field[key] = [choose(v[c] for v in values) for c in range(len(values[0]))]
+
+        def far(index):
+            index["bricks"][0]["reach"] = [[-1e300] * 3, [1e300] * 3]
+
+        for change, said in ((lambda index: index.update(id=16 * "0"), "is a brick of another mesh"),
+                             (lambda index: index.update(version=1.5), "is not an index of bricks"),
+                             (lambda index: index.update(version=2**32 + 1), "has version 4294967297"),
+                             (far, "has not the counts and bounds that the index gives"),
+                             (without_the_last, "cells")):
+            index = json.loads(sound)
+            change(index)
+            file.write_text(json.dumps(index))
+            with self.subTest(said):
+                refused = subvol("points", "b.bricks", "-o", "a.ply", folder=self.folder)
+                self.assertEqual(refused.code, 2, refused.err)
+                self.assertIn(said, refused.err)
+                self.assertFalse((self.folder / "a.ply").exists())
+        file.unlink()
+        os.mkfifo(file)
+        self.assertEqual(subvol("info", "b.bricks", folder=self.folder).code, 2)
+
     def test_the_file_that_was_asked_for(self):
         """The grids are in NAME.vdb wherever they fit into the memory; parts have a list, and no other file is replaced."""
         self.run_ok("vdb", BALL, "-o", "whole.vdb", "--resolution", 60, "--half", "--quiet")

@@ -53,6 +53,22 @@ class HostileFiles(InFolder):
             with self.subTest(words):
                 self.assert_refused(*words, naming=f"bad.vdb: is not a whole OpenVDB file: at byte {at + 8}, a block of 60000 bytes")
 
+    def test_json_that_is_nested_too_deep(self):
+        # Copied or written by recursion, these overflow the stack.
+        for name, text in (("a.json", 200000 * "[" + 200000 * "]"), ("b.json", 100000 * '{"a":' + "1" + 100000 * "}"),
+                           ("c.json", '[{"orbit":' + 200000 * "[" + 200000 * "]" + "}]")):
+            self.write(name, text)
+            for words in (["render", "model:ball:2", "-o", "r.png", "--tf", name], ["slice", "model:ball:2", "-o", "r.png", "--tf", name],
+                          ["render", "model:ball:2", "-o", "r.png", "--camera", name], ["study", name, "-o", "out"],
+                          ["view", "model:ball:2", "--script", name, "--screenshot", "r.png"]):
+                with self.subTest(words):
+                    self.assert_refused(*words, naming="nested too deep (at most 100")
+        self.write("a.vtu.series", '{"files": ' + 200000 * "[" + 200000 * "]" + "}")
+        self.assert_refused("info", "a.vtu.series", naming="nested too deep")
+        # Brackets within texts are no nesting.
+        self.write("map.json", json.dumps([{"Name": 500 * '[{\\"', "RGBPoints": [0, 0, 0, 0, 1, 1, 1, 1]}]))
+        self.run_ok("render", "model:ball:2", "-o", "r.png", "--size", "8x8", "--tf", "map.json", "--quiet")
+
     def test_voxels_that_cannot_be(self):
         # Before a level of the limit is looked for that fits them, which takes gigabytes.
         for words in (["--voxel-size", "1e-9"], ["--voxel-size", "1e-99"], ["--resolution", "1048576"], ["--budget", "1000P"],

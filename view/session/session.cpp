@@ -7,6 +7,7 @@
 #include "cut_handles.h"
 #include "picture_overlays.h"
 #include "session_state.h"
+#include "subvol/detail/json_depth.h"
 #include "subvol/detail/printable.h"
 #include "subvol/error.h"
 
@@ -49,7 +50,7 @@ std::shared_ptr<const ViewBody> tet_body(const ViewSource& source, HexMesh mesh,
 
 detail::Json detail::parsed(std::string_view text, const std::string& where) {
     try {
-        return Json::parse(text);
+        return Json::parse(of_limited_depth(text, where));
     } catch (const nlohmann::json::exception& error) {
         throw Error(ErrorCode::InvalidInput, parser_message(error.what()), where);
     }
