@@ -91,7 +91,7 @@ public:
             }
             finish_element();
             if (const auto included = take_keyword(line)) {
-                const NamedFiles::Place here = [&in, at = position_, this] { return in.place_of(at); };
+                const NamedFiles::Place here = [&in, at = position_] { return in.place_of(at); };
                 read(named_file(path.parent_path(), *included, here), here);
             }
         }

@@ -43,7 +43,7 @@ protected:
         return error(name);
     }
     // A .vtu of n³ cells, which begin at a place on the x axis.
-    void write_cubes(const std::string& name, int n = 1, double at = 0) const {
+    void write_cubes(const std::string& name, Index n = 1, double at = 0) const {
         HexMesh mesh = make_box(n, n, n);
         for (Vec3& x : mesh.points) x.x += at;
         static_cast<void>(write_mesh(path(name), mesh));
