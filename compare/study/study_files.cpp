@@ -132,6 +132,8 @@ std::optional<CaseResult> read_finished_case(const fs::path& file, const StudyCa
         return result;
     } catch (const nlohmann::json::exception&) {
         return {};
+    } catch (const Error&) {  // nested too deep
+        return {};
     }
 }
 
