@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <iomanip>
 #include <iostream>
+#include <variant>
 
 #include "interrupt.h"
 #include "quantities.h"
@@ -89,6 +90,24 @@ void print_table(const Json& json) {
     std::cout << aligned(lines);
 }
 
+struct JsonOf {
+    Json operator()(std::monostate) const { return nullptr; }
+    template <class Plain>
+    Json operator()(const Plain& value) const {
+        return value;
+    }
+    Json operator()(const FactValue::List& list) const {
+        Json array = Json::array();
+        for (const FactValue& item : list) array.push_back(std::visit(*this, item.value));
+        return array;
+    }
+    Json operator()(const Facts& facts) const {
+        Json object = Json::object();
+        for (const Fact& fact : facts.all()) object[fact.name] = std::visit(*this, fact.value.value);
+        return object;
+    }
+};
+
 }  // namespace
 
 std::int64_t peak_memory_bytes() {
@@ -110,6 +129,19 @@ void Report::warn(const std::string& text) {
     if (print_json_ || quiet_) return;
     progress_.clear();
     std::cerr << "subvol: warning: " << warning << '\n';
+}
+
+void Report::merge(const Facts& facts) {
+    for (const auto& [name, fact, unit] : facts.all()) {
+        const Json value = std::visit(JsonOf{}, fact.value);
+        if (name == "warnings") {
+            for (const Json& warning : value) warn(warning.get<std::string>());
+        } else if (name == "seconds") {
+            for (const auto& [stage, seconds] : value.items()) add_seconds(stage, seconds.get<double>());
+        } else {
+            json_[name] = value;
+        }
+    }
 }
 
 void Report::note(const std::string& note) {

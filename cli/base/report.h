@@ -7,6 +7,7 @@
 
 #include "common_options.h"
 #include "subvol/detail/stopwatch.h"
+#include "subvol/facts.h"
 #include "terminal_progress.h"
 
 namespace subvol::cli {
@@ -24,6 +25,9 @@ public:
     Json& operator[](const char* key) { return json_[key]; }
     [[nodiscard]] const Json& json() const { return json_; }
     [[nodiscard]] Progress* progress() { return &progress_; }
+
+    /// Adds what a call found out: warnings and seconds to those that are there.
+    void merge(const Facts& facts);
 
     /// Puts a finished object in place of all that has been collected.
     void take(Json json) { json_ = std::move(json); }
