@@ -53,7 +53,7 @@ namespace detail {
 /// The enumerator of a name.
 ///
 /// where:  the option or key that was given, for the error
-/// throws: Error(InvalidInput) for another name; it suggests the nearest one
+/// throws: Error(InvalidInput) for another name; it suggests a near one
 template <class Enum>
 [[nodiscard]] Enum named(std::string_view name, const std::string& where) {
     for (const auto& row : NameTable<Enum>::rows) {
