@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """A table of hashes: points, grids, pictures and surfaces of one mesh, cut and divided in every way, against those of one process.
 
-    bench/equality.py [build/release/bin/subvol] [--counts 1,2,3,4,7] [--resolution 4] [--columns points,vdb,render,tets,fixed,surface]
+    bench/equality.py [build/release/bin/subvol] [--counts 1,2,3,4,7] [--resolution 4] [--columns points,vdb,render,tets,surface]
 
 The mesh is `ball` in pieces (.pvtu) by slabs, by blocks or at random, a cell at a time: with a layer of ghost cells, with the
 points between pieces in each of them, with a piece that is empty; points and cells have their global numbers. It is read as it
@@ -25,7 +25,6 @@ SHAPES = ("slabs", "blocks", "random")
 PICTURE = ["--size", "160x128", "--backend", "cpu"]
 COLUMNS = {"points": ("points", ".ply", []), "vdb": ("vdb", ".vdb", ["--resolution", "48"]),
            "render": ("render", ".exr", PICTURE), "tets": ("render", ".exr", ["--method", "tets", *PICTURE]),
-           "fixed": ("render", ".exr", [*PICTURE, "--look", "volume", "--sheet-sums", "fixed"]),
            "surface": ("surface", ".obj", ["--iso", "0.3", "--cap", "--boundary", "--color-field", "density", "--tolerance", "3e-3"])}
 OF_SHARES = {"surface": ".svshare"}  # where a share is another file
 RANKS = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}

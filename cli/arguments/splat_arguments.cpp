@@ -2,7 +2,6 @@
 #include "splat_arguments.h"
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
 
 #include "choices.h"
 #include "numbers.h"
@@ -37,11 +36,11 @@ void SplatArguments::add_to(CLI::App& app) {
     app.add_option("--color-field", color_field, "splat: take the colours from this field; opacities stay those of --field")
         ->type_name("NAME");
     app.add_flag("--plain-sums", plain_sums, "splat: add kernels up without dividing by the sum of their weights");
-    app.add_option("--sheet-sums", sheet_sums,
-                   "splat: numbers that kernels are added up in: floats; fixed (whole numbers: the same bits in any order, and "
-                   "ranks send sums, not kernels); auto (default: fixed above 20 million kernels on few --sheets)")
-        ->type_name("NAME")
-        ->check(offered({"auto", "floats", "fixed"}));
+    const auto refuse_sums = [](const std::string&) {
+        throw Error(ErrorCode::InvalidInput, "sheets are always summed in floats; parts, ranks and bricks have the same bits",
+                    "--sheet-sums", "leave it out; --backend cpu where a GPU would draw otherwise");
+    };
+    app.add_option_function<std::string>("--sheet-sums", refuse_sums, "removed")->group("");
     app.add_option("--seconds", seconds,
                    "the best picture within this time; splat: first coarse, then with the mesh sampled for the view; "
                    "pt: first the faces of the boundary, then more and more of those inside")
@@ -69,19 +68,8 @@ SplatOptions SplatArguments::options(const std::string& method) const {
     if (device && backend == "cpu") {
         throw Error(ErrorCode::InvalidInput, "is for OpenGL, not for --backend cpu", "--device");
     }
-    check_choice("--sheet-sums", sheet_sums, {"auto", "floats", "fixed"});
-    const bool fixed = sheet_sums == "fixed";
-    if (fixed && (method != "splat" || backend == "gl" || device || seconds)) {
-        throw Error(ErrorCode::InvalidInput, "sums in fixed point are made by the CPU, for one picture after the other",
-                    "--sheet-sums fixed", "--method splat without --backend gl, --device and --seconds");
-    }
-    if (fixed && (shadows || ambient_occlusion > 0)) {
-        throw Error(ErrorCode::InvalidInput, "sums in fixed point know no shadows and no ambient occlusion",
-                    "--sheet-sums fixed", "auto or floats");
-    }
     SplatOptions options{
         .method = splat_method(method, backend), .device = device, .sheets = sheets, .normalized = !plain_sums};
-    if (fixed) options.method = SplatMethod::Cpu;
     if (color_field) options.color_channel = 1;
     if (shade) options.shading = Shading{};
     options.shadows = shadows;
@@ -93,20 +81,6 @@ SplatOptions SplatArguments::options(const std::string& method) const {
     return options;
 }
 
-bool sums_in_fixed_point(const std::string& sheet_sums, std::uint64_t kernels, std::uint64_t pixels, bool bounded,
-                         const SplatOptions& options) {
-    if (sheet_sums != "auto") return sheet_sums == "fixed";
-    if (kernels <= kKernelsOfFixedSums || !bounded || options.shadows || options.ambient_occlusion > 0) return false;
-    // As many sheets as kernels need have more sums than there are kernels, up to some 10⁹ of these.
-    if (options.sheets == 0 || options.sheets > kMostFixedSheets) return false;
-    const double rays = static_cast<double>(pixels) * options.samples * options.samples;
-    constexpr double kBytesOfKernel = 68, kBytesOfSums = 16;
-    if (rays * options.sheets * kBytesOfSums > static_cast<double>(kernels) * kBytesOfKernel) return false;
-    if (options.method != SplatMethod::Auto) return options.method == SplatMethod::Cpu;
-    const auto devices = gl_devices();
-    return !options.device && std::ranges::none_of(devices, [](const GlDevice& device) { return device.hardware; });
-}
-
 void report_splats(const SplatReport& splats, Report& report) {
     if (splats.seconds_light > 0) report.add_seconds("light", splats.seconds_light);
     report.add_seconds("prepare", splats.seconds_prepare - splats.seconds_light);
@@ -115,7 +89,6 @@ void report_splats(const SplatReport& splats, Report& report) {
     report["backend"] = splats.backend;
     report["device"] = splats.device;
     report["sheets"] = splats.sheets;
-    report["sheet_sums"] = splats.fixed.sums > 0 ? "fixed" : "floats";
 }
 
 }  // namespace subvol::cli

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstdint>
 #include <optional>
 #include <string>
 
@@ -26,7 +25,6 @@ struct SplatArguments {
     bool shadows = false;
     double ambient_occlusion = 0;
     bool plain_sums = false;
-    std::string sheet_sums = "auto";
     std::optional<std::string> color_field;
     std::optional<double> seconds;
 
@@ -38,15 +36,6 @@ struct SplatArguments {
     /// throws: Error(InvalidInput) if a name is unknown, or the backend cannot draw so
     [[nodiscard]] SplatOptions options(const std::string& method) const;
 };
-
-/// Whether a picture is summed in fixed point.
-///
-/// sheet_sums: of --sheet-sums: auto, floats, fixed
-/// kernels:    of the whole picture
-/// pixels:     of the picture
-/// bounded:    there is a boundary
-[[nodiscard]] bool sums_in_fixed_point(const std::string& sheet_sums, std::uint64_t kernels, std::uint64_t pixels, bool bounded,
-                                       const SplatOptions& options);
 
 /// Adds the seconds, the backend and the device of a splatted picture to the report.
 void report_splats(const SplatReport& splats, Report& report);

@@ -162,32 +162,6 @@ SplatResult render_bricks_ranked(const Bricks& bricks, const BrickFields& fields
     return drawn;
 }
 
-SplatResult render_bricks_by_sums(const Bricks& bricks, const BrickFields& fields, Surface boundary, const View& view,
-                                  const Optics& optics, const BrickSplatOptions& options, Ranks& ranks, std::size_t& bytes) {
-    RbfVolume own;
-    own.kernel = options.sample.kernel;
-    own.channels.emplace_back();
-    own.boundary = std::move(boundary);
-    own.bounds = box_of(own);
-    SampleOptions sample = options.sample;
-    sample.progress = options.splat.progress;
-    sample_in_rounds(bricks, sample, fields, ranks, [&](const BrickPoints& points) {
-        if (points.numbers.empty()) return;
-        own.channels.front().name = points.volume.channels.front().name;
-        detail::append_kernels(own, points.volume);
-    });
-    std::vector<std::int64_t> count{static_cast<std::int64_t>(own.size())};
-    ranks.sum(count);
-    SplatOptions splat = options.splat;
-    splat.method = SplatMethod::Cpu;
-    settle_sheets(own, static_cast<std::size_t>(count[0]), view, splat, ranks);
-    Splatter splatter(own, splat);
-    splatter.set_fixed_sums(sums_of_ranks(ranks, view.height(), bytes));
-    SplatResult drawn = splatter.draw(view, optics);
-    drawn.report.points = static_cast<std::size_t>(count[0]);
-    return drawn;
-}
-
 BrickTets measure_tets(const Bricks& bricks, const BrickTetsOptions& options, const OwnRows& rows) {
     if (!rows.gathered()) return subvol::measure_tets(bricks, options, 0, bricks.bricks.size());
     const auto [begin, end] = rows.share->range(bricks.bricks.size());

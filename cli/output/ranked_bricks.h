@@ -22,13 +22,6 @@ BrickPointsReport write_points_ranked(const std::filesystem::path& path, const B
                                                const View& view, const Optics& optics, BrickSplatOptions options, Ranks& ranks,
                                                ShippedKernels& shipped);
 
-/// The same by sums in fixed point: each rank keeps the kernels of its bricks, and ranks send each other sums.
-///
-/// bytes: gets what this rank sends of them
-[[nodiscard]] SplatResult render_bricks_by_sums(const Bricks& bricks, const BrickFields& fields, Surface boundary,
-                                                const View& view, const Optics& optics, const BrickSplatOptions& options,
-                                                Ranks& ranks, std::size_t& bytes);
-
 /// `measure_tets` of all bricks: of ranks that draw one picture together, each measures a range of them.
 [[nodiscard]] BrickTets measure_tets(const Bricks& bricks, const BrickTetsOptions& options, const OwnRows& rows);
 

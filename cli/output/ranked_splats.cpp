@@ -3,8 +3,6 @@
 
 #include <algorithm>
 #include <cstring>
-#include <type_traits>
-#include <utility>
 
 #include "subvol/detail/kernel_bytes.h"
 #include "subvol/detail/points_range.h"
@@ -71,7 +69,10 @@ RbfVolume ship_kernels(const RbfVolume& own, const View& view, const Optics& opt
     ranks.sum(count);
     std::vector<KernelBands> bands;
     if (!all && count.front() > 0) {
-        settle_sheets(own, static_cast<std::size_t>(count.front()), view, options, ranks);
+        if (options.sheets == 0) {
+            const std::size_t place = place_of_finest_reach(static_cast<std::size_t>(count.front()));
+            options.sheets = sheets_of_picture(own, view, options, ranks.in_place(kernel_reaches(own, view, options), place));
+        }
         bands = bands_of_kernels(own, view, optics, options);
     }
     std::vector<std::string> to;
@@ -94,45 +95,6 @@ RbfVolume ship_kernels(const RbfVolume& own, const View& view, const Optics& opt
     }
     result.boundary = own.boundary;
     return result;
-}
-
-void settle_sheets(const RbfVolume& own, std::size_t kernels, const View& view, SplatOptions& options, Ranks& ranks) {
-    if (options.sheets != 0 || kernels == 0) return;
-    const float finest = ranks.in_place(kernel_reaches(own, view, options), place_of_finest_reach(kernels));
-    options.sheets = sheets_of_picture(own, view, options, finest);
-}
-
-FixedSums sums_of_ranks(Ranks& ranks, int height, std::size_t& bytes) {
-    FixedSums sums{.own = static_cast<std::size_t>(ranks.rank())};
-    for (int rank = 0; rank < ranks.size(); ++rank) sums.splits.push_back(rows_of(ranks.share_of(rank), height).first);
-    sums.splits.push_back(height);
-    sums.join = [&ranks](const SumBounds& own) {
-        static_assert(std::is_trivially_copyable_v<SumBounds>);
-        SumBounds all;
-        for (const std::string& of : ranks.gather(std::string(reinterpret_cast<const char*>(&own), sizeof own))) {
-            SumBounds more;
-            std::memcpy(&more, of.data(), sizeof more);
-            all.add(more);
-        }
-        const std::string joined = ranks.broadcast(std::string(reinterpret_cast<const char*>(&all), sizeof all));
-        std::memcpy(&all, joined.data(), sizeof all);
-        return all;
-    };
-    sums.exchange = [&ranks, &bytes](std::vector<std::string> to) {
-        for (const std::string& of : to) bytes += of.size();
-        return ranks.exchange(std::move(to));
-    };
-    return sums;
-}
-
-void report_sums(const FixedSumsReport& sums, std::size_t bytes, Ranks& ranks, Report& report) {
-    std::vector<std::int64_t> counts{static_cast<std::int64_t>(sums.tile_batches_sent),
-                                     static_cast<std::int64_t>(sums.ends_sent), static_cast<std::int64_t>(bytes)};
-    ranks.sum(counts);
-    report["sums"] = sums.sums;
-    report["tile_batches_sent"] = counts[0];
-    report["ends_sent"] = counts[1];
-    report["sum_bytes_sent"] = counts[2];
 }
 
 void gather_rows(Picture& picture, Ranks& ranks) {

@@ -7,7 +7,6 @@
 
 #include "picture_notes.h"
 #include "ranks.h"
-#include "report.h"
 #include "share.h"
 #include "subvol/render_bricks.h"
 #include "subvol/splat.h"
@@ -53,19 +52,6 @@ struct ShippedKernels {
 /// returns: those for this rank's rows, and the boundary
 [[nodiscard]] RbfVolume ship_kernels(const RbfVolume& own, const View& view, const Optics& optics, SplatOptions& options,
                                      Ranks& ranks, ShippedKernels& shipped);
-
-/// Sets the number of sheets of the picture of all ranks' kernels, unless it is set.
-///
-/// own: the kernels of this rank, and the whole boundary; kernels: of all ranks
-void settle_sheets(const RbfVolume& own, std::size_t kernels, const View& view, SplatOptions& options, Ranks& ranks);
-
-/// How the ranks sum one picture in fixed point: each its own kernels, for the rows of all.
-///
-/// bytes: gets what this rank sends
-[[nodiscard]] FixedSums sums_of_ranks(Ranks& ranks, int height, std::size_t& bytes);
-
-/// Puts what all ranks have sent of their sums into the report.
-void report_sums(const FixedSumsReport& sums, std::size_t bytes, Ranks& ranks, Report& report);
 
 /// Puts each rank's rows of a picture together, at rank 0; elsewhere the picture stays as it is.
 void gather_rows(Picture& picture, Ranks& ranks);

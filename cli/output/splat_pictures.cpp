@@ -23,42 +23,22 @@ void report_shipped(const ShippedKernels& shipped, Ranks& ranks, Report& report)
     report["kernel_bytes_sent"] = counts[1];
 }
 
-std::uint64_t pixels_of(const View& view) {
-    return static_cast<std::uint64_t>(view.width()) * static_cast<std::uint64_t>(view.height());
-}
-
 /// One picture, of which this process draws its rows.
 SplatResult draw_rows(const RbfVolume& volume, const BoundaryValues& skin, const View& view, const Optics& optics,
-                      const SplatWork& work, bool fixed, Progress* progress, Report& report) {
+                      const SplatWork& work, Progress* progress, Report& report) {
     SplatOptions options = work.options;
-    std::optional<FixedSums> sums;
     const auto drawn_of = [&](const RbfVolume& band) {
         Splatter splatter(band, options);
-        splatter.set_fixed_sums(sums);
         if (!skin.values.empty()) splatter.set_boundary_colors(skin.surface, skin.values.back());
         return splatter.draw(view, optics, progress);
     };
     if (work.rows.ranks == nullptr) {
-        if (fixed) {
-            const PixelRows rows = work.rows.of(view.height());
-            const SumBounds all = bounds_of_sums(volume, view, optics, options);
-            sums = FixedSums{.splits = {rows.first, rows.end}, .join = [all](const SumBounds&) { return all; }};
-        }
         const RbfVolume band = kernels_of_rows(volume, *work.rows.share, view, optics, options);
         return drawn_of(band);
     }
     const auto [begin, end] = work.rows.share->range(volume.size());
     RbfVolume own = detail::kernels_between(volume, begin, end);
     own.boundary = volume.boundary;
-    if (fixed) {
-        settle_sheets(own, volume.size(), view, options, *work.rows.ranks);
-        std::size_t bytes = 0;
-        sums = sums_of_ranks(*work.rows.ranks, view.height(), bytes);
-        SplatResult drawn = drawn_of(own);
-        report_sums(drawn.report.fixed, bytes, *work.rows.ranks, report);
-        drawn.report.points = volume.size();
-        return drawn;
-    }
     ShippedKernels shipped;
     const RbfVolume band = ship_kernels(own, view, optics, options, *work.rows.ranks, shipped);
     report_shipped(shipped, *work.rows.ranks, report);
@@ -86,11 +66,8 @@ void write_splats(LevelOfDetail& levels, const BoundaryValues& skin, const std::
         const RbfVolume& shown = levels.of(view, report);
         if (splatter && levels.has_changed()) splatter->set_kernels(shown);
         if (!splatter && !work.rows.share) prepare(shown);
-        const bool fixed = sums_in_fixed_point(work.sheet_sums, shown.size(), pixels_of(view),
-                                               !shown.boundary.triangles.empty(), work.options);
-        if (splatter) splatter->set_fixed_sums(fixed ? std::optional<FixedSums>(std::in_place) : std::nullopt);
-        SplatResult drawn = splatter ? splatter->draw(view, optics, progress)
-                                     : draw_rows(shown, skin, view, optics, work, fixed, progress, report);
+        SplatResult drawn =
+            splatter ? splatter->draw(view, optics, progress) : draw_rows(shown, skin, view, optics, work, progress, report);
         report_drawn(drawn.report, work, report);
         Picture picture{std::move(drawn.image), std::move(drawn.depth)};
         if (work.rows.gathered()) gather_rows(picture, *work.rows.ranks);
@@ -109,17 +86,10 @@ void write_splats(BricksToSplats what, const std::vector<View>& views, const Opt
                   PictureOutput& output, Report& report) {
     what.options.rows = work.rows.of(views.front().height());
     const bool ranked = work.rows.gathered();
-    what.options.fixed =
-        sums_in_fixed_point(work.sheet_sums, what.bricks.points, pixels_of(views.front()), true, what.options.splat);
     const auto draw = [&](const View& view, Progress*) {
         Surface own = views.size() > 1 ? what.boundary : std::move(what.boundary);
         ShippedKernels shipped;
-        std::size_t bytes = 0;
         SplatResult drawn = report.timed("draw", [&] {
-            if (ranked && what.options.fixed) {
-                return render_bricks_by_sums(what.bricks, what.fields, std::move(own), view, optics, what.options,
-                                             *work.rows.ranks, bytes);
-            }
             return ranked ? render_bricks_ranked(what.bricks, what.fields, std::move(own), view, optics, what.options,
                                                  *work.rows.ranks, shipped)
                           : render_bricks(what.bricks, what.fields, std::move(own), view, optics, what.options);
@@ -129,11 +99,7 @@ void write_splats(BricksToSplats what, const std::vector<View>& views, const Opt
         report_splats(drawn.report, report);
         Picture picture{std::move(drawn.image), std::move(drawn.depth)};
         if (ranked) {
-            if (what.options.fixed) {
-                report_sums(drawn.report.fixed, bytes, *work.rows.ranks, report);
-            } else {
-                report_shipped(shipped, *work.rows.ranks, report);
-            }
+            report_shipped(shipped, *work.rows.ranks, report);
             gather_rows(picture, *work.rows.ranks);
         }
         const BoundaryValues& skin = what.skin;

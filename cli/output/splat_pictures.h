@@ -17,13 +17,11 @@ namespace subvol::cli {
 
 /// How kernels are drawn.
 ///
-/// method:     for the report
-/// sheet_sums: of --sheet-sums
+/// method: for the report
 struct SplatWork {
     std::string method;
     SplatOptions options;
     OwnRows rows{};
-    std::string sheet_sums = "auto";
 };
 
 /// Draws and writes a picture of kernels for each view.

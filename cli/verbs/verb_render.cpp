@@ -119,7 +119,7 @@ private:
                "--values", "--kernel", "--value-kernel", "--threshold", "--correction", "--reduce", "--refine"});
         group("The limit", {"--scheme", "--tension", "--levels", "--crease-angle"});
         group("Methods", {"--method", "--samples", "--seconds", "--backend", "--device", "--sheets", "--plain-sums",
-                          "--sheet-sums", "--tolerance-image", "--order", "--kbuffer", "--lod", "--memory", "--part"});
+                          "--tolerance-image", "--order", "--kbuffer", "--lod", "--memory", "--part"});
     }
 
     /// Lets `draw` make pictures in the colours of the fields, and writes their legend.
@@ -292,7 +292,7 @@ private:
 
     [[nodiscard]] SplatWork splat_work() const {
         return {arguments_.method, arguments_.options,
-                OwnRows{by_rows_ ? std::optional(share_of(share_)) : std::nullopt, ranks()}, arguments_.splat.sheet_sums};
+                OwnRows{by_rows_ ? std::optional(share_of(share_)) : std::nullopt, ranks()}};
     }
 
     /// Kernels without a boundary that has its own colours.

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <map>
 
-#include "fixed_sums.h"
 #include "kernel_regions.h"
 #include "sheet_count.h"
 #include "splat_scene.h"
@@ -21,7 +20,6 @@ namespace {
 
 // Of a kernel while it is drawn: its record, itself, in eye space, and its place in the lists of some tiles.
 constexpr std::uint64_t kBytesOfKernel = 320;
-constexpr int kTileRows = SplatFrame::kTile_px;
 
 void check(const BrickSplatOptions& options) {
     const SplatOptions& splat = options.splat;
@@ -80,7 +78,6 @@ struct BrickPicture::State {
           optics(lit),
           splat(options.splat),
           memory_bytes(options.memory_bytes),
-          fixed(options.fixed),
           empty(make_scene(drawn,
                            [&] {
                                SplatOptions bare = options.splat;
@@ -97,9 +94,7 @@ struct BrickPicture::State {
     Optics optics;
     SplatOptions splat;
     std::uint64_t memory_bytes;
-    bool fixed;
-    SumBounds bounds{};  // of all kernels, for sums in fixed point
-    SplatScene empty;    // without kernels
+    SplatScene empty;  // without kernels
     KernelRegions regions;
 };
 
@@ -131,30 +126,10 @@ void BrickPicture::add(const RbfVolume& kernels, std::span<const std::uint64_t> 
     if (kernels.channels.size() != 1) throw Error(ErrorCode::InvalidInput, "bricks are drawn by one field");
     state_->drawn.channels.front().name = kernels.channels.front().name;
     state_->regions.add(kernels, numbers);
-    if (!state_->fixed) return;
-    SplatScene some = state_->empty;
-    some.volume = &kernels;
-    some.bent = !kernels.channels.front().hessians.empty();
-    EyeSplats eye;
-    eye_splats(eye, some, state_->view, classify(some, state_->optics));
-    state_->bounds.add(detail::bounds_of_sums(some, eye));
-}
-
-/// How the kernels of some regions are summed in fixed point: with the steps of all kernels, in the rows of these regions.
-FixedSums BrickPicture::sums_of(std::span<const std::size_t> group, bool all_rows) const {
-    FixedSums sums{.join = [bounds = state_->bounds](const SumBounds&) { return bounds; }};
-    if (all_rows) return sums;
-    int first = state_->view.height(), end = 0;
-    for (const std::size_t k : group) {
-        first = std::min(first, state_->regions.region(k).y0);
-        end = std::max(end, state_->regions.region(k).y1);
-    }
-    sums.splits = {first / kTileRows * kTileRows, end};
-    return sums;
 }
 
 SplatResult BrickPicture::draw(float finest_reach) {
-    auto& [drawn, view, optics, splat, memory_bytes, fixed, bounds, empty, regions] = *state_;
+    auto& [drawn, view, optics, splat, memory_bytes, empty, regions] = *state_;
     if (splat.sheets == 0) {
         const DepthRange depths = depth_range_of(empty, view);
         splat.sheets = sheets_for_reach(finest_reach, depths.max - depths.min);
@@ -179,9 +154,7 @@ SplatResult BrickPicture::draw(float finest_reach) {
             regions.take(group, drawn);
             SplatOptions quiet = splat;
             quiet.progress = nullptr;
-            Splatter splatter(drawn, quiet);
-            if (fixed) splatter.set_fixed_sums(sums_of(group, first));
-            SplatResult part = splatter.draw(view, optics);
+            SplatResult part = Splatter(drawn, quiet).draw(view, optics);
             result.report.seconds_prepare += part.report.seconds_prepare;
             result.report.seconds_draw += part.report.seconds_draw;
             result.report.bin_entries += part.report.bin_entries;
@@ -191,7 +164,6 @@ SplatResult BrickPicture::draw(float finest_reach) {
                 result.report.backend = part.report.backend;
                 result.report.device = part.report.device;
                 result.report.sheets = part.report.sheets;
-                result.report.fixed = part.report.fixed;
                 result.report.boundary_hits = part.report.boundary_hits;
             }
             first = false;

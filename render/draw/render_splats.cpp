@@ -10,7 +10,6 @@
 #include <utility>
 #include <vector>
 
-#include "fixed_sums.h"
 #include "footprints.h"
 #include "gl_context.h"
 #include "gl_sheets.h"
@@ -146,14 +145,13 @@ struct Splatter::State {
                                            SplatReport& report) {
         const detail::Stopwatch watch;
         detail::prepare_frame(frame, scene, view, classification, options.sheets, progress);
-        if (!fixed) detail::find_interval_ends(frame);
+        detail::find_interval_ends(frame);
         report.sheets = frame.sheets.count;
         report.seconds_prepare += watch.seconds();
         report.backend = sheets ? "gl" : "cpu";
         report.device = sheets ? sheets->renderer() : cpu_threads();
         report.bin_entries = frame.tile_splats.size();
         report.boundary_hits = frame.intervals.hits;
-        if (fixed) return detail::draw_fixed(frame, *fixed, options.samples, progress, report.fixed);
         return sheets ? sheets->draw(frame, progress) : detail::draw_splats_cpu(frame, progress);
     }
 
@@ -187,7 +185,6 @@ struct Splatter::State {
     std::optional<detail::GlSplatter> gpu;
     std::unique_ptr<SheetDrawer> sheets;
     std::optional<detail::Footprints> footprints;
-    std::optional<FixedSums> fixed{};
     detail::SplatFrame frame{};  // its memory is used for every picture
 };
 
@@ -219,13 +216,6 @@ void Splatter::set_kernels(const RbfVolume& volume) {
     if (state.gpu) state.gpu->upload_kernels();
 }
 
-void Splatter::set_fixed_sums(std::optional<FixedSums> sums) {
-    if (sums && (state_->gpu || state_->sheets || state_->footprints)) {
-        throw Error(ErrorCode::InvalidInput, "sums in fixed point are made by the CPU", {}, "the method Cpu");
-    }
-    state_->fixed = std::move(sums);
-}
-
 SplatResult Splatter::draw(const View& view, const Optics& optics, Progress* progress) {
     State& state = *state_;
     if (!progress) progress = state.options.progress;
@@ -234,7 +224,7 @@ SplatResult Splatter::draw(const View& view, const Optics& optics, Progress* pro
     const detail::Stopwatch watch;
     const auto classification = detail::classify(state.scene, optics);
     state.scene.solid = detail::is_solid(state.scene, optics);
-    if (state.scene.shadowed() && !state.fixed) {
+    if (state.scene.shadowed()) {
         if (std::vector<double> key = light_key(view, optics, state.options.clip); key != state.light_key) {
             state.light = detail::make_light_volume(state.scene, view, classification);
             state.light_key = std::move(key);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "subvol/splat_shares.h"
 
-#include "fixed_sums.h"
 #include "sheet_count.h"
 #include "tile_finder.h"
 
@@ -30,13 +29,6 @@ int sheets_of_picture(const RbfVolume& volume, const View& view, const SplatOpti
     if (options.sheets != 0) return options.sheets;
     const auto [min, max, near] = detail::depth_range_of(detail::make_scene(volume, options), fine_view(view, options));
     return detail::sheets_for_reach(finest_reach, max - min);
-}
-
-SumBounds bounds_of_sums(const RbfVolume& volume, const View& view, const Optics& optics, const SplatOptions& options) {
-    const detail::SplatScene scene = detail::make_scene(volume, options);
-    detail::EyeSplats kernels;
-    detail::eye_splats(kernels, scene, fine_view(view, options), detail::classify(scene, optics));
-    return detail::bounds_of_sums(scene, kernels);
 }
 
 std::vector<KernelBands> bands_of_kernels(const RbfVolume& volume, const View& view, const Optics& optics,

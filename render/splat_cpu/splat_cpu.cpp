@@ -16,7 +16,6 @@
 #include <hwy/highway.h>
 
 #include "splat_ends-inl.h"
-#include "splat_fixed-inl.h"
 #include "splat_tile-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -34,22 +33,6 @@ void find_ends(const SplatFrame& frame, int tile, std::vector<IntervalEnd>& ends
     EndFinder(frame).find(tile, ends);
 }
 
-void sum_tile_fixed(const SplatFrame& frame, const FixedScale& scale, int tile, TileSums& sums) {
-    TileSummer(frame, scale).sum(tile, sums);
-    sums.ends.clear();
-    const auto at = static_cast<std::size_t>(tile);
-    if (frame.tile_offsets[at] != frame.tile_offsets[at + 1]) EndFinder(frame).sum(tile, scale, sums);
-}
-
-// Always by the general code: whether the short loops suffice may depend on the kernels that a process has.
-void draw_tile_fixed(const SplatFrame& frame, const FixedScale& scale, const TileSums& sums, int tile,
-                     std::vector<IntervalEnd>& ends, Drawn& drawn) {
-    EndFinder(frame).find(tile, scale, sums, ends);
-    TileRenderer<false> renderer(frame);
-    renderer.take(sums, scale);
-    renderer.draw(tile, drawn);
-}
-
 }  // namespace subvol::detail::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
@@ -58,16 +41,6 @@ namespace subvol::detail {
 
 HWY_EXPORT(draw_tile);
 HWY_EXPORT(find_ends);
-HWY_EXPORT(sum_tile_fixed);
-HWY_EXPORT(draw_tile_fixed);
-
-void sum_tile(const SplatFrame& frame, const FixedScale& scale, int tile, TileSums& sums) {
-    HWY_DYNAMIC_DISPATCH(sum_tile_fixed)(frame, scale, tile, sums);
-}
-
-void draw_summed_tile(SplatFrame& frame, const FixedScale& scale, const TileSums& sums, int tile, Drawn& drawn) {
-    HWY_DYNAMIC_DISPATCH(draw_tile_fixed)(frame, scale, sums, tile, frame.ends, drawn);
-}
 
 void find_interval_ends(SplatFrame& frame) {
     frame.ends.assign(frame.intervals.depths.size(), {});

@@ -21,7 +21,6 @@
 #include <new>
 
 #include "splat_classify-inl.h"
-#include "splat_fixed-inl.h"
 #include "splat_general-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -40,45 +39,13 @@ public:
 
     /// Sets the ends of all intervals of a tile's pixels.
     HWY_ATTR void find(int tile, std::vector<IntervalEnd>& ends) {
-        start_tile(tile);
+        x0_ = tile % frame_.tiles_x * SplatFrame::kTile_px;
+        y0_ = tile / frame_.tiles_x * SplatFrame::kTile_px;
+        place_pixels(view_, x0_, y0_, tile_);
         for (std::size_t layer = 0; start_layer(layer); ++layer) {
-            add_kernels(tile);
-            for (std::size_t block = 0; block < kBlocks; ++block) {
-                if (scratch().blocks[block].any) write(layer, block, ends);
-            }
-        }
-    }
-
-    /// Sums the tile's kernels at the ends of its intervals in fixed point.
-    HWY_ATTR void sum(int tile, const FixedScale& scale, TileSums& sums) {
-        start_tile(tile);
-        scale_ = &scale;
-        sums.ends.assign(number_pixels() * scale.sums, 0);
-        for (std::size_t layer = 0; start_layer(layer); ++layer) {
-            add_kernels(tile);
-            each_end(layer, [&](std::size_t end, Block& b, std::size_t lane) {
-                for (std::size_t slot = 0; slot < scale.sums; ++slot) {
-                    sums.ends[end * scale.sums + slot] = b.fixed[slot * kBlock + lane];
-                }
-            });
-        }
-    }
-
-    /// Sets the ends of all intervals of a tile's pixels from sums.
-    HWY_ATTR void find(int tile, const FixedScale& scale, const TileSums& sums, std::vector<IntervalEnd>& ends) {
-        start_tile(tile);
-        scale_ = &scale;
-        number_pixels();
-        for (std::size_t layer = 0; start_layer(layer); ++layer) {
-            if (!sums.ends.empty()) {
-                each_end(layer, [&](std::size_t end, Block& b, std::size_t lane) {
-                    for (std::size_t which = 0; which < kSums; ++which) {
-                        if (scale.slot[which] < 0) continue;
-                        const std::int64_t steps = sums.ends[end * scale.sums + static_cast<std::size_t>(scale.slot[which])];
-                        b.sums[which * kBlock + lane] = static_cast<float>(static_cast<double>(steps) / scale.per_unit[which]);
-                    }
-                });
-            }
+            const auto first = frame_.tile_offsets[static_cast<std::size_t>(tile)];
+            const auto end = frame_.tile_offsets[static_cast<std::size_t>(tile) + 1];
+            for (std::size_t i = first; i < end; ++i) add_kernel(frame_.tile_splats[i]);
             for (std::size_t block = 0; block < kBlocks; ++block) {
                 if (scratch().blocks[block].any) write(layer, block, ends);
             }
@@ -86,52 +53,9 @@ public:
     }
 
 private:
-    void start_tile(int tile) {
-        x0_ = tile % frame_.tiles_x * SplatFrame::kTile_px;
-        y0_ = tile / frame_.tiles_x * SplatFrame::kTile_px;
-        place_pixels(view_, x0_, y0_, tile_);
-    }
-
-    HWY_ATTR void add_kernels(int tile) {
-        const auto first = frame_.tile_offsets[static_cast<std::size_t>(tile)];
-        const auto end = frame_.tile_offsets[static_cast<std::size_t>(tile) + 1];
-        for (std::size_t i = first; i < end; ++i) add_kernel(frame_.tile_splats[i]);
-    }
-
-    /// Finds the number of each pixel's first end, row by row, however wide blocks are; returns how many ends there are.
-    std::size_t number_pixels() {
-        first_end_.assign(TileSums::kPixels, 0);
-        std::size_t ends = 0;
-        for (int y = y0_; y < std::min(y0_ + SplatFrame::kTile_px, view_.height()); ++y) {
-            for (int x = x0_; x < std::min(x0_ + SplatFrame::kTile_px, view_.width()); ++x) {
-                const auto ray =
-                    static_cast<std::size_t>(y) * static_cast<std::size_t>(view_.width()) + static_cast<std::size_t>(x);
-                first_end_[static_cast<std::size_t>(y - y0_) * kTile + static_cast<std::size_t>(x - x0_)] = ends;
-                ends += 2 * (frame_.intervals.offsets[ray + 1] - frame_.intervals.offsets[ray]);
-            }
-        }
-        return ends;
-    }
-
-    /// Visits the ends of a layer: visit(its number, its block, its lane).
-    template <class Visit>
-    void each_end(std::size_t layer, const Visit& visit) {
-        for (std::size_t block = 0; block < kBlocks; ++block) {
-            Block& b = scratch().blocks[block];
-            if (!b.any) continue;
-            for (std::size_t lane = 0; lane < kBlock; ++lane) {
-                const auto [first, end] = intervals(block, lane);
-                if (2 * (end - first) <= layer) continue;
-                const std::size_t row = block / kColumns * kBlockHeight + lane / kBlockWidth;
-                visit(first_end_[row * kTile + block % kColumns * kBlockWidth + lane % kBlockWidth] + layer, b, lane);
-            }
-        }
-    }
-
     struct Block {
         HWY_ALIGN float depth[kBlock];
         HWY_ALIGN float sums[kSums * kBlock];
-        HWY_ALIGN std::int64_t fixed[kSums * kBlock];
         float low = 0, high = 0;  // of the depths
         bool any = false;
     };
@@ -182,7 +106,6 @@ private:
         // The other lanes compute something finite that is not used.
         for (float& depth : b.depth) depth = std::isfinite(depth) ? depth : some;
         std::fill_n(b.sums, kSums * kBlock, 0.0f);
-        if (scale_ != nullptr) std::fill_n(b.fixed, kSums * kBlock, std::int64_t{0});
         low_ = std::min(low_, b.low);
         high_ = std::max(high_, b.high);
     }
@@ -252,8 +175,7 @@ private:
                           hn::MulAdd(across_row, across_row, hn::Mul(hn::Mul(at.zs, at.zs), hn::Set(d, s.inv_szz))));
         // Far outside a flat kernel e overflows; beyond 1 its weight is 0 anyway.
         at.e = hn::Min(at.e, hn::Set(d, 4.0f));
-        if (scale_ == nullptr) return general_.add_block(id, s, at, b.sums);
-        general_.each_sum(id, s, at, FixedSink{*scale_, b.fixed, kBlockWidth, kBlock});
+        general_.add_block(id, s, at, b.sums);
     }
 
     HWY_ATTR void write(std::size_t layer, std::size_t block, std::vector<IntervalEnd>& ends) {
@@ -328,9 +250,7 @@ private:
     GeneralSums general_;
     TilePixels tile_;
     float x_offset_, color_offset_, least_gradient_;
-    float low_ = 0, high_ = 0;           // depths of the layer
-    const FixedScale* scale_ = nullptr;  // null: sums are floats
-    std::vector<std::size_t> first_end_;
+    float low_ = 0, high_ = 0;  // depths of the layer
     int x0_ = 0, y0_ = 0;
 };
 

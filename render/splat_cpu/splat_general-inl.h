@@ -21,36 +21,13 @@ struct Offsets {
     Floats x, y, zs, e;
 };
 
-/// Adds what a kernel has at one block of pixels to its sums.
-struct FloatSink {
-    float* to;
-
-    HWY_ATTR void weight(Floats w) const {
-        const Lanes d;
-        hn::Store(hn::Add(hn::Load(d, to), w), d, to);
-    }
-    HWY_ATTR void product(std::size_t which, Floats w, Floats term) const {
-        const Lanes d;
-        hn::Store(hn::MulAdd(w, term, hn::Load(d, to + which * kBlock)), d, to + which * kBlock);
-    }
-};
-
 class GeneralSums {
 public:
     explicit GeneralSums(const SplatFrame& frame) : frame_(frame), scene_(*frame.scene) {}
 
     HWY_ATTR void add(std::uint32_t id, const BatchView& batch, const TilePixels& tile, Cuts& cuts, float* sums) const {
-        const EyeSplat& s = frame_.kernels.splats[id];
-        each_block(s, batch, tile, cuts, [&](std::size_t k, std::size_t row, std::size_t column, const Offsets& at) HWY_ATTR {
-            add_block(id, s, at, sums + ((k * kRows + row) * kColumns + column) * (kSums * kBlock));
-        });
-    }
-
-    /// Visits the blocks that a kernel may touch on the sheets of a batch: visit(sheet of the batch, row, column, places).
-    template <class Visit>
-    HWY_ATTR void each_block(const EyeSplat& s, const BatchView& batch, const TilePixels& tile, Cuts& cuts,
-                             const Visit& visit) const {
         const Lanes d;
+        const EyeSplat& s = frame_.kernels.splats[id];
         cut(s, batch, tile, cuts);
         for (int k = batch.begin; k < batch.end; ++k) {
             const auto across = hn::Set(d, batch.across[k]), x = hn::Set(d, cuts.x[k]), y = hn::Set(d, cuts.y[k]);
@@ -60,11 +37,14 @@ public:
                 const auto across_row = hn::Mul(hn::Set(d, s.root_yy), at.y);
                 const auto e_row = hn::MulAdd(across_row, across_row, hn::Set(d, cuts.e[k]));
                 const auto e_slope = hn::Mul(hn::Set(d, s.root_xy), at.y);
-                for (auto column = cuts.column0[k]; column <= cuts.column1[k]; ++column) {
+                float* to = sums + ((static_cast<std::size_t>(k) * kRows + static_cast<std::size_t>(row)) * kColumns +
+                                    static_cast<std::size_t>(cuts.column0[k])) *
+                                       (kSums * kBlock);
+                for (auto column = cuts.column0[k]; column <= cuts.column1[k]; ++column, to += kSums * kBlock) {
                     at.x = hn::MulSub(hn::Load(d, tile.x + static_cast<std::size_t>(column) * kBlock), across, x);
                     const auto along_row = hn::MulAdd(hn::Set(d, s.root_xx), at.x, e_slope);
                     at.e = hn::MulAdd(along_row, along_row, e_row);
-                    visit(static_cast<std::size_t>(k), static_cast<std::size_t>(row), static_cast<std::size_t>(column), at);
+                    add_block(id, s, at, to);
                 }
             }
         }
@@ -72,26 +52,23 @@ public:
 
     /// Adds a kernel to the sums of one block of pixels.
     HWY_ATTR void add_block(std::uint32_t id, const EyeSplat& s, const Offsets& at, float* to) const {
-        each_sum(id, s, at, FloatSink{to});
-    }
-
-    /// Gives a sink what a kernel adds to the sums of one block of pixels: its weights, and what else is multiplied by them.
-    template <class Sink>
-    HWY_ATTR void each_sum(std::uint32_t id, const EyeSplat& s, const Offsets& at, const Sink& sink) const {
+        const Lanes d;
         const auto w = weight(id, at);
         const auto v = value({s.value, s.value_slope, s.gradient_x, s.gradient_y, s.moment, {}},
                              scene_.bent ? &frame_.kernels.bends[id] : nullptr, at);
-        sink.weight(w);
-        sink.product(kValue, w, v);
+        const auto sum = [&](std::size_t which, Floats term) HWY_ATTR {
+            hn::Store(hn::MulAdd(w, term, hn::Load(d, to + which * kBlock)), d, to + which * kBlock);
+        };
+        hn::Store(hn::Add(hn::Load(d, to), w), d, to);
+        sum(kValue, v);
         if (scene_.color_channel) {
-            sink.product(kColor, w,
-                         value(frame_.kernels.colors[id], scene_.bent ? &frame_.kernels.color_bends[id] : nullptr, at));
+            sum(kColor, value(frame_.kernels.colors[id], scene_.bent ? &frame_.kernels.color_bends[id] : nullptr, at));
         }
         if (scene_.shading) {
             const Vector g = gradient(s, scene_.bent ? &frame_.kernels.bends[id] : nullptr, at);
-            sink.product(kGradient, w, g.x);
-            sink.product(kGradient + 1, w, g.y);
-            sink.product(kGradient + 2, w, g.z);
+            sum(kGradient, g.x);
+            sum(kGradient + 1, g.y);
+            sum(kGradient + 2, g.z);
         }
     }
 

@@ -11,7 +11,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "splat_frame.h"
 
@@ -76,34 +75,6 @@ struct BatchView {
     float mid_x, mid_y;
     int begin = 0, end = kBatch;  // the sheets of the batch that are summed
 };
-
-/// Sets the sheets of a batch.
-inline void set_batch(const SplatFrame& frame, int batch, BatchView& set) {
-    const View& view = *frame.view;
-    set.mid_x = 0.5f * static_cast<float>(view.width());
-    set.mid_y = 0.5f * static_cast<float>(view.height());
-    for (int k = 0; k < kBatch; ++k) {
-        const auto i = static_cast<std::size_t>(k);
-        set.depth[i] = frame.sheets.depth(batch * kBatch + k);
-        set.across[i] = view.perspective() ? frame.sheets.middle + set.depth[i] : 1.0f;
-        set.to_pixels[i] = 1.0f / (set.across[i] * static_cast<float>(view.pixel()));
-    }
-    set.begin = 0;
-    set.end = std::min(kBatch, frame.sheets.count - batch * kBatch);
-}
-
-/// The first batch and the last that a kernel may touch.
-[[nodiscard]] inline std::pair<int, int> batches_of(const SheetStack& sheets, const EyeSplat& s) {
-    const float reach = 1.0f / std::sqrt(s.inv_szz), per_sheet = 1.0f / sheets.distance;
-    const auto sheet = [&](float z) {
-        return std::clamp((z - sheets.first) * per_sheet, -1.0f, static_cast<float>(sheets.count));
-    };
-    // Half a sheet more on each side, so that rounding does not lose one.
-    constexpr float kMore = 0.5f;
-    const int first = std::max(static_cast<int>(sheet(s.depth - reach) - kMore), 0);
-    const int last = std::min(static_cast<int>(sheet(s.depth + reach) + kMore), sheets.count - 1);
-    return {first / kBatch, last / kBatch};
-}
 
 HWY_ATTR inline void cut(const EyeSplat& s, const BatchView& batch, const TilePixels& tile, Cuts& cuts) {
     for (std::size_t k = 0; k < kBatch; ++k) {

@@ -28,7 +28,6 @@
 #include <new>
 #include <vector>
 
-#include "fixed_sums.h"
 #include "splat_composite-inl.h"
 #include "splat_general-inl.h"
 
@@ -43,13 +42,9 @@ public:
         scratch().resize();
         x_offset_ = value_offset(*frame.scene, *frame.classification);
         color_offset_ = color_offset(*frame.scene, *frame.classification);
+        batch_.mid_x = 0.5f * static_cast<float>(view_.width());
+        batch_.mid_y = 0.5f * static_cast<float>(view_.height());
         least_gradient_ = kLeastChange * PreintegratedTable::kCells / static_cast<float>(frame.scene->diagonal);
-    }
-
-    /// Lets the next tile take its sums from these, instead of from kernels.
-    void take(const TileSums& sums, const FixedScale& scale) {
-        summed_ = &sums;
-        scale_ = &scale;
     }
 
     HWY_ATTR void draw(int tile, Drawn& drawn) {
@@ -58,7 +53,7 @@ public:
         place_pixels(view_, x0_, y0_, tile_);
         if (!start_blocks()) return;
         if (done()) return write(drawn);
-        if (summed_ == nullptr) list_batches(tile);
+        list_batches(tile);
         bool passed_over = false;  // whether the batch before was needed but invisible
         for (int batch = 0; batch < sheets_.batches() && !done(); ++batch) {
             if (!scratch().wanted[static_cast<std::size_t>(batch)]) continue;
@@ -135,15 +130,36 @@ private:
         b.intervals_end[lane] = static_cast<std::uint32_t>(end);
         take_interval(frame_, b, lane);
         if (b.enter[lane] == kNever) return b.opacity[lane] == 1;
-        for (std::size_t i = first; i < end; ++i) {
-            want_batches(sheets_, frame_.intervals.depths[2 * i], frame_.intervals.depths[2 * i + 1], scratch().wanted);
-        }
+        for (std::size_t i = first; i < end; ++i) want(frame_.intervals.depths[2 * i], frame_.intervals.depths[2 * i + 1]);
         return true;
+    }
+
+    /// Marks the batches with sheets between two depths, and with the next sheet on either side.
+    void want(float enter, float exit) {
+        const auto batch = [&](float z, float more) {
+            const float sheet =
+                std::clamp((z - sheets_.first) / sheets_.distance + more, 0.0f, static_cast<float>(sheets_.count - 1));
+            return static_cast<std::size_t>(sheet) / kBatch;
+        };
+        for (std::size_t b = batch(enter, -1.01f); b <= batch(exit, 1.01f); ++b) scratch().wanted[b] = 1;
     }
 
     [[nodiscard]] std::pair<int, int> pixel(std::size_t block, std::size_t lane) const {
         return {x0_ + static_cast<int>(block % kColumns * kBlockWidth + lane % kBlockWidth),
                 y0_ + static_cast<int>(block / kColumns * kBlockHeight + lane / kBlockWidth)};
+    }
+
+    /// The first batch and the last that a kernel may touch.
+    [[nodiscard]] std::pair<int, int> batches_of(const EyeSplat& s) const {
+        const float reach = 1.0f / std::sqrt(s.inv_szz), per_sheet = 1.0f / sheets_.distance;
+        const auto sheet = [&](float z) {
+            return std::clamp((z - sheets_.first) * per_sheet, -1.0f, static_cast<float>(sheets_.count));
+        };
+        // Half a sheet more on each side, so that rounding does not lose one.
+        constexpr float kMore = 0.5f;
+        const int first = std::max(static_cast<int>(sheet(s.depth - reach) - kMore), 0);
+        const int last = std::min(static_cast<int>(sheet(s.depth + reach) + kMore), sheets_.count - 1);
+        return {first / kBatch, last / kBatch};
     }
 
     /// Lists the tile's kernels by batches; within a batch they keep their order.
@@ -158,7 +174,7 @@ private:
         offsets.assign(static_cast<std::size_t>(sheets_.batches()) + 1, 0);
         const auto each = [&](const auto& visit) {
             for (auto id = begin; id != end; ++id) {
-                const auto [first, last] = batches_of(sheets_, frame_.kernels.splats[*id]);
+                const auto [first, last] = batches_of(frame_.kernels.splats[*id]);
                 for (int b = first; b <= last; ++b) {
                     if (wanted[static_cast<std::size_t>(b)]) visit(*id, static_cast<std::size_t>(b));
                 }
@@ -184,7 +200,6 @@ private:
 
     /// Whether all values between the sheets of a batch, and between it and the sheet before, are invisible.
     [[nodiscard]] bool invisible(int batch) const {
-        if (summed_ != nullptr) return false;  // it would take the kernels of all processes to know
         const auto& ranges = frame_.kernels.ranges;
         if (ranges.empty() || classifier_.all_visible() || frame_.scene->clip.has_slices()) return false;
         EyeRange range{std::numeric_limits<float>::infinity(), -std::numeric_limits<float>::infinity()};
@@ -209,10 +224,14 @@ private:
 
     /// Sums the sheets [begin, end) of a batch.
     HWY_ATTR void sum(int batch, int begin, int end) {
-        set_batch(frame_, batch, batch_);
+        for (int k = 0; k < kBatch; ++k) {
+            const auto i = static_cast<std::size_t>(k);
+            batch_.depth[i] = sheets_.depth(batch * kBatch + k);
+            batch_.across[i] = view_.perspective() ? sheets_.middle + batch_.depth[i] : 1.0f;
+            batch_.to_pixels[i] = 1.0f / (batch_.across[i] * static_cast<float>(view_.pixel()));
+        }
         batch_.begin = begin;
         batch_.end = end;
-        if (summed_ != nullptr) return load(batch);
         constexpr std::size_t kSheet = kBlocks * kStride * kBlock;
         float* sums = scratch().sums;
         std::fill(sums + static_cast<std::size_t>(begin) * kSheet, sums + static_cast<std::size_t>(end) * kSheet, 0.0f);
@@ -223,30 +242,6 @@ private:
                 add_plain(frame_.kernels.splats[id], batch_, tile_, cuts_, sums);
             } else {
                 general_.add(id, batch_, tile_, cuts_, sums);
-            }
-        }
-    }
-
-    /// Takes the sums of a batch from those in fixed point.
-    void load(int batch) {
-        const std::vector<std::int64_t>& from = summed_->batches[static_cast<std::size_t>(batch)];
-        float* const sums = scratch().sums;
-        std::fill_n(sums, static_cast<std::size_t>(kBatch) * kBlocks * kStride * kBlock, 0.0f);
-        if (from.empty()) return;
-        for (std::size_t which = 0; which < kStride; ++which) {
-            if (scale_->slot[which] < 0) continue;
-            const double unit = 1 / scale_->per_unit[which];
-            for (std::size_t k = 0; k < kBatch; ++k) {
-                const std::int64_t* of =
-                    from.data() + (k * scale_->sums + static_cast<std::size_t>(scale_->slot[which])) * TileSums::kPixels;
-                for (std::size_t block = 0; block < kBlocks; ++block) {
-                    const std::int64_t* first = of + block / kColumns * kBlockHeight * kTile + block % kColumns * kBlockWidth;
-                    float* to = sums + ((k * kBlocks + block) * kStride + which) * kBlock;
-                    for (std::size_t lane = 0; lane < kBlock; ++lane) {
-                        const std::int64_t steps = first[lane / kBlockWidth * kTile + lane % kBlockWidth];
-                        to[lane] = static_cast<float>(static_cast<double>(steps) * unit);
-                    }
-                }
             }
         }
     }
@@ -359,8 +354,6 @@ private:
     Cuts cuts_;
     float x_offset_ = 0, color_offset_ = 0, least_gradient_ = 0;
     int x0_ = 0, y0_ = 0;
-    const TileSums* summed_ = nullptr;  // null: kernels are summed
-    const FixedScale* scale_ = nullptr;
 };
 
 }  // namespace subvol::detail::HWY_NAMESPACE

@@ -5,7 +5,6 @@
 
 #include "subvol/boundary_shading.h"
 #include "subvol/draw_sheets.h"
-#include "subvol/fixed_sums.h"
 #include "subvol/gl_device.h"
 #include "subvol/pixel_rows.h"
 #include "subvol/progressive.h"

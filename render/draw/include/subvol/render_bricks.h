@@ -16,7 +16,6 @@ namespace subvol {
 /// rows:         of the picture that are drawn, whole bands of `kBandRows`; the others stay empty, or have some kernels only
 /// memory_bytes: about the most that kernels take while a part of the picture is drawn; besides there are the boundary and a
 ///               brick
-/// fixed:        sheets are summed in fixed point, as `Splatter::set_fixed_sums`
 /// scratch:      a folder for kernels that wait for their part of the picture, some 90 bytes each; empty: the folder for
 ///               temporary files
 struct BrickSplatOptions {
@@ -25,7 +24,6 @@ struct BrickSplatOptions {
     PixelRows rows{};
     std::uint64_t memory_bytes = std::uint64_t{1} << 30;
     std::filesystem::path scratch{};
-    bool fixed = false;
 };
 
 /// Draws a mesh in bricks as kernels at its points: the picture has the bits of `render_splats` of the whole mesh. Each brick
@@ -64,8 +62,6 @@ public:
     [[nodiscard]] SplatResult draw(float finest_reach);
 
 private:
-    [[nodiscard]] FixedSums sums_of(std::span<const std::size_t> group, bool all_rows) const;
-
     struct State;
     std::unique_ptr<State> state_;
 };

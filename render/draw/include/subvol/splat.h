@@ -3,13 +3,11 @@
 
 #include <cstddef>
 #include <memory>
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "subvol/camera.h"
-#include "subvol/fixed_sums.h"
 #include "subvol/gl_device.h"
 #include "subvol/image.h"
 #include "subvol/optics.h"
@@ -30,7 +28,6 @@ struct SplatReport {
     double seconds_prepare = 0, seconds_draw = 0;
     double seconds_colors = 0;        // of the boundary's own colours
     std::vector<StageTime> stages{};  // of the GPU
-    FixedSumsReport fixed{};          // of sums in fixed point
 };
 
 /// depth: for each pixel the mean eye depth of what is seen, weighted by opacity; infinity where nothing is seen
@@ -76,12 +73,6 @@ public:
     /// throws: Error(InvalidInput) if the channels, the kernel or the size of the boundary differ from those before, or a value
     ///         is beyond 32-bit floats
     void set_kernels(const RbfVolume& volume);
-
-    /// Sums the next pictures in fixed point, with other processes or alone: their bits do not depend on the order of kernels
-    /// and on how they are divided among processes. By the CPU; with a boundary, without shadows and ambient occlusion.
-    ///
-    /// throws: Error(InvalidInput) unless the method is the CPU's
-    void set_fixed_sums(std::optional<FixedSums> sums);
 
     /// progress: listener for this picture; null: that of the options
     [[nodiscard]] SplatResult draw(const View& view, const Optics& optics, Progress* progress = nullptr);

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "subvol/camera.h"
-#include "subvol/fixed_sums.h"
 #include "subvol/optics.h"
 #include "subvol/rbf_volume.h"
 #include "subvol/splat_options.h"
@@ -28,13 +27,6 @@ inline constexpr int kBandRows = 32;
 
 /// The number of sheets of the picture: SplatOptions::sheets if that is not 0.
 [[nodiscard]] int sheets_of_picture(const RbfVolume& volume, const View& view, const SplatOptions& options, float finest_reach);
-
-/// The bounds of some kernels for sums in fixed point.
-///
-/// volume: some of the kernels, and the whole boundary
-/// throws: Error(InvalidInput) as `Splatter`
-[[nodiscard]] SumBounds bounds_of_sums(const RbfVolume& volume, const View& view, const Optics& optics,
-                                       const SplatOptions& options);
 
 /// The bands that a kernel touches, as numbers of kBandRows rows from the top; none if `last` is before `first`.
 struct KernelBands {
