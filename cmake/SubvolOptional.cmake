@@ -36,25 +36,14 @@ if(NOT library_FOUND)
   message(FATAL_ERROR absent)
 endif()
 ]])
-foreach(module hdf5 netcdf)
-  string(REPLACE @module@ ${module} subvol_find_${module} "${subvol_find_pkg_config}")
-  set(subvol_link_${module} PkgConfig::library)
-endforeach()
+string(REPLACE @module@ hdf5 subvol_find_hdf5 "${subvol_find_pkg_config}")
+set(subvol_link_hdf5 PkgConfig::library)
 set(subvol_text_hdf5 [[
 #include <hdf5.h>
 hid_t works(H5L_iterate_t take) {
     const hid_t file = H5Fopen("", H5F_ACC_RDONLY, H5Pcreate(H5P_FILE_ACCESS)), group = H5Gopen2(file, "", H5P_DEFAULT);
     H5Literate(group, H5_INDEX_NAME, H5_ITER_INC, nullptr, take, nullptr);
     return H5Aopen_by_name(group, "", "", H5P_DEFAULT, H5P_DEFAULT);
-}
-]])
-set(subvol_text_netcdf [[
-#include <netcdf.h>
-#include <netcdf_mem.h>
-int works(int* file, void* bytes, double* values) {
-    const size_t from = 0, count = 1;
-    nc_open_mem("", NC_NOWRITE, 1, bytes, file);
-    return nc_get_vara(*file, 0, &from, &count, values);
 }
 ]])
 

@@ -34,9 +34,6 @@
 #ifndef SUBVOL_FOREIGN_NANOVDB
 #pragma GCC poison nanovdb
 #endif
-#ifndef SUBVOL_FOREIGN_NETCDF
-#pragma GCC poison nc_open
-#endif
 #ifndef SUBVOL_FOREIGN_OPENIMAGEIO
 #pragma GCC poison OIIO_VERSION
 #endif

@@ -21,7 +21,7 @@ ExodusFile::ExodusFile(std::string_view bytes, std::string_view file) : bytes_(b
     if (bytes.starts_with("CDF")) {
         source_ = open_classic_netcdf(bytes, file);
     } else if (bytes.starts_with("\x89HDF")) {
-        source_ = open_netcdf4(bytes, file);
+        source_ = open_netcdf4(file);
     } else {
         fail("not an Exodus II file: it begins neither as netCDF nor as HDF5");
     }
@@ -65,13 +65,13 @@ std::vector<double> ExodusFile::reals(const std::string& variable, const std::ve
                                       std::size_t count) const {
     const NetcdfVariable& found = checked(variable, places, count);
     if (found.characters) fail(variable + " does not consist of numbers");
-    return reals_from(source_->values(found, places), found.type, std::endian::native);
+    return reals_from(source_->values(variable, places), found.type, std::endian::native);
 }
 
 std::vector<std::int64_t> ExodusFile::integers(const std::string& variable, std::size_t count) const {
     const NetcdfVariable& found = checked(variable, {}, count);
     if (found.characters || !is_integer(found.type)) fail(variable + " does not consist of integers");
-    return integers_from(source_->values(found, {}), found.type, std::endian::native);
+    return integers_from(source_->values(variable, {}), found.type, std::endian::native);
 }
 
 std::vector<std::string> ExodusFile::names(const std::string& variable, std::size_t count) const {
@@ -82,17 +82,15 @@ std::vector<std::string> ExodusFile::names(const std::string& variable, std::siz
     if (length == 0 || found->second.lengths[0] != count)
         fail("there are no " + std::to_string(count) + " names in " + variable);
     expect_room(count, length, variable);
-    const std::string text = source_->values(checked(variable, {}, count * length), {});
+    static_cast<void>(checked(variable, {}, count * length));
+    const std::string text = source_->values(variable, {});
     std::vector<std::string> names;
     for (std::size_t i = 0; i < count; ++i) names.push_back(trimmed(std::string_view(text).substr(i * length, length)));
     return names;
 }
 
 std::string ExodusFile::attribute(const std::string& variable, const std::string& name) const {
-    const auto found = source_->variables.find(variable);
-    if (found == source_->variables.end()) return {};
-    const auto text = found->second.texts.find(name);
-    return text == found->second.texts.end() ? std::string() : trimmed(text->second);
+    return trimmed(source_->attribute(variable, name));
 }
 
 void ExodusFile::fail(const std::string& message, const std::string& allowed) const {

@@ -16,7 +16,7 @@ namespace subvol::detail {
 /// Never reads more values than the size of the file allows.
 class ExodusFile {
 public:
-    /// bytes, file: must outlive it
+    /// bytes: of the file; file: its path. Both must outlive it. HDF5's library reads the file itself.
     ExodusFile(std::string_view bytes, std::string_view file);
 
     /// The length of a dimension; 0 if there is no dimension of that name.

@@ -49,7 +49,7 @@ void Hdf5File::count_read(const Hdf5Dataset& dataset, std::size_t bytes) const {
 
 Hdf5Dataset Hdf5File::dataset(const std::string& path) const {
     auto found = source_->find(path);
-    if (!found) fail("there is no dataset of numbers " + in_quotes(path));
+    if (!found || found->characters) fail("there is no dataset of numbers " + in_quotes(path));
     return *std::move(found);
 }
 
@@ -64,30 +64,39 @@ std::size_t Hdf5File::columns(const std::string& path) const {
 }
 
 std::string Hdf5File::bytes(const std::string& path, const Hdf5Dataset& dataset, std::size_t first, std::size_t count) const {
-    constexpr std::size_t kFew = 1 << 20;  // values that are not stored have a default
     const std::size_t rows = rows_of(dataset), row = columns_of(dataset) * size_of(dataset.type);
     if (first > rows || count > rows - first) {
         fail(in_quotes(path) + " has " + counted(rows, "row", "rows") + "; " + std::to_string(count) + " from row " +
              std::to_string(first) + " on are needed");
     }
-    if (columns_of(dataset) > kMostColumns || (row > 0 && count > std::max(kFew, dataset.most_bytes) / row)) {
-        fail(in_quotes(path) + " has fewer values than its size says");
-    }
+    if (columns_of(dataset) > kMostColumns) fail(in_quotes(path) + " has fewer values than its size says");
     std::vector<std::size_t> starts(dataset.lengths.size()), counts = dataset.lengths;
     if (!starts.empty()) {
         starts[0] = first;
         counts[0] = count;
     }
-    if (row == 0 || count == 0) return {};
+    return block(path, dataset, starts, counts);
+}
+
+std::string Hdf5File::block(const std::string& path, const Hdf5Dataset& dataset, std::span<const std::size_t> starts,
+                            std::span<const std::size_t> counts) const {
+    constexpr std::size_t kFew = 1 << 20;  // values that are not stored have a default
     constexpr std::size_t kLargeChunk = std::size_t{64} << 20, kMostWasted = 16;
-    if (dataset.compressed_chunk > kLargeChunk && dataset.compressed_chunk / kMostWasted > row * count) {
+    const std::size_t most = std::max(kFew, dataset.most_bytes);
+    std::size_t needed = size_of(dataset.type);
+    if (std::find(counts.begin(), counts.end(), 0) != counts.end()) return {};
+    for (const std::size_t count : counts) {
+        if (count > most / needed) fail(in_quotes(path) + " has fewer values than its size says");
+        needed *= count;
+    }
+    if (dataset.compressed_chunk > kLargeChunk && dataset.compressed_chunk / kMostWasted > needed) {
         fail(in_quotes(path) + " has chunks of " + std::to_string(dataset.compressed_chunk) + " bytes, of which " +
-                 std::to_string(row * count) + " are needed",
+                 std::to_string(needed) + " are needed",
              "smaller chunks, as h5repack makes them");
     }
-    count_read(dataset, row * count);
+    count_read(dataset, needed);
     auto bytes = source_->values(path, dataset, starts, counts);
-    if (!bytes || bytes->size() != row * count) fail(in_quotes(path) + " cannot be read: the file is damaged");
+    if (!bytes || bytes->size() != needed) fail(in_quotes(path) + " cannot be read: the file is damaged");
     return *std::move(bytes);
 }
 

@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <set>
 #include <span>
@@ -17,13 +16,16 @@
 namespace subvol::detail {
 
 /// A dataset of an HDF5 file. lengths: of its dimensions, the slowest first; most_bytes: of values that its storage can have;
-/// compressed_chunk: the bytes that are decompressed together, 0 if nothing is compressed; address: the same by all names of it
+/// compressed_chunk: the bytes that are decompressed together, 0 if nothing is compressed; address: the same by all names of
+/// it; characters: it consists of characters instead of numbers; grows: its first dimension is unlimited
 struct Hdf5Dataset {
     NumberType type = NumberType::Float64;
     std::vector<std::size_t> lengths;
     std::size_t most_bytes = 0;
     std::size_t compressed_chunk = 0;
     std::uint64_t address = 0;
+    bool characters = false;
+    bool grows = false;
 };
 
 /// An open HDF5 file. Paths are those inside of it, such as "/VTKHDF/Points".
@@ -33,7 +35,7 @@ public:
 
     /// The names in a group, in order; none if there is no such group.
     [[nodiscard]] virtual std::vector<std::string> names(const std::string& group) const = 0;
-    /// Nothing if there is no such dataset, or it does not consist of numbers.
+    /// Nothing if there is no such dataset, or it consists neither of numbers nor of single characters.
     [[nodiscard]] virtual std::optional<Hdf5Dataset> find(const std::string& path) const = 0;
     /// The bytes of a block of values, in this machine's byte order. starts, counts: along each dimension, checked by the
     /// caller
@@ -50,9 +52,6 @@ public:
 ///         the build has no HDF5 library
 [[nodiscard]] std::unique_ptr<Hdf5Source> open_hdf5(const std::filesystem::path& path);
 
-/// HDF5's library is not thread-safe: only one thread at a time may use it, by whatever module.
-[[nodiscard]] std::mutex& hdf5_mutex();
-
 /// Datasets of numbers in an HDF5 file, checked. Every failure is an Error(InvalidInput) that names the dataset.
 ///
 /// Never reads more values than the storage of a dataset can have. A row is all values at a place along the first dimension.
@@ -63,7 +62,13 @@ public:
     /// From now on values may be read as often as tables have columns, of which each may be an array of its own.
     void allow_columns() { most_times_ = 256; }
 
-    [[nodiscard]] bool has(const std::string& path) const { return source_->find(path).has_value(); }
+    /// A dataset of numbers or of characters.
+    [[nodiscard]] std::optional<Hdf5Dataset> find(const std::string& path) const { return source_->find(path); }
+    /// Whether there is such a dataset of numbers.
+    [[nodiscard]] bool has(const std::string& path) const {
+        const auto found = find(path);
+        return found && !found->characters;
+    }
     [[nodiscard]] std::vector<std::string> names(const std::string& group) const { return source_->names(group); }
     [[nodiscard]] Hdf5Dataset dataset(const std::string& path) const;
     [[nodiscard]] std::size_t rows(const std::string& path) const;
@@ -76,6 +81,10 @@ public:
     /// All values.
     [[nodiscard]] std::vector<double> reals(const std::string& path) const { return reals(path, 0, rows(path)); }
     [[nodiscard]] std::vector<std::int64_t> integers(const std::string& path) const { return integers(path, 0, rows(path)); }
+
+    /// The bytes of a block of values, in this machine's byte order. starts, counts: along each dimension, inside the dataset
+    [[nodiscard]] std::string block(const std::string& path, const Hdf5Dataset& dataset, std::span<const std::size_t> starts,
+                                    std::span<const std::size_t> counts) const;
 
     [[nodiscard]] std::optional<std::string> text(const std::string& object, const std::string& attribute) const {
         return source_->text(object, attribute);

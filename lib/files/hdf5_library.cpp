@@ -3,6 +3,7 @@
 #include <array>
 #include <cerrno>
 #include <fstream>
+#include <mutex>
 #include <system_error>
 
 #include "hdf5_file.h"
@@ -12,11 +13,6 @@
 #include "subvol/error.h"
 
 namespace subvol::detail {
-
-std::mutex& hdf5_mutex() {
-    static std::mutex mutex;
-    return mutex;
-}
 
 namespace {
 
@@ -48,6 +44,12 @@ const Hdf5Functions& library() {
     using Entry = const Hdf5Functions* (*)();
     static const Hdf5Functions& functions = *reinterpret_cast<Entry>(load_module("hdf5", "reading files of HDF5"))();
     return functions;
+}
+
+// HDF5's library is not thread-safe: only one thread at a time may use it.
+std::mutex& hdf5_mutex() {
+    static std::mutex mutex;
+    return mutex;
 }
 
 using Lock = std::scoped_lock<std::mutex>;
@@ -84,7 +86,9 @@ public:
                            {shape.lengths, shape.lengths + shape.rank},
                            stored * (shape.filtered ? kMostOfDeflate : 1),
                            shape.filtered ? shape.chunk : 0,
-                           shape.address};
+                           shape.address,
+                           shape.characters,
+                           shape.grows};
     }
 
     [[nodiscard]] std::optional<std::string> values(const std::string& path, const Hdf5Dataset& dataset,

@@ -127,6 +127,11 @@ int number_type(hid_t type) {
     }
 }
 
+// Whether each value is one character.
+bool is_character(hid_t type) {
+    return H5Tget_class(type) == H5T_STRING && H5Tis_variable_str(type) == 0 && H5Tget_size(type) == 1;
+}
+
 // The bytes of a chunk; 0 if there are no chunks.
 std::uint64_t chunk_bytes(hid_t properties, hid_t type) {
     std::array<hsize_t, H5S_MAX_RANK> lengths{};
@@ -231,9 +236,12 @@ int shape(std::int64_t file, const char* path, Hdf5Shape* into) {
     if (space < 0 || type < 0 || properties < 0) return -1;
     const int rank = H5Sget_simple_extent_ndims(space);
     if (rank < 0 || rank > static_cast<int>(Hdf5Shape::kMostRank)) return -1;
-    std::array<hsize_t, Hdf5Shape::kMostRank> lengths{};
-    if (H5Sget_simple_extent_dims(space, lengths.data(), nullptr) < 0) return -1;
-    into->type = is_here(properties) ? number_type(type) : -1;
+    std::array<hsize_t, Hdf5Shape::kMostRank> lengths{}, longest{};
+    if (H5Sget_simple_extent_dims(space, lengths.data(), longest.data()) < 0) return -1;
+    into->characters = is_character(type);
+    const int values = into->characters ? static_cast<int>(NumberType::UInt8) : number_type(type);
+    into->type = is_here(properties) ? values : -1;
+    into->grows = rank > 0 && longest[0] == H5S_UNLIMITED;
     into->rank = static_cast<unsigned>(rank);
     std::copy(lengths.begin(), lengths.end(), into->lengths);
     into->stored = H5Dget_storage_size(dataset);
@@ -249,8 +257,9 @@ int read(std::int64_t file, const char* path, unsigned rank, const std::uint64_t
     if (dataset < 0) return -1;
     const Handle space(H5Dget_space(dataset), H5Sclose), type(H5Dget_type(dataset), H5Tclose);
     const int number = number_type(type);
-    if (number < 0 || H5Sget_simple_extent_ndims(space) != static_cast<int>(rank)) return -1;
-    if (rank == 0) return H5Dread(dataset, native_type(static_cast<NumberType>(number)), H5S_ALL, H5S_ALL, H5P_DEFAULT, into);
+    const hid_t values = is_character(type) ? type : number < 0 ? -1 : native_type(static_cast<NumberType>(number));
+    if (values < 0 || H5Sget_simple_extent_ndims(space) != static_cast<int>(rank)) return -1;
+    if (rank == 0) return H5Dread(dataset, values, H5S_ALL, H5S_ALL, H5P_DEFAULT, into);
     std::array<hsize_t, Hdf5Shape::kMostRank> first{}, count{};
     std::copy_n(starts, rank, first.begin());
     std::copy_n(lengths, rank, count.begin());
@@ -258,7 +267,7 @@ int read(std::int64_t file, const char* path, unsigned rank, const std::uint64_t
     if (!chunks_are_sound(dataset, properties, type, first, count)) return -1;
     if (H5Sselect_hyperslab(space, H5S_SELECT_SET, first.data(), nullptr, count.data(), nullptr) < 0) return -1;
     const Handle memory(H5Screate_simple(static_cast<int>(rank), count.data(), nullptr), H5Sclose);
-    return H5Dread(dataset, native_type(static_cast<NumberType>(number)), memory, space, H5P_DEFAULT, into);
+    return H5Dread(dataset, values, memory, space, H5P_DEFAULT, into);
 }
 
 hid_t open_attribute(hid_t file, const char* object, const char* name) {

@@ -32,7 +32,8 @@ public:
         read_header();
     }
 
-    [[nodiscard]] std::string values(const NetcdfVariable& variable, std::span<const std::size_t> places) const override {
+    [[nodiscard]] std::string values(const std::string& name, std::span<const std::size_t> places) const override {
+        const NetcdfVariable& variable = variables.find(name)->second;
         TextScanner in = in_;
         const std::size_t size = size_of(variable.type), end = in.size();
         const auto expect = [&](bool within) {
@@ -60,6 +61,11 @@ public:
             std::reverse(value, value + static_cast<std::ptrdiff_t>(size));
         }
         return bytes;
+    }
+
+    [[nodiscard]] std::string attribute(const std::string& variable, const std::string& name) const override {
+        const auto found = texts_.find({variable, name});
+        return found == texts_.end() ? std::string() : found->second;
     }
 
     [[nodiscard]] std::size_t growth() const override { return 1; }
@@ -145,7 +151,7 @@ private:
         }
         read_list(Tag::Attributes, "attributes", [&] {
             const auto [key, text] = read_attribute();
-            if (text) variable.texts.emplace(key, *text);
+            if (text) texts_.try_emplace({name, key}, *text);
         });
         const std::int64_t kind = tag();
         variable.type = type(kind);
@@ -188,6 +194,7 @@ private:
     char version_ = 0;
     std::vector<std::size_t> lengths_;  // of the dimensions, by their numbers
     std::vector<std::string> names_;
+    std::map<std::pair<std::string, std::string>, std::string> texts_;  // by variable and attribute
     std::optional<std::size_t> unlimited_;
     std::size_t record_bytes_ = 0;
     mutable NamedFiles named_;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <filesystem>
 #include <map>
 #include <memory>
 #include <span>
@@ -15,17 +16,14 @@ namespace subvol::detail {
 /// A variable of a netCDF file: a block of numbers or of characters.
 ///
 /// lengths: of its dimensions, the slowest first
-/// texts:   its text attributes
+/// record:  the first dimension is the unlimited one
 /// begin:   in a classic file the byte at which its values begin; for a record variable those of the first record
-/// number:  its number in the netCDF library
 struct NetcdfVariable {
     NumberType type = NumberType::Int8;
     bool characters = false;
     bool record = false;
     std::vector<std::size_t> lengths{};
-    std::map<std::string, std::string> texts{};
     std::size_t begin = 0;
-    int number = 0;
 };
 
 /// An open netCDF file.
@@ -42,7 +40,10 @@ public:
     /// file can have that many values.
     ///
     /// throws: Error(InvalidInput) if the file is too short or damaged there
-    [[nodiscard]] virtual std::string values(const NetcdfVariable& variable, std::span<const std::size_t> places) const = 0;
+    [[nodiscard]] virtual std::string values(const std::string& variable, std::span<const std::size_t> places) const = 0;
+
+    /// A text attribute of a variable; empty if there is none.
+    [[nodiscard]] virtual std::string attribute(const std::string& variable, const std::string& name) const = 0;
 
     /// The largest number of bytes of values that one byte of the file can decompress to.
     [[nodiscard]] virtual std::size_t growth() const = 0;
@@ -51,9 +52,9 @@ public:
 /// A file of the classic format: CDF-1, CDF-2 or CDF-5. bytes, file: must outlive it
 [[nodiscard]] std::unique_ptr<NetcdfSource> open_classic_netcdf(std::string_view bytes, std::string_view file);
 
-/// A netCDF-4 file, which is HDF5, by the netCDF library.
+/// A netCDF-4 file, which is an HDF5 file with a dataset for each variable and each dimension.
 ///
-/// throws: Error(MissingCapability) if the build has no netCDF library
-[[nodiscard]] std::unique_ptr<NetcdfSource> open_netcdf4(std::string_view bytes, std::string_view file);
+/// throws: as `open_hdf5`
+[[nodiscard]] std::unique_ptr<NetcdfSource> open_netcdf4(const std::filesystem::path& path);
 
 }  // namespace subvol::detail

@@ -52,7 +52,7 @@ struct Plot3dFlow {
 
 /// Reads a step of Exodus II.
 ///
-/// throws: Error(MissingCapability) for an HDF5 file if this library is built without netCDF
+/// throws: Error(MissingCapability) for an HDF5 file if this library is built without HDF5
 [[nodiscard]] ReadResult read_exodus(std::string_view text, std::string_view file, const ReadOptions& options);
 [[nodiscard]] std::vector<double> exodus_times(const std::filesystem::path& path);
 

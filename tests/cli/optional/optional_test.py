@@ -9,7 +9,7 @@ import unittest
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
-NAMES = ("mpi", "hdf5", "netcdf", "window", "python", "nanovdb")
+NAMES = ("mpi", "hdf5", "window", "python", "nanovdb")
 UNUSABLE = "OFF; what is installed cannot be used"
 
 
@@ -50,7 +50,7 @@ class Optional(unittest.TestCase):
     def test_files_that_end_the_configuration(self):
         """A folder that is not there, as with Open MPI's programs without its headers; configuration files with an error."""
         self.put("bin/mpicxx", f"#!/bin/sh\necho \"-I{self.folder}/gone -L{self.folder}/gone -lmpi\"\n", 0o755)
-        for name in ("hdf5", "netcdf", "imgui"):
+        for name in ("hdf5", "imgui"):
             self.package(name, "-lm", includes=self.folder / "gone")
         for name in ("glfw3", "pybind11"):
             self.put(f"lib/cmake/{name}/{name}Config.cmake", "message(FATAL_ERROR \"part of this package is missing\")\n")
@@ -61,9 +61,7 @@ class Optional(unittest.TestCase):
     def test_headers_without_library_and_other_versions(self):
         self.put("bin/mpicxx", "#!/bin/sh\necho broken >&2\nexit 1\n", 0o755)
         self.put("include/hdf5.h", "typedef long hid_t;\n")  # of a version without the calls
-        self.put("include/netcdf.h", "int nc_open_mem(const char*, int, unsigned long, void*, int*);\n")
         self.package("hdf5", "-lhdf5_gone", includes=self.folder / "fake/include")
-        self.package("netcdf", "-lnetcdf_gone", includes=self.folder / "fake/include")
         self.package("imgui", "-limgui_gone")
         self.put("lib/cmake/glfw3/glfw3Config.cmake", "")
         self.put("lib/cmake/glfw3/glfw3ConfigVersion.cmake", "set(PACKAGE_VERSION 3.0)\n")
@@ -76,7 +74,7 @@ class Optional(unittest.TestCase):
 
     def test_what_is_not_installed_is_no_fault(self):
         said = self.configured()
-        for name in ("hdf5", "netcdf", "window"):
+        for name in ("hdf5", "window"):
             self.assertEqual(said[name], "OFF", name)
 
 

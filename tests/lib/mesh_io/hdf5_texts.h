@@ -31,19 +31,32 @@ public:
         H5Gclose(checked(H5Gcreate2(file_, path.c_str(), groups_, H5P_DEFAULT, H5P_DEFAULT)));
     }
 
-    /// lengths: of the dimensions; none: one for the values. deflated: in chunks of all values
+    /// lengths: of the dimensions; none: one for the values. deflated: in chunks of all values; grows: along the first
+    /// dimension
     template <class T>
-    void put(const std::string& path, const std::vector<T>& values, std::vector<hsize_t> lengths = {}, bool deflated = false) {
+    void put(const std::string& path, const std::vector<T>& values, std::vector<hsize_t> lengths = {}, bool deflated = false,
+             bool grows = false) {
         if (lengths.empty()) lengths = {values.size()};
-        const hid_t space = H5Screate_simple(static_cast<int>(lengths.size()), lengths.data(), nullptr);
+        std::vector<hsize_t> longest = lengths;
+        if (grows) longest[0] = H5S_UNLIMITED;
+        const hid_t space = H5Screate_simple(static_cast<int>(lengths.size()), lengths.data(), longest.data());
         const hid_t properties = H5Pcreate(H5P_DATASET_CREATE);
-        if (deflated) {
-            H5Pset_chunk(properties, static_cast<int>(lengths.size()), lengths.data());
-            H5Pset_deflate(properties, 6);
-        }
+        if (deflated || grows) H5Pset_chunk(properties, static_cast<int>(lengths.size()), lengths.data());
+        if (deflated) H5Pset_deflate(properties, 6);
         const hid_t set = checked(H5Dcreate2(file_, path.c_str(), type_of<T>(), space, groups_, properties, H5P_DEFAULT));
         if (!values.empty()) checked(H5Dwrite(set, type_of<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()));
         H5Dclose(set);
+        H5Pclose(properties);
+        H5Sclose(space);
+    }
+
+    /// Floats of which none is written.
+    void put_empty(const std::string& path, hsize_t length, bool grows) {
+        const hsize_t longest = grows ? H5S_UNLIMITED : length, chunk = 1;
+        const hid_t space = H5Screate_simple(1, &length, &longest);
+        const hid_t properties = H5Pcreate(H5P_DATASET_CREATE);
+        if (grows) H5Pset_chunk(properties, 1, &chunk);
+        H5Dclose(checked(H5Dcreate2(file_, path.c_str(), H5T_IEEE_F32BE, space, groups_, properties, H5P_DEFAULT)));
         H5Pclose(properties);
         H5Sclose(space);
     }
@@ -90,6 +103,7 @@ private:
     static hid_t type_of() {
         if constexpr (std::is_same_v<T, float>) return H5T_NATIVE_FLOAT;
         if constexpr (std::is_same_v<T, double>) return H5T_NATIVE_DOUBLE;
+        if constexpr (std::is_same_v<T, char>) return H5T_C_S1;
         if constexpr (std::is_same_v<T, std::uint8_t>) return H5T_NATIVE_UINT8;
         if constexpr (std::is_same_v<T, std::int32_t>) return H5T_NATIVE_INT32;
         return H5T_NATIVE_INT64;

@@ -108,8 +108,7 @@ struct ReadResult {
 ///         Error(InvalidInput) if options.curved_tolerance is not positive, if there is no such step or block;
 ///         Error(InvalidInput) if there is no group that options.sharp names, the format has none, or one of its faces is not a
 ///         face of a cell;
-///         Error(MissingCapability) for Exodus II in HDF5 if the library is built without netCDF, and for other files of HDF5
-///         if it is built without HDF5
+///         Error(MissingCapability) for a file of HDF5 if the library is built without HDF5
 [[nodiscard]] ReadResult read_mesh(const std::filesystem::path& path, const ReadOptions& options = {});
 
 /// Writes a mesh: MEDIT `.mesh` (geometry only) or VTK XML `.vtu` (compressed, with all attributes). The file is written under
