@@ -49,22 +49,23 @@ void RefineArguments::add_to(CLI::App& app, const std::string& levels_help) {
     app.add_option("--levels", levels, levels_help)->type_name("L")->transform(whole_number(0, 10));
 }
 
-RefineOptions RefineArguments::options(int default_levels, Report& report) const {
+RefineOptions RefineArguments::options(int default_levels, Progress* progress) const {
     return {.scheme = {scheme_named(scheme), tension, crease_angle_deg},
             .levels = levels.value_or(default_levels),
-            .progress = report.progress()};
+            .progress = progress};
 }
 
-HexMesh refine_reported(const HexMesh& mesh, const RefineOptions& options, Vertices vertices, Report& report) {
+WithFacts<HexMesh> refine_reported(const HexMesh& mesh, const RefineOptions& options, Vertices vertices) {
     check_memory(options.levels, static_cast<double>(mesh.cells.size()) * std::pow(8.0, options.levels),
                  detail::kBytesOfRefinedCell);
-    HexMesh fine = report.timed("refine", [&] {
+    Facts facts;
+    HexMesh fine = facts.timed(options.progress, "refine", [&] {
         HexMesh refined = refine(mesh, options);
         return vertices == Vertices::OnTheLimit ? on_limit(std::move(refined), options.scheme.kind) : refined;
     });
-    report["levels"] = options.levels;
-    report["cells"] = fine.cells.size();
-    return fine;
+    facts["levels"] = options.levels;
+    facts["cells"] = fine.cells.size();
+    return {std::move(fine), std::move(facts)};
 }
 
 }  // namespace subvol::cli

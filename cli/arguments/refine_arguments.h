@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "report.h"
+#include "subvol/facts.h"
 #include "subvol/refine.h"
 
 namespace CLI {
@@ -29,7 +29,7 @@ struct RefineArguments {
     void add_to(CLI::App& app, const std::string& levels_help);
 
     /// throws: Error(InvalidInput) if the scheme is unknown
-    [[nodiscard]] RefineOptions options(int default_levels, Report& report) const;
+    [[nodiscard]] RefineOptions options(int default_levels, Progress* progress) const;
 };
 
 /// As `detail::check_memory`; the error names --levels.
@@ -37,10 +37,10 @@ void check_memory(int level, double cells, double bytes_per_cell);
 
 enum class Vertices { OfTheLevel, OnTheLimit };
 
-/// `refine`, timed and with the number of cells in the report. The vertices are those of the level, or moved to the limit
+/// `refine`, timed and with the number of cells in the facts. The vertices are those of the level, or moved to the limit
 /// (which is the same for schemes that interpolate).
 ///
 /// throws: Error(MissingCapability) if the machine does not have the memory for so many levels
-[[nodiscard]] HexMesh refine_reported(const HexMesh& mesh, const RefineOptions& options, Vertices vertices, Report& report);
+[[nodiscard]] WithFacts<HexMesh> refine_reported(const HexMesh& mesh, const RefineOptions& options, Vertices vertices);
 
 }  // namespace subvol::cli

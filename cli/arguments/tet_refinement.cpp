@@ -33,59 +33,57 @@ void TetRefinement::refuse_bricks(const std::string& bricks) const {
                 "another --scheme");
 }
 
-MixedMesh TetRefinement::refined(const HexMesh& mesh, int default_levels, Vertices vertices, Report& report,
-                                 std::vector<Index>* parents) const {
-    Json figures;
-    MixedMesh fine = refined(mesh, default_levels, vertices, figures, report, parents);
-    for (const auto& [key, value] : figures.items()) report[key.c_str()] = value;
-    return fine;
-}
-
-Json TetRefinement::figures(const HexMesh& mesh, int default_levels, Report& report) const {
-    Json figures;
-    HexMesh bare{mesh.points, mesh.cells, {}, mesh.creases, mesh.sharp_faces};
-    const MixedMesh fine = refined(bare, default_levels, Vertices::OnTheLimit, figures, report, nullptr);
-    figures["volume"] = measure_cells(fine).volume;
-    return figures;
-}
-
-MixedMesh TetRefinement::refined(const HexMesh& mesh, int default_levels, Vertices vertices, Json& figures, Report& report,
-                                 std::vector<Index>* parents) const {
+WithFacts<MixedMesh> TetRefinement::refined(const HexMesh& mesh, int default_levels, Vertices vertices, Progress* progress,
+                                            std::vector<Index>* parents) const {
+    Facts facts;
     const MixedRefineOptions options{.scheme = *scheme_,
                                      .levels = levels_.value_or(default_levels),
                                      .crease_angle_deg = crease_angle_deg_,
-                                     .progress = report.progress()};
-    MixedMesh fine = report.timed("refine", [&] {
+                                     .progress = progress};
+    MixedMesh fine = facts.timed(progress, "refine", [&] {
         MixedMesh control = join_split_cells(mesh);
         if (*scheme_ == TetScheme::Boxspline) control = in_tetrahedra(std::move(control));
-        figures["control_points"] = control.points.size();
-        figures["control_cells"] = control.cells();
+        facts["control_points"] = control.points.size();
+        facts["control_cells"] = control.cells();
         if (options.levels <= kMostTetLevels)
             check_memory(options.levels, static_cast<double>(control.cells()) * std::pow(8.0, options.levels), kBytesPerTet);
         if (parents != nullptr) *parents = control_cells(control, options.levels);
         if (vertices == Vertices::OfTheLevel) return refine(control, options);
         MixedVolume volume = volume_through(control, options);
-        figures["off_points"] = volume.left;
+        facts["off_points"] = volume.left;
         return std::move(volume.mesh);
     });
-    figures["scheme"] = name();
-    figures["levels"] = options.levels;
-    figures["crease_angle"] = *crease_angle_deg_;
-    figures["tets"] = fine.tets.size();
-    figures["octahedra"] = fine.octahedra.size();
+    facts["scheme"] = name();
+    facts["levels"] = options.levels;
+    facts["crease_angle"] = *crease_angle_deg_;
+    facts["tets"] = fine.tets.size();
+    facts["octahedra"] = fine.octahedra.size();
     const MixedShape shape = measure_cells(fine);
-    figures["inverted_cells"] = shape.inverted;
-    figures["worst_shape"] = shape.worst;
+    facts["inverted_cells"] = shape.inverted;
+    facts["worst_shape"] = shape.worst;
     if (shape.inverted > 0) {
-        report.warn(text(shape.inverted, " of ", fine.cells(), " refined cells are inverted (worst shape ", shape.worst,
-                         "; that of a regular cell is 1)"));
+        facts.warn(text(shape.inverted, " of ", fine.cells(), " refined cells are inverted (worst shape ", shape.worst,
+                        "; that of a regular cell is 1)"));
     }
-    return fine;
+    return {std::move(fine), std::move(facts)};
 }
 
-HexMesh TetRefinement::hexes(HexMesh mesh, int default_levels, Report& report) const {
-    if (!scheme_) return mesh;
-    return in_hexahedra(refined(mesh, default_levels, Vertices::OnTheLimit, report));
+WithFacts<Facts> TetRefinement::figures(const HexMesh& mesh, int default_levels, Progress* progress) const {
+    HexMesh bare{mesh.points, mesh.cells, {}, mesh.creases, mesh.sharp_faces};
+    const auto [fine, facts] = refined(bare, default_levels, Vertices::OnTheLimit, progress);
+    WithFacts<Facts> result;
+    for (const Fact& fact : facts.all()) {
+        const bool beside = fact.name == "seconds" || fact.name == "warnings";
+        (beside ? result.facts : result.value)[fact.name] = fact.value;
+    }
+    result.value["volume"] = measure_cells(fine).volume;
+    return result;
+}
+
+WithFacts<HexMesh> TetRefinement::hexes(HexMesh mesh, int default_levels, Progress* progress) const {
+    if (!scheme_) return {std::move(mesh)};
+    auto [fine, facts] = refined(mesh, default_levels, Vertices::OnTheLimit, progress);
+    return {in_hexahedra(fine), std::move(facts)};
 }
 
 }  // namespace subvol::cli

@@ -27,23 +27,21 @@ public:
     /// throws: Error(InvalidInput) if asked; bricks: the folder
     void refuse_bricks(const std::string& bricks) const;
 
-    /// The refined mesh; timed and with its cells in the report. On the limit: the one that passes through the points and
+    /// The refined mesh; timed and with its cells in the facts. On the limit: the one that passes through the points and
     /// values of the mesh, since values of a file are those at its points; else the level of the mesh as it is.
     ///
     /// parents: gets the `control_cells` of its cells; null: they are not asked for
-    [[nodiscard]] MixedMesh refined(const HexMesh& mesh, int default_levels, Vertices vertices, Report& report,
-                                    std::vector<Index>* parents = nullptr) const;
+    [[nodiscard]] WithFacts<MixedMesh> refined(const HexMesh& mesh, int default_levels, Vertices vertices, Progress* progress,
+                                               std::vector<Index>* parents = nullptr) const;
 
     /// The mesh as it is, if no such scheme is asked for; else `refined`, on the limit, as hexahedra.
-    [[nodiscard]] HexMesh hexes(HexMesh mesh, int default_levels, Report& report) const;
+    [[nodiscard]] WithFacts<HexMesh> hexes(HexMesh mesh, int default_levels, Progress* progress) const;
 
-    /// The figures of the refined mesh on the limit, without fields: those that `refined` puts into the report, and its volume.
-    [[nodiscard]] Json figures(const HexMesh& mesh, int default_levels, Report& report) const;
+    /// The figures of the refined mesh on the limit, without fields: those that `refined` finds, and its volume.
+    /// Seconds and warnings are facts beside the value.
+    [[nodiscard]] WithFacts<Facts> figures(const HexMesh& mesh, int default_levels, Progress* progress) const;
 
 private:
-    MixedMesh refined(const HexMesh& mesh, int default_levels, Vertices vertices, Json& figures, Report& report,
-                      std::vector<Index>* parents) const;
-
     std::optional<TetScheme> scheme_;
     std::optional<int> levels_;
     std::optional<double> crease_angle_deg_;

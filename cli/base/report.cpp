@@ -110,6 +110,10 @@ struct JsonOf {
 
 }  // namespace
 
+Json json_of(const Facts& facts) {
+    return JsonOf()(facts);
+}
+
 std::int64_t peak_memory_bytes() {
     rusage usage{};
     getrusage(RUSAGE_SELF, &usage);
@@ -136,6 +140,8 @@ void Report::merge(const Facts& facts) {
         const Json value = std::visit(JsonOf{}, fact.value);
         if (name == "warnings") {
             for (const Json& warning : value) warn(warning.get<std::string>());
+        } else if (name == "notes") {
+            for (const Json& remark : value) note(remark.get<std::string>());
         } else if (name == "seconds") {
             for (const auto& [stage, seconds] : value.items()) add_seconds(stage, seconds.get<double>());
         } else {

@@ -14,6 +14,9 @@ namespace subvol::cli {
 
 using Json = nlohmann::ordered_json;
 
+/// The facts as an object.
+[[nodiscard]] Json json_of(const Facts& facts);
+
 /// The most memory that this process has held so far.
 [[nodiscard]] std::int64_t peak_memory_bytes();
 
@@ -28,6 +31,13 @@ public:
 
     /// Adds what a call found out: warnings and seconds to those that are there.
     void merge(const Facts& facts);
+
+    /// Merges the facts of a result, and returns its value.
+    template <class T>
+    T unpack(WithFacts<T> made) {
+        merge(made.facts);
+        return std::move(made.value);
+    }
 
     /// Puts a finished object in place of all that has been collected.
     void take(Json json) { json_ = std::move(json); }

@@ -12,7 +12,7 @@
 namespace subvol::cli {
 namespace {
 
-/// Of a cell: the sum of its corners and one corner, which are the same wherever it is read.
+/// The sum of a cell's corners and one corner, which are the same wherever the cell is read.
 using Key = std::array<double, 6>;
 
 Key key_of(const HexMesh& mesh, const std::array<Index, 8>& cell) {
@@ -24,10 +24,11 @@ Key key_of(const HexMesh& mesh, const std::array<Index, 8>& cell) {
 
 }  // namespace
 
-BlockCells cells_of_blocks(const std::string& input, const std::vector<MeshBlock>& blocks, const HexMesh& mesh,
-                           const CommonOptions& options, Report& report) {
-    BlockCells found;
-    if (blocks.size() < 2) return found;
+WithFacts<BlockCells> cells_of_blocks(const std::string& input, const std::vector<MeshBlock>& blocks, const HexMesh& mesh,
+                                      const CommonOptions& options) {
+    WithFacts<BlockCells> result;
+    BlockCells& found = result.value;
+    if (blocks.size() < 2) return result;
     std::map<Key, Index> cells;
     for (std::size_t c = 0; c < mesh.cells.size(); ++c) cells.emplace(key_of(mesh, mesh.cells[c]), static_cast<Index>(c));
     const auto others = static_cast<Index>(blocks.size());
@@ -36,11 +37,7 @@ BlockCells cells_of_blocks(const std::string& input, const std::vector<MeshBlock
         found.names.push_back(blocks[b].name);
         CommonOptions one = options;
         one.blocks = {blocks[b].name};
-        CommonOptions quiet;
-        quiet.quiet = true;
-        quiet.progress = "off";
-        Report silent(quiet);
-        const HexMesh part = read_input(input, one, silent).mesh;
+        const HexMesh part = read_input(input, one, nullptr).value.mesh;
         for (const auto& cell : part.cells) {
             const auto at = cells.find(key_of(part, cell));
             if (at != cells.end()) found.groups[at->second] = static_cast<Index>(b);
@@ -49,9 +46,9 @@ BlockCells cells_of_blocks(const std::string& input, const std::vector<MeshBlock
     const auto lost = static_cast<std::size_t>(std::count(found.groups.begin(), found.groups.end(), others));
     if (lost > 0) {
         found.names.emplace_back("(others)");
-        report.warn(text(counted(lost, "cell"), " could not be assigned to a block"));
+        result.facts.warn(text(counted(lost, "cell"), " could not be assigned to a block"));
     }
-    return found;
+    return result;
 }
 
 }  // namespace subvol::cli

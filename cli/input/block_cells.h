@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "common_options.h"
-#include "report.h"
+#include "subvol/facts.h"
 #include "subvol/hex_mesh.h"
 #include "subvol/mesh_io.h"
 
@@ -19,7 +19,7 @@ struct BlockCells {
 
 /// Reads the blocks of the input one by one, and looks for their cells in the mesh. Cells that are in no block, such as curved
 /// ones that are split in another way alone, belong to one more part, "(others)", with a warning.
-[[nodiscard]] BlockCells cells_of_blocks(const std::string& input, const std::vector<MeshBlock>& blocks, const HexMesh& mesh,
-                                         const CommonOptions& options, Report& report);
+[[nodiscard]] WithFacts<BlockCells> cells_of_blocks(const std::string& input, const std::vector<MeshBlock>& blocks,
+                                                    const HexMesh& mesh, const CommonOptions& options);
 
 }  // namespace subvol::cli

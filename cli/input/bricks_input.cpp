@@ -23,13 +23,13 @@ bool is_bricks_input(const std::string& input) {
     return is_bricks(input) || std::filesystem::path(input).extension() == ".bricks";
 }
 
-Bricks open_bricks_input(const std::string& input, const CLI::App& app, Report& report) {
+WithFacts<Bricks> open_bricks_input(const std::string& input, const CLI::App& app) {
     refuse_mesh_options(app, "is settled when a mesh is split; this is a folder of bricks");
-    Bricks bricks = open_bricks(input);
-    report["input"] = input;
-    report["cells"] = bricks.cells;
-    report["bricks"] = bricks.bricks.size();
-    return bricks;
+    WithFacts<Bricks> opened{open_bricks(input)};
+    opened.facts["input"] = input;
+    opened.facts["cells"] = opened.value.cells;
+    opened.facts["bricks"] = opened.value.bricks.size();
+    return opened;
 }
 
 HexMesh stand_in(const Bricks& bricks) {
@@ -63,13 +63,14 @@ StreamedField named_brick_field(const Bricks& bricks, const std::string& name, b
     return {name, false, field->min.at(channel), field->max.at(channel)};
 }
 
-StreamedField select_brick_field(const Bricks& bricks, const CommonOptions& options, Report& report) {
+WithFacts<StreamedField> select_brick_field(const Bricks& bricks, const CommonOptions& options) {
     const SelectedField selected = select_field(stand_in(bricks), options.field);
-    report.warn(selected.warning);
-    report["field"] = selected.scalar.name;
+    WithFacts<StreamedField> chosen{{{}, false, 1, 1}};  // density 1 everywhere
+    chosen.facts.warn(selected.warning);
+    chosen.facts["field"] = selected.scalar.name;
     const bool everywhere = !options.field && find(bricks, selected.scalar.name) == nullptr;
-    if (everywhere) return {{}, false, 1, 1};  // density 1
-    return named_brick_field(bricks, options.field.value_or(selected.scalar.name), false);
+    if (!everywhere) chosen.value = named_brick_field(bricks, options.field.value_or(selected.scalar.name), false);
+    return chosen;
 }
 
 HexMesh with_brick_fields(HexMesh brick, const std::vector<StreamedField>& fields) {

@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "common_options.h"
-#include "report.h"
 #include "subvol/brick_points.h"
 #include "subvol/bricks.h"
+#include "subvol/facts.h"
 
 namespace CLI {
 class App;
@@ -18,8 +18,8 @@ namespace subvol::cli {
 /// Whether an input is a folder of bricks.
 [[nodiscard]] bool is_bricks_input(const std::string& input);
 
-/// Opens bricks; puts input, cells and bricks into the report. Refuses the common options that bricks cannot have.
-[[nodiscard]] Bricks open_bricks_input(const std::string& input, const CLI::App& app, Report& report);
+/// Opens bricks; cells and bricks are facts. Refuses the common options that bricks cannot have.
+[[nodiscard]] WithFacts<Bricks> open_bricks_input(const std::string& input, const CLI::App& app);
 
 /// A field that is taken from each brick, with its range in the whole mesh.
 ///
@@ -32,7 +32,7 @@ struct StreamedField {
 };
 
 /// Chooses the field as `with_selected_field` does for a mesh.
-[[nodiscard]] StreamedField select_brick_field(const Bricks& bricks, const CommonOptions& options, Report& report);
+[[nodiscard]] WithFacts<StreamedField> select_brick_field(const Bricks& bricks, const CommonOptions& options);
 
 /// A field that the user names. throws: Error(InvalidInput) if there is none; names those that exist
 [[nodiscard]] StreamedField named_brick_field(const Bricks& bricks, const std::string& name, bool vector_allowed);

@@ -21,42 +21,46 @@ namespace {
 constexpr double kVoxels = 200;    // along the longest side: what the limit's tolerance is relative to, as of `vdb`
 constexpr double kMaxCells = 8e6;  // the field keeps them all
 
-HexMesh refined(const HexMesh& mesh, const RefineArguments& refine, Report& report) {
-    RefineOptions options = refine.options(0, report);
-    if (refine.levels) return refine_reported(mesh, options, Vertices::OnTheLimit, report);
+WithFacts<HexMesh> refined(const HexMesh& mesh, const RefineArguments& refine, Progress* progress) {
+    RefineOptions options = refine.options(0, progress);
+    if (refine.levels) return refine_reported(mesh, options, Vertices::OnTheLimit);
     const Vec3 size = bounds(mesh).size();
     const double voxel = std::max({size.x, size.y, size.z}) / kVoxels;
-    const LimitLevel limit = report.timed("limit level", [&] {
+    Facts facts;
+    const LimitLevel limit = facts.timed(progress, "limit level", [&] {
         return find_limit_level(mesh, options, {.position_world = kLimitTolerance_voxels * voxel, .max_cells = kMaxCells});
     });
     options.levels = limit.level;
     if (!limit.converged) {
-        report.warn(text("level ", limit.level, " was the finest within limits; the last step still changed values by ",
-                         limit.value_of_range, " of their range; --levels sets the level"));
+        facts.warn(text("level ", limit.level, " was the finest within limits; the last step still changed values by ",
+                        limit.value_of_range, " of their range; --levels sets the level"));
     }
-    return refine_reported(mesh, options, Vertices::OnTheLimit, report);
+    HexMesh fine = facts.unpack(refine_reported(mesh, options, Vertices::OnTheLimit));
+    return {std::move(fine), std::move(facts)};
 }
 
-FieldInput mesh_field(const std::string& input, const CommonOptions& options, const RefineArguments& refine, Report& report) {
-    CommonOptions own = is_model(input) ? CommonOptions() : options;  // how a file is read concerns the other field then
-    own.density = options.density;
-    own.field = options.field;
-    auto mesh = std::make_shared<HexMesh>(with_selected_field(load_mesh(input, own, report), own, report));
+FieldInput mesh_field(const std::string& input, const CommonOptions& options, const RefineArguments& refine, Progress* progress,
+                      Facts& facts) {
+    CommonOptions chosen = is_model(input) ? CommonOptions() : options;  // how a file is read concerns the other field then
+    chosen.density = options.density;
+    chosen.field = options.field;
+    auto mesh =
+        std::make_shared<HexMesh>(facts.unpack(with_selected_field(facts.unpack(load_mesh(input, chosen, progress)), chosen)));
     const std::string name = mesh->attributes.front().name;
-    auto field = std::make_shared<MeshField>(refined(*mesh, refine, report), name);
+    auto field = std::make_shared<MeshField>(facts.unpack(refined(*mesh, refine, progress)), name);
     return {field->view(), field, mesh, name};
 }
 
-FieldInput points_field(const std::string& input, const CommonOptions& options, Report& report) {
-    const RbfVolume volume = read_points_input(input, report);
+FieldInput points_field(const std::string& input, const CommonOptions& options, Progress* progress, Facts& facts) {
+    const RbfVolume volume = facts.unpack(read_points_input(input, progress));
     const std::string name = options.field.value_or(volume.channels.front().name);
     auto field = std::make_shared<PointsField>(volume, find_channel(volume, name, input));
-    report["field"] = name;
+    facts["field"] = name;
     return {field->view(), field, {}, name};
 }
 
-FieldInput grid_field(const std::string& input, const CommonOptions& options, Report& report) {
-    auto grid = std::make_shared<VdbGrid>(load_grid(input, options, report));
+FieldInput grid_field(const std::string& input, const CommonOptions& options, Progress* progress, Facts& facts) {
+    auto grid = std::make_shared<VdbGrid>(facts.unpack(load_grid(input, options, progress)));
     const GridReport& about = grid->report();
     FieldView view{.value = [grid = grid.get()](const Vec3& x) { return grid->value(x); },
                    .box = box_of(about),
@@ -76,32 +80,26 @@ InputKind kind_of(const std::string& input) {
     return is_vdb_file(input) ? InputKind::Grid : InputKind::Picture;
 }
 
-FieldInput load_field(const std::string& input, const CommonOptions& options, const RefineArguments& refine, const char* key,
-                      Report& report) {
-    report["input"] = input;  // for errors
-    Report part(options);
-    FieldInput field;
+WithFacts<FieldInput> load_field(const std::string& input, const CommonOptions& options, const RefineArguments& refine,
+                                 const char* key, Progress* progress) {
+    Facts found;
+    WithFacts<FieldInput> field;
     switch (kind_of(input)) {
         case InputKind::Mesh:
-            field = mesh_field(input, options, refine, part);
+            field.value = mesh_field(input, options, refine, progress, found);
             break;
         case InputKind::Points:
-            field = points_field(input, options, part);
+            field.value = points_field(input, options, progress, found);
             break;
         case InputKind::Grid:
-            field = grid_field(input, options, part);
+            field.value = grid_field(input, options, progress, found);
             break;
         case InputKind::Picture:
             throw Error(ErrorCode::InvalidInput, "is not a field", input, "a mesh, points or a .vdb grid");
     }
-    for (const auto& [name, value] : part.json().items()) {
-        if (name == "seconds") {
-            for (const auto& [stage, seconds] : value.items()) report.add_seconds(stage, seconds.template get<double>());
-        } else if (name == "warnings") {
-            for (const Json& warning : value) report["warnings"].push_back(warning);
-        } else {
-            report[key][name] = value;
-        }
+    for (const Fact& fact : found.all()) {
+        const bool shared = fact.name == "seconds" || fact.name == "warnings" || fact.name == "notes";
+        (shared ? field.facts : field.facts.group(key))[fact.name] = fact.value;
     }
     return field;
 }

@@ -6,7 +6,7 @@
 
 #include "common_options.h"
 #include "refine_arguments.h"
-#include "report.h"
+#include "subvol/facts.h"
 #include "subvol/field.h"
 
 namespace subvol::cli {
@@ -26,10 +26,10 @@ struct FieldInput {
 };
 
 /// Reads the field that the options select. A mesh is refined as the arguments say, without --levels to a level that is within
-/// tolerance of the limit. The figures of the report go under `key`.
+/// tolerance of the limit. All facts but seconds, warnings and notes are in the group `key`.
 ///
 /// throws: Error(InvalidInput) if it is a picture
-[[nodiscard]] FieldInput load_field(const std::string& input, const CommonOptions& options, const RefineArguments& refine,
-                                    const char* key, Report& report);
+[[nodiscard]] WithFacts<FieldInput> load_field(const std::string& input, const CommonOptions& options,
+                                               const RefineArguments& refine, const char* key, Progress* progress);
 
 }  // namespace subvol::cli

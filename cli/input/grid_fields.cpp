@@ -94,12 +94,12 @@ void apply(const Remap& remap, HexMesh& mesh) {
     for (double& value : field->values) value = remap.to_low + (value - remap.low) * factor;
 }
 
-void note_beyond(const std::string& field, const Range& given, const Range& found, Report& report) {
+std::string beyond(const std::string& field, const Range& given, const Range& found) {
     constexpr double kRounding = 1e-5;  // of 32-bit floats in differences of large values
     const double slack = kRounding * std::max({given.max - given.min, std::abs(given.min), std::abs(given.max)});
-    if (found.min >= given.min - slack && found.max <= given.max + slack) return;
-    report.note(text(field, " ", given.min, "…", given.max, " becomes ", found.min, "…", found.max,
-                     ": the scheme overshoots between points (--clamp ends it)"));
+    if (found.min >= given.min - slack && found.max <= given.max + slack) return {};
+    return text(field, " ", given.min, "…", given.max, " becomes ", found.min, "…", found.max,
+                ": the scheme overshoots between points (--clamp ends it)");
 }
 
 }  // namespace subvol::cli

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "picture_arguments.h"
-#include "report.h"
+#include "subvol/facts.h"
 #include "subvol/hex_mesh.h"
 
 namespace subvol::cli {
@@ -37,7 +37,7 @@ struct Remap {
 /// throws: Error(InvalidInput) if there is no such field, or if it has more than one component
 void apply(const Remap& remap, HexMesh& mesh);
 
-/// Says that values lie beyond those of the field's points, as an interpolating scheme makes them.
-void note_beyond(const std::string& field, const Range& given, const Range& found, Report& report);
+/// A remark on values beyond those of the field's points, as an interpolating scheme makes them; empty if there are none.
+[[nodiscard]] std::string beyond(const std::string& field, const Range& given, const Range& found);
 
 }  // namespace subvol::cli

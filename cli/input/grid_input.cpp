@@ -58,18 +58,19 @@ VdbGrid select_grid(const VdbContents& contents, const std::optional<std::string
                 held(contents));
 }
 
-VdbGrid load_grid(const std::string& input, const CommonOptions& options, Report& report) {
-    report["input"] = input;
+WithFacts<VdbGrid> load_grid(const std::string& input, const CommonOptions& options, Progress* progress) {
+    Facts facts;
+    facts["input"] = input;
     if (!is_vdb_file(input)) {
         throw Error(ErrorCode::InvalidInput, "is not a grid", input, "a .vdb file, as `subvol vdb` makes of a mesh");
     }
-    VdbGrid found = select_grid(report.timed("read", [&] { return read_vdb_contents(input); }), options.field, input);
+    VdbGrid found = select_grid(facts.timed(progress, "read", [&] { return read_vdb_contents(input); }), options.field, input);
     const GridReport& grid = found.report();
     if (grid.active_voxels == 0) throw Error(ErrorCode::InvalidInput, "the grid has no active voxels", input);
-    report["field"] = grid.name;
-    report["active_voxels"] = grid.active_voxels;
-    report["voxel_size"] = grid.voxel_size_world;
-    return found;
+    facts["field"] = grid.name;
+    facts["active_voxels"] = grid.active_voxels;
+    facts["voxel_size"] = grid.voxel_size_world;
+    return {std::move(found), std::move(facts)};
 }
 
 Box box_of(const GridReport& grid) {

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "common_options.h"
-#include "report.h"
+#include "subvol/facts.h"
 #include "subvol/vdb_contents.h"
 #include "subvol/vdb_grid.h"
 
@@ -24,11 +24,11 @@ namespace subvol::cli {
 [[nodiscard]] VdbGrid select_grid(const VdbContents& contents, const std::optional<std::string>& name,
                                   const std::string& input);
 
-/// Reads the grid of a `.vdb` file that --field names, as `select_grid` does. Puts "input", "field", and the number and
-/// size of the voxels into the report.
+/// Reads the grid of a `.vdb` file that --field names, as `select_grid` does. Facts: "field", and the number
+/// and size of the voxels.
 ///
 /// throws: Error(InvalidInput) if it is not a `.vdb` file, has no such grid, or the grid has no active voxels
-[[nodiscard]] VdbGrid load_grid(const std::string& input, const CommonOptions& options, Report& report);
+[[nodiscard]] WithFacts<VdbGrid> load_grid(const std::string& input, const CommonOptions& options, Progress* progress);
 
 /// The box of the active voxels: that of their centres, and half a voxel more to all sides.
 [[nodiscard]] Box box_of(const GridReport& grid);

@@ -66,7 +66,7 @@ std::optional<double> curved_tolerance(const CommonOptions& options) {
     return tolerance;
 }
 
-/// Options that change how a file is read, and have no effect on a model.
+/// Refuses options that change how a file is read, which have no effect on a model.
 void refuse_of_files(const CommonOptions& options) {
     const CommonOptions unset;
     const char* given = options.weld                               ? "--weld"
@@ -79,7 +79,7 @@ void refuse_of_files(const CommonOptions& options) {
 }
 
 /// For what is not done brick by brick.
-HexMesh mesh_of_bricks(const std::string& input, const CommonOptions& options, Report& report) {
+HexMesh mesh_of_bricks(const std::string& input, const CommonOptions& options, Progress* progress, Facts& facts) {
     const CommonOptions unset;
     const bool of_files = options.weld || options.weld_distance_world || !options.sharp.empty() || options.step ||
                           options.time || !options.blocks.empty() || options.other_cells != unset.other_cells ||
@@ -89,9 +89,9 @@ HexMesh mesh_of_bricks(const std::string& input, const CommonOptions& options, R
                     "no --weld, --weld-distance, --sharp, --step, --time, --blocks, --other-cells, --curved and --cell-values");
     }
     const Bricks bricks = open_bricks(input);
-    report.warn(text("all ", counted(bricks.bricks.size(), "brick"), " (", counted(bricks.cells, "cell"),
-                     ") are held in memory together: this is not done brick by brick"));
-    return report.timed("read", [&] { return whole_mesh(bricks, report.progress()); });
+    facts.warn(text("all ", counted(bricks.bricks.size(), "brick"), " (", counted(bricks.cells, "cell"),
+                    ") are held in memory together: this is not done brick by brick"));
+    return facts.timed(progress, "read", [&] { return whole_mesh(bricks, progress); });
 }
 
 }  // namespace
@@ -114,42 +114,45 @@ ReadOptions read_options(const std::string& input, const CommonOptions& options)
             .cell_values = cell_values(options)};
 }
 
-ReadResult read_input(const std::string& input, const CommonOptions& options, Report& report, SheetsAlone alone) {
-    report["input"] = input;
+WithFacts<ReadResult> read_input(const std::string& input, const CommonOptions& options, Progress* progress,
+                                 SheetsAlone alone) {
+    Facts facts;
+    facts["input"] = input;
     if (is_bricks_input(input)) {
         ReadResult read;
-        read.mesh = mesh_of_bricks(input, options, report);
-        return read;
+        read.mesh = mesh_of_bricks(input, options, progress, facts);
+        return {std::move(read), std::move(facts)};
     }
     const bool model = is_model(input);
     if (model) refuse_of_files(options);
     if (model && !options.sharp.empty()) throw Error(ErrorCode::InvalidInput, "a model has no groups", "--sharp");
     if (model && (options.step || options.time)) throw Error(ErrorCode::InvalidInput, "a model has no steps", "--step, --time");
     if (model && !options.blocks.empty()) throw Error(ErrorCode::InvalidInput, "a model has no blocks", "--blocks");
-    ReadResult read = report.timed("read", [&] {
+    ReadResult read = facts.timed(progress, "read", [&] {
         if (model) return generate(input.substr(kModelPrefix.size()));
-        ReadOptions how = read_options(input, options);
-        how.sheets_alone = alone == SheetsAlone::Take;
-        return read_mesh(input, how);
+        ReadOptions file_options = read_options(input, options);
+        file_options.sheets_alone = alone == SheetsAlone::Take;
+        return read_mesh(input, file_options);
     });
-    for (const std::string& warning : read.warnings) report.warn(warning);
-    return read;
+    for (const std::string& warning : read.warnings) facts.warn(warning);
+    return {std::move(read), std::move(facts)};
 }
 
-HexMesh load_mesh(const std::string& input, const CommonOptions& options, Report& report, Sheets* sheets, SheetsAlone alone) {
-    ReadResult read = read_input(input, options, report, alone);
+WithFacts<HexMesh> load_mesh(const std::string& input, const CommonOptions& options, Progress* progress, Sheets* sheets,
+                             SheetsAlone alone) {
+    auto [read, facts] = read_input(input, options, progress, alone);
     if (sheets != nullptr) {
         *sheets = std::move(read.sheets);
         if (options.density && !sheets->empty()) put_density_first(*sheets, *options.density);
     } else {
-        warn_of_sheets(read.sheets, report);
+        facts.warn(sheets_left_out(read.sheets));
     }
     if (read.mesh.cells.empty()) {
         read.mesh.points = sheets->points;
         read.mesh.attributes = sheets->attributes;
-        return std::move(read.mesh);
+        return {std::move(read.mesh), std::move(facts)};
     }
-    return used_mesh(std::move(read.mesh), options);
+    return {used_mesh(std::move(read.mesh), options), std::move(facts)};
 }
 
 std::vector<FieldInfo> chosen_fields(const ReadResult& read, const CommonOptions& options) {
@@ -178,12 +181,12 @@ std::vector<FieldInfo> chosen_fields(const ReadResult& read, const CommonOptions
     return {{name, "point", 1, min, max}};
 }
 
-void warn_of_sheets(const Sheets& sheets, Report& report) {
-    if (sheets.empty()) return;
+std::string sheets_left_out(const Sheets& sheets) {
+    if (sheets.empty()) return {};
     const std::string quads = sheets.quads.empty() ? "" : counted(sheets.quads.size(), "quad");
     const std::string lines = sheets.lines.empty() ? "" : counted(sheets.lines.size(), "line");
-    report.warn(text(quads, quads.empty() || lines.empty() ? "" : " and ", lines,
-                     " of sheets and curves left out: render, surface, subdivide and info take them"));
+    return text(quads, quads.empty() || lines.empty() ? "" : " and ", lines,
+                " of sheets and curves left out: render, surface, subdivide and info take them");
 }
 
 Sheets with_fields_of(Sheets sheets, const HexMesh& mesh) {
@@ -216,18 +219,18 @@ HexMesh with_written_field(HexMesh mesh, const CommonOptions& options) {
     return mesh;
 }
 
-HexMesh with_selected_field(HexMesh mesh, const CommonOptions& options, Report& report,
-                            const std::optional<std::string>& second) {
+WithFacts<HexMesh> with_selected_field(HexMesh mesh, const CommonOptions& options, const std::optional<std::string>& second) {
+    Facts facts;
     SelectedField selected = select_field(mesh, options.density ? std::optional<std::string>("density") : options.field);
-    report.warn(selected.warning);
-    report["field"] = selected.scalar.name;
+    facts.warn(selected.warning);
+    facts["field"] = selected.scalar.name;
     if (!options.density && !options.field && mesh.attributes.size() > 1 && selected.warning.empty()) {
-        report.note(text("drawing ", selected.scalar.name, " (of ", mesh.attributes.size(), " fields; --field chooses)"));
+        facts.note(text("drawing ", selected.scalar.name, " (of ", mesh.attributes.size(), " fields; --field chooses)"));
     }
     std::vector<Attribute> chosen{std::move(selected.scalar)};
     if (second && *second != chosen.front().name) chosen.push_back(select_field(mesh, second).scalar);
     mesh.attributes = std::move(chosen);
-    return mesh;
+    return {std::move(mesh), std::move(facts)};
 }
 
 Range field_range(const HexMesh& mesh, std::size_t attribute) {

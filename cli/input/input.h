@@ -7,7 +7,7 @@
 
 #include "common_options.h"
 #include "picture_arguments.h"
-#include "report.h"
+#include "subvol/facts.h"
 #include "subvol/hex_mesh.h"
 #include "subvol/mesh_io.h"
 
@@ -25,24 +25,24 @@ namespace subvol::cli {
 /// Whether a file of sheets and curves without cells is an error.
 enum class SheetsAlone { Refuse, Take };
 
-/// Reads a mesh file, or generates "model:NAME[:RESOLUTION]". Puts "input" and the reader's warnings into the report.
-[[nodiscard]] ReadResult read_input(const std::string& input, const CommonOptions& options, Report& report,
-                                    SheetsAlone alone = SheetsAlone::Refuse);
+/// Reads a mesh file, or generates "model:NAME[:RESOLUTION]". The reader's warnings are facts.
+[[nodiscard]] WithFacts<ReadResult> read_input(const std::string& input, const CommonOptions& options, Progress* progress,
+                                               SheetsAlone alone = SheetsAlone::Refuse);
 
 /// `read_input` without the unused points; --density becomes the first attribute.
 ///
 /// sheets: gets the sheets and curves; null: a warning says that they are left out
 /// alone:  Take: sheets without cells give a mesh of their points and fields without cells
-[[nodiscard]] HexMesh load_mesh(const std::string& input, const CommonOptions& options, Report& report,
-                                Sheets* sheets = nullptr, SheetsAlone alone = SheetsAlone::Refuse);
+[[nodiscard]] WithFacts<HexMesh> load_mesh(const std::string& input, const CommonOptions& options, Progress* progress,
+                                           Sheets* sheets = nullptr, SheetsAlone alone = SheetsAlone::Refuse);
 
 /// The fields of what `read_input` returned: with --density that one first, with --field that one alone.
 ///
 /// throws: Error(InvalidInput) if the expression has no value at a point, or if there is no such field
 [[nodiscard]] std::vector<FieldInfo> chosen_fields(const ReadResult& read, const CommonOptions& options);
 
-/// Says that sheets and curves are left out, if there are any.
-void warn_of_sheets(const Sheets& sheets, Report& report);
+/// A warning that sheets and curves are left out; empty if there are none.
+[[nodiscard]] std::string sheets_left_out(const Sheets& sheets);
 
 /// The sheets with the fields that the mesh has, which were selected from the same ones.
 [[nodiscard]] Sheets with_fields_of(Sheets sheets, const HexMesh& mesh);
@@ -54,8 +54,8 @@ void warn_of_sheets(const Sheets& sheets, Report& report);
 [[nodiscard]] HexMesh with_written_field(HexMesh mesh, const CommonOptions& options);
 
 /// The mesh with only the field that the options select, as a scalar, and with the field `second` if that is given.
-[[nodiscard]] HexMesh with_selected_field(HexMesh mesh, const CommonOptions& options, Report& report,
-                                          const std::optional<std::string>& second = {});
+[[nodiscard]] WithFacts<HexMesh> with_selected_field(HexMesh mesh, const CommonOptions& options,
+                                                     const std::optional<std::string>& second = {});
 
 /// The range of one of the mesh's attributes.
 [[nodiscard]] Range field_range(const HexMesh& mesh, std::size_t attribute = 0);

@@ -37,41 +37,46 @@ bool holds_points(const std::string& input) {
     return is_points_file(input) || (is_vdb_file(input) && holds_vdb_points(input));
 }
 
-RbfVolume read_points_input(const std::string& input, Report& report) {
-    report["input"] = input;
-    RbfVolume volume = report.timed("read", [&] { return is_vdb_file(input) ? read_vdb_points(input) : read_points(input); });
-    report["points"] = volume.size();
+WithFacts<RbfVolume> read_points_input(const std::string& input, Progress* progress) {
+    Facts facts;
+    facts["input"] = input;
+    RbfVolume volume =
+        facts.timed(progress, "read", [&] { return is_vdb_file(input) ? read_vdb_points(input) : read_points(input); });
+    facts["points"] = volume.size();
     if (volume.size() == 0) throw Error(ErrorCode::InvalidInput, "there are no points in it", input);
-    return volume;
+    return {std::move(volume), std::move(facts)};
 }
 
-RbfVolume load_all_points(const std::string& input, const CLI::App& app, Report& report) {
+WithFacts<RbfVolume> load_all_points(const std::string& input, const CLI::App& app, Progress* progress) {
     refuse_sampling(app);
-    return read_points_input(input, report);
+    return read_points_input(input, progress);
 }
 
-RbfVolume load_points(const std::string& input, const CommonOptions& options, const std::optional<std::string>& second,
-                      const CLI::App& app, Report& report) {
-    RbfVolume volume = load_all_points(input, app, report);
+WithFacts<RbfVolume> load_points(const std::string& input, const CommonOptions& options,
+                                 const std::optional<std::string>& second, const CLI::App& app, Progress* progress) {
+    WithFacts<RbfVolume> loaded = load_all_points(input, app, progress);
+    RbfVolume& volume = loaded.value;
     const auto channel = [&](const std::string& name) { return volume.channels[find_channel(volume, name, input)]; };
     std::vector<RbfChannel> chosen{channel(options.field.value_or(volume.channels.front().name))};
     if (second && *second != chosen.front().name) chosen.push_back(channel(*second));
     volume.channels = std::move(chosen);
-    report["field"] = volume.channels.front().name;
-    return volume;
+    loaded.facts["field"] = volume.channels.front().name;
+    return loaded;
 }
 
 bool holds_levels(const std::string& input) {
     return std::filesystem::path(input).extension() == ".svk";
 }
 
-LevelsInput open_levels(const std::string& input, const CommonOptions& options, const std::optional<std::string>& second,
-                        std::uint64_t cache_bytes, const CLI::App& app, Report& report) {
+WithFacts<LevelsInput> open_levels(const std::string& input, const CommonOptions& options,
+                                   const std::optional<std::string>& second, std::uint64_t cache_bytes, const CLI::App& app,
+                                   Progress* progress) {
     refuse_sampling(app);
-    report["input"] = input;
-    LevelsInput levels{report.timed("read", [&] { return KernelFile(input, cache_bytes); }), {}};
+    Facts facts;
+    facts["input"] = input;
+    LevelsInput levels{facts.timed(progress, "read", [&] { return KernelFile(input, cache_bytes); }), {}};
     const KernelFileContents& contents = levels.file.contents();
-    report["points"] = contents.kernels;
+    facts["points"] = contents.kernels;
     std::vector<std::string> names;
     for (const auto& channel : contents.channels) names.push_back(channel.name);
     const auto number_of = [&](const std::string& name) {
@@ -80,9 +85,9 @@ LevelsInput open_levels(const std::string& input, const CommonOptions& options, 
         return static_cast<std::size_t>(found - names.begin());
     };
     levels.channels.push_back(number_of(options.field.value_or(names.front())));
-    report["field"] = names[levels.channels.front()];
+    facts["field"] = names[levels.channels.front()];
     if (second && *second != names[levels.channels.front()]) levels.channels.push_back(number_of(*second));
-    return levels;
+    return {std::move(levels), std::move(facts)};
 }
 
 std::size_t find_channel(const RbfVolume& volume, const std::string& name, const std::string& input) {

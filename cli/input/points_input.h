@@ -18,19 +18,20 @@ namespace subvol::cli {
 /// Whether the input is a file of points: .ply, .vtp, .svk, or a .vdb with a point grid.
 [[nodiscard]] bool holds_points(const std::string& input);
 
-/// Reads them, timed; puts "input" and "points" into the report.
-[[nodiscard]] RbfVolume read_points_input(const std::string& input, Report& report);
+/// Reads them, timed; "points" is a fact.
+[[nodiscard]] WithFacts<RbfVolume> read_points_input(const std::string& input, Progress* progress);
 
 /// `read_points_input` with all fields.
 ///
 /// throws: Error(InvalidInput) if an option of `app` was given that applies to meshes only
-[[nodiscard]] RbfVolume load_all_points(const std::string& input, const CLI::App& app, Report& report);
+[[nodiscard]] WithFacts<RbfVolume> load_all_points(const std::string& input, const CLI::App& app, Progress* progress);
 
 /// `read_points_input` with only the field that the options select, and with the field `second` if that is given.
 ///
 /// throws: Error(InvalidInput) if there is no such channel, or if an option of `app` was given that applies to meshes only
-[[nodiscard]] RbfVolume load_points(const std::string& input, const CommonOptions& options,
-                                    const std::optional<std::string>& second, const CLI::App& app, Report& report);
+[[nodiscard]] WithFacts<RbfVolume> load_points(const std::string& input, const CommonOptions& options,
+                                               const std::optional<std::string>& second, const CLI::App& app,
+                                               Progress* progress);
 
 /// Whether the input is a file of points with levels of detail, .svk.
 [[nodiscard]] bool holds_levels(const std::string& input);
@@ -42,9 +43,9 @@ struct LevelsInput {
 };
 
 /// Opens such a file in place of `load_points`. cache_bytes: as of KernelFile
-[[nodiscard]] LevelsInput open_levels(const std::string& input, const CommonOptions& options,
-                                      const std::optional<std::string>& second, std::uint64_t cache_bytes, const CLI::App& app,
-                                      Report& report);
+[[nodiscard]] WithFacts<LevelsInput> open_levels(const std::string& input, const CommonOptions& options,
+                                                 const std::optional<std::string>& second, std::uint64_t cache_bytes,
+                                                 const CLI::App& app, Progress* progress);
 
 /// The number of the channel with this name.
 ///

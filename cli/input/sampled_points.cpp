@@ -17,62 +17,68 @@ constexpr std::initializer_list<const char*> kOfMeshesOnly{
     "--per-edge",       "--centers", "--scheme",       "--tension", "--levels", "--crease-angle", "--tolerance",  "--footprint",
     "--footprint-size", "--values",  "--value-kernel", "--reduce",  "--refine", "--seconds",      "--color-field"};
 
-RbfVolume without_invisible(RbfVolume volume, const SampleArguments& arguments, const std::optional<TransferFunction>& seen,
-                            Report& report) {
-    if (!arguments.drops_invisible()) return volume;
+/// The volume, with --threshold without the kernels that nobody sees. facts: become those of the result
+WithFacts<RbfVolume> without_invisible(RbfVolume volume, const SampleArguments& arguments,
+                                       const std::optional<TransferFunction>& seen, Progress* progress, Facts facts) {
+    if (!arguments.drops_invisible()) {
+        facts["points"] = volume.size();
+        return {std::move(volume), std::move(facts)};
+    }
     if (arguments.threshold.empty() && !seen) {
         throw Error(ErrorCode::InvalidInput, "needs a value, as there is no transfer function", "--threshold");
     }
     const TransferFunction function =
         arguments.threshold.empty() ? *seen : opaque_above(parse_number("--threshold", arguments.threshold));
-    VisibleVolume visible = report.timed("threshold", [&] { return drop_invisible(volume, 0, function); });
-    report["dropped"] = visible.dropped;
+    VisibleVolume visible = facts.timed(progress, "threshold", [&] { return drop_invisible(volume, 0, function); });
+    facts["dropped"] = visible.dropped;
     if (visible.volume.size() == 0) {
         throw Error(ErrorCode::InvalidInput, "leaves no point: nothing of the field can be seen", "--threshold");
     }
-    return std::move(visible.volume);
+    facts["points"] = visible.volume.size();
+    return {std::move(visible.volume), std::move(facts)};
 }
 
-RbfVolume reduce_reported(const HexMesh& mesh, const SampleArguments& arguments, const LimitOptions& limit, Report& report) {
+RbfVolume reduce_reported(const HexMesh& mesh, const SampleArguments& arguments, const LimitOptions& limit, Facts& facts) {
     const ReduceOptions options{.rmse = arguments.reduce_rmse,
                                 .kernel = kernel_from(arguments.kernel, "compact"),
                                 .move = arguments.move_kernels,
                                 .limit = limit,
                                 .progress = limit.progress};
-    ReduceResult reduced = report.timed("reduce", [&] { return reduce_rbf(mesh, {}, options); });
-    report["points_before"] = mesh.points.size();
-    report["field_rmse"] = reduced.report.validation.rmse;
+    ReduceResult reduced = facts.timed(limit.progress, "reduce", [&] { return reduce_rbf(mesh, {}, options); });
+    facts["points_before"] = mesh.points.size();
+    facts["field_rmse"] = reduced.report.validation.rmse;
     if (reduced.report.points > mesh.points.size()) {
-        report.warn("these are more kernels than control points; --per-edge 1 has fewer, perhaps with no larger error");
+        facts.warn("these are more kernels than control points; --per-edge 1 has fewer, perhaps with no larger error");
     }
     if (!reduced.report.reached) {
-        report.warn(text("the field's error is ", reduced.report.validation.rmse, ", not ", arguments.reduce_rmse,
-                         ": the samples of the volume are too far apart for more kernels"));
+        facts.warn(text("the field's error is ", reduced.report.validation.rmse, ", not ", arguments.reduce_rmse,
+                        ": the samples of the volume are too far apart for more kernels"));
     }
     return std::move(reduced.volume);
 }
 
-RbfVolume sample_and_warn(HexMesh mesh, const SampleOptions& options, Report& report) {
-    SampleResult sampled = report.timed("sample", [&] { return sample_rbf_points(std::move(mesh), options); });
+RbfVolume sample_and_warn(HexMesh mesh, const SampleOptions& options, Facts& facts) {
+    SampleResult sampled = facts.timed(options.progress, "sample", [&] { return sample_rbf_points(std::move(mesh), options); });
     if (options.tolerance > 0) {
-        report["largest_error"] = sampled.report.largest_error;
+        facts["largest_error"] = sampled.report.largest_error;
         if (sampled.report.largest_error > options.tolerance)
-            report.warn("the tolerance was not reached with 64 samples per cell edge");
+            facts.warn("the tolerance was not reached with 64 samples per cell edge");
     }
     if (sampled.report.flat_frames > 0) {
-        report.warn(text(sampled.report.flat_frames, " points lie where cells are flat; their kernels were thickened"));
+        facts.warn(text(sampled.report.flat_frames, " points lie where cells are flat; their kernels were thickened"));
     }
     return std::move(sampled.volume);
 }
 
 }  // namespace
 
-RbfVolume sample_reported(HexMesh mesh, const SampleArguments& arguments, const RefineArguments& refinement,
-                          const std::optional<TransferFunction>& seen, Report& report) {
-    const RefineOptions refine_options = refinement.options(0, report);
+WithFacts<RbfVolume> sample_reported(HexMesh mesh, const SampleArguments& arguments, const RefineArguments& refinement,
+                                     const std::optional<TransferFunction>& seen, Progress* progress) {
+    Facts facts;
+    const RefineOptions refine_options = refinement.options(0, progress);
     SampleOptions options = arguments.options(bounds(mesh), refine_options);
     if (refinement.levels) {  // the refined mesh with its trilinear cells takes the place of the limit
-        mesh = refine_reported(mesh, refine_options, Vertices::OnTheLimit, report);
+        mesh = facts.unpack(refine_reported(mesh, refine_options, Vertices::OnTheLimit));
         options.scheme.kind = Scheme::Linear;
         options.boundary_levels = 0;
     }
@@ -80,13 +86,11 @@ RbfVolume sample_reported(HexMesh mesh, const SampleArguments& arguments, const 
     if (arguments.reduce_rmse > 0) {
         const LimitOptions limit{
             .scheme = options.scheme, .tolerance = ReduceOptions{}.limit.tolerance, .progress = options.progress};
-        all = reduce_reported(mesh, arguments, limit, report);
+        all = reduce_reported(mesh, arguments, limit, facts);
     } else {
-        all = sample_and_warn(std::move(mesh), options, report);
+        all = sample_and_warn(std::move(mesh), options, facts);
     }
-    RbfVolume volume = without_invisible(std::move(all), arguments, seen, report);
-    report["points"] = volume.size();
-    return volume;
+    return without_invisible(std::move(all), arguments, seen, progress, std::move(facts));
 }
 
 void refuse_other_places(const SampleArguments& arguments, const SampleOptions& options) {
@@ -98,39 +102,37 @@ void refuse_other_places(const SampleArguments& arguments, const SampleOptions& 
     }
 }
 
-RbfVolume sample_tets_reported(const HexMesh& mesh, const SampleArguments& arguments,
-                               const std::optional<TransferFunction>& seen, Report& report) {
+WithFacts<RbfVolume> sample_tets_reported(const HexMesh& mesh, const SampleArguments& arguments,
+                                          const std::optional<TransferFunction>& seen, Progress* progress) {
+    Facts facts;
     const SampleOptions options = arguments.options(bounds(mesh), {});
     refuse_other_places(arguments, options);
-    SampleResult sampled = report.timed("sample", [&] {
+    SampleResult sampled = facts.timed(progress, "sample", [&] {
         return sample_rbf_points(join_split_cells(mesh),
-                                 {.correction = options.correction, .kernel = options.kernel, .progress = report.progress()});
+                                 {.correction = options.correction, .kernel = options.kernel, .progress = progress});
     });
     if (sampled.report.flat_frames > 0) {
-        report.warn(text(sampled.report.flat_frames, " points lie where cells are flat; their kernels were thickened"));
+        facts.warn(text(sampled.report.flat_frames, " points lie where cells are flat; their kernels were thickened"));
     }
-    RbfVolume volume = without_invisible(std::move(sampled.volume), arguments, seen, report);
-    report["points"] = volume.size();
-    return volume;
+    return without_invisible(std::move(sampled.volume), arguments, seen, progress, std::move(facts));
 }
 
-RbfVolume sample_reported(const VdbGrid& grid, const SampleArguments& arguments, const std::optional<TransferFunction>& seen,
-                          const CLI::App& app, Report& report) {
+WithFacts<RbfVolume> sample_reported(const VdbGrid& grid, const SampleArguments& arguments,
+                                     const std::optional<TransferFunction>& seen, const CLI::App& app, Progress* progress) {
+    Facts facts;
     refuse_mesh_options(app, "needs a mesh; this is a grid of voxels");
     refuse_options(app, kOfMeshesOnly, "needs a mesh; this is a grid of voxels");
     const SampleOptions options = arguments.options(box_of(grid.report()), {});
-    VoxelSampleResult sampled = report.timed("sample", [&] {
+    VoxelSampleResult sampled = facts.timed(progress, "sample", [&] {
         return sample_rbf_points(grid, {.spacing_world = options.spacing_world,
                                         .correction = options.correction,
                                         .kernel = options.kernel,
-                                        .progress = report.progress()});
+                                        .progress = progress});
     });
-    report["spacing"] = sampled.report.spacing_world;
-    report["voxels_a_side"] = sampled.report.voxels_a_side;
-    if (sampled.report.left_out > 0) report["left_out_voxels"] = sampled.report.left_out;
-    RbfVolume volume = without_invisible(std::move(sampled.volume), arguments, seen, report);
-    report["points"] = volume.size();
-    return volume;
+    facts["spacing"] = sampled.report.spacing_world;
+    facts["voxels_a_side"] = sampled.report.voxels_a_side;
+    if (sampled.report.left_out > 0) facts["left_out_voxels"] = sampled.report.left_out;
+    return without_invisible(std::move(sampled.volume), arguments, seen, progress, std::move(facts));
 }
 
 }  // namespace subvol::cli

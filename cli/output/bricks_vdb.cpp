@@ -181,31 +181,45 @@ private:
     bool converged_ = true;
 };
 
-/// Sums up the grids of all blocks.
-void add(Json& sums, const std::vector<VdbGrid>& grids) {
+/// The grids of one name in all blocks.
+struct GridSum {
+    std::string name, kind;
+    std::uint64_t active_voxels = 0, bytes = 0;
+    double min, max;
+};
+
+void add(std::vector<GridSum>& sums, const std::vector<VdbGrid>& grids) {
     for (std::size_t g = 0; g < grids.size(); ++g) {
         const GridReport& grid = grids[g].report();
-        if (sums.size() <= g) {
-            sums.push_back({{"name", grid.name},
-                            {"kind", grid.kind},
-                            {"active_voxels", 0},
-                            {"min", grid.min},
-                            {"max", grid.max},
-                            {"bytes", 0}});
-        }
-        Json& sum = sums[g];
-        sum["active_voxels"] = sum["active_voxels"].get<std::uint64_t>() + grid.active_voxels;
-        sum["bytes"] = sum["bytes"].get<std::uint64_t>() + grid.bytes;
-        sum["min"] = std::min(sum["min"].get<double>(), static_cast<double>(grid.min));
-        sum["max"] = std::max(sum["max"].get<double>(), static_cast<double>(grid.max));
+        if (sums.size() <= g) sums.push_back({.name = grid.name, .kind = grid.kind, .min = grid.min, .max = grid.max});
+        GridSum& sum = sums[g];
+        sum.active_voxels += grid.active_voxels;
+        sum.bytes += grid.bytes;
+        sum.min = std::min(sum.min, static_cast<double>(grid.min));
+        sum.max = std::max(sum.max, static_cast<double>(grid.max));
     }
+}
+
+FactValue::List list_of(const std::vector<GridSum>& sums) {
+    FactValue::List list;
+    for (const GridSum& sum : sums) {
+        Facts entry;
+        entry["name"] = sum.name;
+        entry["kind"] = sum.kind;
+        entry["active_voxels"] = sum.active_voxels;
+        entry["min"] = sum.min;
+        entry["max"] = sum.max;
+        entry["bytes"] = sum.bytes;
+        list.emplace_back(std::move(entry));
+    }
+    return list;
 }
 
 /// Makes the blocks of a plan one after the other.
 ///
 /// take: gets the grids of each that has some
-void make_blocks(const BricksToVoxels& what, const BlockPlan& plan, Report& report,
-                 const std::function<void(std::vector<VdbGrid>)>& take) {
+Facts make_blocks(const BricksToVoxels& what, const BlockPlan& plan, const std::function<void(std::vector<VdbGrid>)>& take) {
+    Facts facts;
     BricksToVoxels blockwise = what;
     BlockMaker maker(blockwise);
     std::size_t folded = 0;
@@ -214,15 +228,16 @@ void make_blocks(const BricksToVoxels& what, const BlockPlan& plan, Report& repo
         blockwise.options.progress = blockwise.options.refine.progress = &progress;
         report_progress(&progress, "rasterize", 0);
         const VoxelCubes& block = plan.blocks()[b];
-        BlockGrids made = report.timed("rasterize", [&] { return maker.make(block, plan.box_of(block)); });
+        BlockGrids made = facts.timed(&progress, "rasterize", [&] { return maker.make(block, plan.box_of(block)); });
         if (made.folded) {
             ++folded;
-            made = report.timed("rasterize", [&] { return maker.make(block, plan.box_of(block, true)); });
+            made = facts.timed(&progress, "rasterize", [&] { return maker.make(block, plan.box_of(block, true)); });
         }
         if (!made.grids.empty()) take(std::move(made.grids));
     }
-    if (!maker.converged()) report.warn("the limit is coarser than its tolerance in some cells");
-    if (folded > 0) report.note(text("cells fold over in ", folded, " of ", plan.blocks().size(), " blocks of voxels"));
+    if (!maker.converged()) facts.warn("the limit is coarser than its tolerance in some cells");
+    if (folded > 0) facts.note(text("cells fold over in ", folded, " of ", plan.blocks().size(), " blocks of voxels"));
+    return facts;
 }
 
 /// The grids of no voxels.
@@ -236,32 +251,34 @@ std::vector<VdbGrid> empty_grids(const BricksToVoxels& what) {
 
 }  // namespace
 
-std::vector<VdbGrid> grids_of_bricks(const BricksToVoxels& what, std::size_t memory_bytes, const Share& share, Report& report) {
+WithFacts<std::vector<VdbGrid>> grids_of_bricks(const BricksToVoxels& what, std::size_t memory_bytes, const Share& share) {
     const BlockPlan plan(what, static_cast<double>(memory_bytes > 0 ? memory_bytes : kDefaultMemory), share);
     std::vector<std::vector<VdbGrid>> of_grids;  // of each grid its blocks
     for (VdbGrid& grid : empty_grids(what)) of_grids.emplace_back().push_back(std::move(grid));
-    make_blocks(what, plan, report, [&](std::vector<VdbGrid> made) {
+    Facts facts = make_blocks(what, plan, [&](std::vector<VdbGrid> made) {
         for (std::size_t g = 0; g < made.size(); ++g) of_grids.at(g).push_back(std::move(made[g]));
     });
     std::vector<VdbGrid> joined;
     for (std::vector<VdbGrid>& blocks : of_grids) joined.push_back(join_grids(std::move(blocks)));
-    return joined;
+    return {std::move(joined), std::move(facts)};
 }
 
-void write_bricks_vdb(const BricksToVoxels& what, const VdbOutput& output, Report& report) {
+Facts write_bricks_vdb(const std::string& input, const BricksToVoxels& what, const VdbOutput& output) {
     const std::uint64_t memory = output.memory_bytes > 0 ? output.memory_bytes : kDefaultMemory;
     const BlockPlan plan(what, static_cast<double>(memory), {});
     VdbParts parts(output, memory);
-    Json grids = Json::array();
-    make_blocks(what, plan, report, [&](const std::vector<VdbGrid>& made) {
+    std::vector<GridSum> sums;
+    Facts writing;
+    Facts facts = make_blocks(what, plan, [&](const std::vector<VdbGrid>& made) {
         if (!has_voxels(made)) return;
-        add(grids, made);
-        report.timed("write", [&] { parts.write(made, parts.count()); });
+        add(sums, made);
+        writing.timed(what.options.progress, "write", [&] { parts.write(made, parts.count()); });
     });
-    const std::string input = report.json().at("input");
+    facts.merge(writing);
     if (parts.active_voxels() == 0) throw no_voxels(input, "try a smaller --voxel-size");
-    parts.finish(input, what.options.voxel_size_world, report);
-    if (!report.json().contains("grids")) report["grids"] = grids;
+    facts.merge(parts.finish(input, what.options.voxel_size_world, what.options.progress));
+    if (facts.find("grids") == nullptr) facts["grids"] = list_of(sums);
+    return facts;
 }
 
 }  // namespace subvol::cli

@@ -24,11 +24,13 @@ struct BricksToVoxels {
 /// it are read. The grids of a slab without voxels are empty.
 ///
 /// memory_bytes: about the most that a block of voxels and the cells about it take; 0: 1 GB
-[[nodiscard]] std::vector<VdbGrid> grids_of_bricks(const BricksToVoxels& what, std::size_t memory_bytes, const Share& share,
-                                                   Report& report);
+[[nodiscard]] WithFacts<std::vector<VdbGrid>> grids_of_bricks(const BricksToVoxels& what, std::size_t memory_bytes,
+                                                              const Share& share);
 
 /// Writes NAME.vdb, or where the grids do not fit into the memory (1 GB unless `output` says another) parts, each with the
 /// voxels of a block, and NAME.json that lists them. Together their leaves are those of the whole mesh.
-void write_bricks_vdb(const BricksToVoxels& what, const VdbOutput& output, Report& report);
+///
+/// input: the folder, for NAME.json and errors
+[[nodiscard]] Facts write_bricks_vdb(const std::string& input, const BricksToVoxels& what, const VdbOutput& output);
 
 }  // namespace subvol::cli

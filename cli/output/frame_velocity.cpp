@@ -27,17 +27,19 @@ void add_velocity(Attribute velocity, HexMesh& mesh, double factor) {
     mesh.attributes.push_back(std::move(velocity));
 }
 
-void spread_velocity(int frame, double frames_per_second, std::vector<VdbGrid>& grids, Report& report) {
+Facts spread_velocity(int frame, double frames_per_second, std::vector<VdbGrid>& grids, Progress* progress) {
+    Facts facts;
     const auto velocity = std::ranges::find(grids, kVelocity, [](const VdbGrid& grid) { return grid.report().name; });
-    if (velocity == grids.end() || velocity->report().kind != "vector" || velocity->report().max == 0) return;
+    if (velocity == grids.end() || velocity->report().kind != "vector" || velocity->report().max == 0) return facts;
     const GridReport& about = velocity->report();
     const double way_voxels = kShutter_frames * about.max / frames_per_second / about.voxel_size_world;
     if (way_voxels > kMostVelocityLayers) {
-        report.warn(text("frame ", frame, ": in half a frame something moves by ", way_voxels, " voxels; the velocities reach ",
-                         kMostVelocityLayers, " voxels beyond the volume, and blur is cut off there"));
+        facts.warn(text("frame ", frame, ": in half a frame something moves by ", way_voxels, " voxels; the velocities reach ",
+                        kMostVelocityLayers, " voxels beyond the volume, and blur is cut off there"));
     }
     const int layers = static_cast<int>(std::min(std::ceil(way_voxels) + 1, double(kMostVelocityLayers)));
-    report.timed("spread", [&] { *velocity = spread_vectors(*velocity, layers); });
+    facts.timed(progress, "spread", [&] { *velocity = spread_vectors(*velocity, layers); });
+    return facts;
 }
 
 }  // namespace subvol::cli

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "report.h"
+#include "subvol/facts.h"
 #include "subvol/hex_mesh.h"
 #include "subvol/vdb_grid.h"
 
@@ -22,6 +22,6 @@ void add_velocity(Attribute velocity, HexMesh& mesh, double factor);
 ///
 /// grids: one of them may be that of velocities
 /// frame: for messages
-void spread_velocity(int frame, double frames_per_second, std::vector<VdbGrid>& grids, Report& report);
+[[nodiscard]] Facts spread_velocity(int frame, double frames_per_second, std::vector<VdbGrid>& grids, Progress* progress);
 
 }  // namespace subvol::cli

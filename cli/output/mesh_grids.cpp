@@ -24,17 +24,21 @@ constexpr double kBytesOfChannel = 5.5;  // a voxel's float in leaves that are n
 
 }  // namespace
 
-LimitCells reported_limit(const HexMesh& mesh, const RefineOptions& refinement, double voxel_size, Report& report) {
-    LimitCells limit = report.timed("limit level", [&] { return limit_for_voxels(mesh, refinement, voxel_size); });
+WithFacts<LimitCells> reported_limit(const HexMesh& mesh, const RefineOptions& refinement, double voxel_size) {
+    Facts facts;
+    LimitCells limit =
+        facts.timed(refinement.progress, "limit level", [&] { return limit_for_voxels(mesh, refinement, voxel_size); });
     const int levels = finest_level(limit);
-    report["levels"] = levels;
-    report["cells"] = limit.piece_count;
-    report["limit_deviation"] = {{"voxels", limit.position_world / voxel_size}, {"of_range", limit.value_of_range}};
+    facts["levels"] = levels;
+    facts["cells"] = limit.piece_count;
+    Facts& deviation = facts.group("limit_deviation");
+    deviation["voxels"] = limit.position_world / voxel_size;
+    deviation["of_range"] = limit.value_of_range;
     if (!limit.converged) {
-        report.warn(text("level ", levels, " was the finest within limits; the last step still moved points by ",
-                         limit.position_world / voxel_size, " voxels and values by ", limit.value_of_range, " of their range"));
+        facts.warn(text("level ", levels, " was the finest within limits; the last step still moved points by ",
+                        limit.position_world / voxel_size, " voxels and values by ", limit.value_of_range, " of their range"));
     }
-    return limit;
+    return {std::move(limit), std::move(facts)};
 }
 
 MeshGrids::MeshGrids(std::string input, const VdbArguments& asked, RefineArguments& refine)
@@ -43,21 +47,24 @@ MeshGrids::MeshGrids(std::string input, const VdbArguments& asked, RefineArgumen
     if (!asked.like.empty()) like_grids_ = read_vdb(asked.like);
 }
 
-HexMesh MeshGrids::load(const std::string& input, const CommonOptions& options, Report& report) const {
-    HexMesh mesh = fields_.chosen(tets_.hexes(load_mesh(input, options, report), 2, report), options, report);
+WithFacts<HexMesh> MeshGrids::load(const std::string& input, const CommonOptions& options, Progress* progress) const {
+    Facts facts;
+    HexMesh mesh = facts.unpack(load_mesh(input, options, progress));
+    mesh = facts.unpack(tets_.hexes(std::move(mesh), 2, progress));
+    mesh = facts.unpack(fields_.chosen(std::move(mesh), options));
     if (asked_.up == "y") turn_y_up(mesh);
     if (asked_.scale != 1) scale_points(mesh, asked_.scale);
-    return mesh;
+    return {std::move(mesh), std::move(facts)};
 }
 
-RasterizeOptions MeshGrids::options(Report& report) const {
+RasterizeOptions MeshGrids::options(Progress* progress) const {
     return {.like = like_grids_.empty() ? nullptr : &like_grids_.front(),
             .half = asked_.half,
             .cell_numbers = asked_.cell_numbers,
             .mask = asked_.mask,
             .coverage = asked_.coverage,
             .metadata = {{"subvol_input", input_}, {"subvol_from", asked_.from}, {"subvol_version", SUBVOL_VERSION}},
-            .progress = report.progress()};
+            .progress = progress};
 }
 
 double MeshGrids::voxel_size_world(const HexMesh& mesh) const {
@@ -73,19 +80,20 @@ double MeshGrids::voxel_size_world(const HexMesh& mesh) const {
     return std::max({size.x, size.y, size.z}) / asked_.resolution;
 }
 
-RasterizeOptions MeshGrids::set_up(const HexMesh& mesh, Report& report) {
+WithFacts<RasterizeOptions> MeshGrids::set_up(const HexMesh& mesh, Progress* progress) {
+    Facts facts;
     const double voxel_size = voxel_size_world(mesh);
-    RasterizeOptions options = this->options(report);
+    RasterizeOptions options = this->options(progress);
     options.voxel_size_world = voxel_size;
     options.level_set = asked_.level_set();
     check_voxels(mesh, options);
-    RefineOptions refinement = refine_.options(0, report);
+    RefineOptions refinement = refine_.options(0, progress);
     int levels = refinement.levels;
     if (refine_.levels) {
-        report["levels"] = refinement.levels;
-        report["cells"] = mesh.cells.size() << (3 * refinement.levels);
+        facts["levels"] = refinement.levels;
+        facts["cells"] = mesh.cells.size() << (3 * refinement.levels);
     } else {
-        limit_ = reported_limit(mesh, refinement, voxel_size, report);
+        limit_ = facts.unpack(reported_limit(mesh, refinement, voxel_size));
         levels = finest_level(limit_);
     }
     options.refine = refinement;
@@ -97,37 +105,40 @@ RasterizeOptions MeshGrids::set_up(const HexMesh& mesh, Report& report) {
     }
     options.metadata.emplace_back("subvol_scheme", tets_.asked() ? tets_.name() : refine_.scheme);
     options.metadata.emplace_back("subvol_level", std::to_string(levels));
-    return options;
+    return {std::move(options), std::move(facts)};
 }
 
-std::vector<VdbGrid> MeshGrids::make(const HexMesh& mesh, const RasterizeOptions& options, Report& report) const {
-    std::vector<VdbGrid> grids = asked_.from == "points"
-                                     ? kernel_sums(mesh, options, asked_.per_edge, report)
-                                     : report.timed("rasterize", [&] { return rasterize(mesh, names_of(mesh), options); });
-    fields_.clamp(mesh, grids);
-    return grids;
+WithFacts<std::vector<VdbGrid>> MeshGrids::make(const HexMesh& mesh, const RasterizeOptions& options) const {
+    WithFacts<std::vector<VdbGrid>> made;
+    if (asked_.from == "points") {
+        made = kernel_sums(mesh, options, asked_.per_edge);
+    } else {
+        made.value = made.facts.timed(options.progress, "rasterize", [&] { return rasterize(mesh, names_of(mesh), options); });
+    }
+    fields_.clamp(mesh, made.value);
+    return made;
 }
 
-std::vector<GridErrorFigures> MeshGrids::add_errors(const HexMesh& mesh, const RasterizeOptions& options,
-                                                    std::vector<VdbGrid>& grids, Report& report) const {
-    std::vector<GridErrorFigures> figures;
+WithFacts<std::vector<GridErrorFigures>> MeshGrids::add_errors(const HexMesh& mesh, const RasterizeOptions& options,
+                                                               std::vector<VdbGrid>& grids) const {
+    WithFacts<std::vector<GridErrorFigures>> result;
     const std::size_t count = grids.size();
     std::size_t outside = 0;
     for (std::size_t g = 0; g < count; ++g) {
         const Attribute* field = mesh.find_attribute(grids[g].report().name);
         if (field == nullptr || field->channels != 1) continue;
-        GridError error = report.timed("error", [&] {
+        GridError error = result.facts.timed(options.progress, "error", [&] {
             return grid_error(grids[g], mesh, field->name,
-                              {.scheme = options.refine.scheme, .half = asked_.half, .progress = report.progress()});
+                              {.scheme = options.refine.scheme, .half = asked_.half, .progress = options.progress});
         });
-        figures.push_back({g, error.max, error.rms});
+        result.value.push_back({g, error.max, error.rms});
         outside = std::max(outside, error.outside);
         grids.push_back(std::move(error.grid));
     }
     if (outside > 0) {
-        report.note(text(count_text(outside), " voxels' centres lie outside the limit, by less than the grid resolves"));
+        result.facts.note(text(count_text(outside), " voxels' centres lie outside the limit, by less than the grid resolves"));
     }
-    return figures;
+    return result;
 }
 
 }  // namespace subvol::cli

@@ -6,7 +6,7 @@
 
 #include "common_options.h"
 #include "refine_arguments.h"
-#include "report.h"
+#include "subvol/facts.h"
 #include "subvol/limit_level.h"
 #include "subvol/rasterize.h"
 #include "tet_refinement.h"
@@ -15,10 +15,9 @@
 
 namespace subvol::cli {
 
-/// The limit of a mesh for voxels of a size. The report's "levels" is the finest level, its "cells" the number of curved
-/// pieces, 27 vertices each.
-[[nodiscard]] LimitCells reported_limit(const HexMesh& mesh, const RefineOptions& refinement, double voxel_size,
-                                        Report& report);
+/// The limit of a mesh for voxels of a size. The fact "levels" is the finest level, "cells" the number of curved pieces, 27
+/// vertices each.
+[[nodiscard]] WithFacts<LimitCells> reported_limit(const HexMesh& mesh, const RefineOptions& refinement, double voxel_size);
 
 /// The greatest and the mean error of a grid. grid: its number
 struct GridErrorFigures {
@@ -32,28 +31,29 @@ public:
     /// input:  of the command, for the metadata
     /// asked:  referred to
     /// refine: referred to; unless the input is a folder of bricks, a scheme of tetrahedra is taken out of it, see
-    /// `TetRefinement` throws: Error(InvalidInput) for options that cannot be read; Error(Io) if --like cannot be
+    ///         `TetRefinement`
+    /// throws: Error(InvalidInput) for options that cannot be read; Error(Io) if --like cannot be read
     MeshGrids(std::string input, const VdbArguments& asked, RefineArguments& refine);
 
     [[nodiscard]] const WrittenFields& fields() const { return fields_; }
 
     /// Reads a mesh, with the fields that are written, turned and scaled.
-    [[nodiscard]] HexMesh load(const std::string& input, const CommonOptions& options, Report& report) const;
+    [[nodiscard]] WithFacts<HexMesh> load(const std::string& input, const CommonOptions& options, Progress* progress) const;
 
     /// The options that do not depend on the mesh.
-    [[nodiscard]] RasterizeOptions options(Report& report) const;
+    [[nodiscard]] RasterizeOptions options(Progress* progress) const;
 
     /// The options for a mesh, which depend on its box and its fields. They refer to the limit of the mesh, which is kept until
     /// the next call.
     ///
     /// throws: Error(InvalidInput) if the mesh has a field with the name of the level set
-    [[nodiscard]] RasterizeOptions set_up(const HexMesh& mesh, Report& report);
+    [[nodiscard]] WithFacts<RasterizeOptions> set_up(const HexMesh& mesh, Progress* progress);
 
-    [[nodiscard]] std::vector<VdbGrid> make(const HexMesh& mesh, const RasterizeOptions& options, Report& report) const;
+    [[nodiscard]] WithFacts<std::vector<VdbGrid>> make(const HexMesh& mesh, const RasterizeOptions& options) const;
 
     /// Adds a grid of errors for each grid of a scalar field.
-    [[nodiscard]] std::vector<GridErrorFigures> add_errors(const HexMesh& mesh, const RasterizeOptions& options,
-                                                           std::vector<VdbGrid>& grids, Report& report) const;
+    [[nodiscard]] WithFacts<std::vector<GridErrorFigures>> add_errors(const HexMesh& mesh, const RasterizeOptions& options,
+                                                                      std::vector<VdbGrid>& grids) const;
 
 private:
     [[nodiscard]] double voxel_size_world(const HexMesh& mesh) const;

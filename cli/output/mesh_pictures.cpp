@@ -42,7 +42,7 @@ bool has_light(const RenderArguments& arguments) {
 BoundaryValues skin_of(const HexMesh& mesh, const RenderArguments& arguments, Report& report) {
     if (!has_light(arguments)) return {};
     const int levels = picture_levels(mesh, arguments.tets.asked() ? std::optional(0) : arguments.refine.levels);
-    RefineOptions options = arguments.refine.options(levels, report);
+    RefineOptions options = arguments.refine.options(levels, report.progress());
     options.levels = levels;
     return report.timed("boundary", [&] { return boundary_values(mesh, options); });
 }
@@ -70,9 +70,11 @@ ShownMesh load_shown_mesh(const std::string& input, const CommonOptions& options
     ShownMesh shown;
     Sheets* const wanted = arguments.tets.asked() ? nullptr : &shown.sheets;  // tetrahedra are refined by other rules
     if (arguments.tets.asked()) alone = SheetsAlone::Refuse;
+    report["input"] = input;  // for errors
+    shown.mesh = report.unpack(load_mesh(input, options, report.progress(), wanted, alone));
+    shown.mesh = report.unpack(with_selected_field(std::move(shown.mesh), options, arguments.splat.color_field));
     shown.mesh =
-        with_selected_field(load_mesh(input, options, report, wanted, alone), options, report, arguments.splat.color_field);
-    shown.mesh = arguments.tets.hexes(std::move(shown.mesh), is_of_splats(arguments.method) ? 1 : 2, report);
+        report.unpack(arguments.tets.hexes(std::move(shown.mesh), is_of_splats(arguments.method) ? 1 : 2, report.progress()));
     check_points(shown.mesh.points);
     check_points(shown.sheets.points);
     return shown;
@@ -81,8 +83,9 @@ ShownMesh load_shown_mesh(const std::string& input, const CommonOptions& options
 PictureNotes make_notes(const ShownMesh& shown, const ShownColors& colors, RenderArguments& arguments, Report& report) {
     PictureNotes notes = make_notes(arguments.picture, colors, &shown.mesh);
     if (!shown.sheets.empty()) {
-        notes.sheets = make_sheet_scene(shown.mesh, shown.sheets, arguments.refine.options(0, report), arguments.refine.levels,
-                                        colors.optics, arguments.reference.samples, arguments.options.clip, report);
+        notes.sheets =
+            make_sheet_scene(shown.mesh, shown.sheets, arguments.refine.options(0, report.progress()), arguments.refine.levels,
+                             colors.optics, arguments.reference.samples, arguments.options.clip, report);
     }
     return notes;
 }
@@ -109,24 +112,24 @@ void write_mesh_pictures(const HexMesh& mesh, const std::vector<View>& views, co
             write_projected_tets(renderer, boundary, views, optics, reference, splat.seconds, output, report);
         };
         if (arguments.tets.asked()) return draw(join_split_cells(mesh));
-        draw(refine_reported(mesh, refine.options(kTetsLevel, report), Vertices::OnTheLimit, report));
+        draw(report.unpack(refine_reported(mesh, refine.options(kTetsLevel, report.progress()), Vertices::OnTheLimit)));
     } else if (arguments.method == "dense") {
-        const RefineOptions options = refine.options(0, report);
+        const RefineOptions options = refine.options(0, report.progress());
         const auto draw = [&](const View& view, Progress* progress) {
             return draw_dense(mesh, options, refine.levels, view, optics, reference, progress, report);
         };
         output.write(views, lit(draw, skin_of(mesh, arguments, report).surface, reference), report);
     } else if (splat.seconds) {
-        const SampleOptions sample = arguments.sample.options(bounds(mesh), refine.options(0, report));
+        const SampleOptions sample = arguments.sample.options(bounds(mesh), refine.options(0, report.progress()));
         write_splats_in_time(mesh, sample, *splat.seconds, views.front(), optics, work, output, report);
     } else {
         BoundaryValues skin;
         // Shadows and occlusion are those of the kernels: the boundary's own colours have none.
         const bool own_light = splat.shadows || splat.ambient_occlusion > 0;
         if (!own_light && arguments.picture.paints_boundary(app, refine)) skin = skin_of(mesh, arguments, report);
-        const RbfVolume volume = arguments.tets.asked()
-                                     ? sample_tets_reported(mesh, arguments.sample, optics.function(), report)
-                                     : sample_reported(mesh, arguments.sample, refine, optics.function(), report);
+        const RbfVolume volume = report.unpack(
+            arguments.tets.asked() ? sample_tets_reported(mesh, arguments.sample, optics.function(), report.progress())
+                                   : sample_reported(mesh, arguments.sample, refine, optics.function(), report.progress()));
         write_splats(volume, reference.lod.value_or(0), skin, views, optics, work, output, report);
     }
 }
@@ -134,7 +137,8 @@ void write_mesh_pictures(const HexMesh& mesh, const std::vector<View>& views, co
 void write_brick_tets(const Bricks& bricks, const BrickFields& fields, std::optional<BrickHull> hull,
                       const std::vector<View>& views, const Optics& optics, const RenderArguments& arguments,
                       const OwnRows& rows, PictureOutput& output, Report& report) {
-    BrickTetsOptions options{.refine = arguments.refine.options(kTetsLevel, report), .memory_bytes = arguments.memory_bytes};
+    BrickTetsOptions options{.refine = arguments.refine.options(kTetsLevel, report.progress()),
+                             .memory_bytes = arguments.memory_bytes};
     options.tets.progress = report.progress();
     Surface boundary;
     if (has_light(arguments) && rows.finished()) {

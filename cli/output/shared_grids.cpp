@@ -36,7 +36,7 @@ std::vector<VdbGrid> of_all_shares(std::vector<VdbGrid> own, Ranks* ranks, const
     const std::string words = text_of(note);
     for (VdbGrid& grid : own) set_text_of_grid(grid, kPartNote, words);
     report["part"] = note.share.name();
-    write_share(own, output, report);
+    report.merge(write_share(own, output, report.progress()));
     return {};
 }
 

@@ -28,15 +28,26 @@ std::optional<double> seen_density(const GridReport& grid) {
     return kDepth / (most * across);
 }
 
-Json about(const GridReport& grid, const VdbOutput& output) {
-    Json json{{"name", grid.name}, {"kind", grid.kind}, {"active_voxels", grid.active_voxels},
-              {"min", grid.min},   {"max", grid.max},   {"bytes", grid.bytes}};
+Facts about(const GridReport& grid, const VdbOutput& output) {
+    Facts facts;
+    facts["name"] = grid.name;
+    facts["kind"] = grid.kind;
+    facts["active_voxels"] = grid.active_voxels;
+    facts["min"] = grid.min;
+    facts["max"] = grid.max;
+    facts["bytes"] = grid.bytes;
     if (grid.name == output.level_set) {
-        json["level_set"] = true;  // distances: a renderer that took them for a density would show a shell around the body
+        facts["level_set"] = true;  // distances: a renderer that took them for a density would show a shell around the body
     } else if (const auto density = seen_density(grid)) {
-        json["density"] = *density;
+        facts["density"] = *density;
     }
-    return json;
+    return facts;
+}
+
+FactValue::List about(std::span<const VdbGrid> grids, const VdbOutput& output) {
+    FactValue::List all;
+    for (const VdbGrid& grid : grids) all.emplace_back(about(grid.report(), output));
+    return all;
 }
 
 void write_files(std::span<const VdbGrid> grids, const VdbOutput& output) {
@@ -69,42 +80,46 @@ Error no_voxels(const std::string& input, const std::string& hint) {
     return {ErrorCode::InvalidInput, "no voxel centre lies inside", input, hint};
 }
 
-void write_share(std::span<const VdbGrid> grids, const VdbOutput& output, Report& report) {
+Facts write_share(std::span<const VdbGrid> grids, const VdbOutput& output, Progress* progress) {
+    Facts facts;
     const GridReport& first = grids.front().report();
-    report.timed("write", [&] { write_files(grids, output); });
-    report["output"] = output.path;
-    report["active_voxels"] = first.active_voxels;
-    report["voxel_size"] = first.voxel_size_world;
-    for (const VdbGrid& grid : grids) report["grids"].push_back(about(grid.report(), output));
+    facts.timed(progress, "write", [&] { write_files(grids, output); });
+    facts["output"] = output.path;
+    facts["active_voxels"] = first.active_voxels;
+    facts["voxel_size"] = first.voxel_size_world;
+    facts["grids"] = about(grids, output);
+    return facts;
 }
 
-void write_reported(std::span<const VdbGrid> grids, const VdbOutput& output, Report& report) {
+Facts write_reported(std::span<const VdbGrid> grids, const VdbOutput& output, Progress* progress) {
     const GridReport& first = grids.front().report();
-    if (first.active_voxels == 0) report.warn("the grid \"" + first.name + "\" is empty: no voxel centre lies inside");
-    write_share(grids, output, report);
+    Facts facts;
+    if (first.active_voxels == 0) facts.warn("the grid \"" + first.name + "\" is empty: no voxel centre lies inside");
+    facts.merge(write_share(grids, output, progress));
     if (const auto density = seen_density(first)) {
-        report.note(text(first.name, " is ", detail::number_text(first.min, 5), " to ", detail::number_text(first.max, 5),
-                         "; a renderer shows it with a density of ", detail::number_text(*density, 2), " times the value"));
+        facts.note(text(first.name, " is ", detail::number_text(first.min, 5), " to ", detail::number_text(first.max, 5),
+                        "; a renderer shows it with a density of ", detail::number_text(*density, 2), " times the value"));
     }
     if (!output.level_set.empty()) {
-        report.note(
-            text(output.level_set, " is a level set: distances have no density; a renderer makes a surface of it at 0"));
+        facts.note(text(output.level_set, " is a level set: distances have no density; a renderer makes a surface of it at 0"));
     }
+    return facts;
 }
 
-void write_frame(int frame, std::span<const VdbGrid> grids, const VdbOutput& output, Report& report) {
-    report.timed("write", [&] { write_files(grids, output); });
-    Json entry{{"frame", frame},
-               {"output", output.path},
-               {"active_voxels", grids.front().report().active_voxels},
-               {"grids", Json::array()}};
-    for (const VdbGrid& grid : grids) entry["grids"].push_back(about(grid.report(), output));
-    report["frames"].push_back(std::move(entry));
+WithFacts<Facts> write_frame(int frame, std::span<const VdbGrid> grids, const VdbOutput& output, Progress* progress) {
+    WithFacts<Facts> written;
+    written.facts.timed(progress, "write", [&] { write_files(grids, output); });
+    Facts& entry = written.value;
+    entry["frame"] = frame;
+    entry["output"] = output.path;
+    entry["active_voxels"] = grids.front().report().active_voxels;
+    entry["grids"] = about(grids, output);
+    return written;
 }
 
-void write_parts(const std::string& input, const HexMesh& mesh, std::span<const std::string> fields,
-                 const RasterizeOptions& options, const VdbOutput& output, Report& report,
-                 const std::function<void(std::vector<VdbGrid>&)>& prepare) {
+Facts write_parts(const std::string& input, const HexMesh& mesh, std::span<const std::string> fields,
+                  const RasterizeOptions& options, const VdbOutput& output,
+                  const std::function<void(std::vector<VdbGrid>&)>& prepare) {
     VdbParts parts(output, output.memory_bytes);
     double voxel_size_world = 0;
     // The parts are written between the stages of the rasterizer, whose own time is what is left.
@@ -113,16 +128,18 @@ void write_parts(const std::string& input, const HexMesh& mesh, std::span<const 
     rasterize_parts(mesh, fields, options, output.memory_bytes, [&](GridPart part) {
         prepare(part.grids);
         voxel_size_world = part.grids.front().report().voxel_size_world;
-        Json grids = Json::array();
-        for (const VdbGrid& grid : part.grids) grids.push_back(about(grid.report(), output));
+        Facts grids;
+        grids["grids"] = about(part.grids, output);
         const detail::Stopwatch one;
-        parts.write(part.grids, static_cast<std::size_t>(part.number), {{"grids", std::move(grids)}});
+        parts.write(part.grids, static_cast<std::size_t>(part.number), json_of(grids));
         writing += one.seconds();
     });
     if (parts.active_voxels() == 0) throw no_voxels(input, finer_voxels(mesh));
-    report.add_seconds("rasterize", whole.seconds() - writing);
-    report.add_seconds("write", writing);
-    parts.finish(input, voxel_size_world, report);
+    Facts facts;
+    facts.add_seconds("rasterize", whole.seconds() - writing);
+    facts.add_seconds("write", writing);
+    facts.merge(parts.finish(input, voxel_size_world, options.progress));
+    return facts;
 }
 
 }  // namespace subvol::cli

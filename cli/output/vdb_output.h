@@ -4,8 +4,8 @@
 #include <functional>
 #include <string>
 
-#include "report.h"
 #include "subvol/error.h"
+#include "subvol/facts.h"
 #include "subvol/rasterize.h"
 #include "subvol/vdb_grid.h"
 
@@ -36,17 +36,20 @@ struct VdbOutput {
 ///
 /// input:   the name of the mesh, for NAME.json
 /// prepare: changes the grids of each slab before they are written
-void write_parts(const std::string& input, const HexMesh& mesh, std::span<const std::string> fields,
-                 const RasterizeOptions& options, const VdbOutput& output, Report& report,
-                 const std::function<void(std::vector<VdbGrid>&)>& prepare);
+[[nodiscard]] Facts write_parts(const std::string& input, const HexMesh& mesh, std::span<const std::string> fields,
+                                const RasterizeOptions& options, const VdbOutput& output,
+                                const std::function<void(std::vector<VdbGrid>&)>& prepare);
 
-/// Writes grids; puts what is in them into the report.
-void write_reported(std::span<const VdbGrid> grids, const VdbOutput& output, Report& report);
+/// Writes grids. returns: what is in them
+[[nodiscard]] Facts write_reported(std::span<const VdbGrid> grids, const VdbOutput& output, Progress* progress);
 
-/// Writes the grids of a share, which may be empty; puts what is in them into the report.
-void write_share(std::span<const VdbGrid> grids, const VdbOutput& output, Report& report);
+/// Writes the grids of a share, which may be empty. returns: what is in them
+[[nodiscard]] Facts write_share(std::span<const VdbGrid> grids, const VdbOutput& output, Progress* progress);
 
-/// Writes the grids of one frame; adds it to the report's "frames".
-void write_frame(int frame, std::span<const VdbGrid> grids, const VdbOutput& output, Report& report);
+/// Writes the grids of one frame.
+///
+/// returns: the frame as an entry of "frames"; its facts are the seconds
+[[nodiscard]] WithFacts<Facts> write_frame(int frame, std::span<const VdbGrid> grids, const VdbOutput& output,
+                                           Progress* progress);
 
 }  // namespace subvol::cli

@@ -95,11 +95,12 @@ void VdbParts::write(std::span<const VdbGrid> grids, std::size_t number, const J
     list_.push_back(std::move(entry));
 }
 
-void VdbParts::finish(const std::string& input, double voxel_size_world, Report& report) {
+Facts VdbParts::finish(const std::string& input, double voxel_size_world, Progress* progress) {
+    Facts facts;
     const bool whole = count() == 1 || bytes_ <= memory_bytes_;
     std::vector<VdbGrid> grids;
     if (whole) {
-        grids = report.timed("join", [&] { return joined(); });
+        grids = facts.timed(progress, "join", [&] { return joined(); });
         files_.clear();
         list_ = Json::array({entry_of(fs::path(output_.path).filename().string(), grids.front().report())});
     } else {
@@ -116,32 +117,32 @@ void VdbParts::finish(const std::string& input, double voxel_size_world, Report&
         const Json earlier = earlier_parts();
         if (!earlier.empty()) {
             json[kEarlier] = earlier;
-            report.warn(text(counted(earlier.size(), "part"), " of an earlier run, as ", earlier.front().get<std::string>(),
-                             ", remain beside ", output_.path));
+            facts.warn(text(counted(earlier.size(), "part"), " of an earlier run, as ", earlier.front().get<std::string>(),
+                            ", remain beside ", output_.path));
         }
         write_text(list.emplace(list_file_), list_file_, json.dump(2) + "\n");
     }
-    if (whole) write_reported(grids, output_, report);
+    if (whole) facts.merge(write_reported(grids, output_, progress));
     if (list) list->commit();  // before the parts: it says whose they are, should this process end between two of them
     for (detail::AtomicFile& file : files_) file.commit();
-    report["parts"] = count();
-    report["active_voxels"] = active_voxels_;
-    report["voxel_size"] = voxel_size_world;
-    if (!whole) report["output"] = list_file_.string();
-    warn(whole, report);
+    facts["parts"] = count();
+    facts["active_voxels"] = active_voxels_;
+    facts["voxel_size"] = voxel_size_world;
+    if (!whole) facts["output"] = list_file_.string();
+    warn(whole, facts);
+    return facts;
 }
 
 /// What a user who has asked for one file should know.
-void VdbParts::warn(bool whole, Report& report) const {
+void VdbParts::warn(bool whole, Facts& facts) const {
     if (!whole) {
-        report.warn(text("the grids take ", bytes_text(static_cast<double>(bytes_)), ", more than the ",
-                         bytes_text(static_cast<double>(memory_bytes_)), " of --memory: they are in ", counted(count(), "file"),
-                         ", which ", list_file_.string(), " lists; `subvol join` makes ", output_.path, " of it in memory"));
+        facts.warn(text("the grids take ", bytes_text(static_cast<double>(bytes_)), ", more than the ",
+                        bytes_text(static_cast<double>(memory_bytes_)), " of --memory: they are in ", counted(count(), "file"),
+                        ", which ", list_file_.string(), " lists; `subvol join` makes ", output_.path, " of it in memory"));
         std::error_code error;
-        if (fs::exists(output_.path, error)) report.warn(text(output_.path, " is that of an earlier run"));
+        if (fs::exists(output_.path, error)) facts.warn(text(output_.path, " is that of an earlier run"));
     } else if (!always_listed()) {
-        if (earlier_ && !earlier_->empty())
-            report.warn(text(list_file_.string(), " and its parts are those of an earlier run"));
+        if (earlier_ && !earlier_->empty()) facts.warn(text(list_file_.string(), " and its parts are those of an earlier run"));
     }
 }
 

@@ -36,15 +36,15 @@ public:
     [[nodiscard]] std::size_t count() const { return list_.size(); }
     [[nodiscard]] std::uint64_t active_voxels() const { return active_voxels_; }
 
-    /// Gives the files their names, which the report says.
+    /// Gives the files their names, which are facts.
     ///
     /// throws: Error(InvalidInput) if there are files with the names of parts or of the list that are not of an earlier run
-    void finish(const std::string& input, double voxel_size_world, Report& report);
+    [[nodiscard]] Facts finish(const std::string& input, double voxel_size_world, Progress* progress);
 
 private:
     [[nodiscard]] bool always_listed() const { return output_.memory_bytes > 0; }
     [[nodiscard]] std::vector<VdbGrid> joined() const;
-    void warn(bool whole, Report& report) const;
+    void warn(bool whole, Facts& facts) const;
     [[nodiscard]] Json earlier_parts() const;
     void check_names() const;
 

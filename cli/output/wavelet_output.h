@@ -3,13 +3,12 @@
 
 #include <string>
 
+#include "subvol/facts.h"
 #include "subvol/wavelet_file.h"
 
 namespace subvol::cli {
 
-class Report;
-
-/// Writes a mesh with one field as wavelets, and what was kept into the report.
-void write_wavelets_reported(const std::string& path, const HexMesh& mesh, const WaveletFileOptions& options, Report& report);
+/// Writes a mesh with one field as wavelets. returns: what was kept
+[[nodiscard]] Facts write_wavelets_reported(const std::string& path, const HexMesh& mesh, const WaveletFileOptions& options);
 
 }  // namespace subvol::cli

@@ -15,9 +15,10 @@ WrittenFields::WrittenFields(const VdbArguments& asked) : fields_(parse_grid_fie
     for (const std::string& remap : asked.remaps) remaps_.push_back(parse_remap(remap));
 }
 
-HexMesh WrittenFields::chosen(HexMesh mesh, const CommonOptions& options, Report& report) const {
+WithFacts<HexMesh> WrittenFields::chosen(HexMesh mesh, const CommonOptions& options) const {
+    Facts facts;
     if (fields_.empty()) {
-        mesh = with_selected_field(std::move(mesh), options, report);
+        mesh = facts.unpack(with_selected_field(std::move(mesh), options));
     } else {
         std::vector<Attribute> chosen;
         for (const auto& [name, source] : fields_) {
@@ -30,13 +31,13 @@ HexMesh WrittenFields::chosen(HexMesh mesh, const CommonOptions& options, Report
                 continue;
             }
             SelectedField selected = select_field(mesh, name);
-            report.warn(selected.warning);
+            facts.warn(selected.warning);
             chosen.push_back(std::move(selected.scalar));
         }
         mesh.attributes = std::move(chosen);
     }
     for (const Remap& remap : remaps_) apply(remap, mesh);
-    return mesh;
+    return {std::move(mesh), std::move(facts)};
 }
 
 bool WrittenFields::maps(const Remap& remap, const Attribute& field, const HexMesh& mesh) {
@@ -55,14 +56,16 @@ void WrittenFields::clamp(const HexMesh& mesh, std::vector<VdbGrid>& grids) cons
     }
 }
 
-void WrittenFields::note_overshoot(const HexMesh& mesh, const std::vector<VdbGrid>& grids, Report& report) const {
+Facts WrittenFields::overshoot(const HexMesh& mesh, const std::vector<VdbGrid>& grids) const {
+    Facts facts;
     for (const VdbGrid& grid : grids) {
         const Attribute* field = mesh.find_attribute(grid.report().name);
         if (field == nullptr || field->channels != 1 || clamp_) continue;
         if (std::ranges::any_of(remaps_, [&](const Remap& remap) { return maps(remap, *field, mesh); })) continue;
         const FieldRange range = range_of(*field);
-        note_beyond(field->name, {range.min[0], range.max[0]}, {grid.report().min, grid.report().max}, report);
+        facts.note(beyond(field->name, {range.min[0], range.max[0]}, {grid.report().min, grid.report().max}));
     }
+    return facts;
 }
 
 }  // namespace subvol::cli

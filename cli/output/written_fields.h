@@ -5,7 +5,7 @@
 
 #include "common_options.h"
 #include "grid_fields.h"
-#include "report.h"
+#include "subvol/facts.h"
 #include "subvol/hex_mesh.h"
 #include "subvol/vdb_grid.h"
 #include "vdb_arguments.h"
@@ -24,13 +24,13 @@ public:
     /// The mesh with only these fields, their values mapped.
     ///
     /// throws: Error(InvalidInput) if there is no such field
-    [[nodiscard]] HexMesh chosen(HexMesh mesh, const CommonOptions& options, Report& report) const;
+    [[nodiscard]] WithFacts<HexMesh> chosen(HexMesh mesh, const CommonOptions& options) const;
 
     /// Keeps the grids of fields within what --clamp and --remap say.
     void clamp(const HexMesh& mesh, std::vector<VdbGrid>& grids) const;
 
-    /// Says which fields have voxels beyond the values of the mesh.
-    void note_overshoot(const HexMesh& mesh, const std::vector<VdbGrid>& grids, Report& report) const;
+    /// Notes on the fields that have voxels beyond the values of the mesh.
+    [[nodiscard]] Facts overshoot(const HexMesh& mesh, const std::vector<VdbGrid>& grids) const;
 
 private:
     [[nodiscard]] static bool maps(const Remap& remap, const Attribute& field, const HexMesh& mesh);

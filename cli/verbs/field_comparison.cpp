@@ -45,8 +45,10 @@ std::vector<std::string> FieldComparison::names(bool of_mesh) const {
 
 Figures FieldComparison::measure(const std::string& test, const std::string& reference, const CommonOptions& options,
                                  Report& report) const {
-    const FieldInput a = load_field(test, options, refine, "a", report);
-    const FieldInput b = load_field(reference, options, refine, "b", report);
+    report["input"] = test;  // for errors
+    const FieldInput a = report.unpack(load_field(test, options, refine, "a", report.progress()));
+    report["input"] = reference;
+    const FieldInput b = report.unpack(load_field(reference, options, refine, "b", report.progress()));
     const FieldDifference errors = report.timed("samples", [&] {
         return compare_fields(a.view, b.view, {.samples = samples, .seed = options.seed, .progress = report.progress()});
     });

@@ -42,25 +42,27 @@ void check_not_empty(const LimitSurface& surface, const SurfaceOutput& output) {
                 "--iso");
 }
 
-void write_reported(const std::string& path, const LimitSurface& surface, const SurfaceOutput& output, Report& report) {
-    report.timed("write", [&] { write_limit_surface(path, surface, output.file); });
+Facts write_reported(const std::string& path, const LimitSurface& surface, const SurfaceOutput& output, Progress* progress) {
+    Facts facts;
+    facts.timed(progress, "write", [&] { write_limit_surface(path, surface, output.file); });
     const SurfaceReport& found = surface.report;
-    report["output"] = path;
-    report["points"] = surface.surface.points.size();
-    report["triangles"] = surface.surface.triangles.size();
-    report["area"] = found.area;
-    report["volume"] = found.volume;
-    report["watertight"] = found.watertight;
-    report["euler"] = found.euler;
-    report["components"] = found.components;
-    report["min_angle"] = found.min_angle_deg;
-    report["angles_below_10"] = found.small_angles;
-    report["deviation"] = found.deviation_world;
-    report["level"] = found.level;
-    report["cells"] = found.cells;
-    if (found.converged) return;
-    report.warn(text("the triangles may be ", found.deviation_world, " from the limit, more than the tolerance (level ",
-                     found.level, "; --max-level, or a larger --tolerance)"));
+    facts["output"] = path;
+    facts["points"] = surface.surface.points.size();
+    facts["triangles"] = surface.surface.triangles.size();
+    facts["area"] = found.area;
+    facts["volume"] = found.volume;
+    facts["watertight"] = found.watertight;
+    facts["euler"] = found.euler;
+    facts["components"] = found.components;
+    facts["min_angle"] = found.min_angle_deg;
+    facts["angles_below_10"] = found.small_angles;
+    facts["deviation"] = found.deviation_world;
+    facts["level"] = found.level;
+    facts["cells"] = found.cells;
+    if (found.converged) return facts;
+    facts.warn(text("the triangles may be ", found.deviation_world, " from the limit, more than the tolerance (level ",
+                    found.level, "; --max-level, or a larger --tolerance)"));
+    return facts;
 }
 
 }  // namespace subvol::cli

@@ -29,7 +29,8 @@ struct SurfaceOutput {
 /// throws: Error(InvalidInput) if the surface has no triangle
 void check_not_empty(const LimitSurface& surface, const SurfaceOutput& output);
 
-/// Writes a surface, and puts its figures into the report.
-void write_reported(const std::string& path, const LimitSurface& surface, const SurfaceOutput& output, Report& report);
+/// Writes a surface. returns: its figures
+[[nodiscard]] Facts write_reported(const std::string& path, const LimitSurface& surface, const SurfaceOutput& output,
+                                   Progress* progress);
 
 }  // namespace subvol::cli

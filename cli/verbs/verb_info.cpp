@@ -128,17 +128,21 @@ private:
             report.say(name);
         };
         if (is_bricks_input(input_)) {
-            for (const BrickField& field : open_bricks_input(input_, app(), report).fields) list(field.name);
+            for (const BrickField& field : report.unpack(open_bricks_input(input_, app())).fields) list(field.name);
         } else if (holds_levels(input_)) {
             report["input"] = input_;
             const KernelFile file(input_);
             for (const auto& channel : file.contents().channels) list(channel.name);
         } else if (holds_points(input_)) {
-            for (const RbfChannel& channel : read_points_input(input_, report).channels) list(channel.name);
+            report["input"] = input_;
+            const RbfVolume volume = report.unpack(read_points_input(input_, report.progress()));
+            for (const RbfChannel& channel : volume.channels) list(channel.name);
         } else if (is_vdb_file(input_)) {
             for (const VdbGrid& grid : read_vdb(input_)) list(grid.report().name);
         } else {
-            for (const FieldInfo& field : chosen_fields(read_input(input_, common(), report), common())) list(field.name);
+            report["input"] = input_;
+            const ReadResult read = report.unpack(read_input(input_, common(), report.progress()));
+            for (const FieldInfo& field : chosen_fields(read, common())) list(field.name);
         }
         if (report.json().at("fields").empty() && common().field) {
             throw Error(ErrorCode::InvalidInput, "there is no field '" + *common().field + "'", input_, "--list-fields alone");
@@ -160,7 +164,8 @@ private:
     void describe_mesh(Report& report) {
         refuse_at("a mesh");
         const SheetsAlone alone = shares(share_) ? SheetsAlone::Refuse : SheetsAlone::Take;
-        ReadResult read = read_input(input_, common(), report, alone);
+        report["input"] = input_;
+        ReadResult read = report.unpack(read_input(input_, common(), report.progress(), alone));
         read.fields = chosen_fields(read, common());
         if (!is_model(input_)) put_steps(read, report);
         detail::MeshShare about;
@@ -187,7 +192,9 @@ private:
                                         {"min", field.min},
                                         {"max", field.max}});
         }
-        if (tets_.asked()) report["refined"] = tets_.figures(used_mesh(read.mesh, {}), 2, report);
+        if (tets_.asked()) {
+            report["refined"] = json_of(report.unpack(tets_.figures(used_mesh(read.mesh, {}), 2, report.progress())));
+        }
         if (!share_.given()) report["verdict"] = verdict(about.counts, about.inverted);
         if (gl_) return;  // the table has all
         std::string lines = mesh_lines(read, about, report.json().at("seconds"));
@@ -208,7 +215,7 @@ private:
 
     void describe_bricks(Report& report) {
         refuse_at("bricks");
-        const Bricks bricks = open_bricks_input(input_, app(), report);
+        const Bricks bricks = report.unpack(open_bricks_input(input_, app()));
         if (common().field) (void)named_brick_field(bricks, *common().field, true);  // refuses what does not exist
         const Share share = share_of(share_);
         const detail::MeshShare about = joined(share, report, [&] {
@@ -272,7 +279,7 @@ private:
         report["input"] = input_;
         KernelFileContents contents = report.timed("read", [&] { return KernelFile(input_).contents(); });
         if (common().field) {
-            const LevelsInput levels = open_levels(input_, common(), {}, 0, app(), report);
+            const LevelsInput levels = report.unpack(open_levels(input_, common(), {}, 0, app(), report.progress()));
             contents.channels = {contents.channels[levels.channels.front()]};
         }
         report["points"] = contents.kernels;
@@ -290,7 +297,8 @@ private:
     void describe_points(Report& report) {
         refuse_at("points");
         if (holds_levels(input_)) return describe_levels(report);
-        RbfVolume volume = read_points_input(input_, report);
+        report["input"] = input_;
+        RbfVolume volume = report.unpack(read_points_input(input_, report.progress()));
         if (common().field) volume.channels = {volume.channels[find_channel(volume, *common().field, input_)]};
         report["kernel"] = Json::parse(subvol::to_json(volume.kernel));
         report["bounds"] = json_of(volume.bounds);

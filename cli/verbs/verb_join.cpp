@@ -109,8 +109,9 @@ private:
             set_text_of_grid(grid, kPartNote, {});
             store_in_half(grid, how("half", false));
         }
-        write_reported(grids, {.path = output_, .compression = compression_named(how("compression", std::string("blosc")))},
-                       report);
+        report.merge(
+            write_reported(grids, {.path = output_, .compression = compression_named(how("compression", std::string("blosc")))},
+                           report.progress()));
     }
 
     /// of_files: the grids of each file; order: of the files; names: theirs
@@ -162,7 +163,7 @@ private:
             for (const std::string& name : names) read.push_back(read_vdb_contents(name).grids);
         });
         if (read.front().empty()) throw Error(ErrorCode::InvalidInput, "has no grids", names.front());
-        write_reported(joined(std::move(read), order, names, report), {.path = output_}, report);
+        report.merge(write_reported(joined(std::move(read), order, names, report), {.path = output_}, report.progress()));
     }
 
     void join_points(Report& report) {
@@ -272,7 +273,7 @@ private:
             report.timed("join", [&] { return detail::join_surface(std::move(shares), names, report.progress()); });
         check_not_empty(surface, output);
         if (output.file.color && *output.file.color >= surface.fields.size()) fail_note(parts_.front());
-        write_reported(output_, surface, output, report);
+        report.merge(write_reported(output_, surface, output, report.progress()));
     }
 
     /// The figures that `info` finds in one process, in a file and as the report.

@@ -133,7 +133,7 @@ private:
             first.field = names.front();
         }
         const HexMesh whole = mesh;
-        mesh = with_selected_field(std::move(mesh), first, report);
+        mesh = report.unpack(with_selected_field(std::move(mesh), first));
         for (const std::string& name : names) {
             SelectedField more = select_field(whole, name);
             const bool there = std::ranges::any_of(
@@ -147,8 +147,9 @@ private:
         std::vector<PageStep> steps;
         std::vector<Range> ranges;
         const auto add = [&](const CommonOptions& common, const std::string& label) {
-            mesh_ = shown_mesh(load_mesh(input_, common, report), common, report);
-            mesh_ = tets_.hexes(std::move(mesh_), 1, report);
+            report["input"] = input_;
+            mesh_ = shown_mesh(report.unpack(load_mesh(input_, common, report.progress())), common, report);
+            mesh_ = report.unpack(tets_.hexes(std::move(mesh_), 1, report.progress()));
             const HexMesh& mesh = mesh_;
             box_.add(bounds(mesh));
             if (options.fields.empty()) {
@@ -164,9 +165,10 @@ private:
                 ranges[f] = {std::min(ranges[f].min, range.min), std::max(ranges[f].max, range.max)};
             }
             PageStep step{.label = label,
-                          .volume = tets_.asked() ? sample_tets_reported(mesh, sample_, std::nullopt, report)
-                                                  : sample_reported(mesh, sample_, refine_, std::nullopt, report)};
-            RefineOptions refine = refine_.options(0, report);
+                          .volume = report.unpack(
+                              tets_.asked() ? sample_tets_reported(mesh, sample_, std::nullopt, report.progress())
+                                            : sample_reported(mesh, sample_, refine_, std::nullopt, report.progress()))};
+            RefineOptions refine = refine_.options(0, report.progress());
             refine.levels = picture_levels(mesh, tets_.asked() ? std::optional(0) : refine_.levels);
             step.boundary = report.timed("boundary", [&] { return boundary_values(mesh, refine); });
             steps.push_back(std::move(step));

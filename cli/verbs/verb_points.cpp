@@ -191,7 +191,7 @@ private:
             throw Error(ErrorCode::InvalidInput, "wavelets need one mesh in memory", input_,
                         "a mesh file and one of its steps");
         }
-        const RefineOptions refine = refine_.options(1, report);
+        const RefineOptions refine = refine_.options(1, report.progress());
         if (app().count("--levels") > 0 && (refine.levels < 1 || refine.levels > 10)) {
             throw Error(ErrorCode::InvalidInput, "the number of levels is " + std::to_string(refine.levels), "--levels",
                         "1 to 10");
@@ -203,8 +203,10 @@ private:
             options.point_tolerance = part(*wavelet_point_tolerance_, "--wavelet-point-tolerance");
         }
         if (app().count("--levels") > 0) options.levels = refine.levels;
-        const HexMesh mesh = with_selected_field(load_mesh(input_, common(), report), common(), report);
-        write_wavelets_reported(output_, mesh, options, report);
+        report["input"] = input_;
+        HexMesh mesh = report.unpack(load_mesh(input_, common(), report.progress()));
+        mesh = report.unpack(with_selected_field(std::move(mesh), common()));
+        report.merge(write_wavelets_reported(output_, mesh, options));
         return 0;
     }
 
@@ -239,9 +241,9 @@ private:
         }
         refuse_options(app(), {"--levels", "--threshold", "--tf", "--reduce", "--clamp", "--error", "--merge"},
                        "needs the whole mesh in memory; this is a folder of bricks");
-        const Bricks bricks = open_bricks_input(input_, app(), report);
-        const StreamedField field = select_brick_field(bricks, common(), report);
-        const SampleOptions options = sample_.options(bricks.bounds, refine_.options(0, report));
+        const Bricks bricks = report.unpack(open_bricks_input(input_, app()));
+        const StreamedField field = report.unpack(select_brick_field(bricks, common()));
+        const SampleOptions options = sample_.options(bricks.bounds, refine_.options(0, report.progress()));
         const BrickFields fields = [&](HexMesh brick) { return with_brick_fields(std::move(brick), {field}); };
         const auto [begin, end] = share.range(bricks.bricks.size());
         BrickShare own{begin, end, {}};
@@ -256,7 +258,7 @@ private:
         });
         if (!speaks()) return;
         if (written.points > 0)
-            note_beyond(report.json().at("field"), {field.min, field.max}, {written.min, written.max}, report);
+            report.note(beyond(report.json().at("field"), {field.min, field.max}, {written.min, written.max}));
         report["points"] = written.points;
         report["boundary_triangles"] = written.triangles;
         report["output"] = output_;
@@ -300,17 +302,20 @@ private:
     }
 
     [[nodiscard]] RbfVolume points_of_mesh(const CommonOptions& options, Report& report) {
-        HexMesh mesh = with_selected_field(load_mesh(input_, options, report), options, report);
+        report["input"] = input_;
+        HexMesh mesh = report.unpack(load_mesh(input_, options, report.progress()));
+        mesh = report.unpack(with_selected_field(std::move(mesh), options));
         const Range given = field_range(mesh);
-        mesh = tets_.hexes(std::move(mesh), 1, report);
+        mesh = report.unpack(tets_.hexes(std::move(mesh), 1, report.progress()));
         const HexMesh compared = error_ ? mesh : HexMesh{};
-        RbfVolume volume = tets_.asked() ? sample_tets_reported(mesh, sample_, seen(given), report)
-                                         : sample_reported(std::move(mesh), sample_, refine_, seen(given), report);
+        RbfVolume volume =
+            report.unpack(tets_.asked() ? sample_tets_reported(mesh, sample_, seen(given), report.progress())
+                                        : sample_reported(std::move(mesh), sample_, refine_, seen(given), report.progress()));
         merge(volume, report);
         if (clamp_) {
             report["clamped"] = clamp_channel(volume.channels.front(), given.min, given.max);
         } else {
-            note_beyond(volume.channels.front().name, given, channel_range(volume, 0), report);
+            report.note(beyond(volume.channels.front().name, given, channel_range(volume, 0)));
         }
         if (error_) add_error(compared, volume, report);
         return volume;
@@ -330,7 +335,7 @@ private:
 
     void add_error(const HexMesh& mesh, RbfVolume& volume, Report& report) const {
         const std::string name = volume.channels.front().name;
-        const SchemeOptions scheme = refine_.options(0, report).scheme;
+        const SchemeOptions scheme = refine_.options(0, report.progress()).scheme;
         const PointsError error = report.timed(
             "error", [&] { return points_error(volume, mesh, name, {.scheme = scheme, .progress = report.progress()}); });
         volume.channels.push_back(error_channel(error, name));
@@ -345,8 +350,10 @@ private:
     [[nodiscard]] RbfVolume points_of_grid(Report& report) {
         refuse_options(app(), {"--clamp"}, "needs a mesh: the values of voxels are within their range");
         refuse_options(app(), {"--error"}, "needs a mesh; this is a grid of voxels");
-        const VdbGrid grid = load_grid(input_, common(), report);
-        RbfVolume volume = sample_reported(grid, sample_, seen({grid.report().min, grid.report().max}), app(), report);
+        report["input"] = input_;
+        const VdbGrid grid = report.unpack(load_grid(input_, common(), report.progress()));
+        RbfVolume volume = report.unpack(
+            sample_reported(grid, sample_, seen({grid.report().min, grid.report().max}), app(), report.progress()));
         merge(volume, report);
         return volume;
     }

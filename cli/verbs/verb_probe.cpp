@@ -70,14 +70,15 @@ public:
             throw Error(ErrorCode::InvalidInput, "the limit of " + scheme_.scheme + " is probed, not a level", "--levels",
                         "--scheme tetoct or boxspline, whose volume is that of a level");
         }
-        const LimitOptions limit{.scheme = scheme_.options(0, report).scheme, .progress = report.progress()};
+        const LimitOptions limit{.scheme = scheme_.options(0, report.progress()).scheme, .progress = report.progress()};
         if (is_bricks_input(input_)) {
             tets.refuse_bricks(input_);
             probe_the_bricks(places, limit, report);
             return 0;
         }
-        ReadResult read = read_input(input_, common(), report);
-        warn_of_sheets(read.sheets, report);
+        report["input"] = input_;
+        ReadResult read = report.unpack(read_input(input_, common(), report.progress()));
+        report.warn(sheets_left_out(read.sheets));
         const HexMesh mesh = used_mesh(std::move(read.mesh), common());
         const HexMesh chosen = with_chosen_first(mesh, report);
         report["cells"] = mesh.cells.size();
@@ -125,7 +126,7 @@ private:
 
     /// The selected field first, then all others as they are.
     [[nodiscard]] HexMesh with_chosen_first(const HexMesh& mesh, Report& report) const {
-        HexMesh chosen = with_selected_field(mesh, common(), report);
+        HexMesh chosen = report.unpack(with_selected_field(mesh, common()));
         for (const Attribute& attribute : mesh.attributes) {
             if (attribute.name != chosen.attributes.front().name) chosen.attributes.push_back(attribute);
         }
@@ -133,8 +134,8 @@ private:
     }
 
     void probe_the_bricks(const std::vector<Vec3>& places, const LimitOptions& limit, Report& report) {
-        const Bricks bricks = open_bricks_input(input_, app(), report);
-        (void)select_brick_field(bricks, common(), report);
+        const Bricks bricks = report.unpack(open_bricks_input(input_, app()));
+        (void)report.unpack(select_brick_field(bricks, common()));
         const auto chosen_first = [&](HexMesh brick) {
             const std::string first = report.json().at("field");
             (void)std::ranges::stable_partition(brick.attributes, [&](const Attribute& field) { return field.name == first; });
@@ -170,7 +171,7 @@ private:
     /// The volume of a scheme of tetrahedra: linear between the vertices of a level, which are on the limit.
     void probe_tets(const TetRefinement& tets, const HexMesh& mesh, const std::vector<Vec3>& places, Report& report) const {
         std::vector<Index> cells;
-        const MixedMesh fine = tets.refined(mesh, 2, Vertices::OnTheLimit, report, &cells);
+        const MixedMesh fine = report.unpack(tets.refined(mesh, 2, Vertices::OnTheLimit, report.progress(), &cells));
         const std::size_t hexes = 4 * fine.tets.size() + 16 * fine.octahedra.size();  // of others it is as many as they are
         check_memory(report.json().at("levels").get<int>(), static_cast<double>(hexes), 1700);
         if (!places.empty()) {
@@ -186,7 +187,7 @@ private:
 
     void measure(const HexMesh& mesh, const std::vector<MeshBlock>& blocks, const SchemeOptions& scheme, Report& report) const {
         const BlockCells parts =
-            report.timed("blocks", [&] { return cells_of_blocks(input_, blocks, mesh, common(), report); });
+            report.unpack(report.timed("blocks", [&] { return cells_of_blocks(input_, blocks, mesh, common()); }));
         const LimitMeasure found = report.timed("measure", [&] {
             return measure_limit(
                 mesh,

@@ -202,8 +202,8 @@ private:
         if (!by_tets) refuse_options(app(), {"--levels"}, "needs the whole mesh in memory; this is a folder of bricks");
         refuse_options(app(), {"--threshold", "--reduce", "--seconds", "--edges", "--color-field", "--lod"},
                        "needs the whole mesh in memory; this is a folder of bricks");
-        const Bricks bricks = open_bricks_input(input_, app(), report);
-        const StreamedField field = select_brick_field(bricks, common(), report);
+        const Bricks bricks = report.unpack(open_bricks_input(input_, app()));
+        const StreamedField field = report.unpack(select_brick_field(bricks, common()));
         const BrickFields fields = [&](HexMesh brick) { return with_brick_fields(std::move(brick), {field}); };
         const ShownField what{report.json().at("field"), {field.min, field.max}};
         show(bricks.bounds, what, what, output, report, [&](const ShownColors& shown) {
@@ -216,7 +216,7 @@ private:
                 return write_brick_tets(bricks, fields, std::move(hull), views, shown.optics, arguments_, splat_work().rows,
                                         output, report);
             }
-            const RefineOptions refine = arguments_.refine.options(0, report);
+            const RefineOptions refine = arguments_.refine.options(0, report.progress());
             BrickSplatOptions options{.sample = arguments_.sample.options(bricks.bounds, refine),
                                       .splat = arguments_.options,
                                       .memory_bytes = arguments_.memory_bytes};
@@ -240,7 +240,8 @@ private:
                         "use grid, splat or sheets");
         }
         refuse_mesh_options(app(), "needs a mesh; this is a grid of voxels");
-        const VdbGrid grid = load_grid(input_, common(), report);
+        report["input"] = input_;
+        const VdbGrid grid = report.unpack(load_grid(input_, common(), report.progress()));
         const Box box = box_of(grid.report());
         const ShownField field{grid.report().name, {grid.report().min, grid.report().max}};
         show(box, field, field, output, report, [&](const ShownColors& shown) {
@@ -252,7 +253,9 @@ private:
                 };
                 return output.write(picture_.make_views(box), draw, report);
             }
-            splat(sample_reported(grid, arguments_.sample, shown.optics.function(), app(), report), box, shown, output, report);
+            const RbfVolume volume =
+                report.unpack(sample_reported(grid, arguments_.sample, shown.optics.function(), app(), report.progress()));
+            splat(volume, box, shown, output, report);
         });
     }
 
@@ -261,12 +264,15 @@ private:
     void draw_points(PictureOutput& output, Report& report) {
         if (!is_of_splats(arguments_.method))
             throw Error(ErrorCode::InvalidInput, "points can only be splatted", "--method " + arguments_.method);
+        report["input"] = input_;
         if (holds_levels(input_) && arguments_.reference.lod.value_or(0) > 0) {
             const std::uint64_t kept = picture_.turntable_frames ? arguments_.memory_bytes : 0;
-            LevelsInput levels = open_levels(input_, common(), arguments_.splat.color_field, kept, app(), report);
+            LevelsInput levels =
+                report.unpack(open_levels(input_, common(), arguments_.splat.color_field, kept, app(), report.progress()));
             if (levels.file.contents().boundary_triangles > 0) return draw_levels(levels, output, report);
         }
-        const RbfVolume volume = load_points(input_, common(), arguments_.splat.color_field, app(), report);
+        const RbfVolume volume =
+            report.unpack(load_points(input_, common(), arguments_.splat.color_field, app(), report.progress()));
         if (volume.channels.size() == 1) arguments_.options.color_channel.reset();
         const std::size_t last = volume.channels.size() - 1;
         const ShownField field{volume.channels.front().name, channel_range(volume, 0)};

@@ -98,7 +98,7 @@ public:
 private:
     [[nodiscard]] SliceOptions options(Report& report) const {
         return {.resolution = resolution_,
-                .limit = {.scheme = scheme_.options(0, report).scheme, .progress = report.progress()},
+                .limit = {.scheme = scheme_.options(0, report.progress()).scheme, .progress = report.progress()},
                 .progress = report.progress()};
     }
 
@@ -110,7 +110,10 @@ private:
 
     [[nodiscard]] LimitSlice slice_of_mesh(std::vector<double>& plane, Report& report) {
         const TetRefinement tets(scheme_);
-        const HexMesh mesh = tets.hexes(with_selected_field(load_mesh(input_, common(), report), common(), report), 2, report);
+        report["input"] = input_;
+        HexMesh mesh = report.unpack(load_mesh(input_, common(), report.progress()));
+        mesh = report.unpack(with_selected_field(std::move(mesh), common()));
+        mesh = report.unpack(tets.hexes(std::move(mesh), 2, report.progress()));
         choose_plane(bounds(mesh), plane);
         return report.timed("slice", [&] {
             return slice_limit(mesh, {}, {plane[0], plane[1], plane[2]}, {plane[3], plane[4], plane[5]}, options(report));
@@ -119,8 +122,8 @@ private:
 
     [[nodiscard]] LimitSlice slice_of_bricks(std::vector<double>& plane, Report& report) {
         TetRefinement(scheme_).refuse_bricks(input_);
-        const Bricks bricks = open_bricks_input(input_, app(), report);
-        const StreamedField field = select_brick_field(bricks, common(), report);
+        const Bricks bricks = report.unpack(open_bricks_input(input_, app()));
+        const StreamedField field = report.unpack(select_brick_field(bricks, common()));
         choose_plane(bricks.bounds, plane);
         return report.timed("slice", [&] {
             return slice_limit(bricks, {plane[0], plane[1], plane[2]}, {plane[3], plane[4], plane[5]}, options(report),

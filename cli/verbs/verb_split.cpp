@@ -99,7 +99,8 @@ private:
             if (split.result) return std::move(*split.result);
             if (!split.held_whole.empty()) report.note(text("all pieces are held in memory: ", split.held_whole));
         }
-        HexMesh mesh = with_written_field(load_mesh(input_, common(), report), common());
+        report["input"] = input_;
+        HexMesh mesh = with_written_field(report.unpack(load_mesh(input_, common(), report.progress())), common());
         return report.timed("split", [&] { return split_mesh(output_, std::move(mesh), options_); });
     }
 

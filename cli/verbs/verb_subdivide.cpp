@@ -40,18 +40,20 @@ public:
             write_tets(tets, report);
             return 0;
         }
-        const RefineOptions options = refine_.options(1, report);
+        const RefineOptions options = refine_.options(1, report.progress());
         check_output(output_, {".vtu", ".mesh"});
         report.if_long("fewer --levels");
         Sheets sheets;
-        const HexMesh mesh = with_written_field(load_mesh(input_, common(), report, &sheets), common());
+        report["input"] = input_;
+        const HexMesh mesh =
+            with_written_field(report.unpack(load_mesh(input_, common(), report.progress(), &sheets)), common());
         if (common().field && !sheets.empty()) {
             HexMesh of_sheets;
             of_sheets.points = sheets.points;
             of_sheets.attributes = std::move(sheets.attributes);
             sheets.attributes = with_written_field(std::move(of_sheets), common()).attributes;
         }
-        HexMesh fine = refine_reported(mesh, options, on_limit_ ? Vertices::OnTheLimit : Vertices::OfTheLevel, report);
+        HexMesh fine = report.unpack(refine_reported(mesh, options, on_limit_ ? Vertices::OnTheLimit : Vertices::OfTheLevel));
         keep_in_range(mesh, fine, report);
         if (!sheets.empty() && output_.ends_with(".mesh")) {
             report.warn("sheets and curves are not written to .mesh, but to .vtu");
@@ -72,8 +74,10 @@ private:
         if (clamp_) throw Error(ErrorCode::InvalidInput, "the schemes of tetrahedra do not overshoot as others do", "--clamp");
         check_output(output_, {".vtu"});
         report.if_long("fewer --levels");
-        const HexMesh mesh = with_written_field(load_mesh(input_, common(), report), common());
-        const MixedMesh fine = tets.refined(mesh, 1, on_limit_ ? Vertices::OnTheLimit : Vertices::OfTheLevel, report);
+        report["input"] = input_;
+        const HexMesh mesh = with_written_field(report.unpack(load_mesh(input_, common(), report.progress())), common());
+        const Vertices vertices = on_limit_ ? Vertices::OnTheLimit : Vertices::OfTheLevel;
+        const MixedMesh fine = report.unpack(tets.refined(mesh, 1, vertices, report.progress()));
         report.timed("write", [&] { write_mixed_mesh(output_, fine); });
         report["output"] = output_;
         report["points"] = fine.points.size();
@@ -101,7 +105,7 @@ private:
                 const FieldRange found = range_of(fine.attributes[f]);
                 for (std::size_t c = 0; c < given.min.size(); ++c) {
                     const std::string name = control.attributes[f].name + (given.min.size() > 1 ? text(".", c) : "");
-                    note_beyond(name, {given.min[c], given.max[c]}, {found.min[c], found.max[c]}, report);
+                    report.note(beyond(name, {given.min[c], given.max[c]}, {found.min[c], found.max[c]}));
                 }
             }
         }

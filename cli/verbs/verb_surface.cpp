@@ -85,7 +85,7 @@ public:
         }
         report.if_long("a larger --tolerance");
         const TetRefinement tets(scheme_);
-        SurfaceOptions options{.scheme = scheme_.options(0, report).scheme,
+        SurfaceOptions options{.scheme = scheme_.options(0, report.progress()).scheme,
                                .isos = isos_,
                                .boundary = boundary_ || isos_.empty(),
                                .cap = cap_,
@@ -99,9 +99,11 @@ public:
             return 0;
         }
         Sheets sheets;
-        const HexMesh mesh =
-            tets.hexes(load_mesh(input_, common(), report, options.boundary && !tets.asked() ? &sheets : nullptr), 2, report);
-        HexMesh chosen = with_selected_field(mesh, common(), report);
+        report["input"] = input_;
+        Sheets* const wanted = options.boundary && !tets.asked() ? &sheets : nullptr;
+        HexMesh mesh = report.unpack(load_mesh(input_, common(), report.progress(), wanted));
+        mesh = report.unpack(tets.hexes(std::move(mesh), 2, report.progress()));
+        HexMesh chosen = report.unpack(with_selected_field(mesh, common()));
         const std::string field = chosen.attributes.front().name;
         for (const Attribute& attribute : mesh.attributes) {
             if (attribute.name != field) chosen.attributes.push_back(attribute);
@@ -130,7 +132,7 @@ public:
             report["sheet_triangles"] = surface->surface.triangles.size() - of_volume;
             if (!sheets.lines.empty()) report.warn("curves have no surface: they are not written");
         }
-        write_reported(output_, *surface, output, report);
+        report.merge(write_reported(output_, *surface, output, report.progress()));
         return 0;
     }
 
@@ -161,8 +163,8 @@ private:
 
     /// As of a mesh in one piece, with the ranges that the index has.
     void extract_from_bricks(const SurfaceOptions& options, Report& report) {
-        const Bricks bricks = open_bricks_input(input_, app(), report);
-        const StreamedField field = select_brick_field(bricks, common(), report);
+        const Bricks bricks = report.unpack(open_bricks_input(input_, app()));
+        const StreamedField field = report.unpack(select_brick_field(bricks, common()));
         const auto chosen = [&](HexMesh brick) {
             std::vector<Attribute> all = brick.attributes;
             brick = with_brick_fields(std::move(brick), {field});
@@ -185,7 +187,7 @@ private:
             [&](const auto& share) { return detail::share_of_surface(bricks, name, options, share, chosen); }, output, report);
         if (!surface) return;
         check_not_empty(*surface, output);
-        write_reported(output_, *surface, output, report);
+        report.merge(write_reported(output_, *surface, output, report.progress()));
     }
 
     /// The number of the attribute with the colours' values, one for each point; it is added if there is none.

@@ -98,20 +98,22 @@ public:
 private:
     void run_one(MeshGrids& maker, Report& report) {
         if (asked_.velocity) throw Error(ErrorCode::InvalidInput, "needs a sequence", "--velocity", "--frames A-B");
-        const HexMesh mesh = maker.load(input_, common(), report);
-        const RasterizeOptions options = maker.set_up(mesh, report);
+        report["input"] = input_;
+        const HexMesh mesh = report.unpack(maker.load(input_, common(), report.progress()));
+        const RasterizeOptions options = report.unpack(maker.set_up(mesh, report.progress()));
         if (output_.memory_bytes > 0) {
             if (asked_.error) throw Error(ErrorCode::InvalidInput, "works with one file only, not with parts", "--error");
             refuse_with_memory();
-            write_parts(input_, mesh, names_of(mesh), options, output_, report,
-                        [&](std::vector<VdbGrid>& grids) { maker.fields().clamp(mesh, grids); });
+            report.merge(write_parts(input_, mesh, names_of(mesh), options, output_,
+                                     [&](std::vector<VdbGrid>& grids) { maker.fields().clamp(mesh, grids); }));
             return;
         }
-        std::vector<VdbGrid> grids = maker.make(mesh, options, report);
+        std::vector<VdbGrid> grids = report.unpack(maker.make(mesh, options));
         if (!has_voxels(grids)) throw no_voxels(input_, finer_voxels(mesh));
-        maker.fields().note_overshoot(mesh, grids, report);
-        const auto errors = asked_.error ? maker.add_errors(mesh, options, grids, report) : std::vector<GridErrorFigures>();
-        write_reported(grids, output_, report);
+        report.merge(maker.fields().overshoot(mesh, grids));
+        std::vector<GridErrorFigures> errors;
+        if (asked_.error) errors = report.unpack(maker.add_errors(mesh, options, grids));
+        report.merge(write_reported(grids, output_, report.progress()));
         for (const auto& [grid, max, rms] : errors) {
             report["grids"][grid]["error_max"] = max;
             report["grids"][grid]["error_rms"] = rms;
@@ -124,13 +126,13 @@ private:
                        {"--budget", "--remap", "--clamp", "--up", "--scale", "--cell-ids", "--error", "--coverage", "--sdf",
                         "--from", "--nano", "--frames", "--to", "--velocity"},
                        "needs the whole mesh in memory; this is a folder of bricks");
-        const Bricks bricks = open_bricks_input(input_, app(), report);
+        const Bricks bricks = report.unpack(open_bricks_input(input_, app()));
         const Vec3 size = bricks.bounds.size();
-        RasterizeOptions options = maker.options(report);
+        RasterizeOptions options = maker.options(report.progress());
         options.voxel_size_world = options.like            ? options.like->report().voxel_size_world
                                    : asked_.voxel_size > 0 ? asked_.voxel_size
                                                            : std::max({size.x, size.y, size.z}) / asked_.resolution;
-        options.refine = refine_.options(0, report);
+        options.refine = refine_.options(0, report.progress());
         options.on_limit = !interpolates(options.refine.scheme.kind);
         options.metadata.emplace_back("subvol_scheme", refine_.scheme);
         std::vector<StreamedField> fields;
@@ -139,17 +141,17 @@ private:
                 throw Error(ErrorCode::InvalidInput, "of bricks, fields are written as they are", "--fields", source);
             fields.push_back(named_brick_field(bricks, name, true));
         }
-        if (fields.empty()) fields.push_back(select_brick_field(bricks, common(), report));
+        if (fields.empty()) fields.push_back(report.unpack(select_brick_field(bricks, common())));
         const BricksToVoxels what{bricks, fields, options, !refine_.levels.has_value()};
         if (!shares(share_)) {
-            write_bricks_vdb(what, output_, report);
+            report.merge(write_bricks_vdb(input_, what, output_));
             return;
         }
-        const std::vector<VdbGrid> all = of_all_shares(grids_of_bricks(what, output_.memory_bytes, share, report), ranks(),
-                                                       note_of(share), asked_.half, output_, report);
+        std::vector<VdbGrid> all = report.unpack(grids_of_bricks(what, output_.memory_bytes, share));
+        all = of_all_shares(std::move(all), ranks(), note_of(share), asked_.half, output_, report);
         if (all.empty()) return;
         if (!has_voxels(all)) throw no_voxels(input_, "try a smaller --voxel-size");
-        write_reported(all, output_, report);
+        report.merge(write_reported(all, output_, report.progress()));
     }
 
     /// One slab of the voxels, as a file of its own.
@@ -157,23 +159,24 @@ private:
         refuse_options(app(), {"--velocity", "--error", "--memory", "--nano"},
                        ranks() != nullptr ? "does not work in several processes of MPI" : "does not work with --part");
         if (asked_.from == "points") throw Error(ErrorCode::InvalidInput, "is not done in shares", "--from points");
-        const HexMesh mesh = maker.load(input_, common(), report);
-        const RasterizeOptions options = maker.set_up(mesh, report);
+        report["input"] = input_;
+        const HexMesh mesh = report.unpack(maker.load(input_, common(), report.progress()));
+        const RasterizeOptions options = report.unpack(maker.set_up(mesh, report.progress()));
         std::vector<VdbGrid> grids =
             report.timed("rasterize", [&] { return rasterize_share(mesh, names_of(mesh), options, share.part, share.of); });
         maker.fields().clamp(mesh, grids);
         grids = of_all_shares(std::move(grids), ranks(), note_of(share), asked_.half, output_, report);
         if (grids.empty()) return;
         if (!has_voxels(grids)) throw no_voxels(input_, finer_voxels(mesh));
-        maker.fields().note_overshoot(mesh, grids, report);
-        write_reported(grids, output_, report);
+        report.merge(maker.fields().overshoot(mesh, grids));
+        report.merge(write_reported(grids, output_, report.progress()));
     }
 
     void run_points(const MeshGrids& maker, Report& report) {
         if (asked_.error) throw Error(ErrorCode::InvalidInput, "needs a mesh; these are points", "--error");
         if (asked_.velocity) throw Error(ErrorCode::InvalidInput, "needs a sequence", "--velocity", "--frames A-B");
         asked_.from = "points";
-        RasterizeOptions options = maker.options(report);
+        RasterizeOptions options = maker.options(report.progress());
         options.voxel_size_world = asked_.voxel_size;
         options.resolution = asked_.resolution;
         options.level_set = asked_.level_set();
@@ -186,11 +189,12 @@ private:
             }
             names.push_back(field.name);
         }
-        const std::vector<VdbGrid> grids = grids_of_points(input_, names, common(), app(), options, report);
+        report["input"] = input_;
+        const std::vector<VdbGrid> grids = report.unpack(grids_of_points(input_, names, common(), app(), options));
         if (!has_voxels(grids)) {
             throw no_voxels(input_, text("try --voxel-size below ", grids.front().report().voxel_size_world));
         }
-        write_reported(grids, output_, report);
+        report.merge(write_reported(grids, output_, report.progress()));
     }
 
     void run_frames(MeshGrids& maker, const Share& share, Report& report) {
@@ -199,7 +203,7 @@ private:
         const FrameRange range = parse_frames(asked_.frames);
         if (asked_.to.empty()) check_frames(input_, range);
         MeshFrames frames(input_, asked_.to.empty() ? std::nullopt : std::optional(asked_.to), range,
-                          [&](const std::string& name) { return maker.load(name, common(), report); });
+                          [&](const std::string& name) { return load(maker, name, common(), report); });
         write(maker, {frames, range, share, {}}, report);
     }
 
@@ -215,9 +219,9 @@ private:
         check_numbered(output_.path);
         const MeshSeries series = open_series(input_);
         const FrameRange range = chosen_steps(series, common());
-        MeshFrames frames(range, series.times, [&](int step) { return maker.load(input_, of_step(common(), step), report); });
-        const FrameRange own = frames_of(share, range);
-        report["times"] = std::vector(series.times.begin() + own.first, series.times.begin() + own.last + 1);
+        MeshFrames frames(range, series.times, [&](int step) { return load(maker, input_, of_step(common(), step), report); });
+        const FrameRange steps = frames_of(share, range);
+        report["times"] = std::vector(series.times.begin() + steps.first, series.times.begin() + steps.last + 1);
         write(maker, {frames, range, share, series.times}, report);
     }
 
@@ -225,10 +229,25 @@ private:
         if (output_.memory_bytes > 0)
             throw Error(ErrorCode::InvalidInput, "works with one mesh only, not with frames", "--memory");
         if (share_.given()) report["part"] = frames.share.name();
-        write_frames(maker, frames, asked_, output_, report);
+        FrameWriter writer(maker, frames, asked_, output_, report.progress());
+        report.merge(writer.facts());
+        report["frames"] = Json::array();
+        const FrameRange range = frames_of(frames.share, frames.all);
+        for (int frame = range.first; frame <= range.last; ++frame) {
+            const int number = frame - range.first;
+            report.begin_part(text("frame ", number + 1, " of ", range.count()), static_cast<std::size_t>(number),
+                              static_cast<std::size_t>(range.count()));
+            report["frames"].push_back(json_of(report.unpack(writer.write(frame))));
+        }
         if (ranks() != nullptr) gather_list(*ranks(), report, "frames");
         report["input"] = input_;
         report["output"] = output_.path;
+    }
+
+    [[nodiscard]] static HexMesh load(const MeshGrids& maker, const std::string& input, const CommonOptions& options,
+                                      Report& report) {
+        report["input"] = input;
+        return report.unpack(maker.load(input, options, report.progress()));
     }
 
     [[nodiscard]] PartNote note_of(const Share& share) {

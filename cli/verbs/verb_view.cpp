@@ -102,7 +102,9 @@ public:
         ViewSource from = source(report);
         if (!points) tets_ = TetRefinement(refine_);
         if (tets_.asked())
-            from.tets = [this, &report](HexMesh mesh, int level) { return tets_.hexes(std::move(mesh), level, report); };
+            from.tets = [this, &report](HexMesh mesh, int level) {
+                return report.unpack(tets_.hexes(std::move(mesh), level, report.progress()));
+            };
         if (points) from.points = voxels ? voxels_of_file(report) : points_of_file(report);
         play(std::move(from), script, splat, headless, report);
         return 0;
@@ -110,14 +112,16 @@ public:
 
 private:
     [[nodiscard]] ViewPoints points_of_file(Report& report) {
-        const auto volume = std::make_shared<const RbfVolume>(load_all_points(input_, app(), report));
+        report["input"] = input_;
+        const auto volume = std::make_shared<const RbfVolume>(report.unpack(load_all_points(input_, app(), report.progress())));
         if (common().field) (void)find_channel(*volume, *common().field, input_);
         return {.volume = volume, .box = volume->bounds};
     }
 
     [[nodiscard]] ViewPoints voxels_of_file(Report& report) {
-        const VdbGrid grid = load_grid(input_, common(), report);
-        RbfVolume volume = sample_reported(grid, sample_, std::nullopt, app(), report);
+        report["input"] = input_;
+        const VdbGrid grid = report.unpack(load_grid(input_, common(), report.progress()));
+        RbfVolume volume = report.unpack(sample_reported(grid, sample_, std::nullopt, app(), report.progress()));
         volume.channels.front().name = grid.report().name;
         return {.volume = std::make_shared<const RbfVolume>(std::move(volume)),
                 .voxels = grid.voxels(),
@@ -127,7 +131,9 @@ private:
 
     void play(ViewSource from, const std::string& script, const SplatOptions& splat, bool headless, Report& report) {
         const bool points = from.points.volume != nullptr;
-        HexMesh mesh = points ? mesh_of_points(*from.points.volume) : load_mesh(input_, common(), report);
+        report["input"] = input_;
+        HexMesh mesh =
+            points ? mesh_of_points(*from.points.volume) : report.unpack(load_mesh(input_, common(), report.progress()));
         std::optional<std::string> field = common().density ? std::optional<std::string>("density") : common().field;
         if (points && !field) field = from.points.volume->channels.front().name;
         ViewBody body = points ? view_body(mesh, from.points, field) : view_body(mesh, field);
@@ -141,7 +147,7 @@ private:
                         "--method " + method_, join(methods));
         }
         report["field"] = body.field();
-        DrawSettings settings{.sample = sample_.options(body.box, refine_.options(0, report)),
+        DrawSettings settings{.sample = sample_.options(body.box, refine_.options(0, report.progress())),
                               .levels = refine_.levels,
                               .splat = splat,
                               .painted = picture_.look != Look::Solid || picture_.paints_boundary(app(), refine_)};
@@ -218,8 +224,10 @@ private:
 
     [[nodiscard]] ViewSource source(Report& report) {
         return {.input = input_,
-                .read = [this, &report](
-                            std::size_t step) { return load_mesh(input_, of_step(common(), static_cast<int>(step)), report); },
+                .read =
+                    [this, &report](std::size_t step) {
+                        return report.unpack(load_mesh(input_, of_step(common(), static_cast<int>(step)), report.progress()));
+                    },
                 .times = times(),
                 .write_picture = [](const std::filesystem::path& path, const Image& image,
                                     const Vec3& background) { write_image(path, image, background); },

@@ -28,9 +28,9 @@ Facts& Facts::group(std::string_view name) {
     return std::get<Facts>(fact.value);
 }
 
-void Facts::warn(const std::string& sentence) {
+void Facts::add_sentence(std::string_view list, const std::string& sentence) {
     if (sentence.empty()) return;
-    FactValue& fact = (*this)["warnings"];
+    FactValue& fact = (*this)[list];
     if (!std::holds_alternative<FactValue::List>(fact.value)) fact.value = FactValue::List();
     auto& sentences = std::get<FactValue::List>(fact.value);
     const auto is_same = [&](const FactValue& other) { return std::get<std::string>(other.value) == sentence; };
@@ -45,9 +45,9 @@ void Facts::add_seconds(std::string_view stage, double seconds) {
 
 void Facts::merge(const Facts& other) {
     for (const Fact& fact : other.all_) {
-        if (fact.name == "warnings") {
-            for (const FactValue& warning : std::get<FactValue::List>(fact.value.value))
-                warn(std::get<std::string>(warning.value));
+        if (fact.name == "warnings" || fact.name == "notes") {
+            for (const FactValue& sentence : std::get<FactValue::List>(fact.value.value))
+                add_sentence(fact.name, std::get<std::string>(sentence.value));
         } else if (fact.name == "seconds") {
             for (const Fact& stage : std::get<Facts>(fact.value.value).all_)
                 add_seconds(stage.name, std::get<double>(stage.value.value));

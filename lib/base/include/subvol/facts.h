@@ -17,12 +17,14 @@ namespace subvol {
 
 struct Fact;
 struct FactValue;
+template <class T>
+struct WithFacts;
 
 /// What a call found out beside its result: names with values, in the order in which they were set. A call returns them; its
 /// caller merges them into its own, and the command makes the text and the JSON of them, Python a dictionary.
 ///
-/// Two names have a meaning of their own: "seconds" is a group with the seconds of each stage, which add up, and "warnings" a
-/// list of sentences for users, each once.
+/// Three names have a meaning of their own: "seconds" is a group with the seconds of each stage, which add up; "warnings" and
+/// "notes" are lists of sentences for users, each once. Notes are printed, but they are not part of the JSON.
 class Facts {
 public:
     Facts();
@@ -40,7 +42,9 @@ public:
     Facts& group(std::string_view name);
 
     /// A sentence for users. An empty one, and one that is there already, is left out.
-    void warn(const std::string& sentence);
+    void warn(const std::string& sentence) { add_sentence("warnings", sentence); }
+    /// The same for a remark that is no reason to worry.
+    void note(const std::string& sentence) { add_sentence("notes", sentence); }
     /// Adds to the seconds of a stage.
     void add_seconds(std::string_view stage, double seconds);
 
@@ -54,8 +58,15 @@ public:
         return std::forward<Work>(work)();
     }
 
-    /// Sets all facts of another call: warnings and seconds are added, other names take the new value.
+    /// Sets all facts of another call: warnings, notes and seconds are added, other names take the new value.
     void merge(const Facts& other);
+
+    /// Merges the facts of a result, and returns its value.
+    template <class T>
+    T unpack(WithFacts<T> made) {
+        merge(made.facts);
+        return std::move(made.value);
+    }
 
     [[nodiscard]] bool empty() const;
     [[nodiscard]] const std::vector<Fact>& all() const { return all_; }
@@ -68,7 +79,16 @@ private:
         ~Timer() { facts.add_seconds(stage, watch.seconds()); }
     };
 
+    void add_sentence(std::string_view list, const std::string& sentence);
+
     std::vector<Fact> all_;
+};
+
+/// The result of a call, with what the call found out.
+template <class T>
+struct WithFacts {
+    T value;
+    Facts facts{};
 };
 
 /// Nothing, a truth, a number, a text, a list, or a group of facts.
