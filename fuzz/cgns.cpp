@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The reader of CGNS on any nodes.
 
-#include "cgns/cgns_io.h"
+#include "formats.h"
 
 #include "hdf5_lines.h"
 #include "subvol/mesh_report.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The reader of EnSight cases: the first byte says which of the files the rest is.
 
-#include "ensight/ensight_io.h"
+#include "formats.h"
 
 #include "case_folder.h"
 #include "subvol/mesh_report.h"

@@ -2,7 +2,7 @@
 // The reader of OpenFOAM cases: the first byte says which of the files the rest is.
 
 #include "case_folder.h"
-#include "openfoam/foam_case.h"
+#include "formats.h"
 #include "subvol/mesh_report.h"
 
 namespace subvol::fuzz {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The reader of Abaqus and CalculiX decks.
 
-#include "abaqus/inp_io.h"
+#include "formats.h"
 #include "input.h"
 #include "subvol/mesh_report.h"
 

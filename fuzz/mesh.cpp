@@ -4,7 +4,6 @@
 #include "formats.h"
 #include "input.h"
 #include "subvol/mesh_report.h"
-#include "text_readers.h"
 
 namespace subvol::fuzz {
 

@@ -11,11 +11,11 @@
 #include <vector>
 
 #include "assemble.h"
-#include "collection.h"
 #include "join_pieces.h"
 #include "piece_numbers.h"
 #include "subvol/progress.h"
 #include "subvol/vec.h"
+#include "vtk/collection.h"
 
 namespace subvol::detail {
 

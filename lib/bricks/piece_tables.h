@@ -8,11 +8,11 @@
 #include <vector>
 
 #include "assemble.h"
-#include "collection.h"
 #include "point_flags.h"
 #include "spill_file.h"
 #include "subvol/mesh_io.h"
 #include "subvol/progress.h"
+#include "vtk/collection.h"
 
 namespace subvol::detail {
 

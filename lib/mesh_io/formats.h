@@ -9,9 +9,49 @@
 #include <vector>
 
 #include "mesh_file.h"
-#include "subvol/mesh_io.h"
+#include "subvol/read_options.h"
 
 namespace subvol::detail {
+
+class Hdf5File;
+struct Collection;
+
+/// A format of mesh files.
+///
+/// extensions:     in lower case, unused ones empty
+/// read:           reads the mesh of one step
+/// write:          null if the library only reads the format
+/// times:          the times of the steps of a file; null if a file of this format is one step
+/// piece:          reads a file as a piece of a mesh, before it is assembled; null if a file is always a whole mesh
+/// files:          reads a list of other files; null if the format is not such a list
+/// groups:         whether its groups of faces and edges are read
+/// blocks:         whether it has named parts, which ReadOptions::blocks chooses
+/// finite_volumes: whether its values at cells are means over them
+struct MeshFormat {
+    std::array<std::string_view, 4> extensions;
+    std::string_view name;
+    ReadResult (*read)(const std::filesystem::path& path, const ReadOptions& options);
+    std::vector<std::string> (*write)(const std::filesystem::path& path, const HexMesh& mesh) = nullptr;
+    std::vector<double> (*times)(const std::filesystem::path& path) = nullptr;
+    MeshFile (*piece)(std::string_view text, std::string_view file, const ReadOptions& options) = nullptr;
+    Collection (*files)(const std::filesystem::path& path) = nullptr;
+    bool groups = false;
+    bool blocks = false;
+    bool finite_volumes = false;
+};
+
+[[nodiscard]] std::span<const MeshFormat> mesh_formats();
+
+/// The format that a file name's extension names, in upper or lower case; that of a folder is OpenFOAM. Null if there is none.
+[[nodiscard]] const MeshFormat* format_of(const std::filesystem::path& path);
+
+/// The same; throws: Error(InvalidInput) that lists all formats if there is none.
+[[nodiscard]] const MeshFormat& readable_format(const std::filesystem::path& path);
+
+/// Refuses options that a format has no use for.
+void check_options(const MeshFormat& format, const std::filesystem::path& path, const ReadOptions& options);
+
+// The readers and writers in the rows of the table. Each `NAME_times` gives the times of the steps of a file.
 
 /// Reads MEDIT ASCII.
 [[nodiscard]] ReadResult read_medit(std::string_view text, std::string_view file, const ReadOptions& options);
@@ -55,6 +95,43 @@ struct Plot3dFlow {
 /// throws: Error(MissingCapability) for an HDF5 file if this library is built without HDF5
 [[nodiscard]] ReadResult read_exodus(std::string_view text, std::string_view file, const ReadOptions& options);
 [[nodiscard]] std::vector<double> exodus_times(const std::filesystem::path& path);
+
+/// Reads a step of XDMF 2 or 3. file: in its folder are the files of values
+[[nodiscard]] ReadResult read_xdmf(std::string_view text, std::string_view file, const ReadOptions& options);
+[[nodiscard]] std::vector<double> xdmf_times(const std::filesystem::path& path);
+
+/// Reads a step of CalculiX's results, as text.
+[[nodiscard]] ReadResult read_frd(std::string_view text, std::string_view file, const ReadOptions& options);
+[[nodiscard]] std::vector<double> frd_times(const std::filesystem::path& path);
+
+/// Reads a step of an unstructured grid in a VTKHDF file, of versions 1 and 2. Its partitions are joined.
+[[nodiscard]] ReadResult read_vtkhdf(const std::filesystem::path& path, const ReadOptions& options);
+[[nodiscard]] ReadResult read_vtkhdf(const Hdf5File& file, const ReadOptions& options);
+
+[[nodiscard]] std::vector<double> vtkhdf_times(const std::filesystem::path& path);
+[[nodiscard]] std::vector<double> vtkhdf_times(const Hdf5File& file);
+
+/// Reads a step of the first base of a CGNS file in HDF5: structured and unstructured zones, as blocks that are joined.
+[[nodiscard]] ReadResult read_cgns(const std::filesystem::path& path, const ReadOptions& options);
+[[nodiscard]] ReadResult read_cgns(const Hdf5File& file, const ReadOptions& options);
+
+[[nodiscard]] std::vector<double> cgns_times(const std::filesystem::path& path);
+
+/// Reads a step of an EnSight Gold case, of text or of C's binary files. Its parts are joined.
+[[nodiscard]] ReadResult read_ensight(const std::filesystem::path& path, const ReadOptions& options);
+[[nodiscard]] std::vector<double> ensight_times(const std::filesystem::path& path);
+
+/// Reads a step of an OpenFOAM case. path: its folder, or a file in it
+[[nodiscard]] ReadResult read_foam(const std::filesystem::path& path, const ReadOptions& options);
+[[nodiscard]] std::vector<double> foam_times(const std::filesystem::path& path);
+
+/// Reads an Abaqus or CalculiX deck: nodes, elements of volumes, parts, instances, and sets of elements as blocks.
+[[nodiscard]] ReadResult read_inp(const std::filesystem::path& path, const ReadOptions& options);
+
+/// Reads a step of a list of files, and makes one mesh of them.
+[[nodiscard]] ReadResult read_collection(const std::filesystem::path& path, const ReadOptions& options);
+[[nodiscard]] std::vector<double> pvd_times(const std::filesystem::path& path);
+[[nodiscard]] std::vector<double> series_list_times(const std::filesystem::path& path);
 
 /// Writes MEDIT ASCII, version 2.
 std::vector<std::string> write_medit(const std::filesystem::path& path, const HexMesh& mesh);

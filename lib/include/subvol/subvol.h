@@ -61,6 +61,7 @@
 #include "subvol/progress.h"
 #include "subvol/rbf_field.h"
 #include "subvol/rbf_volume.h"
+#include "subvol/read_options.h"
 #include "subvol/reduce.h"
 #include "subvol/refine.h"
 #include "subvol/refine_mixed.h"

@@ -6,7 +6,7 @@
 #include "assemble.h"
 #include "exodus_file.h"
 #include "formats.h"
-#include "steps.h"
+#include "mesh_file.h"
 #include "subvol/error.h"
 
 namespace subvol::detail {

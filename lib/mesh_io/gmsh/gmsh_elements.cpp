@@ -5,9 +5,13 @@
 #include <cstdlib>
 #include <limits>
 
-#include "gmsh_data.h"
-
 namespace subvol::detail {
+
+std::string unquoted(std::string_view text) {
+    const std::size_t begin = text.find_first_not_of(" \t\"");
+    if (begin == std::string_view::npos) return "unnamed";
+    return as_utf8(text.substr(begin, text.find_last_not_of(" \t\"") + 1 - begin));
+}
 
 // The names of groups are text even in a binary file.
 void GmshGroups::read_names(TextScanner& in) {

@@ -1,17 +1,116 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <optional>
+#include <string>
 
 #include "assemble.h"
 #include "formats.h"
-#include "vtk_arrays.h"
-#include "vtk_blocks.h"
+#include "mesh_file.h"
 #include "vtk_cells.h"
 #include "vtk_values.h"
 
 namespace subvol::detail {
 
 namespace {
+
+/// The block of hexahedra of a structured data set of legacy VTK. Its points are listed (STRUCTURED_GRID), or given by the
+/// coordinates of its planes on each axis (RECTILINEAR_GRID), or evenly spaced (STRUCTURED_POINTS).
+class VtkBlock {
+public:
+    /// Nothing if the data set is not structured. type: its name in capitals
+    [[nodiscard]] static std::optional<VtkBlock> of(const std::string& type);
+
+    /// Reads the section whose keyword (in capitals) was the last word, if it belongs to this data set.
+    ///
+    /// returns: whether it does
+    bool read_section(const std::string& keyword, TextScanner& in, VtkValues& values);
+
+    /// Appends the points unless they are listed in a section POINTS; further calls do nothing.
+    void add_points(const TextScanner& in, MeshFile& into);
+    /// Appends the hexahedra; fails if the number of points is wrong, or if there are no cells.
+    void add_cells(const TextScanner& in, MeshFile& into) const;
+
+    [[nodiscard]] bool lists_points() const { return kind_ == Kind::Points; }
+    [[nodiscard]] const StructuredGrid& grid() const { return grid_; }
+
+private:
+    enum class Kind { Points, Cuts, Even } kind_ = Kind::Points;
+    void expect_cells(const TextScanner& in) const;
+    void read_cuts(std::size_t axis, const std::string& keyword, TextScanner& in, VtkValues& values);
+
+    StructuredGrid grid_;
+    std::array<std::vector<double>, 3> cuts_;
+    std::array<double, 3> origin_{0, 0, 0}, spacing_{1, 1, 1};
+    bool has_points_ = false;
+};
+
+void read_three(const std::string& keyword, TextScanner& in, std::array<double, 3>& numbers) {
+    for (double& number : numbers) number = in.real({keyword});
+}
+
+std::optional<VtkBlock> VtkBlock::of(const std::string& type) {
+    VtkBlock block;
+    if (type == "STRUCTURED_GRID") return block;
+    block.kind_ = type == "RECTILINEAR_GRID" ? Kind::Cuts : Kind::Even;
+    if (type == "RECTILINEAR_GRID" || type == "STRUCTURED_POINTS") return block;
+    return std::nullopt;
+}
+
+bool VtkBlock::read_section(const std::string& keyword, TextScanner& in, VtkValues& values) {
+    if (keyword == "DIMENSIONS") {
+        for (std::size_t& along : grid_.points) along = in.count({"DIMENSIONS"});
+    } else if (kind_ == Kind::Cuts && keyword.size() == 13 && keyword.ends_with("_COORDINATES") && keyword[0] >= 'X' &&
+               keyword[0] <= 'Z') {
+        read_cuts(static_cast<std::size_t>(keyword[0] - 'X'), keyword, in, values);
+    } else if (kind_ == Kind::Even && keyword == "ORIGIN") {
+        read_three(keyword, in, origin_);
+    } else if (kind_ == Kind::Even && (keyword == "SPACING" || keyword == "ASPECT_RATIO")) {
+        read_three(keyword, in, spacing_);
+    } else {
+        return false;
+    }
+    return true;
+}
+
+void VtkBlock::read_cuts(std::size_t axis, const std::string& keyword, TextScanner& in, VtkValues& values) {
+    const std::size_t count = in.count({keyword});
+    values.begin(values.read_type(keyword));
+    cuts_[axis].clear();
+    cuts_[axis].reserve(std::min(count, values.room()));
+    for (std::size_t i = 0; i < count; ++i) cuts_[axis].push_back(values.real({keyword, static_cast<std::int64_t>(i), count}));
+}
+
+void VtkBlock::expect_cells(const TextScanner& in) const {
+    if (grid_.cell_count() == 0) in.fail("there is no cell between " + size_text(grid_));
+}
+
+void VtkBlock::add_points(const TextScanner& in, MeshFile& into) {
+    if (lists_points() || has_points_) return;
+    has_points_ = true;
+    expect_cells(in);
+    constexpr std::size_t kBits = 8;  // a value takes at least one
+    if (grid_.point_count() > most_points(kBits * in.size())) {
+        in.fail("DIMENSIONS: " + size_text(grid_) + " are more than the file can have values for");
+    }
+    for (std::size_t a = 0; a < 3; ++a) {
+        const std::size_t along = grid_.points[a];
+        if (kind_ == Kind::Cuts) {
+            if (cuts_[a].size() == along) continue;
+            in.fail("there are " + std::to_string(cuts_[a].size()) + " " + "XYZ"[a] + "_COORDINATES, but DIMENSIONS says " +
+                    size_text(grid_));
+        }
+        for (std::size_t i = 0; i < along; ++i) cuts_[a].push_back(origin_[a] + spacing_[a] * static_cast<double>(i));
+    }
+    detail::add_points(into, cuts_, in.position());
+}
+
+void VtkBlock::add_cells(const TextScanner& in, MeshFile& into) const {
+    if (into.points.size() != grid_.point_count()) {
+        in.fail("there are " + std::to_string(into.points.size()) + " POINTS, but DIMENSIONS says " + size_text(grid_));
+    }
+    expect_cells(in);
+    add_hexes(into, grid_, 0, 0);
+}
 
 constexpr VtkType kInt{NumberType::Int32};
 

@@ -2,6 +2,8 @@
 #include "vtk_values.h"
 
 #include <algorithm>
+#include <charconv>
+#include <limits>
 #include <map>
 
 namespace subvol::detail {
@@ -104,6 +106,167 @@ void VtkValues::skip_text(const Place& place) {
 std::size_t VtkValues::room() const {
     if (!binary_) return in_.room_for(1);
     return type_.bits ? 8 * in_.bytes_left() : in_.bytes_left() / size_of(type_.number);
+}
+
+namespace {
+
+// Attribute sections with the same layout, KEYWORD name type, then the values; and their numbers of components.
+const std::map<std::string_view, std::size_t> kComponents{
+    {"VECTORS", 3}, {"NORMALS", 3}, {"TENSORS", 9}, {"TENSORS6", 6}, {"GLOBAL_IDS", 1}, {"PEDIGREE_IDS", 1}, {"EDGE_FLAGS", 1}};
+
+// Colours are bytes in a BINARY file and numbers from 0 to 1 in an ASCII one.
+constexpr VtkType kByte{NumberType::UInt8};
+
+int hex_digit(char c) {
+    int digit = -1;
+    std::from_chars(&c, &c + 1, digit, 16);
+    return digit;
+}
+
+// VTK encodes special characters in a name, such as a space as %20.
+std::string decoded(std::string_view name) {
+    std::string result;
+    for (std::size_t i = 0; i < name.size(); ++i) {
+        const int high = name[i] == '%' && i + 2 < name.size() ? hex_digit(name[i + 1]) : -1;
+        const int low = high >= 0 ? hex_digit(name[i + 2]) : -1;
+        result += low >= 0 ? static_cast<char>(16 * high + low) : name[i];
+        if (low >= 0) i += 2;
+    }
+    return as_utf8(result);
+}
+
+std::size_t checked_components(const TextScanner& in, std::size_t components) {
+    if (components < 1 || components > static_cast<std::size_t>(std::numeric_limits<int>::max())) {
+        in.fail("an array cannot have " + std::to_string(components) + " components");
+    }
+    return components;
+}
+
+}  // namespace
+
+void skip_metadata(TextScanner& in) {
+    in.line();
+    while (in.line().find_first_not_of(" \t\r") != std::string_view::npos) continue;
+}
+
+void VtkArrayReader::start_data(bool at_cells, std::size_t tuples) {
+    in_data_ = true;
+    at_cells_ = at_cells;
+    tuples_ = tuples;
+}
+
+bool VtkArrayReader::read_section(const std::string& keyword) {
+    if (keyword == "FIELD") {
+        read_field();
+        return true;
+    }
+    const auto plain = kComponents.find(keyword);
+    const bool known = plain != kComponents.end() || keyword == "SCALARS" || keyword == "LOOKUP_TABLE" ||
+                       keyword == "COLOR_SCALARS" || keyword == "TEXTURE_COORDINATES";
+    if (!known) return false;
+    if (!in_data_) in_.fail(keyword + " comes before POINT_DATA or CELL_DATA");
+    if (plain != kComponents.end()) {
+        read_attribute(keyword, plain->second);
+    } else if (keyword == "SCALARS") {
+        read_scalars();
+    } else if (keyword == "LOOKUP_TABLE") {
+        read_lookup_table();
+    } else if (keyword == "COLOR_SCALARS") {
+        read_colors();
+    } else {
+        read_texture_coordinates();
+    }
+    return true;
+}
+
+void VtkArrayReader::read_attribute(const std::string& keyword, std::size_t components) {
+    const std::string name(in_.word());
+    read_values(name, values_.read_type(keyword), components);
+}
+
+void VtkArrayReader::read_scalars() {
+    const std::string name(in_.word());
+    const VtkType type = values_.read_type("SCALARS " + in_quotes(name));
+    // The number of components is optional: it is there if the line goes on.
+    std::size_t components = 1;
+    TextScanner ahead = in_;
+    if (ahead.line().find_first_not_of(" \t\r") != std::string_view::npos) {
+        components = checked_components(in_, in_.count({"SCALARS: components"}));
+    }
+    if (upper_case(in_.peek()) == "LOOKUP_TABLE") {
+        in_.word();
+        in_.word();
+    }
+    read_values(name, type, components);
+}
+
+void VtkArrayReader::read_colors() {
+    const std::string name(in_.word());
+    read_values(name, kByte, checked_components(in_, in_.count({"COLOR_SCALARS"})));
+    if (!values_.binary()) return;
+    for (double& value : found_.arrays.back().values) value /= 255;
+}
+
+void VtkArrayReader::read_texture_coordinates() {
+    const std::string name(in_.word());
+    const std::size_t components = checked_components(in_, in_.count({"TEXTURE_COORDINATES"}));
+    read_values(name, values_.read_type("TEXTURE_COORDINATES"), components);
+}
+
+void VtkArrayReader::read_lookup_table() {
+    const std::string name(in_.word());
+    const std::size_t size = in_.count({"LOOKUP_TABLE"});
+    skip_values(name, kByte, 4 * size);
+}
+
+void VtkArrayReader::read_field() {
+    in_.word();  // the name of the field is not used
+    const std::size_t arrays = in_.count({"FIELD"});
+    for (std::size_t a = 0; a < arrays; ++a) {
+        if (upper_case(in_.peek()) == "METADATA") {
+            in_.word();
+            skip_metadata(in_);
+        }
+        read_field_array();
+    }
+}
+
+void VtkArrayReader::read_field_array() {
+    const std::string name(in_.word());
+    const std::string what = "FIELD array " + in_quotes(name);
+    const std::size_t components = in_.count({what});
+    const std::size_t tuples = in_.count({what});
+    const std::string type_word = upper_case(in_.peek());
+    if (type_word == "STRING" || type_word == "UTF8_STRING") {
+        in_.word();
+        values_.skip_texts(components * tuples, what);
+        found_.warnings.push_back("text array " + in_quotes(decoded(name)) + " ignored");
+        return;
+    }
+    const VtkType type = values_.read_type(what);
+    if (!in_data_) {
+        skip_values(name, type, components * tuples);
+        return;
+    }
+    if (tuples != tuples_) {
+        in_.fail(what + " has " + std::to_string(tuples) + " tuples", std::to_string(tuples_) + " are needed");
+    }
+    read_values(name, type, checked_components(in_, components));
+}
+
+void VtkArrayReader::read_values(const std::string& name, VtkType type, std::size_t components) {
+    FileArray array{decoded(name), static_cast<int>(components), at_cells_, {}};
+    const std::string what = "array " + in_quotes(name) + ": value";
+    const std::size_t count = tuples_ * components;
+    values_.begin(type);
+    array.values.reserve(std::min(count, values_.room()));
+    for (std::size_t i = 0; i < count; ++i) array.values.push_back(values_.real({what, static_cast<std::int64_t>(i)}));
+    found_.arrays.push_back(std::move(array));
+}
+
+void VtkArrayReader::skip_values(const std::string& name, VtkType type, std::size_t values) {
+    values_.begin(type);
+    values_.skip(values, "array " + in_quotes(name) + ": value");
 }
 
 }  // namespace subvol::detail

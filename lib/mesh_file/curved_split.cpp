@@ -1,0 +1,353 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <tuple>
+#include <unordered_map>
+
+#include "assemble.h"
+#include "curved_cells.h"
+#include "curved_pieces.h"
+#include "subvol/cell.h"
+#include "subvol/detail/number_text.h"
+#include "subvol/error.h"
+
+namespace subvol::detail {
+
+namespace {
+
+using Hex = std::array<Index, 8>;
+using Sizes = std::array<std::size_t, 3>;
+
+constexpr std::string_view kDegrees = "HigherOrderDegrees";
+constexpr std::string_view kWeights = "RationalWeights";
+
+// Replaces every hexahedron of a mesh with curved ones by a grid of smaller ones, with points on the curved shape.
+class CurvedSplit {
+public:
+    CurvedSplit(MeshFile& found, double tolerance, std::string_view file, const EntityNames& names)
+        : found_(found), tolerance_(tolerance), file_(file), names_(names), cells_(found.hexes.corners), edges_(cells_) {}
+
+    /// returns: whether the cells were split; they are not if none is bent
+    bool run() {
+        find_channels();
+        find_layouts();
+        refuse_not_finite();
+        find_ranges();
+        measure();
+        pieces_ = choose_pieces(cells_, edges_, bends_, tolerance_);
+        if (std::ranges::all_of(pieces_.of_class, [](std::size_t n) { return n == 1; })) {
+            report_straight();
+            return false;
+        }
+        fill();
+        report();
+        return true;
+    }
+
+private:
+    [[noreturn]] void fail(const std::string& message, const std::string& allowed = {}) const {
+        throw Error(ErrorCode::InvalidInput, message, std::string(file_), allowed);
+    }
+
+    // The channels of a node: three coordinates, the arrays at the points, and its weight.
+    void find_channels() {
+        const FileArray* weights = find_array(found_, kWeights, false, 1);
+        if (weights != nullptr) weights_ = weights->values;
+        degrees_ = find_array(found_, kDegrees, true, 3);
+        for (const FileArray& array : found_.arrays) {
+            if (array.at_cells || &array == weights) continue;
+            arrays_.push_back(&array);
+            channels_ += static_cast<std::size_t>(array.components);
+        }
+    }
+
+    void find_layouts() {
+        std::unordered_map<Index, std::size_t> places;
+        for (std::size_t k = 0; k < found_.curved.size(); ++k) places.emplace(found_.curved.numbers[k], k);
+        for (std::size_t c = 0; c < cells_.size(); ++c) {
+            const auto place = places.find(found_.hexes.numbers[c]);
+            curved_.push_back(place == places.end() ? kNone : static_cast<Index>(place->second));
+            const bool curved = curved_.back() != kNone;
+            curved_count_ += curved;
+            const CurvedOrder order = curved ? found_.curved.orders[curved_.back()] : CurvedOrder::Vtk;
+            const std::size_t nodes = nodes_of(c).size();
+            const Sizes degrees = curved ? degrees_of(c, order, nodes) : Sizes{1, 1, 1};
+            auto& layout = layouts_[{order, degrees, nodes}];
+            if (layout.slots.empty()) layout = curved_layout(order, degrees, nodes);
+            layout_of_.push_back(&layout);
+        }
+    }
+
+    [[nodiscard]] std::span<const Index> nodes_of(std::size_t c) const {
+        return curved_[c] == kNone ? std::span<const Index>(cells_[c]) : found_.curved.nodes_of(curved_[c]);
+    }
+
+    [[nodiscard]] Sizes degrees_of(std::size_t c, CurvedOrder order, std::size_t nodes) const {
+        const std::size_t number = found_.hexes.numbers[c];
+        Sizes degrees{};
+        const auto uniform = uniform_degree(order, nodes);
+        if (degrees_ != nullptr && order != CurvedOrder::Exodus && order != CurvedOrder::Gmsh) {
+            std::string list;
+            std::size_t needed = 1;
+            for (std::size_t a = 0; a < 3; ++a) {
+                const double degree = degrees_->values[3 * number + a];
+                list += " " + number_text(degree);
+                const bool valid = degree >= 1 && degree <= static_cast<double>(kMostDegree) && degree == std::floor(degree);
+                degrees[a] = valid ? static_cast<std::size_t>(degree) : 0;
+                needed *= valid ? degrees[a] + 1 : 0;
+            }
+            if (needed == nodes) return degrees;
+            // A file with cells of several kinds has zeros at those that need no degrees, or 2 at quadratic ones.
+            if ((list != " 0 0 0" && list != " 2 2 2") || !uniform) {
+                fail(names_.cell(number) + " has " + std::to_string(nodes) + " points, but the degrees" + list + " in " +
+                         in_quotes(kDegrees),
+                     "(p + 1)(q + 1)(r + 1) points for degrees p, q, r from 1 to " + std::to_string(kMostDegree));
+            }
+        }
+        if (!uniform) {
+            fail(
+                names_.cell(number) + " has " + std::to_string(nodes) + " points, and there is no array " + in_quotes(kDegrees),
+                "without it a curved hexahedron has (p + 1)³ points, p from 1 to " + std::to_string(kMostDegree));
+        }
+        return {*uniform, *uniform, *uniform};
+    }
+
+    void refuse_not_finite() const {
+        for (std::size_t c = 0; c < cells_.size(); ++c) {
+            for (const Index p : nodes_of(c)) {
+                for (const FileArray* array : arrays_) {
+                    const auto components = static_cast<std::size_t>(array->components);
+                    for (std::size_t k = 0; k < components; ++k) {
+                        if (std::isfinite(array->values[p * components + k])) continue;
+                        throw Error(ErrorCode::InvalidInput, "the value at " + names_.point(p) + " is not finite",
+                                    std::string(file_) + ", array " + in_quotes(array->name));
+                    }
+                }
+                if (!is_rational(c) || (weights_[p] > 0 && std::isfinite(weights_[p]))) continue;
+                fail("the rational weight of " + names_.point(p) + " is " + number_text(weights_[p]), "a positive number");
+            }
+        }
+    }
+
+    [[nodiscard]] bool is_rational(std::size_t c) const { return layout_of_[c]->bezier && !weights_.empty(); }
+
+    // The size of the mesh, and for each array the length of the vector of its components' ranges; 0 for a constant, and for
+    // whole numbers: they are the numbers of nodes or parts, and no smooth field that more cells would come nearer to.
+    void find_ranges() {
+        std::vector<double> low(channels_, std::numeric_limits<double>::infinity()), high(channels_, -low[0]);
+        std::vector<std::uint8_t> whole(channels_, 1);
+        for (std::size_t c = 0; c < cells_.size(); ++c) {
+            for (const Index p : nodes_of(c)) {
+                values_of_node(p);
+                for (std::size_t k = 0; k < channels_; ++k) {
+                    low[k] = std::min(low[k], node_[k]);
+                    high[k] = std::max(high[k], node_[k]);
+                    if (node_[k] != std::floor(node_[k])) whole[k] = 0;
+                }
+            }
+        }
+        std::size_t first = 0;
+        const auto add = [&](std::size_t count) {
+            double sum = 0, largest = 0;
+            bool counts = first == 0;
+            for (std::size_t k = first; k < first + count; ++k) {
+                counts = counts || whole[k] == 0;
+                sum += (high[k] - low[k]) * (high[k] - low[k]);
+                largest = std::max({largest, std::abs(low[k]), std::abs(high[k])});
+            }
+            const double range = std::sqrt(sum);
+            groups_.push_back({first, count, counts && range > 1e-9 * largest ? range : 0});
+            first += count;
+        };
+        add(3);
+        for (const FileArray* array : arrays_) add(static_cast<std::size_t>(array->components));
+    }
+
+    void values_of_node(Index p) {
+        node_.clear();
+        for (int a = 0; a < 3; ++a) node_.push_back(found_.points[p][a]);
+        for (const FileArray* array : arrays_) {
+            const auto components = static_cast<std::size_t>(array->components);
+            for (std::size_t k = 0; k < components; ++k) node_.push_back(array->values[p * components + k]);
+        }
+    }
+
+    [[nodiscard]] CurvedCell shape_of(std::size_t c) {
+        std::vector<double> values;
+        for (const Index p : nodes_of(c)) {
+            values_of_node(p);
+            values.insert(values.end(), node_.begin(), node_.end());
+            if (is_rational(c)) values.push_back(weights_[p]);
+        }
+        return {*layout_of_[c], values, channels_ + (is_rational(c) ? 1 : 0), is_rational(c)};
+    }
+
+    void measure() {
+        bends_.resize(cells_.size());
+        for (std::size_t c = 0; c < cells_.size(); ++c) {
+            const CurvedCell cell = shape_of(c);
+            for (std::size_t axis = 0; axis < 3; ++axis) {
+                if (cell.is_straight(axis)) continue;
+                const auto samples = cell.samples(axis);
+                for (const Group& group : groups_) {
+                    if (group.range == 0) continue;
+                    const auto bend = static_cast<float>(cell.bend(axis, samples, group.first, group.count) / 8 / group.range);
+                    float& largest = (group.first == 0 ? bends_[c].shape : bends_[c].fields)[axis];
+                    largest = std::max(largest, bend);
+                }
+            }
+        }
+    }
+
+    void fill() {
+        const SplitGrids grids(cells_, edges_, pieces_.of_class, found_.points.size());
+        if (grids.point_count() >= kNone) fail("its curved cells would be split into too many hexahedra", "a larger tolerance");
+        std::vector<Vec3> points(grids.point_count());
+        std::vector<std::vector<double>> values;
+        for (const FileArray* array : arrays_) values.emplace_back(points.size() * static_cast<std::size_t>(array->components));
+        std::vector<std::uint8_t> filled(points.size());
+        FileCells<8> hexes;
+        for (std::size_t c = 0; c < cells_.size(); ++c) {
+            const Sizes n = pieces_.of_cell(c);
+            const auto grid = grids.grid_of(c);
+            const auto at_grid = shape_of(c).at_grid(n);
+            for (std::size_t i = 0; i < grid.size(); ++i) {
+                const Index p = grid[i];
+                if (filled[p] != 0) continue;  // by a neighbour
+                filled[p] = 1;
+                const double* from = &at_grid[i * channels_];
+                points[p] = {from[0], from[1], from[2]};
+                from += 3;
+                for (std::size_t a = 0; a < arrays_.size(); ++a) {
+                    const auto components = static_cast<std::size_t>(arrays_[a]->components);
+                    std::copy_n(from, components, &values[a][p * components]);
+                    from += components;
+                }
+            }
+            add_hexes(hexes, grid, n, found_.hexes.numbers[c]);
+        }
+        found_.points = std::move(points);
+        std::size_t next = 0;
+        for (FileArray& array : found_.arrays) {
+            if (next < arrays_.size() && &array == arrays_[next]) array.values = std::move(values[next++]);
+        }
+        std::erase_if(found_.arrays, [](const FileArray& array) {
+            return array.at_cells ? array.name == kDegrees && array.components == 3
+                                  : array.name == kWeights && array.components == 1;
+        });
+        new_hexes_ = std::move(hexes);
+    }
+
+    static void add_hexes(FileCells<8>& hexes, const std::vector<Index>& grid, const Sizes& n, Index number) {
+        for (std::size_t z = 0; z < n[2]; ++z) {
+            for (std::size_t y = 0; y < n[1]; ++y) {
+                for (std::size_t x = 0; x < n[0]; ++x) {
+                    auto& hex = hexes.corners.emplace_back();
+                    for (std::size_t k = 0; k < 8; ++k) {
+                        const auto& at = kCornerParameters[k];
+                        const std::size_t i = x + static_cast<std::size_t>(at[0]), j = y + static_cast<std::size_t>(at[1]);
+                        hex[k] = grid[i + (n[0] + 1) * (j + (n[1] + 1) * (z + static_cast<std::size_t>(at[2])))];
+                    }
+                    hexes.numbers.push_back(number);
+                }
+            }
+        }
+    }
+
+    static std::string short_text(double value) {
+        std::array<char, 32> text{};
+        const auto [end, error] =
+            std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::scientific, 1);
+        return {text.data(), end};
+    }
+
+    void report_straight() {
+        found_.warnings.push_back(counted(curved_count_, "curved cell", "curved cells") +
+                                  (curved_count_ == 1 ? " is" : " are") + " straight to within " + short_text(tolerance_) +
+                                  " of the mesh's size: only the corners are used");
+    }
+
+    void report() {
+        double shape = 0, fields = 0;
+        for (std::size_t c = 0; c < cells_.size(); ++c) {
+            const Sizes n = pieces_.of_cell(c);
+            double of_shape = 0, of_fields = 0;
+            for (std::size_t a = 0; a < 3; ++a) {
+                const auto squared = static_cast<double>(n[a] * n[a]);
+                of_shape += bends_[c].shape[a] / squared;
+                of_fields += bends_[c].fields[a] / squared;
+            }
+            shape = std::max(shape, of_shape);
+            fields = std::max(fields, of_fields);
+        }
+        std::string warning = counted(curved_count_, "curved cell", "curved cells");
+        if (curved_count_ < cells_.size()) {
+            warning += " and " + counted(cells_.size() - curved_count_, "other", "others");
+        }
+        warning += " split into " + counted(new_hexes_.corners.size(), "hexahedron", "hexahedra") +
+                   " with points on the curved shape, which is within " + short_text(shape) + " of the mesh's size";
+        if (std::any_of(groups_.begin() + 1, groups_.end(), [](const Group& group) { return group.range > 0; })) {
+            warning += ", its fields within " + short_text(fields) + " of their ranges";
+        }
+        if (pieces_.limited) {
+            warning += "; for a tolerance of " + short_text(tolerance_) + " there would be more than " +
+                       std::to_string(pieces_.most_hexes);
+        }
+        found_.warnings.push_back(warning);
+        found_.hexes = std::move(new_hexes_);
+    }
+
+    struct Group {
+        std::size_t first, count;
+        double range;
+    };
+    using LayoutKey = std::tuple<CurvedOrder, Sizes, std::size_t>;
+
+    MeshFile& found_;
+    double tolerance_;
+    std::string_view file_;
+    const EntityNames& names_;
+    const std::vector<Hex>& cells_;
+    EdgeClasses edges_;
+    std::vector<double> weights_;
+    const FileArray* degrees_ = nullptr;
+    std::vector<const FileArray*> arrays_;
+    std::size_t channels_ = 3;
+    std::vector<double> node_;   // the channels of the node that was asked for last
+    std::vector<Index> curved_;  // the place of each cell among the curved ones, or kNone
+    std::size_t curved_count_ = 0;
+    std::map<LayoutKey, CurvedLayout> layouts_;
+    std::vector<const CurvedLayout*> layout_of_;
+    std::vector<Group> groups_;
+    std::vector<CellBend> bends_;
+    CurvedPieces pieces_;
+    FileCells<8> new_hexes_;
+};
+
+bool repeats_point(Hex hex) {
+    std::sort(hex.begin(), hex.end());
+    return std::adjacent_find(hex.begin(), hex.end()) != hex.end();
+}
+
+}  // namespace
+
+bool split_curved(MeshFile& found, double tolerance, std::string_view file, const EntityNames& names) {
+    if (found.curved.size() == 0) return false;
+    const bool others = !found.tets.corners.empty() || !found.prisms.corners.empty() || !found.pyramids.corners.empty();
+    const char* reason = others                                                    ? "beside cells of other kinds"
+                         : !found.sharp.empty()                                    ? "with sharp groups"
+                         : std::ranges::any_of(found.hexes.corners, repeats_point) ? "in a mesh with repeated points"
+                                                                                   : nullptr;
+    if (reason != nullptr) {
+        found.warnings.push_back(counted(found.curved.size(), "curved cell", "curved cells") + " " + reason +
+                                 ": only the corners are used");
+        return false;
+    }
+    return CurvedSplit(found, tolerance, file, names).run();
+}
+
+}  // namespace subvol::detail

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "subvol/hex_mesh.h"
+#include "subvol/sheets.h"
+
+namespace subvol {
+
+/// An array of a file. location: "point" or "cell"; min and max over its finite values, of vectors over their lengths
+struct FieldInfo {
+    std::string name;
+    std::string location;
+    int components = 1;
+    double min = 0;
+    double max = 0;
+};
+
+/// How to read tetrahedra, prisms and pyramids.
+///
+/// Split:  all cells, hexahedra too, are split by `split_into_hexes`, with a warning
+/// Ignore: they are left out, with a warning
+/// Refuse: they are an error
+enum class OtherCells { Split, Ignore, Refuse };
+
+/// What values at cells are taken for. They become values at points either way.
+///
+/// Mean: at each point the mean over its cells, weighted by their volumes
+/// Fit:  they are means over the cells, as finite volumes have them: the values at points are those whose limit volume (of the
+///       scheme MCQ) has these means, as `fit_cell_means` finds them. A warning says how well
+/// Auto: Fit for OpenFOAM, Mean for all others
+enum class CellValues { Auto, Mean, Fit };
+
+/// sharp: names of groups of faces and edges (MEDIT, Gmsh): their faces inside the mesh become sharp faces, their edges on the
+///       boundary or on such faces creases. In Gmsh the name of a physical group of dimension 2 or 1, or its number; in MEDIT a
+///       reference of quadrilaterals, triangles and edges, or "Ridges"
+/// weld: joins points that are no farther apart than this (world units; 0: at exactly the same place), as the borders between
+///       pieces of a file need. The first of them is kept, with its values; a warning gives the number. Nothing: no welding
+/// curved_tolerance: curved hexahedra are split into smaller ones, with points on their true shape, so often that these lie
+///       within this part of the mesh's diagonal from the shape, and fields within 400 times this part of their ranges; in at
+///       most 32,768 hexahedra, or 4 for each cell. Arrays of whole numbers do not count. Greater than 0. Nothing: only their
+///       corners are used
+/// step: of a series (`open_series`), from 0. Nothing: the last one
+/// blocks: the names of the parts of the mesh that are read (`ReadResult::blocks`). None: all
+/// sheets_alone: a file of sheets and curves without any cell is read too. Its mesh has no cells, so most calls refuse it
+struct ReadOptions {
+    OtherCells other_cells = OtherCells::Split;
+    std::optional<double> weld = {};
+    std::vector<std::string> sharp = {};
+    std::optional<double> curved_tolerance = 5e-6;
+    std::optional<std::size_t> step = {};
+    std::vector<std::string> blocks = {};
+    CellValues cell_values = CellValues::Auto;
+    bool sheets_alone = false;
+};
+
+/// A named part of a mesh. cells: of all kinds, as the file has them
+struct MeshBlock {
+    std::string name;
+    std::size_t cells = 0;
+};
+
+/// blocks:     the parts that were read, of formats that have such parts
+/// cell_means: only if values at cells were fitted: the values of these fields in the file, for each cell of the mesh
+/// cell_parts: for each cell of the mesh the number of the file's cell that it is a part of; empty if there are no such fields
+/// sheets:     the quads and lines of VTK and Gmsh files beside hexahedra that were not split, but for those that are faces and
+///             edges of the hexahedra
+struct ReadResult {
+    HexMesh mesh;  // validated; a cell array became a point array by the volume-weighted mean over incident cells
+    std::vector<FieldInfo> fields;
+    std::vector<std::string> warnings;  // one sentence for each thing left out, turned round or converted
+    std::vector<MeshBlock> blocks = {};
+    std::vector<Attribute> cell_means = {};
+    std::vector<Index> cell_parts = {};
+    Sheets sheets = {};
+};
+
+}  // namespace subvol

@@ -1,0 +1,336 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "join_pieces.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <optional>
+#include <set>
+#include <unordered_map>
+
+#include "assemble.h"
+#include "subvol/error.h"
+#include "text_scanner.h"
+
+namespace subvol::detail {
+
+std::size_t cell_count(const MeshFile& part) {
+    std::size_t count = 0;
+    for (const FileArray& array : part.arrays) {
+        if (array.at_cells) count = std::max(count, array.values.size() / static_cast<std::size_t>(array.components));
+    }
+    each_kind(part, [&](const auto& cells) {
+        for (const Index number : cells.numbers) count = std::max(count, std::size_t{number} + 1);
+    });
+    return count;
+}
+
+std::string joining_report(std::size_t parts, std::string_view word, std::size_t joined, const std::string& by,
+                           const std::string& order_by) {
+    return counted(parts, word, std::string(word) + "s") + " put together; " + counted(joined, "point", "points") +
+           " joined with those of another, by " + by + (order_by.empty() ? "" : "; cells in the order of " + order_by);
+}
+
+std::string not_everywhere(const std::string& name, std::string_view word) {
+    return "array " + in_quotes(name) + " is not in every " + std::string(word) + ": ignored";
+}
+
+std::string does_not_number(std::string_view name, std::string_view things) {
+    return "array " + in_quotes(std::string(name)) + " does not number the " + std::string(things) + ": not used";
+}
+
+namespace {
+
+struct PointHash {
+    std::size_t operator()(const Vec3& x) const {
+        std::uint64_t hash = 0;
+        for (int a = 0; a < 3; ++a)
+            hash = (std::rotl(hash, 21) ^ std::bit_cast<std::uint64_t>(x[a] + 0.0)) * 0x9E3779B97F4A7C15u;
+        return static_cast<std::size_t>(hash ^ (hash >> 32));
+    }
+};
+
+class Joiner {
+public:
+    Joiner(std::vector<MeshFile>&& pieces, std::string_view word, std::string_view file)
+        : pieces_(std::move(pieces)), word_(word), file_(file) {}
+
+    MeshFile run() {
+        std::size_t points = 0, cells = 0;
+        for (const MeshFile& piece : pieces_) {
+            points += piece.points.size();
+            cells += cell_count(piece);
+        }
+        if (points >= kNone || cells >= kNone) {
+            throw Error(ErrorCode::InvalidInput, "too many points or cells", std::string(file_));
+        }
+        all_.points.reserve(points);
+        if (!join_by_numbers()) join_by_places();
+        for (MeshFile& piece : pieces_) add_cells(piece);
+        order_cells();
+        add_arrays();
+        std::set<std::string> said;
+        for (const MeshFile& piece : pieces_) {
+            for (const std::string& warning : piece.warnings) {
+                if (said.insert(warning).second) all_.warnings.push_back(warning);
+            }
+            all_.cut = all_.cut || piece.cut;
+            all_.blocks.insert(all_.blocks.end(), piece.blocks.begin(), piece.blocks.end());
+        }
+        all_.warnings.push_back(joining_report(pieces_.size(), word_, joined_, by_, order_by_));
+        return std::move(all_);
+    }
+
+private:
+    // Adds the points of a piece; find(point of the piece) is the place in the whole of one to join it with, or kNone.
+    template <class Find>
+    void add_points(const MeshFile& piece, const Find& find) {
+        auto& points = places_.emplace_back();
+        points.reserve(piece.points.size());
+        for (std::size_t p = 0; p < piece.points.size(); ++p) {
+            const Index same = find(p);
+            if (same != kNone) {
+                ++joined_;
+                points.push_back(same);
+                continue;
+            }
+            points.push_back(static_cast<Index>(all_.points.size()));
+            sources_.push_back({places_.size() - 1, p});
+            all_.points.push_back(piece.points[p]);
+        }
+    }
+
+    // Returns whether that is possible: numbers that are whole and not repeated in a piece, each at one place.
+    bool join_by_numbers() {
+        std::vector<const FileArray*> numbers;
+        for (const std::string_view name : kPointNumberArrays) {
+            numbers.clear();
+            for (const MeshFile& piece : pieces_) {
+                if (const FileArray* array = find_array(piece, name, false, 1)) numbers.push_back(array);
+            }
+            if (numbers.size() == pieces_.size()) break;
+        }
+        if (pieces_.empty() || numbers.size() != pieces_.size()) return false;
+        std::unordered_map<double, Index> known;
+        Box box;
+        for (const MeshFile& piece : pieces_) {
+            for (const Vec3& x : piece.points) box.add(x);
+        }
+        const double near = kNearOfDiagonal * box.diagonal();
+        for (std::size_t k = 0; k < pieces_.size(); ++k) {
+            const auto& of_piece = numbers[k]->values;
+            bool sound = true;
+            const std::size_t before = all_.points.size();
+            add_points(pieces_[k], [&](std::size_t p) {
+                const double number = of_piece[p];
+                sound = sound && number == std::floor(number);
+                const auto [at, is_new] = known.try_emplace(number, static_cast<Index>(all_.points.size()));
+                if (is_new) return kNone;
+                sound = sound && at->second < before && glm::distance(all_.points[at->second], pieces_[k].points[p]) <= near;
+                return at->second;
+            });
+            if (sound) continue;
+            all_.warnings.push_back(does_not_number(numbers[k]->name, "points"));
+            all_.points.clear();
+            places_.clear();
+            sources_.clear();
+            joined_ = 0;
+            return false;
+        }
+        by_ = in_quotes(numbers[0]->name);
+        sort_by(numbers);
+        return true;
+    }
+
+    // Puts the points in the order of their numbers, so that cells are cut as they would be in the whole mesh.
+    void sort_by(const std::vector<const FileArray*>& numbers) {
+        std::vector<Index> order(all_.points.size()), place(order.size());
+        std::iota(order.begin(), order.end(), Index{0});
+        const auto number = [&](Index p) { return numbers[sources_[p].first]->values[sources_[p].second]; };
+        std::ranges::sort(order, [&](Index a, Index b) { return number(a) < number(b); });
+        std::vector<Vec3> points;
+        std::vector<std::pair<std::size_t, std::size_t>> sources;
+        for (const Index p : order) {
+            place[p] = static_cast<Index>(points.size());
+            points.push_back(all_.points[p]);
+            sources.push_back(sources_[p]);
+        }
+        all_.points = std::move(points);
+        sources_ = std::move(sources);
+        for (auto& of_piece : places_) {
+            for (Index& p : of_piece) p = place[p];
+        }
+    }
+
+    void join_by_places() {
+        std::unordered_map<Vec3, Index, PointHash> known;
+        for (const MeshFile& piece : pieces_) {
+            const std::size_t before = all_.points.size();
+            add_points(piece, [&](std::size_t p) {
+                const auto at = known.find(piece.points[p]);
+                return at == known.end() ? kNone : at->second;
+            });
+            for (std::size_t p = before; p < all_.points.size(); ++p) known.try_emplace(all_.points[p], static_cast<Index>(p));
+        }
+        by_ = "their places";
+    }
+
+    void add_cells(MeshFile& piece) {
+        const std::vector<Index>& points = places_[first_cells_.size()];
+        const auto first = static_cast<Index>(cells_);
+        first_cells_.push_back(cells_);
+        cells_ += cell_count(piece);
+        const auto append = [&](auto& to, auto& from) {
+            for (auto& corners : from.corners) {
+                for (Index& p : corners) p = points[p];
+                to.corners.push_back(corners);
+            }
+            for (const Index number : from.numbers) to.numbers.push_back(first + number);
+        };
+        append(all_.hexes, piece.hexes);
+        append(all_.tets, piece.tets);
+        append(all_.prisms, piece.prisms);
+        append(all_.pyramids, piece.pyramids);
+        std::vector<Index> nodes;
+        for (std::size_t k = 0; k < piece.curved.size(); ++k) {
+            nodes.clear();
+            for (const Index p : piece.curved.nodes_of(k)) nodes.push_back(points[p]);
+            all_.curved.add(first + piece.curved.numbers[k], piece.curved.orders[k], nodes);
+        }
+    }
+
+    // Puts the cells in the order of their numbers, so that it does not depend on how the mesh was cut. Ghosts have the numbers
+    // of other cells and go beside them; they are left out later.
+    void order_cells() {
+        for (const std::string_view name : kCellNumberArrays) {
+            std::vector<double> numbers(cells_);
+            std::vector<std::uint8_t> counts(cells_, 1);  // the cell is no ghost
+            bool everywhere = cells_ > 0;
+            for (std::size_t k = 0; k < pieces_.size() && everywhere; ++k) {
+                const std::size_t end = k + 1 < pieces_.size() ? first_cells_[k + 1] : cells_;
+                if (end == first_cells_[k]) continue;
+                const FileArray* array = find_array(pieces_[k], name, true, 1);
+                everywhere = array != nullptr;
+                if (!everywhere) break;
+                const FileArray* ghosts = find_array(pieces_[k], kGhostArray, true, 1);
+                for (std::size_t c = first_cells_[k]; c < end; ++c) {
+                    numbers[c] = array->values[c - first_cells_[k]];
+                    if (ghosts) counts[c] = !leaves_out_cell(ghosts->values[c - first_cells_[k]]);
+                }
+            }
+            if (!everywhere) continue;
+            if (order_by(numbers, counts)) {
+                order_by_ = in_quotes(std::string(name));
+                for (MeshFile& piece : pieces_) {  // their means at points would mean nothing
+                    std::erase_if(piece.arrays, [&](const FileArray& array) { return array.at_cells && array.name == name; });
+                }
+            } else {
+                all_.warnings.push_back(does_not_number(name, "cells"));
+            }
+            return;
+        }
+    }
+
+    // Returns whether the numbers are those of the cells: whole, and different for cells that count.
+    bool order_by(const std::vector<double>& numbers, const std::vector<std::uint8_t>& counts) {
+        std::vector<double> sorted;
+        bool whole = true;
+        each_kind(all_, [&](const auto& cells) {
+            for (const Index c : cells.numbers) {
+                whole = whole && numbers[c] == std::floor(numbers[c]);
+                if (counts[c]) sorted.push_back(numbers[c]);
+            }
+        });
+        if (!whole) return false;
+        std::ranges::sort(sorted);
+        if (std::ranges::adjacent_find(sorted) != sorted.end()) return false;
+        each_kind(all_, [&](auto& cells) {
+            const auto before = [&](Index a, Index b) { return numbers[a] != numbers[b] ? numbers[a] < numbers[b] : a < b; };
+            if (std::ranges::is_sorted(cells.numbers, before)) return;
+            std::vector<std::size_t> order(cells.numbers.size());
+            std::iota(order.begin(), order.end(), std::size_t{0});
+            std::ranges::sort(order, [&](std::size_t a, std::size_t b) { return before(cells.numbers[a], cells.numbers[b]); });
+            std::remove_reference_t<decltype(cells)> ordered;
+            ordered.corners.reserve(order.size());
+            ordered.numbers.reserve(order.size());
+            for (const std::size_t place : order) {
+                ordered.corners.push_back(cells.corners[place]);
+                ordered.numbers.push_back(cells.numbers[place]);
+            }
+            cells = std::move(ordered);
+        });
+        return true;
+    }
+
+    void add_arrays() {
+        // The first of each name, and which arrays of all pieces have its name and components; of a piece the first one.
+        struct Named {
+            const FileArray* first;
+            std::vector<std::pair<std::size_t, const FileArray*>> of_pieces;
+        };
+        std::vector<Named> named;
+        std::map<std::pair<std::string_view, bool>, std::size_t> places;
+        for (const MeshFile& piece : pieces_) {
+            for (const FileArray& array : piece.arrays) {
+                if (places.try_emplace({array.name, array.at_cells}, named.size()).second) named.push_back({&array, {}});
+            }
+        }
+        for (std::size_t k = 0; k < pieces_.size(); ++k) {
+            for (const FileArray& array : pieces_[k].arrays) {
+                Named& of_name = named[places.at({array.name, array.at_cells})];
+                const bool has_one = !of_name.of_pieces.empty() && of_name.of_pieces.back().first == k;
+                if (!has_one && array.components == of_name.first->components) of_name.of_pieces.emplace_back(k, &array);
+            }
+        }
+        for (const auto& [first, of_pieces] : named) {
+            const bool ghosts = first->name == kGhostArray;  // where it is missing there are none
+            if (!ghosts && of_pieces.size() < pieces_.size()) {
+                all_.warnings.push_back(not_everywhere(first->name, word_));
+                continue;
+            }
+            std::vector<const FileArray*> parts(pieces_.size(), nullptr);
+            for (const auto& [piece, array] : of_pieces) parts[piece] = array;
+            all_.arrays.push_back(joined(*first, parts));
+        }
+    }
+
+    [[nodiscard]] FileArray joined(const FileArray& like, const std::vector<const FileArray*>& parts) const {
+        const auto components = static_cast<std::size_t>(like.components);
+        FileArray array{like.name, like.components, like.at_cells, {}};
+        if (!like.at_cells) {
+            array.values.reserve(all_.points.size() * components);
+            for (const auto& [piece, p] : sources_) {
+                for (std::size_t c = 0; c < components; ++c) {
+                    array.values.push_back(parts[piece] ? parts[piece]->values[p * components + c] : 0);
+                }
+            }
+            return array;
+        }
+        array.values.resize(cells_ * components);
+        for (std::size_t k = 0; k < parts.size(); ++k) {
+            if (parts[k] == nullptr) continue;
+            std::ranges::copy(parts[k]->values,
+                              array.values.begin() + static_cast<std::ptrdiff_t>(first_cells_[k] * components));
+        }
+        return array;
+    }
+
+    std::vector<MeshFile> pieces_;
+    std::string_view word_, file_;
+    MeshFile all_;
+    std::vector<std::vector<Index>> places_;                    // of each piece's points in the whole
+    std::vector<std::pair<std::size_t, std::size_t>> sources_;  // of each point of the whole: piece and point
+    std::vector<std::size_t> first_cells_;
+    std::size_t cells_ = 0, joined_ = 0;
+    std::string by_, order_by_;
+};
+
+}  // namespace
+
+MeshFile join_pieces(std::vector<MeshFile>&& pieces, std::string_view word, std::string_view file) {
+    return Joiner(std::move(pieces), word, file).run();
+}
+
+}  // namespace subvol::detail

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "mesh_file.h"
+
+namespace subvol::detail {
+
+/// The arrays that number points and cells over all parts of a mesh, the first choice first.
+inline constexpr std::array<std::string_view, 3> kPointNumberArrays{"GlobalNodeId", "GlobalNodeID", "GlobalPointIds"};
+inline constexpr std::array<std::string_view, 3> kCellNumberArrays{"GlobalCellId", "GlobalElementId", "GlobalCellIds"};
+
+/// Points of different parts with the same number are no farther apart than this part of the diagonal of all points.
+inline constexpr double kNearOfDiagonal = 1e-6;
+
+/// The number of cells of all kinds that the part's file has.
+[[nodiscard]] std::size_t cell_count(const MeshFile& part);
+
+/// "3 pieces put together; 20 points joined with those of another, by their places; cells in the order of …"
+///
+/// by:       "their places", or the array in quotes
+/// order_by: the array in quotes; empty: none
+[[nodiscard]] std::string joining_report(std::size_t parts, std::string_view word, std::size_t joined, const std::string& by,
+                                         const std::string& order_by);
+
+/// What is said of an array that is not in every part, and of one that should number things and does not. things: "points"
+[[nodiscard]] std::string not_everywhere(const std::string& name, std::string_view word);
+[[nodiscard]] std::string does_not_number(std::string_view name, std::string_view things);
+
+/// Puts the parts of a mesh together, one after the other, and joins their points: those with the same number in an array
+/// `GlobalNodeId`, where all parts have it and it numbers places; else those of different parts at exactly the same place.
+/// The first of them is kept, with its values. Cells are put in the order of an array `GlobalCellId` or `GlobalElementId` where
+/// all parts with cells have it and no two cells (but ghosts) have the same number; that array is then left out, as are arrays
+/// that a part lacks. Adds warnings with the counts.
+///
+/// word: "piece" or "block"
+[[nodiscard]] MeshFile join_pieces(std::vector<MeshFile>&& pieces, std::string_view word, std::string_view file);
+
+}  // namespace subvol::detail

@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "mesh_file.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "subvol/cell.h"
+#include "subvol/detail/printable.h"
+#include "subvol/error.h"
+#include "subvol/index.h"
+
+namespace subvol::detail {
+
+namespace {
+
+template <std::size_t N, std::size_t Parts>
+std::vector<std::uint8_t> are_parts(std::span<const std::array<Index, N>> items, std::span<const std::array<Index, 8>> hexes,
+                                    std::size_t points, const std::array<std::array<int, N>, Parts>& parts) {
+    using Item = std::pair<std::array<Index, N>, std::size_t>;
+    std::vector<Item> sorted;
+    std::vector<std::uint8_t> used(points, 0), found(items.size(), 0);
+    for (std::size_t i = 0; i < items.size(); ++i) {
+        sorted.emplace_back(items[i], i);
+        std::sort(sorted.back().first.begin(), sorted.back().first.end());
+        for (const Index p : items[i]) used[p] = 1;
+    }
+    if (items.empty()) return found;
+    std::sort(sorted.begin(), sorted.end());
+    for (const auto& hex : hexes) {
+        for (const auto& part : parts) {
+            std::array<Index, N> key;
+            bool all = true;
+            for (std::size_t k = 0; k < N; ++k) {
+                key[k] = hex[static_cast<std::size_t>(part[k])];
+                all = all && used[key[k]] != 0;
+            }
+            if (!all) continue;
+            std::sort(key.begin(), key.end());
+            auto at = std::lower_bound(sorted.begin(), sorted.end(), Item{key, 0});
+            for (; at != sorted.end() && at->first == key; ++at) found[at->second] = 1;
+        }
+    }
+    return found;
+}
+
+// A flag for each quad: whether it is a face of one of the hexahedra; for each line: whether it is an edge of one.
+//
+// points: how many there are
+// cost:   O(n log n) in the quads or lines, and a pass over the hexahedra
+std::vector<std::uint8_t> are_faces(std::span<const std::array<Index, 4>> quads, std::span<const std::array<Index, 8>> hexes,
+                                    std::size_t points) {
+    return are_parts(quads, hexes, points, kCellFaces);
+}
+
+std::vector<std::uint8_t> are_edges(std::span<const std::array<Index, 2>> lines, std::span<const std::array<Index, 8>> hexes,
+                                    std::size_t points) {
+    return are_parts(lines, hexes, points, kCellEdges);
+}
+
+std::size_t product(const std::array<std::size_t, 3>& factors) {
+    std::size_t result = 1;
+    for (const std::size_t factor : factors) {
+        if (factor == 0) return 0;
+    }
+    for (const std::size_t factor : factors) {
+        if (factor >= kNone / result) return kNone;
+        result *= factor;
+    }
+    return result;
+}
+
+std::array<std::size_t, 3> cells_along(const StructuredGrid& grid) {
+    std::array<std::size_t, 3> cells{};
+    for (std::size_t a = 0; a < 3; ++a) cells[a] = grid.points[a] == 0 ? 0 : grid.points[a] - 1;
+    return cells;
+}
+
+}  // namespace
+
+void add_point(MeshFile& file, const Vec3& point, std::size_t position) {
+    if (!std::isfinite(point.x) || !std::isfinite(point.y) || !std::isfinite(point.z)) {
+        file.not_finite.push_back({file.points.size(), position});
+    }
+    file.points.push_back(point);
+}
+
+void add_left_out_warning(MeshFile& found, const std::string& list, std::string_view file) {
+    bool has_cells = !found.quads.corners.empty() || !found.lines.corners.empty();  // sheets that are wanted
+    each_kind(found, [&](const auto& cells) { has_cells = has_cells || !cells.corners.empty(); });
+    if (!has_cells) {
+        throw Error(ErrorCode::InvalidInput, "no hexahedra" + (list.empty() ? "" : ", but " + list + ", which are ignored"),
+                    std::string(file));
+    }
+    if (!list.empty()) found.warnings.push_back(list + " ignored");
+}
+
+std::array<std::size_t, 2> drop_parts_of_cells(MeshFile& found, bool alone) {
+    if (found.quads.corners.empty() && found.lines.corners.empty()) return {0, 0};
+    const bool others = !found.tets.corners.empty() || !found.prisms.corners.empty() || !found.pyramids.corners.empty();
+    if (others || found.curved.size() > 0 || (found.hexes.corners.empty() && !alone)) {
+        const std::array all{found.quads.corners.size(), found.lines.corners.size()};
+        found.quads = {};
+        found.lines = {};
+        return all;
+    }
+    const std::size_t points = found.points.size();
+    const auto of_cells = [](auto& cells, const std::vector<std::uint8_t>& flags) {
+        return drop_where(cells, [&](std::size_t c) { return flags[c] != 0; });
+    };
+    return {of_cells(found.quads, are_faces(found.quads.corners, found.hexes.corners, points)),
+            of_cells(found.lines, are_edges(found.lines.corners, found.hexes.corners, points))};
+}
+
+const FileArray* find_array(const MeshFile& found, std::string_view name, bool at_cells, int components) {
+    const auto place = std::ranges::find_if(found.arrays, [&](const FileArray& array) {
+        return array.name == name && array.at_cells == at_cells && array.components == components;
+    });
+    return place == found.arrays.end() ? nullptr : &*place;
+}
+
+std::vector<std::uint8_t> used_points(const MeshFile& found) {
+    std::vector<std::uint8_t> used(found.points.size());
+    each_kind(found, [&](const auto& cells) {
+        for (const auto& cell : cells.corners) {
+            for (const Index p : cell) used[p] = 1;
+        }
+    });
+    for (const Index p : found.curved.nodes) used[p] = 1;
+    return used;
+}
+
+std::size_t StructuredGrid::point_count() const {
+    return product(points);
+}
+
+std::size_t StructuredGrid::cell_count() const {
+    return product(cells_along(*this));
+}
+
+std::string size_text(const StructuredGrid& grid) {
+    const auto& [i, j, k] = grid.points;
+    return std::to_string(i) + " x " + std::to_string(j) + " x " + std::to_string(k) + " points";
+}
+
+std::size_t most_points(std::size_t values) {
+    constexpr std::size_t kFew = 1 << 16;
+    return kFew + values;
+}
+
+void add_points(MeshFile& into, const std::array<std::vector<double>, 3>& at, std::size_t position) {
+    for (const double z : at[2]) {
+        for (const double y : at[1]) {
+            for (const double x : at[0]) add_point(into, {x, y, z}, position);
+        }
+    }
+}
+
+void add_hexes(MeshFile& into, const StructuredGrid& grid, std::size_t first_point, std::size_t first_cell) {
+    const auto cells = cells_along(grid);
+    const std::size_t row = grid.points[0], layer = grid.points[0] * grid.points[1];
+    std::size_t number = first_cell;
+    for (std::size_t k = 0; k < cells[2]; ++k) {
+        for (std::size_t j = 0; j < cells[1]; ++j) {
+            for (std::size_t i = 0; i < cells[0]; ++i) {
+                const std::size_t p = first_point + i + j * row + k * layer;
+                auto& corners = into.hexes.corners.emplace_back();
+                const std::array<std::size_t, 4> bottom{p, p + 1, p + 1 + row, p + row};
+                for (std::size_t c = 0; c < 4; ++c) {
+                    corners[c] = static_cast<Index>(bottom[c]);
+                    corners[c + 4] = static_cast<Index>(bottom[c] + layer);
+                }
+                into.hexes.numbers.push_back(static_cast<Index>(number++));
+            }
+        }
+    }
+}
+
+BlockChoice::BlockChoice(std::span<const std::string> wanted, const std::vector<std::string>& there, std::string_view file)
+    : wanted_(wanted.begin(), wanted.end()) {
+    for (const std::string& name : wanted_) {
+        if (std::ranges::find(there, name) != there.end()) continue;
+        constexpr std::size_t kListed = 20;
+        std::string list;
+        for (std::size_t b = 0; b < std::min(there.size(), kListed); ++b) list += (b == 0 ? "" : ", ") + printable(there[b]);
+        if (there.size() > kListed) list += " and " + std::to_string(there.size() - kListed) + " more";
+        throw Error(ErrorCode::InvalidInput, "there is no block " + in_quotes(name), std::string(file),
+                    list.empty() ? "it has none" : "it has: " + list);
+    }
+}
+
+std::size_t chosen_step(const ReadOptions& options, std::size_t steps, std::string_view file,
+                        std::vector<std::string>& warnings) {
+    if (!options.step) {
+        if (steps > 1) warnings.push_back("of " + std::to_string(steps) + " steps the last one is taken");
+        return steps - 1;
+    }
+    if (*options.step < steps) return *options.step;
+    throw Error(ErrorCode::InvalidInput, "there is no step " + std::to_string(*options.step), std::string(file),
+                steps == 1 ? "it has one step, number 0" : "steps are 0 to " + std::to_string(steps - 1));
+}
+
+}  // namespace subvol::detail

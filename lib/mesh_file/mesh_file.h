@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <set>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "curved_cells.h"
+#include "subvol/index.h"
+#include "subvol/read_options.h"
+#include "subvol/vec.h"
+#include "text_scanner.h"
+
+namespace subvol::detail {
+
+/// An array of a file. at_cells: one tuple for each cell of the file, of any kind; else one for each point
+struct FileArray {
+    std::string name;
+    int components = 1;
+    bool at_cells = false;
+    std::vector<double> values;
+};
+
+/// The cells of one kind. numbers: the number of each among all cells of the file, from 0; empty if no array needs it
+template <std::size_t N>
+struct FileCells {
+    std::vector<std::array<Index, N>> corners;
+    std::vector<Index> numbers;
+};
+
+/// All nodes of the curved ones among the hexahedra, which have their corners as all others.
+///
+/// numbers: as in FileCells
+/// ends:    of the nodes of each cell
+struct CurvedHexes {
+    std::vector<Index> numbers;
+    std::vector<CurvedOrder> orders;
+    std::vector<std::size_t> ends;
+    std::vector<Index> nodes;
+
+    [[nodiscard]] std::size_t size() const { return numbers.size(); }
+    [[nodiscard]] std::span<const Index> nodes_of(std::size_t k) const {
+        const std::size_t begin = k == 0 ? 0 : ends[k - 1];
+        return std::span(nodes).subspan(begin, ends[k] - begin);
+    }
+    void add(std::size_t number, CurvedOrder order, std::span<const Index> of_cell) {
+        numbers.push_back(static_cast<Index>(number));
+        orders.push_back(order);
+        nodes.insert(nodes.end(), of_cell.begin(), of_cell.end());
+        ends.push_back(nodes.size());
+    }
+};
+
+/// The faces and edges of the groups that ReadOptions::sharp names. A triangle repeats its last corner.
+struct FileTags {
+    std::vector<std::array<Index, 4>> faces;
+    std::vector<std::array<Index, 2>> edges;
+
+    [[nodiscard]] bool empty() const { return faces.empty() && edges.empty(); }
+};
+
+/// The contents of a file as a reader found them; `assemble` makes a mesh of them.
+///
+/// prisms:     of either handedness, since formats differ; otherwise as in MixedCells
+/// quads, lines: of sheets and curves; they need numbers
+/// cut:        the cells fit together only if all are cut into tetrahedra
+/// turned:     the hexahedra stay as they are, also where their volume is negative
+/// not_finite: points with a coordinate that is not finite, and their position in the text: an error if a cell uses the point
+struct MeshFile {
+    struct NotFinite {
+        std::size_t point;
+        std::size_t position;
+    };
+    std::vector<Vec3> points;
+    FileCells<8> hexes;
+    FileCells<4> tets;
+    FileCells<6> prisms;
+    FileCells<5> pyramids;
+    FileCells<4> quads;
+    FileCells<2> lines;
+    CurvedHexes curved;
+    FileTags sharp;
+    std::vector<FileArray> arrays;
+    std::vector<NotFinite> not_finite;
+    std::vector<std::string> warnings;
+    std::vector<MeshBlock> blocks;
+    bool cut = false, turned = false;
+};
+
+/// Calls call(cells) for the FileCells of each kind of cells with a volume.
+template <class File, class Call>
+void each_kind(File& file, const Call& call) {
+    call(file.hexes);
+    call(file.tets);
+    call(file.prisms);
+    call(file.pyramids);
+}
+
+/// A format's words for a point and a cell, and the number that it gives to the first of them, for messages.
+///
+/// point_numbers: the number of each point where they are not consecutive
+struct EntityNames {
+    std::string_view point_word;
+    std::string_view cell_word;
+    std::size_t first;
+    std::span<const std::int64_t> point_numbers = {};
+
+    /// "vertex 13" for point 12 of a format that counts from 1.
+    [[nodiscard]] std::string point(std::size_t p) const {
+        return std::string(point_word) + " " +
+               (point_numbers.empty() ? std::to_string(p + first) : std::to_string(point_numbers[p]));
+    }
+    [[nodiscard]] std::string cell(std::size_t c) const { return std::string(cell_word) + " " + std::to_string(c + first); }
+};
+
+/// Appends a point. position: where it was read in the text
+void add_point(MeshFile& file, const Vec3& point, std::size_t position);
+
+/// Reads three coordinates and appends them as a point. in: a TextScanner, VtkValues or GmshValues; of: as in Place
+template <class Numbers>
+void read_point(Numbers& in, MeshFile& file, const EntityNames& names, std::size_t of) {
+    const Place place{names.point_word, static_cast<std::int64_t>(file.points.size() + names.first), of};
+    Vec3 point;
+    for (int i = 0; i < 3; ++i) point[i] = in.real(place);
+    add_point(file, point, in.position());
+}
+
+/// Appends a warning about the cells that the reader left out; refuses a file that has no other cells.
+///
+/// list: their kinds and counts, such as "4 lines, 2 quads"; empty if there are none
+void add_left_out_warning(MeshFile& found, const std::string& list, std::string_view file);
+
+/// Leaves out the quads that are faces of hexahedra and the lines that are edges of them, and all of them if there are other
+/// cells or curved ones, or no cells.
+///
+/// alone: keeps them if there are no cells
+/// returns: the numbers of quads and of lines that were left out
+std::array<std::size_t, 2> drop_parts_of_cells(MeshFile& found, bool alone);
+
+/// Leaves out the cells for which drops(number in the list) is true. Returns how many.
+template <std::size_t N, class Drops>
+std::size_t drop_where(FileCells<N>& cells, const Drops& drops) {
+    std::size_t kept = 0;
+    for (std::size_t c = 0; c < cells.corners.size(); ++c) {
+        if (drops(c)) continue;
+        cells.corners[kept] = cells.corners[c];
+        cells.numbers[kept++] = cells.numbers[c];
+    }
+    const std::size_t dropped = cells.corners.size() - kept;
+    cells.corners.resize(kept);
+    cells.numbers.resize(kept);
+    return dropped;
+}
+
+/// Returns the array of that name and shape, or null.
+[[nodiscard]] const FileArray* find_array(const MeshFile& found, std::string_view name, bool at_cells, int components);
+
+/// A flag for each point: whether a cell uses it.
+[[nodiscard]] std::vector<std::uint8_t> used_points(const MeshFile& found);
+
+/// A block of points and the hexahedra between them, both counted along i first, then j, then k.
+///
+/// points: their number along i, j and k
+struct StructuredGrid {
+    std::array<std::size_t, 3> points{};
+
+    /// The number of points and of cells; kNone if it is out of the range of Index.
+    [[nodiscard]] std::size_t point_count() const;
+    [[nodiscard]] std::size_t cell_count() const;
+};
+
+/// "3 x 4 x 5 points"
+[[nodiscard]] std::string size_text(const StructuredGrid& grid);
+
+/// A limit for the points of a grid that the file does not list one by one: a fixed number, plus one for each value that the
+/// file can have.
+[[nodiscard]] std::size_t most_points(std::size_t values);
+
+/// Appends the points of a grid with planes perpendicular to the axes. at: the coordinates of the planes on each axis
+void add_points(MeshFile& into, const std::array<std::vector<double>, 3>& at, std::size_t position);
+
+/// Appends the hexahedra. first_point, first_cell: the numbers in the file of the first point and cell of the block
+void add_hexes(MeshFile& into, const StructuredGrid& grid, std::size_t first_point, std::size_t first_cell);
+
+/// Which of a file's blocks are read.
+class BlockChoice {
+public:
+    /// wanted: their names; none: all of them. there: the names of all blocks
+    ///
+    /// throws: Error(InvalidInput) if a block that is wanted is not there
+    BlockChoice(std::span<const std::string> wanted, const std::vector<std::string>& there, std::string_view file);
+
+    [[nodiscard]] bool takes(const std::string& name) const { return wanted_.empty() || wanted_.contains(name); }
+
+private:
+    std::set<std::string> wanted_;
+};
+
+/// The step that the options choose; of several the last one, with a warning, if they choose none.
+///
+/// steps:  how many there are, at least 1
+/// throws: Error(InvalidInput) if there is no such step
+[[nodiscard]] std::size_t chosen_step(const ReadOptions& options, std::size_t steps, std::string_view file,
+                                      std::vector<std::string>& warnings);
+
+}  // namespace subvol::detail

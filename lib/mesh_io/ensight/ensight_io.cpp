@@ -1,0 +1,466 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <bit>
+#include <filesystem>
+#include <limits>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "assemble.h"
+#include "ensight_case.h"
+#include "formats.h"
+#include "join_pieces.h"
+#include "mesh_file.h"
+#include "named_files.h"
+#include "number_type.h"
+#include "subvol/error.h"
+#include "subvol/index.h"
+#include "text_scanner.h"
+#include "trimmed.h"
+
+namespace subvol::detail {
+
+namespace {
+
+/// The lines and numbers of an EnSight Gold file: of text, or of C's binary files with lines of 80 bytes and 32-bit numbers.
+class EnsightData {
+public:
+    /// binary: of a variable, whether the geometry is; only geometries say what they are
+    explicit EnsightData(const std::filesystem::path& path, bool binary = false);
+    EnsightData(const EnsightData&) = delete;
+    EnsightData& operator=(const EnsightData&) = delete;
+
+    [[nodiscard]] bool binary() const { return binary_; }
+    [[nodiscard]] bool at_end();
+    /// The next line without blanks around it.
+    std::string line();
+    /// The number of a part or a count. The first one shows the byte order of the file.
+    std::int64_t integer(const std::string& what);
+    std::size_t count(const std::string& what);
+    std::vector<std::int64_t> integers(std::size_t count, const std::string& what);
+    std::vector<double> reals(std::size_t count, const std::string& what);
+
+    [[nodiscard]] const TextScanner& in() const { return in_; }
+    /// The place of the last line or number, for messages.
+    [[nodiscard]] std::string place() const { return in_.place_of(in_.position()); }
+    [[noreturn]] void fail(const std::string& message, const std::string& allowed = {}) const { in_.fail(message, allowed); }
+
+private:
+    void expect_room(std::size_t count, const std::string& what) const;
+
+    std::string name_, text_;
+    TextScanner in_;
+    bool binary_ = false, has_order_ = false;
+    std::endian order_ = std::endian::little;
+};
+
+constexpr std::size_t kOfLine = 80, kOfNumber = 4;
+
+std::string_view line_text(std::string_view text) {
+    return trimmed(text.substr(0, text.find('\0')));
+}
+
+EnsightData::EnsightData(const std::filesystem::path& path, bool binary)
+    : name_(path.string()), text_(read_text(path)), in_(text_, name_, TextScanner::Comments::None) {
+    const std::string_view begin = std::string_view(text_).substr(0, kOfLine + kOfNumber);
+    if (begin.find("Fortran Binary") != std::string_view::npos) {
+        in_.fail_at(0, "Fortran's binary files are not supported", "text and \"C Binary\" are");
+    }
+    const bool says_so = begin.starts_with("C Binary");
+    binary_ = says_so || binary;
+    if (binary_) in_.name_bytes();
+    if (says_so) static_cast<void>(in_.bytes(std::min(kOfLine, text_.size()), {"line"}));
+}
+
+bool EnsightData::at_end() {
+    return binary_ ? in_.bytes_left() == 0 : in_.at_end();
+}
+
+std::string EnsightData::line() {
+    if (!binary_) {
+        if (in_.at_end()) fail("the file ends where a line is expected");
+        return std::string(line_text(in_.line()));
+    }
+    return std::string(line_text(in_.bytes(kOfLine, {"line"})));
+}
+
+void EnsightData::expect_room(std::size_t count, const std::string& what) const {
+    if (count <= (binary_ ? in_.bytes_left() / kOfNumber : in_.room_for(1))) return;
+    fail(what + ": " + std::to_string(count) + " numbers are needed, and the file is too short");
+}
+
+std::int64_t EnsightData::integer(const std::string& what) {
+    if (!binary_) return in_.integer({what});
+    const std::string_view bytes = in_.bytes(kOfNumber, {what});
+    if (!has_order_) {
+        has_order_ = true;
+        constexpr std::int64_t kMostParts = 65536;
+        const std::int64_t little = integer_from(bytes, NumberType::Int32, std::endian::little);
+        if (little < 0 || little > kMostParts) order_ = std::endian::big;
+    }
+    return integer_from(bytes, NumberType::Int32, order_);
+}
+
+std::size_t EnsightData::count(const std::string& what) {
+    const std::int64_t value = integer(what);
+    if (value < 0 || static_cast<std::size_t>(value) > in_.size())
+        fail(what + ": count out of range: " + std::to_string(value));
+    return static_cast<std::size_t>(value);
+}
+
+std::vector<std::int64_t> EnsightData::integers(std::size_t count, const std::string& what) {
+    expect_room(count, what);
+    if (binary_) return integers_from(in_.bytes(count * kOfNumber, {what}), NumberType::Int32, order_);
+    std::vector<std::int64_t> values;
+    values.reserve(count);
+    for (std::size_t i = 0; i < count; ++i) values.push_back(in_.integer({what, static_cast<std::int64_t>(i + 1), count}));
+    return values;
+}
+
+std::vector<double> EnsightData::reals(std::size_t count, const std::string& what) {
+    expect_room(count, what);
+    if (binary_) return reals_from(in_.bytes(count * kOfNumber, {what}), NumberType::Float32, order_);
+    std::vector<double> values;
+    values.reserve(count);
+    for (std::size_t i = 0; i < count; ++i) values.push_back(in_.real({what, static_cast<std::int64_t>(i + 1), count}));
+    return values;
+}
+
+constexpr EntityNames kEnsightNames{"node", "element", 1};
+
+const std::map<std::string, std::size_t, std::less<>> kNodes{{"point", 1},    {"bar2", 2},     {"bar3", 3},       {"tria3", 3},
+                                                             {"tria6", 6},    {"quad4", 4},    {"quad8", 8},      {"tetra4", 4},
+                                                             {"tetra10", 10}, {"pyramid5", 5}, {"pyramid13", 13}, {"penta6", 6},
+                                                             {"penta15", 15}, {"hexa8", 8},    {"hexa20", 20}};
+
+// A uniform block lists no points: with its cells it is much more than its few numbers.
+constexpr std::size_t kBytesOfBlockPoint = 64;
+
+// Elements of one type of a part.
+struct Group {
+    std::string type;
+    std::size_t first, count;
+};
+
+// first_groups: of each type; arrays: where those are that are at points and at cells, by their names
+struct Part {
+    MeshFile found;
+    std::string name;
+    std::vector<Group> groups;
+    std::map<std::string, std::size_t, std::less<>> first_groups;
+    std::map<std::pair<std::string, bool>, std::size_t> arrays;
+    std::size_t elements = 0;
+    bool structured = false, taken = true;
+};
+
+class EnsightReader {
+public:
+    EnsightReader(const std::filesystem::path& path, const ReadOptions& options)
+        : file_(path.string()), text_(read_text(path)), case_(text_, file_), options_(options) {}
+
+    ReadResult read() {
+        std::vector<std::string> warnings = case_.warnings();
+        const std::size_t step = chosen_step(options_, std::max<std::size_t>(1, case_.times().size()), file_, warnings);
+        time_ = case_.times().empty() ? 0 : case_.times()[step];
+        read_geometry();
+        std::vector<std::string> names;
+        for (const auto& [number, part] : parts_) names.push_back(part.name);
+        const BlockChoice choice(options_.blocks, names, file_);
+        for (auto& [number, part] : parts_) part.taken = choice.takes(part.name);
+        for (const EnsightVariable& variable : case_.variables()) read_variable(variable);
+        std::vector<MeshFile> files;
+        for (auto& [number, part] : parts_) {
+            std::size_t cells = 0;
+            each_kind(part.found, [&](const auto& of_kind) { cells += of_kind.corners.size(); });
+            if (!part.taken || cells == 0) continue;  // a part of surfaces
+            part.found.blocks = {{printable(part.name), cells}};
+            files.push_back(std::move(part.found));
+        }
+        if (files.empty()) throw Error(ErrorCode::InvalidInput, "no hexahedra in any of its parts" + left_out(), file_);
+        MeshFile found = files.size() == 1 ? std::move(files.front()) : join_pieces(std::move(files), "part", file_);
+        found.warnings.insert(found.warnings.begin(), warnings.begin(), warnings.end());
+        if (curved_ > 0) {
+            found.warnings.push_back(counted(curved_, "element has", "elements have") +
+                                     " more nodes than corners: only the corners are used");
+        }
+        if (!left_out_.empty()) found.warnings.push_back(left_out().substr(6));
+        return assemble(std::move(found), file_, kEnsightNames, options_);
+    }
+
+private:
+    [[nodiscard]] std::string left_out() const {
+        std::string list;
+        for (const auto& [type, count] : left_out_) {
+            list += (list.empty() ? ", but " : ", ") + counted(count, "element", "elements") + " of type " + in_quotes(type);
+        }
+        return list.empty() ? list : list + " ignored";
+    }
+
+    std::filesystem::path checked(const EnsightFiles& files) {
+        std::filesystem::path path = case_.file_at(files, time_);
+        const auto place = [&] { return case_.place_of(files); };
+        named_.count(place);
+        named_.take_file(path, place);
+        return path;
+    }
+
+    void read_geometry() {
+        EnsightData data(checked(case_.geometry()));
+        binary_ = data.binary();
+        static_cast<void>(data.line());
+        static_cast<void>(data.line());
+        const bool node_ids = has_ids(data, "node"), element_ids = has_ids(data, "element");
+        std::optional<int> open;
+        while (!data.at_end()) {
+            const std::string line = data.line();
+            if (line == "extents") {
+                static_cast<void>(data.reals(6, "extents"));
+            } else if (line == "part") {
+                const std::int64_t number = data.integer("the number of a part");
+                open = static_cast<int>(number);
+                if (number < 0 || number > 1 << 24 || !parts_.try_emplace(*open).second) {
+                    data.fail("there cannot be another part " + std::to_string(number));
+                }
+                Part& part = parts_[*open];
+                part.name = as_utf8(data.line());
+                if (part.name.empty()) part.name = "part " + std::to_string(number);
+            } else if (!open) {
+                if (!line.empty()) data.fail("a part is expected, not " + in_quotes(line));
+            } else if (line == "coordinates") {
+                read_points(data, parts_[*open], node_ids);
+            } else if (line.starts_with("block")) {
+                read_block(data, parts_[*open], line);
+            } else {
+                read_elements(data, parts_[*open], line, element_ids);
+            }
+        }
+        for (const auto& [number, part] : parts_) refuse_not_finite(part.found, data.in(), kEnsightNames);
+    }
+
+    // "node id given": the numbers follow, and say nothing about who refers to what.
+    static bool has_ids(EnsightData& data, const std::string& of) {
+        const std::string line = data.line();
+        if (!line.starts_with(of + " id")) data.fail("a line \"" + of + " id …\" is expected, not " + in_quotes(line));
+        const std::string kind = line.substr(line.find_last_of(' ') + 1);
+        return kind == "given" || kind == "ignore";
+    }
+
+    static void add_axes(EnsightData& data, Part& part, std::size_t count) {
+        const auto x = data.reals(count, "x"), y = data.reals(count, "y"), z = data.reals(count, "z");
+        part.found.points.reserve(count);
+        for (std::size_t p = 0; p < count; ++p) add_point(part.found, {x[p], y[p], z[p]}, data.in().position());
+    }
+
+    static void read_points(EnsightData& data, Part& part, bool ids) {
+        if (!part.found.points.empty()) data.fail("part " + in_quotes(part.name) + " has coordinates already");
+        const std::size_t count = data.count("nodes");
+        if (ids) static_cast<void>(data.integers(count, "numbers of nodes"));
+        add_axes(data, part, count);
+    }
+
+    void read_block(EnsightData& data, Part& part, const std::string& line) {
+        if (!part.found.points.empty()) data.fail("part " + in_quotes(part.name) + " has coordinates already");
+        const auto sizes = data.integers(3, "sizes of a block");
+        if (std::ranges::any_of(sizes, [](std::int64_t size) { return size < 1 || size > 1 << 30; }))
+            data.fail("the sizes of the block are out of range");
+        const StructuredGrid grid{
+            {static_cast<std::size_t>(sizes[0]), static_cast<std::size_t>(sizes[1]), static_cast<std::size_t>(sizes[2])}};
+        const std::size_t points = grid.point_count(), cells = grid.cell_count();
+        if (points == kNone || points > most_points(data.in().size()))
+            data.fail("there are more points than the file can have values");
+        named_.take({}, 0, points * kBytesOfBlockPoint, [&] { return data.place(); });
+        part.structured = true;
+        part.elements = cells;
+        if (line.find("rectilinear") != std::string::npos || line.find("uniform") != std::string::npos) {
+            std::array<std::vector<double>, 3> cuts;
+            const bool uniform = line.find("uniform") != std::string::npos;
+            const auto origin = uniform ? data.reals(6, "origin and spacing") : std::vector<double>();
+            for (std::size_t a = 0; a < 3; ++a) {
+                if (!uniform) cuts[a] = data.reals(grid.points[a], "planes");
+                for (std::size_t i = 0; uniform && i < grid.points[a]; ++i)
+                    cuts[a].push_back(origin[a] + static_cast<double>(i) * origin[3 + a]);
+            }
+            add_points(part.found, cuts, data.in().position());
+        } else {
+            add_axes(data, part, points);
+        }
+        std::vector<std::int64_t> blanks, ghosts;
+        if (line.find("iblanked") != std::string::npos) blanks = data.integers(points, "blanks");
+        if (line.find("with_ghost") != std::string::npos) {
+            if (data.line() == "ghost_flags") ghosts = data.integers(cells, "ghost flags");
+        }
+        if (cells == 0) return;
+        add_hexes(part.found, grid, 0, 0);
+        auto& hexes = part.found.hexes;
+        std::size_t kept = 0;
+        for (std::size_t c = 0; c < cells; ++c) {
+            const bool hidden =
+                (!ghosts.empty() && ghosts[c] != 0) ||
+                (!blanks.empty() && std::ranges::any_of(hexes.corners[c], [&](Index p) { return blanks[p] == 0; }));
+            if (hidden) continue;
+            hexes.corners[kept] = hexes.corners[c];
+            hexes.numbers[kept++] = hexes.numbers[c];
+        }
+        hexes.corners.resize(kept);
+        hexes.numbers.resize(kept);
+        if (kept < cells)
+            part.found.warnings.push_back(counted(cells - kept, "blanked or ghost cell", "blanked or ghost cells") +
+                                          " left out");
+    }
+
+    void read_elements(EnsightData& data, Part& part, const std::string& line, bool ids) {
+        const bool ghost = line.starts_with("g_");
+        const std::string type = ghost ? line.substr(2) : line;
+        const auto known = kNodes.find(type);
+        if (known == kNodes.end() && type != "nsided" && type != "nfaced")
+            data.fail("elements of type " + in_quotes(line) + " are not known");
+        const std::size_t count = data.count("elements");
+        if (ids) static_cast<void>(data.integers(count, "numbers of elements"));
+        const std::size_t first = part.elements;
+        part.first_groups.try_emplace(line, part.groups.size());
+        part.groups.push_back({line, first, count});
+        part.elements += count;
+        if (part.elements >= kNone) data.fail("there are too many elements");
+        if (known == kNodes.end()) {
+            std::size_t nodes = total(data, data.integers(count, "counts"));
+            if (type == "nfaced") nodes = total(data, data.integers(nodes, "counts"));
+            static_cast<void>(data.integers(nodes, "nodes"));
+            left_out_[line] += count;
+            return;
+        }
+        const std::size_t nodes = known->second;
+        if (count > data.in().size() / nodes) data.fail("there are too many elements");
+        const auto numbers = data.integers(count * nodes, "nodes of elements");
+        if (ghost) {
+            left_out_[line] += count;
+            return;
+        }
+        std::vector<Index> corners(nodes);
+        for (std::size_t e = 0; e < count; ++e) {
+            for (std::size_t k = 0; k < nodes; ++k) {
+                const std::int64_t node = numbers[e * nodes + k];
+                if (node < 1 || static_cast<std::size_t>(node) > part.found.points.size()) {
+                    data.fail(type + " " + std::to_string(e + 1) + " of part " + in_quotes(part.name) + ": there is no node " +
+                                  std::to_string(node),
+                              "nodes are 1 to " + std::to_string(part.found.points.size()));
+                }
+                corners[k] = static_cast<Index>(node - 1);
+            }
+            take(part.found, type, corners, first + e);
+        }
+    }
+
+    static std::size_t total(const EnsightData& data, const std::vector<std::int64_t>& counts) {
+        std::size_t sum = 0;
+        for (const std::int64_t count : counts) {
+            if (count < 0 || static_cast<std::size_t>(count) > data.in().size())
+                data.fail("count out of range: " + std::to_string(count));
+            sum += static_cast<std::size_t>(count);
+        }
+        return sum;
+    }
+
+    void take(MeshFile& into, const std::string& type, const std::vector<Index>& nodes, std::size_t number) {
+        const bool others = options_.other_cells != OtherCells::Ignore;
+        if (type.starts_with("hexa")) {
+            const bool whole = nodes.size() == 20 && options_.curved_tolerance;
+            put(into.hexes, nodes, number, whole);
+            if (whole) into.curved.add(number, CurvedOrder::Vtk, nodes);
+        } else if (type.starts_with("penta") && others) {
+            put(into.prisms, nodes, number, false);
+        } else if (type.starts_with("pyramid") && others) {
+            put(into.pyramids, nodes, number, false);
+        } else if (type.starts_with("tetra") && others) {
+            put(into.tets, nodes, number, false);
+        } else {
+            ++left_out_[type];
+        }
+    }
+
+    template <std::size_t N>
+    void put(FileCells<N>& into, const std::vector<Index>& nodes, std::size_t number, bool whole) {
+        curved_ += nodes.size() > N && !whole;
+        std::copy_n(nodes.begin(), N, into.corners.emplace_back().begin());
+        into.numbers.push_back(static_cast<Index>(number));
+    }
+
+    // A part that a variable lacks has not got it: the parts are joined without.
+    void read_variable(const EnsightVariable& variable) {
+        EnsightData data(checked(variable.files), binary_);
+        static_cast<void>(data.line());
+        Part* part = nullptr;
+        while (!data.at_end()) {
+            const std::string line = data.line();
+            if (line == "part") {
+                const std::int64_t number = data.integer("the number of a part");
+                const auto found = parts_.find(static_cast<int>(number));
+                if (found == parts_.end()) data.fail("there is no part " + std::to_string(number));
+                part = &found->second;
+                continue;
+            }
+            if (part == nullptr) {
+                if (line.empty()) continue;
+                data.fail("a part is expected, not " + in_quotes(line));
+            }
+            read_values(data, variable, *part, line);
+        }
+    }
+
+    void read_values(EnsightData& data, const EnsightVariable& variable, Part& part, const std::string& line) {
+        const std::string place = line.substr(0, line.find(' '));
+        if (line.find("partial") != std::string::npos) data.fail("values at some places only (\"partial\") are not supported");
+        if (line.find("undef") != std::string::npos) static_cast<void>(data.reals(1, "the mark of undefined values"));
+        std::size_t first = 0, count = part.found.points.size();
+        if (variable.at_cells && place == "block") {
+            count = part.elements;
+        } else if (variable.at_cells) {
+            const auto group = part.first_groups.find(place);
+            if (group == part.first_groups.end())
+                data.fail("part " + in_quotes(part.name) + " has no elements of type " + in_quotes(place));
+            first = part.groups[group->second].first;
+            count = part.groups[group->second].count;
+        } else if (place != "coordinates" && place != "block") {
+            data.fail("the values of a part are expected, not " + in_quotes(line));
+        }
+        const std::size_t all = variable.at_cells ? part.elements : count, components = variable.components;
+        std::vector<std::vector<double>> values;
+        for (std::size_t c = 0; c < components; ++c) values.push_back(data.reals(count, "values"));
+        const auto [known, is_new] = part.arrays.try_emplace({variable.name, variable.at_cells}, part.found.arrays.size());
+        if (is_new) {
+            named_.take({}, 0, all * components * sizeof(double), [&] { return data.place(); });
+            part.found.arrays.push_back({variable.name, static_cast<int>(components), variable.at_cells, {}});
+            part.found.arrays.back().values.assign(all * components, std::numeric_limits<double>::quiet_NaN());
+        }
+        FileArray* const array = &part.found.arrays[known->second];
+        if (array->values.size() != all * components) data.fail("there is another variable of this name");
+        for (std::size_t i = 0; i < count; ++i) {
+            for (std::size_t c = 0; c < components; ++c) array->values[(first + i) * components + c] = values[c][i];
+        }
+    }
+
+    std::string file_, text_;
+    EnsightCase case_;
+    ReadOptions options_;
+    NamedFiles named_;
+    std::map<int, Part> parts_;
+    std::map<std::string, std::size_t> left_out_;
+    double time_ = 0;
+    bool binary_ = false;
+    std::size_t curved_ = 0;
+};
+
+}  // namespace
+
+ReadResult read_ensight(const std::filesystem::path& path, const ReadOptions& options) {
+    return EnsightReader(path, options).read();
+}
+
+std::vector<double> ensight_times(const std::filesystem::path& path) {
+    const std::string text = read_text(path), file = path.string();
+    return EnsightCase(text, file).times();
+}
+
+}  // namespace subvol::detail

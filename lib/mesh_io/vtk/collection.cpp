@@ -1,0 +1,360 @@
+// SPDX-License-Identifier: Apache-2.0
+// One mesh of the files that a collection names.
+#include "collection.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <numeric>
+
+#include "assemble.h"
+#include "formats.h"
+#include "join_pieces.h"
+#include "mesh_file.h"
+#include "named_files.h"
+#include "subvol/detail/json_depth.h"
+#include "subvol/detail/number_text.h"
+#include "subvol/detail/printable.h"
+#include "subvol/error.h"
+#include "trimmed.h"
+#include "vtk_xml.h"
+
+namespace subvol::detail {
+
+namespace {
+
+constexpr int kMostNested = 32;
+
+// Puts files with the same time into one step, and the steps in order.
+class Steps {
+public:
+    void add(double time, ListedFile file) { steps_[time].push_back(std::move(file)); }
+
+    [[nodiscard]] Collection collection() && {
+        Collection collection;
+        for (auto& [time, files] : steps_) {
+            collection.times.push_back(time);
+            collection.files.push_back(std::move(files));
+        }
+        return collection;
+    }
+
+private:
+    std::map<double, std::vector<ListedFile>> steps_;
+};
+
+class XmlList {
+public:
+    XmlList(const std::filesystem::path& path, const std::string& type, const std::string& needed)
+        : path_(path), file_(path.string()), text_(read_text(path)), xml_(text_, file_, type, needed) {}
+
+    [[nodiscard]] const VtkXml& xml() const { return xml_; }
+    [[nodiscard]] ListedFile file(const pugi::xml_node& node, const char* attribute, std::string block) {
+        std::string place = place_of(node);
+        auto path = named_file(path_.parent_path(), as_utf8(node.attribute(attribute).as_string()), [&] { return place; });
+        return {std::move(path), std::move(block), std::move(place)};
+    }
+
+private:
+    // Elements come in the order of the text: each line is counted once.
+    [[nodiscard]] std::string place_of(const pugi::xml_node& node) {
+        const std::size_t place = std::min(xml_.place(node), text_.size());
+        if (place < counted_) counted_ = lines_ = 0;
+        const auto at = [&](std::size_t offset) { return text_.begin() + static_cast<std::ptrdiff_t>(offset); };
+        lines_ += static_cast<std::size_t>(std::count(at(counted_), at(place), '\n'));
+        counted_ = place;
+        return file_ + ", line " + std::to_string(1 + lines_);
+    }
+
+    std::filesystem::path path_;
+    std::string file_, text_;
+    VtkXml xml_;
+    std::size_t counted_ = 0, lines_ = 0;  // bytes of the text, and the lines that end in them
+};
+
+// The blocks of a composite data set, and those of its blocks. name: of the element, with a slash; empty for the first
+void add_blocks(XmlList& list, const pugi::xml_node& element, const std::string& name, int depth,
+                std::vector<ListedFile>& files) {
+    if (depth > kMostNested) list.xml().fail_at(element, "blocks are nested too deeply");
+    if (name.size() > kLongestBlock) list.xml().fail_at(element, "the name of a block is too long", kBlockLimit);
+    int count = 0;
+    for (const auto& child : element.children()) {
+        const std::string own = printable(as_utf8(child.attribute("name").as_string()));
+        const std::string index = printable(as_utf8(child.attribute("index").as_string(std::to_string(count++).c_str())));
+        if (std::string_view(child.name()) == "DataSet") {
+            if (!child.attribute("file")) continue;  // an empty block
+            const bool of_piece = std::string_view(element.name()) == "Piece" && !name.empty();
+            files.push_back(
+                list.file(child, "file",
+                          own.empty() && of_piece ? name : name + (name.empty() ? "" : "/") + (own.empty() ? index : own)));
+        } else {
+            const std::string inner = own.empty() ? index : own;
+            add_blocks(list, child, name.empty() ? inner : name + "/" + inner, depth + 1, files);
+        }
+    }
+}
+
+}  // namespace
+
+Collection read_pvd(const std::filesystem::path& path) {
+    XmlList list(path, "Collection", "a list of files with their times is needed");
+    Steps steps;
+    for (const auto& node : list.xml().data_set().children("DataSet")) {
+        const auto time = number_from(trimmed(node.attribute("timestep").as_string("0")));
+        if (!time || !std::isfinite(*time)) list.xml().fail_at(node, "its timestep is not a number");
+        std::string name = printable(as_utf8(node.attribute("name").as_string()));
+        if (name.size() > kLongestBlock) list.xml().fail_at(node, "the name of a block is too long", kBlockLimit);
+        steps.add(*time, list.file(node, "file", std::move(name)));
+    }
+    Collection collection = std::move(steps).collection();
+    if (collection.times.empty()) list.xml().fail_at(list.xml().data_set(), "it lists no files");
+    return collection;
+}
+
+Collection read_series_list(const std::filesystem::path& path) {
+    const std::string file = path.string(), text = read_text(path);
+    const auto fail = [&](const std::string& message) {
+        throw Error(ErrorCode::InvalidInput, message, file, R"({"files": [{"name": "a.vtu", "time": 0}, …]} is needed)");
+    };
+    const auto json = nlohmann::json::parse(of_limited_depth(text, file), nullptr, false);
+    if (json.is_discarded()) fail("not well-formed JSON");
+    if (!json.is_object() || !json.contains("files") || !json["files"].is_array()) fail("it has no list \"files\"");
+    Steps steps;
+    std::size_t number = 0;
+    for (const auto& entry : json["files"]) {
+        const std::string place = "entry " + std::to_string(number) + " of \"files\"";
+        const bool sound = entry.is_object() && entry.contains("name") && entry["name"].is_string() &&
+                           (!entry.contains("time") || entry["time"].is_number());
+        if (!sound) fail(place + " has no name, or its time is not a number");
+        const double time = entry.contains("time") ? entry["time"].get<double>() : static_cast<double>(number);
+        auto named = named_file(path.parent_path(), entry["name"].get<std::string>(), [&] { return file + ", " + place; });
+        steps.add(time, {std::move(named), {}, file + ", " + place});
+        ++number;
+    }
+    if (number == 0) fail("it lists no files");
+    return std::move(steps).collection();
+}
+
+Collection read_pieces_list(const std::filesystem::path& path) {
+    const std::string extension = upper_case(path.extension().string());
+    const std::string type = extension == ".PVTS"   ? "PStructuredGrid"
+                             : extension == ".PVTR" ? "PRectilinearGrid"
+                             : extension == ".PVTI" ? "PImageData"
+                                                    : "PUnstructuredGrid";
+    XmlList list(path, type, "the pieces of a volume mesh are needed");
+    Collection collection{{0}, {{}}};
+    for (const auto& node : list.xml().data_set().children("Piece")) {
+        collection.files[0].push_back(list.file(node, "Source", {}));
+    }
+    if (collection.files[0].empty()) list.xml().fail_at(list.xml().data_set(), "it lists no pieces");
+    return collection;
+}
+
+Collection read_blocks_list(const std::filesystem::path& path) {
+    XmlList list(path, "vtkMultiBlockDataSet", "blocks of volume meshes are needed");
+    Collection collection{{0}, {{}}};
+    add_blocks(list, list.xml().data_set(), {}, 0, collection.files[0]);
+    if (collection.files[0].empty()) list.xml().fail_at(list.xml().data_set(), "it lists no blocks");
+    return collection;
+}
+
+std::vector<double> pvd_times(const std::filesystem::path& path) {
+    return read_pvd(path).times;
+}
+
+std::vector<double> series_list_times(const std::filesystem::path& path) {
+    return read_series_list(path).times;
+}
+
+namespace {
+
+constexpr std::array<std::string_view, 3> kSurfaces{".VTP", ".PVTP", ".STL"};
+constexpr EntityNames kPieceNames{"point", "cell", 0};
+
+bool is_surface(const std::filesystem::path& path) {
+    return std::ranges::find(kSurfaces, upper_case(path.extension().string())) != kSurfaces.end();
+}
+
+// The files of a list that are no lists of pieces or blocks, in the order of the lists. Each list is read once.
+class ListExpansion {
+public:
+    explicit ListExpansion(NamedFiles& named) : named_(named) {}
+
+    void expand(const ListedFile& file, std::vector<ListedFile>& files) {
+        const auto place = [&] { return file.place; };
+        named_.count(place);
+        if (file.block.size() > kLongestBlock) {
+            throw Error(ErrorCode::InvalidInput, "the name of a block is too long", file.place, kBlockLimit);
+        }
+        const std::string extension = upper_case(file.path.extension().string());
+        const bool blocks = extension == ".VTM";
+        if ((!blocks && !extension.starts_with(".PVT")) || is_surface(file.path)) return files.push_back(file);
+        const auto open = named_.open(file.path, place);
+        const auto [known, is_new] = lists_.try_emplace(file.path);
+        if (is_new) known->second = (blocks ? read_blocks_list(file.path) : read_pieces_list(file.path)).files.front();
+        for (ListedFile next : known->second) {
+            if (!file.block.empty()) next.block = file.block + (next.block.empty() ? "" : "/" + next.block);
+            expand(next, files);
+        }
+    }
+
+private:
+    NamedFiles& named_;
+    std::map<std::filesystem::path, std::vector<ListedFile>> lists_;
+};
+
+std::size_t cells_of(const MeshFile& found) {
+    std::size_t count = 0;
+    each_kind(found, [&](const auto& cells) { count += cells.corners.size(); });
+    return count;
+}
+
+// Leaves out the files of blocks that are not chosen, and surfaces.
+PartFiles chosen_files(std::vector<ListedFile> files, std::string_view list, const ReadOptions& options) {
+    std::vector<std::string> names;
+    for (const ListedFile& file : files) {
+        if (!file.block.empty()) names.push_back(file.block);
+    }
+    const BlockChoice choice(options.blocks, names, list);
+    PartFiles chosen{{}, names.empty() ? "piece" : "block", {}};
+    std::size_t surfaces = 0;
+    for (ListedFile& file : files) {
+        if (!choice.takes(file.block)) continue;
+        if (is_surface(file.path)) {
+            ++surfaces;
+        } else {
+            chosen.files.push_back(std::move(file));
+        }
+    }
+    if (surfaces > 0) chosen.warnings.push_back(counted(surfaces, "file", "files") + " of surfaces (.vtp) ignored");
+    return chosen;
+}
+
+// Blocks that consist of several files are listed once.
+void merge_blocks(std::vector<MeshBlock>& blocks) {
+    std::vector<MeshBlock> merged;
+    std::map<std::string_view, std::size_t> places;
+    for (const MeshBlock& block : blocks) {
+        const auto [place, is_new] = places.try_emplace(block.name, merged.size());
+        if (is_new) {
+            merged.push_back(block);
+        } else {
+            merged[place->second].cells += block.cells;
+        }
+    }
+    blocks = std::move(merged);
+}
+
+// The files of the chosen step.
+//
+// list:     the one that lists them
+// warnings: that it is the last step because none was chosen
+struct StepFiles {
+    std::filesystem::path list;
+    std::vector<ListedFile> files;
+    std::vector<std::string> warnings;
+
+    [[nodiscard]] bool is_single() const { return files.size() == 1 && files.front().block.empty(); }
+};
+
+// A step that is a single list is the last step of that one.
+StepFiles files_of_step(const std::filesystem::path& path, const ReadOptions& options, NamedFiles& named) {
+    StepFiles found{path, {}, {}};
+    ReadOptions of_list = options;
+    ListExpansion expansion(named);
+    std::vector<NamedFiles::Open> open;
+    std::string place;
+    for (const MeshFormat* format = &readable_format(path); format != nullptr && format->files != nullptr;) {
+        open.push_back(named.open(found.list, [&] { return place; }));
+        check_options(*format, found.list, of_list);
+        const Collection collection = format->files(found.list);
+        const std::size_t step = chosen_step(of_list, collection.times.size(), found.list.string(), found.warnings);
+        found.files.clear();
+        for (const ListedFile& file : collection.files[step]) expansion.expand(file, found.files);
+        if (!found.is_single()) break;
+        format = format_of(found.files.front().path);
+        if (format == nullptr || format->files == nullptr) break;
+        found.list = found.files.front().path;
+        place = found.files.front().place;
+        of_list.step.reset();
+    }
+    return found;
+}
+
+std::size_t bytes_of(const MeshFile& part) {
+    std::size_t bytes = sizeof part + part.points.size() * sizeof(Vec3);
+    each_kind(part, [&](const auto& cells) { bytes += cells.corners.size() * sizeof cells.corners[0]; });
+    for (const FileArray& array : part.arrays) bytes += sizeof array + array.values.size() * sizeof(double);
+    return bytes;
+}
+
+ReadResult read_step(const std::filesystem::path& path, const ReadOptions& options) {
+    NamedFiles named;
+    StepFiles step = files_of_step(path, options, named);
+    const std::string list = step.list.string();
+    ReadOptions of_file = options;
+    of_file.step.reset();
+    if (step.is_single()) {
+        const ListedFile& file = step.files.front();
+        const MeshFormat& format = readable_format(file.path);
+        check_options(format, file.path, of_file);
+        ReadResult result = format.read(file.path, of_file);
+        result.warnings.insert(result.warnings.begin(), step.warnings.begin(), step.warnings.end());
+        return result;
+    }
+    const PartFiles chosen = chosen_files(std::move(step.files), list, options);
+    std::vector<std::string> warnings = std::move(step.warnings);
+    warnings.insert(warnings.end(), chosen.warnings.begin(), chosen.warnings.end());
+    std::vector<MeshFile> parts;
+    for (const ListedFile& file : chosen.files) {
+        named.take_file(file.path, [&] { return file.place; });
+        MeshFile part = read_part(file, options);
+        const std::size_t bytes = bytes_of(part);
+        named.take("cells of " + NamedFiles::identity(file.path), bytes, bytes, [&] { return file.place; });
+        if (!part.points.empty()) parts.push_back(std::move(part));
+    }
+    if (parts.empty()) parts.emplace_back();
+    MeshFile found = join_pieces(std::move(parts), chosen.word, list);
+    if (cells_of(found) == 0) throw Error(ErrorCode::InvalidInput, "no hexahedra in any of its files", list);
+    merge_blocks(found.blocks);
+    found.warnings.insert(found.warnings.begin(), warnings.begin(), warnings.end());
+    return assemble(std::move(found), list, kPieceNames, of_file);
+}
+
+}  // namespace
+
+const EntityNames& names_in_parts() {
+    return kPieceNames;
+}
+
+std::optional<PartFiles> part_files(const std::filesystem::path& path, const ReadOptions& options) {
+    const MeshFormat& format = readable_format(path);
+    if (format.files == nullptr) return {};
+    check_options(format, path, options);
+    std::vector<std::string> none;
+    if (!format.times) static_cast<void>(chosen_step(options, 1, path.string(), none));
+    NamedFiles named;
+    StepFiles step = files_of_step(path, options, named);
+    if (step.is_single()) return {};
+    PartFiles chosen = chosen_files(std::move(step.files), step.list.string(), options);
+    chosen.warnings.insert(chosen.warnings.begin(), step.warnings.begin(), step.warnings.end());
+    return chosen;
+}
+
+MeshFile read_part(const ListedFile& file, const ReadOptions& options) {
+    const MeshFormat* format = format_of(file.path);
+    if (format == nullptr || format->piece == nullptr) {
+        throw Error(ErrorCode::InvalidInput, in_quotes(file.path.filename().string()) + " cannot be read as a part of a mesh",
+                    file.place, ".vtu, .vts, .vtr and .vti files can");
+    }
+    MeshFile part = format->piece(read_text(file.path), file.path.string(), options);
+    if (!file.block.empty() && !part.points.empty()) part.blocks = {{file.block, cells_of(part)}};
+    return part;
+}
+
+ReadResult read_collection(const std::filesystem::path& path, const ReadOptions& options) {
+    return read_step(path, options);
+}
+
+}  // namespace subvol::detail

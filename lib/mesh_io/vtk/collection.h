@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "mesh_file.h"
+#include "subvol/read_options.h"
+
+namespace subvol::detail {
+
+/// A file that a collection names.
+///
+/// block: its name; empty if the collection does not divide its mesh into blocks
+/// place: where the collection names it, for messages
+struct ListedFile {
+    std::filesystem::path path;
+    std::string block;
+    std::string place;
+};
+
+/// The longest name of a block: each of its files has it.
+inline constexpr std::size_t kLongestBlock = 1024;
+inline constexpr const char* kBlockLimit = "at most 1024 bytes";
+
+/// The steps of a collection, in the order of their times, with their files.
+struct Collection {
+    std::vector<double> times;
+    std::vector<std::vector<ListedFile>> files;
+};
+
+/// Reads a file that lists others: .pvd, .series (ParaView's JSON), or one step of .pvtu, .pvts, .pvtr, .pvti, .vtm.
+[[nodiscard]] Collection read_pvd(const std::filesystem::path& path);
+[[nodiscard]] Collection read_series_list(const std::filesystem::path& path);
+[[nodiscard]] Collection read_pieces_list(const std::filesystem::path& path);
+[[nodiscard]] Collection read_blocks_list(const std::filesystem::path& path);
+
+/// The files of one step of a collection that are read as parts of one mesh.
+///
+/// files:    in the order of the lists; those of blocks that are not chosen and of surfaces are left out
+/// warnings: of the step, and of the surfaces
+struct PartFiles {
+    std::vector<ListedFile> files;
+    std::string_view word;  // "piece" or "block"
+    std::vector<std::string> warnings;
+};
+
+/// Nothing if the file is no collection, or its step is a single file.
+///
+/// throws: Error(InvalidInput) as `read_mesh`
+[[nodiscard]] std::optional<PartFiles> part_files(const std::filesystem::path& path, const ReadOptions& options);
+
+/// How messages name what is in several files: "point", "cell", from 0.
+[[nodiscard]] const EntityNames& names_in_parts();
+
+/// Reads a file as a part of a mesh, with its block's name.
+[[nodiscard]] MeshFile read_part(const ListedFile& file, const ReadOptions& options);
+
+}  // namespace subvol::detail

@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "formats.h"
+
+#include <algorithm>
+
+#include "assemble.h"
+#include "hdf5_file.h"
+#include "join_pieces.h"
+#include "mesh_file.h"
+#include "subvol/error.h"
+#include "vtk_cells.h"
+
+namespace subvol::detail {
+
+namespace {
+
+const std::string kRoot = "/VTKHDF";
+const std::string kSteps = kRoot + "/Steps";
+
+void check_root(const Hdf5File& file) {
+    const auto version = file.numbers(kRoot, "Version");
+    if (version.empty()) file.fail("not a VTKHDF file: there is no group VTKHDF with a version");
+    if (version[0] != 1 && version[0] != 2) {
+        file.fail("version " + std::to_string(version[0]) + " of VTKHDF is not supported", "1 and 2 are");
+    }
+    const std::string type = file.text(kRoot, "Type").value_or("");
+    if (type != "UnstructuredGrid") {
+        file.fail(in_quotes(type) + " is not an UnstructuredGrid", "a volume mesh of that type is needed");
+    }
+}
+
+// Where the values of a partition begin, and how many there are.
+struct Range {
+    std::size_t first = 0, count = 0;
+};
+struct Partition {
+    Range points, cells, corners;
+    std::size_t offsets = 0;  // each partition has one more of them than cells
+};
+
+class VtkHdfReader {
+public:
+    VtkHdfReader(const Hdf5File& file, const ReadOptions& options)
+        : file_(file), options_(options), in_(std::string_view(), file.name(), TextScanner::Comments::None) {
+        in_.name_no_place();
+    }
+
+    ReadResult read() {
+        std::vector<std::string> warnings;
+        const std::size_t steps = std::max<std::size_t>(1, vtkhdf_times(file_).size());
+        step_ = chosen_step(options_, steps, file_.name(), warnings);
+        std::vector<MeshFile> parts;
+        const std::vector<Partition> partitions = find_partitions();
+        for (const Partition& partition : partitions) {
+            if (partition.points.count > 0) parts.push_back(read_part(partition, partitions.size() == 1));
+        }
+        if (parts.empty()) file_.fail("no hexahedra in any of its parts");
+        MeshFile found = parts.size() == 1 ? std::move(parts.front()) : join_pieces(std::move(parts), "part", file_.name());
+        found.warnings.insert(found.warnings.begin(), warnings.begin(), warnings.end());
+        add_left_out_warning(found, {}, file_.name());
+        return assemble(std::move(found), file_.name(), kVtkNames, options_);
+    }
+
+private:
+    // A number of the step, in a dataset of the group Steps; the other number if there is none.
+    [[nodiscard]] std::size_t of_step(const std::string& name, std::size_t otherwise) const {
+        const std::string path = kSteps + "/" + name;
+        if (!file_.has(path)) return otherwise;
+        const auto values = file_.integers(path, step_, 1);
+        if (values.empty()) return otherwise;
+        return checked(values[0], path);
+    }
+
+    [[nodiscard]] std::size_t checked(std::int64_t count, const std::string& path) const {
+        if (count < 0 || static_cast<std::uint64_t>(count) >= kNone) {
+            file_.fail(in_quotes(path) + ": count out of range: " + std::to_string(count));
+        }
+        return static_cast<std::size_t>(count);
+    }
+
+    [[nodiscard]] std::vector<Partition> find_partitions() const {
+        const std::size_t all = file_.rows(kRoot + "/NumberOfPoints");
+        const std::size_t first = of_step("PartOffsets", 0);
+        const std::size_t count = of_step("NumberOfParts", all > first ? parts_from(first, all) : 0);
+        const auto points = file_.integers(kRoot + "/NumberOfPoints", first, count);
+        const auto cells = file_.integers(kRoot + "/NumberOfCells", first, count);
+        const auto corners = file_.integers(kRoot + "/NumberOfConnectivityIds", first, count);
+        Partition next;
+        next.points.first = of_step("PointOffsets", 0);
+        next.cells.first = of_step("CellOffsets", 0);
+        next.corners.first = of_step("ConnectivityIdOffsets", 0);
+        std::vector<Partition> partitions;
+        for (std::size_t p = 0; p < count; ++p) {
+            next.points.count = checked(points[p], kRoot + "/NumberOfPoints");
+            next.cells.count = checked(cells[p], kRoot + "/NumberOfCells");
+            next.corners.count = checked(corners[p], kRoot + "/NumberOfConnectivityIds");
+            next.offsets = next.cells.first + first + p;
+            partitions.push_back(next);
+            next.points.first += next.points.count;
+            next.cells.first += next.cells.count;
+            next.corners.first += next.corners.count;
+        }
+        return partitions;
+    }
+
+    // Up to the first partition of another step.
+    [[nodiscard]] std::size_t parts_from(std::size_t first, std::size_t all) const {
+        const std::string path = kSteps + "/PartOffsets";
+        if (!file_.has(path)) return all - first;
+        std::size_t end = all;
+        for (const std::int64_t other : file_.integers(path)) {
+            if (other > static_cast<std::int64_t>(first)) end = std::min(end, static_cast<std::size_t>(other));
+        }
+        return end - first;
+    }
+
+    MeshFile read_part(const Partition& part, bool alone) const {
+        MeshFile found;
+        const std::string points = kRoot + "/Points";
+        if (file_.columns(points) != 3) file_.fail(in_quotes(points) + " does not have three columns");
+        const auto places = file_.reals(points, part.points.first, part.points.count);
+        found.points.reserve(part.points.count);
+        for (std::size_t p = 0; p < part.points.count; ++p) {
+            add_point(found, {places[3 * p], places[3 * p + 1], places[3 * p + 2]}, 0);
+        }
+        read_cells(part, found, alone);
+        refuse_not_finite(found, in_, kVtkNames);
+        read_arrays(part.points, "PointData", false, found);
+        read_arrays(part.cells, "CellData", true, found);
+        return found;
+    }
+
+    void read_cells(const Partition& part, MeshFile& found, bool alone) const {
+        const auto types = file_.integers(kRoot + "/Types", part.cells.first, part.cells.count);
+        const auto ends = file_.integers(kRoot + "/Offsets", part.offsets, part.cells.count + 1);
+        const auto corners = file_.integers(kRoot + "/Connectivity", part.corners.first, part.corners.count);
+        VtkCellSorter sorter(in_, found, options_);
+        std::vector<Index> of_cell;
+        for (std::size_t c = 0; c < part.cells.count; ++c) {
+            if (ends[c] < 0 || ends[c + 1] < ends[c] || ends[c + 1] > static_cast<std::int64_t>(corners.size())) {
+                file_.fail("\"" + kRoot + "/Offsets\": " + kVtkNames.cell(c) + " ends at " + std::to_string(ends[c + 1]),
+                           "up to " + std::to_string(corners.size()) + ", never falling");
+            }
+            of_cell.clear();
+            for (std::int64_t k = ends[c]; k < ends[c + 1]; ++k) {
+                const std::int64_t corner = corners[static_cast<std::size_t>(k)];
+                if (corner < 0 || static_cast<std::size_t>(corner) >= part.points.count) {
+                    file_.fail(kVtkNames.cell(c) + ": there is no point with index " + std::to_string(corner),
+                               "there are " + std::to_string(part.points.count) + " points, counted from 0");
+                }
+                of_cell.push_back(static_cast<Index>(corner));
+            }
+            sorter.take(types[c], of_cell, 0);
+        }
+        sorter.report(alone ? std::optional<std::string_view>(file_.name()) : std::nullopt);
+    }
+
+    // Arrays may have offsets of their own at each step.
+    void read_arrays(const Range& range, const std::string& group, bool at_cells, MeshFile& found) const {
+        for (const std::string& name : file_.names(kRoot + "/" + group)) {
+            const std::string path = kRoot + "/" + group + "/" + name;
+            if (!file_.has(path)) continue;  // texts
+            const std::size_t components = file_.columns(path);
+            if (components == 0) continue;
+            const std::size_t of_mesh = of_step(at_cells ? "CellOffsets" : "PointOffsets", 0);
+            const std::size_t first = of_step(group + "Offsets/" + name, of_mesh) + (range.first - of_mesh);
+            found.arrays.push_back(
+                {as_utf8(name), static_cast<int>(components), at_cells, file_.reals(path, first, range.count)});
+        }
+    }
+
+    const Hdf5File& file_;
+    ReadOptions options_;
+    TextScanner in_;
+    std::size_t step_ = 0;
+};
+
+}  // namespace
+
+ReadResult read_vtkhdf(const Hdf5File& file, const ReadOptions& options) {
+    check_root(file);
+    return VtkHdfReader(file, options).read();
+}
+
+std::vector<double> vtkhdf_times(const Hdf5File& file) {
+    check_root(file);
+    const std::string path = kSteps + "/Values";
+    return file.has(path) ? file.reals(path) : std::vector<double>();
+}
+
+ReadResult read_vtkhdf(const std::filesystem::path& path, const ReadOptions& options) {
+    return read_vtkhdf(Hdf5File(open_hdf5(path), path.string()), options);
+}
+
+std::vector<double> vtkhdf_times(const std::filesystem::path& path) {
+    return vtkhdf_times(Hdf5File(open_hdf5(path), path.string()));
+}
+
+}  // namespace subvol::detail
