@@ -22,7 +22,7 @@ OtherCells other_cells(const std::string& name) {
     return name == "ignore" ? OtherCells::Ignore : name == "refuse" ? OtherCells::Refuse : OtherCells::Split;
 }
 
-/// to: a mesh or sheets
+/// to: a mesh or shells
 template <class Points>
 void put_density_first(Points& to, const std::string& expression) {
     std::erase_if(to.attributes, [](const Attribute& a) { return a.name == "density"; });
@@ -115,7 +115,7 @@ ReadOptions read_options(const std::string& input, const CommonOptions& options)
 }
 
 WithFacts<ReadResult> read_input(const std::string& input, const CommonOptions& options, Progress* progress,
-                                 SheetsAlone alone) {
+                                 ShellsAlone alone) {
     Facts facts;
     facts["input"] = input;
     if (is_bricks_input(input)) {
@@ -131,25 +131,25 @@ WithFacts<ReadResult> read_input(const std::string& input, const CommonOptions& 
     ReadResult read = facts.timed(progress, "read", [&] {
         if (model) return generate(input.substr(kModelPrefix.size()));
         ReadOptions file_options = read_options(input, options);
-        file_options.sheets_alone = alone == SheetsAlone::Take;
+        file_options.shells_alone = alone == ShellsAlone::Take;
         return read_mesh(input, file_options);
     });
     for (const std::string& warning : read.warnings) facts.warn(warning);
     return {std::move(read), std::move(facts)};
 }
 
-WithFacts<HexMesh> load_mesh(const std::string& input, const CommonOptions& options, Progress* progress, Sheets* sheets,
-                             SheetsAlone alone) {
+WithFacts<HexMesh> load_mesh(const std::string& input, const CommonOptions& options, Progress* progress, Shells* shells,
+                             ShellsAlone alone) {
     auto [read, facts] = read_input(input, options, progress, alone);
-    if (sheets != nullptr) {
-        *sheets = std::move(read.sheets);
-        if (options.density && !sheets->empty()) put_density_first(*sheets, *options.density);
+    if (shells != nullptr) {
+        *shells = std::move(read.shells);
+        if (options.density && !shells->empty()) put_density_first(*shells, *options.density);
     } else {
-        facts.warn(sheets_left_out(read.sheets));
+        facts.warn(shells_left_out(read.shells));
     }
     if (read.mesh.cells.empty()) {
-        read.mesh.points = sheets->points;
-        read.mesh.attributes = sheets->attributes;
+        read.mesh.points = shells->points;
+        read.mesh.attributes = shells->attributes;
         return {std::move(read.mesh), std::move(facts)};
     }
     return {used_mesh(std::move(read.mesh), options), std::move(facts)};
@@ -159,8 +159,8 @@ std::vector<FieldInfo> chosen_fields(const ReadResult& read, const CommonOptions
     if (!options.density && !options.field) return read.fields;
     HexMesh mesh = read.mesh;
     if (mesh.cells.empty()) {
-        mesh.points = read.sheets.points;
-        mesh.attributes = read.sheets.attributes;
+        mesh.points = read.shells.points;
+        mesh.attributes = read.shells.attributes;
         if (options.density) put_density_first(mesh, *options.density);
     } else {
         mesh = used_mesh(std::move(mesh), options);
@@ -181,28 +181,28 @@ std::vector<FieldInfo> chosen_fields(const ReadResult& read, const CommonOptions
     return {{name, "point", 1, min, max}};
 }
 
-std::string sheets_left_out(const Sheets& sheets) {
-    if (sheets.empty()) return {};
-    const std::string quads = sheets.quads.empty() ? "" : counted(sheets.quads.size(), "quad");
-    const std::string lines = sheets.lines.empty() ? "" : counted(sheets.lines.size(), "line");
+std::string shells_left_out(const Shells& shells) {
+    if (shells.empty()) return {};
+    const std::string quads = shells.quads.empty() ? "" : counted(shells.quads.size(), "quad");
+    const std::string lines = shells.lines.empty() ? "" : counted(shells.lines.size(), "line");
     return text(quads, quads.empty() || lines.empty() ? "" : " and ", lines,
-                " of sheets and curves left out: render, surface, subdivide and info take them");
+                " of shells and beams left out: render, surface, subdivide and info read them");
 }
 
-Sheets with_fields_of(Sheets sheets, const HexMesh& mesh) {
+Shells with_fields_of(Shells shells, const HexMesh& mesh) {
     HexMesh points;
-    points.points = sheets.points;
-    points.attributes = std::move(sheets.attributes);
-    sheets.attributes.clear();
+    points.points = shells.points;
+    points.attributes = std::move(shells.attributes);
+    shells.attributes.clear();
     for (const Attribute& wanted : mesh.attributes) {
         // Without a field the volume has density 1 everywhere, and so have they.
         const bool made = wanted.name == "density" && points.find_attribute("density") == nullptr;
         Attribute field = made ? Attribute{wanted.name, 1, std::vector<double>(points.points.size(), 1.0)}
                                : select_field(points, wanted.name).scalar;
         field.name = wanted.name;
-        sheets.attributes.push_back(std::move(field));
+        shells.attributes.push_back(std::move(field));
     }
-    return sheets;
+    return shells;
 }
 
 HexMesh used_mesh(HexMesh read, const CommonOptions& options) {

@@ -22,30 +22,30 @@ namespace subvol::cli {
 /// How a mesh file is to be read.
 [[nodiscard]] ReadOptions read_options(const std::string& input, const CommonOptions& options);
 
-/// Whether a file of sheets and curves without cells is an error.
-enum class SheetsAlone { Refuse, Take };
+/// Whether a file of shells and beams without cells is an error.
+enum class ShellsAlone { Refuse, Take };
 
 /// Reads a mesh file, or generates "model:NAME[:RESOLUTION]". The reader's warnings are facts.
 [[nodiscard]] WithFacts<ReadResult> read_input(const std::string& input, const CommonOptions& options, Progress* progress,
-                                               SheetsAlone alone = SheetsAlone::Refuse);
+                                               ShellsAlone alone = ShellsAlone::Refuse);
 
 /// `read_input` without the unused points; --density becomes the first attribute.
 ///
-/// sheets: gets the sheets and curves; null: a warning says that they are left out
-/// alone:  Take: sheets without cells give a mesh of their points and fields without cells
+/// shells: gets the shells and beams; null: a warning says that they are left out
+/// alone:  Take: shells without cells give a mesh of their points and fields without cells
 [[nodiscard]] WithFacts<HexMesh> load_mesh(const std::string& input, const CommonOptions& options, Progress* progress,
-                                           Sheets* sheets = nullptr, SheetsAlone alone = SheetsAlone::Refuse);
+                                           Shells* shells = nullptr, ShellsAlone alone = ShellsAlone::Refuse);
 
 /// The fields of what `read_input` returned: with --density that one first, with --field that one alone.
 ///
 /// throws: Error(InvalidInput) if the expression has no value at a point, or if there is no such field
 [[nodiscard]] std::vector<FieldInfo> chosen_fields(const ReadResult& read, const CommonOptions& options);
 
-/// A warning that sheets and curves are left out; empty if there are none.
-[[nodiscard]] std::string sheets_left_out(const Sheets& sheets);
+/// A warning that shells and beams are left out; empty if there are none.
+[[nodiscard]] std::string shells_left_out(const Shells& shells);
 
-/// The sheets with the fields that the mesh has, which were selected from the same ones.
-[[nodiscard]] Sheets with_fields_of(Sheets sheets, const HexMesh& mesh);
+/// The shells with the fields that the mesh has, which were selected from the same ones.
+[[nodiscard]] Shells with_fields_of(Shells shells, const HexMesh& mesh);
 
 /// A mesh that was read, without the unused points; --density becomes the first attribute.
 [[nodiscard]] HexMesh used_mesh(HexMesh read, const CommonOptions& options);

@@ -66,10 +66,10 @@ Box ShownMesh::box() const {
 }
 
 ShownMesh load_shown_mesh(const std::string& input, const CommonOptions& options, const RenderArguments& arguments,
-                          Report& report, SheetsAlone alone) {
+                          Report& report, ShellsAlone alone) {
     ShownMesh shown;
-    Sheets* const wanted = arguments.tets.asked() ? nullptr : &shown.sheets;  // tetrahedra are refined by other rules
-    if (arguments.tets.asked()) alone = SheetsAlone::Refuse;
+    Shells* const wanted = arguments.tets.asked() ? nullptr : &shown.sheets;  // tetrahedra are refined by other rules
+    if (arguments.tets.asked()) alone = ShellsAlone::Refuse;
     report["input"] = input;  // for errors
     shown.mesh = report.unpack(load_mesh(input, options, report.progress(), wanted, alone));
     shown.mesh = report.unpack(with_selected_field(std::move(shown.mesh), options, arguments.splat.color_field));

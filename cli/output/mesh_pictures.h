@@ -12,7 +12,7 @@
 #include "splat_pictures.h"
 #include "subvol/bricks.h"
 #include "subvol/hex_mesh.h"
-#include "subvol/sheets.h"
+#include "subvol/shells.h"
 
 namespace CLI {
 class App;
@@ -23,7 +23,7 @@ namespace subvol::cli {
 /// A mesh that is shown, with the field of the opacities first and that of the colours last.
 struct ShownMesh {
     HexMesh mesh;
-    Sheets sheets{};
+    Shells sheets{};
 
     [[nodiscard]] ShownField field() const;
     [[nodiscard]] ShownField colors() const;
@@ -31,15 +31,15 @@ struct ShownMesh {
     [[nodiscard]] Box box() const;
 };
 
-/// Reads the mesh with its sheets and curves. A scheme of tetrahedra refines it, and leaves those out.
+/// Reads the mesh with its shells and beams. A scheme of tetrahedra refines it, and leaves those out.
 ///
 /// alone:  Take: of sheets without cells the mesh has points alone
 /// throws: Error(InvalidInput), also if a point is too far away to be drawn
 [[nodiscard]] ShownMesh load_shown_mesh(const std::string& input, const CommonOptions& options,
                                         const RenderArguments& arguments, Report& report,
-                                        SheetsAlone alone = SheetsAlone::Refuse);
+                                        ShellsAlone alone = ShellsAlone::Refuse);
 
-/// `make_notes` with the sheets and curves on their limit.
+/// `make_notes` with the shells and beams on their limit.
 [[nodiscard]] PictureNotes make_notes(const ShownMesh& shown, const ShownColors& colors, RenderArguments& arguments,
                                       Report& report);
 

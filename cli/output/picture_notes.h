@@ -27,7 +27,7 @@ struct ShownColors {
     LegendOptions legend;
 };
 
-/// What is drawn over the pictures of a run: sheets and curves, axes, edges of the control mesh, a legend beside them.
+/// What is drawn over the pictures of a run: shells and beams, axes, edges of the control mesh, a legend beside them.
 struct PictureNotes {
     bool axes = false;
     const HexMesh* edges = nullptr;  // of this mesh
@@ -37,7 +37,7 @@ struct PictureNotes {
     std::optional<LegendOptions> legend{};
     int legend_px = 0;  // its width
 
-    /// Draws sheets and curves, which come first.
+    /// Draws shells and beams, which come first.
     void draw_sheets(Picture& picture, const View& view) const;
     /// Draws axes and edges.
     void draw_over(Picture& picture, const View& view) const;

@@ -7,7 +7,7 @@
 #include "input.h"
 #include "report.h"
 #include "subvol/boundary_values.h"
-#include "subvol/limit_sheets.h"
+#include "subvol/limit_shells.h"
 
 namespace subvol::cli {
 namespace {
@@ -15,7 +15,7 @@ namespace {
 constexpr double kTubeRadius = 0.004;        // of the diagonal
 constexpr std::size_t kMostQuads = 200'000;  // that a level more may make
 
-int levels_of(const Sheets& sheets, std::optional<int> most) {
+int levels_of(const Shells& sheets, std::optional<int> most) {
     int levels = 1;
     for (std::size_t quads = 16 * sheets.quads.size() + 8 * sheets.lines.size(); levels < 4 && quads <= kMostQuads; quads *= 4)
         ++levels;
@@ -34,17 +34,17 @@ Picture empty_picture(const View& view) {
     return picture;
 }
 
-std::shared_ptr<const SheetScene> make_sheet_scene(const HexMesh& mesh, const Sheets& sheets, RefineOptions refine,
+std::shared_ptr<const SheetScene> make_sheet_scene(const HexMesh& mesh, const Shells& sheets, RefineOptions refine,
                                                    std::optional<int> levels, const Optics& optics, int samples,
                                                    const Clip& clip, Report& report) {
     if (sheets.empty()) return nullptr;
-    const Sheets control = with_fields_of(sheets, mesh);
+    const Shells control = with_fields_of(sheets, mesh);
     return report.timed("sheets", [&] {
         refine.levels = levels_of(control, levels);
-        const Sheets fine = limit_sheets(mesh, control, refine);
+        const Shells fine = limit_shells(mesh, control, refine);
         Box box = bounds(mesh);
         for (const Vec3& p : fine.points) box.add(p);
-        SheetSurface drawn = sheet_surface(fine, kTubeRadius * box.diagonal());
+        ShellSurface drawn = shell_surface(fine, kTubeRadius * box.diagonal());
         ColoredSurface colored;
         const std::vector<double>& values = fine.attributes.back().values;
         for (const Index p : drawn.sources) colored.values.push_back(values[p]);

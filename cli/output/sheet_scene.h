@@ -7,17 +7,17 @@
 #include "subvol/clip.h"
 #include "subvol/draw_sheets.h"
 #include "subvol/refine.h"
-#include "subvol/sheets.h"
+#include "subvol/shells.h"
 
 namespace subvol::cli {
 
-/// The sheets and curves of a picture on the limit, and the boundary of the volume that may hide them.
+/// The shells and beams of a picture on the limit, and the boundary of the volume that may hide them.
 ///
 /// control: as they were read, for --edges
 struct SheetScene {
     ColoredSurface drawn;
     Surface boundary;
-    Sheets control;
+    Shells control;
     Optics optics;
     int samples = 1;
     Clip clip{};
@@ -28,12 +28,12 @@ struct SheetScene {
 /// The picture without cells, into which sheets are drawn.
 [[nodiscard]] Picture empty_picture(const View& view);
 
-/// Puts sheets and curves on the limit. Null if there are none.
+/// Puts shells and beams on the limit. Null if there are none.
 ///
 /// mesh:   with the field that is shown and, last, the one of the colours
 /// sheets: with the fields of their file, or with the same
 /// levels: no more than these, if given
-[[nodiscard]] std::shared_ptr<const SheetScene> make_sheet_scene(const HexMesh& mesh, const Sheets& sheets,
+[[nodiscard]] std::shared_ptr<const SheetScene> make_sheet_scene(const HexMesh& mesh, const Shells& sheets,
                                                                  RefineOptions refine, std::optional<int> levels,
                                                                  const Optics& optics, int samples, const Clip& clip,
                                                                  Report& report);

@@ -74,18 +74,17 @@ std::string mesh_lines(const ReadResult& read, const MeshReport& mesh, const Jso
 std::string mesh_lines(const ReadResult& read, const detail::MeshShare& joined, const Json& seconds) {
     const MeshReport& mesh = joined.counts;
     Lines lines;
-    const SheetReport sheets = inspect(read.sheets);
-    const std::size_t of_sheets = sheets.points - sheets.attached;
-    const std::size_t unused = mesh.points - std::min(mesh.points, mesh.points_used + of_sheets);
+    const ShellReport shells = inspect(read.shells);
+    const std::size_t of_shells = shells.points - shells.attached;
+    const std::size_t unused = mesh.points - std::min(mesh.points, mesh.points_used + of_shells);
     lines.emplace_back("cells", count_text(mesh.cells));
     lines.emplace_back("points", count_text(mesh.points) + (unused > 0 ? ", " + count_text(unused) + " of them unused" : ""));
     lines.emplace_back("faces", count_text(mesh.faces) + ", " + count_text(mesh.boundary_faces) + " of them on the boundary");
     lines.emplace_back("edges",
                        count_text(mesh.edges) + ", " + count_text(mesh.interior_edges) + " of them inside" + valences(mesh));
-    if (!read.sheets.empty()) {
-        lines.emplace_back("sheets", counted(sheets.quads, "quad") + ", " +
-                                         counted(sheets.lines, "line of curves", "lines of curves") + "; " +
-                                         count_text(sheets.attached) + " of " + counted(sheets.points, "point") + " on cells");
+    if (!read.shells.empty()) {
+        lines.emplace_back("shells", counted(shells.quads, "quad") + ", " + counted(shells.lines, "beam") + "; " +
+                                         count_text(shells.attached) + " of " + counted(shells.points, "point") + " on cells");
     }
     if (mesh.nonmanifold_edges + mesh.nonmanifold_points > 0) {
         lines.emplace_back("touching", counted(mesh.nonmanifold_edges, "edge") + " and " +

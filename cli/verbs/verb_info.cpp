@@ -163,7 +163,7 @@ private:
 
     void describe_mesh(Report& report) {
         refuse_at("a mesh");
-        const SheetsAlone alone = shares(share_) ? SheetsAlone::Refuse : SheetsAlone::Take;
+        const ShellsAlone alone = shares(share_) ? ShellsAlone::Refuse : ShellsAlone::Take;
         report["input"] = input_;
         ReadResult read = report.unpack(read_input(input_, common(), report.progress(), alone));
         read.fields = chosen_fields(read, common());
@@ -178,11 +178,11 @@ private:
             if (about.counts.inverted_cells > 0) about.inverted = inverted_cells(read.mesh, kCellsNamed);
         }
         put_mesh_report(report, about.counts);
-        if (!read.sheets.empty()) {
-            const SheetReport sheets = inspect(read.sheets);
-            report["sheets"] = {{"quads", sheets.quads},           {"lines", sheets.lines},
-                                {"points", sheets.points},         {"attached_points", sheets.attached},
-                                {"free_edges", sheets.free_edges}, {"nonmanifold_edges", sheets.nonmanifold_edges}};
+        if (!read.shells.empty()) {
+            const ShellReport shells = inspect(read.shells);
+            report["sheets"] = {{"quads", shells.quads},           {"lines", shells.lines},
+                                {"points", shells.points},         {"attached_points", shells.attached},
+                                {"free_edges", shells.free_edges}, {"nonmanifold_edges", shells.nonmanifold_edges}};
         }
         report["fields"] = Json::array();
         for (const FieldInfo& field : read.fields) {
@@ -204,12 +204,12 @@ private:
         report.all_said();
     }
 
-    /// Of sheets without cells: their points and their box.
+    /// Of shells without cells: their points and their box.
     [[nodiscard]] static MeshReport figures_of(const ReadResult& read) {
         if (!read.mesh.cells.empty()) return inspect(read.mesh);
         MeshReport report;
         report.points = read.mesh.points.size();
-        for (const Vec3& p : read.sheets.points) report.bounds.add(p);
+        for (const Vec3& p : read.shells.points) report.bounds.add(p);
         return report;
     }
 

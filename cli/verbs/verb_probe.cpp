@@ -78,7 +78,7 @@ public:
         }
         report["input"] = input_;
         ReadResult read = report.unpack(read_input(input_, common(), report.progress()));
-        report.warn(sheets_left_out(read.sheets));
+        report.warn(shells_left_out(read.shells));
         const HexMesh mesh = used_mesh(std::move(read.mesh), common());
         const HexMesh chosen = with_chosen_first(mesh, report);
         report["cells"] = mesh.cells.size();

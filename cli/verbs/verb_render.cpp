@@ -175,7 +175,7 @@ private:
     }
 
     void draw_mesh(PictureOutput& output, Report& report) {
-        const ShownMesh of = load_shown_mesh(input_, common(), arguments_, report, SheetsAlone::Take);
+        const ShownMesh of = load_shown_mesh(input_, common(), arguments_, report, ShellsAlone::Take);
         const Box box = of.box();
         show(box, of.field(), of.colors(), output, report, [&](const ShownColors& shown) {
             const std::vector<Vec3>& sheets = of.sheets.points;

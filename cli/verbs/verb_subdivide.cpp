@@ -7,7 +7,7 @@
 #include "refine_arguments.h"
 #include "subvol/error.h"
 #include "subvol/field_range.h"
-#include "subvol/limit_sheets.h"
+#include "subvol/limit_shells.h"
 #include "subvol/mesh_io.h"
 #include "subvol/mesh_report.h"
 #include "subvol/mixed_file.h"
@@ -43,24 +43,24 @@ public:
         const RefineOptions options = refine_.options(1, report.progress());
         check_output(output_, {".vtu", ".mesh"});
         report.if_long("fewer --levels");
-        Sheets sheets;
+        Shells shells;
         report["input"] = input_;
         const HexMesh mesh =
-            with_written_field(report.unpack(load_mesh(input_, common(), report.progress(), &sheets)), common());
-        if (common().field && !sheets.empty()) {
-            HexMesh of_sheets;
-            of_sheets.points = sheets.points;
-            of_sheets.attributes = std::move(sheets.attributes);
-            sheets.attributes = with_written_field(std::move(of_sheets), common()).attributes;
+            with_written_field(report.unpack(load_mesh(input_, common(), report.progress(), &shells)), common());
+        if (common().field && !shells.empty()) {
+            HexMesh of_shells;
+            of_shells.points = shells.points;
+            of_shells.attributes = std::move(shells.attributes);
+            shells.attributes = with_written_field(std::move(of_shells), common()).attributes;
         }
         HexMesh fine = report.unpack(refine_reported(mesh, options, on_limit_ ? Vertices::OnTheLimit : Vertices::OfTheLevel));
         keep_in_range(mesh, fine, report);
-        if (!sheets.empty() && output_.ends_with(".mesh")) {
-            report.warn("sheets and curves are not written to .mesh, but to .vtu");
-            sheets = {};
+        if (!shells.empty() && output_.ends_with(".mesh")) {
+            report.warn("shells and beams are not written to .mesh, but to .vtu");
+            shells = {};
         }
-        sheets = report.timed("sheets", [&] { return refined(mesh, sheets, options, report); });
-        for (const std::string& warning : report.timed("write", [&] { return write_mesh(output_, fine, sheets); }))
+        shells = report.timed("sheets", [&] { return refined(mesh, shells, options, report); });
+        for (const std::string& warning : report.timed("write", [&] { return write_mesh(output_, fine, shells); }))
             report.warn(warning);
         put_shape(mesh, fine, report);
         report["output"] = output_;
@@ -84,10 +84,10 @@ private:
         report["cells"] = fine.cells();
     }
 
-    [[nodiscard]] Sheets refined(const HexMesh& mesh, const Sheets& sheets, const RefineOptions& options,
+    [[nodiscard]] Shells refined(const HexMesh& mesh, const Shells& shells, const RefineOptions& options,
                                  Report& report) const {
-        if (sheets.empty()) return {};
-        Sheets fine = on_limit_ ? limit_sheets(mesh, sheets, options) : refine_sheets(mesh, sheets, options);
+        if (shells.empty()) return {};
+        Shells fine = on_limit_ ? limit_shells(mesh, shells, options) : refine_shells(mesh, shells, options);
         for (std::size_t f = 0; clamp_ && f < fine.attributes.size(); ++f) {
             clamp_to(fine.attributes[f], range_of(mesh.attributes[f]));
         }

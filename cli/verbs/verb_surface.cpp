@@ -14,7 +14,7 @@
 #include "subvol/brick_surface.h"
 #include "subvol/detail/surface_share.h"
 #include "subvol/error.h"
-#include "subvol/limit_sheets.h"
+#include "subvol/limit_shells.h"
 #include "subvol/limit_surface.h"
 #include "surface_output.h"
 #include "tet_refinement.h"
@@ -98,9 +98,9 @@ public:
             extract_from_bricks(options, report);
             return 0;
         }
-        Sheets sheets;
+        Shells shells;
         report["input"] = input_;
-        Sheets* const wanted = options.boundary && !tets.asked() ? &sheets : nullptr;
+        Shells* const wanted = options.boundary && !tets.asked() ? &shells : nullptr;
         HexMesh mesh = report.unpack(load_mesh(input_, common(), report.progress(), wanted));
         mesh = report.unpack(tets.hexes(std::move(mesh), 2, report.progress()));
         HexMesh chosen = report.unpack(with_selected_field(mesh, common()));
@@ -108,8 +108,8 @@ public:
         for (const Attribute& attribute : mesh.attributes) {
             if (attribute.name != field) chosen.attributes.push_back(attribute);
         }
-        if (share_.given() && !sheets.empty()) {
-            throw Error(ErrorCode::InvalidInput, "sheets are written with the whole surface", "--part",
+        if (share_.given() && !shells.empty()) {
+            throw Error(ErrorCode::InvalidInput, "shells are written with the whole surface", "--part",
                         "one process, or mpirun");
         }
         SurfaceOutput output{.field = field, .range = field_range(chosen), .isos = isos_.size()};
@@ -123,14 +123,14 @@ public:
         if (!surface) return 0;
         check_not_empty(*surface, output);
         const std::size_t of_volume = surface->surface.triangles.size();
-        if (!sheets.empty()) {
-            sheets = with_fields_of(std::move(sheets), chosen);
+        if (!shells.empty()) {
+            shells = with_fields_of(std::move(shells), chosen);
             report.timed("sheets", [&] {
-                const int level = std::clamp(surface->report.level, 3, 4);  // a flat body may carry a bent sheet
-                add_sheets(*surface, limit_sheets(chosen, sheets, {.scheme = options.scheme, .levels = level}));
+                const int level = std::clamp(surface->report.level, 3, 4);  // a flat body may carry a bent shell
+                add_shells(*surface, limit_shells(chosen, shells, {.scheme = options.scheme, .levels = level}));
             });
             report["sheet_triangles"] = surface->surface.triangles.size() - of_volume;
-            if (!sheets.lines.empty()) report.warn("curves have no surface: they are not written");
+            if (!shells.lines.empty()) report.warn("beams have no surface and are not written");
         }
         report.merge(write_reported(output_, *surface, output, report.progress()));
         return 0;

@@ -10,7 +10,7 @@
 #include "brick_layers.h"
 #include "subvol/detail/bricks_share.h"
 #include "subvol/detail/gather_cells.h"
-#include "subvol/detail/inspect_part.h"
+#include "subvol/detail/mesh_share.h"
 #include "subvol/detail/read_file.h"
 #include "subvol/error.h"
 #include "text_scanner.h"

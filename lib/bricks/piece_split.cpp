@@ -10,11 +10,8 @@
 #include <tuple>
 
 #include "assemble.h"
-#include "cell_shapes.h"
-#include "cut_cells.h"
-#include "mixed_cells_split.h"
+#include "cell_splits.h"
 #include "spill_buckets.h"
-#include "split_keys.h"
 #include "subvol/error.h"
 
 namespace subvol::detail {

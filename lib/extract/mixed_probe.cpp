@@ -6,7 +6,7 @@
 #include <string>
 #include <utility>
 
-#include "mixed_parents.h"
+#include "mixed_shapes.h"
 #include "point_quadratics.h"
 #include "subvol/detail/parallel_each.h"
 #include "subvol/error.h"

@@ -78,19 +78,19 @@ void check_sizes(const Image& image, std::span<const float> depth, const View& v
 
 }  // namespace
 
-void draw_edges(Image& image, std::span<const float> depth, const View& view, const Sheets& sheets,
+void draw_edges(Image& image, std::span<const float> depth, const View& view, const Shells& shells,
                 const LineOptions& options) {
     check_sizes(image, depth, view);
     std::vector<std::array<Index, 2>> edges;
     const auto add = [&](Index a, Index b) { edges.push_back({std::min(a, b), std::max(a, b)}); };
-    for (const auto& quad : sheets.quads) {
+    for (const auto& quad : shells.quads) {
         for (std::size_t k = 0; k < 4; ++k) add(quad[k], quad[(k + 1) % 4]);
     }
-    for (const auto& [a, b] : sheets.lines) add(a, b);
+    for (const auto& [a, b] : shells.lines) add(a, b);
     std::sort(edges.begin(), edges.end());
     edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
     EdgeDrawer drawer(image, depth, view, options);
-    for (const auto& [a, b] : edges) drawer.draw(sheets.points[a], sheets.points[b], true);
+    for (const auto& [a, b] : edges) drawer.draw(shells.points[a], shells.points[b], true);
 }
 
 void draw_edges(Image& image, std::span<const float> depth, const View& view, const HexMesh& mesh, const LineOptions& options) {

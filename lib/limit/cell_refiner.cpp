@@ -10,9 +10,9 @@
 #include <mutex>
 #include <numeric>
 
+#include "cell_tables.h"
 #include "class_tables.h"
 #include "dense_block.h"
-#include "lane_values.h"
 #include "run_nested.h"
 #include "space_order.h"
 #include "subvol/cell.h"

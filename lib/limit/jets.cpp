@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "subvol/cell.h"
-#include "tricubic_sums.h"
 
 namespace subvol::detail {
 

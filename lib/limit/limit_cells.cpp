@@ -5,21 +5,25 @@
 //     cells ── level 1 ──► fine enough: pieces
 //                └─ others ── level 2 ──► the cell, or some of its children
 //                               └─ other children ── 2, 3 … levels of the child ──► the child, or parts of it
+
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_sort.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <bit>
 #include <cmath>
 #include <functional>
 #include <tuple>
+#include <vector>
 
 #include "cell_refiner.h"
-#include "piece_cutter.h"
+#include "node_steps.h"
 #include "refine_steps.h"
 #include "subvol/cell.h"
+#include "subvol/detail/flat_array.h"
 #include "subvol/detail/limit_of_part.h"
 #include "subvol/detail/parallel_each.h"
 #include "subvol/limit_level.h"
@@ -29,6 +33,183 @@ namespace subvol {
 using namespace detail;
 
 namespace {
+
+/// Pieces, as in LimitPieces, with what is left between each and the limit.
+struct PieceList {
+    std::vector<Index> cells;
+    std::vector<std::uint8_t> levels;
+    std::vector<std::array<std::uint8_t, 3>> lowest;
+    std::vector<Step> left;
+    std::vector<float> trilinear;  // the level whose trilinear cells are as near
+    std::vector<Vec3> origins;
+    FlatArray<float> nodes;
+    bool has_nodes = true;  // otherwise origins and nodes are empty
+
+    [[nodiscard]] std::size_t size() const { return cells.size(); }
+    void drop_nodes();
+    /// Takes back all pieces but the first ones.
+    void truncate(std::size_t pieces);
+};
+
+/// Cuts a part of a control cell into pieces that are fine enough, from a grid of its nodes.
+///
+///     N  the 27 nodes of a part: its corners, and the middles between them
+///     ●     ○     ●     ○     ●     new nodes ○ of its children are compared with the parabola through ●: if all are near
+///     |     part        |           it, the part is a piece. Otherwise each child is a piece if a quarter of its own distance
+///     |  child  | child |           is small enough; if it is not, its children are looked at in the same way
+class PieceCutter {
+public:
+    /// scales: as `value_scales`
+    PieceCutter(std::vector<double> scales, const LimitCellsOptions& options);
+
+    /// Whether a whole cell is fine enough, from its nodes of level 1, or there will be no other; if so, it is added to the
+    /// list.
+    bool cut_cell(const DenseCell& grid, bool last, PieceList& list);
+
+    /// Cuts the part of level `level` at `lowest` that `grid` covers, into the list. Returns the children, bit k: child k, that
+    /// need more nodes than the grid has, all eight for the part as a whole.
+    ///
+    /// last: there will be no finer grid: a part that needs more nodes is added with what it has
+    std::uint8_t cut(const DenseCell& grid, int level, const std::array<std::uint8_t, 3>& lowest, bool last, PieceList& list);
+
+private:
+    struct Part {
+        int level;
+        std::array<std::uint8_t, 3> lowest;
+        std::array<std::size_t, 3> first;  // node of the grid
+        std::size_t width;                 // steps of the grid
+    };
+    [[nodiscard]] bool is_near(const Step& left) const;
+    void gather(const DenseCell& grid, const Part& part, std::size_t side);
+    void add(const DenseCell& grid, const Part& part, const Step& left, PieceList& list);
+    /// The same with the part's 27 nodes gathered. step: of their positions, from trilinear predictions
+    void add_gathered(const DenseCell& grid, const Part& part, const Step& left, double step, PieceList& list);
+    std::uint8_t cut_part(const DenseCell& grid, const Part& part, Step left, bool last, PieceList& list);
+
+    std::vector<double> scales_;
+    double position_, value_;
+    NodeBlock nodes_;  // scratch memory
+};
+
+constexpr double kLeft = 0.25;  // the next step is this part of the last one, where the field is smooth
+constexpr std::size_t kPieceNodes = 27;
+
+/// The steps of a child's nodes, in a block of five nodes along each axis.
+Step largest_in(std::size_t child, const std::vector<Step>& steps) {
+    const auto& at = kCornerParameters[child];
+    Step most;
+    for (int w = 0; w < 3; ++w) {
+        for (int v = 0; v < 3; ++v) {
+            for (int u = 0; u < 3; ++u) {
+                const int n = u + 2 * at[0] + 5 * (v + 2 * at[1] + 5 * (w + 2 * at[2]));
+                most = larger(most, steps[static_cast<std::size_t>(n)]);
+            }
+        }
+    }
+    return most;
+}
+
+Step quarter(const Step& step) {
+    return {kLeft * step.position, kLeft * step.value};
+}
+
+void PieceList::truncate(std::size_t pieces) {
+    if (pieces == size()) return;
+    if (has_nodes) {
+        nodes.resize(nodes.size() / size() * pieces);
+        origins.resize(pieces);
+    }
+    cells.resize(pieces);
+    levels.resize(pieces);
+    lowest.resize(pieces);
+    left.resize(pieces);
+    trilinear.resize(pieces);
+}
+
+void PieceList::drop_nodes() {
+    has_nodes = false;
+    origins = {};
+    nodes = {};
+}
+
+PieceCutter::PieceCutter(std::vector<double> scales, const LimitCellsOptions& options)
+    : scales_(std::move(scales)), position_(options.position_world), value_(options.value_of_range) {
+}
+
+bool PieceCutter::is_near(const Step& left) const {
+    return left.position <= position_ && left.value <= value_;
+}
+
+void PieceCutter::gather(const DenseCell& grid, const Part& part, std::size_t side) {
+    nodes_.gather(grid, part.first, part.width / (side - 1), side);
+}
+
+void PieceCutter::add(const DenseCell& grid, const Part& part, const Step& left, PieceList& list) {
+    gather(grid, part, 3);
+    add_gathered(grid, part, left, nodes_.largest_step(Prediction::Trilinear, scales_).position, list);
+}
+
+void PieceCutter::add_gathered(const DenseCell& grid, const Part& part, const Step& left, double step, PieceList& list) {
+    list.cells.push_back(grid.cell);
+    list.levels.push_back(static_cast<std::uint8_t>(part.level));
+    list.lowest.push_back(part.lowest);
+    list.left.push_back(left);
+    list.trilinear.push_back(static_cast<float>(std::max(0.0, part.level + levels_between(position_, step))));
+    if (!list.has_nodes) return;
+    list.origins.push_back(nodes_.origin());
+    const std::size_t count = kPieceNodes * nodes_.channels(), first = list.nodes.size();
+    list.nodes.resize(first + count);
+    std::transform(nodes_.node(0), nodes_.node(0) + count, &list.nodes[first], [](double x) { return static_cast<float>(x); });
+}
+
+bool PieceCutter::cut_cell(const DenseCell& grid, bool last, PieceList& list) {
+    const Part whole{.level = 0, .lowest = {}, .first = {}, .width = 2};
+    gather(grid, whole, 3);
+    const Step step = nodes_.largest_step(Prediction::Trilinear, scales_);
+    if (!last && !is_near(quarter(step))) return false;
+    add_gathered(grid, whole, quarter(step), step.position, list);
+    return true;
+}
+
+std::uint8_t PieceCutter::cut(const DenseCell& grid, int level, const std::array<std::uint8_t, 3>& lowest, bool last,
+                              PieceList& list) {
+    return cut_part(grid, {.level = level, .lowest = lowest, .first = {}, .width = grid.side - 1}, {HUGE_VAL, HUGE_VAL}, last,
+                    list);
+}
+
+std::uint8_t PieceCutter::cut_part(const DenseCell& grid, const Part& part, Step left, bool last, PieceList& list) {
+    if (part.width < 4) {
+        if (last) add(grid, part, left, list);
+        return last ? 0 : 0xff;
+    }
+    gather(grid, part, 5);
+    std::vector<Step> steps;
+    nodes_.steps(Prediction::Triquadratic, scales_, steps);
+    Step most;
+    for (const Step& step : steps) most = larger(most, step);
+    left = smaller(left, most);
+    if (is_near(left)) {
+        add(grid, part, left, list);
+        return 0;
+    }
+    std::uint8_t open = 0;
+    for (std::size_t child = 0; child < 8; ++child) {
+        Part of_child{.level = part.level + 1, .lowest = {}, .first = {}, .width = part.width / 2};
+        for (std::size_t d = 0; d < 3; ++d) {
+            const bool upper = kCornerParameters[child][d] == 1;
+            of_child.first[d] = part.first[d] + (upper ? of_child.width : 0);
+            of_child.lowest[d] = static_cast<std::uint8_t>(2 * part.lowest[d] + (upper ? 1 : 0));
+        }
+        gather(grid, of_child, 3);
+        const Step of_next = quarter(smaller(largest_in(child, steps), nodes_.largest_step(Prediction::Trilinear, scales_)));
+        if (is_near(of_next)) {
+            add(grid, of_child, of_next, list);
+        } else if (cut_part(grid, of_child, of_next, last, list) != 0) {
+            open |= static_cast<std::uint8_t>(1U << child);
+        }
+    }
+    return open;
+}
 
 constexpr double kMostSurfaceCells = 3e7;  // trilinear, were all cells refined to the surface's level
 

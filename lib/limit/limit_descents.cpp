@@ -9,7 +9,7 @@
 #include <mutex>
 #include <optional>
 
-#include "refined_store.h"
+#include "refined_cells.h"
 #include "run_nested.h"
 
 namespace subvol::detail {

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cut_cells.h"
+#include "cell_splits.h"
 
 #include <algorithm>
 
-#include "cell_shapes.h"
 #include "subvol/cell.h"
 
 namespace subvol {

@@ -6,17 +6,59 @@
 #include <tbb/parallel_reduce.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <charconv>
 #include <cmath>
+#include <string>
+#include <string_view>
 
-#include "field_names.h"
 #include "subvol/detail/near_name.h"
 #include "subvol/error.h"
 
 namespace subvol {
 
 namespace {
+
+// Not by tolower, which leaves the I in a Turkish locale.
+std::string lower(std::string_view name) {
+    std::string text(name);
+    std::ranges::transform(text, text.begin(),
+                           [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+    return text;
+}
+
+/// Whether a name ends in a word "Id", "ids" or "ID": GlobalNodeId and node_id do, Fluid and solid do not.
+bool ends_in_id(std::string_view name) {
+    for (const std::string_view end : {"Id", "Ids", "ID", "IDs"}) {
+        if (name.ends_with(end)) return true;
+    }
+    const std::string text = lower(name);
+    return text == "id" || text == "ids" || text.ends_with("_id") || text.ends_with("_ids") || text.ends_with(" id") ||
+           text.ends_with(":id");
+}
+
+constexpr std::array<std::string_view, 7> kMarks{"vtkoriginal", "iblank",     "ghost",  "pedigree",
+                                                 "globalnode",  "globalelem", "normals"};
+
+constexpr std::array<std::string_view, 29> kQuantities{
+    "temp",    "pres",     "stress",    "mises",  "strain",    "eqps",   "energy",   "enthalpy",  "entropy",    "density",
+    "rho",     "veloc",    "speed",     "mach",   "displ",     "force",  "heat",     "flux",      "saturation", "porosity",
+    "permeab", "concentr", "vorticity", "damage", "potential", "charge", "moisture", "viscosity", "humidity"};
+
+// Whether an array of that name numbers or marks points or cells: `GlobalNodeId`, `vtkOriginalPointIds`, `IBlank`,
+// `vtkGhostType`. A name such as `Fluid` does not.
+bool is_identifier(std::string_view name) {
+    const std::string text = lower(name);
+    return ends_in_id(name) ||
+           std::ranges::any_of(kMarks, [&](std::string_view mark) { return text.find(mark) != std::string::npos; });
+}
+
+// Whether the name is that of a physical quantity: `Temp`, `Pressure`, `von_mises`, `EQPS`, `StagnationEnergy`, …
+bool is_physical(std::string_view name) {
+    const std::string text = lower(name);
+    return std::ranges::any_of(kQuantities, [&](std::string_view part) { return text.find(part) != std::string::npos; });
+}
 
 std::array<Vec3, 8> corners_of(const HexMesh& mesh, const std::array<Index, 8>& cell) {
     std::array<Vec3, 8> corners;
@@ -259,10 +301,10 @@ bool is_constant(const Attribute& attribute) {
 
 /// How sensible it is to show an attribute that nobody asked for; 0: not at all.
 int merit_of(const Attribute& attribute) {
-    if (detail::is_identifier(attribute.name)) return 0;
+    if (is_identifier(attribute.name)) return 0;
     if (is_constant(attribute)) return attribute.channels == 1 ? 2 : 1;
     if (attribute.channels > 1) return 3;
-    return detail::is_physical(attribute.name) ? 5 : 4;
+    return is_physical(attribute.name) ? 5 : 4;
 }
 
 }  // namespace

@@ -1,14 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "mixed_cells_split.h"
+#include "cell_splits.h"
 
 #include <algorithm>
 #include <compare>
 #include <numeric>
 #include <string>
 
-#include "cell_shapes.h"
-#include "cut_cells.h"
-#include "split_keys.h"
 #include "subvol/detail/bucket_sort.h"
 #include "subvol/error.h"
 

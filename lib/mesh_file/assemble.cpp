@@ -7,7 +7,7 @@
 #include <unordered_map>
 #include <utility>
 
-#include "mixed_cells_split.h"
+#include "cell_splits.h"
 #include "sharp_groups.h"
 #include "subvol/cell.h"
 #include "subvol/error.h"
@@ -270,7 +270,7 @@ std::size_t drop_unusable(FileCells<N>& cells, const HexMesh& mesh) {
     return drop_where(cells, [&](std::size_t c) { return !usable(cells.corners[c]); });
 }
 
-/// Values of an array of cells at the points of sheets that no cell uses: the mean over the quads and lines there.
+/// Values of an array of cells at the points of shells that no cell uses: the mean over the quads and lines there.
 void set_means(HexMesh& mesh, std::size_t attribute, const FileArray& array, const MeshFile& found,
                std::span<const std::uint8_t> used) {
     const auto components = static_cast<std::size_t>(array.components);
@@ -295,31 +295,31 @@ void set_means(HexMesh& mesh, std::size_t attribute, const FileArray& array, con
     }
 }
 
-std::string list_of_sheets(std::size_t quads, std::size_t lines) {
+std::string list_of_shells(std::size_t quads, std::size_t lines) {
     const std::string of_quads = quads > 0 ? counted(quads, "quad", "quads") : "";
     const std::string of_lines = lines > 0 ? counted(lines, "line", "lines") : "";
     return of_quads + (of_quads.empty() || of_lines.empty() ? "" : " and ") + of_lines;
 }
 
 /// After the mesh is complete. moved: whether its points are not those of the file
-void take_sheets(MeshFile& found, ReadResult& result, const Origin& origin, bool moved) {
+void take_shells(MeshFile& found, ReadResult& result, const Origin& origin, bool moved) {
     std::size_t quads = found.quads.corners.size(), lines = found.lines.corners.size();
     if (quads + lines == 0) return;
     if (moved || origin.sources || !result.cell_means.empty()) {
-        result.warnings.push_back(list_of_sheets(quads, lines) +
-                                  " ignored: sheets and curves are read beside hexahedra that are not split");
+        result.warnings.push_back(list_of_shells(quads, lines) +
+                                  " ignored: shells and beams are read beside hexahedra that are not split");
         return;
     }
     HexMesh with = result.mesh;
     quads = drop_unusable(found.quads, with);
     lines = drop_unusable(found.lines, with);
     if (quads + lines > 0) {
-        result.warnings.push_back(list_of_sheets(quads, lines) + " ignored: they repeat a point, or its values are not finite");
+        result.warnings.push_back(list_of_shells(quads, lines) + " ignored: they repeat a point, or its values are not finite");
     }
     for (std::size_t a = 0; a < found.arrays.size(); ++a) {
         if (found.arrays[a].at_cells) set_means(with, a, found.arrays[a], found, origin.used);
     }
-    result.sheets = make_sheets(with, found.quads.corners, found.lines.corners);
+    result.shells = make_shells(with, found.quads.corners, found.lines.corners);
 }
 
 }  // namespace
@@ -367,8 +367,8 @@ ReadResult assemble(MeshFile&& found, std::string_view file, const EntityNames& 
     drop_ghosts(found);
     if (options.weld) {
         weld_points(found, *options.weld, file, names_in_file);
-        const auto [quads, lines] = drop_parts_of_cells(found, options.sheets_alone);
-        if (quads + lines > 0) found.warnings.push_back(list_of_sheets(quads, lines) + " ignored: parts of cells");
+        const auto [quads, lines] = drop_parts_of_cells(found, options.shells_alone);
+        if (quads + lines > 0) found.warnings.push_back(list_of_shells(quads, lines) + " ignored: parts of cells");
     }
     EntityNames names = names_in_file;
     const bool moved = options.curved_tolerance && split_curved(found, *options.curved_tolerance, file, names);
@@ -396,8 +396,8 @@ ReadResult assemble(MeshFile&& found, std::string_view file, const EntityNames& 
         for (auto& array : found.arrays) conversion.take(std::move(array));
         conversion.finish();
         if (!result.cell_means.empty()) result.cell_parts = std::move(origin.cell_numbers);
-        take_sheets(found, result, origin, moved);
-        const bool alone = options.sheets_alone && result.mesh.cells.empty() && !result.sheets.empty();
+        take_shells(found, result, origin, moved);
+        const bool alone = options.shells_alone && result.mesh.cells.empty() && !result.shells.empty();
         if (!alone) validate(result.mesh);
         if (!found.sharp.empty()) {
             add_sharp_tags(result.mesh, std::move(found.sharp), origin.sources ? &*origin.sources : nullptr, file, names);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "assemble.h"
-
 #include <algorithm>
 #include <unordered_set>
+
+#include "assemble.h"
 
 namespace subvol::detail {
 

@@ -90,7 +90,7 @@ void add_point(MeshFile& file, const Vec3& point, std::size_t position) {
 }
 
 void add_left_out_warning(MeshFile& found, const std::string& list, std::string_view file) {
-    bool has_cells = !found.quads.corners.empty() || !found.lines.corners.empty();  // sheets that are wanted
+    bool has_cells = !found.quads.corners.empty() || !found.lines.corners.empty();  // shells that are wanted
     each_kind(found, [&](const auto& cells) { has_cells = has_cells || !cells.corners.empty(); });
     if (!has_cells) {
         throw Error(ErrorCode::InvalidInput, "no hexahedra" + (list.empty() ? "" : ", but " + list + ", which are ignored"),

@@ -66,7 +66,7 @@ struct FileTags {
 /// The contents of a file as a reader found them; `assemble` makes a mesh of them.
 ///
 /// prisms:     of either handedness, since formats differ; otherwise as in MixedCells
-/// quads, lines: of sheets and curves; they need numbers
+/// quads, lines: of shells and beams; they need numbers
 /// cut:        the cells fit together only if all are cut into tetrahedra
 /// turned:     the hexahedra stay as they are, also where their volume is negative
 /// not_finite: points with a coordinate that is not finite, and their position in the text: an error if a cell uses the point

@@ -111,7 +111,7 @@ void VtkCellSorter::take_as(FileCells<N>& into, std::span<const Index> corners, 
     into.numbers.push_back(static_cast<Index>(next_));
 }
 
-void VtkCellSorter::take_no_sheets() {
+void VtkCellSorter::take_no_shells() {
     const std::size_t quads = found_.quads.corners.size(), lines = found_.lines.corners.size();
     if (quads > 0) left_out_[kQuad] += quads;
     if (lines > 0) left_out_[kLine] += lines;
@@ -128,8 +128,8 @@ void VtkCellSorter::report(std::optional<std::string_view> file) {
         found_.warnings.push_back(counted(curved_, "cell has", "cells have") +
                                   " more points than corners: only the corners are used");
     }
-    if (!file) take_no_sheets();
-    const auto [quads, lines] = drop_parts_of_cells(found_, options_.sheets_alone);
+    if (!file) take_no_shells();
+    const auto [quads, lines] = drop_parts_of_cells(found_, options_.shells_alone);
     if (quads > 0) left_out_[kQuad] += quads;
     if (lines > 0) left_out_[kLine] += lines;
     std::string list;

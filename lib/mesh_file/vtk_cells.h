@@ -36,8 +36,8 @@ public:
     void report(std::optional<std::string_view> file);
 
 private:
-    /// Counts all quads and lines as left out: parts of a mesh have no sheets.
-    void take_no_sheets();
+    /// Counts all quads and lines as left out: parts of a mesh have no shells.
+    void take_no_shells();
     /// Keeps all nodes of a curved hexahedron. returns: whether its shape is known
     bool keep_curved(std::int64_t type, std::span<const Index> nodes);
     /// Adds the cell to `into`, with its first N corners. curved: it may have more points

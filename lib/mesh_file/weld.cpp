@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "assemble.h"
-
 #include <algorithm>
 #include <bit>
 #include <cmath>
 #include <unordered_map>
 #include <utility>
 
+#include "assemble.h"
 #include "subvol/error.h"
 
 namespace subvol::detail {
@@ -101,8 +100,8 @@ void weld_points(MeshFile& found, double tolerance, std::string_view file, const
         }
     });
     for (Index& p : found.curved.nodes) p = joined[p];
-    // The points of sheets come last, so that the cells have the points that they have without sheets.
-    const auto join_sheet = [&](auto& corners) {
+    // The points of shells come last, so that the cells have the points that they have without shells.
+    const auto join_shell = [&](auto& corners) {
         for (Index& p : corners) {
             if (joined[p] == kNone) {
                 joined[p] = welder.join(p);
@@ -111,8 +110,8 @@ void weld_points(MeshFile& found, double tolerance, std::string_view file, const
             p = joined[p];
         }
     };
-    std::ranges::for_each(found.quads.corners, join_sheet);
-    std::ranges::for_each(found.lines.corners, join_sheet);
+    std::ranges::for_each(found.quads.corners, join_shell);
+    std::ranges::for_each(found.lines.corners, join_shell);
     const auto join_tag = [&](auto& tag) {
         for (Index& p : tag) p = joined[p] == kNone ? p : joined[p];
     };

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "formats.h"
 #include "text_scanner.h"
 #include "vtk/collection.h"
 #include "wavelet_format.h"

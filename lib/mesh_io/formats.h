@@ -138,7 +138,7 @@ std::vector<std::string> write_medit(const std::filesystem::path& path, const He
 
 /// Writes VTK XML, UnstructuredGrid, compressed.
 std::vector<std::string> write_vtu(const std::filesystem::path& path, const HexMesh& mesh);
-/// The same with valid sheets and curves after the cells.
-std::vector<std::string> write_vtu(const std::filesystem::path& path, const HexMesh& mesh, const Sheets& sheets);
+/// The same with valid shells and beams after the cells.
+std::vector<std::string> write_vtu(const std::filesystem::path& path, const HexMesh& mesh, const Shells& shells);
 
 }  // namespace subvol::detail

@@ -122,14 +122,14 @@ std::vector<std::string> write_mesh(const std::filesystem::path& path, const Hex
     return format->write(path, mesh);
 }
 
-std::vector<std::string> write_mesh(const std::filesystem::path& path, const HexMesh& mesh, const Sheets& sheets) {
-    if (sheets.empty()) return write_mesh(path, mesh);
+std::vector<std::string> write_mesh(const std::filesystem::path& path, const HexMesh& mesh, const Shells& shells) {
+    if (shells.empty()) return write_mesh(path, mesh);
     if (path.extension() != ".vtu") {
-        throw Error(ErrorCode::InvalidInput, "sheets and curves cannot be written to such files", path.string(), ".vtu");
+        throw Error(ErrorCode::InvalidInput, "shells and beams cannot be written to such files", path.string(), ".vtu");
     }
     validate(mesh);
-    validate(sheets, mesh);
-    return write_vtu(path, mesh, sheets);
+    validate(shells, mesh);
+    return write_vtu(path, mesh, shells);
 }
 
 std::vector<std::string> readable_mesh_extensions() {

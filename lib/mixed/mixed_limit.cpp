@@ -5,7 +5,7 @@
 #include <cmath>
 #include <string>
 
-#include "mixed_rows.h"
+#include "mixed_levels.h"
 #include "mixed_shapes.h"
 #include "stencil_block.h"
 #include "subvol/detail/bucket_sort.h"

@@ -6,8 +6,7 @@
 #include <limits>
 #include <string>
 
-#include "cut_cells.h"
-#include "mixed_parents.h"
+#include "cell_splits.h"
 #include "mixed_shapes.h"
 #include "subvol/error.h"
 

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "mixed_parents.h"
+#include "mixed_shapes.h"
 
 #include <array>
 #include <numeric>
 #include <string>
 
-#include "mixed_cells_split.h"
-#include "mixed_shapes.h"
+#include "cell_splits.h"
 #include "subvol/error.h"
 #include "subvol/refine_mixed.h"
 

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <span>
 #include <string_view>
+#include <vector>
 
 #include "subvol/mixed_mesh.h"
 
@@ -85,5 +86,18 @@ template <class Cell>
 
 /// Cuts an octahedron into four tetrahedra along the shortest of its diagonals, the first of those that are equally short.
 void cut_octahedron(const MixedMesh& mesh, const std::array<Index, 6>& corners, std::vector<std::array<Index, 4>>& tets);
+
+/// A mixed mesh in hexahedra (`in_hexahedra`), and the cell that each of these is in.
+///
+/// cells: counted through the tetrahedra, octahedra, prisms, pyramids and hexahedra
+struct HexesOfMixed {
+    HexMesh mesh;
+    std::vector<Index> cells;
+};
+
+[[nodiscard]] HexesOfMixed hexahedra_of(const MixedMesh& mesh);
+
+/// throws: Error(InvalidInput) unless schemes of tetrahedra refine so often
+void check_tet_levels(int levels);
 
 }  // namespace subvol::detail

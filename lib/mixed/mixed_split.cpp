@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "mixed_split.h"
+#include "mixed_levels.h"
 
 #include <tbb/parallel_sort.h>
 

@@ -5,8 +5,7 @@
 #include <cstring>
 #include <string>
 
-#include "mixed_parents.h"
-#include "mixed_rows.h"
+#include "mixed_levels.h"
 #include "mixed_shapes.h"
 #include "subvol/error.h"
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <atomic>
 
-#include "mixed_boundary.h"
+#include "mixed_levels.h"
 #include "mixed_shapes.h"
 #include "point_quadratics.h"
 #include "subvol/detail/parallel_each.h"

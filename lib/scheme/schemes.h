@@ -37,7 +37,7 @@ std::unique_ptr<SchemeRules> make_bsxw_rules(const Topology& topology, std::vect
 /// throws: Error(InvalidInput) if the tension is not finite
 [[nodiscard]] std::unique_ptr<SchemeRules> make_rules(const Topology& topology, const SchemeOptions& scheme);
 
-/// The same where the points are of other kinds than `classify_points` finds, as those of sheets and curves are.
+/// The same where the points are of other kinds than `classify_points` finds, as those of shells and beams are.
 [[nodiscard]] std::unique_ptr<SchemeRules> make_rules(const Topology& topology, const SchemeOptions& scheme,
                                                       std::vector<PointKind> kinds);
 

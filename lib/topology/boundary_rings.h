@@ -2,13 +2,16 @@
 #pragma once
 
 #include <algorithm>
+#include <cstdint>
 #include <utility>
 #include <vector>
 
-#include "point_kind.h"
 #include "subvol/topology.h"
 
 namespace subvol::detail {
+
+/// How a point moves: with the cells around it, with the faces of the boundary, with its two crease edges, or not at all.
+enum class PointKind : std::uint8_t { Interior, Smooth, Crease, Corner };
 
 /// The kind of every point. On the boundary it is smooth without crease edges, on a crease with exactly two of them, else a
 /// corner. A point where several fans of boundary faces touch is a corner too, unless all of them lie between the same two

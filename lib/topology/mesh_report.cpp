@@ -9,7 +9,6 @@
 #include "boundary_rings.h"
 #include "mesh_parts.h"
 #include "subvol/cell.h"
-#include "subvol/detail/inspect_part.h"
 #include "subvol/detail/mesh_share.h"
 
 namespace subvol {

@@ -2,7 +2,6 @@
 #include "regular_grid.h"
 
 #include <algorithm>
-#include <cstdlib>
 #include <optional>
 
 #include "subvol/cell.h"
@@ -56,32 +55,32 @@ std::optional<TurnedCell> step(const Topology& topology, const TurnedCell& from,
     return std::nullopt;
 }
 
-/// Puts a cell's corners into a grid of `layers` cells around the centre; false if another point is there already.
-bool put(const TurnedCell& cell, const std::array<int, 3>& offset, int layers, std::span<Index> grid) {
+/// Puts the corners of the cell at an offset from the centre into the grid; false if another point is there already.
+bool put(const TurnedCell& cell, const std::array<int, 3>& offset, GridPoints& grid) {
     for (std::size_t k = 0; k < 8; ++k) {
-        std::size_t node = 0, stride = 1;
-        for (std::size_t a = 0; a < 3; ++a, stride *= static_cast<std::size_t>(2 + 2 * layers)) {
-            node += stride * static_cast<std::size_t>(layers + offset[a] + static_cast<int>(k >> a & 1));
-        }
+        const auto along = [&](std::size_t axis) {
+            return static_cast<std::size_t>(1 + offset[axis] + static_cast<int>(k >> axis & 1));
+        };
+        const std::size_t node = along(0) + 4 * along(1) + 16 * along(2);
         if (grid[node] != kNone && grid[node] != cell.corners[k]) return false;
         grid[node] = cell.corners[k];
     }
     return true;
 }
 
-/// Fills a grid with the cells that can be reached by steps; false if they do not fit together.
-bool fill(const Topology& topology, Index cell, int layers, std::span<Index> grid) {
-    std::fill(grid.begin(), grid.end(), kNone);
+/// Fills the grid with the 27 cells that can be reached by steps; false if they do not fit together.
+bool fill(const Topology& topology, Index cell, GridPoints& grid) {
+    grid.fill(kNone);
     const TurnedCell center = as_it_is(topology, cell);
-    for (int w = -layers; w <= layers; ++w) {
-        for (int v = -layers; v <= layers; ++v) {
-            for (int u = -layers; u <= layers; ++u) {
+    for (int w = -1; w <= 1; ++w) {
+        for (int v = -1; v <= 1; ++v) {
+            for (int u = -1; u <= 1; ++u) {
                 std::optional<TurnedCell> at = center;
                 const std::array<int, 3> offset{u, v, w};
                 for (std::size_t a = 0; a < 3; ++a) {
-                    for (int n = std::abs(offset[a]); n > 0 && at; --n) at = step(topology, *at, a, offset[a] > 0 ? 1 : 0);
+                    if (offset[a] != 0 && at) at = step(topology, *at, a, offset[a] > 0 ? 1 : 0);
                 }
-                if (at && !put(*at, offset, layers, grid)) return false;
+                if (at && !put(*at, offset, grid)) return false;
             }
         }
     }
@@ -134,27 +133,20 @@ bool regular_grid(const Topology& topology, Index cell, GridPoints& grid) {
     for (const Index p : topology.cells[cell]) {
         if (!is_grid_point(topology, p)) return false;
     }
-    return fill(topology, cell, 1, grid) && has_whole_layers(grid);
+    return fill(topology, cell, grid) && has_whole_layers(grid);
 }
 
 void cross_grid(const Topology& topology, Index cell, GridPoints& grid) {
     grid.fill(kNone);
     const TurnedCell center = as_it_is(topology, cell);
-    put(center, {0, 0, 0}, 1, grid);
+    put(center, {0, 0, 0}, grid);
     for (std::size_t axis = 0; axis < 3; ++axis) {
         for (std::size_t side = 0; side < 2; ++side) {
             std::array<int, 3> offset{};
             offset[axis] = side == 0 ? -1 : 1;
-            if (const auto beyond = step(topology, center, axis, side)) put(*beyond, offset, 1, grid);
+            if (const auto beyond = step(topology, center, axis, side)) put(*beyond, offset, grid);
         }
     }
-}
-
-bool wide_grid(const Topology& topology, Index cell, WideGridPoints& grid) {
-    GridPoints inner;
-    if (!regular_grid(topology, cell, inner)) return false;
-    const auto is_inside = [&](Index p) { return p != kNone && !topology.point_on_boundary[p] && is_grid_point(topology, p); };
-    return std::all_of(inner.begin(), inner.end(), is_inside) && fill(topology, cell, 2, grid);
 }
 
 }  // namespace subvol::detail

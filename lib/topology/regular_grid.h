@@ -16,11 +16,6 @@ using GridPoints = std::array<Index, 64>;
 /// The part of that grid that exists for any cell: its own corners and the points across its six sides; the others are kNone.
 void cross_grid(const Topology& topology, Index cell, GridPoints& grid);
 
-/// The same with two cells on every side: entry i + 6j + 36k is at (i−2, j−2, k−2). False unless the cell and all its
-/// neighbours are inside and regular.
-using WideGridPoints = std::array<Index, 216>;
-[[nodiscard]] bool wide_grid(const Topology& topology, Index cell, WideGridPoints& grid);
-
 /// Whether a point looks like one of a grid: interior with 8 cells, or on a side (4 cells), an edge (2) or a corner (1) of a
 /// box.
 [[nodiscard]] bool is_grid_point(const Topology& topology, Index point);

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "topology_parts.h"
-
 #include <algorithm>
 #include <string>
 #include <utility>
 
 #include "subvol/detail/bucket_sort.h"
 #include "subvol/error.h"
+#include "surface_builder.h"
+#include "topology_parts.h"
 
 namespace subvol::detail {
 
@@ -131,4 +131,20 @@ std::array<Index, 4> outward_quad(const std::array<Index, 8>& cell, std::size_t 
     return quad;
 }
 
+std::array<Index, 4> outward_quad(const Topology& topology, Index cell, Index face) {
+    const auto& sides = topology.cell_faces[cell];
+    return outward_quad(topology.cells[cell],
+                        static_cast<std::size_t>(std::find(sides.begin(), sides.end(), face) - sides.begin()));
+}
+
+Surface boundary_surface_where(const HexMesh& mesh, const std::function<bool(const std::array<Index, 4>&)>& where) {
+    SurfaceBuilder builder(mesh.points.size());
+    for (const auto& quad : hull_quads(mesh, where)) builder.add(quad);
+    return builder.finish([&](Index p) { return mesh.points[p]; });
+}
+
 }  // namespace subvol::detail
+
+subvol::Surface subvol::boundary_surface(const HexMesh& mesh) {
+    return detail::boundary_surface_where(mesh, [](const auto&) { return true; });
+}

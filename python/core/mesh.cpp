@@ -115,7 +115,7 @@ py::tuple read(const std::string& path, const std::string& other_cells, const st
         return read_mesh(
             path, {.other_cells = rule, .weld = weld, .sharp = sharp, .step = step, .blocks = blocks, .cell_values = means});
     }();
-    if (!result.sheets.empty()) result.warnings.emplace_back("quads and lines of sheets and curves left out");
+    if (!result.shells.empty()) result.warnings.emplace_back("quads and lines of shells and beams left out");
     return py::make_tuple(std::move(result.mesh), result.warnings);
 }
 

@@ -50,7 +50,7 @@ bool is_one_of(std::string_view type, std::span<const std::string_view> kinds) {
     });
 }
 
-// The nodes of an element of a volume, a sheet or a curve; 0 if it is another type.
+// The nodes of an element of a volume, a shell or a beam; 0 for any other type.
 std::size_t nodes_of(std::string_view type) {
     if (is_one_of(type, kQuads)) return 4;
     if (is_one_of(type, kLines)) return 2;
@@ -397,7 +397,7 @@ Vec3 InpInstance::operator()(const Vec3& x) const {
     return axis[0] + c * v + s * glm::cross(u, v) + (1 - c) * glm::dot(u, v) * u;
 }
 
-bool is_sheet(std::string_view type) {
+bool is_shell(std::string_view type) {
     return is_one_of(type, kQuads) || is_one_of(type, kLines);
 }
 

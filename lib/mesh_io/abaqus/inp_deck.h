@@ -53,7 +53,7 @@ struct InpDeck {
 };
 
 /// Whether a type is one of shells and membranes with four nodes, or of beams and trusses with two.
-[[nodiscard]] bool is_sheet(std::string_view type);
+[[nodiscard]] bool is_shell(std::string_view type);
 
 /// throws: Error(InvalidInput) that names the file and the line
 [[nodiscard]] InpDeck read_inp_deck(const std::filesystem::path& path);

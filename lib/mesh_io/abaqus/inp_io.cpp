@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "formats.h"
-
 #include <algorithm>
 #include <unordered_map>
 #include <unordered_set>
 #include <utility>
 
 #include "assemble.h"
+#include "formats.h"
 #include "inp_deck.h"
 #include "mesh_file.h"
 #include "subvol/error.h"
@@ -91,8 +90,8 @@ private:
         const bool volume = element.type.starts_with("C3D") || element.type.starts_with("DC3D");
         const bool others = options_.other_cells != OtherCells::Ignore;
         const std::size_t nodes = volume ? element.nodes.size() : 0;
-        if (is_sheet(element.type)) {
-            take_sheet(element);
+        if (is_shell(element.type)) {
+            take_shell(element);
             return false;
         }
         if (nodes == 8 || nodes == 20 || nodes == 27) {
@@ -112,18 +111,18 @@ private:
         return true;
     }
 
-    void take_sheet(const InpElement& element) {
+    void take_shell(const InpElement& element) {
         if (element.nodes.size() == 4) put(found_.quads, element, false);
         if (element.nodes.size() == 2) put(found_.lines, element, false);
-        sheets_.emplace_back(static_cast<Index>(next_), element.type);
+        shells_.emplace_back(static_cast<Index>(next_), element.type);
     }
 
-    // Counts the faces and edges of cells among the sheets by their types.
+    // Counts the faces and edges of cells among the shells by their types.
     void drop_parts() {
-        static_cast<void>(drop_parts_of_cells(found_, options_.sheets_alone));
+        static_cast<void>(drop_parts_of_cells(found_, options_.shells_alone));
         std::unordered_set<Index> kept(found_.quads.numbers.begin(), found_.quads.numbers.end());
         kept.insert(found_.lines.numbers.begin(), found_.lines.numbers.end());
-        for (const auto& [number, type] : sheets_) {
+        for (const auto& [number, type] : shells_) {
             if (!kept.contains(number)) ++left_out_[printable(std::string(type))];
         }
     }
@@ -159,7 +158,7 @@ private:
     std::unordered_map<std::int64_t, Index> places_;
     std::vector<std::int64_t> numbers_;
     std::map<std::string, std::size_t> blocks_, left_out_;
-    std::vector<std::pair<Index, std::string_view>> sheets_;  // numbers and types
+    std::vector<std::pair<Index, std::string_view>> shells_;  // numbers and types
     std::size_t next_ = 0, curved_ = 0;
 };
 

@@ -74,9 +74,9 @@ bool GmshCells::take(const GmshElement& element, std::size_t number, bool sharp,
     if (sharp && dimension_of(element) < 3) {
         take_tag(element, type, place);
     } else if (element.shape == GmshShape::Quad && element.nodes == 4) {
-        take_sheet(found_.quads, element, number, type, place);
+        take_shell(found_.quads, element, number, type, place);
     } else if (element.shape == GmshShape::Line && element.nodes == 2) {
-        take_sheet(found_.lines, element, number, type, place);
+        take_shell(found_.lines, element, number, type, place);
     } else {
         for (std::size_t k = 0; k < element.nodes; ++k) values_.integer(place, type);
         leave_out(element, 1);
@@ -102,7 +102,7 @@ void GmshCells::leave_out(const GmshElement& element, std::size_t how_many) {
 
 // Reads a quad or a line; those with unknown nodes are left out, as they were never needed.
 template <std::size_t N>
-void GmshCells::take_sheet(FileCells<N>& into, const GmshElement& element, std::size_t number, NumberType type,
+void GmshCells::take_shell(FileCells<N>& into, const GmshElement& element, std::size_t number, NumberType type,
                            const Place& place) {
     std::array<Index, N> corners;
     bool known = true;
@@ -150,7 +150,7 @@ void GmshCells::list_left_out(std::string_view file) {
         found_.warnings.push_back(counted(curved_, "element has", "elements have") +
                                   " more nodes than corners: only the corners are used");
     }
-    const auto [quads, lines] = drop_parts_of_cells(found_, options_.sheets_alone);
+    const auto [quads, lines] = drop_parts_of_cells(found_, options_.shells_alone);
     leave_out(kGmshElements.at(3), quads);
     leave_out(kGmshElements.at(1), lines);
     std::string list;

@@ -174,7 +174,7 @@ private:
 /// 1 to 3; other elements than lines, triangles and quads count as solid.
 [[nodiscard]] std::int64_t dimension_of(const GmshElement& element);
 
-/// Puts the elements of a Gmsh file where they belong: cells, sheets and curves, tags of sharp groups. Counts what is left out.
+/// Puts the elements of a Gmsh file where they belong: cells, shells and beams, tags of sharp groups. Counts what is left out.
 class GmshCells {
 public:
     /// All are referred to.
@@ -196,7 +196,7 @@ private:
     Index read_corner(const Place& place, NumberType type);
     void take_tag(const GmshElement& element, NumberType type, const Place& place);
     template <std::size_t N>
-    void take_sheet(FileCells<N>& into, const GmshElement& element, std::size_t number, NumberType type, const Place& place);
+    void take_shell(FileCells<N>& into, const GmshElement& element, std::size_t number, NumberType type, const Place& place);
     template <std::size_t N>
     bool take_as(FileCells<N>& into, const GmshElement& element, std::size_t number, NumberType type, const Place& place);
     void leave_out(const GmshElement& element, std::size_t how_many);

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "formats.h"
-
 #include <algorithm>
 
 #include "assemble.h"
+#include "formats.h"
 #include "hdf5_file.h"
 #include "join_pieces.h"
 #include "mesh_file.h"

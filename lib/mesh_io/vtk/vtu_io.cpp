@@ -442,26 +442,26 @@ std::vector<std::string> write_vtu(const std::filesystem::path& path, const HexM
     return write(path, {mesh, {}, {}});
 }
 
-std::vector<std::string> write_vtu(const std::filesystem::path& path, const HexMesh& mesh, const Sheets& sheets) {
+std::vector<std::string> write_vtu(const std::filesystem::path& path, const HexMesh& mesh, const Shells& shells) {
     HexMesh with = mesh;
     std::vector<Index> number;
-    for (std::size_t p = 0; p < sheets.points.size(); ++p) {
-        const auto& [cell, corner] = sheets.solid[p];
+    for (std::size_t p = 0; p < shells.points.size(); ++p) {
+        const auto& [cell, corner] = shells.solid[p];
         number.push_back(cell != kNone ? mesh.cells[cell][corner] : static_cast<Index>(with.points.size()));
         if (cell != kNone) continue;
-        with.points.push_back(sheets.points[p]);
+        with.points.push_back(shells.points[p]);
         for (std::size_t a = 0; a < with.attributes.size(); ++a) {
             const auto channels = static_cast<std::size_t>(with.attributes[a].channels);
-            const auto first = sheets.attributes[a].values.begin() + static_cast<std::ptrdiff_t>(p * channels);
+            const auto first = shells.attributes[a].values.begin() + static_cast<std::ptrdiff_t>(p * channels);
             with.attributes[a].values.insert(with.attributes[a].values.end(), first,
                                              first + static_cast<std::ptrdiff_t>(channels));
         }
     }
-    auto quads = sheets.quads;
+    auto quads = shells.quads;
     for (auto& quad : quads) {
         for (Index& p : quad) p = number[p];
     }
-    auto lines = sheets.lines;
+    auto lines = shells.lines;
     for (auto& line : lines) {
         for (Index& p : line) p = number[p];
     }

@@ -65,7 +65,7 @@ TEST_F(Abaqus, ShellsAndBeamsAreSheetsAndCurves) {
     EXPECT_EQ(found.sheets.solid[2].cell, kNone);
     EXPECT_THAT(found.warnings, ElementsAre("1 element of type M3D4R, 1 element of type S3, 1 element of type SAX1 ignored"));
     EXPECT_EQ(found.mesh.cells.size(), 1u);
-    const ReadResult fin = read_mesh(path("a.inp"), {.blocks = {"fin"}, .sheets_alone = true});
+    const ReadResult fin = read_mesh(path("a.inp"), {.blocks = {"fin"}, .shells_alone = true});
     EXPECT_EQ(fin.sheets.quads.size(), 2u);
     EXPECT_EQ(fin.mesh.cells.size(), 0u);
     EXPECT_THAT(error(cube + nodes + "*ELEMENT, TYPE=S4\n2, 50, 60, 210\n"), HasSubstr("S4"));

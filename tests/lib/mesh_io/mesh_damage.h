@@ -56,7 +56,7 @@ protected:
             try {
                 const ReadResult read = read_mesh(file);
                 validate(read.mesh);
-                if (!read.sheets.empty()) validate(read.sheets, read.mesh);
+                if (!read.shells.empty()) validate(read.shells, read.mesh);
                 for (const std::string& warning : read.warnings) expect_printable(warning);
                 for (const FieldInfo& field : read.fields) expect_printable(field.name);
                 for (const Attribute& attribute : read.mesh.attributes) expect_printable(attribute.name);

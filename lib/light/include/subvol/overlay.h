@@ -8,7 +8,7 @@
 #include "subvol/hex_mesh.h"
 #include "subvol/image.h"
 #include "subvol/legend.h"
-#include "subvol/sheets.h"
+#include "subvol/shells.h"
 #include "subvol/transfer_function.h"
 
 namespace subvol {
@@ -50,8 +50,8 @@ void draw_line(Image& image, const Vec2& from, const Vec2& to, const LineOptions
 void draw_edges(Image& image, std::span<const float> depth, const View& view, const HexMesh& mesh,
                 const LineOptions& options = {});
 
-/// The same for the edges of sheets and the lines of curves.
-void draw_edges(Image& image, std::span<const float> depth, const View& view, const Sheets& sheets,
+/// Draws the edges of shells and the lines of beams in the same way.
+void draw_edges(Image& image, std::span<const float> depth, const View& view, const Shells& shells,
                 const LineOptions& options = {});
 
 /// Draws the directions of the axes x, y, z in the lower left corner, red, green and blue, with their names.

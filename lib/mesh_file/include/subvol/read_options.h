@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "subvol/hex_mesh.h"
-#include "subvol/sheets.h"
+#include "subvol/shells.h"
 
 namespace subvol {
 
@@ -45,7 +45,7 @@ enum class CellValues { Auto, Mean, Fit };
 ///       corners are used
 /// step: of a series (`open_series`), from 0. Nothing: the last one
 /// blocks: the names of the parts of the mesh that are read (`ReadResult::blocks`). None: all
-/// sheets_alone: a file of sheets and curves without any cell is read too. Its mesh has no cells, so most calls refuse it
+/// shells_alone: a file of shells and beams without any cell is read too. Its mesh has no cells, so most calls refuse it
 struct ReadOptions {
     OtherCells other_cells = OtherCells::Split;
     std::optional<double> weld = {};
@@ -54,7 +54,7 @@ struct ReadOptions {
     std::optional<std::size_t> step = {};
     std::vector<std::string> blocks = {};
     CellValues cell_values = CellValues::Auto;
-    bool sheets_alone = false;
+    bool shells_alone = false;
 };
 
 /// A named part of a mesh. cells: of all kinds, as the file has them
@@ -66,7 +66,7 @@ struct MeshBlock {
 /// blocks:     the parts that were read, of formats that have such parts
 /// cell_means: only if values at cells were fitted: the values of these fields in the file, for each cell of the mesh
 /// cell_parts: for each cell of the mesh the number of the file's cell that it is a part of; empty if there are no such fields
-/// sheets:     the quads and lines of VTK and Gmsh files beside hexahedra that were not split, but for those that are faces and
+/// shells:     the quads and lines of VTK and Gmsh files beside hexahedra that were not split, but for those that are faces and
 ///             edges of the hexahedra
 struct ReadResult {
     HexMesh mesh;  // validated; a cell array became a point array by the volume-weighted mean over incident cells
@@ -75,7 +75,7 @@ struct ReadResult {
     std::vector<MeshBlock> blocks = {};
     std::vector<Attribute> cell_means = {};
     std::vector<Index> cell_parts = {};
-    Sheets sheets = {};
+    Shells shells = {};
 };
 
 }  // namespace subvol

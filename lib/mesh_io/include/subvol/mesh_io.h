@@ -7,7 +7,7 @@
 
 #include "subvol/hex_mesh.h"
 #include "subvol/read_options.h"
-#include "subvol/sheets.h"
+#include "subvol/shells.h"
 
 namespace subvol {
 
@@ -29,7 +29,7 @@ namespace subvol {
 ///   .foam, .inp            an OpenFOAM case, as its folder; Abaqus and CalculiX decks
 ///   .svw                   wavelets, as `write_wavelet_file` writes them
 ///
-/// Cells of lower dimension are left out, but for ReadResult::sheets; curved hexahedra are split as ReadOptions says, and of
+/// Cells of lower dimension are left out, but for ReadResult::shells; curved hexahedra are split as ReadOptions says, and of
 /// other curved cells only the corners are used. A cell that repeats points is taken as the prism, pyramid or tetrahedron that
 /// it looks like, and left out if it has no volume. All give a warning. Memory is never allocated by a number in the file that
 /// the file is too short for.
@@ -50,11 +50,11 @@ namespace subvol {
 /// throws:  Error(InvalidInput) for an unknown extension, Error(Io) if the file cannot be written
 std::vector<std::string> write_mesh(const std::filesystem::path& path, const HexMesh& mesh);
 
-/// The same with sheets and curves, as quads and lines after the cells; their points that are none of the mesh come after its
+/// The same with shells and beams, as quads and lines after the cells; their points that are none of the mesh come after its
 /// points. `.vtu` only.
 ///
-/// throws: also Error(InvalidInput) as `validate`, or for another extension if there are sheets or curves
-std::vector<std::string> write_mesh(const std::filesystem::path& path, const HexMesh& mesh, const Sheets& sheets);
+/// throws: also Error(InvalidInput) as `validate`, or for another extension if there are shells or beams
+std::vector<std::string> write_mesh(const std::filesystem::path& path, const HexMesh& mesh, const Shells& shells);
 
 /// The extensions of the files that `read_mesh` reads and `write_mesh` writes, such as ".vtu".
 [[nodiscard]] std::vector<std::string> readable_mesh_extensions();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -29,5 +30,11 @@ struct MeshShare {
 ///
 /// shares: all, in their order
 [[nodiscard]] MeshShare join_shares(std::span<const MeshShare> shares, std::size_t inverted_at_most);
+
+/// `inspect` of a part of a mesh: counts what it owns. An edge or a face belongs to the owner of its smallest point.
+///
+/// part: with all cells at every point that it owns
+void add_part(const HexMesh& part, std::span<const std::uint8_t> owned_points, std::span<const std::uint8_t> owned_cells,
+              MeshReport& report);
 
 }  // namespace subvol::detail

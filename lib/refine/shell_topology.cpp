@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sheet_topology.h"
+#include "shell_topology.h"
 
 #include <algorithm>
 #include <utility>
@@ -81,7 +81,7 @@ std::size_t faces_from(const Topology& t, Index point, Index edge) {
     }
 }
 
-PointKind kind_in_sheet(const Topology& t, Index point, bool attached, const OnSolid& on_solid) {
+PointKind kind_in_shell(const Topology& t, Index point, bool attached, const OnSolid& on_solid) {
     const auto edges = t.point_edges[point];
     std::size_t creases = 0, seams = 0, sides = 0;
     for (const Index e : edges) {
@@ -117,42 +117,42 @@ PointKind kind_in_sheet(const Topology& t, Index point, bool attached, const OnS
 
 }  // namespace
 
-SheetTopology topology_of_quads(const Sheets& sheets, const OnSolid& on_solid) {
-    SheetTopology result;
+ShellTopology topology_of_quads(const Shells& shells, const OnSolid& on_solid) {
+    ShellTopology result;
     Topology& t = result.topology;
-    t.point_count = sheets.points.size();
+    t.point_count = shells.points.size();
     std::vector<Edge> edges;
-    for (const auto& quad : sheets.quads) {
+    for (const auto& quad : shells.quads) {
         for (std::size_t k = 0; k < 4; ++k) edges.push_back(edge_of(quad[k], quad[(k + 1) % 4]));
     }
     take_edges(t, std::move(edges));
-    take_faces(t, sheets.quads);
+    take_faces(t, shells.quads);
     for (std::size_t e = 0; e < t.edges.size(); ++e) {
         t.edge_is_crease[e] = t.edge_faces[e].size() != 2 || on_solid(t.edges[e][0], t.edges[e][1]);
     }
-    for (const auto& [a, b] : sheets.lines) {
+    for (const auto& [a, b] : shells.lines) {
         if (const auto e = t.find_edge(a, b)) t.edge_is_crease[*e] = 1;
     }
     result.kinds.assign(t.point_count, PointKind::Corner);
     for (Index p = 0; p < t.point_count; ++p) {
         if (t.point_edges[p].empty()) continue;
-        result.kinds[p] = kind_in_sheet(t, p, sheets.solid[p].cell != kNone, on_solid);
+        result.kinds[p] = kind_in_shell(t, p, shells.solid[p].cell != kNone, on_solid);
     }
     return result;
 }
 
-SheetTopology topology_of_lines(const Sheets& sheets, const Topology& quads) {
-    SheetTopology result;
+ShellTopology topology_of_lines(const Shells& shells, const Topology& quads) {
+    ShellTopology result;
     Topology& t = result.topology;
-    t.point_count = sheets.points.size();
+    t.point_count = shells.points.size();
     std::vector<Edge> edges;
-    for (const auto& [a, b] : sheets.lines) {
+    for (const auto& [a, b] : shells.lines) {
         if (!quads.find_edge(a, b)) edges.push_back(edge_of(a, b));
     }
     take_edges(t, std::move(edges));
     result.kinds.assign(t.point_count, PointKind::Corner);
     for (Index p = 0; p < t.point_count; ++p) {
-        const bool held = sheets.solid[p].cell != kNone || !quads.point_edges[p].empty();
+        const bool held = shells.solid[p].cell != kNone || !quads.point_edges[p].empty();
         if (!held && t.point_edges[p].size() == 2) result.kinds[p] = PointKind::Crease;
     }
     return result;

@@ -9,12 +9,12 @@
 #include "lib/test_meshes.h"
 #include "subvol/cell.h"
 #include "subvol/limit.h"
-#include "subvol/limit_sheets.h"
+#include "subvol/limit_shells.h"
 #include "subvol/mesh_report.h"
 #include "subvol/topology.h"
 
 namespace subvol {
-namespace sheets_test {
+namespace shells_test {
 
 using Quads = std::vector<std::array<Index, 4>>;
 using Lines = std::vector<std::array<Index, 2>>;
@@ -43,25 +43,25 @@ Hull hull_of(const HexMesh& mesh) {
     return hull;
 }
 
-Sheets detached(Sheets sheets) {
-    for (CellCorner& corner : sheets.solid) corner = {};
-    return sheets;
+Shells detached(Shells shells) {
+    for (CellCorner& corner : shells.solid) corner = {};
+    return shells;
 }
 
-/// The places and values of the points of a mesh at the sheets' corners: the same bits.
-void expect_those_of(const Sheets& sheets, const HexMesh& mesh) {
-    for (std::size_t p = 0; p < sheets.points.size(); ++p) {
-        const auto& [cell, corner] = sheets.solid[p];
+/// The places and values of the points of a mesh at the shells' corners: the same bits.
+void expect_those_of(const Shells& shells, const HexMesh& mesh) {
+    for (std::size_t p = 0; p < shells.points.size(); ++p) {
+        const auto& [cell, corner] = shells.solid[p];
         if (cell == kNone) continue;
         const Index q = mesh.cells.at(cell)[corner];
-        ASSERT_EQ(sheets.points[p], mesh.points[q]);
+        ASSERT_EQ(shells.points[p], mesh.points[q]);
         for (std::size_t a = 0; a < mesh.attributes.size(); ++a) {
-            ASSERT_EQ(sheets.attributes[a].values[p], mesh.attributes[a].values[q]);
+            ASSERT_EQ(shells.attributes[a].values[p], mesh.attributes[a].values[q]);
         }
     }
 }
 
-void expect_near(const Sheets& a, const Sheets& b, double tolerance) {
+void expect_near(const Shells& a, const Shells& b, double tolerance) {
     EXPECT_EQ(a.quads, b.quads);
     EXPECT_EQ(a.lines, b.lines);
     ASSERT_EQ(a.points.size(), b.points.size());
@@ -77,7 +77,7 @@ void expect_near(const Sheets& a, const Sheets& b, double tolerance) {
 /// A bent plate with a fin on it that leaves the plate, a rod from the fin, and all values of a field.
 struct Bracket {
     HexMesh mesh;
-    Sheets sheets;
+    Shells shells;
 };
 Bracket make_bracket() {
     HexMesh mesh = test::make_box(4, 3, 2);
@@ -95,35 +95,35 @@ Bracket make_bracket() {
     }
     const Lines lines{{above + 9, above + 10}, {above + 10, above + 11}, {above + 11, above + 12}};
     mesh = with_field(std::move(mesh));
-    return {mesh, make_sheets(mesh, quads, lines)};
+    return {mesh, make_shells(mesh, quads, lines)};
 }
 
-class SheetsOfEveryScheme : public testing::TestWithParam<Scheme> {};
-INSTANTIATE_TEST_SUITE_P(Schemes, SheetsOfEveryScheme,
+class ShellsOfEveryScheme : public testing::TestWithParam<Scheme> {};
+INSTANTIATE_TEST_SUITE_P(Schemes, ShellsOfEveryScheme,
                          testing::Values(Scheme::Mcq, Scheme::CatmullClark, Scheme::Bsxw, Scheme::Linear));
 
-TEST_P(SheetsOfEveryScheme, AreRefinedAsTheBoundaryOfCellsIs) {
+TEST_P(ShellsOfEveryScheme, AreRefinedAsTheBoundaryOfCellsIs) {
     for (const bool box : {true, false}) {
         HexMesh mesh = with_field(box ? test::make_box(4, 3, 2) : test::make_nested_cubes(2));
         test::jitter(mesh, .05, 3);
         const Hull hull = hull_of(mesh);
-        const Sheets attached = make_sheets(mesh, hull.quads, hull.creases);
+        const Shells attached = make_shells(mesh, hull.quads, hull.creases);
         for (const int levels : {1, 2, 3}) {
             const RefineOptions options{.scheme = {GetParam()}, .levels = levels};
             const HexMesh fine = refine(mesh, options);
-            const Sheets with_cells = refine_sheets(mesh, attached, options);
+            const Shells with_cells = refine_shells(mesh, attached, options);
             expect_those_of(with_cells, fine);
-            expect_near(refine_sheets(mesh, detached(attached), options), with_cells, kRounding);
-            const Sheets limit = limit_sheets(mesh, attached, options);
-            expect_near(limit_sheets(mesh, detached(attached), options), limit, 1e-12);  // eigenvectors are found to 1e-13
+            expect_near(refine_shells(mesh, detached(attached), options), with_cells, kRounding);
+            const Shells limit = limit_shells(mesh, attached, options);
+            expect_near(limit_shells(mesh, detached(attached), options), limit, 1e-12);  // eigenvectors are found to 1e-13
         }
     }
 }
 
-TEST_P(SheetsOfEveryScheme, FollowTheCellsThatTheyAreAttachedTo) {
-    const auto& [mesh, sheets] = make_bracket();
+TEST_P(ShellsOfEveryScheme, FollowTheCellsThatTheyAreAttachedTo) {
+    const auto& [mesh, shells] = make_bracket();
     const RefineOptions options{.scheme = {GetParam()}, .levels = 3};
-    const Sheets fine = refine_sheets(mesh, sheets, options), limit = limit_sheets(mesh, sheets, options);
+    const Shells fine = refine_shells(mesh, shells, options), limit = limit_shells(mesh, shells, options);
     const HexMesh cells = refine(mesh, options);
     expect_those_of(fine, cells);
     const HexMesh limit_of_cells = on_limit(cells, GetParam());
@@ -139,26 +139,26 @@ TEST_P(SheetsOfEveryScheme, FollowTheCellsThatTheyAreAttachedTo) {
     EXPECT_EQ(fine.lines.size(), 3u * 8);
 }
 
-TEST_P(SheetsOfEveryScheme, OneLevelAfterTheOtherIsBothAtOnce) {
-    const auto& [mesh, sheets] = make_bracket();
+TEST_P(ShellsOfEveryScheme, OneLevelAfterTheOtherIsBothAtOnce) {
+    const auto& [mesh, shells] = make_bracket();
     const RefineOptions one{.scheme = {GetParam()}, .levels = 1}, two{.scheme = {GetParam()}, .levels = 2};
-    expect_near(refine_sheets(refine(mesh, one), refine_sheets(mesh, sheets, one), one), refine_sheets(mesh, sheets, two),
+    expect_near(refine_shells(refine(mesh, one), refine_shells(mesh, shells, one), one), refine_shells(mesh, shells, two),
                 kRounding);
 }
 
-TEST_P(SheetsOfEveryScheme, CommuteWithAffineMaps) {
-    const auto& [mesh, sheets] = make_bracket();
+TEST_P(ShellsOfEveryScheme, CommuteWithAffineMaps) {
+    const auto& [mesh, shells] = make_bracket();
     const auto map = [](const Vec3& p) { return Vec3(2 * p.x - p.y + 1, .5 * p.y + p.z, p.z - .3 * p.x - 2); };
     const RefineOptions options{.scheme = {GetParam()}, .levels = 2};
     HexMesh moved_mesh = mesh;
-    Sheets moved = sheets, expected = limit_sheets(mesh, sheets, options);
+    Shells moved = shells, expected = limit_shells(mesh, shells, options);
     for (auto* points : {&moved_mesh.points, &moved.points, &expected.points}) {
         for (Vec3& p : *points) p = map(p);
     }
-    expect_near(limit_sheets(moved_mesh, moved, options), expected, 1e-12);
+    expect_near(limit_shells(moved_mesh, moved, options), expected, 1e-12);
 }
 
-TEST_P(SheetsOfEveryScheme, AKinkedCrossingIsHeldTogetherByItsCrease) {
+TEST_P(ShellsOfEveryScheme, AKinkedCrossingIsHeldTogetherByItsCrease) {
     // Four half planes about a bent line, a bundle: the line is a curve of its own.
     std::vector<Vec3> points;
     for (int side = -1; side < 4; ++side) {
@@ -174,9 +174,9 @@ TEST_P(SheetsOfEveryScheme, AKinkedCrossingIsHeldTogetherByItsCrease) {
     }
     const HexMesh none = test::only_points(points);
     const RefineOptions options{.scheme = {GetParam()}, .levels = 2};
-    const Sheets bundle = limit_sheets(none, make_sheets(none, quads, {}), options);
+    const Shells bundle = limit_shells(none, make_shells(none, quads, {}), options);
     const HexMesh alone = test::only_points({points.begin(), points.begin() + 5});
-    const Sheets curve = limit_sheets(alone, make_sheets(alone, {}, Lines{{0, 1}, {1, 2}, {2, 3}, {3, 4}}), options);
+    const Shells curve = limit_shells(alone, make_shells(alone, {}, Lines{{0, 1}, {1, 2}, {2, 3}, {3, 4}}), options);
     for (const Vec3& p : curve.points) {
         double nearest = 1;
         for (const Vec3& q : bundle.points) nearest = std::min(nearest, glm::distance(p, q));
@@ -184,7 +184,7 @@ TEST_P(SheetsOfEveryScheme, AKinkedCrossingIsHeldTogetherByItsCrease) {
     }
 }
 
-TEST(Sheets, AClosedOneHasTheLimitOfCatmullClark) {
+TEST(Shells, AClosedOneHasTheLimitOfCatmullClark) {
     const HexMesh cube = test::make_box(1, 1, 1);
     Quads quads;
     for (const auto& face : kCellFaces) {
@@ -192,22 +192,22 @@ TEST(Sheets, AClosedOneHasTheLimitOfCatmullClark) {
         for (std::size_t k = 0; k < 4; ++k) quads.back()[k] = cube.cells[0][static_cast<std::size_t>(face[k])];
     }
     HexMesh points = test::only_points(cube.points);
-    const Sheets sheets = make_sheets(points, quads, {});
+    const Shells shells = make_shells(points, quads, {});
     // The mask (n v + 4 mean of edges + mean of faces)/(n + 5) with n = 3, of the corner at the origin: along each axis
     // (3·0 + 4·1/3 + 2/3)/8 = 1/4.
     for (const int levels : {0, 1, 2, 4}) {
-        const Sheets limit = limit_sheets(points, sheets, {.scheme = {Scheme::CatmullClark}, .levels = levels});
+        const Shells limit = limit_shells(points, shells, {.scheme = {Scheme::CatmullClark}, .levels = levels});
         EXPECT_LE(glm::distance(limit.points[0], Vec3(.25)), kRounding);
         EXPECT_LE(glm::distance(limit.points[7], Vec3(.75)), kRounding);
     }
 }
 
-TEST(Sheets, ACurveIsACubicSpline) {
+TEST(Shells, ACurveIsACubicSpline) {
     const HexMesh points = test::only_points({{0, 0, 0}, {1, 2, 0}, {2, -1, 1}, {3, 0, 2}, {5, 1, 0}});
-    const Sheets curve = make_sheets(points, {}, Lines{{0, 1}, {1, 2}, {2, 3}, {3, 4}});
+    const Shells curve = make_shells(points, {}, Lines{{0, 1}, {1, 2}, {2, 3}, {3, 4}});
     for (const Scheme scheme : {Scheme::CatmullClark, Scheme::Bsxw}) {
         for (const int levels : {0, 1, 3}) {
-            const Sheets limit = limit_sheets(points, curve, {.scheme = {scheme}, .levels = levels});
+            const Shells limit = limit_shells(points, curve, {.scheme = {scheme}, .levels = levels});
             EXPECT_EQ(limit.points[0], points.points[0]);  // ends stay
             for (std::size_t i = 1; i < 4; ++i) {
                 const Vec3 expected = (points.points[i - 1] + 4.0 * points.points[i] + points.points[i + 1]) / 6.0;
@@ -215,13 +215,13 @@ TEST(Sheets, ACurveIsACubicSpline) {
             }
         }
         // The middle of a segment of a cubic B-spline: (1, 23, 23, 1)/48.
-        const Sheets once = limit_sheets(points, curve, {.scheme = {scheme}, .levels = 1});
+        const Shells once = limit_shells(points, curve, {.scheme = {scheme}, .levels = 1});
         const auto& p = points.points;
         EXPECT_LE(glm::distance(once.points[5 + 1], (p[0] + 23.0 * p[1] + 23.0 * p[2] + p[3]) / 48.0), kRounding);
     }
 }
 
-TEST(Sheets, FourPointCurvesReproduceCubicsInsideAndQuadraticsToTheEnds) {
+TEST(Shells, FourPointCurvesReproduceCubicsInsideAndQuadraticsToTheEnds) {
     for (const int degree : {2, 3}) {
         std::vector<Vec3> on_curve;
         Lines lines;
@@ -230,7 +230,7 @@ TEST(Sheets, FourPointCurvesReproduceCubicsInsideAndQuadraticsToTheEnds) {
             if (i > 0) lines.push_back({static_cast<Index>(i - 1), static_cast<Index>(i)});
         }
         const HexMesh points = test::only_points(on_curve);
-        const Sheets fine = refine_sheets(points, make_sheets(points, {}, lines), {.levels = 1});
+        const Shells fine = refine_shells(points, make_shells(points, {}, lines), {.levels = 1});
         for (const Vec3& p : fine.points) {
             const bool at_end = p.x < 1 || p.x > 6;
             if (degree == 3 && at_end) continue;
@@ -239,7 +239,7 @@ TEST(Sheets, FourPointCurvesReproduceCubicsInsideAndQuadraticsToTheEnds) {
     }
 }
 
-TEST(Sheets, CornersOfAFreeSheetStayAndItsRimIsACurveOfItsOwn) {
+TEST(Shells, CornersOfAFreeSheetStayAndItsRimIsACurveOfItsOwn) {
     HexMesh points = test::only_points({});
     Quads quads;
     const auto id = [](Index i, Index j) { return i + 4 * j; };
@@ -250,18 +250,18 @@ TEST(Sheets, CornersOfAFreeSheetStayAndItsRimIsACurveOfItsOwn) {
         for (Index i = 0; i < 3; ++i) quads.push_back({id(i, j), id(i + 1, j), id(i + 1, j + 1), id(i, j + 1)});
     }
     const RefineOptions options{.scheme = {Scheme::CatmullClark}, .levels = 2};
-    const Sheets limit = limit_sheets(points, make_sheets(points, quads, {}), options);
+    const Shells limit = limit_shells(points, make_shells(points, quads, {}), options);
     for (const Index corner : {id(0, 0), id(3, 0), id(0, 3), id(3, 3)}) {
         EXPECT_EQ(limit.points[corner], points.points[corner]);
     }
     const Vec3 expected = (points.points[id(0, 0)] + 4.0 * points.points[id(1, 0)] + points.points[id(2, 0)]) / 6.0;
     EXPECT_LE(glm::distance(limit.points[id(1, 0)], expected), kRounding);
-    const SheetReport report = inspect(make_sheets(points, quads, {}));
+    const ShellReport report = inspect(make_shells(points, quads, {}));
     EXPECT_EQ(report.free_edges, 12u);
     EXPECT_EQ(report.nonmanifold_edges, 0u);
 }
 
-TEST(Sheets, TwoThatTouchInAPointAreHeldThere) {
+TEST(Shells, TwoThatTouchInAPointAreHeldThere) {
     HexMesh points = test::only_points({});
     Quads quads;
     const auto add = [&](const Vec3& u, const Vec3& v) {  // four quads about the origin, which is point 0
@@ -283,46 +283,46 @@ TEST(Sheets, TwoThatTouchInAPointAreHeldThere) {
     add({1, 0, 0}, {0, 1, 0});
     add({0, 1, 1}, {1, 0, 2});
     points.points[quads[0][2]] = Vec3(0, 0, .5);
-    const Sheets limit = limit_sheets(points, make_sheets(points, quads, {}), {.scheme = {Scheme::CatmullClark}, .levels = 2});
+    const Shells limit = limit_shells(points, make_shells(points, quads, {}), {.scheme = {Scheme::CatmullClark}, .levels = 2});
     double nearest = 1;
     for (const Vec3& p : limit.points) nearest = std::min(nearest, glm::distance(p, Vec3(0, 0, .5)));
     EXPECT_EQ(nearest, 0);
 }
 
-TEST(Sheets, LeaveTheTrianglesAndTubesThatArePromised) {
-    const Sheets sheets = make_bracket().sheets;
-    const SheetSurface plain = sheet_surface(sheets, 0), tubes = sheet_surface(sheets, .05);
-    EXPECT_EQ(plain.surface.triangles.size(), 2 * sheets.quads.size());
-    EXPECT_EQ(tubes.sheet_triangles, plain.surface.triangles.size());
+TEST(Shells, LeaveTheTrianglesAndTubesThatArePromised) {
+    const Shells shells = make_bracket().shells;
+    const ShellSurface plain = shell_surface(shells, 0), tubes = shell_surface(shells, .05);
+    EXPECT_EQ(plain.surface.triangles.size(), 2 * shells.quads.size());
+    EXPECT_EQ(tubes.shell_triangles, plain.surface.triangles.size());
     ASSERT_EQ(tubes.sources.size(), tubes.surface.points.size());
-    for (std::size_t p = sheets.points.size(); p < tubes.sources.size(); ++p) {
-        EXPECT_NEAR(glm::distance(tubes.surface.points[p], sheets.points[tubes.sources[p]]), .05, 1e-14);
+    for (std::size_t p = shells.points.size(); p < tubes.sources.size(); ++p) {
+        EXPECT_NEAR(glm::distance(tubes.surface.points[p], shells.points[tubes.sources[p]]), .05, 1e-14);
     }
-    test::expect_error(ErrorCode::InvalidInput, "radius", [&] { (void)sheet_surface(sheets, -1); });
+    test::expect_error(ErrorCode::InvalidInput, "radius", [&] { (void)shell_surface(shells, -1); });
 }
 
-TEST(Sheets, RefuseWhatIsMalformed) {
+TEST(Shells, RefuseWhatIsMalformed) {
     const Bracket bracket = make_bracket();
     const HexMesh& mesh = bracket.mesh;
-    const Sheets& sheets = bracket.sheets;
+    const Shells& shells = bracket.shells;
     const auto refuses = [&](const std::string& part, const auto& change) {
-        Sheets bad = sheets;
+        Shells bad = shells;
         change(bad);
-        test::expect_error(ErrorCode::InvalidInput, part, [&] { (void)refine_sheets(mesh, bad); });
+        test::expect_error(ErrorCode::InvalidInput, part, [&] { (void)refine_shells(mesh, bad); });
     };
-    refuses("there is no point 99", [](Sheets& s) { s.quads[0][2] = 99; });
-    refuses("twice", [](Sheets& s) { s.lines[0][0] = s.lines[0][1]; });
-    refuses("not finite", [](Sheets& s) { s.points[3].y = std::numeric_limits<double>::quiet_NaN(); });
-    refuses("corners of cells", [](Sheets& s) { s.solid.pop_back(); });
-    refuses("there is no corner", [](Sheets& s) { s.solid[0] = {24, 0}; });
-    refuses("there is no corner", [](Sheets& s) { s.solid[0] = {0, 8}; });
-    refuses("attributes", [](Sheets& s) { s.attributes.clear(); });
-    refuses("attributes", [](Sheets& s) { s.attributes[0].values[0] = std::numeric_limits<double>::infinity(); });
-    test::expect_error(ErrorCode::InvalidInput, "levels", [&] { (void)refine_sheets(mesh, sheets, {.levels = 11}); });
+    refuses("there is no point 99", [](Shells& s) { s.quads[0][2] = 99; });
+    refuses("twice", [](Shells& s) { s.lines[0][0] = s.lines[0][1]; });
+    refuses("not finite", [](Shells& s) { s.points[3].y = std::numeric_limits<double>::quiet_NaN(); });
+    refuses("corners of cells", [](Shells& s) { s.solid.pop_back(); });
+    refuses("there is no corner", [](Shells& s) { s.solid[0] = {24, 0}; });
+    refuses("there is no corner", [](Shells& s) { s.solid[0] = {0, 8}; });
+    refuses("attributes", [](Shells& s) { s.attributes.clear(); });
+    refuses("attributes", [](Shells& s) { s.attributes[0].values[0] = std::numeric_limits<double>::infinity(); });
+    test::expect_error(ErrorCode::InvalidInput, "levels", [&] { (void)refine_shells(mesh, shells, {.levels = 11}); });
     test::expect_error(ErrorCode::InvalidInput, "there is no point", [&] {
-        (void)make_sheets(mesh, Quads{{0, 1, 2, 1000}}, {});
+        (void)make_shells(mesh, Quads{{0, 1, 2, 1000}}, {});
     });
 }
 
-}  // namespace sheets_test
+}  // namespace shells_test
 }  // namespace subvol

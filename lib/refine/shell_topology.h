@@ -7,13 +7,13 @@
 #include <vector>
 
 #include "boundary_rings.h"
-#include "subvol/sheets.h"
+#include "subvol/shells.h"
 #include "subvol/topology.h"
 
 namespace subvol::detail {
 
 /// kinds: of the points that have an edge here
-struct SheetTopology {
+struct ShellTopology {
     Topology topology;
     std::vector<PointKind> kinds;
 };
@@ -21,10 +21,10 @@ struct SheetTopology {
 /// on_solid: whether an edge lies on an edge of a cell, by its points, the smaller first
 using OnSolid = std::function<bool(Index, Index)>;
 
-/// The quads of the sheets: all are boundary faces without cells, in the order of `sheets.quads`, with their points.
-[[nodiscard]] SheetTopology topology_of_quads(const Sheets& sheets, const OnSolid& on_solid);
+/// The quads of the shells: all are boundary faces without cells, in the order of `shells.quads`, with their points.
+[[nodiscard]] ShellTopology topology_of_quads(const Shells& shells, const OnSolid& on_solid);
 
 /// The lines that are no edges of quads: all are creases.
-[[nodiscard]] SheetTopology topology_of_lines(const Sheets& sheets, const Topology& quads);
+[[nodiscard]] ShellTopology topology_of_lines(const Shells& shells, const Topology& quads);
 
 }  // namespace subvol::detail

@@ -40,13 +40,13 @@ class Sheets(InFolder):
                                           "nonmanifold_edges": 0})
         self.assertEqual(told["warnings"], [])
         self.assertNotIn("sheets", self.json("info", "without.vtk"))
-        self.assertIn("12 quads, 5 lines of curves", self.run_ok("info", "with.vtk").err + self.run_ok("info", "with.vtk").out)
+        self.assertIn("12 quads, 5 beams", self.run_ok("info", "with.vtk").err + self.run_ok("info", "with.vtk").out)
 
     def test_the_volume_is_the_same_to_the_bit(self):
         for verb, name, options in ("points", "a.ply", []), ("vdb", "a.vdb", ["--resolution", 24]), ("points", "a.vtp", []):
             for kind in "with", "without":
                 done = self.run_ok(verb, f"{kind}.vtk", "-o", f"{kind}.{name}", *options)
-                self.assertEqual("12 quads and 5 lines of sheets and curves left out" in done.err, kind == "with", done.err)
+                self.assertEqual("12 quads and 5 lines of shells and beams left out" in done.err, kind == "with", done.err)
             if verb == "points":
                 self.assertEqual(self.bytes_of(f"with.{name}"), self.bytes_of(f"without.{name}"))
             else:
@@ -66,17 +66,17 @@ class Sheets(InFolder):
             self.assertEqual(alone["volume"], again["volume"])
         self.assertIn("not written to .mesh", self.run_ok("subdivide", "with.vtk", "-o", "fine.mesh").err)
 
-    def test_surface_writes_the_sheets_after_the_boundary(self):
+    def test_surface_writes_the_shells_after_the_boundary(self):
         told = self.json("surface", "with.vtk", "-o", "skin.ply", "--boundary", "--color-field", "load")
         alone = self.json("surface", "without.vtk", "-o", "alone.ply", "--boundary", "--color-field", "load")
         self.assertEqual(told["sheet_triangles"], 2 * 12 * 4 ** max(3, told["level"]))
         self.assertEqual(told["triangles"], alone["triangles"] + told["sheet_triangles"])
         self.assertEqual((told["area"], told["watertight"]), (alone["area"], True))
 
-    def test_shares_of_a_surface_have_no_sheets(self):
+    def test_shares_of_a_surface_have_no_shells(self):
         done = subvol("surface", "with.vtk", "-o", "a.svshare", "--boundary", "--part", "1/2", folder=self.folder)
         self.assertEqual(done.code, 2)
-        self.assertIn("sheets are written with the whole surface", done.err)
+        self.assertIn("shells are written with the whole surface", done.err)
 
     def test_every_method_draws_them(self):
         for method in "splat", "dense", "tets":
@@ -87,7 +87,7 @@ class Sheets(InFolder):
             self.assertLess(told["rmse"], .5, method)    # and so is the block
         self.run_ok("render", "with.vtk", "-o", "with.png", "--edges", "--look", "volume", "--scheme", "cc", *VIEW)
 
-    def test_sheets_behind_the_eye_hide_nothing(self):
+    def test_shells_behind_the_eye_hide_nothing(self):
         points = [(x, y, z) for z in (0, 1) for y in (0, 1) for x in (0, 1)] + [(-2, -2, 3), (3, -2, 3), (3, 3, 3.8), (-2, 3, 3.8)]
         text = "# vtk DataFile Version 3.0\nx\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 12 double\n"
         text += "\n".join(" ".join(map(str, p)) for p in points)

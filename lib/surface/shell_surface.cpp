@@ -5,7 +5,7 @@
 #include <string>
 
 #include "subvol/error.h"
-#include "subvol/limit_sheets.h"
+#include "subvol/limit_shells.h"
 
 namespace subvol {
 
@@ -24,10 +24,10 @@ std::array<Vec3, 2> across(const Vec3& along) {
 
 class TubeMaker {
 public:
-    TubeMaker(SheetSurface& to, double radius) : to_(to), radius_(radius) {}
+    TubeMaker(ShellSurface& to, double radius) : to_(to), radius_(radius) {}
 
-    void tube(const Sheets& sheets, Index a, Index b) {
-        const Vec3 step = sheets.points[b] - sheets.points[a];
+    void tube(const Shells& shells, Index a, Index b) {
+        const Vec3 step = shells.points[b] - shells.points[a];
         const double length = glm::length(step);
         if (!(length > 0)) return;
         const auto [u, v] = across(step / length);
@@ -35,8 +35,8 @@ public:
         for (std::size_t k = 0; k < kSides; ++k) {
             const double angle = 2 * std::numbers::pi * static_cast<double>(k) / kSides;
             const Vec3 offset = radius_ * (std::cos(angle) * u + std::sin(angle) * v);
-            add(sheets.points[a] + offset, a);
-            add(sheets.points[b] + offset, b);
+            add(shells.points[a] + offset, a);
+            add(shells.points[b] + offset, b);
         }
         for (std::size_t k = 0; k < kSides; ++k) {
             const std::size_t here = first + 2 * k, next = first + 2 * ((k + 1) % kSides);
@@ -46,7 +46,7 @@ public:
     }
 
     /// An octahedron whose faces are split once, on the sphere.
-    void ball(const Sheets& sheets, Index p) {
+    void ball(const Shells& shells, Index p) {
         const std::array<Vec3, 6> tips{Vec3(1, 0, 0),  Vec3(-1, 0, 0), Vec3(0, 1, 0),
                                        Vec3(0, -1, 0), Vec3(0, 0, 1),  Vec3(0, 0, -1)};
         for (std::size_t face = 0; face < 8; ++face) {
@@ -57,7 +57,7 @@ public:
             for (const auto& corners :
                  {std::array{a, ab, ca}, std::array{ab, b, bc}, std::array{ca, bc, c}, std::array{ab, bc, ca}}) {
                 const std::size_t first = to_.surface.points.size();
-                for (const Vec3& corner : corners) add(sheets.points[p] + radius_ * corner, p);
+                for (const Vec3& corner : corners) add(shells.points[p] + radius_ * corner, p);
                 triangle(first, first + 1, first + 2);
             }
         }
@@ -72,23 +72,23 @@ private:
         to_.surface.triangles.push_back({static_cast<Index>(a), static_cast<Index>(b), static_cast<Index>(c)});
     }
 
-    SheetSurface& to_;
+    ShellSurface& to_;
     double radius_;
 };
 
 /// The lines that are no edges of quads.
-std::vector<std::array<Index, 2>> lines_alone(const Sheets& sheets) {
+std::vector<std::array<Index, 2>> lines_alone(const Shells& shells) {
     std::vector<std::array<Index, 2>> edges, lines;
-    if (sheets.lines.empty()) return lines;
-    edges.reserve(4 * sheets.quads.size());
-    for (const auto& quad : sheets.quads) {
+    if (shells.lines.empty()) return lines;
+    edges.reserve(4 * shells.quads.size());
+    for (const auto& quad : shells.quads) {
         for (std::size_t k = 0; k < 4; ++k) {
             const auto [low, high] = std::minmax({quad[k], quad[(k + 1) % 4]});
             edges.push_back({low, high});
         }
     }
     std::ranges::sort(edges);
-    for (const auto& line : sheets.lines) {
+    for (const auto& line : shells.lines) {
         if (!std::ranges::binary_search(edges, std::array{std::min(line[0], line[1]), std::max(line[0], line[1])}))
             lines.push_back(line);
     }
@@ -97,66 +97,66 @@ std::vector<std::array<Index, 2>> lines_alone(const Sheets& sheets) {
 
 }  // namespace
 
-SheetSurface sheet_surface(const Sheets& sheets, double tube_radius_world) {
+ShellSurface shell_surface(const Shells& shells, double tube_radius_world) {
     if (!(tube_radius_world >= 0) || !std::isfinite(tube_radius_world)) {
-        throw Error(ErrorCode::InvalidInput, "the radius of tubes is " + std::to_string(tube_radius_world), "sheets",
+        throw Error(ErrorCode::InvalidInput, "the radius of tubes is " + std::to_string(tube_radius_world), "shells",
                     "0 or more");
     }
-    SheetSurface result;
-    result.surface.points = sheets.points;
-    for (Index p = 0; p < sheets.points.size(); ++p) result.sources.push_back(p);
-    for (const auto& [a, b, c, d] : sheets.quads) {
+    ShellSurface result;
+    result.surface.points = shells.points;
+    for (Index p = 0; p < shells.points.size(); ++p) result.sources.push_back(p);
+    for (const auto& [a, b, c, d] : shells.quads) {
         result.surface.triangles.push_back({a, b, c});
         result.surface.triangles.push_back({a, c, d});
     }
-    result.sheet_triangles = result.surface.triangles.size();
+    result.shell_triangles = result.surface.triangles.size();
     if (tube_radius_world == 0) return result;
     TubeMaker maker(result, tube_radius_world);
-    const auto lines = lines_alone(sheets);
-    std::vector<std::vector<Index>> others(sheets.points.size());
+    const auto lines = lines_alone(shells);
+    std::vector<std::vector<Index>> others(shells.points.size());
     for (const auto& [a, b] : lines) {
-        maker.tube(sheets, a, b);
+        maker.tube(shells, a, b);
         others[a].push_back(b);
         others[b].push_back(a);
     }
     for (Index p = 0; p < others.size(); ++p) {
         if (others[p].empty()) continue;
         if (others[p].size() == 2) {
-            const Vec3 before = sheets.points[p] - sheets.points[others[p][0]],
-                       after = sheets.points[others[p][1]] - sheets.points[p];
+            const Vec3 before = shells.points[p] - shells.points[others[p][0]],
+                       after = shells.points[others[p][1]] - shells.points[p];
             if (glm::dot(before, after) > kBend * glm::length(before) * glm::length(after)) continue;
         }
-        maker.ball(sheets, p);
+        maker.ball(shells, p);
     }
     return result;
 }
 
-void add_sheets(LimitSurface& surface, const Sheets& sheets) {
-    bool same = surface.fields.size() == sheets.attributes.size();
+void add_shells(LimitSurface& surface, const Shells& shells) {
+    bool same = surface.fields.size() == shells.attributes.size();
     for (std::size_t f = 0; same && f < surface.fields.size(); ++f) {
-        same = surface.fields[f].name == sheets.attributes[f].name &&
-               surface.fields[f].channels == static_cast<std::size_t>(sheets.attributes[f].channels);
+        same = surface.fields[f].name == shells.attributes[f].name &&
+               surface.fields[f].channels == static_cast<std::size_t>(shells.attributes[f].channels);
     }
-    if (!same) throw Error(ErrorCode::InvalidInput, "their fields are not those of the surface", "sheets");
-    std::vector<Index> number(sheets.points.size(), kNone);
+    if (!same) throw Error(ErrorCode::InvalidInput, "their fields are not those of the surface", "shells");
+    std::vector<Index> number(shells.points.size(), kNone);
     const auto add = [&](Index p) {
         if (number[p] != kNone) return;
         number[p] = static_cast<Index>(surface.surface.points.size());
-        surface.surface.points.push_back(sheets.points[p]);
+        surface.surface.points.push_back(shells.points[p]);
         surface.normals.emplace_back(0.0);
         surface.places.push_back({});
         for (std::size_t f = 0; f < surface.fields.size(); ++f) {
             ProbedField& field = surface.fields[f];
             for (std::size_t c = 0; c < field.channels; ++c) {
-                field.values.push_back(sheets.attributes[f].values[p * field.channels + c]);
+                field.values.push_back(shells.attributes[f].values[p * field.channels + c]);
                 field.gradients.emplace_back(0.0);
             }
         }
     };
     const std::size_t first = surface.surface.points.size();
-    for (const auto& [a, b, c, d] : sheets.quads) {
+    for (const auto& [a, b, c, d] : shells.quads) {
         for (const Index p : {a, b, c, d}) add(p);
-        const Vec3 normal = glm::cross(sheets.points[c] - sheets.points[a], sheets.points[d] - sheets.points[b]);
+        const Vec3 normal = glm::cross(shells.points[c] - shells.points[a], shells.points[d] - shells.points[b]);
         for (const Index p : {a, b, c, d}) surface.normals[number[p]] += normal;
         surface.surface.triangles.push_back({number[a], number[b], number[c]});
         surface.surface.triangles.push_back({number[a], number[c], number[d]});

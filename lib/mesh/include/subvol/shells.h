@@ -10,7 +10,7 @@
 
 namespace subvol {
 
-/// A corner of a cell of a mesh. cell: kNone for none
+/// A corner of a cell of a mesh. cell: kNone if there is no such corner
 struct CellCorner {
     Index cell = kNone;
     std::uint8_t corner = 0;
@@ -18,15 +18,15 @@ struct CellCorner {
     bool operator==(const CellCorner&) const = default;
 };
 
-/// Sheets and curves: quads and lines that belong to no cell, beside a mesh of cells or alone. They have points of their own,
-/// so that the mesh is the same with them and without.
+/// Shells and beams: quads and lines that do not belong to a cell, beside a mesh of cells or alone. They have their own points,
+/// so that the mesh does not depend on them.
 ///
 /// attributes: those of the mesh, in its order, with values at these points
 /// quads:      four points in cyclic order
 /// lines:      two points
 /// solid:      for each point a corner of the mesh's cells if it is a point of the mesh too. Numbers of corners stay when
 ///             unused points of the mesh are left out, and child k of cell c has the number 8c + k at the next level
-struct Sheets {
+struct Shells {
     std::vector<Vec3> points;
     std::vector<Attribute> attributes;
     std::vector<std::array<Index, 4>> quads;
@@ -36,26 +36,26 @@ struct Sheets {
     [[nodiscard]] bool empty() const { return quads.empty() && lines.empty(); }
 };
 
-/// The sheets and curves of some quads and lines over the points of a mesh, used by its cells or not. Quads and lines that
-/// occur twice are taken once.
+/// Makes shells and beams of quads and lines over the points of a mesh, whether its cells use these points or not. Quads and
+/// lines that occur twice are taken once.
 ///
 /// returns: their points in the order of the mesh, with its attributes there
 /// throws:  Error(InvalidInput) if a quad or a line has a point that does not exist, or one twice
-[[nodiscard]] Sheets make_sheets(const HexMesh& mesh, std::span<const std::array<Index, 4>> quads,
+[[nodiscard]] Shells make_shells(const HexMesh& mesh, std::span<const std::array<Index, 4>> quads,
                                  std::span<const std::array<Index, 2>> lines);
 
 /// throws: Error(InvalidInput) if a point of a quad or a line does not exist or occurs twice in it, a point is not finite, a
 ///         corner of a cell does not exist, or the attributes are not those of the mesh with one finite value for each point
-void validate(const Sheets& sheets, const HexMesh& mesh);
+void validate(const Shells& shells, const HexMesh& mesh);
 
-/// How sheets and curves hang together, for `subvol info`.
+/// How shells and beams are connected, for `subvol info`.
 ///
 /// attached:         points that are points of the mesh too
 /// free_edges:       edges of one quad whose ends are not both attached
 /// nonmanifold_edges: edges of more than two quads
-struct SheetReport {
+struct ShellReport {
     std::size_t quads = 0, lines = 0, points = 0, attached = 0, free_edges = 0, nonmanifold_edges = 0;
 };
-[[nodiscard]] SheetReport inspect(const Sheets& sheets);
+[[nodiscard]] ShellReport inspect(const Shells& shells);
 
 }  // namespace subvol

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "subvol/limit_sheets.h"
+#include "subvol/limit_shells.h"
 
 #include "incident.h"
-#include "sheet_levels.h"
+#include "shell_levels.h"
 #include "subvol/limit.h"
 #include "topology_parts.h"
 
@@ -11,17 +11,17 @@ namespace subvol {
 namespace {
 
 using detail::PointKind;
-using detail::SheetTopology;
+using detail::ShellTopology;
 using Terms = std::vector<std::pair<Index, double>>;
 
 /// The limit of a point as weights over its surroundings.
-Terms limit_of(const SheetTopology& sheet, Index point, Scheme scheme) {
-    const Topology& t = sheet.topology;
-    if (sheet.kinds[point] == PointKind::Crease) {
+Terms limit_of(const ShellTopology& shell, Index point, Scheme scheme) {
+    const Topology& t = shell.topology;
+    if (shell.kinds[point] == PointKind::Crease) {
         const auto [a, b] = detail::crease_neighbours(t, point);
         return {{point, 4. / 6}, {a, 1. / 6}, {b, 1. / 6}};
     }
-    if (sheet.kinds[point] != PointKind::Smooth) return {{point, 1}};
+    if (shell.kinds[point] != PointKind::Smooth) return {{point, 1}};
     const auto n = static_cast<double>(t.point_edges[point].size());
     const double own = scheme == Scheme::CatmullClark ? n / (n + 5) : 4. / 9;
     const double edges = scheme == Scheme::CatmullClark ? 4 / (n + 5) : 4. / 9;
@@ -35,7 +35,7 @@ Terms limit_of(const SheetTopology& sheet, Index point, Scheme scheme) {
 /// One channel, or three, of all points moved to the limit.
 ///
 /// of_solid: the same of the limit of the cells
-std::vector<double> moved(const detail::SheetLevel& level, const std::vector<Terms>& terms, std::span<const double> values,
+std::vector<double> moved(const detail::ShellLevel& level, const std::vector<Terms>& terms, std::span<const double> values,
                           std::span<const double> of_solid, std::size_t channels) {
     std::vector<double> result(values.size(), 0.0);
     for (std::size_t p = 0; p < terms.size(); ++p) {
@@ -53,17 +53,17 @@ std::vector<double> moved(const detail::SheetLevel& level, const std::vector<Ter
 
 }  // namespace
 
-Sheets limit_sheets(const HexMesh& mesh, const Sheets& sheets, const RefineOptions& options) {
-    detail::SheetLevel level = detail::refine_sheet_level(mesh, sheets, options);
+Shells limit_shells(const HexMesh& mesh, const Shells& shells, const RefineOptions& options) {
+    detail::ShellLevel level = detail::refine_shell_level(mesh, shells, options);
     const Scheme scheme = options.scheme.kind;
-    if (interpolates(scheme) || level.sheets.points.empty()) return std::move(level.sheets);
-    const detail::SheetComplex complex = detail::complex_of(level);
-    std::vector<Terms> terms(level.sheets.points.size());
+    if (interpolates(scheme) || level.shells.points.empty()) return std::move(level.shells);
+    const detail::ShellComplex complex = detail::complex_of(level);
+    std::vector<Terms> terms(level.shells.points.size());
     for (Index p = 0; p < terms.size(); ++p) {
         const bool in_quads = !complex.quads.topology.point_edges[p].empty();
         terms[p] = limit_of(in_quads ? complex.quads : complex.lines, p, scheme);
     }
-    // The cells about the sheets are cut off at some distance: creases there need not be on their boundary.
+    // The cells about the shells are cut off at some distance: creases there need not be on their boundary.
     HexMesh& solid = level.solid;
     StencilTable table;
     if (!solid.cells.empty()) {
@@ -80,18 +80,18 @@ Sheets limit_sheets(const HexMesh& mesh, const Sheets& sheets, const RefineOptio
         for (const Vec3& p : points) values.insert(values.end(), {p.x, p.y, p.z});
         return values;
     };
-    const auto places = moved(level, terms, numbers(level.sheets.points), limit_of_solid(numbers(solid.points), 3), 3);
+    const auto places = moved(level, terms, numbers(level.shells.points), limit_of_solid(numbers(solid.points), 3), 3);
     for (std::size_t p = 0; p < terms.size(); ++p) {
-        level.sheets.points[p] = {places[3 * p], places[3 * p + 1], places[3 * p + 2]};
+        level.shells.points[p] = {places[3 * p], places[3 * p + 1], places[3 * p + 2]};
     }
-    for (std::size_t a = 0; a < level.sheets.attributes.size(); ++a) {
-        Attribute& attribute = level.sheets.attributes[a];
+    for (std::size_t a = 0; a < level.shells.attributes.size(); ++a) {
+        Attribute& attribute = level.shells.attributes[a];
         const auto channels = static_cast<std::size_t>(attribute.channels);
         std::vector<double> none;
         const std::vector<double>& of_solid = solid.cells.empty() ? none : solid.attributes[a].values;
         attribute.values = moved(level, terms, attribute.values, limit_of_solid(of_solid, channels), channels);
     }
-    return std::move(level.sheets);
+    return std::move(level.shells);
 }
 
 }  // namespace subvol

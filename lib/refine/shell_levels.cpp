@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sheet_levels.h"
+#include "shell_levels.h"
 
 #include <algorithm>
 #include <map>
@@ -23,7 +23,7 @@ struct SolidParts {
 };
 
 /// The children are those of `chosen` cells: child i of chosen[s] is 8s + i.
-SolidParts parts_of(const SheetLevel& level, std::span<const Index> chosen) {
+SolidParts parts_of(const ShellLevel& level, std::span<const Index> chosen) {
     SolidParts parts;
     std::vector<std::uint8_t> attached(level.solid.points.size(), 0);
     for (const Index p : level.at) {
@@ -56,7 +56,7 @@ SolidParts parts_of(const SheetLevel& level, std::span<const Index> chosen) {
 }
 
 /// The cells within two layers of the attached points: those that the next level needs.
-std::vector<Index> cells_about(const SheetLevel& level) {
+std::vector<Index> cells_about(const ShellLevel& level) {
     std::vector<std::uint8_t> marked(level.solid.points.size(), 0);
     for (const Index p : level.at) {
         if (p != kNone) marked[p] = 1;
@@ -77,21 +77,21 @@ std::vector<Index> cells_about(const SheetLevel& level) {
 
 /// Points and values of a level that is being made.
 struct LevelData {
-    const SheetLevel& from;
-    Sheets& to;
+    const ShellLevel& from;
+    Shells& to;
 
     void add(const StencilRuns& row) {
         Vec3 place(0.0);
         std::size_t next = 0;
         for (const auto& run : row.runs) {
             Vec3 sum(0.0);
-            for (std::uint32_t k = 0; k < run.count; ++k) sum += from.sheets.points[row.points[next++]];
+            for (std::uint32_t k = 0; k < run.count; ++k) sum += from.shells.points[row.points[next++]];
             place += run.weight * sum;
         }
         to.points.push_back(place);
         to.solid.push_back({});
         for (std::size_t a = 0; a < to.attributes.size(); ++a) {
-            const Attribute& attribute = from.sheets.attributes[a];
+            const Attribute& attribute = from.shells.attributes[a];
             const auto channels = static_cast<std::size_t>(attribute.channels);
             for (std::size_t c = 0; c < channels; ++c) {
                 double value = 0;
@@ -120,21 +120,21 @@ struct LevelData {
     }
 };
 
-SheetLevel next_level(const SheetLevel& level, const SchemeOptions& scheme) {
-    const Sheets& sheets = level.sheets;
-    const SheetComplex complex = complex_of(level);
+ShellLevel next_level(const ShellLevel& level, const SchemeOptions& scheme) {
+    const Shells& shells = level.shells;
+    const ShellComplex complex = complex_of(level);
     const Topology &quads = complex.quads.topology, &lines = complex.lines.topology;
     const auto of_quads = make_rules(quads, scheme, complex.quads.kinds);
     const auto of_lines = make_rules(lines, scheme, complex.lines.kinds);
 
-    const std::size_t points = sheets.points.size();
+    const std::size_t points = shells.points.size();
     const std::size_t first_face = points + quads.edges.size(), first_line = first_face + quads.faces.size();
     const std::size_t count = first_line + lines.edges.size();
     if (count >= kNone) {
-        throw Error(ErrorCode::InvalidInput, "the refined sheets need " + std::to_string(count) + " points", {},
+        throw Error(ErrorCode::InvalidInput, "the refined shells need " + std::to_string(count) + " points", {},
                     "at most " + std::to_string(kNone - 1) + ": use fewer levels");
     }
-    SheetLevel next;
+    ShellLevel next;
     next.at.assign(count, kNone);
     std::vector<Index> chosen;
     std::vector<Index> place(level.solid.cells.size(), kNone);  // of a cell among the chosen
@@ -156,8 +156,8 @@ SheetLevel next_level(const SheetLevel& level, const SchemeOptions& scheme) {
         }
     }
 
-    Sheets& fine = next.sheets;
-    for (const Attribute& attribute : sheets.attributes) fine.attributes.push_back({attribute.name, attribute.channels, {}});
+    Shells& fine = next.shells;
+    for (const Attribute& attribute : shells.attributes) fine.attributes.push_back({attribute.name, attribute.channels, {}});
     LevelData data{level, fine};
     StencilBuilder row;
     const auto from_solid = [&](const CellCorner& corner) { data.add(next.solid, corner, next.cells[corner.cell], next.at); };
@@ -205,9 +205,9 @@ SheetLevel next_level(const SheetLevel& level, const SchemeOptions& scheme) {
                                   static_cast<Index>(points + quads.face_edges[f][(k + 3) % 4])});
         }
     }
-    for (const auto& [a, b] : sheets.lines) {
-        const auto in_sheet = quads.find_edge(a, b);
-        const auto middle = static_cast<Index>(in_sheet ? points + *in_sheet : first_line + *lines.find_edge(a, b));
+    for (const auto& [a, b] : shells.lines) {
+        const auto in_shell = quads.find_edge(a, b);
+        const auto middle = static_cast<Index>(in_shell ? points + *in_shell : first_line + *lines.find_edge(a, b));
         fine.lines.push_back({a, middle});
         fine.lines.push_back({middle, b});
     }
@@ -216,7 +216,7 @@ SheetLevel next_level(const SheetLevel& level, const SchemeOptions& scheme) {
 
 }  // namespace
 
-SheetComplex complex_of(const SheetLevel& level) {
+ShellComplex complex_of(const ShellLevel& level) {
     std::vector<Index> all(level.solid.cells.size());
     for (std::size_t c = 0; c < all.size(); ++c) all[c] = static_cast<Index>(c);
     const SolidParts parts = parts_of(level, all);
@@ -224,30 +224,30 @@ SheetComplex complex_of(const SheetLevel& level) {
         const Index a = level.at[p], b = level.at[q];
         return a != kNone && b != kNone && parts.edges.contains({std::min(a, b), std::max(a, b)});
     };
-    SheetComplex complex;
-    complex.quads = topology_of_quads(level.sheets, on_solid);
-    complex.lines = topology_of_lines(level.sheets, complex.quads.topology);
+    ShellComplex complex;
+    complex.quads = topology_of_quads(level.shells, on_solid);
+    complex.lines = topology_of_lines(level.shells, complex.quads.topology);
     return complex;
 }
 
-SheetLevel refine_sheet_level(const HexMesh& mesh, const Sheets& sheets, const RefineOptions& options) {
+ShellLevel refine_shell_level(const HexMesh& mesh, const Shells& shells, const RefineOptions& options) {
     check_levels(options.levels);
-    validate(sheets, mesh);
-    SheetLevel level;
-    level.sheets = sheets;
-    level.at.assign(sheets.points.size(), kNone);
-    const bool attached = std::ranges::any_of(sheets.solid, [](const CellCorner& corner) { return corner.cell != kNone; });
+    validate(shells, mesh);
+    ShellLevel level;
+    level.shells = shells;
+    level.at.assign(shells.points.size(), kNone);
+    const bool attached = std::ranges::any_of(shells.solid, [](const CellCorner& corner) { return corner.cell != kNone; });
     if (attached) {
         level.solid = control_mesh(mesh, options.scheme, options.levels);
-        for (std::size_t p = 0; p < sheets.points.size(); ++p) {
-            const auto& [cell, corner] = sheets.solid[p];
+        for (std::size_t p = 0; p < shells.points.size(); ++p) {
+            const auto& [cell, corner] = shells.solid[p];
             if (cell != kNone) level.at[p] = level.solid.cells[cell][corner];
         }
     }
     SchemeOptions scheme = options.scheme;
     scheme.crease_angle_deg.reset();  // they are found once, in the control mesh
     for (int l = 0; l < options.levels; ++l) {
-        report_progress(options.progress, "sheets", static_cast<double>(l) / options.levels);
+        report_progress(options.progress, "shells", static_cast<double>(l) / options.levels);
         level = next_level(level, scheme);
     }
     return level;
@@ -255,8 +255,8 @@ SheetLevel refine_sheet_level(const HexMesh& mesh, const Sheets& sheets, const R
 
 }  // namespace detail
 
-Sheets refine_sheets(const HexMesh& mesh, const Sheets& sheets, const RefineOptions& options) {
-    return detail::refine_sheet_level(mesh, sheets, options).sheets;
+Shells refine_shells(const HexMesh& mesh, const Shells& shells, const RefineOptions& options) {
+    return detail::refine_shell_level(mesh, shells, options).shells;
 }
 
 }  // namespace subvol

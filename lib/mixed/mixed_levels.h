@@ -2,9 +2,12 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <vector>
 
+#include "boundary_rings.h"
 #include "subvol/mixed_mesh.h"
+#include "subvol/refine_mixed.h"
 
 namespace subvol::detail {
 
@@ -21,7 +24,6 @@ public:
     [[nodiscard]] Index center_of_hex(std::size_t cell) const { return first_hex_ + hex_rank_[cell]; }
     [[nodiscard]] bool has_edge(Index a, Index b) const;
 
-    [[nodiscard]] std::size_t parent_points() const { return parent_points_; }
     [[nodiscard]] std::size_t size() const { return first_hex_ + hex_rank_.size(); }
 
     /// Calls add(point of the parent, weight) for the linear split.
@@ -56,5 +58,44 @@ private:
 
 /// The cells of the next level, in the order of their parents; right-handed if these are.
 [[nodiscard]] MixedMesh split_cells(const MixedMesh& parent, const SplitNumbers& numbers);
+
+/// The boundary of a mixed mesh, as the rules need it.
+///
+/// faces:   oriented outward; the fourth corner of a triangle is kNone
+/// creases: sharp edges, sorted; smaller end first
+/// kinds:   of each point
+struct MixedBoundary {
+    std::vector<std::array<Index, 4>> faces;
+    std::vector<std::array<Index, 2>> creases;
+    std::vector<PointKind> kinds;
+};
+
+/// Creases are the boundary edges that mesh.creases names, that belong to one cell only, that have more than two boundary
+/// faces, or that are bent by more than the angle. A point with two creases moves along them; one with another number of
+/// creases, or where several sheets of the boundary meet, stays.
+///
+/// throws: Error(InvalidInput) if a face has more than two cells, or a crease of the mesh is not on the boundary
+[[nodiscard]] MixedBoundary find_boundary(const MixedMesh& mesh, std::optional<double> crease_angle_deg);
+
+/// The boundary of the next level.
+[[nodiscard]] MixedBoundary split_boundary(const MixedBoundary& parent, const SplitNumbers& numbers);
+
+/// A level with its boundary. The mesh has cells and creases alone.
+struct MixedLevel {
+    MixedMesh cells;
+    MixedBoundary boundary;
+    std::size_t points = 0;
+};
+
+struct MixedStep {
+    MixedLevel child;
+    StencilTable table;
+};
+
+/// The next level and the weights of its points.
+[[nodiscard]] MixedStep refine_level(const MixedLevel& parent, const SplitNumbers& numbers, TetScheme scheme);
+
+/// The level of a mesh, checked.
+[[nodiscard]] MixedLevel level_of(const MixedMesh& mesh, TetScheme scheme, std::optional<double> crease_angle_deg);
 
 }  // namespace subvol::detail
