@@ -57,16 +57,16 @@ TEST_F(Abaqus, ShellsAndBeamsAreSheetsAndCurves) {
         "*ELEMENT, TYPE=B31\n4, 230, 240\n*ELEMENT, TYPE=M3D4R\n5, 10, 20, 30, 40\n"
         "*ELEMENT, TYPE=S3\n6, 50, 60, 200\n*ELEMENT, TYPE=SAX1\n7, 220, 230\n";
     const ReadResult found = read_mesh(write("a.inp", cube + nodes + sheets));
-    EXPECT_THAT(found.sheets.quads, ElementsAre(std::array<Index, 4>{0, 1, 3, 2}, std::array<Index, 4>{2, 3, 5, 4}));
-    EXPECT_THAT(found.sheets.lines, ElementsAre(std::array<Index, 2>{5, 6}));
-    ASSERT_EQ(found.sheets.points.size(), 7u);
-    EXPECT_EQ(found.sheets.points[6], Vec3(3, 0, 3));
-    EXPECT_EQ(found.sheets.solid[0], (CellCorner{0, 4}));
-    EXPECT_EQ(found.sheets.solid[2].cell, kNone);
+    EXPECT_THAT(found.shells.quads, ElementsAre(std::array<Index, 4>{0, 1, 3, 2}, std::array<Index, 4>{2, 3, 5, 4}));
+    EXPECT_THAT(found.shells.lines, ElementsAre(std::array<Index, 2>{5, 6}));
+    ASSERT_EQ(found.shells.points.size(), 7u);
+    EXPECT_EQ(found.shells.points[6], Vec3(3, 0, 3));
+    EXPECT_EQ(found.shells.solid[0], (CellCorner{0, 4}));
+    EXPECT_EQ(found.shells.solid[2].cell, kNone);
     EXPECT_THAT(found.warnings, ElementsAre("1 element of type M3D4R, 1 element of type S3, 1 element of type SAX1 ignored"));
     EXPECT_EQ(found.mesh.cells.size(), 1u);
     const ReadResult fin = read_mesh(path("a.inp"), {.blocks = {"fin"}, .shells_alone = true});
-    EXPECT_EQ(fin.sheets.quads.size(), 2u);
+    EXPECT_EQ(fin.shells.quads.size(), 2u);
     EXPECT_EQ(fin.mesh.cells.size(), 0u);
     EXPECT_THAT(error(cube + nodes + "*ELEMENT, TYPE=S4\n2, 50, 60, 210\n"), HasSubstr("S4"));
     EXPECT_THAT(error(cube + nodes + "*ELEMENT, TYPE=S4\n2, 50, 60, 210, 999\n"), HasSubstr("there is no node 999"));

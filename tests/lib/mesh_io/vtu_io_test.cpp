@@ -167,7 +167,7 @@ TEST_F(VtuIo, OtherCellsAreSplit) {
     text = replaced(replaced(text, "11 10 \n", "11 10 0 1 3 9 \n"), "8 16 \n", "8 16 20 \n");
     const auto with_type = [&](const std::string& type) { return replaced(text, "12 12 \n", "12 12 " + type + "\n"); };
     const ReadResult quad = read(with_type("9"));  // no face of a hexahedron: a sheet
-    EXPECT_EQ(quad.sheets.quads.size(), 1u);
+    EXPECT_EQ(quad.shells.quads.size(), 1u);
     EXPECT_THAT(quad.warnings, ElementsAre(HasSubstr("\"c\"")));
     const ReadResult split = read(with_type("10"));
     EXPECT_THAT(split.warnings[0], HasSubstr("2 hexahedra and 1 tetrahedron split into 20 hexahedra"));
