@@ -134,7 +134,7 @@ void PictureArguments::add_light_to(CLI::App& app) {
                    "(opacity 0 to .5 over the range, black behind; otherwise the default), xray (on white) or isosurface (five "
                    "lit surfaces)")
         ->type_name("NAME")
-        ->check(offered({"solid", "volume", "xray", "isosurface"}));
+        ->check(offered(names_of<Look>()));
     app.add_option(
            "--tf", transfer_function,
            "colour map: viridis (default), plasma, inferno, cividis, turbo, coolwarm, grey, bone, xray, isosurface, surface "
@@ -174,8 +174,7 @@ void PictureArguments::add_light_to(CLI::App& app) {
 void PictureArguments::settle_look(bool has_boundary) {
     const std::string name = look_name.value_or(
         has_boundary && !transfer_function && !opacity && !opacity_unit_world && !transfer_range ? "solid" : "volume");
-    check_choice("--look", name, {"solid", "volume", "xray", "isosurface"});
-    look = look_named(name).value_or(Look::Volume);
+    look = named<Look>(name, "--look");
 }
 
 Vec3 PictureArguments::background_color() const {

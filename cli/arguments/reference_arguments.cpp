@@ -22,7 +22,7 @@ void ReferenceArguments::add_to(CLI::App& app) {
                    "pt: how the tetrahedra are sorted: topological (by shared faces, the default), centroid, "
                    "lists (one per pixel) or havs (faces by centroid, then a k-buffer per pixel)")
         ->type_name("NAME")
-        ->check(offered({"topological", "centroid", "lists", "havs"}));
+        ->check(offered(names_of<ProjectedOrder>()));
     app.add_option("--kbuffer", kbuffer, "havs: entries of the k-buffer (default 6)")
         ->type_name("K")
         ->transform(whole_number(1, 65536));
@@ -34,10 +34,7 @@ void ReferenceArguments::add_to(CLI::App& app) {
 }
 
 ProjectedOrder ReferenceArguments::projected_order() const {
-    check_choice("--order", order, {"topological", "centroid", "lists", "havs"});
-    if (order == "lists") return ProjectedOrder::Lists;
-    if (order == "havs") return ProjectedOrder::Havs;
-    return order == "centroid" ? ProjectedOrder::Centroid : ProjectedOrder::Topological;
+    return named<ProjectedOrder>(order, "--order");
 }
 
 ProjectedOptions ReferenceArguments::projected_options() const {

@@ -2,13 +2,16 @@
 #include "refine_arguments.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "choices.h"
 #include "numbers.h"
 #include "subvol/detail/refined_memory.h"
 #include "subvol/error.h"
 #include "subvol/limit.h"
+#include "subvol/refine_mixed.h"
 #include "text.h"
 
 namespace subvol::cli {
@@ -17,24 +20,33 @@ void check_memory(int level, double cells, double bytes_per_cell) {
     detail::check_memory(level, cells, bytes_per_cell, "--levels");
 }
 
+std::vector<std::string> tet_schemes() {
+    std::vector<std::string> schemes = names_of<TetScheme>();
+    std::erase_if(schemes, [](const std::string& name) { return !is_tet_scheme(name); });
+    return schemes;
+}
+
+bool is_tet_scheme(const std::string& name) {
+    return !find_named<Scheme>(name) && find_named<TetScheme>(name);
+}
+
 Scheme scheme_named(const std::string& name) {
-    if (name == "tetoct" || name == "boxspline") {
+    if (is_tet_scheme(name)) {
         throw Error(ErrorCode::InvalidInput, name + " refines tetrahedra, and this verb or input has hexahedra only",
                     "--scheme", "info, subdivide, points, render, view, vdb, probe, surface, slice and page take it");
     }
-    check_choice("--scheme", name, {"mcq", "cc", "bsxw", "linear"});
-    if (name == "cc") return Scheme::CatmullClark;
-    if (name == "bsxw") return Scheme::Bsxw;
-    return name == "linear" ? Scheme::Linear : Scheme::Mcq;
+    return named<Scheme>(name, "--scheme");
 }
 
 void RefineArguments::add_scheme_to(CLI::App& app) {
+    std::vector<std::string> schemes = names_of<Scheme>();
+    std::ranges::copy(tet_schemes(), std::back_inserter(schemes));
     app.add_option(
            "--scheme", scheme,
            "mcq (smooth, through the control points; the default), cc (Catmull-Clark), bsxw (Bajaj-Schaefer-Warren-Xu), "
            "linear; of tetrahedra as tetrahedra: tetoct, boxspline")
         ->type_name("NAME")
-        ->check(offered({"mcq", "cc", "bsxw", "linear", "tetoct", "boxspline"}));
+        ->check(offered(schemes));
     app.add_option("--tension", tension, "of mcq: 0 is linear; the default, 1/16, reproduces cubics")
         ->type_name("W")
         ->transform(number_in(0.0, 0.125));

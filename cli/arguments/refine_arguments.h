@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "subvol/facts.h"
 #include "subvol/refine.h"
@@ -12,6 +13,10 @@ class App;
 }
 
 namespace subvol::cli {
+
+/// Whether it is a scheme of tetrahedra only.
+[[nodiscard]] bool is_tet_scheme(const std::string& name);
+[[nodiscard]] std::vector<std::string> tet_schemes();
 
 /// throws: Error(InvalidInput) unless it is mcq, cc, bsxw or linear
 [[nodiscard]] Scheme scheme_named(const std::string& name);

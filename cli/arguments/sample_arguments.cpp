@@ -15,17 +15,6 @@ namespace {
 
 constexpr double kPaperBox = 200;  // --spacing-voxels counts in 1/200 of the longest side
 
-Correction correction_named(const std::string& name) {
-    check_choice("--correction", name, {"none", "gradient", "second", "full"});
-    if (name == "full") return Correction::Full;
-    return name == "none" ? Correction::None : name == "gradient" ? Correction::Gradient : Correction::Second;
-}
-
-ValueRule rule_named(const std::string& name) {
-    check_choice("--values", name, {"scheme", "cubic", "paper"});
-    return name == "paper" ? ValueRule::Paper : name == "cubic" ? ValueRule::Cubic : ValueRule::Scheme;
-}
-
 }  // namespace
 
 Kernel kernel_from(const std::string& text, const char* fallback) {
@@ -63,7 +52,7 @@ void SampleArguments::add_to(CLI::App& app) {
     app.add_option("--values", values,
                    "values between control points: scheme (exact, default), cubic (Catmull-Rom), paper (weighted mean)")
         ->type_name("NAME")
-        ->check(offered({"scheme", "cubic", "paper"}));
+        ->check(offered(names_of<ValueRule>()));
     app.add_option("--kernel", kernel, "the kernel of the points (default compact); see subvol fit --kernels")
         ->type_name("NAME|JSON");
     app.add_option("--value-kernel", value_kernel, "the kernel of --values paper (default paper_bc)")->type_name("NAME|JSON");
@@ -75,7 +64,7 @@ void SampleArguments::add_to(CLI::App& app) {
     app.add_option("--correction", correction,
                    "the derivatives of the field that kernels carry: none, gradient, second (default), full")
         ->type_name("NAME")
-        ->check(offered({"none", "gradient", "second", "full"}));
+        ->check(offered(names_of<Correction>()));
     auto* reduce = app.add_option("--reduce", reduce_rmse,
                                   "instead: as few kernels as a root mean square error of RMSE needs, in the field's unit");
     reduce->type_name("RMSE")
@@ -100,8 +89,8 @@ SampleOptions SampleArguments::options(const Box& box, const RefineOptions& refi
             .footprint = footprint.empty() ? std::nullopt : std::optional(footprint_of(box)),
             .tolerance = tolerance,
             .centers = centers,
-            .correction = correction_named(correction),
-            .values = rule_named(values),
+            .correction = named<Correction>(correction, "--correction"),
+            .values = named<ValueRule>(values, "--values"),
             .kernel = kernel_from(kernel, "compact"),
             .value_kernel = kernel_from(value_kernel, "paper_bc"),
             .progress = refinement.progress};

@@ -18,8 +18,8 @@ constexpr double kBytesPerTet = 400;  // of eight for each cell and level, while
 }  // namespace
 
 TetRefinement::TetRefinement(RefineArguments& arguments) {
-    if (arguments.scheme != "tetoct" && arguments.scheme != "boxspline") return;
-    scheme_ = arguments.scheme == "tetoct" ? TetScheme::Tetoct : TetScheme::Boxspline;
+    if (!is_tet_scheme(arguments.scheme)) return;
+    scheme_ = named<TetScheme>(arguments.scheme, "--scheme");
     levels_ = arguments.levels;
     crease_angle_deg_ = arguments.crease_angle_deg.value_or(kCreaseAngleDeg);
     arguments.scheme = "linear";

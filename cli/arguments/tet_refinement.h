@@ -22,7 +22,7 @@ public:
     [[nodiscard]] bool asked() const { return scheme_.has_value(); }
 
     /// "tetoct" or "boxspline"; only if asked.
-    [[nodiscard]] std::string name() const { return *scheme_ == TetScheme::Tetoct ? "tetoct" : "boxspline"; }
+    [[nodiscard]] std::string name() const { return std::string(name_of(*scheme_)); }
 
     /// throws: Error(InvalidInput) if asked; bricks: the folder
     void refuse_bricks(const std::string& bricks) const;

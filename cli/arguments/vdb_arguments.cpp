@@ -71,7 +71,7 @@ void VdbArguments::add_grids_to(CLI::App& app) {
 void VdbArguments::add_files_to(CLI::App& app) {
     app.add_option("--compression", compression, "blosc (the default), zip, none")
         ->type_name("NAME")
-        ->check(one_of({"blosc", "zip", "none"}));
+        ->check(one_of(names_of<VdbCompression>()));
     app.add_option("--memory", memory_bytes,
                    "make the grids in parts that take no more than this, e.g. 2G. If all together take no more, NAME.vdb has "
                    "them, else NAME_0000.vdb and so on; NAME.json lists the file or the files, and join makes one of them. Of "

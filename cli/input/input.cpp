@@ -18,10 +18,6 @@ namespace {
 
 const std::string kModelPrefix = "model:";
 
-OtherCells other_cells(const std::string& name) {
-    return name == "ignore" ? OtherCells::Ignore : name == "refuse" ? OtherCells::Refuse : OtherCells::Split;
-}
-
 /// to: a mesh or shells
 template <class Points>
 void put_density_first(Points& to, const std::string& expression) {
@@ -52,11 +48,6 @@ ReadResult generate(const std::string& description) {
 std::optional<double> weld_distance(const CommonOptions& options) {
     if (options.weld_distance_world) return options.weld_distance_world;
     return options.weld ? std::optional<double>(0) : std::nullopt;
-}
-
-CellValues cell_values(const CommonOptions& options) {
-    if (options.cell_values == "fit") return CellValues::Fit;
-    return options.cell_values == "mean" ? CellValues::Mean : CellValues::Auto;
 }
 
 std::optional<double> curved_tolerance(const CommonOptions& options) {
@@ -105,13 +96,13 @@ bool is_model(const std::string& input) {
 }
 
 ReadOptions read_options(const std::string& input, const CommonOptions& options) {
-    return {.other_cells = other_cells(options.other_cells),
+    return {.other_cells = named<OtherCells>(options.other_cells, "--other-cells"),
             .weld = weld_distance(options),
             .sharp = options.sharp,
             .curved_tolerance = curved_tolerance(options),
             .step = one_step(input, options),
             .blocks = options.blocks,
-            .cell_values = cell_values(options)};
+            .cell_values = named<CellValues>(options.cell_values, "--cell-values")};
 }
 
 WithFacts<ReadResult> read_input(const std::string& input, const CommonOptions& options, Progress* progress,

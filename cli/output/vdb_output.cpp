@@ -57,10 +57,6 @@ void write_files(std::span<const VdbGrid> grids, const VdbOutput& output) {
 
 }  // namespace
 
-VdbCompression compression_named(const std::string& name) {
-    return name == "zip" ? VdbCompression::Zip : name == "none" ? VdbCompression::None : VdbCompression::Blosc;
-}
-
 bool has_voxels(std::span<const VdbGrid> grids) {
     return std::ranges::any_of(grids, [](const VdbGrid& grid) { return grid.report().active_voxels > 0; });
 }

@@ -20,9 +20,6 @@ struct VdbOutput {
     std::string level_set{};       // the name of the grid that is one; empty: none is
 };
 
-/// "zip", "none", else blosc.
-[[nodiscard]] VdbCompression compression_named(const std::string& name);
-
 /// Whether a grid has an active voxel.
 [[nodiscard]] bool has_voxels(std::span<const VdbGrid> grids);
 

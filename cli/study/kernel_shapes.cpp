@@ -6,29 +6,23 @@
 namespace subvol::cli {
 namespace {
 
-const std::vector<NamedShape> kShapes{{"gaussian", KernelShape::Gaussian},
-                                      {"scaled_gaussian", KernelShape::ScaledGaussian},
-                                      {"bc", KernelShape::BcSpline},
-                                      {"cardinal", KernelShape::CardinalSpline},
-                                      {"wendland_c2", KernelShape::WendlandC2},
-                                      {"wendland_c4", KernelShape::WendlandC4},
-                                      {"two_gaussians", KernelShape::GaussianSum, 2},
-                                      {"three_gaussians", KernelShape::GaussianSum, 3},
-                                      {"gaussians", KernelShape::GaussianSum},
-                                      {"separable_gaussian", KernelShape::SeparableGaussian},
-                                      {"separable_table", KernelShape::SeparableTable}};
+const std::vector<NamedShape> kSums{{"two_gaussians", KernelShape::GaussianSum, 2},
+                                    {"three_gaussians", KernelShape::GaussianSum, 3}};
 
 }  // namespace
 
 std::vector<std::string> shape_names() {
-    std::vector<std::string> names;
-    for (const NamedShape& named : kShapes) names.push_back(named.name);
+    std::vector<std::string> names = names_of<KernelShape>();
+    auto place = std::ranges::find(names, name_of(KernelShape::GaussianSum));
+    for (const NamedShape& sum : kSums) place = names.insert(place, sum.name) + 1;
     return names;
 }
 
 std::optional<NamedShape> shape_named(const std::string& name) {
-    const auto found = std::ranges::find(kShapes, name, &NamedShape::name);
-    return found != kShapes.end() ? std::optional(*found) : std::nullopt;
+    const auto sum = std::ranges::find(kSums, name, &NamedShape::name);
+    if (sum != kSums.end()) return *sum;
+    const auto shape = find_named<KernelShape>(name);
+    return shape ? std::optional(NamedShape{name, *shape}) : std::nullopt;
 }
 
 KernelFit fit_shape(const BasisFunction& basis, const NamedShape& named, FitOptions options) {

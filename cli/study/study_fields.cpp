@@ -56,11 +56,8 @@ std::size_t coarse_points(const StudyCase& of) {
 
 FieldSamples places_of(const StudyCase& of, const HexMesh& mesh) {
     const std::string& where = of.text("where");
-    const PlaceKind kind = where == "boundary"        ? PlaceKind::Boundary
-                           : where == "extraordinary" ? PlaceKind::Extraordinary
-                                                      : PlaceKind::Anywhere;
     FieldSamples places =
-        random_places(mesh, mesh.attributes.front().name, kind, of.number("within"),
+        random_places(mesh, mesh.attributes.front().name, named<PlaceKind>(where, "where"), of.number("within"),
                       static_cast<std::size_t>(of.number("places")), static_cast<std::uint64_t>(of.number("seed")));
     if (places.size() == 0) throw Error(ErrorCode::InvalidInput, "the mesh has no such places", where);
     return places;
@@ -135,8 +132,8 @@ CaseResult values_case(const StudyCase& of, const HexMesh& mesh) {
         const auto& values = points.channels.front().values;
         ours.assign(values.begin() + static_cast<std::ptrdiff_t>(mesh.points.size()), values.end());
     } else {
-        const ValueRule rule = of.text("rule") == "cubic" ? ValueRule::Cubic : ValueRule::Paper;
-        ours = values_at_new_points(mesh, density.name, rule, study_kernel(of.text("kernel")));
+        ours = values_at_new_points(mesh, density.name, named<ValueRule>(of.text("rule"), "rule"),
+                                    study_kernel(of.text("kernel")));
     }
     // Densities are signed; where they are not positive the volume is empty, as in the paper.
     const auto positive = [](std::span<const double> values) {

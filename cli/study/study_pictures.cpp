@@ -83,19 +83,14 @@ Image tets(const Scene& scene) {
     });
 }
 
-ProjectedOrder projected_order(const std::string& name) {
-    if (name == "lists") return ProjectedOrder::Lists;
-    if (name == "centroid") return ProjectedOrder::Centroid;
-    return name == "havs" ? ProjectedOrder::Havs : ProjectedOrder::Topological;
-}
-
 Image projected_tets(const Scene& scene) {
     const detail::Stopwatch watch;
     const HexMesh fine = refined(scene);
     ProjectedRenderer renderer(fine);
     scene.result.costs["prepare_seconds"] = watch.seconds();
     return repeated(scene, [&] {
-        ProjectedResult drawn = renderer.draw(scene.view, scene.optics, {.order = projected_order(scene.of.text("order"))});
+        ProjectedResult drawn =
+            renderer.draw(scene.view, scene.optics, {.order = named<ProjectedOrder>(scene.of.text("order"), "order")});
         scene.result.metrics["tets"] = scene.result.metrics["primitives"] = static_cast<double>(drawn.report.tets);
         scene.result.notes["device"] = drawn.report.device;
         return std::move(drawn.image);

@@ -47,7 +47,7 @@ public:
         app()
             .add_option("--scheme", scheme_, "mcq (the default), cc, bsxw, linear")
             ->type_name("NAME")
-            ->check(offered({"mcq", "cc", "bsxw", "linear"}));
+            ->check(offered(names_of<Scheme>()));
         app()
             .add_option("--level", level_, "samples of the basis function: 2^L per unit (default 5)")
             ->type_name("L")

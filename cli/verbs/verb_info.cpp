@@ -58,7 +58,7 @@ public:
         app()
             .add_option("--scheme", refine_.scheme, "figures of the refined tetrahedra, too: of tetoct or boxspline")
             ->type_name("NAME")
-            ->check(offered({"tetoct", "boxspline"}));
+            ->check(offered(tet_schemes()));
         app()
             .add_option("--levels", refine_.levels, "of --scheme (default 2)")
             ->type_name("L")
@@ -103,7 +103,7 @@ public:
 private:
     void set_refinement() {
         if (refine_.scheme.empty()) return;
-        check_choice("--scheme", refine_.scheme, {"tetoct", "boxspline"});
+        check_choice("--scheme", refine_.scheme, tet_schemes());
         tets_ = TetRefinement(refine_);
         if (list_fields_ || input_.empty() || shares(share_) || is_bricks_input(input_) || holds_points(input_) ||
             is_vdb_file(input_)) {

@@ -109,9 +109,8 @@ private:
             set_text_of_grid(grid, kPartNote, {});
             store_in_half(grid, how("half", false));
         }
-        report.merge(
-            write_reported(grids, {.path = output_, .compression = compression_named(how("compression", std::string("blosc")))},
-                           report.progress()));
+        const auto compression = named<VdbCompression>(how("compression", std::string("blosc")), "compression");
+        report.merge(write_reported(grids, {.path = output_, .compression = compression}, report.progress()));
     }
 
     /// of_files: the grids of each file; order: of the files; names: theirs
@@ -182,7 +181,7 @@ private:
                 }
             }
         });
-        const std::optional<UpAxis> up = up_axis(how("up", std::string("z")));
+        const std::optional<UpAxis> up = find_named<UpAxis>(how("up", std::string("z")));
         if (!up) fail_note(parts_.front());
         const PointsWriteOptions options{.ascii = how("ascii", false), .splats = how("splats", false), .up = *up};
         report.timed("write", [&] {

@@ -97,7 +97,7 @@ private:
             .add_option("--look", picture_.look_name,
                         "solid (opaque and lit; the default without --tf, --opacity and --opacity-unit), volume or xray")
             ->type_name("NAME")
-            ->check(offered({"solid", "volume", "xray"}));
+            ->check(offered(subvol::names_of<PageLook>()));
         app()
             .add_option("--tf", picture_.transfer_function, "the colour map, as for `render` (default viridis)")
             ->type_name("FILE|NAME");

@@ -86,7 +86,7 @@ public:
         app()
             .add_option("--up", up_, "with --splats: the axis that these viewers show at the top: x, y or z (default z)")
             ->type_name("AXIS")
-            ->check(offered({"x", "y", "z"}));
+            ->check(offered(subvol::names_of<UpAxis>()));
         sample_.add_to(app());
         app().add_option("--tf", transfer_function_, "the colour map for --threshold, as for `render`")->type_name("FILE|NAME");
         app().add_flag("--clamp", clamp_, "keep the kernels' values within the field's range: interpolating schemes overshoot");
@@ -137,7 +137,7 @@ public:
         if (extension != ".ply" && (ascii_ || splats_)) {
             throw Error(ErrorCode::InvalidInput, "only .ply files have it", ascii_ ? "--ascii" : "--splats");
         }
-        check_choice("--up", up_, {"x", "y", "z"});
+        (void)named<UpAxis>(up_, "--up");
         if (merge_error_ && !std::isfinite(*merge_error_)) {
             throw Error(ErrorCode::InvalidInput, "is not an error of the field", "--merge", "a number above 0");
         }
@@ -225,7 +225,8 @@ private:
                 report["blocks"] = written.blocks;
                 report["bytes"] = written.bytes;
             } else {
-                write_points(path, volume, {.ascii = ascii_, .splats = splats_, .up = up_axis(up_).value(), .note = note_});
+                write_points(path, volume,
+                             {.ascii = ascii_, .splats = splats_, .up = named<UpAxis>(up_, "--up"), .note = note_});
             }
         });
     }

@@ -48,12 +48,11 @@ public:
         app()
             .add_option("--by", by_, "blocks (compact, the default), slabs (slices of the longest side), random (for tests)")
             ->type_name("SHAPE")
-            ->check(offered({"blocks", "slabs", "random"}));
+            ->check(offered(names_of<BrickShape>()));
     }
 
     int run(Report& report) override {
-        check_choice("--by", by_, {"blocks", "slabs", "random"});
-        options_.shape = by_ == "slabs" ? BrickShape::Slabs : by_ == "random" ? BrickShape::Random : BrickShape::Blocks;
+        options_.shape = named<BrickShape>(by_, "--by");
         options_.seed = common().seed;
         options_.progress = report.progress();
         const SplitResult result = cut(report);

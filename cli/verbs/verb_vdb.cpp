@@ -70,7 +70,7 @@ public:
         }
         output_.memory_bytes = asked_.memory_bytes;
         output_.nano = asked_.nano;
-        output_.compression = compression_named(asked_.compression);
+        output_.compression = named<VdbCompression>(asked_.compression, "--compression");
         report.if_long("a lower --resolution, or --levels 1");
         check_output(output_.path, {".vdb"});
         const Share share = share_of(share_);

@@ -80,10 +80,6 @@ void check(const PageStep& step, const PageOptions& options) {
     }
 }
 
-const char* name_of(PageLook look) {
-    return look == PageLook::Solid ? "solid" : look == PageLook::Xray ? "xray" : "volume";
-}
-
 PageJson camera_json(const Camera& camera) {
     return {{"eye", json_of(camera.eye)},
             {"target", json_of(camera.target)},

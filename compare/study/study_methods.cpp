@@ -2,6 +2,8 @@
 #include "study_keys.h"
 #include "subvol/detail/near_name.h"
 #include "subvol/detail/printable.h"
+#include "subvol/fit_kernel.h"
+#include "subvol/sample.h"
 
 namespace subvol {
 
@@ -36,6 +38,14 @@ Key choice(const char* name, std::vector<std::string> choices) {
     return {name, KeyKind::Text, 0, 0, std::move(first), std::move(choices)};
 }
 
+/// The names of an enum.
+template <class Enum>
+Key choice(const char* name, Enum fallback, const std::vector<std::string>& besides = {}) {
+    std::vector<std::string> choices = names_of<Enum>();
+    choices.insert(choices.end(), besides.begin(), besides.end());
+    return {name, KeyKind::Text, 0, 0, std::string(name_of(fallback)), std::move(choices)};
+}
+
 Key kernel(const std::optional<std::string>& fallback = {}) {
     return {"kernel", KeyKind::KernelShape, 0, 0, fallback ? std::optional<StudyValue>(*fallback) : std::nullopt};
 }
@@ -44,7 +54,7 @@ std::vector<StudyMethod> make_methods() {
     const Key samples = whole("samples", 1, 16, 1.0), repeat = whole("repeat", 1, 100, 1.0);
     const Key level = whole("levels", 0, 6, 1.0), resolution = whole("resolution", 2, 2000, 200.0), half = flag("half");
     const Keys kernels{whole("per_edge", 1, 64, 1.0), number("spacing_voxels", 0, 200), flag("centers"), kernel("compact"),
-                       choice("correction", {"second", "none", "gradient", "full"})};
+                       choice("correction", Correction::Second)};
     const Keys splats =
         kernels + Keys{whole("sheets", 2, 65536, 200.0), whole("boundary_levels", 0, 6), flag("visible_only"), repeat};
     const Keys places{whole("places", 1, 1e7, 1e5), choice("where", {"anywhere", "extraordinary", "boundary"}),
@@ -52,9 +62,8 @@ std::vector<StudyMethod> make_methods() {
     const Keys volume{whole("levels", 0, 6, 2.0), whole("places", 1, 1e7, 1e5), whole("seed", 0, kSeeds, 0.0),
                       whole("resolution", 2, 2000, 64.0), number("iso", -1e300, 1e300)};
     const Keys dense{whole("levels", 0, 8), number("tolerance", 0, 1, 1e-3), whole("max_levels", 1, 8, 6.0), samples, repeat};
-    const Keys fit{choice("shape", {"gaussian", "scaled_gaussian", "bc", "cardinal", "wendland_c2", "wendland_c4", "gaussians",
-                                    "separable_gaussian", "separable_table", "tucker", "radial_bound"}),
-                   number("extent", 0, 3), flag("sign_slip"), whole("terms", 1, 6), whole("rank", 1, 16)};
+    const Keys fit{choice("shape", KernelShape::Gaussian, {"tucker", "radial_bound"}), number("extent", 0, 3),
+                   flag("sign_slip"), whole("terms", 1, 6), whole("rank", 1, 16)};
     using enum StudyKind;
     return {{"splat", Pictures, splats + Keys{choice("backend", {"cpu", "auto", "gl"})}},
             {"sheets", Pictures, splats},

@@ -300,4 +300,8 @@ void write_slice(const std::filesystem::path& path, const LimitSlice& slice, std
     out.commit();
 }
 
+std::vector<Option> options_of(SliceOptions& options) {
+    return {Option("resolution", options.resolution).between(2, 20000).help("N", "places along the longer side")};
+}
+
 }  // namespace subvol

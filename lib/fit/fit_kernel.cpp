@@ -10,16 +10,6 @@ namespace subvol {
 
 namespace {
 
-void check(const FitOptions& options) {
-    if (!(options.extent > 0 && options.extent <= detail::kFitReach)) {
-        throw Error(ErrorCode::InvalidInput, "the extent of a cubic is " + detail::number_text(options.extent), {},
-                    "above 0, to 3");
-    }
-    if (options.terms < 1 || options.terms > 6) {
-        throw Error(ErrorCode::InvalidInput, "the number of Gaussians is " + std::to_string(options.terms), {}, "1 to 6");
-    }
-}
-
 KernelFit fit_shape(const BasisFunction& basis, KernelShape shape, const FitOptions& options) {
     switch (shape) {
         case KernelShape::Gaussian:
@@ -46,10 +36,19 @@ KernelFit fit_shape(const BasisFunction& basis, KernelShape shape, const FitOpti
 }  // namespace
 
 KernelFit fit_kernel(const BasisFunction& basis, KernelShape shape, const FitOptions& options) {
-    check(options);
+    check_options(options);
     KernelFit fit = fit_shape(basis, shape, options);
     fit.report.errors = kernel_errors(basis, fit.kernel);
     return fit;
+}
+
+std::vector<Option> options_of(FitOptions& options) {
+    return {Option("extent", options.extent)
+                .between(1e-3, detail::kFitReach)
+                .help("R", "the distance at which bc and cardinal end"),
+            Option("terms", options.terms).between(1, 6).help("N", "number of gaussians in a sum"),
+            Option("sign-slip", options.sign_slip)
+                .help("fit bc with the sign error of the paper's fits in the inner cubic coefficient")};
 }
 
 }  // namespace subvol

@@ -173,4 +173,22 @@ Kernel named_kernel(const std::string& name) {
     throw Error(ErrorCode::InvalidInput, "there is no kernel '" + name + "'", {}, all);
 }
 
+Option kernel_option(const std::string& name, Kernel& kernel) {
+    const auto text = [&kernel] {
+        const std::string json = to_json(kernel);
+        for (const std::string& known : kernel_names()) {
+            if (to_json(named_kernel(known)) == json) return known;
+        }
+        return json;
+    };
+    const auto read = [&kernel](const std::string& given, const std::string& where) {
+        if (!given.starts_with('{') && !given.empty()) {
+            const std::vector<std::string> names = kernel_names();
+            if (std::ranges::find(names, given) == names.end()) detail::throw_unknown_name(given, where, names);
+        }
+        kernel = given.starts_with('{') ? kernel_from_json(given) : named_kernel(given);
+    };
+    return Option(name, WordValue{text, read});
+}
+
 }  // namespace subvol

@@ -29,27 +29,6 @@ double largest_alpha(const TransferFunction& function, double low, double high) 
 
 }  // namespace
 
-const char* name_of(Look look) {
-    switch (look) {
-        case Look::Solid:
-            return "solid";
-        case Look::Volume:
-            return "volume";
-        case Look::Xray:
-            return "xray";
-        case Look::Isosurface:
-            return "isosurface";
-    }
-    return "";
-}
-
-std::optional<Look> look_named(const std::string& name) {
-    for (const Look look : {Look::Solid, Look::Volume, Look::Xray, Look::Isosurface}) {
-        if (name == name_of(look)) return look;
-    }
-    return std::nullopt;
-}
-
 Vec3 background_of(Look look) {
     if (look == Look::Volume) return Vec3(0.0);
     return look == Look::Xray ? Vec3(1.0) : linear_from_srgb(Vec3(0xe4, 0xe6, 0xe9) / 255.0);

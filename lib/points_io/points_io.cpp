@@ -45,13 +45,6 @@ RbfVolume read(const std::filesystem::path& path, std::vector<double>* numbers) 
 
 }  // namespace
 
-std::optional<UpAxis> up_axis(std::string_view name) {
-    if (name == "x") return UpAxis::X;
-    if (name == "y") return UpAxis::Y;
-    if (name == "z") return UpAxis::Z;
-    return std::nullopt;
-}
-
 bool is_points_file(const std::filesystem::path& path) {
     return format_of(path) == ".PLY" || format_of(path) == ".VTP" || format_of(path) == ".SVK";
 }
@@ -106,6 +99,15 @@ std::optional<std::string> read_points_note(const std::filesystem::path& path) {
     std::string note = start.substr(at + mark.size(), end - at - mark.size());
     if (note.ends_with(kNoteEnd)) note.resize(note.size() - std::string_view(kNoteEnd).size());
     return note;
+}
+
+std::vector<Option> options_of(PointsWriteOptions& options) {
+    return {Option("ascii", options.ascii).help(".ply: write text instead of binary numbers"),
+            Option("splats", options.splats)
+                .help(".ply: also for viewers of Gaussian splats; the boundary is then in a file beside it"),
+            Option("up", options.up)
+                .help("AXIS", "with --splats: the axis that these viewers show at the top: x, y or z")
+                .only_with("splats")};
 }
 
 }  // namespace subvol

@@ -57,14 +57,9 @@ void check(const FieldSamples& samples) {
 }
 
 void check(const ReduceOptions& options) {
-    if (!(options.rmse > 0 && std::isfinite(options.rmse)))
-        throw Error(ErrorCode::InvalidInput, "the target error is " + detail::number_text(options.rmse), {},
-                    "a positive number");
-    if (!(options.overlap >= .7 && options.overlap <= 2))
-        throw Error(ErrorCode::InvalidInput, "the overlap is " + detail::number_text(options.overlap), {}, "0.7 to 2");
+    check_options(options);
     if (!is_radial(options.kernel))
         throw Error(ErrorCode::InvalidInput, "the kernel is not radial: frames define no axes for it", {}, "a radial kernel");
-    if (options.max_points < 1) throw Error(ErrorCode::InvalidInput, "at most 0 points", {}, "1 or more");
 }
 
 /// A growing set of kernels, one for each part of a partition of samples.
@@ -270,6 +265,14 @@ ReduceResult reduce_rbf(const HexMesh& mesh, std::string_view field, const Reduc
     const HexMesh once = refine(bare, {.scheme = limit.scheme, .levels = 1, .progress = limit.progress});
     result.volume.boundary = boundary_surface(on_limit(once, limit.scheme.kind));
     return result;
+}
+
+std::vector<Option> options_of(ReduceOptions& options) {
+    return {Option("rmse", options.rmse).positive().help("RMSE", "the root mean square error, in the field's unit"),
+            kernel_option("kernel", options.kernel).help("NAME|JSON", "the kernel of the points"),
+            Option("overlap", options.overlap).between(0.7, 2).help("R", "1 is the overlap of uniform samples"),
+            Option("max-points", options.max_points).between(1, 1e12).help("N", "no more kernels than these"),
+            Option("move", options.move).help("also move and resize the kernels: about half as many, ten times as slow")};
 }
 
 }  // namespace subvol

@@ -196,4 +196,10 @@ std::size_t RefinementTables::bytes() const {
     return bytes;
 }
 
+std::vector<Option> options_of(RefineOptions& options) {
+    std::vector<Option> all = options_of(options.scheme);
+    all.push_back(Option("levels", options.levels).between(0, 10).help("L", "number of refinements"));
+    return all;
+}
+
 }  // namespace subvol

@@ -27,17 +27,7 @@ constexpr int kMostBoundaryLevels = 6;
 constexpr int kMostDefaultBoundaryLevels = 4;
 
 void check(const SampleOptions& options) {
-    if (options.per_edge < 1 || options.per_edge > 64) {
-        throw Error(ErrorCode::InvalidInput, "sample intervals per edge: " + std::to_string(options.per_edge), {}, "1 to 64");
-    }
-    if (!(options.spacing_world >= 0 && std::isfinite(options.spacing_world))) {
-        throw Error(ErrorCode::InvalidInput, "the spacing is " + detail::number_text(options.spacing_world), {},
-                    "a positive length");
-    }
-    if (!(options.tolerance >= 0 && std::isfinite(options.tolerance))) {
-        throw Error(ErrorCode::InvalidInput, "the tolerance is " + detail::number_text(options.tolerance), {},
-                    "a positive number");
-    }
+    check_options(options);
     if (options.footprint && !(options.footprint->spacing_px > 0 && std::isfinite(options.footprint->spacing_px) &&
                                options.footprint->least_cell_px >= 0 && std::isfinite(options.footprint->least_cell_px))) {
         throw Error(ErrorCode::InvalidInput, "the footprint's spacing is not a positive number of pixels");
@@ -51,10 +41,6 @@ void check(const SampleOptions& options) {
     if (!(radius >= 1.2 && radius <= 4)) {
         throw Error(ErrorCode::InvalidInput, "the kernel radius is " + detail::number_text(radius), {},
                     "1.2 to 4 sample intervals: smaller kernels leave holes");
-    }
-    const int boundary_levels = options.boundary_levels.value_or(0);
-    if (boundary_levels < 0 || boundary_levels > kMostBoundaryLevels) {
-        throw Error(ErrorCode::InvalidInput, "boundary levels: " + std::to_string(boundary_levels), {}, "0 to 6");
     }
 }
 
@@ -289,6 +275,39 @@ SampleResult sample_rbf_points(HexMesh mesh, const SampleOptions& options) {
     SampleResult result = level ? sample_level(std::move(control), *level, options) : sample_graded(control, options);
     result.volume.bounds = bounds_of(result.volume);
     return result;
+}
+
+std::vector<Option> options_of(SampleOptions& options) {
+    return {
+        Option("per-edge", options.per_edge)
+            .between(1, 64)
+            .help("N", "sample intervals per cell edge; 1 is one kernel per control point"),
+        Option("spacing", options.spacing_world)
+            .positive_or_none()
+            .help(
+                "H",
+                "distance between samples in world units, instead of --per-edge; for a grid, rounded to whole voxels (default: "
+                "one kernel per voxel)")
+            .instead_of({"per-edge"}),
+        Option("tolerance", options.tolerance)
+            .positive_or_none()
+            .help("E", "instead: as many samples as an error of the field below E needs, in the field's unit")
+            .instead_of({"per-edge", "spacing"}),
+        Option("centers", options.centers)
+            .help("also a kernel in the middle of each small cell between the samples: twice as many kernels, about a third of "
+                  "the error"),
+        Option("values", options.values)
+            .help("NAME", "values between control points: scheme (exact), cubic (Catmull-Rom), paper (weighted mean)"),
+        kernel_option("kernel", options.kernel).help("NAME|JSON", "the kernel of the points; see subvol fit --kernels"),
+        kernel_option("value-kernel", options.value_kernel)
+            .help("NAME|JSON", "the kernel of --values paper")
+            .only_with("values", {"paper"}),
+        Option("correction", options.correction)
+            .help("NAME", "the derivatives of the field that kernels carry: none, gradient, second, full"),
+        Option("boundary-levels", options.boundary_levels)
+            .between(0, kMostBoundaryLevels)
+            .help("L", "refinements of the boundary surface (default: so that its quads are half a sample interval wide)"),
+    };
 }
 
 }  // namespace subvol

@@ -35,4 +35,15 @@ std::unique_ptr<SchemeRules> make_rules(const Topology& topology, const SchemeOp
 
 }  // namespace detail
 
+std::vector<Option> options_of(SchemeOptions& options) {
+    return {Option("scheme", options.kind).help("NAME", "the rule of subdivision"),
+            Option("tension", options.tension)
+                .between(0, 0.125)
+                .help("W", "of mcq: 0 is linear; 1/16 reproduces cubics")
+                .only_with("scheme", {"mcq"}),
+            Option("crease-angle", options.crease_angle_deg)
+                .between(0, 180)
+                .help("DEG", "keep boundary edges sharp that bend by more than this, in degrees (tetoct, boxspline: 60)")};
+}
+
 }  // namespace subvol

@@ -175,4 +175,15 @@ std::optional<std::string> detail::share_of_part(const HexMesh& part, std::span<
     return bytes_of(made);
 }
 
+std::vector<Option> options_of(SurfaceOptions& options) {
+    return {Option("boundary", options.boundary).help("the boundary of the volume (the default without --iso)"),
+            Option("cap", options.cap)
+                .help("close each isosurface with the part of the boundary where the field is at least its value")
+                .only_with("iso"),
+            Option("tolerance", options.tolerance)
+                .between(1e-9, 1)
+                .help("E", "how far triangles may lie from the limit, as a part of the longest side of the box"),
+            Option("max-level", options.max_level).between(1, 8).help("L", "refine no further")};
+}
+
 }  // namespace subvol

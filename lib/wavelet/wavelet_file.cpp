@@ -216,4 +216,17 @@ WaveletFileReport write_wavelet_file(const std::filesystem::path& path, const He
     return report;
 }
 
+std::vector<Option> options_of(WaveletFileOptions& options) {
+    return {
+        Option("tolerance", options.tolerance)
+            .between(1e-15, 1)
+            .help("T", "a root mean square error of at most T, in parts of the field's range"),
+        Option("point-tolerance", options.point_tolerance)
+            .between(1e-15, 1)
+            .help("T",
+                  "the same for the points, in parts of the mesh's longest side (default: a tenth of the tolerance, and less "
+                  "where cells would be inverted)"),
+        Option("levels", options.levels).between(1, 10).help("L", "the most levels of wavelets")};
+}
+
 }  // namespace subvol

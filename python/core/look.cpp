@@ -101,13 +101,7 @@ void bind_default_looks(py::module_& module) {
         .value("xray", Look::Xray)
         .value("isosurface", Look::Isosurface);
     module.def(
-        "look_named",
-        [](const std::string& name) {
-            const std::optional<Look> look = look_named(name);
-            if (!look) throw unknown_word(name, "look", "solid, volume, xray or isosurface");
-            return *look;
-        },
-        py::arg("name"));
+        "look_named", [](const std::string& name) { return named<Look>(name, "look"); }, py::arg("name"));
     module.def(
         "look_colors", [](Look look) { return subvol::colors_of(LookOptions{.look = look}); }, py::arg("look"));
     module.def(

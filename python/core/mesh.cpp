@@ -100,16 +100,8 @@ py::dict figures_of(const HexMesh& mesh) {
 py::tuple read(const std::string& path, const std::string& other_cells, const std::optional<double>& weld,
                const std::vector<std::string>& sharp, const std::optional<std::size_t>& step,
                const std::vector<std::string>& blocks, const std::optional<std::string>& cell_values) {
-    if (cell_values && *cell_values != "fit" && *cell_values != "mean") {
-        throw unknown_word(*cell_values, "cell_values", "fit or mean");
-    }
-    const CellValues means = !cell_values ? CellValues::Auto : *cell_values == "fit" ? CellValues::Fit : CellValues::Mean;
-    if (other_cells != "split" && other_cells != "ignore" && other_cells != "refuse") {
-        throw unknown_word(other_cells, "other_cells", "split, ignore or refuse");
-    }
-    const OtherCells rule = other_cells == "ignore"   ? OtherCells::Ignore
-                            : other_cells == "refuse" ? OtherCells::Refuse
-                                                      : OtherCells::Split;
+    const CellValues means = named<CellValues>(cell_values.value_or("auto"), "cell_values");
+    const OtherCells rule = named<OtherCells>(other_cells, "other_cells");
     ReadResult result = [&] {
         const py::gil_scoped_release without_gil;
         return read_mesh(

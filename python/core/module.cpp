@@ -63,21 +63,15 @@ Error unknown_word(const std::string& word, const std::string& where, const std:
 }
 
 Scheme scheme_named(const std::string& name) {
-    if (name == "mcq") return Scheme::Mcq;
-    if (name == "cc") return Scheme::CatmullClark;
-    if (name == "bsxw") return Scheme::Bsxw;
-    if (name == "linear") return Scheme::Linear;
     if (tet_scheme_named(name)) {
         throw Error(ErrorCode::InvalidInput, "'" + name + "' refines tetrahedra, and this call has hexahedra only", "scheme",
                     "scheme='linear' of subdivide(mesh, 2, '" + name + "', on_limit=True)");
     }
-    throw unknown_word(name, "scheme", "mcq, cc, bsxw or linear");
+    return named<Scheme>(name, "scheme");
 }
 
 std::optional<TetScheme> tet_scheme_named(const std::string& name) {
-    if (name == "tetoct") return TetScheme::Tetoct;
-    if (name == "boxspline") return TetScheme::Boxspline;
-    return std::nullopt;
+    return find_named<Scheme>(name) ? std::nullopt : find_named<TetScheme>(name);
 }
 
 RefineOptions refine_options(const std::string& scheme, int levels, double tension, const std::optional<double>& crease_angle) {

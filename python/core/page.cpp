@@ -9,13 +9,6 @@
 namespace subvol::python {
 namespace {
 
-PageLook look_named(const std::string& name) {
-    if (name == "solid") return PageLook::Solid;
-    if (name == "volume") return PageLook::Volume;
-    if (name == "xray") return PageLook::Xray;
-    throw unknown_word(name, "look", "solid, volume or xray");
-}
-
 /// A page of one field. skin: the boundary with its values
 py::tuple page(const RbfVolume& volume, const BoundaryValues& skin, const TransferFunction& function, const std::string& unit,
                double low, double high, const std::string& look, const Camera& camera, double opacity_unit,
@@ -23,7 +16,7 @@ py::tuple page(const RbfVolume& volume, const BoundaryValues& skin, const Transf
                std::size_t max_bytes, const py::object& progress) {
     if (volume.channels.empty()) throw Error(ErrorCode::InvalidInput, "has no channel", "volume", "one channel");
     const std::vector<PageStep> steps{{.label = {}, .volume = volume, .boundary = skin}};
-    PageOptions options{.title = title, .source = source, .look = look_named(look), .camera = camera};
+    PageOptions options{.title = title, .source = source, .look = named<PageLook>(look, "look"), .camera = camera};
     options.fields.push_back(
         {.name = volume.channels.front().name, .unit = unit, .function = function, .min = low, .max = high});
     options.opacity_unit_world = opacity_unit;

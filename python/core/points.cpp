@@ -85,21 +85,6 @@ py::tuple boundary_arrays(const py::object& self) {
     return py::make_tuple(view_of_points(boundary.points, self), view(corners, {length(boundary.triangles.size()), 3}, self));
 }
 
-Correction correction_named(const std::string& name) {
-    if (name == "none") return Correction::None;
-    if (name == "gradient") return Correction::Gradient;
-    if (name == "second") return Correction::Second;
-    if (name == "full") return Correction::Full;
-    throw unknown_word(name, "correction", "none, gradient, second or full");
-}
-
-ValueRule rule_named(const std::string& name) {
-    if (name == "scheme") return ValueRule::Scheme;
-    if (name == "cubic") return ValueRule::Cubic;
-    if (name == "paper") return ValueRule::Paper;
-    throw unknown_word(name, "values", "scheme, cubic or paper");
-}
-
 py::tuple sample(const HexMesh& mesh, const std::string& scheme, double tension, const std::optional<double>& crease_angle,
                  int per_edge, bool centers, double spacing_world, double tolerance, const std::string& correction,
                  const std::string& values, const std::string& kernel, const std::optional<int>& boundary_levels,
@@ -110,8 +95,8 @@ py::tuple sample(const HexMesh& mesh, const std::string& scheme, double tension,
                           .spacing_world = spacing_world,
                           .tolerance = tolerance,
                           .centers = centers,
-                          .correction = correction_named(correction),
-                          .values = rule_named(values),
+                          .correction = named<Correction>(correction, "correction"),
+                          .values = named<ValueRule>(values, "values"),
                           .kernel = kernel_from_json(kernel),
                           .boundary_levels = boundary_levels};
     if (footprint) {
@@ -127,7 +112,7 @@ py::tuple sample(const HexMesh& mesh, const std::string& scheme, double tension,
 
 py::tuple sample_tets(const HexMesh& mesh, const std::string& correction, const std::string& kernel,
                       const py::object& progress) {
-    MixedSampleOptions options{.correction = correction_named(correction), .kernel = kernel_from_json(kernel)};
+    MixedSampleOptions options{.correction = named<Correction>(correction, "correction"), .kernel = kernel_from_json(kernel)};
     SampleResult result = result_of(progress, [&](Progress* listener) {
         options.progress = listener;
         return sample_rbf_points(join_split_cells(mesh), options);
@@ -162,27 +147,8 @@ py::tuple reduce(const HexMesh& mesh, const std::string& field, double rmse, con
     return py::make_tuple(std::move(result.volume), report);
 }
 
-KernelShape shape_named(const std::string& name) {
-    static constexpr std::array<std::pair<const char*, KernelShape>, 9> kShapes{
-        {{"gaussian", KernelShape::Gaussian},
-         {"scaled_gaussian", KernelShape::ScaledGaussian},
-         {"bc", KernelShape::BcSpline},
-         {"cardinal", KernelShape::CardinalSpline},
-         {"wendland_c2", KernelShape::WendlandC2},
-         {"wendland_c4", KernelShape::WendlandC4},
-         {"gaussians", KernelShape::GaussianSum},
-         {"separable_gaussian", KernelShape::SeparableGaussian},
-         {"separable_table", KernelShape::SeparableTable}}};
-    std::string known;
-    for (const auto& [word, shape] : kShapes) {
-        if (name == word) return shape;
-        known += (known.empty() ? "" : ", ") + std::string(word);
-    }
-    throw unknown_word(name, "shape", known);
-}
-
 py::tuple fit(const std::string& shape, const std::string& scheme, int level, double extent, int terms) {
-    const KernelShape kind = shape_named(shape);
+    const KernelShape kind = named<KernelShape>(shape, "shape");
     const Scheme rule = scheme_named(scheme);
     const KernelFit best = [&] {
         const py::gil_scoped_release without_gil;
@@ -266,14 +232,13 @@ void bind_points(py::module_& module) {
     module.def(
         "write_points",
         [](const std::string& path, const RbfVolume& volume, bool ascii, bool splats, const std::string& up) {
-            const std::optional<UpAxis> axis = up_axis(up);
-            if (!axis) throw unknown_word(up, "up", "x, y or z");
+            const UpAxis axis = named<UpAxis>(up, "up");
             const py::gil_scoped_release without_gil;
             if (std::filesystem::path(path).extension() == ".svk") {
                 static_cast<void>(write_kernel_file(path, volume));
                 return;
             }
-            write_points(path, volume, {.ascii = ascii, .splats = splats, .up = *axis});
+            write_points(path, volume, {.ascii = ascii, .splats = splats, .up = axis});
         },
         py::arg("path"), py::arg("volume"), py::arg("ascii"), py::arg("splats"), py::arg("up"));
     module.def("fit", &fit, py::arg("shape"), py::arg("scheme"), py::arg("level"), py::arg("extent"), py::arg("terms"));

@@ -74,13 +74,9 @@ py::tuple rasterize_mesh(const HexMesh& mesh, const std::vector<std::string>& fi
                          const std::string& scheme, double tension, const std::optional<double>& crease_angle,
                          const std::optional<int>& levels, bool half, bool mask, const std::optional<std::string>& sdf,
                          const std::optional<std::string>& path, bool nano, const py::object& progress) {
-    static const std::map<std::string, Scheme> kSchemes{
-        {"mcq", Scheme::Mcq}, {"cc", Scheme::CatmullClark}, {"bsxw", Scheme::Bsxw}, {"linear", Scheme::Linear}};
-    const auto found = kSchemes.find(scheme);
-    if (found == kSchemes.end())
-        throw Error(ErrorCode::InvalidInput, "'" + scheme + "' is not known", "scheme", "mcq, cc, bsxw or linear");
-    RefineOptions refinement{.scheme = {.kind = found->second, .tension = tension, .crease_angle_deg = crease_angle},
-                             .levels = levels.value_or(0)};
+    RefineOptions refinement{
+        .scheme = {.kind = named<Scheme>(scheme, "scheme"), .tension = tension, .crease_angle_deg = crease_angle},
+        .levels = levels.value_or(0)};
     LimitCells limit;
     std::vector<VdbGrid> grids = result_of(progress, [&](Progress* listener) {
         refinement.progress = listener;

@@ -46,9 +46,7 @@ void method(Session& session, const Json& name) {
 }
 
 void look(Session& session, const Json& name) {
-    edit_state(session, [&](ViewState& next) {
-        next.look.look = *look_named(word_of(name, {"solid", "volume", "xray", "isosurface"}));
-    });
+    edit_state(session, [&](ViewState& next) { next.look.look = named<Look>(word_of(name, names_of<Look>()), "look"); });
 }
 
 void tf(Session& session, const Json& name) {

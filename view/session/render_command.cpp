@@ -46,7 +46,7 @@ std::string render_command(const ViewState& state, const ViewBody& body, const V
     };
     add("--size", std::to_string(state.width) + "x" + std::to_string(state.height));
     add("--camera", camera_text(state.camera));
-    add("--look", name_of(look.look));
+    add("--look", std::string(name_of(look.look)));
     if (!look.colors.empty()) add("--tf", look.colors);
     if (look.range) {
         add("--tf-range", comma_separated({look.range->min, look.range->max}));

@@ -40,8 +40,9 @@ constexpr std::array kLines{Line{"drag", "turn"},
                             Line{"?  q", "these keys, quit"}};
 
 void next_look(WindowHost& host, WindowMemory& memory) {
-    const std::size_t next = (look_number(host.state().look.look) + 1) % kLookNames.size();
-    run(host, memory, "look", json_text(std::string(kLookNames[next])));
+    const std::vector<std::string> names = names_of<Look>();
+    const auto shown = std::ranges::find(names, name_of(host.state().look.look));
+    run(host, memory, "look", json_text(shown + 1 == names.end() ? names.front() : shown[1]));
 }
 
 void next_field(WindowHost& host, WindowMemory& memory) {

@@ -50,8 +50,7 @@ void draw_what(WindowHost& host, WindowMemory& memory) {
     const ViewState& state = host.state();
     if (const auto field = choose("field", state.field, host.fields()); !field.empty())
         run(host, memory, "field", json_text(field));
-    if (const auto look = choose("look", kLookNames[look_number(state.look.look)], {kLookNames.begin(), kLookNames.end()});
-        !look.empty())
+    if (const auto look = choose("look", std::string(name_of(state.look.look)), names_of<Look>()); !look.empty())
         run(host, memory, "look", json_text(look));
     if (const auto method = choose("method", state.method, host.methods()); !method.empty())
         run(host, memory, "method", json_text(method));

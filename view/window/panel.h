@@ -9,13 +9,6 @@
 
 namespace subvol::detail {
 
-/// Names of looks, in the order of their enumerators: the module calls nothing of the libraries.
-inline constexpr std::array kLookNames{"solid", "volume", "xray", "isosurface"};
-
-[[nodiscard]] inline std::size_t look_number(Look look) {
-    return static_cast<std::size_t>(look);
-}
-
 /// What the window remembers from frame to frame, besides the state of the session.
 ///
 /// scale:    of letters and distances: of the screen

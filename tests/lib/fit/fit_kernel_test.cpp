@@ -198,7 +198,7 @@ TEST(FitKernel, BadOptionsAreRefused) {
     };
     refused("extent", KernelShape::BcSpline, {.extent = 0});
     refused("extent", KernelShape::CardinalSpline, {.extent = std::nan("")});
-    refused("number of Gaussians is 0", KernelShape::GaussianSum, {.terms = 0});
+    refused("terms: 0 is out of range (1 to 6)", KernelShape::GaussianSum, {.terms = 0});
     test::expect_error(ErrorCode::InvalidInput, "rank is 0", [&] { (void)fit_tucker(basis, 0); });
     test::expect_error(ErrorCode::InvalidInput, "rank", [&] { (void)fit_tucker(basis, 8); });
 }

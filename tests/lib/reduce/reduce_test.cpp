@@ -129,11 +129,11 @@ TEST(Reduce, RefusesWrongOptionsAndSamples) {
         test::expect_error(ErrorCode::InvalidInput, part, call);
     };
     const HexMesh mesh = mesh_with_feature(4);
-    refuse("target error", [&] { (void)reduce_rbf(mesh, "", {.rmse = 0}); });
-    refuse("target error", [&] { (void)reduce_rbf(mesh, "", {.rmse = NAN}); });
+    refuse("rmse: ", [&] { (void)reduce_rbf(mesh, "", {.rmse = 0}); });
+    refuse("rmse: ", [&] { (void)reduce_rbf(mesh, "", {.rmse = NAN}); });
     refuse("overlap", [&] { (void)reduce_rbf(mesh, "", {.overlap = .1}); });
     refuse("not radial", [&] { (void)reduce_rbf(mesh, "", {.kernel = CubicConvolutionKernel{}}); });
-    refuse("at most 0 points", [&] { (void)reduce_rbf(mesh, "", {.max_points = 0}); });
+    refuse("max_points: 0 is out of range", [&] { (void)reduce_rbf(mesh, "", {.max_points = 0}); });
     refuse("no field", [&] { (void)reduce_rbf(test::make_box(2, 2, 2), ""); });
     refuse("no hexahedra", [&] { (void)limit_samples_in_cells(HexMesh{{}, {}, mesh.attributes, {}, {}}, "f", 10); });
     refuse("no hexahedra", [&] { (void)reduce_rbf(HexMesh{{}, {}, mesh.attributes, {}, {}}, "f"); });

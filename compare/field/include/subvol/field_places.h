@@ -4,12 +4,19 @@
 #include <string_view>
 
 #include "subvol/field_samples.h"
+#include "subvol/names.h"
 #include "subvol/refine.h"
 
 namespace subvol {
 
 /// Where in a mesh: anywhere; at interior edges that do not have four cells; at the boundary.
 enum class PlaceKind { Anywhere, Extraordinary, Boundary };
+
+template <>
+struct NameTable<PlaceKind> {
+    static constexpr Name<PlaceKind> rows[] = {
+        {PlaceKind::Anywhere, "anywhere"}, {PlaceKind::Extraordinary, "extraordinary"}, {PlaceKind::Boundary, "boundary"}};
+};
 
 /// Random places in the cells of a mesh, and the limit of a field (`scalar_field`) there (to level 6); all have weight 1.
 ///

@@ -10,6 +10,7 @@
 #include "subvol/boundary_values.h"
 #include "subvol/camera.h"
 #include "subvol/image.h"
+#include "subvol/names.h"
 #include "subvol/progress.h"
 #include "subvol/rbf_volume.h"
 #include "subvol/transfer_function.h"
@@ -19,6 +20,12 @@ namespace subvol {
 /// How a page shows a body. Solid: its boundary, opaque and lit. Volume: transparent as the transfer function says. Xray: the
 /// same on white.
 enum class PageLook { Solid, Volume, Xray };
+
+template <>
+struct NameTable<PageLook> {
+    static constexpr Name<PageLook> rows[] = {
+        {PageLook::Solid, "solid"}, {PageLook::Volume, "volume"}, {PageLook::Xray, "xray"}};
+};
 
 /// A field of all steps of a page.
 ///

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -50,15 +51,22 @@ namespace detail {
 
 }  // namespace detail
 
+/// The enumerator of a name; nothing for another name.
+template <class Enum>
+[[nodiscard]] constexpr std::optional<Enum> find_named(std::string_view name) {
+    for (const auto& row : NameTable<Enum>::rows) {
+        if (row.name == name) return row.value;
+    }
+    return std::nullopt;
+}
+
 /// The enumerator of a name.
 ///
 /// where:  the option or key that was given, for the error
 /// throws: Error(InvalidInput) for another name; it suggests a near one
 template <class Enum>
 [[nodiscard]] Enum named(std::string_view name, const std::string& where) {
-    for (const auto& row : NameTable<Enum>::rows) {
-        if (row.name == name) return row.value;
-    }
+    if (const auto found = find_named<Enum>(name)) return *found;
     detail::throw_unknown_name(std::string(name), where, names_of<Enum>());
 }
 

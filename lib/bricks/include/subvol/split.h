@@ -10,6 +10,7 @@
 
 #include "subvol/bricks.h"
 #include "subvol/mesh_io.h"
+#include "subvol/names.h"
 #include "subvol/progress.h"
 
 namespace subvol {
@@ -20,6 +21,13 @@ namespace subvol {
 /// Slabs:  slices of the longest side
 /// Random: any: for tests
 enum class BrickShape { Blocks, Slabs, Random };
+
+template <>
+struct NameTable<BrickShape> {
+    static constexpr Name<BrickShape> rows[] = {{BrickShape::Blocks, "blocks", "compact"},
+                                                {BrickShape::Slabs, "slabs", "slices of the longest side"},
+                                                {BrickShape::Random, "random", "for tests"}};
+};
 
 /// bricks:      how many; 0: as many as `memory_bytes` asks for
 /// memory_bytes: about the most that a command takes for one brick; some 1,000 bytes a cell

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "subvol/option.h"
 #include "subvol/probe.h"
 
 namespace subvol {
@@ -18,6 +19,8 @@ struct SliceOptions {
     LimitOptions limit{};
     Progress* progress = nullptr;
 };
+
+[[nodiscard]] std::vector<Option> options_of(SliceOptions& options);
 
 /// A field of the limit at a grid of places on a plane.
 ///

@@ -5,6 +5,8 @@
 
 #include "subvol/basis_function.h"
 #include "subvol/kernel.h"
+#include "subvol/names.h"
+#include "subvol/option.h"
 
 namespace subvol {
 
@@ -43,6 +45,19 @@ enum class KernelShape {
     SeparableTable
 };
 
+template <>
+struct NameTable<KernelShape> {
+    static constexpr Name<KernelShape> rows[] = {{KernelShape::Gaussian, "gaussian"},
+                                                 {KernelShape::ScaledGaussian, "scaled_gaussian"},
+                                                 {KernelShape::BcSpline, "bc"},
+                                                 {KernelShape::CardinalSpline, "cardinal"},
+                                                 {KernelShape::WendlandC2, "wendland_c2"},
+                                                 {KernelShape::WendlandC4, "wendland_c4"},
+                                                 {KernelShape::GaussianSum, "gaussians"},
+                                                 {KernelShape::SeparableGaussian, "separable_gaussian"},
+                                                 {KernelShape::SeparableTable, "separable_table"}};
+};
+
 /// extent:    of the cubics in (0,3]; their pieces meet at half of it
 /// sign_slip: fit B and C with 2 + 3/2·B − C as the inner cubic coefficient instead of 2 − 3/2·B − C, which explains the values
 ///            that [mnmq2007] prints. Errors are those of the correct kernel
@@ -52,6 +67,8 @@ struct FitOptions {
     bool sign_slip = false;
     int terms = 2;
 };
+
+[[nodiscard]] std::vector<Option> options_of(FitOptions& options);
 
 /// parameters: how many numbers were fitted; iterations: of the search for the nonlinear ones, else 0
 struct FitReport {

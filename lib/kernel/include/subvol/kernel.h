@@ -7,6 +7,7 @@
 #include <variant>
 #include <vector>
 
+#include "subvol/option.h"
 #include "subvol/vec.h"
 
 namespace subvol {
@@ -126,5 +127,8 @@ void validate(const Kernel& kernel);
 /// throws: Error(InvalidInput) if there is no such name
 [[nodiscard]] Kernel named_kernel(const std::string& name);
 [[nodiscard]] std::vector<std::string> kernel_names();
+
+/// An option that is a kernel: its name, or a JSON object.
+[[nodiscard]] Option kernel_option(const std::string& name, Kernel& kernel);
 
 }  // namespace subvol

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "subvol/hex_mesh.h"
+#include "subvol/names.h"
 #include "subvol/optics.h"
 #include "subvol/transfer_function.h"
 
@@ -20,9 +21,11 @@ struct ValueRange {
 /// there is much, on white. Isosurface: five lit surfaces.
 enum class Look { Solid, Volume, Xray, Isosurface };
 
-/// The name of a look, in small letters, and the look with that name; nothing if there is none.
-[[nodiscard]] const char* name_of(Look look);
-[[nodiscard]] std::optional<Look> look_named(const std::string& name);
+template <>
+struct NameTable<Look> {
+    static constexpr Name<Look> rows[] = {
+        {Look::Solid, "solid"}, {Look::Volume, "volume"}, {Look::Xray, "xray"}, {Look::Isosurface, "isosurface"}};
+};
 
 /// Colours and opacities of a picture.
 ///

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "subvol/hex_mesh.h"
+#include "subvol/names.h"
 #include "subvol/shells.h"
 
 namespace subvol {
@@ -26,6 +27,12 @@ struct FieldInfo {
 /// Refuse: they are an error
 enum class OtherCells { Split, Ignore, Refuse };
 
+template <>
+struct NameTable<OtherCells> {
+    static constexpr Name<OtherCells> rows[] = {
+        {OtherCells::Split, "split"}, {OtherCells::Ignore, "ignore"}, {OtherCells::Refuse, "refuse"}};
+};
+
 /// What values at cells are taken for. They become values at points either way.
 ///
 /// Mean: at each point the mean over its cells, weighted by their volumes
@@ -33,6 +40,12 @@ enum class OtherCells { Split, Ignore, Refuse };
 ///       scheme MCQ) has these means, as `fit_cell_means` finds them. A warning says how well
 /// Auto: Fit for OpenFOAM, Mean for all others
 enum class CellValues { Auto, Mean, Fit };
+
+template <>
+struct NameTable<CellValues> {
+    static constexpr Name<CellValues> rows[] = {
+        {CellValues::Auto, "auto"}, {CellValues::Fit, "fit"}, {CellValues::Mean, "mean"}};
+};
 
 /// sharp: names of groups of faces and edges (MEDIT, Gmsh): their faces inside the mesh become sharp faces, their edges on the
 ///       boundary or on such faces creases. In Gmsh the name of a physical group of dimension 2 or 1, or its number; in MEDIT a

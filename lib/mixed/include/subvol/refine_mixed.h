@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "subvol/mixed_mesh.h"
+#include "subvol/names.h"
 #include "subvol/progress.h"
 #include "subvol/stencil_table.h"
 
@@ -17,6 +18,12 @@ namespace subvol {
 ///
 /// The boundary is Loop's surface [loop1987] for the first two, and Catmull-Clark's where it is made of quads.
 enum class TetScheme { Tetoct, Boxspline, Linear };
+
+template <>
+struct NameTable<TetScheme> {
+    static constexpr Name<TetScheme> rows[] = {
+        {TetScheme::Tetoct, "tetoct"}, {TetScheme::Boxspline, "boxspline"}, {TetScheme::Linear, "linear"}};
+};
 
 inline constexpr int kMostTetLevels = 8;
 

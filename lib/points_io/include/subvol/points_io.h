@@ -5,7 +5,10 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
+#include "subvol/names.h"
+#include "subvol/option.h"
 #include "subvol/rbf_volume.h"
 
 namespace subvol {
@@ -13,8 +16,10 @@ namespace subvol {
 /// The axis of the world that is up.
 enum class UpAxis { X, Y, Z };
 
-/// name: "x", "y" or "z"; nothing for other names
-[[nodiscard]] std::optional<UpAxis> up_axis(std::string_view name);
+template <>
+struct NameTable<UpAxis> {
+    static constexpr Name<UpAxis> rows[] = {{UpAxis::X, "x"}, {UpAxis::Y, "y"}, {UpAxis::Z, "z"}};
+};
 
 /// ascii:  for `.ply`: text instead of binary numbers
 /// splats: for `.ply`: adds properties for viewers of 3-D Gaussian splats, see `write_points`
@@ -26,6 +31,8 @@ struct PointsWriteOptions {
     UpAxis up = UpAxis::Z;
     std::string note{};
 };
+
+[[nodiscard]] std::vector<Option> options_of(PointsWriteOptions& options);
 
 /// Writes points with all channels as `.ply` or `.vtp`. Numbers are exact: reading gives the same bits. The kernel is JSON
 /// (`to_json`), in a comment or in a string of the field data.

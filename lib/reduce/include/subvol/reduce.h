@@ -3,9 +3,11 @@
 
 #include <cstddef>
 #include <string_view>
+#include <vector>
 
 #include "subvol/field_samples.h"
 #include "subvol/limit.h"
+#include "subvol/option.h"
 #include "subvol/progress.h"
 #include "subvol/rbf_volume.h"
 
@@ -38,6 +40,8 @@ struct ReduceOptions {
     LimitOptions limit{.tolerance = 1e-4};
     Progress* progress = nullptr;
 };
+
+[[nodiscard]] std::vector<Option> options_of(ReduceOptions& options);
 
 /// rmse, validation: errors at the samples that were fitted, and at independent ones
 /// reached:          both meet the target, and no sample is uncovered

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "subvol/hex_mesh.h"
+#include "subvol/option.h"
 #include "subvol/progress.h"
 #include "subvol/scheme.h"
 #include "subvol/stencil_table.h"
@@ -19,6 +20,8 @@ struct RefineOptions {
     int levels = 1;
     Progress* progress = nullptr;
 };
+
+[[nodiscard]] std::vector<Option> options_of(RefineOptions& options);
 
 /// Refines a mesh `levels` times; each level splits a cell into 8. Positions and all attributes follow the scheme.
 ///

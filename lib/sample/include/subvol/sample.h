@@ -2,9 +2,12 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include "subvol/camera.h"
 #include "subvol/hex_mesh.h"
+#include "subvol/names.h"
+#include "subvol/option.h"
 #include "subvol/progress.h"
 #include "subvol/rbf_volume.h"
 #include "subvol/refine.h"
@@ -15,6 +18,14 @@ namespace subvol {
 /// second derivatives.
 enum class Correction { None, Gradient, Second, Full };
 
+template <>
+struct NameTable<Correction> {
+    static constexpr Name<Correction> rows[] = {{Correction::None, "none"},
+                                                {Correction::Gradient, "gradient"},
+                                                {Correction::Second, "second"},
+                                                {Correction::Full, "full"}};
+};
+
 /// How the value of a sample between control points is found.
 ///
 /// Scheme: by the subdivision scheme
@@ -23,6 +34,13 @@ enum class Correction { None, Gradient, Second, Full };
 ///
 /// Where the surroundings are not a grid, `Cubic` extrapolates the missing points and `Paper` leaves them out.
 enum class ValueRule { Scheme, Cubic, Paper };
+
+template <>
+struct NameTable<ValueRule> {
+    static constexpr Name<ValueRule> rows[] = {{ValueRule::Scheme, "scheme", "exact"},
+                                               {ValueRule::Cubic, "cubic", "Catmull-Rom"},
+                                               {ValueRule::Paper, "paper", "weighted mean"}};
+};
 
 /// Samples for a picture: neighbours that the camera sees are at most `spacing_px` pixels apart.
 ///
@@ -62,6 +80,8 @@ struct SampleOptions {
     std::optional<int> boundary_levels{};
     Progress* progress = nullptr;
 };
+
+[[nodiscard]] std::vector<Option> options_of(SampleOptions& options);
 
 struct SampleReport {
     std::size_t points = 0;

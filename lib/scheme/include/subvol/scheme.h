@@ -2,6 +2,10 @@
 #pragma once
 
 #include <optional>
+#include <vector>
+
+#include "subvol/names.h"
+#include "subvol/option.h"
 
 namespace subvol {
 
@@ -10,6 +14,14 @@ namespace subvol {
 /// Bsxw:         trilinear split and averaging [bsxw2002]
 /// Linear:       the trilinear split alone
 enum class Scheme { Mcq, CatmullClark, Bsxw, Linear };
+
+template <>
+struct NameTable<Scheme> {
+    static constexpr Name<Scheme> rows[] = {{Scheme::Mcq, "mcq", "smooth, through the control points"},
+                                            {Scheme::CatmullClark, "cc", "Catmull-Clark"},
+                                            {Scheme::Bsxw, "bsxw", "Bajaj-Schaefer-Warren-Xu"},
+                                            {Scheme::Linear, "linear"}};
+};
 
 /// Whether a scheme's volume passes through its control points.
 [[nodiscard]] bool interpolates(Scheme scheme);
@@ -23,5 +35,8 @@ struct SchemeOptions {
     double tension = 1.0 / 16.0;
     std::optional<double> crease_angle_deg{};
 };
+
+/// The options as users know them; so for the other options of the library.
+[[nodiscard]] std::vector<Option> options_of(SchemeOptions& options);
 
 }  // namespace subvol

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "subvol/limit.h"
+#include "subvol/option.h"
 #include "subvol/probe.h"
 #include "subvol/surface.h"
 #include "subvol/transfer_function.h"
@@ -33,6 +34,8 @@ struct SurfaceOptions {
     bool improve = true;
     Progress* progress = nullptr;
 };
+
+[[nodiscard]] std::vector<Option> options_of(SurfaceOptions& options);
 
 /// level:           of the refinement whose cells were cut
 /// deviation_world: the estimated largest distance of triangles from the limit

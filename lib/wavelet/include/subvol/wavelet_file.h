@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "subvol/hex_mesh.h"
+#include "subvol/option.h"
 #include "subvol/progress.h"
 #include "subvol/scheme.h"
 
@@ -25,6 +26,8 @@ struct WaveletFileOptions {
     int levels = 6;
     Progress* progress = nullptr;
 };
+
+[[nodiscard]] std::vector<Option> options_of(WaveletFileOptions& options);
 
 /// What was kept of an array. name: empty for the points; rms and max: in the parts that the tolerance is in
 struct WaveletArrayReport {

@@ -12,6 +12,7 @@
 #include "subvol/hex_mesh.h"
 #include "subvol/image.h"
 #include "subvol/mixed_mesh.h"
+#include "subvol/names.h"
 #include "subvol/optics.h"
 #include "subvol/progress.h"
 
@@ -28,6 +29,15 @@ namespace subvol {
 ///
 /// Gaps between the parts of a volume that is not convex stay empty in every order.
 enum class ProjectedOrder { Centroid, Topological, Lists, Havs };
+
+template <>
+struct NameTable<ProjectedOrder> {
+    static constexpr Name<ProjectedOrder> rows[] = {
+        {ProjectedOrder::Topological, "topological", "by shared faces"},
+        {ProjectedOrder::Centroid, "centroid"},
+        {ProjectedOrder::Lists, "lists", "one per pixel"},
+        {ProjectedOrder::Havs, "havs", "faces by centroid, then a k-buffer per pixel"}};
+};
 
 /// device:           the OpenGL device's number in gl_devices(); none: the first hardware, else software. A ProjectedRenderer
 ///                   keeps the device that it was made for

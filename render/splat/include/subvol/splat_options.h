@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "subvol/clip.h"
+#include "subvol/names.h"
 #include "subvol/progress.h"
 #include "subvol/vec.h"
 
@@ -21,6 +22,15 @@ namespace subvol {
 ///         composited one by one by the integrals of their weights along rays. Another picture: blurred, and not cut off at
 ///         the boundary. By the CPU, for radial kernels, without cuts and shadows
 enum class SplatMethod { Auto, Cpu, Gl, Sheets, Footprints };
+
+template <>
+struct NameTable<SplatMethod> {
+    static constexpr Name<SplatMethod> rows[] = {{SplatMethod::Auto, "auto"},
+                                                 {SplatMethod::Gl, "gl"},
+                                                 {SplatMethod::Cpu, "cpu"},
+                                                 {SplatMethod::Sheets, "sheets"},
+                                                 {SplatMethod::Footprints, "footprints"}};
+};
 
 /// Light on surfaces: the model of Blinn and Phong, with a light at the eye and a key light. Inside the volume surfaces are
 /// those of equal value, lit on either side; where the value hardly changes there is no surface, and colours are not changed.

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "subvol/names.h"
 #include "subvol/vec.h"
 #include "subvol/voxels.h"
 
@@ -70,6 +71,12 @@ struct GridDifference {
 [[nodiscard]] GridDifference compare_voxels(const VdbGrid& a, const VdbGrid& b);
 
 enum class VdbCompression { None, Zip, Blosc };
+
+template <>
+struct NameTable<VdbCompression> {
+    static constexpr Name<VdbCompression> rows[] = {
+        {VdbCompression::Blosc, "blosc"}, {VdbCompression::Zip, "zip"}, {VdbCompression::None, "none"}};
+};
 
 /// Writes grids into one `.vdb` file, which appears whole under its name or not at all.
 ///

@@ -10,6 +10,7 @@
 
 #include "subvol/hex_mesh.h"
 #include "subvol/limit_level.h"
+#include "subvol/option.h"
 #include "subvol/progress.h"
 #include "subvol/rbf_volume.h"
 #include "subvol/refine.h"
@@ -58,6 +59,8 @@ struct RasterizeOptions {
     std::vector<std::pair<std::string, std::string>> metadata{};
     Progress* progress = nullptr;
 };
+
+[[nodiscard]] std::vector<Option> options_of(RasterizeOptions& options);
 
 /// Rasterizes attributes of a hexahedral mesh: cubic voxels, values at voxel centres, active where the centre lies inside the
 /// mesh. A field of one channel becomes a grid of floats, one of three channels a grid of vectors; the first field, if it has

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "subvol/option.h"
+
+namespace CLI {
+class App;
+class Option;
+}  // namespace CLI
+
+namespace subvol::cli {
+
+/// Options of a command made from their descriptions: name, value, range, words, help, and the conditions under which they have
+/// an effect. A wrong value is refused by our Error, whatever the parser of the command line would say.
+///
+/// The values are stored where the descriptions refer to, which must live as long as the command.
+CLI::Option* add_option(CLI::App& app, const Option& option);
+void add_options(CLI::App& app, const std::vector<Option>& options);
+
+/// Refuses an option where another one is not given, or has none of these words: it would have no effect.
+///
+/// name, need.option: with dashes before them; the other one exists already
+void only_with(CLI::App& app, const std::string& name, const OptionNeed& need);
+
+/// What `only_with` was told about an option, as "--values paper".
+[[nodiscard]] std::vector<std::string> needs_of(CLI::Option& option);
+
+}  // namespace subvol::cli
