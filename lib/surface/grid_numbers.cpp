@@ -33,12 +33,12 @@ GridNumbers::Cell::Cell(const GridNumbers& numbers, Index cell) : numbers_(numbe
     for (std::size_t f = 0; f < 6; ++f) {
         const auto& points = topology.faces[topology.cell_faces[cell][f]];
         const auto& origin = kCornerParameters[corner_of(corners, points[0])];
-        for (std::size_t own = 0; own < 2; ++own) {
-            const auto& end = kCornerParameters[corner_of(corners, points[own == 0 ? 1 : 3])];
+        for (std::size_t side_axis = 0; side_axis < 2; ++side_axis) {
+            const auto& end = kCornerParameters[corner_of(corners, points[side_axis == 0 ? 1 : 3])];
             for (std::size_t axis = 0; axis < 3; ++axis) {
                 if (origin[axis] == end[axis]) continue;
-                faces_[f].axis[own] = axis;
-                faces_[f].reversed[own] = origin[axis] == 1;
+                faces_[f].axis[side_axis] = axis;
+                faces_[f].reversed[side_axis] = origin[axis] == 1;
             }
         }
     }
@@ -66,9 +66,9 @@ VertexNumber GridNumbers::Cell::operator()(std::size_t i, std::size_t j, std::si
         const std::size_t across = 3 - inner[0] - inner[1];
         const std::size_t side = 2 * across + is_high(across);
         const FaceAxes& axes = faces_[side];
-        const auto along = [&](std::size_t own) {
-            const std::uint64_t t = at[axes.axis[own]];
-            return (axes.reversed[own] ? n - t : t) - 1;
+        const auto along = [&](std::size_t side_axis) {
+            const std::uint64_t t = at[axes.axis[side_axis]];
+            return (axes.reversed[side_axis] ? n - t : t) - 1;
         };
         return numbers_.first_face_ + topology.cell_faces[cell_][side] * (n - 1) * (n - 1) + along(1) * (n - 1) + along(0);
     }

@@ -29,7 +29,7 @@ public:
         const GridNumbers& numbers_;
         Index cell_;
         std::array<bool, 12> reversed_{};
-        // Of each face, for its first own axis and for its second one: which of the cell's axes it is, and whether reversed.
+        // For the first and the second axis of each face: which of the cell's axes it is, and whether it is reversed.
         struct FaceAxes {
             std::array<std::size_t, 2> axis;
             std::array<bool, 2> reversed;

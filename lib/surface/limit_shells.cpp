@@ -23,10 +23,10 @@ Terms limit_of(const ShellTopology& shell, Index point, Scheme scheme) {
     }
     if (shell.kinds[point] != PointKind::Smooth) return {{point, 1}};
     const auto n = static_cast<double>(t.point_edges[point].size());
-    const double own = scheme == Scheme::CatmullClark ? n / (n + 5) : 4. / 9;
+    const double itself = scheme == Scheme::CatmullClark ? n / (n + 5) : 4. / 9;
     const double edges = scheme == Scheme::CatmullClark ? 4 / (n + 5) : 4. / 9;
     const double faces = scheme == Scheme::CatmullClark ? 1 / (n + 5) : 1. / 9;
-    Terms terms{{point, own}};
+    Terms terms{{point, itself}};
     for (const Index e : t.point_edges[point]) terms.emplace_back(detail::other_end(t, e, point), edges / n);
     detail::each_face_at(t, point, [&](Index f, std::size_t k) { terms.emplace_back(t.faces[f][(k + 2) % 4], faces / n); });
     return terms;

@@ -68,8 +68,8 @@ LimitSurface no_surface(const HexMesh& mesh) {
 }  // namespace
 
 void detail::check_surface_options(const SurfaceOptions& options) {
-    const auto refuse = [](const std::string& what, const std::string& allowed) {
-        throw Error(ErrorCode::InvalidInput, what, "surface", allowed);
+    const auto refuse = [](const std::string& reason, const std::string& allowed) {
+        throw Error(ErrorCode::InvalidInput, reason, "surface", allowed);
     };
     if (options.isos.empty() && !options.boundary) refuse("nothing is asked for", "an isovalue, or the boundary");
     for (const double iso : options.isos) {

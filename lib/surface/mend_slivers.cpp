@@ -62,7 +62,7 @@ private:
         return least_angle_deg(points_[t[0]], points_[t[1]], points_[t[2]]);
     }
 
-    /// Of a triangle with a small angle, collapses the shortest edge that may be, else flips the longest that may be.
+    /// Collapses the shortest edge of a triangle with a small angle if it may be, else flips the longest that may be.
     bool mend(Index t) {
         changed_[t] = 0;
         const auto corners = triangles_[t];
@@ -178,7 +178,7 @@ private:
 
     [[nodiscard]] bool is_sharp(Index p) const { return lines_.fixed[p] != 0 || lines_.next[p][0] != kNone; }
 
-    /// Of a point on a line that is to go to its neighbour `to`: the neighbour on its other side, or kNone if it must stay.
+    /// A point on a line is to go to its neighbour `to`. Returns the neighbour on its other side, or kNone if it must stay.
     [[nodiscard]] Index other_end(Index from, Index to) const {
         const auto& [a, b] = lines_.next[from];
         if ((a != to && b != to) || a == b) return kNone;

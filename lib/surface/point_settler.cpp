@@ -134,7 +134,7 @@ double PointSettler::deviation(const SurfaceSoup& soup, const SettledPoints& set
     return bends[most];
 }
 
-/// Of triangles on the hull: by the limit in the middle of their edges.
+/// Measures triangles on the hull by the limit in the middle of their edges.
 void PointSettler::add_hull_bends(const SurfaceSoup& soup, const SettledPoints& settled, int level,
                                   const std::vector<std::size_t>& hull, std::vector<double>& bends) const {
     constexpr std::size_t kMostProbes = 40000;

@@ -76,7 +76,7 @@ private:
     double radius_;
 };
 
-/// The lines that are no edges of quads.
+/// The lines that are not edges of quads.
 std::vector<std::array<Index, 2>> lines_alone(const Shells& shells) {
     std::vector<std::array<Index, 2>> edges, lines;
     if (shells.lines.empty()) return lines;

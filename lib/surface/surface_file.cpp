@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <nlohmann/json.hpp>
+#include <numbers>
 
 #include "number_writer.h"
 #include "output_file.h"
@@ -155,7 +157,6 @@ void write_obj(OutputFile& out, const LimitSurface& surface, const std::vector<B
 
 /// Positions relative to the centre of the box, so that floats are enough; the node has the centre, and turns z up into y up.
 void write_glb(OutputFile& out, const LimitSurface& surface, const std::vector<Bytes3>& colors) {
-    using detail::exact_text;
     const auto& [points, triangles] = surface.surface;
     Box box;
     for (const Vec3& p : points) box.add(p);
@@ -166,38 +167,46 @@ void write_glb(OutputFile& out, const LimitSurface& surface, const std::vector<B
         least = glm::min(least, at);
         most = glm::max(most, at);
     }
-    const auto triple = [](const Vec3& v) {
-        const auto number = [](double x) { return exact_text(static_cast<double>(static_cast<float>(x))); };
-        return "[" + number(v.x) + "," + number(v.y) + "," + number(v.z) + "]";
-    };
     const std::size_t count = points.size(), vectors = 12 * count, color_bytes = colors.empty() ? 0 : 4 * count;
-    const std::size_t total = 2 * vectors + color_bytes + 12 * triangles.size();
+    const std::size_t corners = 3 * triangles.size(), total = 2 * vectors + color_bytes + 4 * corners;
     if (total > 0xF0000000U) {
         throw Error(ErrorCode::InvalidInput, "a .glb file has less than 4 GB", "surface", "a larger tolerance, or .ply");
     }
-    const auto view = [](std::size_t offset, std::size_t length, int target) {
-        return "{\"buffer\":0,\"byteOffset\":" + std::to_string(offset) + ",\"byteLength\":" + std::to_string(length) +
-               ",\"target\":" + std::to_string(target) + "}";
+    using Json = nlohmann::ordered_json;
+    enum Target { Vertices = 34962, Corners = 34963 };
+    enum Component { Byte = 5121, Unsigned = 5125, Float = 5126 };
+    const auto numbers = [](const Vec3& v) { return Json{float(v.x), float(v.y), float(v.z)}; };
+    Json views, accessors;
+    const auto add = [&](Target target, std::size_t bytes, Json accessor) {
+        const std::size_t offset =
+            views.empty() ? 0 : views.back()["byteOffset"].get<std::size_t>() + views.back()["byteLength"].get<std::size_t>();
+        accessor["bufferView"] = views.size();
+        accessors.push_back(std::move(accessor));
+        views.push_back({{"buffer", 0}, {"byteOffset", offset}, {"byteLength", bytes}, {"target", target}});
     };
-    const std::string points_text = std::to_string(count), corners = std::to_string(3 * triangles.size());
-    std::string json =
-        R"({"asset":{"version":"2.0","generator":"OpenSubVol"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0,)";
-    json += R"("rotation":[-0.7071067811865476,0,0,0.7071067811865476],"translation":)" +
-            triple({center.x, center.z, -center.y}) + "}],";
-    json += R"("materials":[{"doubleSided":true,"pbrMetallicRoughness":{"metallicFactor":0,"roughnessFactor":0.6}}],)";
-    json += std::string(R"("meshes":[{"primitives":[{"material":0,"attributes":{"POSITION":0,"NORMAL":1)") +
-            (colors.empty() ? "" : R"(,"COLOR_0":3)") + R"(},"indices":2}]}],"accessors":[)";
-    json += R"({"bufferView":0,"componentType":5126,"count":)" + points_text + R"(,"type":"VEC3","min":)" + triple(least) +
-            ",\"max\":" + triple(most) + "},";
-    json += R"({"bufferView":1,"componentType":5126,"count":)" + points_text + R"(,"type":"VEC3"},)";
-    json += R"({"bufferView":2,"componentType":5125,"count":)" + corners + R"(,"type":"SCALAR"})";
+    Json attributes{{"POSITION", 0}, {"NORMAL", 1}};
+    add(Vertices, vectors,
+        {{"componentType", Float}, {"count", count}, {"type", "VEC3"}, {"min", numbers(least)}, {"max", numbers(most)}});
+    add(Vertices, vectors, {{"componentType", Float}, {"count", count}, {"type", "VEC3"}});
+    add(Corners, 4 * corners, {{"componentType", Unsigned}, {"count", corners}, {"type", "SCALAR"}});
     if (!colors.empty()) {
-        json += R"(,{"bufferView":3,"componentType":5121,"normalized":true,"count":)" + points_text + R"(,"type":"VEC4"})";
+        attributes["COLOR_0"] = 3;
+        add(Vertices, color_bytes, {{"componentType", Byte}, {"normalized", true}, {"count", count}, {"type", "VEC4"}});
     }
-    json += "],\"bufferViews\":[" + view(0, vectors, 34962) + "," + view(vectors, vectors, 34962) + "," +
-            view(2 * vectors, 12 * triangles.size(), 34963);
-    if (!colors.empty()) json += "," + view(2 * vectors + 12 * triangles.size(), color_bytes, 34962);
-    json += "],\"buffers\":[{\"byteLength\":" + std::to_string(total) + "}]}";
+    const double half = std::numbers::sqrt2 / 2;
+    const Json node{{"mesh", 0}, {"rotation", {-half, 0, 0, half}}, {"translation", numbers({center.x, center.z, -center.y})}};
+    const Json material{{"doubleSided", true}, {"pbrMetallicRoughness", {{"metallicFactor", 0}, {"roughnessFactor", 0.6}}}};
+    const Json primitive{{"material", 0}, {"attributes", attributes}, {"indices", 2}};
+    const Json file{{"asset", {{"version", "2.0"}, {"generator", "OpenSubVol"}}},
+                    {"scene", 0},
+                    {"scenes", Json::array({{{"nodes", Json::array({0})}}})},
+                    {"nodes", Json::array({node})},
+                    {"materials", Json::array({material})},
+                    {"meshes", Json::array({{{"primitives", Json::array({primitive})}}})},
+                    {"accessors", accessors},
+                    {"bufferViews", views},
+                    {"buffers", Json::array({{{"byteLength", total}}})}};
+    std::string json = file.dump();
     while (json.size() % 4 != 0) json += ' ';
 
     NumberWriter bytes(out);
@@ -231,8 +240,8 @@ void write_glb(OutputFile& out, const LimitSurface& surface, const std::vector<B
 void write_limit_surface(const std::filesystem::path& path, const LimitSurface& surface, const SurfaceFileOptions& options) {
     const std::string extension = path.extension().string();
     if (extension != ".ply" && extension != ".stl" && extension != ".vtp" && extension != ".obj" && extension != ".glb") {
-        throw Error(ErrorCode::InvalidInput, "'" + detail::printable(extension) + "' is no format of surfaces", path.string(),
-                    ".ply, .stl, .vtp, .obj, .glb");
+        throw Error(ErrorCode::InvalidInput, "'" + detail::printable(extension) + "' is not a format of surfaces",
+                    path.string(), ".ply, .stl, .vtp, .obj, .glb");
     }
     if (surface.surface.triangles.empty()) {
         throw Error(ErrorCode::InvalidInput, "the surface has no triangles", path.string());

@@ -98,7 +98,7 @@ std::uint64_t hash_of(std::string_view note, std::string_view bytes) {
 
 /// Throws Error(InvalidInput) unless the bytes are a share whose numbers fit together.
 SurfaceShare share_from(std::string_view bytes) {
-    ByteUnpacker in(bytes, "these bytes are no share of a surface");
+    ByteUnpacker in(bytes, "these bytes are not a share of a surface");
     std::vector<std::uint64_t> head;
     std::vector<double> slack;
     in.take(head);
@@ -234,7 +234,7 @@ SurfaceShareFile read_surface_share(const std::filesystem::path& path) {
         std::memcpy(&value, take(sizeof value).data(), sizeof value);
         return value;
     };
-    if (size < kMagic.size() || take(kMagic.size()) != kMagic) refuse("is no share of a surface");
+    if (size < kMagic.size() || take(kMagic.size()) != kMagic) refuse("is not a share of a surface");
     SurfaceShareFile share;
     share.note = take(number());
     share.bytes = take(number());

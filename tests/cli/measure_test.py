@@ -3,6 +3,7 @@
 
 import csv
 import math
+import json
 import struct
 import unittest
 
@@ -134,6 +135,17 @@ class Surface(Refusing):
         self.assertTrue((self.folder / "a.obj").read_text().startswith("# OpenSubVol\nv "))
         glb = (self.folder / "a.glb").read_bytes()
         self.assertEqual(struct.unpack_from("<4sII", glb), (b"glTF", 2, len(glb)))
+        length, = struct.unpack_from("<I", glb, 12)
+        scene = json.loads(glb[20:20 + length])
+        self.assertEqual(struct.unpack_from("<I4s", glb, 20 + length), (scene["buffers"][0]["byteLength"], b"BIN\0"))
+        primitive = scene["meshes"][0]["primitives"][0]
+        self.assertEqual(sorted(primitive["attributes"]), ["COLOR_0", "NORMAL", "POSITION"])
+        place = scene["accessors"][primitive["attributes"]["POSITION"]]
+        view = scene["bufferViews"][place["bufferView"]]
+        points = list(struct.iter_unpack("<3f", glb[28 + length:][view["byteOffset"]:view["byteOffset"] + view["byteLength"]]))
+        self.assertEqual(len(points), place["count"])
+        self.assertEqual([min(p[k] for p in points) for k in range(3)], place["min"])  # as floats, exactly
+        self.assertEqual([max(p[k] for p in points) for k in range(3)], place["max"])
 
     def test_what_makes_no_sense_is_refused(self):
         for words, naming in [(["--iso", 99], "--iso"), (["--iso", "x"], "--iso"), (["--cap"], "--iso"),

@@ -82,7 +82,7 @@ class Parts(Shared):
         self.assertIn("part 2/2 of this work is missing", self.refused("join", one, "-o", "j.ply"))
         self.assertIn("and so is", self.refused("join", one, two, two, "-o", "j.ply"))
         self.assertIn("belongs to other work", self.refused("join", one, "foreign.svshare", "-o", "j.ply"))
-        self.assertIn("is no share of a surface", self.refused("join", one, "points.ply", "-o", "j.ply"))
+        self.assertIn("is not a share of a surface", self.refused("join", one, "points.ply", "-o", "j.ply"))
         self.assertIn("the limit does not take this value", self.refused(
             "join", *self.parts("surface", "model:ball:4", ".svshare", 3, "--iso", "99"), "-o", "j.ply"))
         sound = self.bytes_of(two)

@@ -145,8 +145,8 @@ TEST_F(SurfaceShareFiles, AreReadAsTheyWereWritten) {
         std::ofstream(path("b.svshare"), std::ios::binary) << changed;
         return error_of([&] { (void)detail::read_surface_share(path("b.svshare")); });
     };
-    EXPECT_THAT(refused(""), HasSubstr("is no share of a surface"));
-    EXPECT_THAT(refused("ply\n" + whole), HasSubstr("is no share of a surface"));
+    EXPECT_THAT(refused(""), HasSubstr("is not a share of a surface"));
+    EXPECT_THAT(refused("ply\n" + whole), HasSubstr("is not a share of a surface"));
     for (const std::size_t length : {30u, 40u, 1000u}) EXPECT_THAT(refused(whole.substr(0, length)), HasSubstr("is cut off"));
     EXPECT_THAT(refused(whole.substr(0, whole.size() - 1)), HasSubstr("is cut off"));
     EXPECT_THAT(refused(whole + "x"), HasSubstr("is damaged"));
