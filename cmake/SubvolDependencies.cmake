@@ -53,6 +53,7 @@ if(SUBVOL_COMPARE)
   find_package(PNG REQUIRED)
 endif()
 if(SUBVOL_COMPARE AND NOT CMAKE_FIND_PACKAGE_NAME STREQUAL "subvol") # an installed library has its modules linked
+  pkg_check_modules(cairo REQUIRED IMPORTED_TARGET cairo-pdf)
   find_package(OpenEXR 3 CONFIG REQUIRED)
   find_package(OpenImageIO CONFIG REQUIRED)
   # Debian's package names an include folder (opencv4) that does not exist.

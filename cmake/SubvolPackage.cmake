@@ -18,8 +18,8 @@ grids, and measures how good the result is.")
 set(CPACK_DEBIAN_COMMAND_PACKAGE_NAME subvol)
 set(CPACK_DEBIAN_COMMAND_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_COMMAND_PACKAGE_SHLIBDEPS ON)
-# OpenGL is loaded when it is needed; ffmpeg makes the videos of --turntable.
-set(CPACK_DEBIAN_COMMAND_PACKAGE_RECOMMENDS "libegl1, libgl1, libgl1-mesa-dri")
+# OpenGL is loaded when it is needed; plots as .pdf are written in DejaVu Sans; ffmpeg makes the videos of --turntable.
+set(CPACK_DEBIAN_COMMAND_PACKAGE_RECOMMENDS "libegl1, libgl1, libgl1-mesa-dri, fonts-dejavu-core")
 set(CPACK_DEBIAN_COMMAND_PACKAGE_SUGGESTS "ffmpeg")
 
 set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION "subdivision volumes: the library

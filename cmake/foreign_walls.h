@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Included before every source of a room: an identifier of a foreign library that the room does not name under FOREIGN in its
 // component's CMakeLists.txt is an error. Include roots alone cannot do this, as Debian's headers all lie in /usr/include.
+#ifndef SUBVOL_FOREIGN_CAIRO
+#pragma GCC poison cairo_create
+#endif
 #ifndef SUBVOL_FOREIGN_CERES
 #pragma GCC poison ceres
 #endif

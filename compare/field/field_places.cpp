@@ -5,7 +5,7 @@
 #include <cmath>
 #include <random>
 
-#include "random_unit.h"
+#include "sample_grid.h"
 #include "subvol/error.h"
 #include "subvol/limit.h"
 #include "subvol/topology.h"

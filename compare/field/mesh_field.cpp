@@ -3,7 +3,7 @@
 
 #include <utility>
 
-#include "box_tree.h"
+#include "closed_surface.h"
 #include "subvol/detail/cell_locator.h"
 #include "subvol/error.h"
 

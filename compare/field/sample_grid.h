@@ -4,12 +4,18 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <random>
 #include <string>
 
 #include "subvol/error.h"
 #include "subvol/vec.h"
 
 namespace subvol::detail {
+
+/// A number in [0, 1). std::uniform_real_distribution differs between libraries; this does not.
+inline double random_unit(std::mt19937_64& random) {
+    return static_cast<double>(random() >> 11) * 0x1p-53;
+}
 
 /// The box that contains both; an empty box adds nothing.
 [[nodiscard]] inline Box box_about(const Box& a, const Box& b) {

@@ -97,7 +97,7 @@ HdrFlipResult hdr_flip(const Image& test, const Image& reference, const HdrFlipO
     }
     result.exposures = std::max(2, static_cast<int>(std::ceil(range)));
     const double step = range / (result.exposures - 1);
-    result.map = {test.width, test.height, std::vector<float>(test.rgba.size() / 4, 0.0f)};
+    result.map = MetricMap(test.width, test.height);
     for (int k = 0; k < result.exposures; ++k) {
         const double stops = result.start + k * step;
         const MetricMap map = flip(exposed(test, stops), exposed(reference, stops), options.pixels_per_degree).map;

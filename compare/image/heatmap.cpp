@@ -87,18 +87,18 @@ Image heatmap(const MetricMap& map, double scale) {
     if (!(scale >= 0) || !std::isfinite(scale))
         throw Error(ErrorCode::InvalidInput, "the full scale is negative or not finite");
     if (scale == 0) {
-        for (const float value : map.values) scale = std::fmax(scale, static_cast<double>(value));
+        for (const float value : map.values) scale = std::fmax(scale, double{value});
     }
-    Image heat(map.width, map.height + kLegendHeight);
-    for (int y = 0; y < map.height; ++y) {
-        const float* row = map.values.data() + static_cast<std::ptrdiff_t>(y) * map.width;
-        for (int x = 0; x < map.width; ++x) {
-            const auto value = static_cast<double>(row[x]);
+    const int width = static_cast<int>(map.width), height = static_cast<int>(map.height);
+    Image heat(width, height + kLegendHeight);
+    for (int y = 0; y < height; ++y) {
+        for (int x = 0; x < width; ++x) {
+            const double value{map.at(x, y)};
             set_pixel(heat, x, y, heat_color(value == 0 ? 0 : value / scale));
         }
     }
-    draw_bar(heat, map.height);
-    draw_ticks(heat, map.height + kBarHeight, scale);
+    draw_bar(heat, height);
+    draw_ticks(heat, height + kBarHeight, scale);
     return heat;
 }
 

@@ -34,7 +34,7 @@ struct Sums {
 };
 
 double difference(const Image& a, const Image& b, int x, int y, std::size_t channel) {
-    return static_cast<double>(a.pixel(x, y)[channel]) - static_cast<double>(b.pixel(x, y)[channel]);
+    return double{a.pixel(x, y)[channel]} - double{b.pixel(x, y)[channel]};
 }
 
 double pixel_difference(const Image& a, const Image& b, int x, int y) {
@@ -51,8 +51,7 @@ std::string size_text(const Image& image) {
     return std::to_string(image.width) + " x " + std::to_string(image.height);
 }
 
-void check_mask(std::span<const std::uint8_t> mask, int width, int height) {
-    const std::size_t pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+void check_mask(std::span<const std::uint8_t> mask, std::size_t pixels) {
     if (mask.empty() || mask.size() == pixels) return;
     throw Error(ErrorCode::InvalidInput,
                 "the mask has " + std::to_string(mask.size()) + " pixels, the picture " + std::to_string(pixels));
@@ -82,14 +81,13 @@ void detail::check_finite(const Image& a, const Image& b) {
 
 ImageMetrics compare_images(const Image& a, const Image& b, std::span<const std::uint8_t> mask) {
     check_comparable(a, b);
-    check_mask(mask, a.width, a.height);
+    check_mask(mask, pixel_count(a.width, a.height));
     // First each row, then the rows: always in the same order, with summands of similar size.
     Sums total;
     for (int y = 0; y < a.height; ++y) {
         Sums row;
-        const std::size_t first = static_cast<std::size_t>(y) * static_cast<std::size_t>(a.width);
         for (int x = 0; x < a.width; ++x) {
-            if (!mask.empty() && mask[first + static_cast<std::size_t>(x)] == 0) continue;
+            if (!mask.empty() && mask[pixel_index(a.width, x, y)] == 0) continue;
             for (std::size_t c = 0; c < 3; ++c) row.add(difference(a, b, x, y, c));
         }
         total.add(row);
@@ -122,14 +120,14 @@ std::size_t count_not_finite(const Image& image) {
 }
 
 double mean_of(const MetricMap& map, std::span<const std::uint8_t> mask) {
-    check_mask(mask, map.width, map.height);
+    check_mask(mask, map.values.size());
     double total = 0;
     std::size_t count = 0;
-    for (std::size_t first = 0; first < map.values.size(); first += static_cast<std::size_t>(map.width)) {
+    for (std::size_t y = 0; y < map.height; ++y) {
         double row = 0;
-        for (std::size_t i = first; i < first + static_cast<std::size_t>(map.width); ++i) {
-            if (!mask.empty() && mask[i] == 0) continue;
-            row += static_cast<double>(map.values[i]);
+        for (std::size_t x = 0; x < map.width; ++x) {
+            if (!mask.empty() && mask[pixel_index(map.width, x, y)] == 0) continue;
+            row += double{map.at(x, y)};
             ++count;
         }
         total += row;
@@ -140,10 +138,9 @@ double mean_of(const MetricMap& map, std::span<const std::uint8_t> mask) {
 
 MetricMap difference_map(const Image& a, const Image& b) {
     check_comparable(a, b);
-    MetricMap map{a.width, a.height, {}};
-    map.values.reserve(a.rgba.size() / 4);
+    MetricMap map(a.width, a.height);
     for (int y = 0; y < a.height; ++y) {
-        for (int x = 0; x < a.width; ++x) map.values.push_back(static_cast<float>(pixel_difference(a, b, x, y)));
+        for (int x = 0; x < a.width; ++x) map.at(x, y) = static_cast<float>(pixel_difference(a, b, x, y));
     }
     return map;
 }

@@ -20,18 +20,18 @@ double encoded(double linear) {
     return srgb_from_linear(std::clamp(linear, 0.0, 1.0));
 }
 
-PixelMask coverage(const Image& image, const Vec3& background) {
-    PixelMask mask(image.rgba.size() / 4);
+Raster<std::uint8_t> coverage(const Image& image, const Vec3& background) {
+    Raster<std::uint8_t> mask(image.width, image.height);
     bool opaque = true;
     for (std::size_t i = 3; i < image.rgba.size(); i += 4) opaque = opaque && image.rgba[i] >= 1.0f;
-    for (std::size_t p = 0; p < mask.size(); ++p) {
+    for (std::size_t p = 0; p < mask.values.size(); ++p) {
         const float* rgba = image.rgba.data() + 4 * p;
         bool covered = !opaque && rgba[3] > 0;
         for (int c = 0; opaque && c < 3; ++c) {
-            const double difference = encoded(static_cast<double>(rgba[c])) - encoded(background[c]);
+            const double difference = encoded(double{rgba[c]}) - encoded(background[c]);
             covered = covered || std::abs(difference) > kOneStep;
         }
-        mask[p] = covered ? 1 : 0;
+        mask.values[p] = covered ? 1 : 0;
     }
     return mask;
 }
@@ -48,15 +48,14 @@ void widen_line(std::uint8_t* line, std::size_t count, std::size_t stride, std::
     }
 }
 
-PixelMask widened(PixelMask mask, int width, int height, int reach) {
-    const auto w = static_cast<std::size_t>(width), h = static_cast<std::size_t>(height), r = static_cast<std::size_t>(reach);
-    for (std::size_t y = 0; y < h; ++y) widen_line(mask.data() + y * w, w, 1, r);
-    for (std::size_t x = 0; x < w; ++x) widen_line(mask.data() + x, h, w, r);
+Raster<std::uint8_t> widened(Raster<std::uint8_t> mask, std::size_t reach) {
+    for (std::size_t y = 0; y < mask.height; ++y) widen_line(mask.row(y).data(), mask.width, 1, reach);
+    for (std::size_t x = 0; x < mask.width; ++x) widen_line(&mask.at(x, 0), mask.height, mask.width, reach);
     return mask;
 }
 
-PixelMask inverse(PixelMask mask) {
-    for (std::uint8_t& pixel : mask) pixel = pixel == 0 ? 1 : 0;
+Raster<std::uint8_t> inverse(Raster<std::uint8_t> mask) {
+    for (std::uint8_t& pixel : mask.values) pixel = pixel == 0 ? 1 : 0;
     return mask;
 }
 
@@ -66,11 +65,11 @@ ImageRegions silhouette_regions(const Image& reference, int band_px, const Vec3&
     check_comparable(reference, reference);
     if (band_px < 1)
         throw Error(ErrorCode::InvalidInput, "a band of " + std::to_string(band_px) + " pixels is too narrow", {}, "1 or more");
-    const PixelMask covered = coverage(reference, background);
-    const PixelMask around = widened(covered, reference.width, reference.height, band_px);
-    // Covered pixels that are farther than the band from all uncovered ones.
-    ImageRegions regions{inverse(widened(inverse(covered), reference.width, reference.height, band_px)), around};
-    for (std::size_t i = 0; i < around.size(); ++i) {
+    const Raster<std::uint8_t> covered = coverage(reference, background);
+    const auto reach = static_cast<std::size_t>(band_px);
+    // The interior: covered pixels that are farther than the band from all uncovered ones.
+    ImageRegions regions{inverse(widened(inverse(covered), reach)).values, widened(covered, reach).values};
+    for (std::size_t i = 0; i < regions.edge.size(); ++i) {
         if (regions.interior[i] != 0) regions.edge[i] = 0;
     }
     return regions;
@@ -81,11 +80,10 @@ OpticalDepth optical_depth(const Image& image) {
     constexpr double kLeast = 0x1p-24;  // half the step of floats below 1
     constexpr double kFew = 1e-4;
     OpticalDepth depth;
-    const auto row = static_cast<std::size_t>(image.width) * 4;
-    for (std::size_t first = 0; first < image.rgba.size(); first += row) {
+    for (int y = 0; y < image.height; ++y) {
         double sum = 0;
-        for (std::size_t i = first + 3; i < first + row; i += 4) {
-            const double through = 1 - static_cast<double>(image.rgba[i]);
+        for (int x = 0; x < image.width; ++x) {
+            const double through = 1 - double{image.pixel(x, y)[3]};
             if (through < kFew) ++depth.saturated;
             sum -= std::log(std::max(through, kLeast));
         }

@@ -20,7 +20,7 @@
 #include <system_error>
 #include <thread>
 
-#include "openexr.h"
+#include "picture_modules.h"
 #include "subvol/version.h"
 
 namespace subvol::detail {

@@ -7,7 +7,8 @@
 #include <algorithm>
 #include <cstdint>
 
-#include "openimageio.h"
+#include "picture_modules.h"
+#include "subvol/raster.h"
 #include "subvol/version.h"
 
 namespace subvol::detail {
@@ -46,7 +47,7 @@ Outcome read(const std::string& path, DecodedPicture& picture) {
     if (spec.full_width < 1 || spec.full_height < 1) picture.display = picture.data;
     picture.note = spec.get_string_attribute(kNote);
     if (picture.wants_depth && spec.nchannels == 5) {
-        picture.depth.resize(static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(spec.height));
+        picture.depth.resize(pixel_count(spec.width, spec.height));
         if (!input->read_image(0, 0, 4, 5, OIIO::TypeDesc::FLOAT, picture.depth.data())) {
             return PictureFault{ErrorCode::InvalidInput, "is not a complete image: " + input->geterror()};
         }
@@ -63,7 +64,7 @@ OIIO::ImageBuf as_buffer(const Image& image) {
 OiioMetrics compare(const Image& a, const Image& b, const OiioOptions& options) {
     const auto result = OIIO::ImageBufAlgo::compare(as_buffer(a), as_buffer(b), options.fail, options.warn,
                                                     options.fail_relative, options.warn_relative);
-    // `error` is also set by failures; for pictures of one size and format there are no other errors.
+    // `error` is also set by failures; for pictures of one size and format other errors cannot happen.
     return {result.meanerror, result.rms_error, result.PSNR, result.maxerror, result.nwarn, result.nfail};
 }
 

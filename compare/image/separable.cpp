@@ -10,53 +10,49 @@ namespace subvol::detail {
 
 namespace {
 
-constexpr int kBandRows = 64;
-
-int radius_of(const Taps& taps) {
-    return static_cast<int>(taps.size() / 2);
-}
+constexpr std::size_t kBandRows = 64;
 
 // sums[x] += weight · values[x]: one tap for a whole row, which compilers vectorise.
-void add_row(double* sums, const double* values, double weight, int count) {
-    for (int x = 0; x < count; ++x) sums[x] += weight * values[x];
+void add_row(std::span<double> sums, const double* values, double weight) {
+    for (std::size_t x = 0; x < sums.size(); ++x) sums[x] += weight * values[x];
 }
 
 }  // namespace
 
-Plane convolved(const Plane& plane, const Taps& across, const Taps& down, int halo) {
-    const int width = plane.width, reach = radius_of(across);
+Plane convolved(const Plane& plane, const Taps& across, const Taps& down, std::size_t halo) {
+    const std::size_t width = plane.width, reach = across.size() / 2;
     Plane rows(width, plane.height);
-    std::vector<double> extended(static_cast<std::size_t>(width + 2 * reach));
-    for (int y = 0; y < plane.height; ++y) {
-        const double* in = plane.row(y);
-        std::fill_n(extended.begin(), reach, in[0]);
-        std::copy_n(in, width, extended.begin() + reach);
-        std::fill_n(extended.begin() + reach + width, reach, in[width - 1]);
-        for (std::size_t k = 0; k < across.size(); ++k) add_row(rows.row(y), extended.data() + k, across[k], width);
+    std::vector<double> extended(width + 2 * reach);
+    for (std::size_t y = 0; y < plane.height; ++y) {
+        const std::span<const double> row = plane.row(y);
+        std::fill_n(std::copy_n(row.begin(), width, std::fill_n(extended.begin(), reach, row.front())), reach, row.back());
+        for (std::size_t k = 0; k < across.size(); ++k) add_row(rows.row(y), extended.data() + k, across[k]);
     }
     Plane result(width, plane.height - 2 * halo);
-    const int first = halo - radius_of(down);
-    for (int y = 0; y < result.height; ++y) {
-        for (std::size_t k = 0; k < down.size(); ++k) {
-            add_row(result.row(y), rows.row(y + first + static_cast<int>(k)), down[k], width);
-        }
+    const std::size_t first = halo - down.size() / 2;
+    for (std::size_t y = 0; y < result.height; ++y) {
+        for (std::size_t k = 0; k < down.size(); ++k) add_row(result.row(y), rows.row(y + first + k).data(), down[k]);
     }
     return result;
 }
 
-Taps gaussian_taps(double sigma, int radius) {
+Taps gaussian_taps(double sigma, std::size_t radius) {
     Taps taps;
-    for (int x = -radius; x <= radius; ++x) taps.push_back(std::exp(-0.5 * x * x / (sigma * sigma)));
+    double x = -static_cast<double>(radius);
+    while (taps.size() < 2 * radius + 1) {
+        taps.push_back(std::exp(-0.5 * x * x / (sigma * sigma)));
+        ++x;
+    }
     const double sum = std::accumulate(taps.begin(), taps.end(), 0.0);
     for (double& tap : taps) tap /= sum;
     return taps;
 }
 
-void for_each_band(int height, int halo, const std::function<void(const Band&)>& work) {
-    const int bands = (height + kBandRows - 1) / kBandRows;
-    tbb::parallel_for(0, bands, [&](int band) {
-        const int begin = band * kBandRows;
-        work({begin, std::min(begin + kBandRows, height), halo});
+void for_each_band(std::size_t height, std::size_t halo, const std::function<void(const Band&)>& work) {
+    const std::size_t bands = (height + kBandRows - 1) / kBandRows;
+    tbb::parallel_for(std::size_t{0}, bands, [&](std::size_t band) {
+        const std::size_t begin = band * kBandRows;
+        work({begin, std::min(begin + kBandRows, height), halo, height});
     });
 }
 

@@ -14,15 +14,15 @@ using detail::Taps;
 
 namespace {
 
-constexpr int kRadius = 5;
+constexpr std::size_t kRadius = 5;
 constexpr double kSigma = 1.5;
 constexpr double kC1 = .01 * .01, kC2 = .03 * .03;
 
 Plane channel_rows(const Image& image, const Band& band, std::size_t channel) {
     Plane plane(image.width, band.rows());
-    for (int row = 0; row < plane.height; ++row) {
-        const int y = band.picture_row(row, image.height);
-        for (int x = 0; x < image.width; ++x) plane.row(row)[x] = static_cast<double>(image.pixel(x, y)[channel]);
+    for (std::size_t row = 0; row < plane.height; ++row) {
+        const std::size_t y = band.picture_row(row);
+        for (std::size_t x = 0; x < plane.width; ++x) plane.at(x, row) = double{image.pixel(x, y)[channel]};
     }
     return plane;
 }
@@ -45,32 +45,28 @@ void add_similarity(const Plane& a, const Plane& b, const Taps& window, std::vec
     }
 }
 
-PixelMask whole_windows(int width, int height) {
+PixelMask whole_windows(std::size_t width, std::size_t height) {
     if (width <= 2 * kRadius || height <= 2 * kRadius) return {};
-    PixelMask mask;
-    for (int y = 0; y < height; ++y) {
-        for (int x = 0; x < width; ++x) {
-            const bool inside = x >= kRadius && y >= kRadius && x < width - kRadius && y < height - kRadius;
-            mask.push_back(inside ? 1 : 0);
-        }
+    Raster<std::uint8_t> mask(width, height);
+    for (std::size_t y = kRadius; y < height - kRadius; ++y) {
+        for (std::size_t x = kRadius; x < width - kRadius; ++x) mask.at(x, y) = 1;
     }
-    return mask;
+    return mask.values;
 }
 
 }  // namespace
 
 SsimResult ssim(const Image& a, const Image& b) {
     check_finite(a, b);
-    SsimResult result{0, {a.width, a.height, std::vector<float>(a.rgba.size() / 4)}};
+    SsimResult result{0, MetricMap(a.width, a.height)};
     const Taps window = detail::gaussian_taps(kSigma, kRadius);
-    detail::for_each_band(a.height, kRadius, [&](const Band& band) {
-        const auto width = static_cast<std::size_t>(a.width);
-        std::vector<double> sums(width * static_cast<std::size_t>(band.end - band.begin));
+    detail::for_each_band(result.map.height, kRadius, [&](const Band& band) {
+        std::vector<double> sums(pixel_count(result.map.width, band.end - band.begin));
         for (std::size_t c = 0; c < 3; ++c) add_similarity(channel_rows(a, band, c), channel_rows(b, band, c), window, sums);
-        float* out = result.map.values.data() + static_cast<std::size_t>(band.begin) * width;
+        float* out = result.map.row(band.begin).data();
         for (std::size_t i = 0; i < sums.size(); ++i) out[i] = static_cast<float>(sums[i] / 3);
     });
-    result.mean = mean_of(result.map, whole_windows(a.width, a.height));
+    result.mean = mean_of(result.map, whole_windows(result.map.width, result.map.height));
     return result;
 }
 

@@ -55,8 +55,8 @@ PageJson presets() {
     return json;
 }
 
-void refuse(const std::string& what, const PageStep& step, const char* allowed) {
-    throw Error(ErrorCode::InvalidInput, what, step.label.empty() ? "a page" : "step " + step.label, allowed);
+void refuse(const std::string& problem, const PageStep& step, const char* allowed) {
+    throw Error(ErrorCode::InvalidInput, problem, step.label.empty() ? "a page" : "step " + step.label, allowed);
 }
 
 void check(const PageStep& step, const PageOptions& options) {

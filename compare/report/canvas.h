@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "subvol/vec.h"
@@ -34,7 +35,7 @@ public:
 
 inline constexpr double kPlotFont = 12;
 
-/// The width of a text in a common sans-serif font, somewhat too much rather than too little.
+/// The width of a text in DejaVu Sans, which is wider than most; somewhat too much rather than too little.
 [[nodiscard]] double text_width(const std::string& words, double size);
 
 class SvgCanvas : public Canvas {
@@ -50,6 +51,9 @@ public:
 private:
     std::string svg_;
 };
+
+/// Text with the special characters of HTML and SVG escaped, also for use in quotes.
+[[nodiscard]] std::string escaped(std::string_view text);
 
 /// A coordinate, with two decimals.
 [[nodiscard]] std::string coordinate(double value);

@@ -18,9 +18,9 @@ std::string listed(const std::vector<std::string>& words) {
 
 std::vector<std::string> different(const StudyResults& results, const std::string& key) {
     std::vector<std::string> all;
-    for (const StudyCase& of : results.study.cases) {
-        if (!of.has(key)) continue;
-        const std::string value = spaced(as_text(of.values.at(key)));
+    for (const StudyCase& study_case : results.study.cases) {
+        if (!study_case.has(key)) continue;
+        const std::string value = spaced(as_text(study_case.values.at(key)));
         if (std::ranges::find(all, value) == all.end()) all.push_back(value);
     }
     return all;

@@ -1,31 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <memory>
 #include <string>
 
 #include "canvas.h"
 
 namespace subvol::detail {
 
-/// A page of PDF in Helvetica, one of the fonts that every reader of PDF has.
+/// A page of PDF, which the module draws by cairo. The parts of the font that the texts need are embedded.
 class PdfCanvas : public Canvas {
 public:
-    explicit PdfCanvas(const Vec2& size) : size_(size) {}
+    /// The bytes of the whole file, after which nothing is drawn any more. fault: why it failed; empty if it did not
+    [[nodiscard]] virtual std::string file(std::string& fault) = 0;
+};
 
-    void grid(const Vec2& from, const Vec2& to) override;
-    void frame(const Vec2& corner, const Vec2& size) override;
-    void series(const Series& series) override;
-    void text(const Vec2& place, Anchor anchor, const std::string& words, double size, bool upward) override;
-
-    /// The whole file.
-    [[nodiscard]] std::string file(const std::string& title) const;
-
-private:
-    [[nodiscard]] std::string at(const Vec2& place) const;
-    [[nodiscard]] std::string marker(std::size_t shape, const Vec2& place) const;
-
-    Vec2 size_;
-    std::string page_;
+/// The functions of the module that uses cairo; they throw nothing but std::bad_alloc.
+struct CairoFunctions {
+    /// size: of the page, in PostScript points
+    std::unique_ptr<PdfCanvas> (*page)(const Vec2& size, const std::string& title);
 };
 
 }  // namespace subvol::detail

@@ -7,10 +7,11 @@
 #include <limits>
 
 #include "canvas.h"
-#include "html_text.h"
 #include "pdf_canvas.h"
+#include "subvol/detail/module.h"
 #include "subvol/detail/number_text.h"
 #include "subvol/detail/round_ticks.h"
+#include "subvol/error.h"
 
 namespace subvol {
 
@@ -264,16 +265,21 @@ std::string plot_svg(const Plot& plot) {
 std::string plot_svg_file(const Plot& plot) {
     const std::string size = "width=\"" + coordinate(kWidth) + "\" height=\"" + coordinate(height_of(plot)) + "\"";
     return "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n" +
-           svg_element(plot, "xmlns=\"http://www.w3.org/2000/svg\" " + size,
-                       "<style>text { fill: #1c1c1c; font-family: Helvetica, Arial, 'DejaVu Sans', sans-serif; stroke: none } "
-                       ".grid { stroke: #e2e2e2 } .frame { fill: none; stroke: #777 } .line { stroke-width: 1.8 }</style>\n"
-                       "<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n");
+           svg_element(
+               plot, "xmlns=\"http://www.w3.org/2000/svg\" " + size,
+               "<style>text { fill: #1c1c1c; font-family: 'DejaVu Sans', Verdana, Helvetica, Arial, sans-serif; stroke: none } "
+               ".grid { stroke: #e2e2e2 } .frame { fill: none; stroke: #777 } .line { stroke-width: 1.8 }</style>\n"
+               "<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n");
 }
 
 std::string plot_pdf(const Plot& plot) {
-    PdfCanvas canvas({kWidth, height_of(plot)});
-    draw(plot, canvas);
-    return canvas.file(plot.title);
+    using Entry = const CairoFunctions* (*)();
+    static const CairoFunctions& functions = *reinterpret_cast<Entry>(load_module("cairo", "drawing plots as .pdf"))();
+    const std::unique_ptr<PdfCanvas> page = functions.page({kWidth, height_of(plot)}, plot.title);
+    draw(plot, *page);
+    std::string fault, bytes = page->file(fault);
+    if (!fault.empty()) throw Error(ErrorCode::InvalidInput, "the plot cannot be drawn: " + fault, plot.title);
+    return bytes;
 }
 
 }  // namespace subvol

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "html_text.h"
+#include "canvas.h"
 #include "report_parts.h"
 #include "report_texts.h"
 #include "subvol/detail/html_policy.h"
@@ -36,8 +36,8 @@ Judgement judged(const StudyResults& results, const StudyDemand& demand) {
     double worst_excess = -INFINITY;
     std::string worst_case;
     for (std::size_t i = 0; i < results.results.size(); ++i) {
-        const StudyCase& of = results.study.cases[i];
-        if (!matches(of, results.results[i], demand.where)) continue;
+        const StudyCase& study_case = results.study.cases[i];
+        if (!matches(study_case, results.results[i], demand.where)) continue;
         const auto found = results.results[i].metrics.find(demand.metric);
         if (found == results.results[i].metrics.end() && results.results[i].failure.empty()) continue;
         ++judgement.cases;
@@ -49,7 +49,7 @@ Judgement judged(const StudyResults& results, const StudyDemand& demand) {
         if (!worst || excess > worst_excess) {
             worst = value;
             worst_excess = excess;
-            worst_case = of.has("input") ? spaced(of.text("input")) : of.text("label");
+            worst_case = study_case.has("input") ? spaced(study_case.text("input")) : study_case.text("label");
         }
     }
     judgement.words = heading(results.study, demand.metric);
@@ -83,17 +83,17 @@ std::string summary_html(std::span<const StudyResults> studies) {
     for (const StudyResults& results : studies) {
         cases += results.results.size();
         failed += results.failed;
-        std::size_t own = 0, own_met = 0;
+        std::size_t judged = 0, judged_met = 0;
         for (const Judgement& judgement : judge(results)) {
-            ++own;
-            own_met += judgement.all_met() ? 1 : 0;
+            ++judged;
+            judged_met += judgement.all_met() ? 1 : 0;
         }
-        demands += own;
-        met += own_met;
+        demands += judged;
+        met += judged_met;
         rows += "<tr><td class=\"words\"><a href=\"#" + escaped(results.study.name) + "\">" + escaped(results.study.title) +
                 "</a>" + demands_html(results) + "</td><td>" + std::to_string(results.results.size()) + "</td><td>" +
                 std::to_string(results.failed) + "</td><td>" +
-                (own == 0 ? "–" : std::to_string(own_met) + " of " + std::to_string(own)) + "</td></tr>\n";
+                (judged == 0 ? "–" : std::to_string(judged_met) + " of " + std::to_string(judged)) + "</td></tr>\n";
     }
     std::string verdict = count(studies.size(), "study", "studies") + ", " + count(cases, "case", "cases") + ": ";
     verdict += failed == 0 ? "all finished" : count(failed, "case", "cases") + " failed";

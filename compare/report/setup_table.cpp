@@ -13,21 +13,22 @@ double metric(const CaseResult& result, const std::string& key) {
     return found == result.metrics.end() ? std::nan("") : found->second;
 }
 
-std::string camera_words(const StudyCase& of) {
-    const std::string camera = of.has("camera") ? of.text("camera") : "";
-    return camera.empty() || camera == of.text("view") ? of.text("view") : of.text("view") + ": " + camera;
+std::string camera_words(const StudyCase& study_case) {
+    const std::string camera = study_case.has("camera") ? study_case.text("camera") : "";
+    return camera.empty() || camera == study_case.text("view") ? study_case.text("view")
+                                                               : study_case.text("view") + ": " + camera;
 }
 
-std::string size_words(const StudyCase& of) {
-    if (!of.has("width") || !of.has("height")) return "";
-    return as_text(of.values.at("width")) + " × " + as_text(of.values.at("height"));
+std::string size_words(const StudyCase& study_case) {
+    if (!study_case.has("width") || !study_case.has("height")) return "";
+    return as_text(study_case.values.at("width")) + " × " + as_text(study_case.values.at("height"));
 }
 
-std::string light_words(const StudyCase& of) {
-    std::string words = of.has("tf") ? of.text("tf") : "";
-    if (of.has("tf.colors") && of.text("tf.colors") != words) words += ": " + of.text("tf.colors");
-    if (of.has("tf.opacity")) words += ", opacity " + of.text("tf.opacity");
-    if (of.has("tf.opacity_unit")) words += " per " + as_text(of.values.at("tf.opacity_unit"));
+std::string light_words(const StudyCase& study_case) {
+    std::string words = study_case.has("tf") ? study_case.text("tf") : "";
+    if (study_case.has("tf.colors") && study_case.text("tf.colors") != words) words += ": " + study_case.text("tf.colors");
+    if (study_case.has("tf.opacity")) words += ", opacity " + study_case.text("tf.opacity");
+    if (study_case.has("tf.opacity_unit")) words += " per " + as_text(study_case.values.at("tf.opacity_unit"));
     return words;
 }
 
@@ -44,14 +45,14 @@ std::optional<StudyTable> setup_table(const StudyResults& results) {
                      .rows = {}};
     std::set<std::string> known;
     for (std::size_t i = 0; i < results.results.size(); ++i) {
-        const StudyCase& of = results.study.cases[i];
+        const StudyCase& study_case = results.study.cases[i];
         const CaseResult& result = results.results[i];
         const auto reference = result.notes.find("reference");
         if (reference == result.notes.end() || !known.insert(reference->second).second) continue;
         const double change = metric(result, "reference_change");
-        table.rows.push_back({spaced(of.text("input")), metric(result, "cells"), metric(result, "points"), camera_words(of),
-                              light_words(of), size_words(of), metric(result, "reference_level"), change,
-                              -20 * std::log10(change)});
+        table.rows.push_back({spaced(study_case.text("input")), metric(result, "cells"), metric(result, "points"),
+                              camera_words(study_case), light_words(study_case), size_words(study_case),
+                              metric(result, "reference_level"), change, -20 * std::log10(change)});
     }
     if (table.rows.empty()) return {};
     return table;

@@ -23,8 +23,8 @@ std::string heading(const StudyTableSpec& spec, const std::string& key) {
     return spaced(key.starts_with("given.") ? key.substr(6) : key);
 }
 
-StudyTable::Cell cell_of(const StudyCase& of, const CaseResult& result, const std::string& key) {
-    const auto value = find_value(of, result, key);
+StudyTable::Cell cell_of(const StudyCase& study_case, const CaseResult& result, const std::string& key) {
+    const auto value = find_value(study_case, result, key);
     if (!value) return std::nan("");
     if (const auto* number = std::get_if<double>(&*value)) return *number;
     return key == "input" ? spaced(as_text(*value)) : as_text(*value);
@@ -69,14 +69,14 @@ StudyTable make_table(const StudyResults& results, const StudyTableSpec& spec) {
         if (const auto mark = mark_of(results.results[i], key, table.digits)) table.marks[{r, c}] = *mark;
     };
     for (const std::size_t i : chosen) {
-        const StudyCase& of = results.study.cases[i];
+        const StudyCase& study_case = results.study.cases[i];
         const CaseResult& result = results.results[i];
         std::string group;
-        for (const std::string& key : spec.rows) group += value_text(of, result, key) + '\t';
+        for (const std::string& key : spec.rows) group += value_text(study_case, result, key) + '\t';
         const std::size_t r = place_in(groups, group);
         if (r == table.rows.size()) {
             auto& row = table.rows.emplace_back(table.columns.size(), std::nan(""));
-            for (std::size_t k = 0; k < spec.rows.size(); ++k) row[k] = cell_of(of, result, spec.rows[k]);
+            for (std::size_t k = 0; k < spec.rows.size(); ++k) row[k] = cell_of(study_case, result, spec.rows[k]);
         }
         const auto& row = table.rows[r];
         for (std::size_t k = 0; k < spec.columns.size(); ++k) {  // from the first case that has the value
@@ -84,7 +84,7 @@ StudyTable make_table(const StudyResults& results, const StudyTableSpec& spec) {
             const auto* number = std::get_if<double>(&cell);
             if (number != nullptr && std::isnan(*number)) put(r, spec.rows.size() + k, i, spec.columns[k]);
         }
-        const auto which = spec.across.empty() ? "" : value_text(of, result, spec.across);
+        const auto which = spec.across.empty() ? "" : value_text(study_case, result, spec.across);
         if (which.empty()) continue;
         const std::size_t a = place_in(across, which);
         for (std::size_t v = 0; v < spec.values.size(); ++v) {
@@ -101,8 +101,8 @@ std::string spaced(std::string name) {
     return name;
 }
 
-std::optional<StudyValue> find_value(const StudyCase& of, const CaseResult& result, const std::string& key) {
-    if (const auto found = of.values.find(key); found != of.values.end()) return found->second;
+std::optional<StudyValue> find_value(const StudyCase& study_case, const CaseResult& result, const std::string& key) {
+    if (const auto found = study_case.values.find(key); found != study_case.values.end()) return found->second;
     for (const auto* numbers : {&result.metrics, &result.costs}) {
         if (const auto found = numbers->find(key); found != numbers->end()) return found->second;
     }
@@ -111,13 +111,14 @@ std::optional<StudyValue> find_value(const StudyCase& of, const CaseResult& resu
     return {};
 }
 
-std::string value_text(const StudyCase& of, const CaseResult& result, const std::string& key) {
-    const auto value = find_value(of, result, key);
+std::string value_text(const StudyCase& study_case, const CaseResult& result, const std::string& key) {
+    const auto value = find_value(study_case, result, key);
     return value ? as_text(*value) : "";
 }
 
-bool matches(const StudyCase& of, const CaseResult& result, const StudyFilter& where) {
-    return std::ranges::all_of(where, [&](const auto& wish) { return value_text(of, result, wish.first) == wish.second; });
+bool matches(const StudyCase& study_case, const CaseResult& result, const StudyFilter& where) {
+    return std::ranges::all_of(where,
+                               [&](const auto& wish) { return value_text(study_case, result, wish.first) == wish.second; });
 }
 
 std::vector<StudyTable> make_tables(const StudyResults& results) {

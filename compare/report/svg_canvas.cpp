@@ -2,8 +2,8 @@
 #include <algorithm>
 
 #include "canvas.h"
-#include "html_text.h"
 #include "subvol/detail/number_text.h"
+#include "subvol/detail/text_codes.h"
 
 namespace subvol::detail {
 
@@ -29,12 +29,16 @@ std::string marker(std::size_t shape, const Vec2& place) {
 
 }  // namespace
 
+std::string escaped(std::string_view text) {
+    return xml_escaped(text, XmlQuotes::Any);
+}
+
 std::string coordinate(double value) {
     return fixed_text(value, 2);
 }
 
 double text_width(const std::string& words, double size) {
-    constexpr double kNarrow = .3, kUsual = .58, kWide = .86;  // ems
+    constexpr double kNarrow = .4, kUsual = .64, kWide = 1;  // ems of DejaVu Sans
     double width = 0;
     for (const char c : words) {
         if ((c & 0xC0) == 0x80) continue;  // more bytes of a character

@@ -14,9 +14,9 @@ namespace subvol {
 namespace {
 
 template <class T>
-const T& value_of(const StudyCase& of, const std::string& key, const T& otherwise) {
-    const auto found = of.values.find(key);
-    if (found == of.values.end()) return otherwise;
+const T& value_of(const StudyCase& study_case, const std::string& key, const T& otherwise) {
+    const auto found = study_case.values.find(key);
+    if (found == study_case.values.end()) return otherwise;
     if (const T* value = std::get_if<T>(&found->second)) return *value;
     throw Error(ErrorCode::InvalidInput, "the value has another type", key);
 }
@@ -76,10 +76,10 @@ std::string detail::case_id(const StudyValues& values) {
     return hash_text(canonical);
 }
 
-std::optional<StudyCase> reference_of(const StudyCase& of) {
-    if (!of.has("reference.method")) return {};
+std::optional<StudyCase> reference_of(const StudyCase& study_case) {
+    if (!study_case.has("reference.method")) return {};
     StudyCase reference;
-    for (const auto& [key, value] : of.values) {
+    for (const auto& [key, value] : study_case.values) {
         const bool scene = key == "input" || key.starts_with("input.") || key == "view" || key.starts_with("camera") ||
                            key.starts_with("tf") || key == "width" || key == "height";
         if (scene) reference.values[key] = value;
@@ -91,10 +91,10 @@ std::optional<StudyCase> reference_of(const StudyCase& of) {
     return reference;
 }
 
-std::string to_json(const StudyCase& of) {
+std::string to_json(const StudyCase& study_case) {
     detail::Json values = detail::Json::object();
-    for (const auto& [key, value] : of.values) std::visit([&, &name = key](const auto& v) { values[name] = v; }, value);
-    return detail::Json{{"id", of.id}, {"name", of.name}, {"values", values}}.dump();
+    for (const auto& [key, value] : study_case.values) std::visit([&, &name = key](const auto& v) { values[name] = v; }, value);
+    return detail::Json{{"id", study_case.id}, {"name", study_case.name}, {"values", values}}.dump();
 }
 
 StudyCase study_case_from_json(std::string_view text) {

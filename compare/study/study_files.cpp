@@ -106,15 +106,15 @@ CaseResult case_result_from_json(std::string_view text) {
     }
 }
 
-void write_case(const fs::path& file, const StudyCase& of, const CaseResult& result) {
-    Json json = Json::parse(to_json(of));
+void write_case(const fs::path& file, const StudyCase& study_case, const CaseResult& result) {
+    Json json = Json::parse(to_json(study_case));
     json["program"] = kProgram;
     const Json ended = result_json(result);
     for (const auto& [key, value] : ended.items()) json[key] = value;
     write_text_file(file, json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
 }
 
-std::optional<CaseResult> read_finished_case(const fs::path& file, const StudyCase& of, const fs::path& folder) {
+std::optional<CaseResult> read_finished_case(const fs::path& file, const StudyCase& study_case, const fs::path& folder) {
     std::error_code error;
     const auto bytes = fs::file_size(file, error);
     if (error || bytes > kMaxCaseBytes) return {};
@@ -123,7 +123,7 @@ std::optional<CaseResult> read_finished_case(const fs::path& file, const StudyCa
     text << in.rdbuf();
     try {
         const Json json = Json::parse(of_limited_depth(text.str(), file.string()));
-        if (json.at("id").get<std::string>() != of.id || json.at("program").get<std::string>() != kProgram) return {};
+        if (json.at("id").get<std::string>() != study_case.id || json.at("program").get<std::string>() != kProgram) return {};
         CaseResult result = result_from(json);
         if (!result.failure.empty()) return {};
         for (const auto& [key, name] : result.files) {
@@ -139,8 +139,8 @@ std::optional<CaseResult> read_finished_case(const fs::path& file, const StudyCa
 
 std::string results_csv(const StudyResults& all) {
     std::set<std::string> values, metrics;
-    for (const StudyCase& of : all.study.cases) {
-        for (const auto& [key, value] : of.values) values.insert(key);
+    for (const StudyCase& study_case : all.study.cases) {
+        for (const auto& [key, value] : study_case.values) values.insert(key);
     }
     for (const CaseResult& result : all.results) {
         for (const auto& [key, value] : result.metrics) metrics.insert(key);

@@ -24,8 +24,8 @@ void make_folder(const fs::path& folder) {
     if (error || !fs::is_directory(folder)) throw Error(ErrorCode::Io, "the folder cannot be created", folder.string());
 }
 
-fs::path case_file(const fs::path& folder, const StudyCase& of) {
-    return folder / "cases" / (of.id + ".json");
+fs::path case_file(const fs::path& folder, const StudyCase& study_case) {
+    return folder / "cases" / (study_case.id + ".json");
 }
 
 /// The state that threads share.
@@ -49,15 +49,16 @@ public:
 private:
     void take_over() {
         for (std::size_t i = 0; i < all_.study.cases.size(); ++i) {
-            const StudyCase& of = all_.study.cases[i];
-            auto known =
-                options_.fresh ? std::nullopt : read_finished_case(case_file(options_.folder, of), of, options_.folder);
+            const StudyCase& study_case = all_.study.cases[i];
+            auto known = options_.fresh
+                             ? std::nullopt
+                             : read_finished_case(case_file(options_.folder, study_case), study_case, options_.folder);
             if (!known) {
                 open_.push_back(i);
                 continue;
             }
             all_.results[i] = std::move(*known);
-            if (options_.finished) options_.finished(of, all_.results[i], false);
+            if (options_.finished) options_.finished(study_case, all_.results[i], false);
         }
     }
 
@@ -73,11 +74,11 @@ private:
 
     void run_open() {
         for (std::size_t next = next_++; next < open_.size(); next = next_++) {
-            const StudyCase& of = all_.study.cases[open_[next]];
+            const StudyCase& study_case = all_.study.cases[open_[next]];
             try {
                 report_done();
-                const CaseResult result = outcome(of);
-                write_case(case_file(options_.folder, of), of, result);
+                const CaseResult result = outcome(study_case);
+                write_case(case_file(options_.folder, study_case), study_case, result);
                 done(open_[next], result);
             } catch (...) {  // cancelled, or the folder cannot be written to: not the failure of a case
                 const std::lock_guard lock(mutex_);
@@ -88,9 +89,9 @@ private:
         }
     }
 
-    CaseResult outcome(const StudyCase& of) const {
+    CaseResult outcome(const StudyCase& study_case) const {
         try {
-            return work_(of);
+            return work_(study_case);
         } catch (const Error& error) {
             if (error.code() == ErrorCode::Cancelled) throw;
             return {.failure = error.what()};
@@ -137,10 +138,10 @@ StudyResults run_study(const Study& study, const CaseWork& work, const StudyRunO
 StudyResults finished_results(const Study& study, const fs::path& folder) {
     StudyResults results{.study = study, .results = {}};
     results.study.cases.clear();
-    for (const StudyCase& of : study.cases) {
-        auto known = read_finished_case(case_file(folder, of), of, folder);
+    for (const StudyCase& study_case : study.cases) {
+        auto known = read_finished_case(case_file(folder, study_case), study_case, folder);
         if (!known) continue;
-        results.study.cases.push_back(of);
+        results.study.cases.push_back(study_case);
         results.results.push_back(std::move(*known));
     }
     return results;

@@ -11,6 +11,7 @@
 #include "subvol/detail/number_text.h"
 #include "subvol/detail/printable.h"
 #include "subvol/error.h"
+#include "subvol/raster.h"
 #include "vtk_xml_writer.h"
 
 namespace subvol {
@@ -238,7 +239,7 @@ LimitSlice detail::empty_slice(const Box& box, const Vec3& point, const Vec3& no
 
 std::vector<Vec3> detail::places_of(const LimitSlice& slice) {
     std::vector<Vec3> places;
-    places.reserve(static_cast<std::size_t>(slice.width) * static_cast<std::size_t>(slice.height));
+    places.reserve(pixel_count(slice.width, slice.height));
     for (int row = 0; row < slice.height; ++row) {
         for (int column = 0; column < slice.width; ++column) places.push_back(slice.place(column, row));
     }

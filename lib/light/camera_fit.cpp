@@ -101,7 +101,7 @@ Camera fit_camera_to_points(const Camera& camera, std::span<const Vec3> points, 
     Camera fitted = fit(camera, points, box, aspect);
     for (int step = 0; step < kSteps; ++step) {
         Vec2 low(std::numeric_limits<double>::infinity()), high(-low);
-        // Of the box, so that points inside the outline change nothing: parts of a mesh may lack them.
+        // The depth of the box's centre, so that points inside the outline change nothing: parts of a mesh may lack them.
         const double depth = glm::dot(axes[2], box.center() - fitted.eye);
         for (const Vec3& point : points) {
             const Vec3 d = point - fitted.eye;

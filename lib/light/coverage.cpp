@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include "subvol/raster.h"
 
 namespace subvol::detail {
 namespace {
@@ -12,11 +13,7 @@ namespace {
 class Areas {
 public:
     Areas(int left, int top, int width, int height)
-        : left_(left),
-          top_(top),
-          width_(width),
-          height_(height),
-          cells_(static_cast<std::size_t>(width + 2) * static_cast<std::size_t>(height)) {}
+        : left_(left), top_(top), width_(width), height_(height), cells_(width + 2, height) {}
 
     void add_edge(Vec2 a, Vec2 b) {
         a -= Vec2(left_, top_);
@@ -38,7 +35,7 @@ public:
         for (int y = 0; y < height_; ++y) {
             double sum = 0;
             for (int x = 0; x < width_; ++x) {
-                sum += cells_[at(x, y)];
+                sum += cells_.at(x, y);
                 const double cover = std::min(1.0, std::abs(sum));
                 if (cover > 1e-3) take(left_ + x, top_ + y, cover);
             }
@@ -46,10 +43,6 @@ public:
     }
 
 private:
-    [[nodiscard]] std::size_t at(int x, int y) const {
-        return static_cast<std::size_t>(y) * static_cast<std::size_t>(width_ + 2) + static_cast<std::size_t>(x);
-    }
-
     /// The piece of an edge in one row: the height is spread over the columns that it crosses.
     void add_in_row(int row, double x0, double x1, double height) {
         const double low = std::clamp(std::min(x0, x1), 0.0, double(width_));
@@ -59,14 +52,14 @@ private:
             const double from = std::max(low, double(x)), to = std::min(high, double(x + 1));
             const double part = high > low ? height * (to - from) / (high - low) : height;
             const double right = x + 1 - 0.5 * (from + to);  // what is covered of this pixel; the rest is of the next
-            cells_[at(x, row)] += part * right;
-            cells_[at(x + 1, row)] += part * (1 - right);
+            cells_.at(x, row) += part * right;
+            cells_.at(x + 1, row) += part * (1 - right);
             if (!(high > low)) return;
         }
     }
 
     int left_, top_, width_, height_;
-    std::vector<double> cells_;
+    Raster<double> cells_;
 };
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include "coverage.h"
 #include "subvol/error.h"
 #include "subvol/overlay.h"
+#include "subvol/raster.h"
 #include "subvol/topology.h"
 
 namespace subvol {
@@ -21,8 +22,7 @@ float depth_about(std::span<const float> depth, int width, int height, int x, in
     float most = 0;
     for (int j = std::max(0, y - 1); j <= std::min(height - 1, y + 1); ++j) {
         for (int i = std::max(0, x - 1); i <= std::min(width - 1, x + 1); ++i)
-            most = std::max(most,
-                            depth[static_cast<std::size_t>(j) * static_cast<std::size_t>(width) + static_cast<std::size_t>(i)]);
+            most = std::max(most, depth[pixel_index(width, i, j)]);
     }
     return most;
 }

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from command import COMMAND, CUBE, HANGS_AFTER, InFolder, Run
 
-HEAVY = ["libOpenImageIO", "libopenvdb", "libhdf5_serial", "libglfw", "libmpi"]
+HEAVY = ["libOpenImageIO", "libopenvdb", "libcairo", "libhdf5_serial", "libglfw", "libmpi"]
 
 
 class Program(unittest.TestCase):

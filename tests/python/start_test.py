@@ -13,7 +13,7 @@ def python(program):
 def test_import_loads_neither_openvdb_nor_openimageio():
     libraries = python("import subvol; print(open('/proc/self/maps').read())")
     assert "_core" in libraries
-    for late in ("libopenvdb", "libOpenImageIO", "_grids", "libhdf5"):
+    for late in ("libopenvdb", "libOpenImageIO", "_grids", "libcairo", "libhdf5"):
         assert late not in libraries, late
 
 

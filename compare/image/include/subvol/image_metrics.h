@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "subvol/image.h"
+#include "subvol/raster.h"
 #include "subvol/vec.h"
 
 namespace subvol {
@@ -18,12 +19,8 @@ struct ImageMetrics {
 /// Which pixels count: one number per pixel, rows from the top, 0 for those that do not. An empty mask means all pixels.
 using PixelMask = std::vector<std::uint8_t>;
 
-/// The values of a metric: one number per pixel, rows from the top.
-struct MetricMap {
-    int width = 0;
-    int height = 0;
-    std::vector<float> values;
-};
+/// The value of a metric at each pixel.
+using MetricMap = Raster<float>;
 
 /// throws: Error(InvalidInput) if the sizes differ, there are no pixels, or none of them counts
 [[nodiscard]] ImageMetrics compare_images(const Image& a, const Image& b, std::span<const std::uint8_t> mask = {});

@@ -32,7 +32,10 @@ struct Plot {
 /// The same as a file of its own, with its size and styles.
 [[nodiscard]] std::string plot_svg_file(const Plot& plot);
 
-/// The same as a page of PDF of the plot's size, without a date: the same bytes in every run.
+/// The same as a page of PDF of the plot's size, with its fonts embedded and without a date: the same bytes in every run with
+/// the same fonts and the same version of cairo.
+///
+/// throws: Error(MissingCapability) if the module of cairo is not installed
 [[nodiscard]] std::string plot_pdf(const Plot& plot);
 
 /// The slope of log y over log x by least squares: the order of convergence. Nothing with fewer than two positive points at

@@ -32,10 +32,11 @@ struct StudyTable {
 [[nodiscard]] std::optional<double> accuracy(const CaseResult& result, const std::string& metric);
 
 /// A value, metric, cost or note of a case by its key; the key "done" gives "yes" or the failure.
-[[nodiscard]] std::optional<StudyValue> find_value(const StudyCase& of, const CaseResult& result, const std::string& key);
+[[nodiscard]] std::optional<StudyValue> find_value(const StudyCase& study_case, const CaseResult& result,
+                                                   const std::string& key);
 
 /// The same as text; "" if there is no such value.
-[[nodiscard]] std::string value_text(const StudyCase& of, const CaseResult& result, const std::string& key);
+[[nodiscard]] std::string value_text(const StudyCase& study_case, const CaseResult& result, const std::string& key);
 
 /// "≤ 0.0002" for an error below what is known, "≥ 73.9" for such a PSNR; nothing for other figures.
 [[nodiscard]] std::optional<std::string> mark_of(const CaseResult& result, const std::string& key, int digits = 4);
@@ -43,7 +44,7 @@ struct StudyTable {
 /// A name with spaces instead of underscores, for people.
 [[nodiscard]] std::string spaced(std::string name);
 
-[[nodiscard]] bool matches(const StudyCase& of, const CaseResult& result, const StudyFilter& where);
+[[nodiscard]] bool matches(const StudyCase& study_case, const CaseResult& result, const StudyFilter& where);
 
 /// The tables of a study, each with the cases that its specification selects. Their names are the study's, then NAME_2 and so
 /// on.

@@ -128,12 +128,12 @@ struct StudyInfo {
 [[nodiscard]] std::string_view built_in_study_json(const std::string& name);
 
 /// The case that makes the reference of a case's picture; nothing if the case has no reference.
-[[nodiscard]] std::optional<StudyCase> reference_of(const StudyCase& of);
+[[nodiscard]] std::optional<StudyCase> reference_of(const StudyCase& study_case);
 
 /// A case as a JSON object and back.
 ///
 /// throws: Error(InvalidInput) if the text is not a case
-[[nodiscard]] std::string to_json(const StudyCase& of);
+[[nodiscard]] std::string to_json(const StudyCase& study_case);
 [[nodiscard]] StudyCase study_case_from_json(std::string_view json);
 
 /// A value as text; a number in the fewest digits that give the same number when read again.

@@ -67,8 +67,8 @@ struct StudyResults {
 ///
 /// returns: nothing if there is no such file, it is damaged, belongs to another case or was written by another version of this
 ///          library, the case failed, or files of its result are missing in `folder`
-void write_case(const std::filesystem::path& file, const StudyCase& of, const CaseResult& result);
-[[nodiscard]] std::optional<CaseResult> read_finished_case(const std::filesystem::path& file, const StudyCase& of,
+void write_case(const std::filesystem::path& file, const StudyCase& study_case, const CaseResult& result);
+[[nodiscard]] std::optional<CaseResult> read_finished_case(const std::filesystem::path& file, const StudyCase& study_case,
                                                            const std::filesystem::path& folder);
 
 /// A result as a JSON object and back.

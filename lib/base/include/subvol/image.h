@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <concepts>
 #include <cstddef>
 #include <span>
 #include <vector>
+
+#include "subvol/raster.h"
 
 namespace subvol {
 
@@ -14,16 +17,15 @@ struct Image {
     std::vector<float> rgba;  // 4 · width · height
 
     Image() = default;
-    Image(int w, int h) : width(w), height(h), rgba(4 * static_cast<std::size_t>(w) * static_cast<std::size_t>(h)) {}
+    Image(int w, int h) : width(w), height(h), rgba(4 * pixel_count(w, h)) {}
 
-    [[nodiscard]] std::span<float, 4> pixel(int x, int y) { return std::span<float, 4>(rgba.data() + 4 * offset(x, y), 4); }
-    [[nodiscard]] std::span<const float, 4> pixel(int x, int y) const {
-        return std::span<const float, 4>(rgba.data() + 4 * offset(x, y), 4);
+    template <std::integral X, std::integral Y>
+    [[nodiscard]] std::span<float, 4> pixel(X x, Y y) {
+        return std::span<float, 4>(rgba.data() + 4 * pixel_index(width, x, y), 4);
     }
-
-private:
-    [[nodiscard]] std::size_t offset(int x, int y) const {
-        return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
+    template <std::integral X, std::integral Y>
+    [[nodiscard]] std::span<const float, 4> pixel(X x, Y y) const {
+        return std::span<const float, 4>(rgba.data() + 4 * pixel_index(width, x, y), 4);
     }
 };
 

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -67,5 +69,28 @@ struct OpenImageIo {
 ///
 /// throws: Error(MissingCapability) if it is not there
 [[nodiscard]] const OpenImageIo& openimageio();
+
+/// The functions of the module that uses OpenEXR, as in OpenImageIo. OpenImageIO reads every .exr there is; what this command
+/// writes takes a tenth of the time without its 250 libraries.
+struct OpenExr {
+    std::optional<PictureFault> (*write)(const std::string& path, const PictureValues& picture);
+
+    /// Reads a flat picture in scan lines whose channels are R, G, B, perhaps A, and then perhaps Z, as floats or halves.
+    ///
+    /// taken: whether it is such a picture; if not, it is for OpenImageIO
+    std::optional<PictureFault> (*read)(const std::string& path, DecodedPicture& picture, bool& taken);
+};
+
+/// Loads the module when it is called first.
+///
+/// throws: Error(MissingCapability) if it is not there
+[[nodiscard]] const OpenExr& openexr();
+
+/// Writes an 8-bit sRGB picture by libpng: the module of OpenImageIO takes a third of a second to load, which is a good part of
+/// the time of a first picture.
+///
+/// rgb: three bytes a pixel, row by row from the top
+[[nodiscard]] std::optional<PictureFault> write_png(const std::string& path, int width, int height,
+                                                    std::span<const std::uint8_t> rgb);
 
 }  // namespace subvol::detail
