@@ -25,7 +25,7 @@ int levels_of(const Shells& sheets, std::optional<int> most) {
 }  // namespace
 
 void SheetScene::draw_into(Picture& picture, const View& view) const {
-    draw_sheets(picture.image, picture.depth, drawn, boundary, view, optics, Shading{}, samples, clip);
+    draw_shells(picture.image, picture.depth, drawn, boundary, view, optics, {.samples = samples, .clip = clip});
 }
 
 Picture empty_picture(const View& view) {

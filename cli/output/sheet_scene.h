@@ -5,7 +5,7 @@
 
 #include "picture_notes.h"
 #include "subvol/clip.h"
-#include "subvol/draw_sheets.h"
+#include "subvol/draw_shells.h"
 #include "subvol/refine.h"
 #include "subvol/shells.h"
 

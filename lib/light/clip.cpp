@@ -55,6 +55,13 @@ bool keeps(const CutPlane& plane, const Box& box) {
 
 }  // namespace
 
+bool Clip::removes(const Vec3& place) const {
+    for (const CutPlane& plane : planes) {
+        if (glm::dot(place - plane.point, plane.normal) > 0) return true;
+    }
+    return box && glm::min(glm::max(place, box->lower), box->upper) != place;
+}
+
 void validate(const Clip& clip) {
     for (std::size_t i = 0; i < clip.planes.size(); ++i) check(clip.planes[i], "clip plane", i);
     for (std::size_t i = 0; i < clip.slices.size(); ++i) check(clip.slices[i], "slice", i);

@@ -6,18 +6,97 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <limits>
 #include <mutex>
+#include <optional>
+#include <vector>
 
-#include "dense_passes.h"
 #include "dense_tracer.h"
+#include "pixel_tiles.h"
 #include "subvol/detail/number_text.h"
 #include "subvol/detail/stopwatch.h"
+#include "subvol/hex_mesh.h"
 
 namespace subvol {
 
 using namespace detail;
 
 namespace {
+
+/// A grid that can be seen, and its rectangle in the picture.
+struct SeenGrid {
+    Index cell;
+    PixelRect rect;
+};
+
+/// A part of the picture, and the cells of all grids that its rays may meet.
+struct DensePass {
+    PixelRect rect;
+    std::vector<Index> cells;
+};
+
+bool overlap(const PixelRect& a, const PixelRect& b) {
+    return a.x0 < b.x1 && b.x0 < a.x1 && a.y0 < b.y1 && b.y0 < a.y1;
+}
+
+void plan(const PixelRect& rect, const std::vector<SeenGrid>& grids, std::size_t at_once, std::vector<DensePass>& passes) {
+    constexpr int kTile = 16;
+    std::vector<SeenGrid> inside;
+    std::copy_if(grids.begin(), grids.end(), std::back_inserter(inside),
+                 [&](const SeenGrid& grid) { return overlap(grid.rect, rect); });
+    if (inside.empty()) return;
+    const int width = rect.x1 - rect.x0, height = rect.y1 - rect.y0;
+    if (inside.size() > at_once && std::max(width, height) > kTile) {
+        PixelRect first = rect, second = rect;
+        if (width >= height) {
+            first.x1 = second.x0 = rect.x0 + width / 2;
+        } else {
+            first.y1 = second.y0 = rect.y0 + height / 2;
+        }
+        plan(first, inside, at_once, passes);
+        plan(second, inside, at_once, passes);
+        return;
+    }
+    DensePass pass{rect, {}};
+    for (const SeenGrid& grid : inside) pass.cells.push_back(grid.cell);
+    passes.push_back(std::move(pass));
+}
+
+/// The pixels whose rays may meet a box: nothing if it lies outside the picture or behind the eye, all pixels if it reaches
+/// behind the eye.
+std::optional<PixelRect> pixels_of(const Box& box, const View& view) {
+    constexpr double kMargin = 1;  // in pixels, for rounding
+    const PixelRect all{0, 0, view.width(), view.height()};
+    Vec2 low(std::numeric_limits<double>::infinity()), high(-std::numeric_limits<double>::infinity());
+    int near_eye = 0, behind = 0;
+    for (int k = 0; k < 8; ++k) {
+        const Vec3 corner(k & 1 ? box.upper.x : box.lower.x, k & 2 ? box.upper.y : box.lower.y,
+                          k & 4 ? box.upper.z : box.lower.z);
+        const Vec3 eye = view.to_eye(corner);
+        if (!(eye.z > 1e-6 * glm::length(eye))) {
+            ++near_eye;
+            behind += eye.z <= 0;
+            continue;
+        }
+        const Vec2 at = view.to_pixels(eye);
+        low = glm::min(low, at);
+        high = glm::max(high, at);
+    }
+    if (behind == 8) return std::nullopt;
+    if (near_eye > 0) return all;
+    const auto pixel = [](double x, int most) { return static_cast<int>(std::clamp(x, 0.0, double(most))); };
+    const PixelRect rect{pixel(std::floor(low.x - kMargin), all.x1), pixel(std::floor(low.y - kMargin), all.y1),
+                         pixel(std::ceil(high.x + kMargin), all.x1), pixel(std::ceil(high.y + kMargin), all.y1)};
+    if (rect.x0 >= rect.x1 || rect.y0 >= rect.y1) return std::nullopt;
+    return rect;
+}
+
+/// Halves the picture until each part has at most `at_once` grids. A part of 16 × 16 pixels is not halved, whatever it needs.
+std::vector<DensePass> plan_passes(const View& view, const std::vector<SeenGrid>& grids, std::size_t at_once) {
+    std::vector<DensePass> passes;
+    plan({0, 0, view.width(), view.height()}, grids, std::max<std::size_t>(at_once, 1), passes);
+    return passes;
+}
 
 constexpr int kMostLevels = 8;  // faces of tetrahedra are numbered with 32 bits
 
@@ -49,7 +128,7 @@ bool visible(const Optics& optics, double min, double max) {
 double rms(const Image& a, const Image& b) {
     double sum = 0;
     for (std::size_t i = 0; i < a.rgba.size(); ++i) {
-        const double change = static_cast<double>(a.rgba[i]) - static_cast<double>(b.rgba[i]);
+        const double change = double{a.rgba[i]} - double{b.rgba[i]};
         if (i % 4 != 3) sum += change * change;
     }
     return std::sqrt(sum / (0.75 * static_cast<double>(a.rgba.size())));

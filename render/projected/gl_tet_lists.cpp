@@ -8,6 +8,7 @@
 
 #include "gl_dispatch.h"
 #include "subvol/error.h"
+#include "subvol/raster.h"
 
 namespace subvol::detail {
 
@@ -113,7 +114,7 @@ GlTetLists::Drawn GlTetLists::draw(Items items, std::size_t most_fragments, cons
 
 std::vector<std::uint32_t> GlTetLists::count_fragments(Items items, const DrawStage& stage) {
     const View& view = tets_.view();
-    std::vector<std::uint32_t> counts(static_cast<std::size_t>(view.width()) * static_cast<std::size_t>(view.height()));
+    std::vector<std::uint32_t> counts(pixel_count(view.width(), view.height()));
     const std::size_t bytes = counts.size() * sizeof(std::uint32_t);
     counts_.grow(bytes);
     counts_.clear();

@@ -10,7 +10,7 @@
 
 #include "gl_buffer.h"
 #include "gl_program.h"
-#include "pixel_rect.h"
+#include "pixel_tiles.h"
 #include "subvol/camera.h"
 #include "subvol/image.h"
 #include "subvol/progress.h"

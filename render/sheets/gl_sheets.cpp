@@ -29,6 +29,7 @@
 #include "shader_splat_absorb_glsl.h"
 #include "shader_splat_classify_glsl.h"
 #include "shader_splat_light_glsl.h"
+#include "subvol/raster.h"
 
 namespace subvol::detail {
 
@@ -132,7 +133,7 @@ struct Last {
 };
 
 std::size_t pixels(const View& view) {
-    return static_cast<std::size_t>(view.width()) * static_cast<std::size_t>(view.height());
+    return pixel_count(view.width(), view.height());
 }
 
 std::size_t pixels_to_do(const SplatFrame& frame) {

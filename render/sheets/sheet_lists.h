@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "pixel_rect.h"
+#include "pixel_tiles.h"
 #include "splat_frame.h"
 
 namespace subvol::detail {

@@ -25,6 +25,7 @@
 
 #include "clip_triangle.h"
 #include "subvol/error.h"
+#include "subvol/raster.h"
 
 namespace subvol::detail {
 
@@ -312,7 +313,7 @@ PixelIntervals boundary_intervals(const Surface& surface, const View& view, doub
     });
 
     PixelIntervals result;
-    result.offsets.reserve(static_cast<std::size_t>(view.width()) * static_cast<std::size_t>(view.height()) + 1);
+    result.offsets.reserve(pixel_count(view.width(), view.height()) + 1);
     result.offsets.push_back(0);
     for (const Band& band : bands) {
         for (const auto count : band.counts) result.offsets.push_back(result.offsets.back() + count);

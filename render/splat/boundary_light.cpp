@@ -11,6 +11,7 @@
 #include "clip_intervals.h"
 #include "subvol/boundary_shading.h"
 #include "subvol/error.h"
+#include "subvol/raster.h"
 
 namespace subvol::detail {
 
@@ -119,8 +120,7 @@ std::vector<BoundaryLight> lights_of(const PixelIntervals& intervals, const LitS
     tbb::parallel_for(0, view.height(), [&](int y) {
         std::array<double, 3> shares{};
         for (int x = 0; x < view.width(); ++x) {
-            const auto pixel =
-                static_cast<std::size_t>(y) * static_cast<std::size_t>(view.width()) + static_cast<std::size_t>(x);
+            const auto pixel = pixel_index(view.width(), x, y);
             const Vec2 slopes = view.slopes(x + 0.5, y + 0.5);
             for (std::size_t i = intervals.offsets[pixel]; i < intervals.offsets[pixel + 1]; ++i) {
                 if (intervals.triangles[i] == PixelIntervals::kNoTriangle) continue;
@@ -186,8 +186,7 @@ struct FirstHits {
 
     /// The first interval of a ray; none if it meets nothing.
     [[nodiscard]] std::optional<std::size_t> first(int column, int row) const {
-        const auto ray =
-            static_cast<std::size_t>(row) * static_cast<std::size_t>(fine.width()) + static_cast<std::size_t>(column);
+        const auto ray = pixel_index(fine.width(), column, row);
         if (intervals.offsets[ray] == intervals.offsets[ray + 1]) return {};
         return intervals.offsets[ray];
     }

@@ -4,6 +4,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include "subvol/raster.h"
 
 namespace subvol::detail {
 
@@ -52,7 +53,7 @@ private:
 
 /// One interval for each pixel, as deep as all sheets.
 PixelIntervals whole_rays(const View& view, const SheetStack& sheets) {
-    const auto pixels = static_cast<std::size_t>(view.width()) * static_cast<std::size_t>(view.height());
+    const auto pixels = pixel_count(view.width(), view.height());
     const float end = sheets.depth(sheets.count - 1) + sheets.distance;
     PixelIntervals whole;
     whole.offsets.resize(pixels + 1);

@@ -13,6 +13,7 @@
 #include "kernel_axes.h"
 #include "subvol/detail/parallel_each.h"
 #include "subvol/error.h"
+#include "subvol/raster.h"
 #include "tile_finder.h"
 
 namespace subvol::detail {
@@ -156,8 +157,7 @@ void Footprints::draw_tile(const SplatFrame& frame, const std::vector<Kernel>& k
             const std::size_t at = place_of(x, y);
             const float opacity = drawn.image.pixel(x, y)[3];
             if (!(opacity > 0)) continue;
-            drawn.depth[static_cast<std::size_t>(y) * static_cast<std::size_t>(view.width()) + static_cast<std::size_t>(x)] =
-                frame.sheets.middle + depths[at] / opacity;
+            drawn.depth[pixel_index(view.width(), x, y)] = frame.sheets.middle + depths[at] / opacity;
         }
     }
 }

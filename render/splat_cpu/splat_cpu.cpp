@@ -17,6 +17,7 @@
 
 #include "splat_ends-inl.h"
 #include "splat_tile-inl.h"
+#include "subvol/raster.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace subvol::detail::HWY_NAMESPACE {
@@ -69,7 +70,7 @@ Drawn draw_splats_cpu(const SplatFrame& frame, Progress* progress) {
 }
 
 std::vector<float> optical_depths_cpu(SplatFrame& frame) {
-    const auto pixels = static_cast<std::size_t>(frame.view->width()) * static_cast<std::size_t>(frame.view->height());
+    const auto pixels = pixel_count(frame.view->width(), frame.view->height());
     std::vector<float> depths(pixels * static_cast<std::size_t>(frame.sheets.count), -1.0f);
     frame.optical_depths = depths.data();
     (void)draw_splats_cpu(frame, nullptr);

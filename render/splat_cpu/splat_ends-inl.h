@@ -22,6 +22,7 @@
 
 #include "splat_classify-inl.h"
 #include "splat_general-inl.h"
+#include "subvol/raster.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace subvol::detail::HWY_NAMESPACE {
@@ -75,7 +76,7 @@ private:
         const int x = x0_ + static_cast<int>(block % kColumns * kBlockWidth + lane % kBlockWidth);
         const int y = y0_ + static_cast<int>(block / kColumns * kBlockHeight + lane / kBlockWidth);
         if (x >= view_.width() || y >= view_.height()) return {0, 0};
-        const auto id = static_cast<std::size_t>(y) * static_cast<std::size_t>(view_.width()) + static_cast<std::size_t>(x);
+        const auto id = pixel_index(view_.width(), x, y);
         return {frame_.intervals.offsets[id], frame_.intervals.offsets[id + 1]};
     }
 

@@ -30,6 +30,7 @@
 
 #include "splat_composite-inl.h"
 #include "splat_general-inl.h"
+#include "subvol/raster.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace subvol::detail::HWY_NAMESPACE {
@@ -124,7 +125,7 @@ private:
             b.enter[lane] = sheets_.near;
             return true;
         }
-        const auto id = static_cast<std::size_t>(y) * static_cast<std::size_t>(view_.width()) + static_cast<std::size_t>(x);
+        const auto id = pixel_index(view_.width(), x, y);
         const std::size_t first = frame_.intervals.offsets[id], end = frame_.intervals.offsets[id + 1];
         b.interval[lane] = static_cast<std::uint32_t>(first);
         b.intervals_end[lane] = static_cast<std::uint32_t>(end);
@@ -337,8 +338,7 @@ private:
                 out[2] = b.blue[lane];
                 out[3] = opacity;
                 if (opacity > 0) {
-                    drawn.depth[static_cast<std::size_t>(y) * static_cast<std::size_t>(view_.width()) +
-                                static_cast<std::size_t>(x)] = sheets_.middle + b.depth[lane] / opacity;
+                    drawn.depth[pixel_index(view_.width(), x, y)] = sheets_.middle + b.depth[lane] / opacity;
                 }
             }
         }

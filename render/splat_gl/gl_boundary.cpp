@@ -12,6 +12,7 @@
 #include "shader_boundary_resolve_comp.h"
 #include "shader_boundary_strips_comp.h"
 #include "shader_gl_groups_glsl.h"
+#include "subvol/raster.h"
 #include "work_groups.h"
 
 namespace subvol::detail {
@@ -80,7 +81,7 @@ void GlBoundary::upload_surface(const Surface& surface) {
 }
 
 void GlBoundary::set(const PixelIntervals& intervals, const View& view) {
-    pixels_ = static_cast<std::size_t>(view.width()) * static_cast<std::size_t>(view.height());
+    pixels_ = pixel_count(view.width(), view.height());
     ranges_.grow(pixels_ * kPair_bytes);
     on_device_now_ = false;
     upload_intervals(intervals);
@@ -91,7 +92,7 @@ std::size_t GlBoundary::room() const {
 }
 
 void GlBoundary::find(const Surface& surface, const View& view, double near, double middle, GlStages& stages) {
-    pixels_ = static_cast<std::size_t>(view.width()) * static_cast<std::size_t>(view.height());
+    pixels_ = pixel_count(view.width(), view.height());
     ranges_.grow(pixels_ * kPair_bytes);
     on_device_now_ = on_device_ && GlBuffer::fits(surface.points.size() * kEyePoint_bytes) &&
                      GlBuffer::fits(surface.triangles.size() * kBox_bytes) && !needs_clipping(surface, view, near);

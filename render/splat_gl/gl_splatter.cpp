@@ -40,6 +40,7 @@
 #include "shader_splat_sums_glsl.h"
 #include "shader_splat_walk_glsl.h"
 #include "subvol/error.h"
+#include "subvol/raster.h"
 
 namespace subvol::detail {
 
@@ -184,7 +185,7 @@ void GlSplatter::State::prepare(const View& view, const Classification& classifi
     upload(visible_, classification.table.visible);
     upload(color_rows_, classification.colors.rows);
     if (scene_.light) upload(light_, scene_.light->nodes);
-    const std::size_t pixels = static_cast<std::size_t>(view.width()) * static_cast<std::size_t>(view.height());
+    const std::size_t pixels = pixel_count(view.width(), view.height());
     picture_.grow(pixels * kPixel_bytes);
     find_intervals(view);
 }
@@ -239,7 +240,7 @@ void GlSplatter::State::draw_pass(Progress* progress) {
     picture_.bind(11);
     const std::uint32_t tiles = frame_.tiles(), at_once = std::min(tiles, tuning_.most_tiles);
     const bool whole = frame_.end_batch - frame_.first_batch == frame_.batches;  // no pass needs the states of another
-    const auto pixels = static_cast<std::size_t>(frame_.width) * static_cast<std::size_t>(frame_.height);
+    const auto pixels = pixel_count(frame_.width, frame_.height);
     kept_.grow(sizeof(std::uint32_t) + pixels * sizeof(float) + at_once * tile_pixels() * sums_bytes());
     kept_.bind(12);
     states_.grow((whole ? at_once : tiles) * tile_pixels() * kState_bytes);

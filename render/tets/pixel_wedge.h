@@ -3,7 +3,7 @@
 
 #include <array>
 
-#include "pixel_rect.h"
+#include "pixel_tiles.h"
 #include "subvol/camera.h"
 
 namespace subvol::detail {

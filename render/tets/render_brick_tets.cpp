@@ -32,8 +32,8 @@ namespace {
 constexpr double kMarginOfBox = 1e-5;        // of the diagonal: a hundred times the precision of floats
 constexpr double kMarginOfDistance = 1e-12;  // of the distance to the eye: ten thousand times that of doubles
 
-// Of a control cell that was gathered, with its share of points, while parts are put together; of a refined one, and of one
-// with its tetrahedra while their faces are sorted.
+// The memory of a control cell that was gathered, with its share of points, while parts are put together; that of a refined
+// cell, and of one with its tetrahedra while their faces are sorted.
 constexpr double kBytesOfControl = 400, kBytesOfRefined = 200, kBytesOfTets = 800;
 
 double children(const RefineOptions& refine) {
@@ -44,8 +44,8 @@ std::size_t cells_in(double bytes, double bytes_of_cell) {
     return static_cast<std::size_t>(std::min(bytes / bytes_of_cell, 1e18));
 }
 
-[[noreturn]] void fail_memory(const std::string& what) {
-    throw Error(ErrorCode::InvalidInput, what + " do not fit into the memory", {}, "a larger --memory, or fewer --levels");
+[[noreturn]] void fail_memory(const std::string& things) {
+    throw Error(ErrorCode::InvalidInput, things + " do not fit into the memory", {}, "a larger --memory, or fewer --levels");
 }
 
 /// The number of cells whose tetrahedra may be there at a time.
@@ -195,10 +195,10 @@ public:
         const Stopwatch build;
         const std::vector<std::uint8_t> chosen = crossed(control, PixelWedge(view_, part, margin_));
         if (static_cast<std::size_t>(std::ranges::count(chosen, 1)) > most_cells) return false;
-        const BrickMesh own = chosen_cells(control, chosen, kHaloOfLimit);
-        const std::vector<Index> cells = owned_cells(own);
+        const BrickMesh gathered = chosen_cells(control, chosen, kHaloOfLimit);
+        const std::vector<Index> cells = owned_cells(gathered);
         progress_.begin(part);
-        if (!cells.empty()) trace(part, limit_of_cells(own.mesh, cells, quiet()), build);
+        if (!cells.empty()) trace(part, limit_of_cells(gathered.mesh, cells, quiet()), build);
         progress_.end();
         return true;
     }
@@ -268,7 +268,7 @@ BrickTets measure_tets(const Bricks& bricks, const BrickTetsOptions& options, st
     for (std::size_t b = begin; b < end; ++b) {
         BrickMesh brick = read_brick(bricks, b);
         brick.mesh.attributes.clear();
-        BrickTets own;
+        BrickTets gathered;
         const std::vector<Index> cells = owned_cells(brick);
         for (std::size_t first = 0; first < cells.size(); first += most) {
             const double done = static_cast<double>(b - begin) + static_cast<double>(first) / static_cast<double>(cells.size());
@@ -276,14 +276,14 @@ BrickTets measure_tets(const Bricks& bricks, const BrickTetsOptions& options, st
             const auto some = std::span(cells).subspan(first, std::min(most, cells.size() - first));
             const HexMesh fine = limit_of_cells(brick.mesh, some, refine);
             const TetShapes shapes = tet_shapes(fine);
-            own.add({.bounds = bounds(fine),
-                     .overhang = overhang_of(brick.mesh, some, fine),
-                     .tets = 6 * fine.cells.size(),
-                     .degenerate_tets = shapes.degenerate,
-                     .inverted_tets = shapes.inverted});
+            gathered.add({.bounds = bounds(fine),
+                          .overhang = overhang_of(brick.mesh, some, fine),
+                          .tets = 6 * fine.cells.size(),
+                          .degenerate_tets = shapes.degenerate,
+                          .inverted_tets = shapes.inverted});
         }
-        own.of_bricks = {own.bounds};
-        all.add(own);
+        gathered.of_bricks = {gathered.bounds};
+        all.add(gathered);
     }
     return all;
 }

@@ -73,10 +73,10 @@ struct TetMesh {
     [[nodiscard]] const Point& point(Index id) const { return points[id]; }
 };
 
-/// Of the points that tetrahedra use.
+/// The box of the points that tetrahedra use.
 [[nodiscard]] Box bounds_of(const TetMesh& mesh);
 
-/// Of the tetrahedra into which `build_tet_mesh` splits the cells.
+/// The shapes of the tetrahedra into which `build_tet_mesh` splits the cells.
 [[nodiscard]] TetShapes tet_shapes(const HexMesh& mesh);
 
 /// Splits every cell into 6 and finds the neighbours by sorting the faces on the sides of cells. A face of more than two

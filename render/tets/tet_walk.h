@@ -1,14 +1,117 @@
 // SPDX-License-Identifier: Apache-2.0
+// How a ray decides which face of a tetrahedron it crosses.
+//
+// Seen along the ray, space is a plane and the ray is its origin, *. An edge a→b has * on its left or on its right: the sign of
+// the area a.x·b.y − b.x·a.y. The ray crosses a triangle if * is on the same side of all three edges:
+//
+//            c          All three signs are alike: the ray crosses the triangle. The areas of (*,b,c), (*,c,a) and (*,a,b)
+//           / \         are the barycentric weights of the crossing, so depth and value follow by interpolation.
+//          / * \        Otherwise it passes beside the triangle.
+//         a-----b
+//
+// Plane tests in floating point contradict each other at vertices, edges and in flat cells, and the ray is lost. A sign belongs
+// to an edge, not to a cell: it is computed in the same way for all cells about the edge, exactly where it is close to zero,
+// and is never zero (ties by simulation of simplicity [em1990]). Hence a tetrahedron that a ray enters through one face has
+// exactly one other crossed face, and `walk` needs only the signs of the edges to the fourth corner to find it.
+// The walk from cell to cell is that of [garrity1990]; docs/adr/0005 says why signs, docs/adr/0013 how rays go side by side.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
+#include <limits>
 #include <optional>
 #include <utility>
 
-#include "ray_plane.h"
+#include "subvol/camera.h"
+#include "subvol/detail/compositor.h"
+#include "subvol/detail/ray_clip.h"
+#include "subvol/hex_mesh.h"
 #include "tet_mesh.h"
 
 namespace subvol::detail {
+
+/// A mesh point in the coordinates of a ray: (x,y) is its offset from the ray in the plane across the dominant axis, t its
+/// place along the ray.
+struct SeenPoint {
+    Index id = kNone;
+    double x = 0, y = 0, t = 0;
+    double value = 0;
+};
+
+/// Twice the signed area of (ray, a, b), and its sign: on which side of the edge ab the ray passes. The sign is exact for the
+/// seen coordinates and never zero: ties are decided as if the ray were moved by (ε, ε²) [em1990], and by ids between points
+/// that coincide for the ray. So the signs of all edges are consistent, and every ray crosses the inside of faces, even through
+/// a vertex or along an edge.
+struct Side {
+    double area = 0;
+    bool left = false;
+
+    [[nodiscard]] Side reversed() const { return {-area, !left}; }
+};
+
+/// Shears space so that the ray becomes the t axis.
+class RayPlane {
+public:
+    explicit RayPlane(const Ray& ray) : origin_(ray.origin) {
+        const Vec3 size = glm::abs(ray.direction);
+        z_ = size.x > size.y ? (size.x > size.z ? 0 : 2) : (size.y > size.z ? 1 : 2);
+        x_ = (z_ + 1) % 3;
+        y_ = (z_ + 2) % 3;
+        per_depth_ = 1 / ray.direction[z_];
+        slope_x_ = ray.direction[x_] * per_depth_;
+        slope_y_ = ray.direction[y_] * per_depth_;
+    }
+
+    [[nodiscard]] SeenPoint see(Index id, const Vec3& position, double value) const {
+        const Vec3 p = position - origin_;
+        return {id, p[x_] - slope_x_ * p[z_], p[y_] - slope_y_ * p[z_], p[z_] * per_depth_, value};
+    }
+
+    /// False if the line certainly misses a box that is widened by `margin`.
+    [[nodiscard]] bool may_meet(const Vec3& center, const Vec3& half, double margin) const {
+        const Vec3 p = center - origin_;
+        const double x = p[x_] - slope_x_ * p[z_], y = p[y_] - slope_y_ * p[z_];
+        const double size_x = std::abs(slope_x_), size_y = std::abs(slope_y_);
+        return std::abs(x) <= half[x_] + size_x * half[z_] + margin && std::abs(y) <= half[y_] + size_y * half[z_] + margin &&
+               std::abs(x * slope_y_ - y * slope_x_) <= half[x_] * size_y + half[y_] * size_x + margin;
+    }
+    [[nodiscard]] const Vec3& origin() const { return origin_; }
+
+    /// The axes of space that become x, y and depth, and their shear.
+    [[nodiscard]] std::array<int, 3> axes() const { return {x_, y_, z_}; }
+    [[nodiscard]] double slope_x() const { return slope_x_; }
+    [[nodiscard]] double slope_y() const { return slope_y_; }
+    [[nodiscard]] double per_depth() const { return per_depth_; }
+
+private:
+    Vec3 origin_;
+    int x_, y_, z_;
+    double slope_x_, slope_y_, per_depth_;
+};
+
+/// a·d − b·c with a relative error of at most two roundings, hence with the right sign: Kahan's algorithm (Jeannerod, Louvet,
+/// Muller 2013).
+[[nodiscard]] inline double exact_difference(double a, double d, double b, double c) {
+    const double bc = b * c;
+    return std::fma(a, d, -bc) + std::fma(-b, c, bc);
+}
+
+/// An area larger than this share of its terms is used as it was rounded, a smaller one is computed exactly. For the sign alone
+/// 3.4e-16 would do ((3 + 16ε)ε of Shewchuk's 2-D orientation test). But areas are also the weights of a crossing: without
+/// right digits the crossing would lie beside the ray, by up to the whole face where it is seen almost edge on.
+inline constexpr double kSideError = 1e-7;
+
+[[nodiscard]] inline Side side_of(const SeenPoint& a, const SeenPoint& b) {
+    const double left = a.x * b.y, right = b.x * a.y;
+    const double area = left - right;
+    if (std::abs(area) > kSideError * (std::abs(left) + std::abs(right))) return {area, area > 0};
+    const double exact = exact_difference(a.x, b.y, b.x, a.y);
+    if (exact != 0) return {exact, exact > 0};
+    if (a.y != b.y) return {0, a.y > b.y};
+    if (a.x != b.x) return {0, b.x > a.x};
+    return {0, a.id < b.id};
+}
 
 /// Where a ray crosses a face: depth along the ray and the value there.
 struct Crossing {
@@ -93,5 +196,138 @@ std::optional<TetFace> walk(const Mesh& mesh, const RayPlane& plane, TetFace sta
         tet = next;
     }
 }
+
+/// What a tracer counts, over all rays that met the volume.
+struct TraceCounts {
+    std::size_t rays = 0;
+    std::size_t segments = 0;   // tetrahedra crossed
+    std::size_t lost_rays = 0;  // that could not be followed to the other side
+
+    TraceCounts& operator+=(const TraceCounts& other) {
+        rays += other.rays;
+        segments += other.segments;
+        lost_rays += other.lost_rays;
+        return *this;
+    }
+};
+
+/// What has been integrated, up to depth t: every depth counts once, even where a mesh folds over itself. slice: the value on
+/// the slice that ends the ray
+struct LitDepth {
+    Segment light;
+    double t = 0;
+    std::optional<double> slice{};
+};
+
+/// What is left of a ray, and whether its slices are drawn alone.
+struct WalkCut {
+    RayCut ray;
+    bool slices_alone = false;
+};
+
+/// Through:   the walk arrived at another boundary face
+/// Backwards: that face lies in front of the first one
+/// Beyond:    cells reach further than that face, so they are inverted
+/// Opaque:    the light is used up
+/// Lost:      the ray does not cross the first face, or the walk took more steps than there are tetrahedra
+enum class WalkOutcome { Through, Backwards, Beyond, Opaque, Lost };
+
+/// A walk from a boundary face: the boundary face at its other end (the first one if there is none), and that face's depth.
+struct Walk {
+    WalkOutcome outcome;
+    TetFace end;
+    double end_t = 0;
+};
+
+/// Integrates one ray, walk after walk, in one mesh or in several.
+class RayWalker {
+public:
+    /// Keeps references to plane, cut, compositor and counts.
+    RayWalker(const Ray& ray, const RayPlane& plane, const WalkCut& cut, Compositor& compositor, TraceCounts& counts)
+        : plane_(plane), speed_(glm::length(ray.direction)), cut_(cut), compositor_(compositor), counts_(counts) {}
+
+    /// The light, with the slice that ends the ray.
+    [[nodiscard]] Segment light(const Optics& optics) const {
+        Segment light = lit_.light;
+        if (lit_.slice) composite(light, {optics.color(*lit_.slice), 0});
+        return light;
+    }
+
+    /// Walks between two boundary faces, from whichever of them is the entry, and composites what has not been integrated yet.
+    ///
+    /// start:   either of the two
+    /// returns: the outcome; the face that is not `start`
+    template <class Mesh>
+    Walk between(const Mesh& mesh, TetFace start) {
+        constexpr double kNoLimit = std::numeric_limits<double>::infinity();
+        const LitDepth before = lit_;
+        Walk walk = integrate(mesh, start, kNoLimit);
+        const TetFace other = walk.end;
+        TetFace entry = start;
+        if (walk.outcome == WalkOutcome::Backwards) {
+            lit_ = before;
+            entry = other;
+            walk = integrate(mesh, entry, kNoLimit);
+        }
+        if (walk.outcome == WalkOutcome::Beyond) {  // inverted cells lie outside: the volume ends where the boundary is
+            lit_ = before;
+            walk = integrate(mesh, entry, walk.end_t);
+        }
+        walk.end = other;
+        return walk;
+    }
+
+private:
+    /// Where a stretch ends: at its first slice, if it has one.
+    [[nodiscard]] std::optional<double> first_slice(double from, double to) const {
+        for (const RaySlice& slice : cut_.ray.slices) {
+            if (slice.meets(from, to)) return slice.within(from, to);
+        }
+        return std::nullopt;
+    }
+
+    /// Walks from a boundary face and composites what lies between lit_.t and `limit`.
+    template <class Mesh>
+    Walk integrate(const Mesh& mesh, TetFace start, double limit) {
+        const auto face = cross_face(mesh, plane_, start);
+        if (!face) return {WalkOutcome::Lost, start};
+        const Crossing first = face->crossing();
+        Crossing previous = first;
+        lit_.t = std::max(lit_.t, first.t);
+        double reached = first.t;
+        std::size_t steps = 0;
+        const auto visit = [&](const Crossing& next) {
+            const double from = std::max({previous.t, lit_.t, cut_.ray.near});
+            double to = std::min({next.t, limit, cut_.ray.far});
+            const std::optional<double> slice = next.t > previous.t ? first_slice(from, to) : std::nullopt;
+            if (slice) to = *slice;
+            if (to > from || slice) {
+                const double slope = (next.value - previous.value) / (next.t - previous.t);
+                const double front = from == previous.t ? previous.value : previous.value + (from - previous.t) * slope;
+                const double back = to == next.t ? next.value : previous.value + (to - previous.t) * slope;
+                if (!cut_.slices_alone && to > from) compositor_.add(front, back, (to - from) * speed_);
+                if (slice) lit_.slice = back;
+                lit_.t = to;
+                reached = to;
+            }
+            previous = next;
+            return ++steps <= mesh.tet_count() && !compositor_.opaque() && !lit_.slice;
+        };
+        compositor_.start(lit_.light);
+        const auto end = walk(mesh, plane_, start, *face, visit);
+        lit_.light = compositor_.finish();
+        counts_.segments += steps;
+        if (!end) return {steps > mesh.tet_count() ? WalkOutcome::Lost : WalkOutcome::Opaque, start};
+        if (previous.t < first.t) return {WalkOutcome::Backwards, *end, previous.t};
+        return {reached > previous.t ? WalkOutcome::Beyond : WalkOutcome::Through, *end, previous.t};
+    }
+
+    const RayPlane& plane_;
+    double speed_;
+    const WalkCut& cut_;
+    Compositor& compositor_;
+    TraceCounts& counts_;
+    LitDepth lit_;
+};
 
 }  // namespace subvol::detail

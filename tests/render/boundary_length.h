@@ -6,8 +6,8 @@
 #include <cmath>
 #include <vector>
 
-#include "ray_plane.h"
 #include "tet_mesh.h"
+#include "tet_walk.h"
 
 namespace subvol::test {
 

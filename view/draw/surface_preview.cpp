@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 
+#include "subvol/raster.h"
 #include "subvol/splat_options.h"
 
 namespace subvol::detail {
@@ -28,14 +29,6 @@ double side(const Vec2& a, const Vec2& b, const Vec2& p) {
     return (b.x - a.x) * (p.y - a.y) - (b.y - a.y) * (p.x - a.x);
 }
 
-/// Whether a cut removes a place.
-bool is_cut(const Clip& clip, const Vec3& place) {
-    for (const CutPlane& plane : clip.planes) {
-        if (glm::dot(place - plane.point, plane.normal) > 0) return true;
-    }
-    return clip.box && glm::min(glm::max(place, clip.box->lower), clip.box->upper) != place;
-}
-
 void fill(const Drawn& triangle, const View& view, const Clip& clip, int first, int last, Preview& preview) {
     const bool perspective = view.perspective();
     const auto& [a, b, c] = triangle.at;
@@ -50,12 +43,11 @@ void fill(const Drawn& triangle, const View& view, const Clip& clip, int first, 
             if (u < 0 || v < 0 || w < 0) continue;
             const double linear = u * triangle.depth[0] + v * triangle.depth[1] + w * triangle.depth[2];
             const auto depth = static_cast<float>(perspective ? 1 / linear : linear);
-            float& nearest = preview.depth[static_cast<std::size_t>(y) * static_cast<std::size_t>(preview.image.width) +
-                                           static_cast<std::size_t>(x)];
+            float& nearest = preview.depth[pixel_index(preview.image.width, x, y)];
             if (depth >= nearest || !(depth > 0)) continue;
             if (!clip.empty()) {
                 const Ray ray = view.ray(p.x, p.y);
-                if (is_cut(clip, ray.origin + static_cast<double>(depth) * ray.direction)) continue;
+                if (clip.removes(ray.origin + double{depth} * ray.direction)) continue;
             }
             nearest = depth;
             const auto pixel = preview.image.pixel(x, y);

@@ -4,7 +4,7 @@
 /// All of subvol::render: splatters, projected tetrahedra, ray marchers.
 
 #include "subvol/boundary_shading.h"
-#include "subvol/draw_sheets.h"
+#include "subvol/draw_shells.h"
 #include "subvol/gl_device.h"
 #include "subvol/pixel_rows.h"
 #include "subvol/progressive.h"

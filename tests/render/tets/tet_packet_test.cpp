@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Rays side by side give the same bits as rays one by one: through points and along edges, in folded and flat meshes too.
-#include "tet_packet_tracer.h"
+#include "tet_scene.h"
 
 #include <gtest/gtest.h>
 

@@ -31,6 +31,8 @@ struct Clip {
 
     [[nodiscard]] bool empty() const { return planes.empty() && !box && slices.empty(); }
     [[nodiscard]] bool slices_alone() const { return !slices.empty() && !around_slices; }
+    /// Whether the planes and the box remove a place.
+    [[nodiscard]] bool removes(const Vec3& place) const;
 };
 
 /// throws: Error(InvalidInput) if a number is not finite, a normal has no length or the box is empty

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "subvol/draw_sheets.h"
+#include "subvol/draw_shells.h"
 
 #include <tbb/parallel_for.h>
 
@@ -16,6 +16,7 @@
 #include "clip_triangle.h"
 #include "subvol/detail/bucket_sort.h"
 #include "subvol/error.h"
+#include "subvol/raster.h"
 
 namespace subvol {
 
@@ -62,13 +63,6 @@ std::vector<Corners> two_sided_normals(const Surface& surface) {
     return normals;
 }
 
-bool is_cut(const Clip& clip, const Vec3& place) {
-    for (const CutPlane& plane : clip.planes) {
-        if (glm::dot(place - plane.point, plane.normal) > 0) return true;
-    }
-    return clip.box && glm::min(glm::max(place, clip.box->lower), clip.box->upper) != place;
-}
-
 /// A triangle before the eye, as a polygon of the picture.
 struct Drawn {
     std::vector<Vec2> outline;
@@ -76,12 +70,10 @@ struct Drawn {
 };
 
 /// The first triangle that each ray meets.
-class SheetRaster {
+class ShellRaster {
 public:
-    SheetRaster(const Surface& surface, const View& fine, const Clip& clip) : fine_(fine), clip_(clip) {
-        const std::size_t rays = static_cast<std::size_t>(fine.width()) * static_cast<std::size_t>(fine.height());
-        depth.assign(rays, kFar);
-        triangle.assign(rays, kNothing);
+    ShellRaster(const Surface& surface, const View& fine, const Clip& clip)
+        : depth(fine.width(), fine.height(), kFar), triangle(fine.width(), fine.height(), kNothing), fine_(fine), clip_(clip) {
         for (const Vec3& p : surface.points) eye.push_back(fine.to_eye(p));
         std::vector<Drawn> drawn(surface.triangles.size());
         tbb::parallel_for(std::size_t{0}, drawn.size(), [&](std::size_t i) { drawn[i] = outline_of(surface.triangles[i]); });
@@ -94,8 +86,8 @@ public:
     }
 
     std::vector<Vec3> eye;  // the points of the surface
-    std::vector<float> depth;
-    std::vector<std::uint32_t> triangle;
+    Raster<float> depth;
+    Raster<std::uint32_t> triangle;
 
 private:
     [[nodiscard]] Drawn outline_of(const std::array<Index, 3>& corners) const {
@@ -142,15 +134,13 @@ private:
                 const Vec2 slopes = fine_.slopes(x + 0.5, y + 0.5);
                 const double z = fine_.perspective() ? offset / glm::dot(flat, Vec3(slopes, 1))
                                                      : (offset - glm::dot(flat, Vec3(slopes, 0))) / flat.z;
-                const auto at =
-                    static_cast<std::size_t>(y) * static_cast<std::size_t>(fine_.width()) + static_cast<std::size_t>(x);
-                if (!(z < static_cast<double>(depth[at])) || z <= 0) continue;
+                if (!(z < double{depth.at(x, y)}) || z <= 0) continue;
                 if (!clip_.planes.empty() || clip_.box) {
                     const Ray ray = fine_.ray(x + 0.5, y + 0.5);
-                    if (is_cut(clip_, ray.origin + z * ray.direction)) continue;
+                    if (clip_.removes(ray.origin + z * ray.direction)) continue;
                 }
-                depth[at] = static_cast<float>(z);
-                triangle[at] = static_cast<std::uint32_t>(number);
+                depth.at(x, y) = static_cast<float>(z);
+                triangle.at(x, y) = static_cast<std::uint32_t>(number);
             }
         }
     }
@@ -160,8 +150,8 @@ private:
 };
 
 /// The depths at which rays enter the volume first; infinite where they miss it.
-std::vector<float> entries(const Surface& boundary, const View& fine, const Clip& clip) {
-    std::vector<float> depths(static_cast<std::size_t>(fine.width()) * static_cast<std::size_t>(fine.height()), kFar);
+Raster<float> entries(const Surface& boundary, const View& fine, const Clip& clip) {
+    Raster<float> depths(fine.width(), fine.height(), kFar);
     if (boundary.triangles.empty()) return depths;
     Box box;
     for (const Vec3& point : boundary.points) box.add(point);
@@ -169,42 +159,35 @@ std::vector<float> entries(const Surface& boundary, const View& fine, const Clip
     PixelIntervals intervals = boundary_intervals(boundary, fine, nearest_depth(fine, box.diagonal()), middle);
     const RayClip cuts(clip, box.diagonal());
     if (!cuts.empty()) intervals = clip_intervals(intervals, fine, cuts, middle);
-    for (std::size_t ray = 0; ray < depths.size(); ++ray) {
+    for (std::size_t ray = 0; ray < depths.values.size(); ++ray) {
         const std::uint32_t first = intervals.offsets[ray];
         if (first < intervals.offsets[ray + 1]) {
-            depths[ray] = static_cast<float>(static_cast<double>(intervals.depths[2 * first]) + middle);
+            depths.values[ray] = static_cast<float>(double{intervals.depths[2 * first]} + middle);
         }
     }
     return depths;
 }
 
-}  // namespace
+/// The colour of the shells where rays meet them.
+class ShellLight {
+public:
+    /// Keeps references to all of them.
+    ShellLight(const ColoredSurface& shells, const ShellRaster& hits, const View& fine, const Optics& optics,
+               const Shading& shading)
+        : shells_(shells),
+          hits_(hits),
+          fine_(fine),
+          optics_(optics),
+          shading_(shading),
+          normals_(two_sided_normals(shells.surface)) {}
 
-void draw_sheets(Image& image, std::span<float> depth, const ColoredSurface& sheets, const Surface& boundary, const View& view,
-                 const Optics& optics, const Shading& shading, int samples, const Clip& clip) {
-    if (sheets.values.size() != sheets.surface.points.size()) {
-        throw Error(ErrorCode::InvalidInput,
-                    "there are " + std::to_string(sheets.values.size()) + " values for " +
-                        std::to_string(sheets.surface.points.size()) + " points",
-                    "sheets");
-    }
-    if (view.width() != image.width || view.height() != image.height ||
-        (!depth.empty() && depth.size() != image.rgba.size() / 4)) {
-        throw Error(ErrorCode::InvalidInput, "the picture, its depths and the view are not of one size", "sheets");
-    }
-    if (sheets.surface.triangles.empty()) return;
-    const View fine(view.camera(), samples * view.width(), samples * view.height());
-    const SheetRaster hits(sheets.surface, fine, clip);
-    const std::vector<float> enters = entries(boundary, fine, clip);
-    const std::vector<Corners> normals = two_sided_normals(sheets.surface);
-
-    const auto color_at = [&](std::size_t ray, int column, int row) {
-        const std::uint32_t number = hits.triangle[ray];
-        const auto& corners = sheets.surface.triangles[number];
-        const Corners at{hits.eye[corners[0]], hits.eye[corners[1]], hits.eye[corners[2]]};
-        const Vec2 slopes = fine.slopes(column + 0.5, row + 0.5);
-        const auto z = static_cast<double>(hits.depth[ray]);
-        const Vec3 place = fine.perspective() ? z * Vec3(slopes, 1) : Vec3(slopes, z);
+    [[nodiscard]] Vec3 color_at(int column, int row) const {
+        const std::uint32_t number = hits_.triangle.at(column, row);
+        const auto& corners = shells_.surface.triangles[number];
+        const Corners at{hits_.eye[corners[0]], hits_.eye[corners[1]], hits_.eye[corners[2]]};
+        const Vec2 slopes = fine_.slopes(column + 0.5, row + 0.5);
+        const double z{hits_.depth.at(column, row)};
+        const Vec3 place = fine_.perspective() ? z * Vec3(slopes, 1) : Vec3(slopes, z);
         const Vec3 flat = glm::cross(at[1] - at[0], at[2] - at[0]);
         Vec3 normal(0.0);
         double sum = 0, value = 0;
@@ -212,58 +195,92 @@ void draw_sheets(Image& image, std::span<float> depth, const ColoredSurface& she
             const double share =
                 std::max(0.0, glm::dot(flat, glm::cross(at[(k + 2) % 3] - at[(k + 1) % 3], place - at[(k + 1) % 3])));
             sum += share;
-            value += share * sheets.values[corners[k]];
-            normal += share * normals[number][k];
+            value += share * shells_.values[corners[k]];
+            normal += share * normals_[number][k];
         }
-        value = sum > 0 ? value / sum : sheets.values[corners[0]];
-        const auto& [right, up, forward] = fine.axes();
+        value = sum > 0 ? value / sum : shells_.values[corners[0]];
+        const auto& [right, up, forward] = fine_.axes();
         normal = sum > 0 ? Vec3(glm::dot(right, normal), glm::dot(up, normal), glm::dot(forward, normal)) : flat;
-        const Vec3 to_eye = fine.perspective() ? -glm::normalize(place) : Vec3(0, 0, -1);
+        const Vec3 to_eye = fine_.perspective() ? -glm::normalize(place) : Vec3(0, 0, -1);
         const double length = glm::length(normal);
         if (length > 0) normal = (glm::dot(normal, to_eye) < 0 ? -1.0 : 1.0) * normal / length;
-        const BoundaryLight light = surface_light(shading, normal, to_eye);
-        return static_cast<double>(light.diffuse) * optics.color(value) + static_cast<double>(light.specular);
-    };
+        const BoundaryLight light = surface_light(shading_, normal, to_eye);
+        return double{light.diffuse} * optics_.color(value) + double{light.specular};
+    }
 
+private:
+    const ColoredSurface& shells_;
+    const ShellRaster& hits_;
+    const View& fine_;
+    const Optics& optics_;
+    const Shading& shading_;
+    std::vector<Corners> normals_;
+};
+
+/// What the rays of a pixel meet. before, behind: sums of the colours of shells on this side of the volume and beyond
+struct PixelRays {
+    Vec3 before{0.0}, behind{0.0};
+    int of_volume = 0, over_volume = 0, alone = 0, under_volume = 0;
+    float nearest = kFar;
+
+    [[nodiscard]] bool any() const { return over_volume + alone + under_volume > 0; }
+    [[nodiscard]] bool any_first() const { return over_volume + alone > 0; }
+
+    /// The picture's colour is that of the rays that meet the volume, alike for all of them; where a shell lies over the volume
+    /// nothing is left of it.
+    void mix_into(std::span<float, 4> pixel, double rays) const {
+        const double left = of_volume > 0 ? 1.0 - double(over_volume) / of_volume : 1.0 - double(alone) / rays;
+        const double opacity = of_volume > 0 ? std::min(1.0, double{pixel[3]} * rays / of_volume) : 0.0;
+        const Vec3 added = (before + (1 - opacity) * behind) / rays;
+        for (std::size_t c = 0; c < 3; ++c) {
+            pixel[c] = static_cast<float>(left * double{pixel[c]} + added[static_cast<int>(c)]);
+        }
+        const double covered = (over_volume + alone + (1 - opacity) * under_volume) / rays;
+        pixel[3] = static_cast<float>(std::min(1.0, left * double{pixel[3]} + covered));
+    }
+};
+
+void check_sizes(const Image& image, std::span<const float> depth, const ColoredSurface& shells, const View& view) {
+    if (shells.values.size() != shells.surface.points.size()) {
+        throw Error(ErrorCode::InvalidInput,
+                    "there are " + std::to_string(shells.values.size()) + " values for " +
+                        std::to_string(shells.surface.points.size()) + " points",
+                    "shells");
+    }
+    if (view.width() != image.width || view.height() != image.height ||
+        (!depth.empty() && depth.size() != image.rgba.size() / 4)) {
+        throw Error(ErrorCode::InvalidInput, "the picture, its depths and the view are not of one size", "shells");
+    }
+}
+
+}  // namespace
+
+void draw_shells(Image& image, std::span<float> depth, const ColoredSurface& shells, const Surface& boundary, const View& view,
+                 const Optics& optics, const ShellOptions& options) {
+    check_sizes(image, depth, shells, view);
+    if (shells.surface.triangles.empty()) return;
+    const int samples = options.samples;
+    const View fine(view.camera(), samples * view.width(), samples * view.height());
+    const ShellRaster hits(shells.surface, fine, options.clip);
+    const Raster<float> enters = entries(boundary, fine, options.clip);
+    const ShellLight light(shells, hits, fine, optics, options.shading);
     tbb::parallel_for(0, view.height(), [&](int y) {
         for (int x = 0; x < view.width(); ++x) {
-            Vec3 before(0.0), behind(0.0);  // the volume
-            int of_volume = 0, over_volume = 0, alone = 0, under_volume = 0;
-            double nearest = static_cast<double>(kFar);
+            PixelRays rays;
             for (int k = 0; k < samples * samples; ++k) {
                 const int row = y * samples + k / samples, column = x * samples + k % samples;
-                const auto ray =
-                    static_cast<std::size_t>(row) * static_cast<std::size_t>(fine.width()) + static_cast<std::size_t>(column);
-                const bool volume = enters[ray] < kFar;
-                of_volume += volume;
-                if (hits.triangle[ray] == kNothing) continue;
-                const bool first = hits.depth[ray] <= enters[ray];
-                (first ? before : behind) += color_at(ray, column, row);
-                if (!first) {
-                    ++under_volume;
-                    continue;
-                }
-                ++(volume ? over_volume : alone);
-                nearest = std::min(nearest, static_cast<double>(hits.depth[ray]));
+                const bool volume = enters.at(column, row) < kFar;
+                rays.of_volume += volume;
+                if (hits.triangle.at(column, row) == kNothing) continue;
+                const bool first = hits.depth.at(column, row) <= enters.at(column, row);
+                (first ? rays.before : rays.behind) += light.color_at(column, row);
+                ++(!first ? rays.under_volume : volume ? rays.over_volume : rays.alone);
+                if (first) rays.nearest = std::min(rays.nearest, hits.depth.at(column, row));
             }
-            if (over_volume + alone + under_volume == 0) continue;
-            const double all = samples * samples;
-            const auto pixel = image.pixel(x, y);
-            // The picture's colour is that of the rays that meet the volume, alike for all of them; of those over which a sheet
-            // lies none is left.
-            const double left =
-                of_volume > 0 ? 1.0 - static_cast<double>(over_volume) / of_volume : 1.0 - static_cast<double>(alone) / all;
-            const double opacity = of_volume > 0 ? std::min(1.0, static_cast<double>(pixel[3]) * all / of_volume) : 0.0;
-            const Vec3 added = (before + (1 - opacity) * behind) / all;
-            for (std::size_t c = 0; c < 3; ++c) {
-                pixel[c] = static_cast<float>(left * static_cast<double>(pixel[c]) + added[static_cast<int>(c)]);
-            }
-            const double covered = (over_volume + alone + (1 - opacity) * under_volume) / all;
-            pixel[3] = static_cast<float>(std::min(1.0, left * static_cast<double>(pixel[3]) + covered));
-            if (depth.empty() || over_volume + alone == 0) continue;
-            float& seen =
-                depth[static_cast<std::size_t>(y) * static_cast<std::size_t>(view.width()) + static_cast<std::size_t>(x)];
-            seen = std::min(seen, static_cast<float>(nearest));
+            if (rays.any()) rays.mix_into(image.pixel(x, y), samples * samples);
+            if (depth.empty() || !rays.any_first()) continue;
+            float& seen = depth[pixel_index(view.width(), x, y)];
+            seen = std::min(seen, rays.nearest);
         }
     });
 }

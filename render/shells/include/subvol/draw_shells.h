@@ -12,10 +12,18 @@
 
 namespace subvol {
 
-/// Triangles with a value at each point, such as those of `sheet_surface`.
+/// Triangles with a value at each point, such as those of `shell_surface`.
 struct ColoredSurface {
     Surface surface;
     std::vector<double> values;
+};
+
+/// samples: those of the picture: n × n places in each pixel
+/// clip:    that of the picture, without its slices
+struct ShellOptions {
+    Shading shading{};
+    int samples = 1;
+    Clip clip{};
 };
 
 /// Draws opaque triangles, lit on either side, into the finished picture of a volume: before it or behind it. What lies within
@@ -24,11 +32,9 @@ struct ColoredSurface {
 ///
 /// depth:    of the picture as of `SplatResult`, which becomes that of the triangles where they are seen first; empty: none
 /// boundary: of the volume, closed, outward; empty: there is no volume
-/// samples:  those of the picture: n × n places in each pixel
-/// clip:     that of the picture, without its slices
 /// throws:   Error(InvalidInput) if there is not one value for each point, or the sizes of picture and view differ
 /// cost:     parallel; the same for any number of threads
-void draw_sheets(Image& image, std::span<float> depth, const ColoredSurface& sheets, const Surface& boundary, const View& view,
-                 const Optics& optics, const Shading& shading = {}, int samples = 1, const Clip& clip = {});
+void draw_shells(Image& image, std::span<float> depth, const ColoredSurface& shells, const Surface& boundary, const View& view,
+                 const Optics& optics, const ShellOptions& options = {});
 
 }  // namespace subvol

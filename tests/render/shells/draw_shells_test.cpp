@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "subvol/draw_sheets.h"
+#include "subvol/draw_shells.h"
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@
 #include "subvol/picture_look.h"
 
 namespace subvol {
-namespace draw_sheets_test {
+namespace draw_shells_test {
 
 constexpr int kSize = 48;
 
@@ -54,18 +54,18 @@ Image filled(float red, float alpha) {
     return image;
 }
 
-TEST(DrawSheets, ABoxOfSheetsLooksAsTheBoundaryOfASolidDoes) {
+TEST(DrawShells, ABoxOfShellsLooksAsTheBoundaryOfASolidDoes) {
     const ColoredSurface box = colored_box();
     const Optics optics = grey_to_white();
     for (const Vec3& eye : {Vec3(4, -3, 2.5), Vec3(-3, 2, 4)}) {
         const View view = view_of(eye);
-        Image sheets(kSize, kSize), solid = filled(0, 1);
-        draw_sheets(sheets, {}, box, {}, view, optics);
+        Image shells(kSize, kSize), solid = filled(0, 1);
+        draw_shells(shells, {}, box, {}, view, optics);
         color_boundary(solid, box.surface, box.values, view, optics, Shading{});
         int covered = 0, differing = 0;
         for (int y = 0; y < kSize; ++y) {
             for (int x = 0; x < kSize; ++x) {
-                const auto a = sheets.pixel(x, y), b = solid.pixel(x, y);
+                const auto a = shells.pixel(x, y), b = solid.pixel(x, y);
                 if (a[3] == 0) continue;
                 ++covered;
                 EXPECT_EQ(a[3], 1);
@@ -78,14 +78,14 @@ TEST(DrawSheets, ABoxOfSheetsLooksAsTheBoundaryOfASolidDoes) {
     }
 }
 
-TEST(DrawSheets, WhatIsBehindTheEyeHidesNothing) {
+TEST(DrawShells, WhatIsBehindTheEyeHidesNothing) {
     for (const double ortho_height : {0.0, 2.0}) {
         const auto covered = [&](double x) {
             const View view({.eye = Vec3(2, 0, 0), .target = Vec3(0), .up = Vec3(0, 0, 1), .ortho_height = ortho_height}, kSize,
                             kSize);
             Image image(kSize, kSize);
             std::vector<float> depth(static_cast<std::size_t>(kSize * kSize), HUGE_VALF);
-            draw_sheets(image, depth, wall_at(x, 1), {}, view, grey_to_white());
+            draw_shells(image, depth, wall_at(x, 1), {}, view, grey_to_white());
             float most = 0;
             for (std::size_t i = 3; i < image.rgba.size(); i += 4) most = std::max(most, image.rgba[i]);
             EXPECT_EQ(std::ranges::min(depth) == HUGE_VALF, most == 0);
@@ -97,54 +97,55 @@ TEST(DrawSheets, WhatIsBehindTheEyeHidesNothing) {
     }
 }
 
-TEST(DrawSheets, WhatIsInFrontHidesAndWhatIsBehindIsHiddenAsFarAsTheVolumeIsOpaque) {
+TEST(DrawShells, WhatIsInFrontHidesAndWhatIsBehindIsHiddenAsFarAsTheVolumeIsOpaque) {
     const Surface body = colored_box().surface;
     const View view = view_of({6, .5, .5});
     const Optics optics = grey_to_white();
     const int middle = kSize / 2;
     Image alone(kSize, kSize);
-    draw_sheets(alone, {}, wall_at(-1, 1), {}, view, optics);
+    draw_shells(alone, {}, wall_at(-1, 1), {}, view, optics);
     const float wall_red = alone.pixel(middle, middle)[0];
     for (const float alpha : {1.0F, .25F}) {
         Image before = filled(.5F * alpha, alpha), behind = before;
-        draw_sheets(before, {}, wall_at(2, 1), body, view, optics);
+        draw_shells(before, {}, wall_at(2, 1), body, view, optics);
         EXPECT_EQ(before.pixel(middle, middle)[3], 1);
         EXPECT_NEAR(before.pixel(middle, middle)[0], alone.pixel(middle, middle)[0], 1e-5);
-        draw_sheets(behind, {}, wall_at(-1, 1), body, view, optics);
+        draw_shells(behind, {}, wall_at(-1, 1), body, view, optics);
         EXPECT_NEAR(behind.pixel(middle, middle)[0], .5F * alpha + (1 - alpha) * wall_red, 1e-5);
         EXPECT_NEAR(behind.pixel(middle, middle)[3], 1, 1e-6);
     }
 }
 
-TEST(DrawSheets, BothSidesAreLitAlike) {
+TEST(DrawShells, BothSidesAreLitAlike) {
     const Optics optics = grey_to_white();
     ColoredSurface turned = wall_at(0, 2);
     for (auto& [a, b, c] : turned.surface.triangles) std::swap(b, c);
     Image one(kSize, kSize), other(kSize, kSize);
-    draw_sheets(one, {}, wall_at(0, 2), {}, view_of({5, 2, 1}), optics);
-    draw_sheets(other, {}, turned, {}, view_of({5, 2, 1}), optics);
+    draw_shells(one, {}, wall_at(0, 2), {}, view_of({5, 2, 1}), optics);
+    draw_shells(other, {}, turned, {}, view_of({5, 2, 1}), optics);
     for (std::size_t i = 0; i < one.rgba.size(); ++i) ASSERT_NEAR(one.rgba[i], other.rgba[i], 1e-6);
 }
 
-TEST(DrawSheets, GiveTheirDepthAndAreCut) {
+TEST(DrawShells, GiveTheirDepthAndAreCut) {
     const View view = view_of({6, .5, .5});
     Image image(kSize, kSize);
     std::vector<float> depth(static_cast<std::size_t>(kSize * kSize), 1e9F);
-    draw_sheets(image, depth, wall_at(1, 1), {}, view, grey_to_white());
+    draw_shells(image, depth, wall_at(1, 1), {}, view, grey_to_white());
     EXPECT_NEAR(depth[static_cast<std::size_t>(kSize * (kSize / 2) + kSize / 2)], 5, 1e-5);
     Image cut(kSize, kSize);
-    draw_sheets(cut, {}, wall_at(1, 1), {}, view, grey_to_white(), Shading{}, 2, {.planes = {{Vec3(.9, 0, 0), Vec3(1, 0, 0)}}});
+    draw_shells(cut, {}, wall_at(1, 1), {}, view, grey_to_white(),
+                {.samples = 2, .clip = {.planes = {{Vec3(.9, 0, 0), Vec3(1, 0, 0)}}}});
     EXPECT_EQ(cut.rgba, Image(kSize, kSize).rgba);
 }
 
-TEST(DrawSheets, RefuseWhatDoesNotFit) {
+TEST(DrawShells, RefuseWhatDoesNotFit) {
     Image image(kSize, kSize), small(8, 8);
     ColoredSurface wall = wall_at(0, 1);
-    const auto draw = [&](Image& into) { draw_sheets(into, {}, wall, {}, view_of({5, 0, 0}), grey_to_white()); };
+    const auto draw = [&](Image& into) { draw_shells(into, {}, wall, {}, view_of({5, 0, 0}), grey_to_white()); };
     test::expect_error(ErrorCode::InvalidInput, "not of one size", [&] { draw(small); });
     wall.values.pop_back();
     test::expect_error(ErrorCode::InvalidInput, "3 values for 4 points", [&] { draw(image); });
 }
 
-}  // namespace draw_sheets_test
+}  // namespace draw_shells_test
 }  // namespace subvol
