@@ -8,6 +8,7 @@
 #include "subvol/detail/near_name.h"
 #include "subvol/error.h"
 #include "text.h"
+#include "vdb_functions.h"
 
 namespace subvol::cli {
 namespace {
@@ -36,20 +37,20 @@ VdbGrid select_grid(const VdbContents& contents, const std::optional<std::string
     if (!name) {
         for (const char* kind : {"float", "vector"}) {
             for (const VdbGrid& grid : grids) {
-                if (grid.report().kind == kind) return scalar_of(grid, std::nullopt, grid.report().name);
+                if (grid.report().kind == kind) return vdb().scalar_of(grid, std::nullopt, grid.report().name);
             }
         }
         throw Error(ErrorCode::InvalidInput, "holds no grid of floats or vectors", input, held(contents));
     }
     for (const VdbGrid& grid : grids) {
-        if (grid.report().name == *name) return scalar_of(grid, std::nullopt, *name);
+        if (grid.report().name == *name) return vdb().scalar_of(grid, std::nullopt, *name);
     }
     const std::size_t dot = name->rfind('.');
     if (dot != std::string::npos && dot + 2 == name->size()) {
         const std::size_t letter = std::string("xyz012").find(name->back());
         for (const VdbGrid& grid : grids) {
             if (letter != std::string::npos && grid.report().kind == "vector" && grid.report().name == name->substr(0, dot))
-                return scalar_of(grid, static_cast<int>(letter % 3), *name);
+                return vdb().scalar_of(grid, static_cast<int>(letter % 3), *name);
         }
     }
     std::vector<std::string> names;
@@ -64,7 +65,7 @@ WithFacts<VdbGrid> load_grid(const std::string& input, const CommonOptions& opti
     if (!is_vdb_file(input)) {
         throw Error(ErrorCode::InvalidInput, "is not a grid", input, "a .vdb file, as `subvol vdb` makes of a mesh");
     }
-    VdbGrid found = select_grid(facts.timed(progress, "read", [&] { return read_vdb_contents(input); }), options.field, input);
+    VdbGrid found = select_grid(facts.timed(progress, "read", [&] { return vdb().read_vdb_contents(input); }), options.field, input);
     const GridReport& grid = found.report();
     if (grid.active_voxels == 0) throw Error(ErrorCode::InvalidInput, "the grid has no active voxels", input);
     facts["field"] = grid.name;

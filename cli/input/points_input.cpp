@@ -10,6 +10,7 @@
 #include "subvol/points_io.h"
 #include "subvol/vdb_points.h"
 #include "text.h"
+#include "vdb_functions.h"
 
 namespace subvol::cli {
 namespace {
@@ -34,14 +35,14 @@ void refuse_sampling(const CLI::App& app) {
 }  // namespace
 
 bool holds_points(const std::string& input) {
-    return is_points_file(input) || (is_vdb_file(input) && holds_vdb_points(input));
+    return is_points_file(input) || (is_vdb_file(input) && vdb().holds_vdb_points(input));
 }
 
 WithFacts<RbfVolume> read_points_input(const std::string& input, Progress* progress) {
     Facts facts;
     facts["input"] = input;
     RbfVolume volume =
-        facts.timed(progress, "read", [&] { return is_vdb_file(input) ? read_vdb_points(input) : read_points(input); });
+        facts.timed(progress, "read", [&] { return is_vdb_file(input) ? vdb().read_vdb_points(input) : read_points(input); });
     facts["points"] = volume.size();
     if (volume.size() == 0) throw Error(ErrorCode::InvalidInput, "there are no points in it", input);
     return {std::move(volume), std::move(facts)};

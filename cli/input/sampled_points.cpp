@@ -9,6 +9,7 @@
 #include "subvol/vdb_sample.h"
 #include "subvol/visible_points.h"
 #include "text.h"
+#include "vdb_functions.h"
 
 namespace subvol::cli {
 namespace {
@@ -124,7 +125,7 @@ WithFacts<RbfVolume> sample_reported(const VdbGrid& grid, const SampleArguments&
     refuse_options(app, kOfMeshesOnly, "needs a mesh; this is a grid of voxels");
     const SampleOptions options = arguments.options(box_of(grid.report()), {});
     VoxelSampleResult sampled = facts.timed(progress, "sample", [&] {
-        return sample_rbf_points(grid, {.spacing_world = options.spacing_world,
+        return vdb().sample_rbf_points(grid, {.spacing_world = options.spacing_world,
                                         .correction = options.correction,
                                         .kernel = options.kernel,
                                         .progress = progress});

@@ -23,8 +23,9 @@
 
 namespace subvol::cli {
 
-/// The calls of subvol::vdb that the command makes, as its module has them; their headers say what they do. They throw what
-/// those throw: the type `Error` exists twice, in the command and in the module, but with one name, and by that it is caught.
+/// The calls of subvol::vdb that the command makes, as its module has them: `vdb().rasterize(…)`. Their headers say what they
+/// do. They throw what those throw: the type `Error` exists twice, in the command and in the module, but with one name, and by
+/// that it is caught.
 struct VdbFunctions {
     std::vector<VdbGrid> (*rasterize)(const HexMesh&, std::span<const std::string>, const RasterizeOptions&);
     void (*check_voxels)(const HexMesh&, const RasterizeOptions&);
@@ -63,11 +64,12 @@ struct VdbFunctions {
     std::uint64_t (*hash_of_grid)(const VdbGrid&);
 
     GridDifference (*compare_voxels)(const VdbGrid&, const VdbGrid&);
-    const GridReport& (*report)(const VdbGrid&);
-    std::optional<double> (*value)(const VdbGrid&, const Vec3&);
-    std::unique_ptr<Voxels> (*voxels)(const VdbGrid&);
-    void (*free)(detail::VdbData*);
     void (*remove_unfinished_files)() noexcept;
 };
+
+/// The module, which the first call loads: OpenVDB's symbols take longer to resolve than the command takes to start.
+///
+/// throws: Error(MissingCapability) if it is not there
+[[nodiscard]] const VdbFunctions& vdb();
 
 }  // namespace subvol::cli

@@ -41,10 +41,6 @@ const subvol::cli::VdbFunctions* subvol_openvdb() {
         .grids_from_bytes = &detail::grids_from_bytes,
         .hash_of_grid = &hash_of_grid,
         .compare_voxels = &compare_voxels,
-        .report = [](const VdbGrid& grid) -> const GridReport& { return grid.report(); },
-        .value = [](const VdbGrid& grid, const Vec3& x) { return grid.value(x); },
-        .voxels = [](const VdbGrid& grid) { return grid.voxels(); },
-        .free = [](detail::VdbData* data) { detail::FreeVdbData()(data); },
         .remove_unfinished_files = &detail::remove_unfinished_files,
     };
     return &functions;

@@ -14,6 +14,7 @@
 #include "subvol/rasterize_block.h"
 #include "text.h"
 #include "vdb_parts.h"
+#include "vdb_functions.h"
 
 namespace subvol::cli {
 namespace {
@@ -170,7 +171,7 @@ public:
             options.limit = &limit;
             converged_ = converged_ && limit.converged;
         }
-        return rasterize_block(mesh, names_of(mesh), options, block);
+        return vdb().rasterize_block(mesh, names_of(mesh), options, block);
     }
 
     [[nodiscard]] bool converged() const { return converged_; }
@@ -246,7 +247,7 @@ std::vector<VdbGrid> empty_grids(const BricksToVoxels& what) {
     RasterizeOptions options = what.options;
     options.refine = {.levels = 0};
     options.on_limit = false;
-    return rasterize_block(mesh, names_of(mesh), options, {{1, 1, 1}, {1, 1, 1}}).grids;
+    return vdb().rasterize_block(mesh, names_of(mesh), options, {{1, 1, 1}, {1, 1, 1}}).grids;
 }
 
 }  // namespace
@@ -259,7 +260,7 @@ WithFacts<std::vector<VdbGrid>> grids_of_bricks(const BricksToVoxels& what, std:
         for (std::size_t g = 0; g < made.size(); ++g) of_grids.at(g).push_back(std::move(made[g]));
     });
     std::vector<VdbGrid> joined;
-    for (std::vector<VdbGrid>& blocks : of_grids) joined.push_back(join_grids(std::move(blocks)));
+    for (std::vector<VdbGrid>& blocks : of_grids) joined.push_back(vdb().join_grids(std::move(blocks)));
     return {std::move(joined), std::move(facts)};
 }
 

@@ -7,6 +7,7 @@
 #include "subvol/error.h"
 #include "subvol/spread_vectors.h"
 #include "text.h"
+#include "vdb_functions.h"
 
 namespace subvol::cli {
 namespace {
@@ -38,7 +39,7 @@ Facts spread_velocity(int frame, double frames_per_second, std::vector<VdbGrid>&
                         kMostVelocityLayers, " voxels beyond the volume, and blur is cut off there"));
     }
     const int layers = static_cast<int>(std::min(std::ceil(way_voxels) + 1, double(kMostVelocityLayers)));
-    facts.timed(progress, "spread", [&] { *velocity = spread_vectors(*velocity, layers); });
+    facts.timed(progress, "spread", [&] { *velocity = vdb().spread_vectors(*velocity, layers); });
     return facts;
 }
 

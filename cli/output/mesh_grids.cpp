@@ -16,6 +16,7 @@
 #include "subvol/version.h"
 #include "text.h"
 #include "voxels_of_points.h"
+#include "vdb_functions.h"
 
 namespace subvol::cli {
 namespace {
@@ -44,7 +45,7 @@ WithFacts<LimitCells> reported_limit(const HexMesh& mesh, const RefineOptions& r
 MeshGrids::MeshGrids(std::string input, const VdbArguments& asked, RefineArguments& refine)
     : input_(std::move(input)), asked_(asked), refine_(refine), fields_(asked) {
     if (!is_bricks_input(input_)) tets_ = TetRefinement(refine);
-    if (!asked.like.empty()) like_grids_ = read_vdb(asked.like);
+    if (!asked.like.empty()) like_grids_ = vdb().read_vdb(asked.like);
 }
 
 WithFacts<HexMesh> MeshGrids::load(const std::string& input, const CommonOptions& options, Progress* progress) const {
@@ -86,7 +87,7 @@ WithFacts<RasterizeOptions> MeshGrids::set_up(const HexMesh& mesh, Progress* pro
     RasterizeOptions options = this->options(progress);
     options.voxel_size_world = voxel_size;
     options.level_set = asked_.level_set();
-    check_voxels(mesh, options);
+    vdb().check_voxels(mesh, options);
     RefineOptions refinement = refine_.options(0, progress);
     int levels = refinement.levels;
     if (refine_.levels) {
@@ -113,7 +114,7 @@ WithFacts<std::vector<VdbGrid>> MeshGrids::make(const HexMesh& mesh, const Raste
     if (asked_.from == "points") {
         made = kernel_sums(mesh, options, asked_.per_edge);
     } else {
-        made.value = made.facts.timed(options.progress, "rasterize", [&] { return rasterize(mesh, names_of(mesh), options); });
+        made.value = made.facts.timed(options.progress, "rasterize", [&] { return vdb().rasterize(mesh, names_of(mesh), options); });
     }
     fields_.clamp(mesh, made.value);
     return made;
@@ -128,7 +129,7 @@ WithFacts<std::vector<GridErrorFigures>> MeshGrids::add_errors(const HexMesh& me
         const Attribute* field = mesh.find_attribute(grids[g].report().name);
         if (field == nullptr || field->channels != 1) continue;
         GridError error = result.facts.timed(options.progress, "error", [&] {
-            return grid_error(grids[g], mesh, field->name,
+            return vdb().grid_error(grids[g], mesh, field->name,
                               {.scheme = options.refine.scheme, .half = asked_.half, .progress = options.progress});
         });
         result.value.push_back({g, error.max, error.rms});

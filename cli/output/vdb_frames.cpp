@@ -10,6 +10,7 @@
 #include "subvol/detail/number_text.h"
 #include "subvol/mesh_motion.h"
 #include "text.h"
+#include "vdb_functions.h"
 
 namespace subvol::cli {
 namespace {
@@ -30,7 +31,7 @@ FrameWriter::FrameWriter(MeshGrids& maker, const FramesToGrids& frames, const Vd
     const int levels = options_.limit ? finest_level(*options_.limit) : options_.refine.levels;
     if (!options_.refine.scheme.crease_angle_deg &&
         std::ldexp(static_cast<double>(first_.cells.size()), 3 * levels) <= kMostCellsOfTables) {
-        tables_ = facts_.timed(progress, "tables", [&] { return rasterization_tables(first_, options_); });
+        tables_ = facts_.timed(progress, "tables", [&] { return vdb().rasterization_tables(first_, options_); });
     }
 }
 
@@ -52,7 +53,7 @@ WithFacts<Facts> FrameWriter::write(int frame) {
     if (velocity) add_velocity(std::move(*velocity), mesh, frames_.times.empty() ? frames_per_second : 1);
     LimitCells limit;  // with tables the first limit serves all meshes with the same cells
     if (options_.limit && !options.tables && (asked_.velocity || frame > frames_.all.first)) {
-        check_voxels(mesh, options);
+        vdb().check_voxels(mesh, options);
         limit = facts.unpack(reported_limit(mesh, options.refine, options.voxel_size_world));
         options.limit = &limit;
     }

@@ -12,6 +12,7 @@
 #include "subvol/mesh_report.h"
 #include "subvol/nanovdb.h"
 #include "text.h"
+#include "vdb_functions.h"
 #include "vdb_parts.h"
 
 namespace subvol::cli {
@@ -51,8 +52,8 @@ FactValue::List about(std::span<const VdbGrid> grids, const VdbOutput& output) {
 }
 
 void write_files(std::span<const VdbGrid> grids, const VdbOutput& output) {
-    write_vdb(output.path, grids, output.compression);
-    if (output.nano) write_nanovdb(std::filesystem::path(output.path).replace_extension(".nvdb"), grids);
+    vdb().write_vdb(output.path, grids, output.compression);
+    if (output.nano) vdb().write_nanovdb(std::filesystem::path(output.path).replace_extension(".nvdb"), grids);
 }
 
 }  // namespace
@@ -121,7 +122,7 @@ Facts write_parts(const std::string& input, const HexMesh& mesh, std::span<const
     // The parts are written between the stages of the rasterizer, whose own time is what is left.
     const detail::Stopwatch whole;
     double writing = 0;
-    rasterize_parts(mesh, fields, options, output.memory_bytes, [&](GridPart part) {
+    vdb().rasterize_parts(mesh, fields, options, output.memory_bytes, [&](GridPart part) {
         prepare(part.grids);
         voxel_size_world = part.grids.front().report().voxel_size_world;
         Facts grids;

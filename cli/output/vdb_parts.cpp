@@ -17,6 +17,7 @@
 #include "subvol/vdb_contents.h"
 #include "subvol/version.h"
 #include "text.h"
+#include "vdb_functions.h"
 
 namespace subvol::cli {
 namespace {
@@ -85,7 +86,7 @@ VdbParts::VdbParts(const VdbOutput& output, std::uint64_t memory_bytes)
 void VdbParts::write(std::span<const VdbGrid> grids, std::size_t number, const Json& more) {
     const fs::path path(output_.path);
     const std::string name = text(path.stem().string(), "_", std::setw(4), std::setfill('0'), number, ".vdb");
-    detail::write_vdb(files_.emplace_back(path.parent_path() / name), name, grids, output_.compression);
+    vdb().write_vdb_file(files_.emplace_back(path.parent_path() / name), name, grids, output_.compression);
     const GridReport& first = grids.front().report();
     active_voxels_ += first.active_voxels;
     for (const VdbGrid& grid : grids) bytes_ += grid.report().bytes;
@@ -150,12 +151,12 @@ void VdbParts::warn(bool whole, Facts& facts) const {
 std::vector<VdbGrid> VdbParts::joined() const {
     std::vector<std::vector<VdbGrid>> of_grids;  // of each grid its parts
     for (const detail::AtomicFile& file : files_) {
-        std::vector<VdbGrid> read = read_vdb_contents(file.path().string()).grids;
+        std::vector<VdbGrid> read = vdb().read_vdb_contents(file.path().string()).grids;
         of_grids.resize(std::max(of_grids.size(), read.size()));
         for (std::size_t g = 0; g < read.size(); ++g) of_grids[g].push_back(std::move(read[g]));
     }
     std::vector<VdbGrid> grids;
-    for (std::vector<VdbGrid>& parts : of_grids) grids.push_back(join_grids(std::move(parts)));
+    for (std::vector<VdbGrid>& parts : of_grids) grids.push_back(vdb().join_grids(std::move(parts)));
     return grids;
 }
 

@@ -5,6 +5,7 @@
 #include "subvol/error.h"
 #include "subvol/rbf_field.h"
 #include "subvol/sample.h"
+#include "vdb_functions.h"
 
 namespace subvol::cli {
 
@@ -17,7 +18,7 @@ WithFacts<std::vector<VdbGrid>> kernel_sums(const HexMesh& mesh, const Rasterize
         }
         names.push_back(field.name);
     }
-    auto grids = facts.timed(options.progress, "rasterize", [&] { return rasterize(mesh, names, options); });
+    auto grids = facts.timed(options.progress, "rasterize", [&] { return vdb().rasterize(mesh, names, options); });
     const SampleOptions sampling{.scheme = options.refine.scheme, .per_edge = per_edge};
     const RbfVolume volume = facts.timed(options.progress, "sample", [&] { return sample_rbf_points(mesh, sampling).volume; });
     facts["points"] = volume.size();
@@ -25,9 +26,9 @@ WithFacts<std::vector<VdbGrid>> kernel_sums(const HexMesh& mesh, const Rasterize
     for (std::size_t f = 0; f < names.size(); ++f) {
         VdbGrid sums = facts.timed(options.progress, "kernel sums", [&] {
             const RbfField field(volume, {.channel = f, .least_weight = 0});
-            return sample_at_voxels(grids[f], names[f], [&](std::span<const Vec3> x) { return field.evaluate(x); });
+            return vdb().sample_at_voxels(grids[f], names[f], [&](std::span<const Vec3> x) { return field.evaluate(x); });
         });
-        const GridDifference difference = compare_voxels(grids[f], sums);
+        const GridDifference difference = vdb().compare_voxels(grids[f], sums);
         Facts against;
         against["name"] = names[f];
         against["l2"] = difference.rms;
@@ -53,7 +54,7 @@ WithFacts<std::vector<VdbGrid>> grids_of_points(const std::string& input, std::v
     if (fields.empty()) fields.push_back(common.field.value_or(volume.channels.front().name));
     std::vector<std::size_t> channels;
     for (const std::string& field : fields) channels.push_back(find_channel(volume, field, input));
-    auto grids = facts.timed(options.progress, "kernel sums", [&] { return rasterize_points(volume, channels, options); });
+    auto grids = facts.timed(options.progress, "kernel sums", [&] { return vdb().rasterize_points(volume, channels, options); });
     return {std::move(grids), std::move(facts)};
 }
 

@@ -8,6 +8,7 @@
 #include "subvol/field_expression.h"
 #include "subvol/field_range.h"
 #include "subvol/vdb_contents.h"
+#include "vdb_functions.h"
 
 namespace subvol::cli {
 
@@ -48,10 +49,10 @@ void WrittenFields::clamp(const HexMesh& mesh, std::vector<VdbGrid>& grids) cons
     for (VdbGrid& grid : grids) {
         const Attribute* field = mesh.find_attribute(grid.report().name);
         if (field == nullptr || field->name == kVelocity) continue;
-        if (clamp_) clamp_voxels(grid, range_of(*field));
+        if (clamp_) vdb().clamp_voxels(grid, range_of(*field));
         for (const Remap& remap : remaps_) {
             if (maps(remap, *field, mesh))
-                clamp_voxels(grid, {{std::min(remap.to_low, remap.to_high)}, {std::max(remap.to_low, remap.to_high)}});
+                vdb().clamp_voxels(grid, {{std::min(remap.to_low, remap.to_high)}, {std::max(remap.to_low, remap.to_high)}});
         }
     }
 }

@@ -18,6 +18,7 @@
 #include "subvol/reduce.h"
 #include "subvol/sample.h"
 #include "subvol/vdb_grid.h"
+#include "vdb_functions.h"
 
 namespace subvol::cli {
 namespace {
@@ -109,7 +110,7 @@ CaseResult voxels_case(const StudyCase& of, const HexMesh& mesh) {
     result.metrics["max"] = errors.linf;
     result.metrics["uncovered"] = static_cast<double>(errors.uncovered);
     const detail::TemporaryFile file("grid.vdb");
-    write_vdb(file.path(), std::span(&grid, 1));
+    vdb().write_vdb(file.path(), std::span(&grid, 1), VdbCompression::Blosc);
     result.metrics["file_bytes"] = static_cast<double>(std::filesystem::file_size(file.path()));
     return result;
 }

@@ -12,6 +12,7 @@
 #include "subvol/model.h"
 #include "subvol/rasterize.h"
 #include "subvol/refine.h"
+#include "vdb_functions.h"
 
 namespace subvol::cli {
 namespace {
@@ -65,7 +66,7 @@ VdbGrid study_grid(const StudyCase& of, const HexMesh& mesh, CaseResult& result)
     const double voxel = std::max({size.x, size.y, size.z}) / of.whole("resolution");
     const LimitCells limit = limit_for_voxels(mesh, {}, voxel);
     const std::vector<std::string> names{mesh.attributes.front().name};
-    auto grids = rasterize(mesh, names, {.voxel_size_world = voxel, .limit = &limit, .half = of.flag("half")});
+    auto grids = vdb().rasterize(mesh, names, {.voxel_size_world = voxel, .limit = &limit, .half = of.flag("half")});
     const GridReport& about = grids.front().report();
     result.metrics["voxels"] = static_cast<double>(about.active_voxels);
     result.metrics["grid_bytes"] = static_cast<double>(about.bytes);

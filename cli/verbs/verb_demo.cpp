@@ -21,6 +21,7 @@
 #include "subvol/vdb_grid.h"
 #include "subvol/version.h"
 #include "text.h"
+#include "vdb_functions.h"
 #include "verb.h"
 
 namespace subvol::cli {
@@ -160,7 +161,8 @@ private:
     static void write_grid(const HexMesh& mesh, const std::filesystem::path& path, Report& stages) {
         const std::vector<std::string> field{mesh.attributes.front().name};
         stages.timed("grid", [&] {
-            write_vdb(path, rasterize(mesh, field, {.resolution = kGridResolution, .progress = stages.progress()}));
+            vdb().write_vdb(path, vdb().rasterize(mesh, field, {.resolution = kGridResolution, .progress = stages.progress()}),
+                            VdbCompression::Blosc);
         });
     }
 

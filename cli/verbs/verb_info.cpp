@@ -24,6 +24,7 @@
 #include "subvol/vdb_grid.h"
 #include "tet_refinement.h"
 #include "text.h"
+#include "vdb_functions.h"
 #include "verb.h"
 
 namespace subvol::cli {
@@ -138,7 +139,7 @@ private:
             const RbfVolume volume = report.unpack(read_points_input(input_, report.progress()));
             for (const RbfChannel& channel : volume.channels) list(channel.name);
         } else if (is_vdb_file(input_)) {
-            for (const VdbGrid& grid : read_vdb(input_)) list(grid.report().name);
+            for (const VdbGrid& grid : vdb().read_vdb(input_)) list(grid.report().name);
         } else {
             report["input"] = input_;
             const ReadResult read = report.unpack(read_input(input_, common(), report.progress()));
@@ -311,7 +312,7 @@ private:
 
     void describe_grids(Report& report) {
         report["input"] = input_;
-        const VdbContents contents = report.timed("read", [&] { return read_vdb_contents(input_); });
+        const VdbContents contents = report.timed("read", [&] { return vdb().read_vdb_contents(input_); });
         if (common().field) (void)select_grid(contents, common().field, input_);  // refuses what does not exist
         report["grids"] = Json::array();
         for (const VdbGrid& grid : contents.grids) {
@@ -325,7 +326,7 @@ private:
                                        {"min", about.min},
                                        {"max", about.max},
                                        {"bytes", about.bytes},
-                                       {"hash", detail::hex_digits(hash_of_grid(grid))}});
+                                       {"hash", detail::hex_digits(vdb().hash_of_grid(grid))}});
         }
         for (const auto& [name, type] : contents.others) {
             if (shows(name)) report["grids"].push_back({{"name", name}, {"kind", type}});
@@ -352,9 +353,9 @@ private:
         for (const VdbGrid& grid : contents.grids) {
             const std::string& name = grid.report().name;
             if (grid.report().kind == "vector") {
-                for (int c = 0; c < 3; ++c) scalars.push_back(scalar_of(grid, c, name + "." + "xyz"[c]));
+                for (int c = 0; c < 3; ++c) scalars.push_back(vdb().scalar_of(grid, c, name + "." + "xyz"[c]));
             } else {
-                scalars.push_back(scalar_of(grid, std::nullopt, name));
+                scalars.push_back(vdb().scalar_of(grid, std::nullopt, name));
             }
         }
         return scalars;

@@ -26,6 +26,7 @@
 #include "subvol/vdb_points.h"
 #include "surface_output.h"
 #include "text.h"
+#include "vdb_functions.h"
 #include "vdb_output.h"
 #include "verb.h"
 
@@ -96,18 +97,18 @@ private:
         std::vector<std::vector<VdbGrid>> read;
         report.timed("read", [&] {
             for (const std::string& part : parts_) {
-                VdbContents contents = read_vdb_contents(part);
+                VdbContents contents = vdb().read_vdb_contents(part);
                 if (contents.grids.empty()) refuse_whole(part);
                 read.push_back(std::move(contents.grids));
             }
         });
         std::size_t at = 0;
         const std::vector<std::size_t> order =
-            ordered([&](const std::string&) { return text_of_grid(read[at++].front(), kPartNote); });
+            ordered([&](const std::string&) { return vdb().text_of_grid(read[at++].front(), kPartNote); });
         std::vector<VdbGrid> grids = joined(std::move(read), order, parts_, report);
         for (VdbGrid& grid : grids) {
-            set_text_of_grid(grid, kPartNote, {});
-            store_in_half(grid, how("half", false));
+            vdb().set_text_of_grid(grid, kPartNote, {});
+            vdb().store_in_half(grid, how("half", false));
         }
         const auto compression = named<VdbCompression>(how("compression", std::string("blosc")), "compression");
         report.merge(write_reported(grids, {.path = output_, .compression = compression}, report.progress()));
@@ -127,7 +128,7 @@ private:
                         throw Error(ErrorCode::InvalidInput, "has other grids than other parts", names[p]);
                     of_parts.push_back(std::move(of_files[p][g]));
                 }
-                grids.push_back(join_grids(std::move(of_parts)));
+                grids.push_back(vdb().join_grids(std::move(of_parts)));
             }
             return grids;
         });
@@ -159,7 +160,7 @@ private:
         report["parts"] = names.size();
         std::vector<std::vector<VdbGrid>> read;
         report.timed("read", [&] {
-            for (const std::string& name : names) read.push_back(read_vdb_contents(name).grids);
+            for (const std::string& name : names) read.push_back(vdb().read_vdb_contents(name).grids);
         });
         if (read.front().empty()) throw Error(ErrorCode::InvalidInput, "has no grids", names.front());
         report.merge(write_reported(joined(std::move(read), order, names, report), {.path = output_}, report.progress()));
@@ -186,7 +187,7 @@ private:
         const PointsWriteOptions options{.ascii = how("ascii", false), .splats = how("splats", false), .up = *up};
         report.timed("write", [&] {
             if (output_.ends_with(".vdb")) {
-                write_vdb_points(output_, volume);
+                vdb().write_vdb_points(output_, volume, {});
             } else if (output_.ends_with(".svk")) {
                 static_cast<void>(write_kernel_file(output_, volume, report.progress()));
             } else {

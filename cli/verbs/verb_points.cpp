@@ -31,6 +31,7 @@
 #include "subvol/vdb_points.h"
 #include "tet_refinement.h"
 #include "text.h"
+#include "vdb_functions.h"
 #include "verb.h"
 #include "wavelet_output.h"
 
@@ -218,7 +219,7 @@ private:
     void write(const std::string& path, const RbfVolume& volume, Report& report) const {
         report.timed("write", [&] {
             if (path.ends_with(".vdb")) {
-                write_vdb_points(path, volume);
+                vdb().write_vdb_points(path, volume, {});
             } else if (path.ends_with(".svk")) {
                 const KernelFileContents written = write_kernel_file(path, volume, report.progress());
                 report["levels"] = written.levels;

@@ -23,6 +23,7 @@
 #include "vdb_frames.h"
 #include "verb.h"
 #include "voxels_of_points.h"
+#include "vdb_functions.h"
 
 namespace subvol::cli {
 namespace {
@@ -64,7 +65,7 @@ public:
         if (const auto one = asked_.level_set()) output_.level_set = one->name;
         check_choice("--from", asked_.from, {"mesh", "points"});
         check_choice("--up", asked_.up, {"z", "y"});
-        if (asked_.nano && !has_nanovdb()) {
+        if (asked_.nano && !vdb().has_nanovdb()) {
             throw Error(ErrorCode::MissingCapability, "this build has no NanoVDB", "--nano",
                         "configure again where libnanovdb-dev is installed");
         }
@@ -163,7 +164,7 @@ private:
         const HexMesh mesh = report.unpack(maker.load(input_, common(), report.progress()));
         const RasterizeOptions options = report.unpack(maker.set_up(mesh, report.progress()));
         std::vector<VdbGrid> grids =
-            report.timed("rasterize", [&] { return rasterize_share(mesh, names_of(mesh), options, share.part, share.of); });
+            report.timed("rasterize", [&] { return vdb().rasterize_share(mesh, names_of(mesh), options, share.part, share.of); });
         maker.fields().clamp(mesh, grids);
         grids = of_all_shares(std::move(grids), ranks(), note_of(share), asked_.half, output_, report);
         if (grids.empty()) return;

@@ -51,48 +51,33 @@ void set_kind_and_range(const openvdb::GridBase& grid, GridReport& report) {
 
 }  // namespace
 
-VdbGrid detail::VdbData::wrap(VdbData data) {
-    return VdbGrid(VdbDataPointer(new VdbData(std::move(data))));
-}
-
-void detail::FreeVdbData::operator()(VdbData* data) const noexcept {
-    delete data;
+detail::VdbData::VdbData(const openvdb::GridBase::Ptr& from)
+    : grid(from),
+      floats(openvdb::gridPtrCast<openvdb::FloatGrid>(from)),
+      report_{.name = printable(grid->getName()),
+              .kind = {},
+              .active_voxels = grid->activeVoxelCount(),
+              .voxel_size_world = grid->voxelSize()[0],
+              .bytes = grid->memUsage()} {
+    set_kind_and_range(*grid, report_);
+    if (report_.active_voxels == 0) return;
+    const openvdb::CoordBBox voxels = grid->evalActiveVoxelBoundingBox();
+    const auto box = grid->transform().indexToWorld(openvdb::BBoxd(voxels.min().asVec3d(), voxels.max().asVec3d()));
+    report_.bounds = {{box.min()[0], box.min()[1], box.min()[2]}, {box.max()[0], box.max()[1], box.max()[2]}};
 }
 
 VdbGrid detail::make_vdb_grid(const openvdb::GridBase::Ptr& grid) {
-    GridReport report{.name = printable(grid->getName()),
-                      .kind = {},
-                      .active_voxels = grid->activeVoxelCount(),
-                      .voxel_size_world = grid->voxelSize()[0],
-                      .bytes = grid->memUsage()};
-    set_kind_and_range(*grid, report);
-    if (report.active_voxels > 0) {
-        const openvdb::CoordBBox voxels = grid->evalActiveVoxelBoundingBox();
-        const auto box = grid->transform().indexToWorld(openvdb::BBoxd(voxels.min().asVec3d(), voxels.max().asVec3d()));
-        report.bounds = {{box.min()[0], box.min()[1], box.min()[2]}, {box.max()[0], box.max()[1], box.max()[2]}};
-    }
-    auto floats = openvdb::gridPtrCast<openvdb::FloatGrid>(grid);
-    return VdbData::wrap({grid, std::move(floats), std::move(report)});
+    return VdbGrid(std::make_unique<VdbData>(grid));
 }
 
-VdbGrid::VdbGrid(VdbDataPointer data) : data_(std::move(data)) {
-}
-VdbGrid::~VdbGrid() = default;
-VdbGrid::VdbGrid(VdbGrid&&) noexcept = default;
-VdbGrid& VdbGrid::operator=(VdbGrid&&) noexcept = default;
-
-const GridReport& VdbGrid::report() const {
-    return data_->report;
-}
-
-std::optional<double> VdbGrid::value(const Vec3& x) const {
-    if (!data_->floats) return std::nullopt;
-    const auto index = data_->grid->transform().worldToIndex({x.x, x.y, x.z});
+std::optional<double> detail::VdbData::value(const Vec3& x) const {
+    if (!floats) return std::nullopt;
+    const auto index = grid->transform().worldToIndex({x.x, x.y, x.z});
     constexpr double kReach = 1 << 30;
     if (!(std::max({std::abs(index[0]), std::abs(index[1]), std::abs(index[2])}) < kReach)) return std::nullopt;
 
     // Not registered with the tree, hence cheap to make; safe in many threads as long as the tree does not change.
-    const openvdb::FloatGrid::ConstUnsafeAccessor accessor(data_->floats->constTree());
+    const openvdb::FloatGrid::ConstUnsafeAccessor accessor(floats->constTree());
     if (!accessor.isValueOn(openvdb::Coord::round(index))) return std::nullopt;
     const auto lower = openvdb::Coord::floor(index);
     const auto beyond = index - lower.asVec3d();

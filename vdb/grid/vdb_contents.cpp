@@ -50,7 +50,7 @@ VdbGrid scalar_of(const VdbGrid& grid, std::optional<int> component, const std::
     const VdbData& data = VdbData::of(grid);
     const auto* vectors = dynamic_cast<const openvdb::Vec3SGrid*>(data.grid.get());
     if (component && (vectors == nullptr || *component < 0 || *component > 2))
-        throw Error(ErrorCode::InvalidInput, "has no component " + std::to_string(*component), "grid " + data.report.name);
+        throw Error(ErrorCode::InvalidInput, "has no component " + std::to_string(*component), "grid " + data.report().name);
     openvdb::FloatGrid::Ptr floats;
     if (data.floats) {
         floats = openvdb::gridPtrCast<openvdb::FloatGrid>(data.grid->copyGrid());
@@ -62,7 +62,7 @@ VdbGrid scalar_of(const VdbGrid& grid, std::optional<int> component, const std::
     } else if (const auto* mask = dynamic_cast<const openvdb::MaskGrid*>(data.grid.get())) {
         floats = converted(*mask, [](auto&, const openvdb::Coord&) { return 1.0f; });
     } else {
-        throw Error(ErrorCode::InvalidInput, "cannot be read as floats", "grid " + data.report.name);
+        throw Error(ErrorCode::InvalidInput, "cannot be read as floats", "grid " + data.report().name);
     }
     floats->setName(name);
     return make_vdb_grid(floats);
@@ -72,7 +72,7 @@ void clamp_voxels(VdbGrid& grid, const FieldRange& range) {
     const VdbData& data = VdbData::of(grid);
     const auto check = [&](std::size_t components) {
         if (range.min.size() == components && range.max.size() == components) return;
-        throw Error(ErrorCode::InvalidInput, "has another number of components than the range", "grid " + data.report.name);
+        throw Error(ErrorCode::InvalidInput, "has another number of components than the range", "grid " + data.report().name);
     };
     if (data.floats) {
         check(1);

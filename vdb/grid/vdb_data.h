@@ -8,13 +8,21 @@
 namespace subvol::detail {
 
 /// What a VdbGrid holds. floats: the same grid if it is one of floats, else null
-struct VdbData {
+class VdbData : public GridData {
+public:
+    explicit VdbData(const openvdb::GridBase::Ptr& from);
+
+    [[nodiscard]] static const VdbData& of(const VdbGrid& grid) { return static_cast<const VdbData&>(*grid.data_); }
+
+    [[nodiscard]] const GridReport& report() const override { return report_; }
+    [[nodiscard]] std::optional<double> value(const Vec3& x) const override;
+    [[nodiscard]] std::unique_ptr<Voxels> voxels() const override;
+
     openvdb::GridBase::Ptr grid;
     openvdb::FloatGrid::Ptr floats;
-    GridReport report;
 
-    [[nodiscard]] static const VdbData& of(const VdbGrid& grid) { return *grid.data_; }
-    [[nodiscard]] static VdbGrid wrap(VdbData data);
+private:
+    GridReport report_;
 };
 
 /// Wraps a grid and fills its report.

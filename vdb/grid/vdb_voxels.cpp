@@ -86,15 +86,15 @@ private:
 
 }  // namespace
 
-std::unique_ptr<Voxels> VdbGrid::voxels() const {
-    if (!data_->grid->transform().isLinear()) {
-        throw Error(ErrorCode::InvalidInput, "the grid's transform is not linear",
-                    "grid " + detail::in_quotes(data_->grid->getName()), "a linear transform, not a frustum");
+std::unique_ptr<Voxels> detail::VdbData::voxels() const {
+    if (!grid->transform().isLinear()) {
+        throw Error(ErrorCode::InvalidInput, "the grid's transform is not linear", "grid " + detail::in_quotes(grid->getName()),
+                    "a linear transform, not a frustum");
     }
-    if (!data_->floats) {
-        throw Error(ErrorCode::InvalidInput, "its voxels are not floats", "grid " + detail::in_quotes(data_->grid->getName()));
+    if (!floats) {
+        throw Error(ErrorCode::InvalidInput, "its voxels are not floats", "grid " + detail::in_quotes(grid->getName()));
     }
-    return std::make_unique<GridVoxels>(data_->floats);
+    return std::make_unique<GridVoxels>(floats);
 }
 
 }  // namespace subvol

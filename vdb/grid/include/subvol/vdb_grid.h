@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "subvol/names.h"
@@ -13,16 +14,6 @@
 #include "subvol/voxels.h"
 
 namespace subvol {
-
-namespace detail {
-struct VdbData;
-
-/// Frees what a VdbGrid holds. A program that loads this component only when it needs it has a definition of its own.
-struct FreeVdbData {
-    void operator()(VdbData* data) const noexcept;
-};
-using VdbDataPointer = std::unique_ptr<VdbData, FreeVdbData>;
-}  // namespace detail
 
 /// kind:     float, vector, integer, mask, or the name of another type
 /// min, max: of the active values; of a vector its length
@@ -36,30 +27,41 @@ struct GridReport {
     Box bounds{};  // of the active voxels' centres, world; empty if there are none
 };
 
+namespace detail {
+class VdbData;
+
+/// What a VdbGrid holds; `VdbData` has OpenVDB's grid. The calls are virtual, so that a program that loads this component only
+/// when it needs it links none of it.
+class GridData {
+public:
+    virtual ~GridData() = default;
+    [[nodiscard]] virtual const GridReport& report() const = 0;
+    [[nodiscard]] virtual std::optional<double> value(const Vec3& x) const = 0;
+    [[nodiscard]] virtual std::unique_ptr<Voxels> voxels() const = 0;
+};
+}  // namespace detail
+
 /// An OpenVDB grid; a grid of floats is a field that can be sampled. Grids made by this library have voxel centres at
 /// world = h·ijk, unless they copy the transform of another grid.
 class VdbGrid {
 public:
-    ~VdbGrid();
-    VdbGrid(VdbGrid&&) noexcept;
-    VdbGrid& operator=(VdbGrid&&) noexcept;
+    explicit VdbGrid(std::unique_ptr<detail::GridData> data) : data_(std::move(data)) {}
 
-    [[nodiscard]] const GridReport& report() const;
+    [[nodiscard]] const GridReport& report() const { return data_->report(); }
 
     /// Trilinear between the eight voxels about x; nothing where the voxel that contains x is inactive. Inactive neighbours are
     /// ignored: the weights of the active ones are normalised. Nothing if the voxels are not floats.
-    [[nodiscard]] std::optional<double> value(const Vec3& x) const;
+    [[nodiscard]] std::optional<double> value(const Vec3& x) const { return data_->value(x); }
 
     /// The voxels, for a renderer; they share the grid's memory and may outlive it.
     ///
     /// throws: Error(InvalidInput) if the transform is not linear, or the voxels are not floats
-    [[nodiscard]] std::unique_ptr<Voxels> voxels() const;
+    [[nodiscard]] std::unique_ptr<Voxels> voxels() const { return data_->voxels(); }
 
 private:
-    friend struct detail::VdbData;
-    explicit VdbGrid(detail::VdbDataPointer data);
+    friend class detail::VdbData;
 
-    detail::VdbDataPointer data_;
+    std::unique_ptr<detail::GridData> data_;
 };
 
 /// The differences of two grids of floats at the voxels that are active in both; NaN if there is none.
