@@ -10,7 +10,7 @@
 #include <csignal>
 #include <string_view>
 
-#include "subvol/detail/unfinished_files.h"
+#include "subvol/detail/atomic_file.h"
 
 namespace subvol::cli {
 namespace {

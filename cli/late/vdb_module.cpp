@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The module subvol_openvdb.so: subvol::vdb, and OpenVDB with it.
-#include "subvol/detail/unfinished_files.h"
+#include "subvol/detail/atomic_file.h"
 #include "subvol/version.h"
 #include "vdb_functions.h"
 

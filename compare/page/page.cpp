@@ -9,7 +9,6 @@
 #include "page_data.h"
 #include "page_kernels.h"
 #include "page_texts.h"
-#include "subvol/detail/html_policy.h"
 #include "subvol/detail/number_text.h"
 #include "subvol/detail/text_codes.h"
 #include "subvol/error.h"

@@ -5,7 +5,7 @@
 #include "canvas.h"
 #include "report_parts.h"
 #include "report_texts.h"
-#include "subvol/detail/html_policy.h"
+#include "subvol/detail/text_codes.h"
 #include "subvol/study_report.h"
 
 namespace subvol {

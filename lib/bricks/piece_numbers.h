@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "spill_buckets.h"
+#include "spill_file.h"
 #include "subvol/vec.h"
 
 namespace subvol::detail {

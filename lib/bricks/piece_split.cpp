@@ -11,7 +11,7 @@
 
 #include "assemble.h"
 #include "cell_splits.h"
-#include "spill_buckets.h"
+#include "spill_file.h"
 #include "subvol/error.h"
 
 namespace subvol::detail {

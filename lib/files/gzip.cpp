@@ -2,7 +2,6 @@
 #include "gzip.h"
 
 #include <zlib.h>
-
 #include <algorithm>
 #include <limits>
 

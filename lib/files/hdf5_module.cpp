@@ -2,7 +2,6 @@
 // The module subvol_hdf5.so: HDF5's library, which is 5 MB and brings those of compression and of the network.
 #include <hdf5.h>
 #include <zlib.h>
-
 #include <algorithm>
 #include <array>
 #include <cstring>

@@ -2,7 +2,6 @@
 #include "named_files.h"
 
 #include <sys/stat.h>
-
 #include <algorithm>
 #include <system_error>
 #include <utility>

@@ -4,7 +4,6 @@
 #include <fcntl.h>
 #include <stdlib.h>  // mkostemp
 #include <unistd.h>
-
 #include <algorithm>
 #include <cerrno>
 #include <cstring>

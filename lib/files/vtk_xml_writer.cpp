@@ -2,8 +2,8 @@
 #include "vtk_xml_writer.h"
 
 #include <tbb/parallel_for.h>
-#include <zlib.h>
 
+#include <zlib.h>
 #include <algorithm>
 #include <bit>
 #include <cassert>

@@ -4,7 +4,6 @@
 #include <lz4.h>
 #include <lzma.h>
 #include <zlib.h>
-
 #include <algorithm>
 #include <array>
 #include <limits>

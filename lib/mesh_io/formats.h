@@ -3,7 +3,6 @@
 
 #include <array>
 #include <filesystem>
-#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -39,8 +38,6 @@ struct MeshFormat {
     bool blocks = false;
     bool finite_volumes = false;
 };
-
-[[nodiscard]] std::span<const MeshFormat> mesh_formats();
 
 /// The format that a file name's extension names, in upper or lower case; that of a folder is OpenFOAM. Null if there is none.
 [[nodiscard]] const MeshFormat* format_of(const std::filesystem::path& path);

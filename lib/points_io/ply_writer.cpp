@@ -3,7 +3,6 @@
 #include <cassert>
 #include <cstdint>
 
-#include "number_writer.h"
 #include "output_file.h"
 #include "ply_splats.h"
 #include "points_file.h"

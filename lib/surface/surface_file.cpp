@@ -8,7 +8,6 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
-#include "number_writer.h"
 #include "output_file.h"
 #include "subvol/detail/number_text.h"
 #include "subvol/detail/printable.h"

@@ -14,7 +14,6 @@
 #include "named_files.h"
 #include "subvol/error.h"
 #include "text_scanner.h"
-#include "trimmed.h"
 
 namespace subvol::detail {
 

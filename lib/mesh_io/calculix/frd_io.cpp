@@ -14,7 +14,6 @@
 #include "formats.h"
 #include "mesh_file.h"
 #include "text_scanner.h"
-#include "trimmed.h"
 
 namespace subvol::detail {
 

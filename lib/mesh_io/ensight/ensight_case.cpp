@@ -7,7 +7,7 @@
 #include <numeric>
 
 #include "subvol/error.h"
-#include "trimmed.h"
+#include "text_scanner.h"
 
 namespace subvol::detail {
 

@@ -19,7 +19,6 @@
 #include "subvol/error.h"
 #include "subvol/index.h"
 #include "text_scanner.h"
-#include "trimmed.h"
 
 namespace subvol::detail {
 

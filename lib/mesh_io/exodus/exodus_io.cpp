@@ -1,17 +1,147 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <cstdint>
 #include <limits>
 #include <map>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
 
 #include "assemble.h"
-#include "exodus_file.h"
 #include "formats.h"
 #include "mesh_file.h"
+#include "netcdf_source.h"
 #include "subvol/error.h"
+#include "text_scanner.h"
 
 namespace subvol::detail {
 
 namespace {
+
+/// An Exodus II file: dimensions and variables over them, by name. Every failure is an Error(InvalidInput).
+///
+/// Never reads more values than the size of the file allows.
+class ExodusFile {
+public:
+    /// bytes: of the file; file: its path. Both must outlive it. HDF5's library reads the file itself.
+    ExodusFile(std::string_view bytes, std::string_view file);
+
+    /// The length of a dimension; 0 if there is no dimension of that name.
+    [[nodiscard]] std::size_t dimension(const std::string& name) const;
+    [[nodiscard]] bool has(const std::string& variable) const { return source_->variables.contains(variable); }
+
+    /// The values at given places along the first dimensions of a variable. count: their expected number
+    [[nodiscard]] std::vector<double> reals(const std::string& variable, const std::vector<std::size_t>& places,
+                                            std::size_t count) const;
+    /// All values of a variable of integers.
+    [[nodiscard]] std::vector<std::int64_t> integers(const std::string& variable, std::size_t count) const;
+    /// The rows of characters of a variable as texts, without trailing blanks. count: their expected number
+    [[nodiscard]] std::vector<std::string> names(const std::string& variable, std::size_t count) const;
+    /// A text attribute of a variable; empty if there is none.
+    [[nodiscard]] std::string attribute(const std::string& variable, const std::string& name) const;
+
+    /// Fails if the file is too short for so many things of so many bytes each.
+    void expect_room(std::size_t things, std::size_t bytes, const std::string& what) const;
+
+    [[noreturn]] void fail(const std::string& message, const std::string& allowed = {}) const;
+
+private:
+    /// The variable; fails unless it has so many values at these places.
+    [[nodiscard]] const NetcdfVariable& checked(const std::string& name, const std::vector<std::size_t>& places,
+                                                std::size_t count) const;
+
+    std::string_view bytes_;
+    std::string_view file_;
+    std::unique_ptr<NetcdfSource> source_;
+};
+
+// netCDF pads names with zeros or blanks.
+std::string netcdf_text(std::string_view text) {
+    text = text.substr(0, text.find('\0'));
+    return as_utf8(text.substr(0, text.find_last_not_of(' ') + 1));
+}
+
+ExodusFile::ExodusFile(std::string_view bytes, std::string_view file) : bytes_(bytes), file_(file) {
+    if (bytes.empty()) fail("the file is empty");
+    if (bytes.starts_with("CDF")) {
+        source_ = open_classic_netcdf(bytes, file);
+    } else if (bytes.starts_with("\x89HDF")) {
+        source_ = open_netcdf4(file);
+    } else {
+        fail("not an Exodus II file: it begins neither as netCDF nor as HDF5");
+    }
+}
+
+std::size_t ExodusFile::dimension(const std::string& name) const {
+    const auto found = source_->dimensions.find(name);
+    return found == source_->dimensions.end() ? 0 : found->second;
+}
+
+const NetcdfVariable& ExodusFile::checked(const std::string& name, const std::vector<std::size_t>& places,
+                                          std::size_t count) const {
+    const auto found = source_->variables.find(name);
+    if (found == source_->variables.end()) fail("there is no " + name);
+    const NetcdfVariable& variable = found->second;
+    if (variable.lengths.size() < places.size() || (variable.record && places.empty())) {
+        fail(name + " has " + counted(variable.lengths.size(), "dimension", "dimensions"));
+    }
+    expect_room(count, size_of(variable.type), name);
+    std::size_t values = 1;
+    bool too_many = false;  // so that no product overflows
+    for (std::size_t d = 0; d < variable.lengths.size(); ++d) {
+        const std::size_t length = variable.lengths[d];
+        if (d < places.size()) {
+            if (places[d] >= length) fail(name + " has " + std::to_string(length) + " values along a dimension");
+            continue;
+        }
+        too_many = too_many || (length > 0 && values > count / length);
+        if (!too_many) values *= length;
+    }
+    if (too_many || values != count) fail(name + " does not have the " + std::to_string(count) + " values that are needed");
+    return variable;
+}
+
+void ExodusFile::expect_room(std::size_t things, std::size_t bytes, const std::string& what) const {
+    if (things <= bytes_.size() * source_->growth() / bytes) return;
+    fail(what + ": count out of range: " + std::to_string(things), "the file has " + counted(bytes_.size(), "byte", "bytes"));
+}
+
+std::vector<double> ExodusFile::reals(const std::string& variable, const std::vector<std::size_t>& places,
+                                      std::size_t count) const {
+    const NetcdfVariable& found = checked(variable, places, count);
+    if (found.characters) fail(variable + " does not consist of numbers");
+    return reals_from(source_->values(variable, places), found.type, std::endian::native);
+}
+
+std::vector<std::int64_t> ExodusFile::integers(const std::string& variable, std::size_t count) const {
+    const NetcdfVariable& found = checked(variable, {}, count);
+    if (found.characters || !is_integer(found.type)) fail(variable + " does not consist of integers");
+    return integers_from(source_->values(variable, {}), found.type, std::endian::native);
+}
+
+std::vector<std::string> ExodusFile::names(const std::string& variable, std::size_t count) const {
+    if (count == 0) return {};
+    const auto found = source_->variables.find(variable);
+    const bool rows = found != source_->variables.end() && found->second.characters && found->second.lengths.size() == 2;
+    const std::size_t length = rows ? found->second.lengths[1] : 0;
+    if (length == 0 || found->second.lengths[0] != count)
+        fail("there are no " + std::to_string(count) + " names in " + variable);
+    expect_room(count, length, variable);
+    static_cast<void>(checked(variable, {}, count * length));
+    const std::string text = source_->values(variable, {});
+    std::vector<std::string> names;
+    for (std::size_t i = 0; i < count; ++i) names.push_back(netcdf_text(std::string_view(text).substr(i * length, length)));
+    return names;
+}
+
+std::string ExodusFile::attribute(const std::string& variable, const std::string& name) const {
+    return netcdf_text(source_->attribute(variable, name));
+}
+
+void ExodusFile::fail(const std::string& message, const std::string& allowed) const {
+    throw Error(ErrorCode::InvalidInput, printable(message), std::string(file_), printable(allowed));
+}
 
 constexpr EntityNames kExodusNames{"node", "element", 1};
 

@@ -17,7 +17,7 @@
 #include "subvol/detail/number_text.h"
 #include "subvol/detail/printable.h"
 #include "subvol/error.h"
-#include "trimmed.h"
+#include "text_scanner.h"
 #include "vtk_xml.h"
 
 namespace subvol::detail {

@@ -12,7 +12,6 @@
 #include "mesh_file.h"
 #include "subvol/error.h"
 #include "text_scanner.h"
-#include "trimmed.h"
 
 namespace subvol::detail {
 

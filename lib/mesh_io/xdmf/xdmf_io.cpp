@@ -11,7 +11,6 @@
 #include "subvol/detail/number_text.h"
 #include "subvol/error.h"
 #include "text_scanner.h"
-#include "trimmed.h"
 #include "vtk_cells.h"
 #include "xdmf_file.h"
 
