@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// One row after the other: the sum of its weights times the values of sixteen cells. The
+// sums of all sixteen stay in registers, so each weight is loaded once and each value once.
+//
 // Compiled once for every instruction set; the best one is chosen where it runs.
 #include "class_tables.h"
 

@@ -1,4 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
+// Walking from cell to cell with the axes in hand.
+//
+//     ┌──────┬──────┐      Two cells share a face. The neighbour's axes may lie in any of 48 ways: a permutation of u, v, w
+//     │  ↑v  │  u←  │      with signs. `turns` has the way for each side, as if the neighbour were moved on to the cell.
+//     │  └→u │   ↓v │      A walk multiplies turns (`composed`), so that it knows at each cell which side is the walk's +u.
+//     └──────┴──────┘
+//
+// Octants number the corners of a cell by bits, u + 2v + 4w, since a turn acts on bits: it permutes and flips them. Corners in
+// VTK's order are kCornerOctants of octants, and the other way round.
+//
+// The colours of points make the start of a walk unique. They are computed as in tests of graph isomorphism, by refinement of
+// colours: a cell's colour is a hash of those of its points, a point's new colour the sum of those of its cells. A sum does not
+// depend on the order of the cells, which may be any, and neither does it depend on the threads, as unsigned sums wrap around.
 #include "cell_links.h"
 
 #include <algorithm>
@@ -39,7 +52,8 @@ constexpr std::array<CellTurn, kTurns> make_turns() {
 
 constexpr std::array<CellTurn, kTurns> kCellTurns = make_turns();
 
-/// A turn is known by where it takes octants 0, 1, 2 and 4.
+/// The number of the turn that takes octants 0, 1 and 2 to these: they fix the origin, the u axis and the v axis, and with them
+/// the permutation; the w axis is what is left, and its sign follows from the origin.
 constexpr std::uint8_t turn_number(std::size_t of0, std::size_t of1, std::size_t of2) {
     for (std::size_t n = 0; n < kTurns; ++n) {
         const auto& o = kCellTurns[n].octants;
@@ -86,6 +100,7 @@ std::uint8_t turn_across(const std::array<Index, 8>& cell, std::size_t side, con
     return turn_number(to[0], to[1], to[2]);
 }
 
+/// The cell and the turn across each side of each cell.
 void link_cells(const Topology& faces, CellLinks& links) {
     links.neighbors.resize(faces.cells.size());
     links.turns.resize(faces.cells.size());
@@ -125,6 +140,8 @@ bool is_tagged(const std::vector<std::array<Index, N>>& tags, const std::array<I
     return std::binary_search(tags.begin(), tags.end(), sorted(points));
 }
 
+/// Marks the edges and sides of cells that are tagged as creases and sharp faces. Tags are lists of points in any order, so
+/// they are compared as sorted points.
 void mark_tags(const HexMesh& mesh, CellLinks& links) {
     if (!mesh.creases.empty()) {
         const auto creases = sorted_tags(mesh.creases);
@@ -159,6 +176,7 @@ bool has_four_cells(const CellLinks& links, Index cell, std::size_t a, std::size
     return one.first != kNone && one == diagonal(b, a);
 }
 
+/// Two sides of different axes meet at each of the twelve edges of a cell: 12 pairs a, b.
 void mark_regular(CellLinks& links) {
     links.regular.resize(links.neighbors.size());
     parallel_each(links.regular.size(), [&](std::size_t i) {

@@ -1,4 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
+// From the class of a cell to the classes of its children, without any mesh.
+//
+// A neighbourhood's code is a mesh (patch_of). Refined once without positions, it shows how the cells around each child meet,
+// and so which class the child belongs to:
+//
+//     across an edge ● at which three cells meet          the children of P
+//
+//            \        /                                   ┌───┬───┐     P: the class of the parent again, since the edge
+//             \  P   /                                    │ o │ o │        still has three cells
+//              \    /                                     ├───┼───┤     o: one or two cells away from the edge: a few other
+//               ●──────                                   │ P │ o │        classes. Their children are farther away, in cells,
+//               |                                         ●───┴───┘        and become regular after a level or two
+//
+// so the graph closes after a few classes, however many levels a walk goes down. The weights of a child's points over those of
+// the parent come from the same refinement (SchemeRows).
+//
+// Each class is made by the thread that needs it first, from the code alone, and never changes; so it does not matter which
+// thread that is. std::call_once lets the others wait. run_nested keeps a waiting thread from taking up work that would wait
+// for the same class.
 #include "class_graph.h"
 
 #include <algorithm>
@@ -56,6 +75,7 @@ private:
     std::optional<NeighborhoodWalk> walk_;
 };
 
+/// A value that is made once, by the thread that asks first.
 template <class Value>
 struct Made {
     std::once_flag once;
@@ -74,12 +94,15 @@ struct ClassGraph::State {
         }
     }
 
+    /// The place for a value. The lock is for the map alone: nodes of a std::map stay where they are, so values are made
+    /// without it.
     template <class Key, class Value>
     Made<Value>& slot(std::map<Key, Made<Value>>& map, const Key& key) {
         const std::scoped_lock lock(mutex);
         return map[key];
     }
 
+    /// The class keeps its code and its number of points; the points are numbered as the walk numbers them.
     const DescentClass* class_of(const Neighborhood& found) {
         Made<DescentClass>& made = slot(classes, key_of(found));
         std::call_once(made.once, [&] {
@@ -93,6 +116,8 @@ struct ClassGraph::State {
         return &made.value;
     }
 
+    /// Children of all octants share points, so the rows of all are made once, in one block, and each child's tables pick
+    /// theirs: `near` the points that a place is evaluated from (64 of a grid, else its eight corners), `rest` the others.
     void make_children(const DescentClass& parent, ClassChildren& made) {
         RefinedNeighborhood refined(parent.about, parent.about.code[0]);
         const SchemeRows rows(refined.parent(), scheme);
@@ -137,6 +162,8 @@ struct ClassGraph::State {
         }
     }
 
+    /// No weights here: the mesh has been refined twice, so the points of the children are there, as corners of cells that the
+    /// walk about the parent can name.
     void make_entry(const Neighborhood& about, ClassEntry& entry) {
         RefinedNeighborhood refined(about, about.code[0]);
         entry.on_grid = regular_grid(refined.parent(), 0, entry.grid);

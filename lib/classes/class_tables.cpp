@@ -1,4 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
+// Weights by refinement. A scheme is linear, so the weights of a new vertex over the n
+// points of a neighbourhood are what becomes of the n unit vectors: point p gets an attribute of n channels, 1 in channel p and
+// 0 in the others; after the refinement the channels of a vertex are its row. That is any scheme's code as it is, rules for
+// creases and corners included, at the price of n channels; a table is made once and used for thousands of cells.
+//
+//     neighbourhood ──unit vectors──► refine_patch, level by level ──on_limit──► rows of the grid's side³ vertices
+//
+// Tables are kept up to a number of bytes; the one that has not been used for longest goes first. A dropped table stays alive
+// as long as somebody holds it, and has the same numbers when it is made again.
 #include "class_tables.h"
 
 #include <algorithm>
@@ -53,6 +62,7 @@ WeightTable make_table(const Neighborhood& neighborhood, const SchemeOptions& sc
 
 }  // namespace
 
+/// Two different hashes of the code, word by word.
 ClassKey key_of(const Neighborhood& neighborhood) {
     const auto& code = neighborhood.code;
     std::uint64_t a = mixed(code.size()), b = mixed(code.size() + 0x9e3779b97f4a7c15ULL);
@@ -66,6 +76,8 @@ ClassKey key_of(const Neighborhood& neighborhood) {
     return {a, mixed(b)};
 }
 
+/// The cells of a 5×5×5 grid: the middle one, the layer around it, the layer around that. Its points are numbered by the grid,
+/// not by a walk, because find_regular finds them without one.
 Neighborhood regular_neighborhood() {
     Neighborhood grid{.points = std::vector<Index>(216), .code = {}};
     for (std::size_t p = 0; p < 216; ++p) grid.points[p] = static_cast<Index>(p);

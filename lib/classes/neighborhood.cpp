@@ -1,4 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0
+// The code of a cell's surroundings: what a scheme's weights depend on, and nothing else.
+//
+// The walk begins at the cell, along the turn by which the colours of its corners come in the least order, and goes breadth
+// first, at each cell to the sides 0 to 5 in the axes of the walk:
+//
+//           ┌───┬───┬───┐
+//           │ 6 │ 4 │ 8 │        a cell in the middle, the cells across its sides, then those across the sides of these, as far
+//           ├───┼───┼───┤        as they have one of the points around which all cells are wanted. Points are numbered as the
+//           │ 1 │ 0 │ 2 │        walk comes to them.
+//           ├───┼───┼───┤
+//           │ 5 │ 3 │ 7 │        code = number of cells of the first layer,
+//           └───┴───┴───┘               eight points of each cell, by octants of the walk,
+//                                       0xffff and for each cell its tagged edges and sides, if the mesh has tags
+//
+// Two cells whose surroundings meet in the same way get the same code if they start with the same turn. Where colours are equal
+// by symmetry any of these turns gives the same code; where they are equal by chance, the class is made twice, which costs a
+// table and changes no result.
+//
+// A walk goes through faces. Cells that touch the others in an edge or a point alone are not found; `is_complete` notices by
+// the number of cells at each point, and the cell then has no class.
 #include "neighborhood.h"
 
 #include <algorithm>
@@ -21,6 +41,7 @@ NeighborhoodWalk::NeighborhoodWalk(const HexMesh& mesh, const CellLinks& links)
       numbers_(mesh.points.size(), 0) {
 }
 
+/// Forgets the walk before. Marks are numbers of walks, so that nothing has to be cleared until the numbers run out.
 void NeighborhoodWalk::start(Neighborhood& found) {
     visited_.clear();
     cells_found_.clear();
@@ -32,6 +53,7 @@ void NeighborhoodWalk::start(Neighborhood& found) {
     mark_ = 1;
 }
 
+/// The number of a point in the walk; the next one if it is new.
 std::uint16_t NeighborhoodWalk::number(Index point, Neighborhood& found) {
     if (point_marks_[point] != mark_) {
         point_marks_[point] = mark_;
@@ -79,6 +101,8 @@ bool NeighborhoodWalk::add(std::size_t from, std::size_t side, Neighborhood& fou
     cell_marks_[next] = mark_;
     const std::uint8_t next_turn = composed(turn, links_.turn(cell, own_side));
     visited_.push_back({next, next_turn});
+    // Beyond an upper side the new cell has the shared points at its lower octants, and the other way round: those points have
+    // numbers already, at the octants of the cell before with this bit flipped.
     const std::size_t bit = std::size_t{1} << (side / 2), shared = (side & 1) != 0 ? 0 : bit;
     const auto& octants = cell_turns()[next_turn].octants;
     const auto& corners = mesh_.cells[next];
@@ -142,6 +166,7 @@ void NeighborhoodWalk::add_tags(Neighborhood& found) const {
     }
 }
 
+/// The first layer are the cells around the eight corners, the second those around all points of the first.
 bool NeighborhoodWalk::find(Index cell, int layers, Neighborhood& found) {
     start(found);
     add_first(cell, found);
@@ -191,6 +216,7 @@ bool NeighborhoodWalk::find_regular(Index cell, std::span<Index, 216> points) co
     return true;
 }
 
+/// The code read back as a mesh: its cells with their corners in VTK's order, and its tags.
 Patch patch_of(const Neighborhood& neighborhood) {
     const auto& code = neighborhood.code;
     const auto tags = static_cast<std::size_t>(std::find(code.begin() + 1, code.end(), 0xffff) - code.begin());
@@ -214,6 +240,8 @@ Patch patch_of(const Neighborhood& neighborhood) {
             for (std::size_t k = 0; k < 4; ++k) face[k] = cell[static_cast<std::size_t>(kCellFaces[side][k])];
         }
     }
+    // Cells share edges, so a crease is met once for each of its cells. A sharp face is met twice; the refinement takes both
+    // for one.
     const auto unique = [](auto& list) {
         std::sort(list.begin(), list.end());
         list.erase(std::unique(list.begin(), list.end()), list.end());

@@ -1,4 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
+// Rows in groups of four that are summed side by side:
+//
+//     weights   w0  w1  w2  …                    once, if the four rows have the same weights: most rows are one of a few masks
+//     columns   r0 r1 r2 r3 | r0 r1 r2 r3 | …    for each term the points of the four rows, next to each other
+//     to        r0 r1 r2 r3                      the numbers of the points that the rows make
+//
+// Rows are sorted by their pattern of weights. Those with the same pattern form groups first; what is left, fewer than three of
+// a kind, is grouped by the number of terms, and then each row has weights of its own. A row with an odd number of terms ends
+// with a weight of 0, so that the loop takes two terms at a time.
+//
 // Compiled once for every instruction set; the best one is chosen where it runs.
 #include "step_table.h"
 
@@ -78,7 +88,7 @@ namespace subvol::detail {
 
 HWY_EXPORT(apply);
 
-/// A row where its block has it. terms: rounded up to an even number
+/// A row of a stencil block, read in place. terms: rounded up to an even number
 struct StepTable::Source {
     std::uint16_t terms, pattern, to;
     std::span<const StencilTable::Run> runs;

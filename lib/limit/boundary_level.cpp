@@ -35,7 +35,8 @@ HullFlags hull_points(const HexMesh& mesh) {
     return on_hull;
 }
 
-/// The cells that have a point on the hull, and the flags of their points.
+/// The cells that have a point on the boundary, and the flags of their points. They are a mesh of their own: creases and sharp
+/// faces come along, unused points are left out, and the order of cells and points stays.
 struct HullCells {
     HexMesh mesh;
     HullFlags on_hull;
@@ -67,6 +68,8 @@ void each_hull_face(const Topology& topology, std::span<const std::uint8_t> on_h
     }
 }
 
+/// The points of the next level that lie on the boundary: those of its faces, edges and points. The numbering says which they
+/// are, so that no face of the child has to be looked for.
 HullFlags hull_points_of_child(const Topology& parent, const HullFlags& on_hull) {
     const ChildNumbering first(parent);
     HullFlags child(first.end, 0);

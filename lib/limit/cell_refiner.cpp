@@ -1,4 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
+// Two walks over the cells of a mesh, from coarse to fine.
+//
+// for_each refines every cell by the same number of levels:
+//
+//     cells ──► classes ──► members of a class, sixteen at a time: one table, one grid for each cell      (apply)
+//                 └─► cells without a class, in batches of neighbours: refined once, and their children
+//                     take their place with one level less                                               (refine_batch)
+//
+// The children of a cell at an extraordinary edge are mostly regular, so with each level more cells have a table. Their grids
+// are put together in the grid of their parent (CellGrid::take_child); the grids of many parents wait at the same time, so they
+// are bounded in bytes (kGroupBytes).
+//
+// descend asks a visitor how far each cell and each child needs to go. Regular cells need no patch: they are shown to the
+// visitor at levels 1 and 2 by their table. The others are shown level 1 as it is refined, level 2 as the grids of their
+// children, and from there on each child goes on by itself, one level at a time, as long as the visitor asks for more.
 #include "cell_refiner.h"
 
 #include <tbb/enumerable_thread_specific.h>
@@ -60,7 +75,8 @@ struct CellRefiner::State {
         return classify(level, cells, levels, layers(levels), regular_key, whole);
     }
 
-    /// Up to kTableLanes cells of one class.
+    /// Evaluates up to kTableLanes cells of one class. All members have the same code, so the neighbourhood of any of them
+    /// makes the table if it is not there yet.
     void apply(RefinedLevel& level, std::span<const Member> members, int levels, const DenseBlock& block, Scratch& to,
                const Sink& sink) {
         const auto table = tables.table(members[0].key, levels, [&]() -> const Neighborhood& {
@@ -77,7 +93,7 @@ struct CellRefiner::State {
         }
     }
 
-    /// The last level: the vertices are read off.
+    /// Refines the patch by all levels that are left, and reads the vertices off.
     void read_off(Patch patch, std::span<const Index> cells, int levels, const Sink& sink) {
         for (int level = levels; level > 0; --level) patch = refine_patch(patch, scheme, layers(level - 1));
         if (moves) patch.mesh = on_limit(std::move(patch.mesh), scheme.kind);
@@ -94,7 +110,8 @@ struct CellRefiner::State {
         });
     }
 
-    /// A batch of cells without a table: one level of refinement, and their children in their place.
+    /// Refines a batch of cells without a table once, and evaluates their children in their place. Child k of cell i is cell 8i
+    /// + k of the refined patch, as refine_patch numbers it.
     void refine_batch(const Cut& cut, std::span<const Index> cells, int levels, const Sink& sink) {
         Patch patch = cut(cells, layers(levels));
         if (levels <= 1) return read_off(std::move(patch), cells, levels, sink);
@@ -120,7 +137,8 @@ struct CellRefiner::State {
         }
     }
 
-    /// Evaluates cells by their classes' tables; those without a class are refined, in batches of neighbours.
+    /// Evaluates cells by the tables of their classes; cells without a class are refined, in batches of neighbours. The members
+    /// are sorted by class and cell, so that the result does not depend on how the list was made.
     void evaluate(RefinedLevel& level, const Cut& cut, const Classified& classified, int levels, const Sink& sink) {
         evaluate(level, cut, classified.members, levels, sink);
     }
@@ -146,7 +164,7 @@ struct CellRefiner::State {
         tbb::parallel_for(std::size_t{0}, chunks.size(), [&](std::size_t i) {
             run_nested([&] { apply(level, chunks[i], levels, block, scratch.local(), sink); });
         });
-        // Larger batches have fewer cells around them that are refined too, smaller ones need less memory.
+        // Larger batches have fewer cells around them that are refined in addition, smaller ones need less memory.
         const std::size_t most = levels <= kWhole ? 16384 : 4096;
         if (rare.size() > most) rare = in_space_order(level.mesh, rare);
         const std::size_t batches = (rare.size() + most - 1) / most,
@@ -182,6 +200,7 @@ struct CellRefiner::State {
         parallel_each(grids.size(), [&](std::size_t i) {
             if (wanted_of(i) == 0) grids[i].resize(patch.mesh, 125);
         });
+        // Level 2 of a cell is level 1 of its eight children.
         std::vector<Index> unseen;
         std::ranges::copy_if(children, std::back_inserter(unseen), [&](Index child) { return wanted_of(child / 8) == 0; });
         evaluate(level, cut_patch, classes_of(level, unseen, 1, 0), 1,
@@ -198,6 +217,8 @@ struct CellRefiner::State {
         for (int levels = 2; levels < most_levels; ++levels) {
             std::erase_if(children, [&](Index child) { return goes_on[child] == 0; });
             if (children.empty()) return;
+            // The neighbourhoods stay those of the children: only the number of levels of their tables grows, and with it the
+            // number of members that a table needs to pay for itself.
             if (levels == 2) {
                 classified = classes_of(level, children, levels, 0);
             } else {

@@ -1,4 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
+// The cells of a class, side by side in the lanes of vectors. LaneValues stores one channel
+// after the other; in a channel the values of point p of the neighbourhood stand together for all sixteen cells:
+//
+//     channel 0                                             channel 1 …
+//     point 0                point 1                point 2
+//     [cell 0 … cell 15]     [cell 0 … cell 15]     …
+//
+// so one weight of the table is multiplied with the values of sixteen cells, and the table is read once for all of them.
+// `store` takes a lane apart again. The rows are along the axes of the walk; the cell's own axes may be permuted and reversed,
+// which is a permutation of the grid's strides and, for a reversed axis, a start at its other end.
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_sort.h>
 
@@ -30,6 +40,7 @@ void CellGrid::take_child(const CellGrid& part, std::size_t child, std::size_t h
     const auto& at = kCornerParameters[child];
     std::array<std::size_t, 3> ends, start;
     for (std::size_t d = 0; d < 3; ++d) {
+        // An upper child has one plane more, the cell's own upper side.
         ends[d] = half + (at[d] == 1 ? 1 : 0);
         start[d] = at[d] == 1 ? half : 0;
     }
@@ -65,7 +76,7 @@ std::size_t least_members(int levels) {
 
 Classified classify(RefinedLevel& level, std::span<const Index> cells, int levels, int layers, const ClassKey& regular,
                     int whole) {
-    constexpr std::size_t kRun = 256;
+    constexpr std::size_t kRun = 256;  // cells that share memory for the points of their neighbourhoods
     Classified result{.members = std::vector<Member>(cells.size()),
                       .points = std::vector<std::vector<Index>>((cells.size() + kRun - 1) / kRun)};
     auto& members = result.members;
@@ -92,6 +103,7 @@ Classified classify(RefinedLevel& level, std::span<const Index> cells, int level
             }
             members[i].point_count = static_cast<std::uint16_t>(points.size() - before);
         }
+        // The addresses are known when the run is complete, because the vector may have moved until then.
         const Index* next = points.data();
         for (std::size_t i = r * kRun; i < end; ++i) {
             members[i].points = next;
@@ -103,6 +115,7 @@ Classified classify(RefinedLevel& level, std::span<const Index> cells, int level
 }
 
 void drop_rare(std::vector<Member>& members, int levels) {
+    // A member's class is as large as the range of equal keys in the sorted list.
     std::vector<ClassKey> keys(members.size());
     std::ranges::transform(members, keys.begin(), &Member::key);
     tbb::parallel_sort(keys.begin(), keys.end());

@@ -1,4 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
+// Grids of refined control cells, by one of two ways:
+//
+//     DenseBits::OfRefine     patches of the control mesh, refined as `refine` does it: the same bits, and therefore the same
+//                             bits where two cells meet, whichever batch each of them is in
+//     DenseBits::ToRounding   tables shared by cells of one class (CellRefiner): several times faster, sums in another order
 #include "subvol/dense_cells.h"
 
 #include <tbb/enumerable_thread_specific.h>
@@ -71,7 +76,7 @@ struct DenseCells::State {
 
     void refine_batch(std::span<const Index> cells, const detail::DenseBlock& block, int levels,
                       const std::function<void(const DenseCell&)>& visit) {
-        const int last_layers = move ? 1 : 0;  // the limit of a vertex depends on the cells around it
+        const int last_layers = move ? 1 : 0;  // the limit of a vertex depends on the cells around it, so they must be there
         detail::Patch patch = detail::refine_patch(*source, cells, options.scheme, levels, last_layers);
         if (move) patch.mesh = on_limit(std::move(patch.mesh), options.scheme.kind);
         Gather& gather = gathers.local();

@@ -1,4 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
+// The way down from a cell of a class, one place or several at a time.
+//
+// The rows of a neighbourhood (one row of channels for each of its points) are kept for each level in values_[level]. A step
+// makes the rows of the child that has the place from those of its parent:
+//
+//     rows of the parent ──near──► the points that the child's jet is evaluated from: 8 corners, or up to 64 of a grid
+//                        └─rest──► the other points of the child's neighbourhood, only if a place goes on from there
+//
+// In the regular class MCQ needs no table. Its masks refine blocks of a grid (mcq_block.h). Along one axis:
+//
+//     points of a level       0───1───2━━━3───4───5      the cell is 2━━━3; six points are read on each axis
+//     points of the next      0─1─2═3═4─5─6              seven points: its children are 2═3 and 3═4. Child c begins at point c,
+//                                                        so that it has two points before it, as its parent has
+//
+// and so the step repeats. Points 1 to 4 of a child, four on each axis, are the grid that its tricubic jet is evaluated from.
+//
+// All arithmetic is along the axes of the walk that gave the class its numbers; `turn` maps them to those of the control cell.
+// It is applied to the place before an evaluation and to the derivatives after it, never to the points.
 #include "descent_worker.h"
 
 #include <cmath>
@@ -58,7 +76,8 @@ double* DescentWorker::values(int level, std::size_t rows) {
     return values.data();
 }
 
-/// The jet at a place of the loaded cell, along the axes of the control cell.
+/// The jet at a place of the loaded cell, along the axes of the control cell: the parameters go along the axes of the walk, a
+/// reversed axis as 1 − t, and the derivatives come back, with the opposite sign for a reversed axis.
 const double* DescentWorker::jet_at(const Vec3& uvw, std::uint8_t turn, double scale) {
     if (turn == kIdentityTurn) {
         jets_.evaluate(uvw, scale, jet_.data());
@@ -85,12 +104,14 @@ const double* DescentWorker::jet_at(const Vec3& uvw, std::uint8_t turn, double s
 bool DescentWorker::step_to_target(OpenPlace& at, const double* jet, double scale) const {
     const auto row = [&](std::size_t r) { return Vec3(jet[r * stride_], jet[r * stride_ + 1], jet[r * stride_ + 2]); };
     const Vec3 offset = task_.targets[at.query] - row(0), du = row(1), dv = row(2), dw = row(3);
+    // Cramer's rule for (du dv dw) step = offset: the determinant is the volume of the cell in world space.
     const Vec3 normal = glm::cross(dv, dw);
     const double determinant = glm::dot(du, normal);
     const Vec3 step =
         scale / determinant *
         Vec3(glm::dot(normal, offset), glm::dot(glm::cross(dw, du), offset), glm::dot(glm::cross(du, dv), offset));
     const double longest = std::max({std::abs(step.x), std::abs(step.y), std::abs(step.z)}) / scale;
+    // Too short to matter, or so long that the cubic near the place says nothing about the target; NaN fails, too.
     if (!(longest > kNearTarget && longest < kFarFromTarget)) return false;
     const Vec3 to = glm::clamp(at.uvw + step, Vec3(0.0), Vec3(1.0)), by = (to - at.uvw) / scale;
     at.uvw = to;
@@ -149,7 +170,8 @@ void DescentWorker::load(const DescentClass& is, const double* rows) {
     is.on_grid ? jets_.load_grid(rows, is.grid) : jets_.load_corners(rows, kFirstEight);
 }
 
-/// Only those points are computed that a place is evaluated from; the rest of a child's neighbourhood if it goes on.
+/// One level down in a class. Only the points that a place is evaluated from are computed at first; the rest of the child's
+/// neighbourhood follows if a place is still open there.
 void DescentWorker::descend(const DescentClass& is, std::uint8_t turn, int level, std::span<OpenPlace> places,
                             ClassGraph& classes) {
     const double* from = values_[static_cast<std::size_t>(level)].data();
@@ -191,7 +213,8 @@ void DescentWorker::descend_grid(const GridRows& about, std::uint8_t turn, int l
     });
 }
 
-/// The same, with two levels of all descendants at once.
+/// The same, with two levels of all descendants at once: 7³ and 9³ points by two passes over contiguous blocks cost less than
+/// those around the descendants of six places one after the other.
 void DescentWorker::descend_twice(const GridRows& about, std::uint8_t turn, int level, std::span<OpenPlace> places) {
     const double tension = task_.options.scheme.tension;
     const GridRows first{values(level + 1, 7 * 7 * 7), 7, stride_}, second{values(level + 2, 9 * 9 * 9), 9, stride_};

@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+// Samples of a field of the limit with the volume that each stands for: what kernels are
+// fitted to, and where their error is measured.
+//
+// At vertices of a refined mesh a sample's weight is an eighth of the parallelepipeds that the edges of its cells span there.
+// In cells the places follow the sequence k·(1/g, 1/g², 1/g³) mod 1, which is evenly spread for any number of samples, unlike a
+// grid or random places; a weight is the determinant of the Jacobian times the share of a cell that a sample represents.
 #include "subvol/field_samples.h"
 
 #include <algorithm>

@@ -1,4 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
+// The limit in one cell from the points around it. With weights a, b, c along the axes
+//
+//     f(u, v, w) = Σᵢⱼₖ aᵢ(u) bⱼ(v) cₖ(w) pᵢⱼₖ,   i, j, k = 0 … 3
+//
+// over the 4×4×4 points of the cell's regular grid; ∂f/∂u has a′ in place of a, and a factor 2ˡ for a cell of level l. For the
+// spline schemes a is the uniform cubic B-spline, and f is the limit. MCQ interpolates: a is the cubic through four points,
+//
+//       p₀      p₁      p₂      p₃
+//     ──●───────●━━━━━━━●───────●──      the cell lies between p₁ and p₂, which f passes through
+//       −1      0   u   1       2
+//
+// and f approaches the limit as the cells become smaller, faster than a trilinear function does. A cell without a grid has its
+// eight corners only, and f is trilinear.
 #include "jets.h"
 
 #include <algorithm>
@@ -89,8 +102,14 @@ void CellJets::evaluate(const Vec3& uvw, double scale, double* jet) const {
     }
 }
 
-/// Beyond a flat boundary the control points of a spline are 2 f₀ − f₁: with them the spline is the limit of the boundary
-/// rules. An interpolant is continued quadratically: it becomes the parabola through the other three points.
+/// Fills the layers of the grid that lie beyond a flat boundary, along one axis.
+///
+///     ○      ●      ●      ●      the boundary is at p₁, p₀ is missing
+///     p₀     p₁     p₂     p₃
+///
+/// For a spline p₀ = 2 p₁ − p₂: then its second derivative across the boundary is 0, which is the limit of the boundary rules.
+/// An interpolant is continued quadratically, p₀ = 3 p₁ − 3 p₂ + p₃: it becomes the parabola through the other three points. If
+/// p₃ is missing, too, both are continued linearly.
 void CellJets::fill_missing(const GridPoints& grid, std::size_t along) {
     const std::size_t a = along == 1 ? 4 : 1, b = along == 16 ? 4 : 16;  // the strides of the other two axes
     for (const std::size_t layer : {std::size_t{0}, std::size_t{3}}) {
@@ -109,6 +128,8 @@ void CellJets::fill_missing(const GridPoints& grid, std::size_t along) {
     }
 }
 
+/// A place is done if it is exact, if enough consecutive levels agree (one agreement for a cubic; two for a trilinear value,
+/// which may agree by accident), or if this is the last level.
 bool Settling::settle(OpenPlace& at, const double* jet, int level, bool regular, bool exact) {
     at.agreed = level >= 1 && is_close(jet, at.last, level) ? static_cast<std::uint8_t>(at.agreed + 1) : std::uint8_t{0};
     // At the centre of a cell whose cell point is the mean of its corners, a trilinear value does not change for one level. In
@@ -128,8 +149,9 @@ bool Settling::settle(OpenPlace& at, const double* jet, int level, bool regular,
     return true;
 }
 
-/// Derivatives converge with half the order of values. About extraordinary edges and vertices they may not converge at all, so
-/// after some levels the values alone decide.
+/// Whether two jets agree: values within the tolerance, derivatives within its square root, because they converge with half the
+/// order of values. Around extraordinary edges and vertices derivatives may not converge at all, so after some levels the
+/// values alone decide.
 bool Settling::is_close(const double* a, const double* b, int level) const {
     constexpr int kSlopeLevels = 7;
     const double slope_tolerance = level < kSlopeLevels ? std::sqrt(options_.tolerance) : HUGE_VAL;
@@ -167,6 +189,7 @@ void Settling::write(std::size_t query, const double* jet) {
     }
 }
 
+/// `stays` finds places near a vertex: a place in the same octant twice is at the same corner of both cells.
 void OpenPlace::step_down() {
     const auto next = static_cast<std::uint8_t>(step_into_octant(uvw));
     stays = next == octant;

@@ -1,4 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
+// The limit at arbitrary places of a mesh, a place being a cell and its parameters (u, v, w).
+//
+// A place is found by bisection. Refinement cuts a cell into eight children; the place lies in one of them, at twice its
+// parameters, and that child is cut again:
+//
+//     level 0            level 1            level 2
+//     ┌───────────┐      ┌─────┬─────┐      ┌──┬──┬─────┐
+//     │           │      │     │     │      │  │  │     │     u ← 2u or 2u − 1 at each step, likewise v and w;
+//     │  x        │      ├─────┼─────┤      ├──┼──┤─────┤     the cell that has x has an edge of 2⁻ˡ in the
+//     │           │      │  x  │     │      │ x│  │     │     parameters of the control cell
+//     └───────────┘      └─────┴─────┘      └──┴──┴─────┘
+//
+// At each level the points around that cell give an approximation of the limit there, position, values and derivatives (a
+// *jet*, jets.h). It is exact at once where the scheme is a spline and the cell lies in a grid. Elsewhere the place is done
+// when the jets of consecutive levels agree within the tolerance.
+//
+// What has to be refined on the way is shared between places. LimitDescents answers nearly all queries by tables of the
+// neighbourhood's class. The few that are left, next to points where very many cells meet or where cells meet in an edge alone,
+// are refined as patches by BatchEvaluator below.
 #include "subvol/limit.h"
 
 #include <tbb/parallel_for.h>
@@ -79,6 +98,8 @@ void BatchEvaluator::run(const PatchSource& source, std::span<const LimitQuery> 
         const auto& [cell, uvw] = queries[numbers[i]];
         open.push_back({cell, {.query = numbers[i], .uvw = uvw, .last = &lasts_[i * jet_.size()]}});
     }
+    // Two layers around the cells are enough for every level: a rule uses the cells around a point, and each refinement spends
+    // one layer of cells, which is two layers of children.
     Patch patch = source.cut(number_cells(open), 2);
     for (int level = 0;; ++level) {
         evaluate_level(patch.mesh, level, open);
@@ -98,6 +119,7 @@ void BatchEvaluator::evaluate_level(const HexMesh& mesh, int level, std::vector<
     const std::size_t stride = channels_.stride();
     rows_.resize(mesh.points.size() * stride);
     for (std::size_t p = 0; p < mesh.points.size(); ++p) Channels::read(mesh, static_cast<Index>(p), &rows_[p * stride]);
+    // The queries of a cell follow each other, so a cell is loaded once for all of them.
     Index loaded = kNone;
     bool regular = false;
     GridPoints grid;
@@ -161,7 +183,8 @@ LimitSamples make_samples(const HexMesh& mesh, std::size_t count) {
     return samples;
 }
 
-/// The numbers of the queries, those of one cell after those of another.
+/// The numbers of the queries, sorted by cells. A counting sort: it keeps the order of the queries in a cell, so that results
+/// do not depend on the threads.
 std::vector<std::size_t> sorted_by_cells(std::span<const LimitQuery> queries, std::size_t cells) {
     std::vector<std::size_t> next(cells + 1, 0), order(queries.size());
     for (const LimitQuery& query : queries) ++next[query.cell + 1];
@@ -181,7 +204,7 @@ std::vector<CellPlaces> places_of_cells(std::span<const LimitQuery> queries, std
     return cells;
 }
 
-/// Queries whose surroundings have no class.
+/// Evaluates the queries whose surroundings have no class, in batches that share a patch.
 void refine_rest(const HexMesh& control, std::span<const LimitQuery> queries, std::span<const std::size_t> rest,
                  const LimitOptions& options, std::span<const double> scales, LimitSamples& samples) {
     constexpr std::size_t kBatch = 64;  // queries
@@ -198,7 +221,7 @@ void refine_rest(const HexMesh& control, std::span<const LimitQuery> queries, st
     for (const LimitReport& report : reports) detail::add_report(report, samples.report);
 }
 
-/// What calls for one mesh have in common.
+/// What all calls for one mesh share: the control mesh with its automatic creases, the scales of the tolerances, the classes.
 struct Evaluation {
     /// whole: the extent of the mesh that this is a part of, or none
     Evaluation(const HexMesh& mesh, const LimitOptions& with, const LimitExtent* whole = nullptr)

@@ -177,6 +177,10 @@ std::uint8_t PieceCutter::cut(const DenseCell& grid, int level, const std::array
                     list);
 }
 
+/// A part with at least five nodes on each axis is compared with the parabolas through every second node: their distance from
+/// the other nodes bounds what a triquadratic piece leaves out. If it is too large, the children are judged. A child is near
+/// enough if a quarter of the smaller of two distances is: that of its nodes from the parabolas of this part, and that of its
+/// middle nodes from the means of their neighbours. Where the limit is smooth each level shortens the steps by four.
 std::uint8_t PieceCutter::cut_part(const DenseCell& grid, const Part& part, Step left, bool last, PieceList& list) {
     if (part.width < 4) {
         if (last) add(grid, part, left, list);
@@ -187,6 +191,7 @@ std::uint8_t PieceCutter::cut_part(const DenseCell& grid, const Part& part, Step
     nodes_.steps(Prediction::Triquadratic, scales_, steps);
     Step most;
     for (const Step& step : steps) most = larger(most, step);
+    // Both bounds hold, so the smaller one does.
     left = smaller(left, most);
     if (is_near(left)) {
         add(grid, part, left, list);
@@ -239,7 +244,8 @@ std::uint64_t hash_of(const Attribute& attribute) {
     return hash;
 }
 
-/// What one thread has found.
+/// What one thread has found. Threads never share a list; the lists are merged and sorted at the end, so that the pieces do not
+/// depend on which thread found them.
 struct Found {
     PieceCutter cutter;
     PieceList list;

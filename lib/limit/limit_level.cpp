@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// The lowest level whose trilinear cells are near enough to the limit. Level l is compared
+// with level l + 1: if the new vertices lie within tolerance of the trilinear cells, level l is enough (node_steps.h says why
+// one step decides). Only cells that fail are looked at again on the next level, so the cost is that of the cells that need it.
 #include "subvol/limit_level.h"
 
 #include <tbb/enumerable_thread_specific.h>

@@ -1,4 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
+// Control cells whose neighbourhoods have no common class, refined twice.
+//
+//     level 0   the cells, with two layers around them: one patch for a batch of cells (PatchSource::cut)
+//     level 1   their children (RefinedOctant). A place is evaluated there from the walk about the child, of one layer
+//     level 2   the cells of that walk, refined once more. Their points are the neighbourhoods of the child's children, which
+//               have classes: ClassEntry lists them as corners of children of the cells that the walk visits
+//     below     DescentWorker, from class to class
+//
+// Level 2 is refined only around the octants that have places. What has been refined is kept for the next call (RefinedStore),
+// because callers that move places by Newton's method ask again for places in the same cells.
 #include "refined_cells.h"
 
 #include <tbb/enumerable_thread_specific.h>
@@ -71,7 +81,8 @@ std::vector<Index> RefinedCells::find_octants(const Patch& first, const Topology
                                               std::span<const std::uint8_t> octants) {
     octants_.resize(8 * octants.size());
     std::vector<std::uint8_t> wanted(first.first_layer, 0);
-    // The second layer ends the patch: colours of one round see no further.
+    // The patch ends after the second layer, so one colouring round is all that it can decide: a colour of one round depends on
+    // the cells at the point alone.
     const CellLinks links = build_links(first.mesh, topology, 1);
     tbb::enumerable_thread_specific<NeighborhoodWalk> walks([&] { return NeighborhoodWalk(first.mesh, links); });
     tbb::enumerable_thread_specific<Neighborhood> abouts;
@@ -187,7 +198,7 @@ std::vector<RefinedStore::Batch> RefinedStore::batches(std::span<const CellPlace
     std::size_t places = 0;
     for (const Index i : space_order(centers)) {
         const CellPlaces& in = cells[i];
-        // A cell with very many places is shared by several batches.
+        // A cell with very many places is divided between several batches.
         for (std::size_t first = in.first; first < in.last; first += kBatchPlaces) {
             const std::size_t last = std::min(in.last, first + kBatchPlaces);
             if (batches.empty() || first > in.first || batches.back().size() == kBatchCells ||
@@ -207,6 +218,7 @@ void RefinedStore::run(const Batch& batch, const DescentTask& task, const std::s
     std::vector<Octants> octants(batch.size(), Octants{});
     std::vector<std::uint8_t> missing(batch.size());
     parallel_each(batch.size(), [&](std::size_t i) { missing[i] = octants_of(task, batch[i]); });
+    // What earlier calls have kept is not refined again.
     {
         const std::shared_lock lock(mutex_);
         for (std::size_t i = 0; i < batch.size(); ++i) {
@@ -232,7 +244,8 @@ void RefinedStore::run(const Batch& batch, const DescentTask& task, const std::s
     });
 }
 
-/// Refines what is missing, into a piece of its own.
+/// Refines the octants that are missing as one piece, and keeps the piece if it is to be kept and there is room. Pieces are
+/// never changed, so those who read them need no lock; the lock is for the lists.
 void RefinedStore::refine(const Batch& batch, std::span<const std::uint8_t> missing, const std::shared_ptr<ClassGraph>& classes,
                           bool keep, std::shared_ptr<const RefinedCells>& refined, std::span<Octants> octants) {
     std::vector<std::size_t> numbers;  // in the batch

@@ -32,10 +32,10 @@ class RefinedCells;
 
 /// A cell of level 1, with the walk about it. entry: null if it has no class, or is not wanted
 struct RefinedOctant {
-    const RefinedCells* cells = nullptr;  // that it is one of
+    const RefinedCells* cells = nullptr;  // the cells that it was refined with
     const ClassEntry* entry = nullptr;
     std::uint8_t turn = kIdentityTurn;
-    std::vector<Index> points{};  // that it is evaluated from
+    std::vector<Index> points{};  // the points that it is evaluated from
     std::vector<NeighborhoodWalk::Visited> visited{};
 };
 

@@ -9,13 +9,17 @@ namespace subvol {
 
 namespace {
 
+/// The inverse of `split_into_hexes`, which readers apply to meshes of tetrahedra and prisms. The children of a cell follow
+/// each other and share its middle point, which is corner 6 of each of them: four for a tetrahedron, six for a prism, eight for
+/// a hexahedron.
+///
 /// Finds the cell of a group of children by its corners: child k is at corner k, which is its own first corner; its corner 1 is
 /// the middle of the edge to the first of the neighbours in the split's order.
 class Joiner {
 public:
     explicit Joiner(const HexMesh& split) : cells_(split.cells) {}
 
-    /// Nothing if the hexahedra are no such split.
+    /// Nothing if the hexahedra do not come from such a split.
     std::optional<MixedCells> join(std::vector<std::array<Index, 8>>& hexes) const {
         MixedCells others;
         for (std::size_t first = 0; first < cells_.size();) {
@@ -48,7 +52,7 @@ private:
         return result;
     }
 
-    /// The corners of a cell are no middles: they come before all other points.
+    /// Whether the corners of a cell come before all middles, as the split numbers them.
     bool is_split(std::size_t first, std::size_t end) const {
         Index last_corner = 0, first_middle = kNone;
         for (std::size_t c = first; c < end; ++c) {

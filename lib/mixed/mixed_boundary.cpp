@@ -1,4 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
+// The boundary of a mixed mesh: its faces, its creases, and the kind of each point, which says by which rule it moves.
+//
+//     faces     those of one cell only. Sorting the corners of all faces brings the two sides of an inner face together
+//     creases   boundary edges that are tagged, that belong to one cell alone, at which more than two boundary faces meet, or
+//               that bend by more than the angle
+//     kinds     no boundary face: Interior. No crease: Smooth. Two creases: Crease. Anything else: Corner, which stays
+//
+// A point at which several *fans* of boundary faces touch is a Corner: no single surface passes through it.
+//
+// The boundary of the next level follows from this one without positions (split_boundary), so a crease by angle is found on the
+// control mesh alone.
 #include "mixed_levels.h"
 
 #include <tbb/parallel_sort.h>
@@ -76,6 +87,7 @@ std::vector<BoundaryEdge> boundary_edges(const std::vector<std::array<Index, 4>>
     return edges;
 }
 
+/// Normal to a triangle, or to the diagonals of a quad; not of unit length.
 Vec3 normal_of(const std::vector<Vec3>& points, const std::array<Index, 4>& face) {
     const Vec3 &a = points[face[0]], &b = points[face[1]], &c = points[face[2]];
     return face[3] == kNone ? glm::cross(b - a, c - a) : glm::cross(c - a, points[face[3]] - b);
@@ -99,9 +111,10 @@ std::vector<Index> cells_of_edges(const MixedMesh& mesh, const std::vector<std::
     return count;
 }
 
-/// The number of sheets of boundary faces that meet at each point: faces are in one sheet if they share an edge there.
-std::vector<std::uint8_t> sheets(std::size_t points, const std::vector<std::array<Index, 4>>& faces,
-                                 const std::vector<BoundaryEdge>& edges) {
+/// The number of fans of boundary faces that meet at each point: faces are in one fan if they share an edge there. Each corner
+/// of a face starts as a fan of its own; edges join the fans of their faces at both ends (union-find).
+std::vector<std::uint8_t> count_fans(std::size_t points, const std::vector<std::array<Index, 4>>& faces,
+                                     const std::vector<BoundaryEdge>& edges) {
     struct Corner {
         Index point, face;
         auto operator<=>(const Corner&) const = default;
@@ -161,6 +174,8 @@ MixedBoundary find_boundary(const MixedMesh& mesh, std::optional<double> crease_
     }
     std::sort(tagged.begin(), tagged.end());
     const auto cells = cells_of_edges(mesh, unique);
+    // An edge's records follow each other in `edges`: two for a smooth edge. Normals are compared without dividing by their
+    // lengths, which may be 0.
     const double least_cosine = crease_angle_deg ? std::cos(*crease_angle_deg * std::numbers::pi / 180) : -2;
     std::size_t i = 0;
     for (std::size_t e = 0; e < unique.size(); ++e) {
@@ -179,11 +194,11 @@ MixedBoundary find_boundary(const MixedMesh& mesh, std::optional<double> crease_
     for (const auto& crease : result.creases) {
         for (const Index p : crease) creases_at[p] = static_cast<std::uint8_t>(std::min(creases_at[p] + 1, 3));
     }
-    const auto sheets_at = sheets(mesh.points.size(), result.faces, edges);
+    const auto fans_at = count_fans(mesh.points.size(), result.faces, edges);
     result.kinds.resize(mesh.points.size());
     for (std::size_t p = 0; p < result.kinds.size(); ++p) {
-        result.kinds[p] = sheets_at[p] == 0    ? PointKind::Interior
-                          : sheets_at[p] > 1   ? PointKind::Corner
+        result.kinds[p] = fans_at[p] == 0      ? PointKind::Interior
+                          : fans_at[p] > 1     ? PointKind::Corner
                           : creases_at[p] == 0 ? PointKind::Smooth
                           : creases_at[p] == 2 ? PointKind::Crease
                                                : PointKind::Corner;

@@ -72,7 +72,7 @@ struct MixedBoundary {
 
 /// Creases are the boundary edges that mesh.creases names, that belong to one cell only, that have more than two boundary
 /// faces, or that are bent by more than the angle. A point with two creases moves along them; one with another number of
-/// creases, or where several sheets of the boundary meet, stays.
+/// creases, or where several fans of boundary faces meet, stays.
 ///
 /// throws: Error(InvalidInput) if a face has more than two cells, or a crease of the mesh is not on the boundary
 [[nodiscard]] MixedBoundary find_boundary(const MixedMesh& mesh, std::optional<double> crease_angle_deg);

@@ -45,6 +45,7 @@ double tet_volume(const MixedMesh& mesh, Index a, Index b, Index c, Index d) {
     return glm::dot(x[b] - x[a], glm::cross(x[c] - x[a], x[d] - x[a])) / 6;
 }
 
+/// Leaves out the points that no cell uses; the others keep their order. In place, as a point never moves to a higher number.
 void drop_unused(MixedMesh& mesh) {
     const auto used = used_points(mesh);
     std::vector<Index> number(used.size());
@@ -71,7 +72,9 @@ void drop_unused(MixedMesh& mesh) {
     for (auto& crease : mesh.creases) crease = {number[crease[0]], number[crease[1]]};
 }
 
-/// The tetrahedron with the corners in the order a c b d or a c d b of their numbers, whichever is right-handed.
+/// The tetrahedron with the corners in the order a c b d or a c d b of their numbers, whichever is right-handed. Its octahedron
+/// then has the diagonal between the middles of ac and bd [bey1995], which depends on the numbers alone and not on the shape,
+/// so that the box spline commutes with affine maps.
 std::array<Index, 4> by_numbers(const std::array<Index, 4>& tet) {
     auto sorted = tet;
     std::sort(sorted.begin(), sorted.end());
@@ -171,6 +174,8 @@ HexMesh in_hexahedra(const MixedMesh& mesh) {
     return hexahedra_of(mesh).mesh;
 }
 
+/// The shape of a cell is its volume, or that of its worst corner, over the cube of its edge (root mean square), scaled so that
+/// a regular cell has 1.
 MixedShape measure_cells(const MixedMesh& mesh) {
     MixedShape shape;
     const auto quality = [&](CellKind kind, const auto& cell, double volume) {

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// Which control cell a cell of a level is in. `split_cells` writes the children of each kind at places that depend on the
+// parents' numbers alone, so the control cells of a level are found by repeating their numbers in the same order, without
+// looking at the cells.
 #include "mixed_shapes.h"
 
 #include <array>
@@ -76,6 +79,8 @@ std::vector<Index> control_cells(const MixedMesh& control, int levels) {
     number(level.prisms, control.prisms.size());
     number(level.pyramids, control.pyramids.size());
     number(level.hexes, control.hexes.size());
+    // For example the tetrahedra of a level: four of each tetrahedron, then eight of each octahedron, then four of each
+    // pyramid.
     for (int l = 0; l < levels; ++l) {  // in the order in which `split_cells` writes the children
         Kinds child;
         repeat(level.tets, 4, child.tets);

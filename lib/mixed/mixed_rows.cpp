@@ -1,4 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
+// The rows of a level: averaging after the linear split. With L the split of mixed_split.cpp, which puts new points in the
+// middle of what they belong to, and A an average over the cells at each point of the new level, a level's points are
+//
+//     p' = A L p,      row of v:   Σ over the cells c at v of  share(c) · Σ over the corners w of c of  weight(w, v) · (L p)_w
+//
+// Shares make a point regular if the solid angles around it are filled by regular cells of any kinds: 14 tetrahedra and
+// octahedra, 12 prisms or 8 hexahedra meet at a point of their lattices, so a cell counts 1/14, 1/12 or 1/8 of it, divided by
+// the sum of all at v.
+//
+//     tetrahedron     −1/16 v + 17/48 of each of the other three
+//     octahedron       3/8  v +  1/12 of each of four neighbours + 7/24 of the opposite corner
+//     prism            1/8  v +  1/8 of the corner along the axis + 3/16 of each of the four others
+//     hexahedron       1/8 of each corner
+//     pyramid          half an octahedron, with the weight of both ends on its apex; at its apex 1/12 v + 11/48 of each corner
+//
+// The rules are those of [shw2004], but for the apex of a pyramid, which is ours. A point between two kinds of cells has the
+// eigenvalues ½, ½, ½, ¼ of a regular point then (docs/schemes.md). The box spline [cmq2002] is 1/8 of the point and 7/8 of the
+// mean of its neighbours, diagonals included. On the boundary faces take the place of cells: the rules there do not see the
+// inside.
 #include "mixed_levels.h"
 
 #include <tbb/parallel_for.h>
@@ -59,6 +78,8 @@ public:
         at_hexes_ = items_at_points(mesh.hexes, level.points);
     }
 
+    /// The average at a point: over cells inside, over faces on the boundary, (1, 2, 1)/4 along a crease, the point itself at a
+    /// corner. A point without cells, faces and creases stays.
     void row(Index v, Terms& terms) const {
         terms.clear();
         const PointKind kind = scheme_ == TetScheme::Linear ? PointKind::Corner : level_.boundary.kinds[v];
@@ -140,7 +161,9 @@ private:
         for (auto& [point, w] : terms) w = point == v ? 1.0 / 8 : weight;
     }
 
-    /// Loop's surface as a mean over triangles and a step towards it, and Catmull-Clark's over quads [ws2004].
+    /// Loop's surface as a mean over triangles and a step towards it, and Catmull-Clark's over quads [ws2004]. The step is 1
+    /// where six triangles or four quads meet; elsewhere it is chosen so that the limit is that of Loop and of Catmull and
+    /// Clark.
     void mean_of_faces(Index v, Terms& terms) const {
         std::size_t triangles = 0, quads = 0;
         each_at(at_faces_, v, [&](Index f) { ++(level_.boundary.faces[f][3] == kNone ? triangles : quads); });
@@ -169,7 +192,8 @@ private:
     Buckets<AtPoint> at_faces_, at_creases_, at_tets_, at_octahedra_, at_prisms_, at_pyramids_, at_hexes_;
 };
 
-/// The terms of a point become one, in an order that does not depend on that of the cells.
+/// Adds up the terms of each point. They are sorted by point and weight before, so that the sum does not depend on the order of
+/// the cells.
 void merge(Terms& terms) {
     std::sort(terms.begin(), terms.end());
     std::size_t count = 0;
@@ -188,6 +212,7 @@ MixedStep refine_level(const MixedLevel& parent, const SplitNumbers& numbers, Te
     step.child.points = numbers.size();
     step.child.cells = split_cells(parent.cells, numbers);
     step.child.boundary = split_boundary(parent.boundary, numbers);
+    // The row of a point over the new points, then each new point replaced by what the linear split makes it of.
     const Smoothing smoothing(step.child, scheme);
     std::vector<StencilTable::Block> blocks((numbers.size() + kBlockRows - 1) / kBlockRows);
     tbb::parallel_for(std::size_t{0}, blocks.size(), [&](std::size_t b) {

@@ -14,7 +14,13 @@ namespace subvol::detail {
 enum class CellKind : std::uint8_t { Tet, Octahedron, Prism, Pyramid, Hex };
 inline constexpr std::size_t kCellKinds = 5;
 
-/// A kind of cell as tables of corner numbers.
+/// A kind of cell as tables of corner numbers, which are VTK's:
+///
+///     tetrahedron   0 1 2 counter-clockwise seen from 3
+///     octahedron    opposite corners in pairs, as +x −x, +y −y, +z −z: 0 1, 2 3, 4 5
+///     prism         0 1 2 counter-clockwise seen from 3 4 5, which lie above them
+///     pyramid       0 1 2 3 counter-clockwise seen from the apex 4
+///     hexahedron    0 1 2 3 counter-clockwise seen from 4 5 6 7, which lie above them
 ///
 /// faces: counter-clockwise seen from outside a right-handed cell; the last corner of a triangle is −1
 struct CellTable {

@@ -1,4 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
+// The split that all schemes of tetrahedra share, without averaging: numbers of the new points, and the cells between them.
+//
+//            d
+//           / \           A tetrahedron abcd becomes four tetrahedra at its corners and an octahedron between the middles of
+//         ad───bd         its edges; on each face that is three corner triangles and a face of the octahedron in the middle.
+//         / \ / \         An octahedron becomes six octahedra at its corners and eight tetrahedra at its faces, which meet in
+//        a───ab──b        its centre. So cells do not become flatter from level to level, as they would if the octahedron were
+//                         cut into tetrahedra.
+//
+//     tetrahedron  →  4 tetrahedra + 1 octahedron            prism       →  8 prisms
+//     octahedron   →  6 octahedra + 8 tetrahedra             hexahedron  →  8 hexahedra
+//     pyramid      →  6 pyramids + 4 tetrahedra
+//
+// Points of the next level, in this order: those of the parent; one for each edge; one for each quad; one for each octahedron;
+// one for each hexahedron. Each kind is sorted by its corners, so the numbers do not depend on the order of the cells.
+//
+// The corners of an octahedron are three pairs of opposite ones, 0–1, 2–3 and 4–5, so corner w ^ 1 is opposite to w. The pair
+// 0–1 is the diagonal on which the box spline has its middle.
 #include "mixed_levels.h"
 
 #include <tbb/parallel_sort.h>
@@ -22,7 +40,8 @@ void sort_unique(std::vector<std::array<Index, N>>& keys) {
     keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
 }
 
-/// The places of the cells in the order of their sorted corners: rank[cell], and its inverse.
+/// The places of the cells in the order of their sorted corners: rank[cell], and its inverse. Two cells with the same corners
+/// keep their order.
 template <std::size_t N>
 void rank_cells(const std::vector<std::array<Index, N>>& cells, std::vector<Index>& rank, std::vector<Index>& of_rank) {
     struct Keyed {
@@ -70,6 +89,7 @@ SplitNumbers::SplitNumbers(const MixedMesh& parent, std::size_t points) : parent
     sort_unique(edges_);
     sort_unique(quads_);
     edges_.shrink_to_fit();
+    // Edges are looked up for every child: by the smaller end at once, then by bisection among the few edges that it has.
     edge_offsets_.assign(points + 1, 0);
     for (const auto& [a, b] : edges_) ++edge_offsets_[a + 1];
     std::partial_sum(edge_offsets_.begin(), edge_offsets_.end(), edge_offsets_.begin());
@@ -158,6 +178,8 @@ private:
         }
     }
 
+    /// Two layers of four prisms. A triangle with its middles is cut into four; the quads at the sides have a point in their
+    /// middle.
     void split_prism(std::size_t c) {
         const auto& p = parent_.prisms[c];
         // Corners and middles of a triangle, at the bottom, in the middle and at the top.
@@ -183,6 +205,8 @@ private:
         }
     }
 
+    /// Four pyramids at the corners of the base, one at the apex, one upside down below that with its apex in the middle of the
+    /// base, and four tetrahedra that fill the gaps between them.
     void split_pyramid(std::size_t c) {
         const auto& p = parent_.pyramids[c];
         const Index f = n_.quad({p[0], p[1], p[2], p[3]});
@@ -199,6 +223,8 @@ private:
         child_.pyramids[6 * c + 5] = {side[3], side[2], side[1], side[0], f};
     }
 
+    /// The 27 points of the hexahedron lie at half steps 0, 1, 2 along each axis. How many corners a point lies between, 1, 2,
+    /// 4 or 8, says whether it belongs to a corner, an edge, a quad or the cell.
     void split_hex(std::size_t c) {
         const auto& h = parent_.hexes[c];
         // The corners between which a point lies, as half steps 0, 1, 2 along u, v and w.

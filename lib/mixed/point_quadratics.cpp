@@ -1,4 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
+// Gradients and second derivatives at the points of a mixed mesh, whose cells have no parameters to take derivatives by: the
+// quadratic
+//
+//     q(d) = f + g·d + ½ dᵀ H d
+//
+// through the value f at the point, with the least sum of squares Σ (q(dᵢ) − fᵢ)² / |dᵢ|⁴ over its neighbours, since each
+// residual is divided by |dᵢ|². Near neighbours count most, as what a quadratic leaves out grows with |d|³. Distances are in
+// units of their mean, so that the nine unknowns are of one size and the rank is decided by numbers without dimension: where
+// neighbours lie in a plane, the derivatives across it are not determined, and the orthogonal decomposition gives the smallest
+// ones.
 #include "point_quadratics.h"
 
 #include <tbb/parallel_sort.h>

@@ -1,4 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
+// Levels of a mixed mesh as tables, and the volume through given points.
+//
+// The schemes approximate: their limit does not pass through the control points. `interpolate_vertices` looks for control
+// points whose limit is at the given points x. With M the limits of vertices as a matrix,
+//
+//     p ← p + (x − M p),    from p = x
+//
+// A step takes away the part of an error that M keeps. M is an average with its largest weight at the point itself, so errors
+// that alternate from point to point, which it smooths most, last longest. Positions and fields are corrected in the same way,
+// each array for itself.
 #include "subvol/refine_mixed.h"
 
 #include <algorithm>
