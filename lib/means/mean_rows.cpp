@@ -83,6 +83,120 @@ std::array<double, kNodes> even_integrals() {
     return weights;
 }
 
+// One refinement as weights of the control values: the cells, eight for each control cell, and the rows of their points on the
+// limit.
+struct RefinedRows {
+    std::vector<std::array<Index, 8>> cells;
+    CsrMatrix rows;
+
+    RefinedRows(const Topology& topology, const SchemeOptions& scheme, Progress* progress) {
+        RefinementTables tables = refinement_tables(topology, {.scheme = scheme, .levels = 1, .progress = progress});
+        const std::size_t fine_points = tables.points();
+        StencilTable table = std::move(tables.levels.front());
+        if (!interpolates(scheme.kind)) {
+            HexMesh fine;
+            fine.points.resize(fine_points);
+            fine.cells = tables.cells;
+            fine.creases = tables.creases;
+            fine.sharp_faces = tables.sharp_faces;
+            table = limit_stencils(build_topology(fine), scheme.kind).after(table);
+        }
+        rows = table.csr();
+        cells = std::move(tables.cells);
+    }
+};
+
+// The weights of a cell's nodes in its integral, which are volumes; also its volume and its centre.
+void weigh_cell(const std::array<Vec3, kNodes>& x, std::array<double, kNodes>& weights, double& volume, Vec3& centre) {
+    static const std::array<double, kNodes> kEven = even_integrals();
+    weights = integrals(x);
+    volume = 0;
+    double size = 0;
+    for (const double weight : weights) {
+        volume += weight;
+        size += std::abs(weight);
+    }
+    if (!(volume > .05 * size)) {  // an inverted cell: its middle counts most, whatever its volume
+        weights = kEven;
+        volume = std::max(std::abs(volume), 1e-300);
+        for (double& weight : weights) weight *= volume;
+    }
+    centre = Vec3(0.0);
+    for (std::size_t n = 0; n < kNodes; ++n) centre += weights[n] / volume * x[n];
+}
+
+// The rows of the wholes: the mean over a whole is a sum over the nodes of its cells, each of which is a row of control values.
+class WholeRows {
+public:
+    WholeRows(const RefinedRows& refined, const Wholes& wholes, const std::vector<std::array<double, kNodes>>& weights,
+              const std::vector<double>& volumes, std::size_t control_points)
+        : refined_(refined), wholes_(wholes), weights_(weights), volumes_(volumes), all_sums_([control_points] {
+              return std::vector<double>(control_points);
+          }) {}
+
+    // In parts, so that rows are computed in parallel and stored in order.
+    [[nodiscard]] LaneMatrix matrix() {
+        constexpr std::size_t kOfPart = 1024;
+        std::vector<LaneMatrix> parts((wholes_.size() + kOfPart - 1) / kOfPart);
+        tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t part) {
+            std::vector<Index> touched;
+            for (std::size_t w = part * kOfPart; w < std::min(wholes_.size(), (part + 1) * kOfPart); ++w) {
+                add_row(w, touched, parts[part]);
+            }
+        });
+        LaneMatrix matrix;
+        std::size_t entries = 0;
+        for (const LaneMatrix& part : parts) entries += part.columns.size();
+        matrix.columns.reserve(entries);
+        matrix.weights.reserve(entries);
+        matrix.offsets.reserve(wholes_.size() + 1);
+        for (LaneMatrix& part : parts) {
+            const std::size_t before = matrix.columns.size();
+            for (std::size_t r = 1; r < part.offsets.size(); ++r) matrix.offsets.push_back(before + part.offsets[r]);
+            matrix.columns.insert(matrix.columns.end(), part.columns.begin(), part.columns.end());
+            matrix.weights.insert(matrix.weights.end(), part.weights.begin(), part.weights.end());
+            part = {};
+        }
+        return matrix;
+    }
+
+private:
+    // sums: one for each control point, all 0 before and after
+    void add_row(std::size_t whole, std::vector<Index>& touched, LaneMatrix& out) {
+        std::vector<double>& sums = all_sums_.local();
+        const CsrMatrix& rows = refined_.rows;
+        touched.clear();
+        double volume = 0;
+        for (const Index c : wholes_.cells_of(whole)) volume += volumes_[c];
+        for (const Index c : wholes_.cells_of(whole)) {
+            const auto nodes = nodes_of(refined_.cells, c);
+            for (std::size_t n = 0; n < kNodes; ++n) {
+                const double weight = weights_[c][n] / volume;
+                for (std::size_t k = rows.offsets[nodes[n]]; k < rows.offsets[nodes[n] + 1]; ++k) {
+                    touched.push_back(rows.columns[k]);
+                    sums[rows.columns[k]] += weight * rows.weights[k];
+                }
+            }
+        }
+        std::ranges::sort(touched);
+        touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
+        for (const Index column : touched) {
+            if (sums[column] != 0) {
+                out.columns.push_back(column);
+                out.weights.push_back(static_cast<float>(sums[column]));
+            }
+            sums[column] = 0;
+        }
+        out.offsets.push_back(out.columns.size());
+    }
+
+    const RefinedRows& refined_;
+    const Wholes& wholes_;
+    const std::vector<std::array<double, kNodes>>& weights_;
+    const std::vector<double>& volumes_;
+    tbb::enumerable_thread_specific<std::vector<double>> all_sums_;
+};
+
 }  // namespace
 
 Wholes wholes_of(std::size_t count, std::span<const Index> parts) {
@@ -105,20 +219,8 @@ Wholes wholes_of(std::size_t count, std::span<const Index> parts) {
 
 MeanRows mean_rows(const HexMesh& mesh, const Topology& topology, const Wholes& wholes, const SchemeOptions& scheme,
                    Progress* progress) {
-    RefinementTables tables = refinement_tables(topology, {.scheme = scheme, .levels = 1, .progress = progress});
-    const std::size_t fine_points = tables.points();
-    StencilTable table = std::move(tables.levels.front());
-    if (!interpolates(scheme.kind)) {
-        HexMesh fine;
-        fine.points.resize(fine_points);
-        fine.cells = tables.cells;
-        fine.creases = tables.creases;
-        fine.sharp_faces = tables.sharp_faces;
-        table = limit_stencils(build_topology(fine), scheme.kind).after(table);
-    }
-    const CsrMatrix rows = table.csr();
-    table = {};
-    tables.levels.clear();
+    const RefinedRows refined(topology, scheme, progress);
+    const CsrMatrix& rows = refined.rows;
     std::vector<Vec3> points(rows.offsets.size() - 1, Vec3(0.0));
     parallel_each(points.size(), [&](std::size_t r) {
         for (std::size_t k = rows.offsets[r]; k < rows.offsets[r + 1]; ++k)
@@ -129,73 +231,13 @@ MeanRows mean_rows(const HexMesh& mesh, const Topology& topology, const Wholes& 
     means.volumes.resize(cells);
     means.centres.resize(cells);
     std::vector<std::array<double, kNodes>> weights(cells);
-    static const std::array<double, kNodes> kEven = even_integrals();
     parallel_each(cells, [&](std::size_t c) {
-        const auto nodes = nodes_of(tables.cells, c);
+        const auto nodes = nodes_of(refined.cells, c);
         std::array<Vec3, kNodes> x;
         for (std::size_t n = 0; n < kNodes; ++n) x[n] = points[nodes[n]];
-        weights[c] = integrals(x);
-        double volume = 0, size = 0;
-        for (const double weight : weights[c]) {
-            volume += weight;
-            size += std::abs(weight);
-        }
-        if (!(volume > .05 * size)) {  // a folded cell: its middle counts most, whatever its volume
-            weights[c] = kEven;
-            volume = std::max(std::abs(volume), 1e-300);
-            for (double& weight : weights[c]) weight *= volume;
-        }
-        means.volumes[c] = volume;
-        means.centres[c] = Vec3(0.0);
-        for (std::size_t n = 0; n < kNodes; ++n) means.centres[c] += weights[c][n] / volume * x[n];
+        weigh_cell(x, weights[c], means.volumes[c], means.centres[c]);
     });
-    // Rows in parts, so that they are computed in parallel and stored in order.
-    constexpr std::size_t kOfPart = 1024;
-    const std::size_t parts = (wholes.size() + kOfPart - 1) / kOfPart;
-    std::vector<LaneMatrix> of_part(parts);
-    tbb::enumerable_thread_specific<std::vector<double>> all_sums([&] { return std::vector<double>(mesh.points.size()); });
-    tbb::parallel_for(std::size_t{0}, parts, [&](std::size_t part) {
-        LaneMatrix& out = of_part[part];
-        std::vector<double>& sums = all_sums.local();
-        std::vector<Index> touched;
-        for (std::size_t w = part * kOfPart; w < std::min(wholes.size(), (part + 1) * kOfPart); ++w) {
-            touched.clear();
-            double volume = 0;
-            for (const Index c : wholes.cells_of(w)) volume += means.volumes[c];
-            for (const Index c : wholes.cells_of(w)) {
-                const auto nodes = nodes_of(tables.cells, c);
-                for (std::size_t n = 0; n < kNodes; ++n) {
-                    const double weight = weights[c][n] / volume;
-                    for (std::size_t k = rows.offsets[nodes[n]]; k < rows.offsets[nodes[n] + 1]; ++k) {
-                        touched.push_back(rows.columns[k]);
-                        sums[rows.columns[k]] += weight * rows.weights[k];
-                    }
-                }
-            }
-            std::ranges::sort(touched);
-            touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
-            for (const Index column : touched) {
-                if (sums[column] != 0) {
-                    out.columns.push_back(column);
-                    out.weights.push_back(static_cast<float>(sums[column]));
-                }
-                sums[column] = 0;
-            }
-            out.offsets.push_back(out.columns.size());
-        }
-    });
-    std::size_t entries = 0;
-    for (const LaneMatrix& part : of_part) entries += part.columns.size();
-    means.matrix.columns.reserve(entries);
-    means.matrix.weights.reserve(entries);
-    means.matrix.offsets.reserve(wholes.size() + 1);
-    for (LaneMatrix& part : of_part) {
-        const std::size_t before = means.matrix.columns.size();
-        for (std::size_t r = 1; r < part.offsets.size(); ++r) means.matrix.offsets.push_back(before + part.offsets[r]);
-        means.matrix.columns.insert(means.matrix.columns.end(), part.columns.begin(), part.columns.end());
-        means.matrix.weights.insert(means.matrix.weights.end(), part.weights.begin(), part.weights.end());
-        part = {};
-    }
+    means.matrix = WholeRows(refined, wholes, weights, means.volumes, mesh.points.size()).matrix();
     return means;
 }
 

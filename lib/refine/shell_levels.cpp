@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <map>
+#include <memory>
 
 #include "refine_steps.h"
 #include "schemes.h"
@@ -120,99 +121,131 @@ struct LevelData {
     }
 };
 
-ShellLevel next_level(const ShellLevel& level, const SchemeOptions& scheme) {
-    const Shells& shells = level.shells;
-    const ShellComplex complex = complex_of(level);
-    const Topology &quads = complex.quads.topology, &lines = complex.lines.topology;
-    const auto of_quads = make_rules(quads, scheme, complex.quads.kinds);
-    const auto of_lines = make_rules(lines, scheme, complex.lines.kinds);
+// Makes the next level: points that the mesh has, too, are taken from its refinement, all others are made by the rules.
+class NextLevel {
+public:
+    NextLevel(const ShellLevel& level, const SchemeOptions& scheme)
+        : level_(level),
+          scheme_(scheme),
+          complex_(complex_of(level)),
+          quads_(complex_.quads.topology),
+          lines_(complex_.lines.topology),
+          quad_rules_(make_rules(quads_, scheme, complex_.quads.kinds)),
+          line_rules_(make_rules(lines_, scheme, complex_.lines.kinds)),
+          first_edge_(level.shells.points.size()),
+          first_face_(first_edge_ + quads_.edges.size()),
+          first_line_(first_face_ + quads_.faces.size()),
+          data_{level, next_.shells} {}
 
-    const std::size_t points = shells.points.size();
-    const std::size_t first_face = points + quads.edges.size(), first_line = first_face + quads.faces.size();
-    const std::size_t count = first_line + lines.edges.size();
-    if (count >= kNone) {
-        throw Error(ErrorCode::InvalidInput, "the refined shells need " + std::to_string(count) + " points", {},
-                    "at most " + std::to_string(kNone - 1) + ": use fewer levels");
+    ShellLevel make() {
+        const std::size_t count = first_line_ + lines_.edges.size();
+        if (count >= kNone) {
+            throw Error(ErrorCode::InvalidInput, "the refined shells need " + std::to_string(count) + " points", {},
+                        "at most " + std::to_string(kNone - 1) + ": use fewer levels");
+        }
+        next_.at.assign(count, kNone);
+        for (const Attribute& attribute : level_.shells.attributes) {
+            next_.shells.attributes.push_back({attribute.name, attribute.channels, {}});
+        }
+        refine_solid();
+        add_points();
+        split();
+        return std::move(next_);
     }
-    ShellLevel next;
-    next.at.assign(count, kNone);
-    std::vector<Index> chosen;
-    std::vector<Index> place(level.solid.cells.size(), kNone);  // of a cell among the chosen
-    if (!level.solid.cells.empty()) {
-        chosen = cells_about(level);
-        next.solid = refine_cells(level.solid, chosen, {.scheme = scheme, .levels = 1});
+
+private:
+    // The cells at the shells, refined once, and the corners of their children at the points that shells share with them.
+    void refine_solid() {
+        std::vector<Index> chosen;
+        if (!level_.solid.cells.empty()) {
+            chosen = cells_about(level_);
+            next_.solid = refine_cells(level_.solid, chosen, {.scheme = scheme_, .levels = 1});
+            for (const Index c : chosen) {
+                const std::size_t whole = level_.cells.empty() ? c : level_.cells[c];
+                for (std::size_t k = 0; k < 8; ++k) next_.cells.push_back(static_cast<Index>(8 * whole + k));
+            }
+        }
+        parts_ = parts_of(level_, chosen);
+        corner_of_.resize(level_.solid.points.size());
         for (std::size_t s = 0; s < chosen.size(); ++s) {
-            place[chosen[s]] = static_cast<Index>(s);
-            const std::size_t whole = level.cells.empty() ? chosen[s] : level.cells[chosen[s]];
-            for (std::size_t k = 0; k < 8; ++k) next.cells.push_back(static_cast<Index>(8 * whole + k));
-        }
-    }
-    const SolidParts parts = parts_of(level, chosen);
-    std::vector<CellCorner> corner_of(level.solid.points.size());  // the corner of a child at each attached point
-    for (std::size_t s = 0; s < chosen.size(); ++s) {
-        for (std::uint8_t k = 0; k < 8; ++k) {
-            CellCorner& corner = corner_of[level.solid.cells[chosen[s]][k]];
-            if (corner.cell == kNone) corner = {static_cast<Index>(8 * s + k), k};
+            for (std::uint8_t k = 0; k < 8; ++k) {
+                CellCorner& corner = corner_of_[level_.solid.cells[chosen[s]][k]];
+                if (corner.cell == kNone) corner = {static_cast<Index>(8 * s + k), k};
+            }
         }
     }
 
-    Shells& fine = next.shells;
-    for (const Attribute& attribute : shells.attributes) fine.attributes.push_back({attribute.name, attribute.channels, {}});
-    LevelData data{level, fine};
-    StencilBuilder row;
-    const auto from_solid = [&](const CellCorner& corner) { data.add(next.solid, corner, next.cells[corner.cell], next.at); };
-    const auto from_rules = [&](const auto& write) {
-        row.clear();
+    // In the order of their numbers: old points, edges and faces of quads, lines that are not edges of quads.
+    void add_points() {
+        for (Index p = 0; p < first_edge_; ++p) {
+            if (level_.at[p] != kNone) {
+                from_solid(corner_of_[level_.at[p]]);
+            } else if (!quads_.point_edges[p].empty()) {
+                from_rules([&] { quad_rules_->vertex_point(p, row_); });
+            } else if (!lines_.point_edges[p].empty()) {
+                from_rules([&] { line_rules_->vertex_point(p, row_); });
+            } else {
+                from_rules([&] { row_.add(p, 1); });
+            }
+        }
+        add_edges(quads_, *quad_rules_);
+        for (Index f = 0; f < quads_.faces.size(); ++f) {
+            std::array<Index, 4> key;
+            for (std::size_t k = 0; k < 4; ++k) key[k] = level_.at[quads_.faces[f][k]];
+            std::sort(key.begin(), key.end());
+            const auto found = key[3] == kNone ? parts_.faces.end() : parts_.faces.find(key);
+            found != parts_.faces.end() ? from_solid(found->second) : from_rules([&] { quad_rules_->face_point(f, row_); });
+        }
+        add_edges(lines_, *line_rules_);
+    }
+
+    template <class Rules>
+    void add_edges(const Topology& topology, const Rules& rules) {
+        for (Index e = 0; e < topology.edges.size(); ++e) {
+            const Index a = level_.at[topology.edges[e][0]], b = level_.at[topology.edges[e][1]];
+            const bool attached = a != kNone && b != kNone;
+            const auto found = attached ? parts_.edges.find({std::min(a, b), std::max(a, b)}) : parts_.edges.end();
+            found != parts_.edges.end() ? from_solid(found->second) : from_rules([&] { rules.edge_point(e, row_); });
+        }
+    }
+
+    void from_solid(const CellCorner& corner) { data_.add(next_.solid, corner, next_.cells[corner.cell], next_.at); }
+    template <class Write>
+    void from_rules(const Write& write) {
+        row_.clear();
         write();
-        data.add(row.finish());
-    };
-    const auto solid_edge = [&](const std::array<Index, 2>& edge) {
-        const Index a = level.at[edge[0]], b = level.at[edge[1]];
-        if (a == kNone || b == kNone) return parts.edges.end();
-        return parts.edges.find({std::min(a, b), std::max(a, b)});
-    };
-    for (Index p = 0; p < points; ++p) {
-        if (level.at[p] != kNone) {
-            from_solid(corner_of[level.at[p]]);
-        } else if (!quads.point_edges[p].empty()) {
-            from_rules([&] { of_quads->vertex_point(p, row); });
-        } else if (!lines.point_edges[p].empty()) {
-            from_rules([&] { of_lines->vertex_point(p, row); });
-        } else {
-            from_rules([&] { row.add(p, 1); });
-        }
-    }
-    for (Index e = 0; e < quads.edges.size(); ++e) {
-        const auto found = solid_edge(quads.edges[e]);
-        found != parts.edges.end() ? from_solid(found->second) : from_rules([&] { of_quads->edge_point(e, row); });
-    }
-    for (Index f = 0; f < quads.faces.size(); ++f) {
-        std::array<Index, 4> key;
-        for (std::size_t k = 0; k < 4; ++k) key[k] = level.at[quads.faces[f][k]];
-        std::sort(key.begin(), key.end());
-        const auto found = key[3] == kNone ? parts.faces.end() : parts.faces.find(key);
-        found != parts.faces.end() ? from_solid(found->second) : from_rules([&] { of_quads->face_point(f, row); });
-    }
-    for (Index e = 0; e < lines.edges.size(); ++e) {
-        const auto found = solid_edge(lines.edges[e]);
-        found != parts.edges.end() ? from_solid(found->second) : from_rules([&] { of_lines->edge_point(e, row); });
+        data_.add(row_.finish());
     }
 
-    for (std::size_t f = 0; f < quads.faces.size(); ++f) {
-        for (std::size_t k = 0; k < 4; ++k) {
-            fine.quads.push_back({quads.faces[f][k], static_cast<Index>(points + quads.face_edges[f][k]),
-                                  static_cast<Index>(first_face + f),
-                                  static_cast<Index>(points + quads.face_edges[f][(k + 3) % 4])});
+    void split() {
+        Shells& fine = next_.shells;
+        for (std::size_t f = 0; f < quads_.faces.size(); ++f) {
+            for (std::size_t k = 0; k < 4; ++k) {
+                fine.quads.push_back({quads_.faces[f][k], static_cast<Index>(first_edge_ + quads_.face_edges[f][k]),
+                                      static_cast<Index>(first_face_ + f),
+                                      static_cast<Index>(first_edge_ + quads_.face_edges[f][(k + 3) % 4])});
+            }
+        }
+        for (const auto& [a, b] : level_.shells.lines) {
+            const auto in_shell = quads_.find_edge(a, b);
+            const auto middle = static_cast<Index>(in_shell ? first_edge_ + *in_shell : first_line_ + *lines_.find_edge(a, b));
+            fine.lines.push_back({a, middle});
+            fine.lines.push_back({middle, b});
         }
     }
-    for (const auto& [a, b] : shells.lines) {
-        const auto in_shell = quads.find_edge(a, b);
-        const auto middle = static_cast<Index>(in_shell ? points + *in_shell : first_line + *lines.find_edge(a, b));
-        fine.lines.push_back({a, middle});
-        fine.lines.push_back({middle, b});
-    }
-    return next;
-}
+
+    const ShellLevel& level_;
+    const SchemeOptions& scheme_;
+    ShellComplex complex_;
+    const Topology &quads_, &lines_;
+    std::unique_ptr<SchemeRules> quad_rules_, line_rules_;
+    std::size_t first_edge_, first_face_, first_line_;  // numbers of the first points of each kind
+    ShellLevel next_;
+    LevelData data_;
+    SolidParts parts_;
+    std::vector<CellCorner> corner_of_;  // the corner of a child at each point of the mesh that a shell has
+    StencilBuilder row_;
+};
 
 }  // namespace
 
@@ -248,7 +281,7 @@ ShellLevel refine_shell_level(const HexMesh& mesh, const Shells& shells, const R
     scheme.crease_angle_deg.reset();  // they are found once, in the control mesh
     for (int l = 0; l < options.levels; ++l) {
         report_progress(options.progress, "shells", static_cast<double>(l) / options.levels);
-        level = next_level(level, scheme);
+        level = NextLevel(level, scheme).make();
     }
     return level;
 }

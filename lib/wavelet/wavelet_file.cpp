@@ -139,6 +139,100 @@ std::size_t inverted_cells_of(const MeshHierarchy& hierarchy, const WaveletBasis
     return measure_cells(mesh).inverted_cells;
 }
 
+/// What a file contains, array by array, and the report on it.
+class FileWriter {
+public:
+    FileWriter(const HexMesh& mesh, const WaveletFileOptions& options)
+        : mesh_(mesh),
+          options_(options),
+          hierarchy_(find_hierarchy(mesh, {.levels = options.levels})),
+          topology_(build_topology(hierarchy_.coarse)),
+          basis_(
+              wavelet_basis(topology_, {.scheme = options.scheme, .levels = hierarchy_.levels, .progress = options.progress})) {
+        // Points that the hierarchy has added do not count in errors.
+        for (const Index p : hierarchy_.points) counted_.push_back(p < mesh.points.size() ? 1 : 0);
+        report_.levels = hierarchy_.levels;
+        report_.coarse_cells = hierarchy_.coarse.cells.size();
+        report_.cells = mesh.cells.size();
+        report_.added_cells = hierarchy_.cells.size() - mesh.cells.size();
+        report_.inverted_cells_before = measure_cells(mesh).inverted_cells;
+    }
+
+    void put_head() {
+        out_.number(static_cast<std::uint64_t>(options_.scheme.kind));
+        out_.real(options_.scheme.tension);
+        out_.number(static_cast<std::uint64_t>(hierarchy_.levels));
+        put_mesh(hierarchy_.coarse, out_);
+        put_cells(hierarchy_, out_);
+        out_.number(mesh_.attributes.size() + 1);
+    }
+
+    /// Positions are the array without a name. Unless their tolerance is given, it is reduced until no more cells are inverted
+    /// than before.
+    void put_points() {
+        report_array();
+        const std::vector<double> values = in_hierarchy(hierarchy_, coordinates(mesh_.points), 3);
+        const double scale = range_of(values, 3, counted_);
+        double tolerance = options_.point_tolerance.value_or(options_.tolerance / 10);
+        QuantizedWavelets numbers;
+        std::vector<double> restored;
+        for (int attempt = 0;; ++attempt) {
+            numbers = quantize_within(basis_, values, 3, tolerance * scale, counted_, options_.progress);
+            restored = synthesize(basis_, restore(basis_, numbers));
+            report_.inverted_cells = inverted_cells_of(hierarchy_, basis_, restored);
+            const bool sound = report_.inverted_cells <= report_.inverted_cells_before;
+            if (sound || options_.point_tolerance || attempt == kMostAttempts) break;
+            tolerance /= 3;
+        }
+        put("", values, numbers, restored, scale);
+    }
+
+    void put_attribute(const Attribute& attribute) {
+        report_array();
+        const auto channels = static_cast<std::size_t>(attribute.channels);
+        const std::vector<double> values = in_hierarchy(hierarchy_, attribute.values, channels);
+        const double range = range_of(values, channels, counted_), scale = range > 0 ? range : 1;
+        const QuantizedWavelets numbers =
+            quantize_within(basis_, values, channels, options_.tolerance * scale, counted_, options_.progress);
+        put(attribute.name, values, numbers, synthesize(basis_, restore(basis_, numbers)), scale);
+    }
+
+    WaveletFileReport write(const std::filesystem::path& path) {
+        const std::string packed = compressed_numbers(out_.all());
+        std::string length;
+        for (int k = 0; k < 8; ++k) length += static_cast<char>(out_.all().size() >> 8 * k & 255);
+        OutputFile file(path);
+        file.write(kWaveletMagic);
+        file.write(length);
+        file.write(packed);
+        report_.bytes = file.position();
+        file.commit();
+        return std::move(report_);
+    }
+
+private:
+    void report_array() const {
+        report_progress(options_.progress, "wavelets",
+                        static_cast<double>(report_.arrays.size()) / static_cast<double>(mesh_.attributes.size() + 1));
+    }
+
+    void put(std::string name, std::span<const double> values, const QuantizedWavelets& numbers,
+             std::span<const double> restored, double scale) {
+        put_array(numbers, name, out_);
+        const WaveletError error = difference(restored, values, numbers.channels, counted_);
+        report_.arrays.push_back({std::move(name), values.size(), kept_numbers(numbers), error.rms / scale, error.max / scale});
+    }
+
+    const HexMesh& mesh_;
+    const WaveletFileOptions& options_;
+    MeshHierarchy hierarchy_;
+    Topology topology_;
+    WaveletBasis basis_;
+    std::vector<std::uint8_t> counted_;
+    Bytes out_;
+    WaveletFileReport report_;
+};
+
 }  // namespace
 
 WaveletFileReport write_wavelet_file(const std::filesystem::path& path, const HexMesh& mesh,
@@ -146,74 +240,11 @@ WaveletFileReport write_wavelet_file(const std::filesystem::path& path, const He
     check_part(options.tolerance, "tolerance");
     check_part(options.point_tolerance.value_or(options.tolerance), "tolerance of points");
     report_progress(options.progress, "find the coarser mesh", 0);
-    const MeshHierarchy hierarchy = find_hierarchy(mesh, {.levels = options.levels});
-    const Topology topology = build_topology(hierarchy.coarse);
-    const WaveletBasis basis =
-        wavelet_basis(topology, {.scheme = options.scheme, .levels = hierarchy.levels, .progress = options.progress});
-    // Added points are in the order of the hierarchy, and do not count.
-    std::vector<std::uint8_t> counted;
-    for (const Index p : hierarchy.points) counted.push_back(p < mesh.points.size() ? 1 : 0);
-
-    WaveletFileReport report;
-    report.levels = hierarchy.levels;
-    report.coarse_cells = hierarchy.coarse.cells.size();
-    report.cells = mesh.cells.size();
-    report.added_cells = hierarchy.cells.size() - mesh.cells.size();
-    Bytes out;
-    out.number(static_cast<std::uint64_t>(options.scheme.kind));
-    out.real(options.scheme.tension);
-    out.number(static_cast<std::uint64_t>(hierarchy.levels));
-    put_mesh(hierarchy.coarse, out);
-    put_cells(hierarchy, out);
-    out.number(mesh.attributes.size() + 1);
-    report.inverted_cells_before = measure_cells(mesh).inverted_cells;
-    const auto report_array = [&] {
-        report_progress(options.progress, "wavelets",
-                        static_cast<double>(report.arrays.size()) / static_cast<double>(mesh.attributes.size() + 1));
-    };
-    const auto put = [&](std::string name, std::span<const double> values, const QuantizedWavelets& numbers,
-                         std::span<const double> restored, double scale) {
-        put_array(numbers, name, out);
-        const WaveletError error = difference(restored, values, numbers.channels, counted);
-        report.arrays.push_back({std::move(name), values.size(), kept_numbers(numbers), error.rms / scale, error.max / scale});
-    };
-    report_array();
-    {
-        const std::vector<double> values = in_hierarchy(hierarchy, coordinates(mesh.points), 3);
-        const double scale = range_of(values, 3, counted);
-        double tolerance = options.point_tolerance.value_or(options.tolerance / 10);
-        QuantizedWavelets numbers;
-        std::vector<double> restored;
-        for (int attempt = 0;; ++attempt) {
-            numbers = quantize_within(basis, values, 3, tolerance * scale, counted, options.progress);
-            restored = synthesize(basis, restore(basis, numbers));
-            report.inverted_cells = inverted_cells_of(hierarchy, basis, restored);
-            const bool sound = report.inverted_cells <= report.inverted_cells_before;
-            if (sound || options.point_tolerance || attempt == kMostAttempts) break;
-            tolerance /= 3;
-        }
-        put("", values, numbers, restored, scale);
-    }
-    for (const Attribute& a : mesh.attributes) {
-        report_array();
-        const auto channels = static_cast<std::size_t>(a.channels);
-        const std::vector<double> values = in_hierarchy(hierarchy, a.values, channels);
-        const double range = range_of(values, channels, counted), scale = range > 0 ? range : 1;
-        const QuantizedWavelets numbers =
-            quantize_within(basis, values, channels, options.tolerance * scale, counted, options.progress);
-        put(a.name, values, numbers, synthesize(basis, restore(basis, numbers)), scale);
-    }
-
-    const std::string packed = compressed_numbers(out.all());
-    std::string length;
-    for (int k = 0; k < 8; ++k) length += static_cast<char>(out.all().size() >> 8 * k & 255);
-    OutputFile file(path);
-    file.write(kWaveletMagic);
-    file.write(length);
-    file.write(packed);
-    report.bytes = file.position();
-    file.commit();
-    return report;
+    FileWriter writer(mesh, options);
+    writer.put_head();
+    writer.put_points();
+    for (const Attribute& attribute : mesh.attributes) writer.put_attribute(attribute);
+    return writer.write(path);
 }
 
 std::vector<Option> options_of(WaveletFileOptions& options) {
