@@ -87,7 +87,7 @@ public:
     /// about: of one layer
     [[nodiscard]] const ClassEntry& entry(const Neighborhood& about);
 
-    /// Of all tables.
+    /// Returns the size of all tables.
     [[nodiscard]] std::size_t bytes() const;
 
 private:

@@ -153,8 +153,8 @@ private:
                 double* HWY_RESTRICT column = to + a.of_segment(s) + b.of_segment(q);
                 for (std::size_t r = 0; r < kPoints; ++r) {
                     const std::size_t n = first + r;
-                    const auto own = hn::MulAdd(beyond, outer[n + 1], hn::Mul(of_face, corners[n + 1]));
-                    hn::StoreU(hn::Add(own, hn::Add(sides[n], sides[n + 2])), d, column + c.of_point(r));
+                    const auto plane = hn::MulAdd(beyond, outer[n + 1], hn::Mul(of_face, corners[n + 1]));
+                    hn::StoreU(hn::Add(plane, hn::Add(sides[n], sides[n + 2])), d, column + c.of_point(r));
                 }
                 if constexpr (kWithCells) {
                     for (std::size_t r = 0; r < kSegments; ++r) {

@@ -27,16 +27,16 @@ void check_values(const std::vector<Knot>& knots, const char* list) {
     }
 }
 
-/// of: what a knot stands for
-template <class Knot, class Of>
-auto interpolate(const std::vector<Knot>& knots, double value, const Of& of) {
+/// value_of: the value at a knot that is interpolated
+template <class Knot, class ValueOf>
+auto interpolate(const std::vector<Knot>& knots, double value, const ValueOf& value_of) {
     const auto next =
         std::upper_bound(knots.begin(), knots.end(), value, [](double v, const Knot& knot) { return v < knot.value; });
-    if (next == knots.begin()) return of(knots.front());
+    if (next == knots.begin()) return value_of(knots.front());
     const auto last = std::prev(next);
-    if (next == knots.end()) return of(*last);
+    if (next == knots.end()) return value_of(*last);
     const double t = (value - last->value) / (next->value - last->value);
-    return (1 - t) * of(*last) + t * of(*next);
+    return (1 - t) * value_of(*last) + t * value_of(*next);
 }
 
 bool in_unit(double x) {

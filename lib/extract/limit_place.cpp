@@ -13,7 +13,7 @@ namespace {
 
 // A step is no longer than this in any parameter: farther away, the Jacobian of one place means little.
 constexpr double kLongestStep = 0.75;
-// Of the lengths of the Jacobian's columns, multiplied: cells that are flatter than this have no inverse.
+// A part of the product of the lengths of the Jacobian's columns: cells that are flatter have no inverse.
 constexpr double kFlat = 1e-9;
 
 Vec3 parameters_of(std::size_t corner) {

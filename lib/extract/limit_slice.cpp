@@ -289,7 +289,7 @@ std::vector<ContourLine> contour_lines(const LimitSlice& slice, std::span<const 
 void write_slice(const std::filesystem::path& path, const LimitSlice& slice, std::span<const ContourLine> lines) {
     const std::string extension = path.extension().string();
     if (extension != ".csv" && extension != ".vtp") {
-        throw Error(ErrorCode::InvalidInput, "'" + detail::printable(extension) + "' is no format of slices", path.string(),
+        throw Error(ErrorCode::InvalidInput, "'" + detail::printable(extension) + "' is not a format of slices", path.string(),
                     ".csv, .vtp");
     }
     detail::OutputFile out(path);

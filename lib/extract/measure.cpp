@@ -24,7 +24,7 @@ constexpr double kShrink = 0.35;
 constexpr std::array<double, 3> kGaussPlaces{0.11270166537925831, 0.5, 0.88729833462074169};
 constexpr std::array<double, 3> kGaussWeights{5.0 / 18, 8.0 / 18, 5.0 / 18};
 
-/// Of each node: the weight of its value and those of the derivatives by u, v, w.
+/// For each node the weight of its value and those of the derivatives by u, v, w.
 using NodeWeights = std::array<std::array<double, 4>, 27>;
 
 std::array<NodeWeights, 27> gauss_weights() {
@@ -80,11 +80,11 @@ struct Sums {
 
 class Measurer {
 public:
-    /// of: no flags: all cells
-    Measurer(const HexMesh& mesh, const detail::MeasuredCells& of, const MeasureOptions& options)
-        : mesh_(mesh), options_(options), owned_(of.owned) {
+    /// measured: without flags all cells are measured
+    Measurer(const HexMesh& mesh, const detail::MeasuredCells& measured, const MeasureOptions& options)
+        : mesh_(mesh), options_(options), owned_(measured.owned) {
         check();
-        const LimitCellsOptions cells{.position_world = options.tolerance * std::max(of.longest_side, 1e-300),
+        const LimitCellsOptions cells{.position_world = options.tolerance * std::max(measured.longest_side, 1e-300),
                                       .value_of_range = options.tolerance,
                                       .max_bytes = kMostBytes};
         pieces_ = find_limit_cells(mesh, {.scheme = options.scheme, .levels = 0, .progress = options.progress}, cells).pieces;
@@ -117,7 +117,7 @@ public:
         return result;
     }
 
-    /// Of the parts and the whole, the first, between its extremes.
+    /// Adds the histograms of the whole, which is the first, and of the parts, each between its extremes.
     void add_histograms(std::vector<PartMeasure>& found) const {
         const auto bins = static_cast<std::size_t>(options_.bins);
         const std::size_t size = found.size() * channels_ * bins;
@@ -370,11 +370,11 @@ LimitMeasure detail::measure_part(const HexMesh& part, const MeasuredCells& cell
 
 void detail::add_to_histograms(const HexMesh& part, const MeasuredCells& cells, const MeasureOptions& options,
                                PartMeasure& whole) {
-    std::vector<PartMeasure> here(1, whole);
-    Measurer(part, cells, options).add_histograms(here);
+    std::vector<PartMeasure> measures(1, whole);
+    Measurer(part, cells, options).add_histograms(measures);
     for (std::size_t f = 0; f < whole.fields.size(); ++f) {
         for (std::size_t b = 0; b < whole.fields[f].histogram.size(); ++b) {
-            whole.fields[f].histogram[b] += here[0].fields[f].histogram[b];
+            whole.fields[f].histogram[b] += measures[0].fields[f].histogram[b];
         }
     }
 }

@@ -54,7 +54,7 @@ PieceTree::PieceTree(const HexMesh& mesh, const SchemeOptions& scheme, double re
     tree_.emplace(centers, kLeafSize, [this](Index piece) { return boxes_[piece]; });
 }
 
-/// Of the control points of the piece, along one axis after the other.
+/// Returns the bounds of the control points of the piece, along one axis after the other.
 Box PieceTree::box_of(std::size_t piece) const {
     Box box;
     for (int c = 0; c < 3; ++c) {

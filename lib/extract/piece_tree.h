@@ -26,7 +26,7 @@ public:
 
     /// How far the pieces may be from the limit (world).
     [[nodiscard]] double distance() const { return distance_; }
-    /// Of all pieces.
+    /// Returns the bounds of all pieces.
     [[nodiscard]] const Box& box() const { return tree_->box(0); }
 
     /// The pieces that may contain x, the likeliest first, at most a few.

@@ -137,14 +137,16 @@ KernelFit fit_gaussian_sum(const BasisFunction& basis, int terms) {
 KernelFit fit_cubic(const BasisFunction& basis, KernelShape shape, const FitOptions& options) {
     const double extent = options.extent;
     const RadialSamples samples = radial_samples(basis);
-    const auto of = [&](double b, double c) { return profile(samples, BcSplineKernel{.b = b, .c = c, .extent = extent}); };
-    const std::vector<double> constant = of(0, 0), target = difference(samples.mean, constant);
+    const auto profile_of = [&](double b, double c) {
+        return profile(samples, BcSplineKernel{.b = b, .c = c, .extent = extent});
+    };
+    const std::vector<double> constant = profile_of(0, 0), target = difference(samples.mean, constant);
     if (shape == KernelShape::CardinalSpline) {
-        const std::vector<std::vector<double>> columns{difference(constant, of(0, 1))};  // a = −C
+        const std::vector<std::vector<double>> columns{difference(constant, profile_of(0, 1))};  // a = −C
         const double a = linear_fit(samples.count, target, columns)[0];
         return {CardinalSplineKernel{.a = a, .extent = extent}, {.errors = {}, .parameters = 1}};
     }
-    std::vector<std::vector<double>> columns{difference(of(1, 0), constant), difference(of(0, 1), constant)};
+    std::vector<std::vector<double>> columns{difference(profile_of(1, 0), constant), difference(profile_of(0, 1), constant)};
     if (options.sign_slip) slip(samples, extent, columns[0]);
     const auto bc = linear_fit(samples.count, target, columns);
     return {BcSplineKernel{.b = bc[0], .c = bc[1], .extent = extent}, {.errors = {}, .parameters = 2}};

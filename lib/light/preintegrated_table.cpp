@@ -24,8 +24,8 @@ Channels emission_at(const Optics& optics, double value) {
 Channels mean_between_knots(const Optics& optics, double from, double to) {
     Channels sum{};
     for (const auto& [u, weight] : kGauss) {
-        const Channels here = emission_at(optics, from + u * (to - from));
-        for (std::size_t c = 0; c < 4; ++c) sum[c] += weight * here[c];
+        const Channels emission = emission_at(optics, from + u * (to - from));
+        for (std::size_t c = 0; c < 4; ++c) sum[c] += weight * emission[c];
     }
     sum[0] = (optics.extinction_integral(to) - optics.extinction_integral(from)) / (to - from);
     return sum;

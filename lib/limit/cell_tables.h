@@ -46,8 +46,8 @@ constexpr ClassKey kNoClass{~std::uint64_t{0}, ~std::uint64_t{0}};
 
 /// One mesh whose cells are refined: the control mesh, or a patch of a level of it.
 struct RefinedLevel {
-    explicit RefinedLevel(const HexMesh& of)
-        : mesh(of), links(build_links(of)), walks([this] { return NeighborhoodWalk(mesh, links); }) {}
+    explicit RefinedLevel(const HexMesh& refined)
+        : mesh(refined), links(build_links(refined)), walks([this] { return NeighborhoodWalk(mesh, links); }) {}
     const HexMesh& mesh;
     CellLinks links;
     tbb::enumerable_thread_specific<NeighborhoodWalk> walks;

@@ -13,9 +13,9 @@ namespace subvol::detail {
 
 namespace {
 
-void add(std::vector<Lanes>& to, const Lanes& factor, const std::vector<Lanes>& what) {
+void add(std::vector<Lanes>& to, const Lanes& factor, const std::vector<Lanes>& values) {
     parallel_each(to.size(), [&](std::size_t i) {
-        for (std::size_t l = 0; l < kLanes; ++l) to[i][l] += factor[l] * what[i][l];
+        for (std::size_t l = 0; l < kLanes; ++l) to[i][l] += factor[l] * values[i][l];
     });
 }
 

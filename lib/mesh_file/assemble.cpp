@@ -99,7 +99,8 @@ public:
         : result_(result), origin_(origin), file_(file), names_(names), fits_(fits) {}
 
     void take(FileArray&& array) {
-        // Of all formats; from here on it is in messages, JSON and files, and is what users write to choose the field.
+        // The names of all formats pass here: they appear in messages, JSON and files, and users write them to choose the
+        // field.
         array.name = array.name.empty() ? "unnamed" : printable(array.name);
         result_.fields.push_back(describe(array));
         const FieldInfo& info = result_.fields.back();

@@ -206,7 +206,7 @@ private:
     void order_cells() {
         for (const std::string_view name : kCellNumberArrays) {
             std::vector<double> numbers(cells_);
-            std::vector<std::uint8_t> counts(cells_, 1);  // the cell is no ghost
+            std::vector<std::uint8_t> counts(cells_, 1);  // the cell is not a ghost
             bool everywhere = cells_ > 0;
             for (std::size_t k = 0; k < pieces_.size() && everywhere; ++k) {
                 const std::size_t end = k + 1 < pieces_.size() ? first_cells_[k + 1] : cells_;

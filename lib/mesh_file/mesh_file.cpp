@@ -196,7 +196,7 @@ BlockChoice::BlockChoice(std::span<const std::string> wanted, const std::vector<
 std::size_t chosen_step(const ReadOptions& options, std::size_t steps, std::string_view file,
                         std::vector<std::string>& warnings) {
     if (!options.step) {
-        if (steps > 1) warnings.push_back("of " + std::to_string(steps) + " steps the last one is taken");
+        if (steps > 1) warnings.push_back("the file has " + std::to_string(steps) + " steps; the last one is read");
         return steps - 1;
     }
     if (*options.step < steps) return *options.step;

@@ -8,8 +8,12 @@
 
 namespace subvol::detail {
 
-ChildNumbers::ChildNumbers(const Topology& of)
-    : parent(of), first(of), edge_b(2 * of.edges.size()), edge_c(edge_b + 4 * of.faces.size()), face_e(4 * of.faces.size()) {
+ChildNumbers::ChildNumbers(const Topology& topology)
+    : parent(topology),
+      first(topology),
+      edge_b(2 * topology.edges.size()),
+      edge_c(edge_b + 4 * topology.faces.size()),
+      face_e(4 * topology.faces.size()) {
     sort_edge_faces();
     number_edges();
     number_faces();

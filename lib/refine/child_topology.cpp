@@ -174,7 +174,7 @@ private:
         const auto put = [&](std::size_t q, auto... edges) {  // ascending: those from smaller points, then its own
             std::size_t i = offsets[q];
             ((values[i++] = edges), ...);
-            for (Index own = t_.edge_offsets[q]; own < t_.edge_offsets[q + 1]; ++own) values[i++] = own;
+            for (Index e = t_.edge_offsets[q]; e < t_.edge_offsets[q + 1]; ++e) values[i++] = e;
         };
         parallel_each(p_.point_count, [&](std::size_t v) { put(v); });
         parallel_each(p_.edges.size(), [&](std::size_t e) { put(n_.first.edges + e, n_.at_ends[e][0], n_.at_ends[e][1]); });

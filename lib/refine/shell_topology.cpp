@@ -67,7 +67,7 @@ Index other_edge(const Topology& t, Index face, Index point, Index edge) {
     return after == edge ? t.face_edges[face][(k + 3) % 4] : after;
 }
 
-/// The faces at a point that can be reached from an edge across edges that are no creases.
+/// The faces at a point that can be reached from an edge across edges that are not creases.
 std::size_t faces_from(const Topology& t, Index point, Index edge) {
     std::size_t faces = 0;
     Index face = t.edge_faces[edge][0];

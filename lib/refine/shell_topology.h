@@ -24,7 +24,7 @@ using OnSolid = std::function<bool(Index, Index)>;
 /// The quads of the shells: all are boundary faces without cells, in the order of `shells.quads`, with their points.
 [[nodiscard]] ShellTopology topology_of_quads(const Shells& shells, const OnSolid& on_solid);
 
-/// The lines that are no edges of quads: all are creases.
+/// The lines that are not edges of quads: all are creases.
 [[nodiscard]] ShellTopology topology_of_lines(const Shells& shells, const Topology& quads);
 
 }  // namespace subvol::detail

@@ -53,9 +53,9 @@ struct SampleStencil {
     QuarticBasis::Weights value{}, first{}, second{};
 
     SampleStencil(double t, double step) {
-        const QuarticBasis here(t);
-        value = here.value;
-        for (std::size_t i = 0; i < value.size(); ++i) first[i] = step * here.first[i];
+        const QuarticBasis basis(t);
+        value = basis.value;
+        for (std::size_t i = 0; i < value.size(); ++i) first[i] = step * basis.first[i];
         constexpr double kSlack = 1e-9;  // t ± step of the outermost samples is rounded
         const bool below = t - step > -kSlack, above = t + step < 1 + kSlack;
         const QuarticBasis low(t - step), high(t + step);

@@ -38,7 +38,7 @@ class Series(InFolder):
     def test_info_lists_the_steps(self):
         info = self.run_ok("info", "run.pvd", "--json").json()
         self.assertEqual((info["steps"], info["times"], info["step"], info["blocks"]), (3, TIMES, 2, []))
-        self.assertIn("of 3 steps the last one is taken", info["warnings"])
+        self.assertIn("the file has 3 steps; the last one is read", info["warnings"])
         for chosen in (["--step", "1"], ["--time", "1.9"]):
             info = self.run_ok("info", "run.pvd", "--json", *chosen).json()
             self.assertEqual((info["step"], info["bounds"][0][0]), (1, 1))

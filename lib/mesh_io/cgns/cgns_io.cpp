@@ -121,7 +121,7 @@ bool is_volume(const CgnsType& type) {
     return type.name.starts_with("TETRA") || type.name.starts_with("P") || type.name.starts_with("HEXA");
 }
 
-// Of Exodus II's order of 27 nodes, where CGNS has each: the middle comes last, and the faces in another order.
+// The places of CGNS's 27 nodes in Exodus II's order: in CGNS the middle comes last, and the faces come in another order.
 constexpr std::array<std::size_t, 7> kFacesAndMiddle{26, 20, 25, 24, 22, 21, 23};
 
 struct Zone {
@@ -352,12 +352,12 @@ private:
                     if (at == numbers.size()) tree_.file().fail("node " + in_quotes(section) + " ends before its elements do");
                     kind = numbers[at++];
                 }
-                const CgnsType& of = known(kind, section);
-                if (of.nodes > numbers.size() - at)
+                const CgnsType& type = known(kind, section);
+                if (type.nodes > numbers.size() - at)
                     tree_.file().fail("node " + in_quotes(section) + " ends before its elements do");
-                take(of, std::span(numbers).subspan(at, of.nodes), first + static_cast<std::int64_t>(e), cells, found);
-                at += of.nodes;
-                if (is_volume(of)) ++cells;
+                take(type, std::span(numbers).subspan(at, type.nodes), first + static_cast<std::int64_t>(e), cells, found);
+                at += type.nodes;
+                if (is_volume(type)) ++cells;
             }
         }
         cells_of_sections_ = cells;

@@ -187,8 +187,8 @@ std::filesystem::path EnsightCase::file_at(const EnsightFiles& files, double tim
     std::string name = files.name;
     const std::size_t star = name.find('*');
     if (star != std::string::npos) {
-        const auto own = sets_.find(files.time_set);
-        const EnsightTimes& set = own != sets_.end() ? own->second : sets_.begin()->second;
+        const auto time_set = sets_.find(files.time_set);
+        const EnsightTimes& set = time_set != sets_.end() ? time_set->second : sets_.begin()->second;
         const auto after = std::ranges::upper_bound(set.times, time);
         const std::size_t k = after == set.times.begin() ? 0 : static_cast<std::size_t>(after - set.times.begin()) - 1;
         const std::size_t end = std::min(name.find_first_not_of('*', star), name.size());

@@ -64,7 +64,7 @@ private:
     std::map<int, EnsightTimes> sets_;
     std::vector<double> times_;
     std::vector<std::string> warnings_;
-    // Of the time set that is being read:
+    // For the time set that is being read:
     int set_ = 0;
     std::string list_;  // what the numbers of the next lines are
     struct Spread {

@@ -343,8 +343,8 @@ std::set<std::string> names_in(const fs::path& folder) {
 
 class PartReader {
 public:
-    PartReader(const FoamCase& of, std::size_t part, std::size_t step, const ReadOptions& options, NamedFiles& named)
-        : case_(of), part_(part), step_(step), options_(options), named_(named) {}
+    PartReader(const FoamCase& foam_case, std::size_t part, std::size_t step, const ReadOptions& options, NamedFiles& named)
+        : case_(foam_case), part_(part), step_(step), options_(options), named_(named) {}
 
     MeshFile read() {
         FoamMesh mesh = read_faces();
@@ -441,17 +441,17 @@ private:
 }  // namespace
 
 ReadResult read_foam(const fs::path& path, const ReadOptions& options) {
-    const FoamCase of = find_foam_case(path);
+    const FoamCase foam_case = find_foam_case(path);
     const std::string file = path.string();
     std::vector<std::string> warnings;
-    const std::size_t step = chosen_step(options, std::max<std::size_t>(1, of.times.size()), file, warnings);
+    const std::size_t step = chosen_step(options, std::max<std::size_t>(1, foam_case.times.size()), file, warnings);
     NamedFiles named;
     std::vector<MeshFile> parts;
-    for (std::size_t part = 0; part < of.parts.size(); ++part) {
-        parts.push_back(PartReader(of, part, step, options, named).read());
+    for (std::size_t part = 0; part < foam_case.parts.size(); ++part) {
+        parts.push_back(PartReader(foam_case, part, step, options, named).read());
     }
     MeshFile found = parts.size() == 1 ? std::move(parts.front()) : join_pieces(std::move(parts), "processor", file);
-    if (of.decomposed) {
+    if (foam_case.decomposed) {
         std::erase_if(found.arrays, [](const FileArray& array) { return array.name == "GlobalNodeId"; });
     }
     found.warnings.insert(found.warnings.begin(), warnings.begin(), warnings.end());

@@ -37,7 +37,7 @@ public:
 
     /// The header's class, such as volScalarField.
     [[nodiscard]] const std::string& type() const { return type_; }
-    /// Of the text in bytes, unpacked.
+    /// Returns the size of the unpacked text in bytes.
     [[nodiscard]] std::size_t size() const { return text_.size(); }
 
     [[nodiscard]] std::vector<std::int64_t> labels();

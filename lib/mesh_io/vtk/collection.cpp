@@ -176,7 +176,8 @@ bool is_surface(const std::filesystem::path& path) {
     return std::ranges::find(kSurfaces, upper_case(path.extension().string())) != kSurfaces.end();
 }
 
-// The files of a list that are no lists of pieces or blocks, in the order of the lists. Each list is read once.
+// The files of a list, with lists of pieces or blocks replaced by their own files, in the order of the lists. Each list is read
+// once.
 class ListExpansion {
 public:
     explicit ListExpansion(NamedFiles& named) : named_(named) {}

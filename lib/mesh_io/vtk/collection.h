@@ -48,7 +48,7 @@ struct PartFiles {
     std::vector<std::string> warnings;
 };
 
-/// Nothing if the file is no collection, or its step is a single file.
+/// Returns nothing if the file is not a collection, or if its step is a single file.
 ///
 /// throws: Error(InvalidInput) as `read_mesh`
 [[nodiscard]] std::optional<PartFiles> part_files(const std::filesystem::path& path, const ReadOptions& options);

@@ -18,7 +18,7 @@ namespace {
 class VtkBlock {
 public:
     /// Nothing if the data set is not structured. type: its name in capitals
-    [[nodiscard]] static std::optional<VtkBlock> of(const std::string& type);
+    [[nodiscard]] static std::optional<VtkBlock> for_type(const std::string& type);
 
     /// Reads the section whose keyword (in capitals) was the last word, if it belongs to this data set.
     ///
@@ -48,7 +48,7 @@ void read_three(const std::string& keyword, TextScanner& in, std::array<double, 
     for (double& number : numbers) number = in.real({keyword});
 }
 
-std::optional<VtkBlock> VtkBlock::of(const std::string& type) {
+std::optional<VtkBlock> VtkBlock::for_type(const std::string& type) {
     VtkBlock block;
     if (type == "STRUCTURED_GRID") return block;
     block.kind_ = type == "RECTILINEAR_GRID" ? Kind::Cuts : Kind::Even;
@@ -178,7 +178,7 @@ private:
         const std::string type = upper_case(in_.word());
         constexpr const char* kAllowed = "UNSTRUCTURED_GRID, STRUCTURED_GRID, RECTILINEAR_GRID and STRUCTURED_POINTS are";
         if (type == "POLYDATA") in_.fail("POLYDATA is not a volume mesh", kAllowed);
-        block_ = VtkBlock::of(type);
+        block_ = VtkBlock::for_type(type);
         if (!block_ && type != "UNSTRUCTURED_GRID") in_.fail("DATASET " + in_quotes(type) + " is not supported", kAllowed);
     }
 

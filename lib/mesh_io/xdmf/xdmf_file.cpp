@@ -138,7 +138,7 @@ void take_step(const pugi::xml_node& parent, const PathStep& step, std::vector<s
 // The elements at a path, in the order of the file. Paths are a small part of XPath, which could take any time.
 //
 // visited: is increased by the number of elements that were looked at
-// returns: nothing if it is no such path
+// returns: nothing if the path is not of this kind
 std::optional<std::vector<pugi::xml_node>> follow_path(const pugi::xml_node& document, std::string_view path,
                                                        std::size_t& visited) {
     constexpr std::size_t kLongest = 1000;

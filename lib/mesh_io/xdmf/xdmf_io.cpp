@@ -189,7 +189,7 @@ private:
 
     // A step without cells or points has those of the first one.
     [[nodiscard]] pugi::xml_node part_of(const pugi::xml_node& grid, const char* name) const {
-        if (const auto own = file_.child(grid, name)) return own;
+        if (const auto part = file_.child(grid, name)) return part;
         if (const auto first = file_.child(first_, name)) return first;
         file_.fail_at(grid, std::string("the grid has no ") + name);
     }

@@ -89,7 +89,7 @@ TEST_F(Frd, NodesElementsAndResultsOfEachStep) {
         }
         const ReadResult last = read(text);
         EXPECT_EQ(last.mesh.points, mesh.points);
-        EXPECT_THAT(last.warnings, ElementsAre("of 3 steps the last one is taken"));
+        EXPECT_THAT(last.warnings, ElementsAre("the file has 3 steps; the last one is read"));
         EXPECT_THAT(open_series(path("a.frd")).times, ElementsAre(.5, 1, 1.5));
         for (std::size_t k = 0; k < 3; ++k) {
             const ReadResult result = read(text, {.step = k});

@@ -186,7 +186,7 @@ TEST_F(OpenFoam, HexahedraAndTheirFieldsInEveryForm) {
             EXPECT_EQ(report.cells, 6u);
             EXPECT_EQ(report.inverted_cells, 0u);
             EXPECT_NEAR(report.volume, 6, 1e-6);
-            EXPECT_THAT(result.warnings, Contains("of 2 steps the last one is taken"));
+            EXPECT_THAT(result.warnings, Contains("the file has 2 steps; the last one is read"));
             ASSERT_EQ(result.fields.size(), 2u);
             EXPECT_EQ(result.fields[1].name, "p");
             EXPECT_EQ(result.fields[1].max, 6);

@@ -179,7 +179,7 @@ TEST_F(Series, StepsAreInTheOrderOfTheirTimes) {
         }
         const ReadResult last = read_mesh(path(name));
         EXPECT_EQ(last.mesh.attributes[0].values[0], 2);
-        EXPECT_THAT(last.warnings, ElementsAre("of 3 steps the last one is taken"));
+        EXPECT_THAT(last.warnings, ElementsAre("the file has 3 steps; the last one is read"));
         EXPECT_THAT(error(name, {.step = 3}), HasSubstr(name + ": there is no step 3 (steps are 0 to 2)"));
     }
     EXPECT_EQ(open_series(path("t1.vtu")).size(), 1u);

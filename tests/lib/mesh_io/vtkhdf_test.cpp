@@ -141,7 +141,7 @@ TEST_F(VtkHdf, StepsHaveTheirOffsets) {
         EXPECT_EQ(result.mesh.find_attribute("T")->values[0], first[k]);
         EXPECT_NEAR(inspect(result.mesh).volume, volume[k], 1e-12);
     }
-    EXPECT_THAT(read_mesh(path("a.vtkhdf")).warnings, Contains("of 3 steps the last one is taken"));
+    EXPECT_THAT(read_mesh(path("a.vtkhdf")).warnings, Contains("the file has 3 steps; the last one is read"));
 }
 
 TEST_F(VtkHdf, WrongFilesGetASentence) {

@@ -39,7 +39,7 @@ TEST_F(Weld, JoinsPointsAtTheSamePlaceOnly) {
     EXPECT_EQ(inspect(read(two_boxes(0), {}).mesh).boundary_faces, 32u);
     const ReadResult result = read(two_boxes(0), {.weld = 0});
     EXPECT_THAT(result.warnings,
-                ElementsAre("9 points welded to others at the same place; of their values those of the first are kept"));
+                ElementsAre("9 points welded to others at the same place; the values of the first point are kept"));
     const MeshReport report = inspect(result.mesh), box = inspect(make_box(2, 2, 2));
     EXPECT_EQ(report.points_used, box.points_used);
     EXPECT_EQ(report.faces, box.faces);

@@ -65,7 +65,7 @@ public:
     [[nodiscard]] ProbeResult at(std::span<const Vec3> places, Progress* progress = nullptr) const;
 
     [[nodiscard]] const HexMesh& mesh() const;
-    /// Of the limit, a little larger.
+    /// Returns the bounding box of the limit, slightly enlarged.
     [[nodiscard]] Box box() const;
 
 private:

@@ -78,8 +78,9 @@ public:
     /// throws: Error(InvalidInput) as `refine`, or if an option is out of range
     explicit LimitEvaluator(const HexMesh& mesh, const LimitOptions& options = {});
 
-    /// Of a mesh that may be a part of another one, whose extent is given: results depend on the cells about a place alone, and
-    /// so have the same bits in the part and in the whole. Tables that pay where many neighbourhoods are alike are not used.
+    /// Constructs an evaluator for a mesh that may be part of a larger mesh of the given extent. Results depend only on the
+    /// cells around a place, so they have the same bits in the part and in the whole. Tables that pay where many neighbourhoods
+    /// are alike are not used.
     LimitEvaluator(const HexMesh& mesh, const LimitOptions& options, const detail::LimitExtent& whole);
     ~LimitEvaluator();
     LimitEvaluator(LimitEvaluator&&) noexcept;

@@ -21,7 +21,7 @@ struct LimitExtent {
     Box box{};
     std::vector<std::array<double, 2>> ranges{};
 
-    /// Of two parts of a mesh, which have the same attributes; one that is empty has none.
+    /// Adds the extent of another part of the mesh, which has the same attributes; an empty extent has none.
     void add(const LimitExtent& more);
 };
 
