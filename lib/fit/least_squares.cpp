@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "least_squares.h"
-
 #include <ceres/ceres.h>
-
 #include <Eigen/QR>
+
+#include "fit_shapes.h"
 
 namespace subvol::detail {
 

@@ -25,7 +25,6 @@
 #include "mixed_shapes.h"
 #include "stencil_block.h"
 #include "subvol/detail/bucket_sort.h"
-#include "subvol/detail/star_matrix.h"
 #include "subvol/error.h"
 
 namespace subvol {

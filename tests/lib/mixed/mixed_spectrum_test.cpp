@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // The eigenvalues of the refinement of the cells around a point.
-#include <gtest/gtest.h>
-
 #include <Eigen/Eigenvalues>
+
+#include <gtest/gtest.h>
 #include <algorithm>
 #include <cmath>
 #include <string>
 
+#include "mixed_levels.h"
 #include "mixed_meshes.h"
-#include "subvol/detail/star_matrix.h"
 
 namespace subvol {
 namespace mixed_spectrum_test {
