@@ -160,7 +160,7 @@ void PointSettler::add_hull_bends(const SurfaceSoup& soup, const SettledPoints& 
     std::size_t next = 0;
     for (std::size_t i = 0; i < probes.size(); ++i) {
         const Vec3 &a = settled.positions[probes[i].a], &b = settled.positions[probes[i].b];
-        // Each probe stands for `stride` edges of the hull.
+        // Each sample represents `stride` boundary edges.
         const double far = kTriangleBend * distance_to_line(samples.positions[i], a, b);
         for (std::size_t n = 0; n < stride && next < 3 * hull.size(); ++n, ++next) bends[3 * hull[next / 3] + next % 3] = far;
     }

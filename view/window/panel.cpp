@@ -197,8 +197,8 @@ void draw_panel(WindowHost& host, WindowMemory& memory, float left, float width,
     if (section(host, "Colours and opacity", "colours")) draw_colours(host, memory);
     if (section(host, "Camera and overlays", "camera")) draw_camera(host, memory);
     if (section(host, "Cuts and slices", "cuts")) draw_cuts(host, memory);
-    if (section(host, "Against a reference", "compare")) draw_compare(host, memory);
-    if (section(host, "Hands on the mesh", "sculpt")) draw_sculpt(host, memory);
+    if (section(host, "Compare with a reference", "compare")) draw_compare(host, memory);
+    if (section(host, "Sculpting", "sculpt")) draw_sculpt(host, memory);
     if (section(host, "Picture, state, command", "files")) draw_files(host, memory);
     ImGui::Separator();
     const auto picked = host.picked();

@@ -38,7 +38,7 @@ struct Clip {
 /// throws: Error(InvalidInput) if a number is not finite, a normal has no length or the box is empty
 void validate(const Clip& clip);
 
-/// The same cut without the faces that leave the whole box as it is.
+/// Returns the clip without planes and box faces that remove nothing from `box`.
 [[nodiscard]] Clip without_far_faces(const Clip& clip, const Box& box);
 
 }  // namespace subvol
