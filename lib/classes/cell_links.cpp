@@ -162,7 +162,7 @@ void mark_tags(const HexMesh& mesh, CellLinks& links) {
     }
 }
 
-/// Whether four cells lie about the edge at which two sides of a cell meet: across the one and then the other, and the other
+/// Whether four cells lie around the edge at which two sides of a cell meet: across the one and then the other, and the other
 /// way round, is the same cell.
 bool has_four_cells(const CellLinks& links, Index cell, std::size_t a, std::size_t b) {
     const auto diagonal = [&](std::size_t first, std::size_t second) -> std::pair<Index, std::uint8_t> {

@@ -39,7 +39,7 @@ struct CellLinks {
     FlatArray<std::array<std::uint8_t, 6>> turns;
     /// Whether all edges of a cell are inside with four cells each, and no face or edge of it is tagged.
     std::vector<std::uint8_t> regular;
-    /// A number for each point that depends on how the cells up to two layers about it meet, and on nothing else: by these the
+    /// A number for each point that depends on how the cells up to two layers around it meet, and on nothing else: by these the
     /// corners of a cell are put into the same order wherever its neighbourhood is the same.
     std::vector<std::uint64_t> colors;
     /// How many cells each point has.
@@ -59,7 +59,7 @@ struct CellLinks {
 
 /// The same from the faces of a topology that is there already.
 ///
-/// color_rounds: so many layers of cells about a point decide its colour
+/// color_rounds: so many layers of cells around a point decide its colour
 [[nodiscard]] CellLinks build_links(const HexMesh& mesh, const Topology& faces, int color_rounds = 3);
 
 }  // namespace subvol::detail

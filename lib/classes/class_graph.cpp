@@ -163,7 +163,7 @@ struct ClassGraph::State {
     }
 
     /// No weights here: the mesh has been refined twice, so the points of the children are there, as corners of cells that the
-    /// walk about the parent can name.
+    /// walk around the parent can name.
     void make_entry(const Neighborhood& about, ClassEntry& entry) {
         RefinedNeighborhood refined(about, about.code[0]);
         entry.on_grid = regular_grid(refined.parent(), 0, entry.grid);

@@ -49,7 +49,7 @@ struct DescentClass {
 /// would depend on two layers.
 ///
 /// on_grid: whether the cell's surroundings are regular_grid, whose numbers among the walk's points `grid` has
-/// points:  of the children's neighbourhoods, each once, as corners of children of the cells that the walk about the parent
+/// points:  of the children's neighbourhoods, each once, as corners of children of the cells that the walk around the parent
 ///          visits
 struct ClassEntry {
     struct Corner {

@@ -29,7 +29,7 @@ namespace subvol::detail {
 
 namespace {
 
-constexpr std::size_t kMostPoints = 1500, kMostCells = 1000;  // a vertex with 60 cells about it; more is left to refinement
+constexpr std::size_t kMostPoints = 1500, kMostCells = 1000;  // a vertex with 60 cells around it; more is left to refinement
 
 }  // namespace
 
@@ -117,7 +117,7 @@ bool NeighborhoodWalk::add(std::size_t from, std::size_t side, Neighborhood& fou
     return true;
 }
 
-/// Adds the cells about the first `points` points, from each such cell across the sides that have one of them; false if there
+/// Adds the cells around the first `points` points, from each such cell across the sides that have one of them; false if there
 /// are too many.
 bool NeighborhoodWalk::walk_layer(std::size_t points, Neighborhood& found) {
     for (std::size_t i = 0; i < visited_.size(); ++i) {
@@ -131,7 +131,7 @@ bool NeighborhoodWalk::walk_layer(std::size_t points, Neighborhood& found) {
     return true;
 }
 
-/// Whether all cells about the first `points` points have been found.
+/// Whether all cells around the first `points` points have been found.
 bool NeighborhoodWalk::is_complete(std::size_t points, const Neighborhood& found) const {
     for (std::size_t p = 0; p < points; ++p) {
         if (cells_found_[p] != links_.cells_at[found.points[p]]) return false;
@@ -209,7 +209,7 @@ bool NeighborhoodWalk::find_regular(Index cell, std::span<Index, 216> points) co
             points[u + 6 * (v + 6 * w)] = mesh_.cells[now.cell][kCornerOctants[octants[octant]]];
         }
     }
-    // Cells with four cells about each edge leave open how many meet at a corner that only one of them has.
+    // Cells with four cells around each edge leave open how many meet at a corner that only one of them has.
     for (std::size_t n = 0; n < 64; ++n) {
         if (links_.cells_at[points[n % 4 + 1 + 6 * (n / 4 % 4 + 1) + 36 * (n / 16 + 1)]] != 8) return false;
     }

@@ -63,7 +63,7 @@ private:
     std::vector<Visited> visited_;
     std::vector<std::uint32_t> cell_marks_, point_marks_;
     std::vector<std::uint16_t> numbers_;      // of marked points
-    std::vector<std::uint16_t> cells_found_;  // about each point found
+    std::vector<std::uint16_t> cells_found_;  // around each point found
     std::uint32_t mark_ = 0;
 };
 

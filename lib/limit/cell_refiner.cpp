@@ -67,7 +67,7 @@ struct CellRefiner::State {
     using Cut = std::function<Patch(std::span<const Index> cells, int layers)>;
 
     [[nodiscard]] int last_layers() const { return moves ? 1 : 0; }
-    /// How many layers about a cell its refinement depends on.
+    /// How many layers around a cell its refinement depends on.
     [[nodiscard]] int layers(int levels) const { return std::min(levels + last_layers(), 2); }
 
     [[nodiscard]] Classified classes_of(RefinedLevel& level, std::span<const Index> cells, int levels,
@@ -286,7 +286,7 @@ struct CellRefiner::State {
         std::erase_if(cells, [&](Index cell) { return is_done[cell] != 0; });
         cells = in_space_order(control, cells);
         const Cut cut = cut_of_control();
-        constexpr std::size_t kMost = 36864;  // the fewer batches, the fewer cells about them that are refined too
+        constexpr std::size_t kMost = 36864;  // the fewer batches, the fewer cells around them that are refined too
         const std::size_t batches = (cells.size() + kMost - 1) / kMost;
         std::atomic<std::size_t> done{0};
         tbb::parallel_for(std::size_t{0}, batches, [&](std::size_t b) {

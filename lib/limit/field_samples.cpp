@@ -17,7 +17,7 @@
 namespace subvol {
 namespace {
 
-/// The volume about a corner: an eighth of the determinant of its edges.
+/// The volume around a corner: an eighth of the determinant of its edges.
 double corner_volume(const HexMesh& mesh, const std::array<Index, 8>& cell, std::size_t corner) {
     const Vec3& p = mesh.points[cell[corner]];
     const auto& n = kCornerNeighbors[corner];

@@ -38,7 +38,7 @@ inline double* copy_row(const double* from, std::size_t stride, double* to) {
 
 // A *jet* is the values of all channels at one place, then their derivatives by u, by v and by w: 4 × stride numbers.
 
-/// Evaluates places in a cell from the points about it.
+/// Evaluates places in a cell from the points around it.
 class CellJets {
 public:
     CellJets(Scheme scheme, std::size_t stride);

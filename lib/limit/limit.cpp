@@ -43,7 +43,7 @@ using namespace detail;
 
 namespace {
 
-/// Evaluates the queries of a few control cells by refining the patch about them, level by level, until two levels agree: for
+/// Evaluates the queries of a few control cells by refining the patch around them, level by level, until two levels agree: for
 /// surroundings that have no class.
 class BatchEvaluator {
 public:

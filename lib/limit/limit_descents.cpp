@@ -118,7 +118,7 @@ struct LimitDescents::State {
                                    [&](Index p) { return std::has_single_bit(mesh.links.cells_at[p]); });
     }
 
-    /// Whether there are as many cells and points about a cell as in a box of a grid: such classes are few, and those at the
+    /// Whether there are as many cells and points around a cell as in a box of a grid: such classes are few, and those at the
     /// hull of most meshes.
     [[nodiscard]] static bool fills_box(std::size_t cells, std::size_t points) {
         constexpr std::size_t kMostAcross = 5;

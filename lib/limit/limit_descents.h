@@ -24,7 +24,7 @@ public:
     ///
     /// by_frequency: classes with many cells have tables from level 0 on, which changes last bits. Otherwise those of cells in
     /// a
-    ///               box of a grid have them, and a result depends on nothing but the three layers of cells about its own
+    ///               box of a grid have them, and a result depends on nothing but the three layers of cells around its own
     LimitDescents(const HexMesh& control, const SchemeOptions& scheme, bool by_frequency);
     ~LimitDescents();
     LimitDescents(const LimitDescents&) = delete;

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Where the vertices of a scheme that does not interpolate ([mj1996], [bsxw2002]) lie on the limit.
 //
-// Let p be a vertex and the other points of the cells about it. One refinement makes the same number of points at the same
-// places about the vertex: its edge neighbours become its edge points, and so on. So p' = S p with a small square matrix S, and
-// after n levels Sⁿ p. The rows of S sum to 1, its largest eigenvalue is 1, all others are smaller: Sⁿ p converges to a single
-// point, l·p with the left eigenvector l S = l, Σ l = 1. In a grid l is the product of (1,4,1)/6 along the three axes.
+// Let p be a vertex and the other points of the cells around it. One refinement makes the same number of points at the same
+// places around the vertex: its edge neighbours become its edge points, and so on. So p' = S p with a small square matrix S,
+// and after n levels Sⁿ p. The rows of S sum to 1, its largest eigenvalue is 1, all others are smaller: Sⁿ p converges to a
+// single point, l·p with the left eigenvector l S = l, Σ l = 1. In a grid l is the product of (1,4,1)/6 along the three axes.
 //
-// If two cells about the vertex share a second face, a point is met at two places and S has no unique columns. After one
+// If two cells around the vertex share a second face, a point is met at two places and S has no unique columns. After one
 // refinement this no longer happens: then the limit is taken there and composed with the rows of the refinement.
 #include <algorithm>
 #include <cmath>
@@ -38,7 +38,7 @@ public:
 
     /// Writes the left eigenvector of eigenvalue 1 as a stencil over the mesh's points.
     ///
-    /// returns: false, and writes nothing, if a point is met at several places about the vertex
+    /// returns: false, and writes nothing, if a point is met at several places around the vertex
     bool limit_of(Index vertex, StencilBuilder& row) {
         if (detail::is_grid_point(topology_, vertex)) return spline_limit(vertex, row), true;
         if (!collect(vertex)) return false;
@@ -111,7 +111,7 @@ private:
         }
     }
 
-    /// The rules of these schemes use no point beyond the cells about the vertex.
+    /// The rules of these schemes use no point beyond the cells around the vertex.
     [[nodiscard]] std::uint32_t column_of(Index point) const {
         return *std::lower_bound(order_.begin(), order_.end(), point, [&](auto i, Index p) { return points_[i] < p; });
     }
@@ -141,7 +141,7 @@ private:
     std::vector<Entry> matrix_;
 };
 
-/// The limits of vertices about which a point occurs twice: by way of the next level, where none does.
+/// The limits of vertices around which a point occurs twice: by way of the next level, where none does.
 class RefinedLimits {
 public:
     RefinedLimits(const Topology& topology, Scheme scheme) : topology_(topology), scheme_(scheme) {}
@@ -236,7 +236,7 @@ HexMesh detail::limit_of_cells(const HexMesh& mesh, std::span<const Index> cells
     if (interpolates(options.scheme.kind)) return refine_cells(mesh, cells, options);
     if (cells.empty()) return {};
     const HexMesh control = control_mesh(mesh, options.scheme, options.levels);
-    // The limit of a vertex depends on the cells about it, so a layer of these is refined, too.
+    // The limit of a vertex depends on the cells around it, so a layer of these is refined, too.
     Patch patch = refine_patch(PatchSource(control), cells, options.scheme, options.levels, 1);
     HexMesh fine = on_limit_of_part(std::move(patch.mesh), options.scheme.kind);
     fine.cells.resize(patch.wanted);

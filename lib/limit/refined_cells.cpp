@@ -2,7 +2,7 @@
 // Control cells whose neighbourhoods have no common class, refined twice.
 //
 //     level 0   the cells, with two layers around them: one patch for a batch of cells (PatchSource::cut)
-//     level 1   their children (RefinedOctant). A place is evaluated there from the walk about the child, of one layer
+//     level 1   their children (RefinedOctant). A place is evaluated there from the walk around the child, of one layer
 //     level 2   the cells of that walk, refined once more. Their points are the neighbourhoods of the child's children, which
 //               have classes: ClassEntry lists them as corners of children of the cells that the walk visits
 //     below     DescentWorker, from class to class
@@ -75,7 +75,7 @@ RefinedCells::RefinedCells(const DescentMesh& mesh, const PatchSource& source, s
     second_cells_ = std::move(second.cells);
 }
 
-/// The walks about the cells of level 1 that are wanted. Returns the cells that are to be refined for them, in the order of
+/// The walks around the cells of level 1 that are wanted. Returns the cells that are to be refined for them, in the order of
 /// slots_.
 std::vector<Index> RefinedCells::find_octants(const Patch& first, const Topology& topology,
                                               std::span<const std::uint8_t> octants) {

@@ -30,7 +30,7 @@ struct DescentMesh {
 
 class RefinedCells;
 
-/// A cell of level 1, with the walk about it. entry: null if it has no class, or is not wanted
+/// A cell of level 1, with the walk around it. entry: null if it has no class, or is not wanted
 struct RefinedOctant {
     const RefinedCells* cells = nullptr;  // the cells that it was refined with
     const ClassEntry* entry = nullptr;

@@ -103,7 +103,7 @@ void detail::cut_octahedron(const MixedMesh& mesh, const std::array<Index, 6>& q
         }
     }
     const auto corner = [&](std::size_t k) { return q[(2 * best + k) % 6]; };
-    // The ring about the axis from corner 1 to corner 0 is +y, +z, −y, −z, right-handed about +x.
+    // The ring around the axis from corner 1 to corner 0 is +y, +z, −y, −z, right-handed about +x.
     const std::array<std::size_t, 4> ring{2, 4, 3, 5};
     for (std::size_t k = 0; k < 4; ++k) tets.push_back({corner(1), corner(0), corner(ring[k]), corner(ring[(k + 1) % 4])});
 }

@@ -24,7 +24,7 @@ private:
     std::vector<std::array<Index, 2>> pairs_;  // of a point and a neighbour, sorted
 };
 
-/// The quadratic f + g·d + ½ dᵀHd about a point. second: H as xx, xy, xz, yy, yz, zz; world⁻¹ and world⁻²
+/// The quadratic f + g·d + ½ dᵀHd around a point. second: H as xx, xy, xz, yy, yz, zz; world⁻¹ and world⁻²
 struct PointQuadratic {
     Vec3 gradient{0.0};
     std::array<double, 6> second{};

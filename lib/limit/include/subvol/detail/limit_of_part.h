@@ -10,7 +10,7 @@
 
 namespace subvol::detail {
 
-/// Layers of cells about a cell that values and gradients of its limit depend on.
+/// Layers of cells around a cell that values and gradients of its limit depend on.
 inline constexpr int kHaloOfLimit = 3;
 
 /// What tolerances of the limit are relative to.
@@ -39,7 +39,7 @@ struct LimitExtent {
 
 /// Some cells refined and moved to the limit: with the bits of `on_limit` of the whole mesh, refined.
 ///
-/// mesh:    perhaps a part, with `kHaloOfLimit` layers about these cells
+/// mesh:    perhaps a part, with `kHaloOfLimit` layers around these cells
 /// cells:   of this mesh, each once
 /// returns: the descendants of cells[0], then those of cells[1], and so on
 /// throws:  as `refine`
