@@ -75,7 +75,7 @@ std::string footer_of(const CLI::App& app) {
 std::string help_of_program(const CLI::App& program) {
     std::string help = wrapped(program.get_description(), 0, kWidth) + "\n\nUsage: subvol VERB [arguments]\n\nVerbs:\n";
     for (const CLI::App* verb : verbs_of(program)) help += entry(verb->get_name(), verb->get_description());
-    help += entry("help VERB", "Everything about a verb, as VERB --help.");
+    help += entry("help VERB", "Show the help of a command.");
     help += "\nOptions:\n";
     for (const Argument& argument : arguments_of(program)) help += argument_entry(argument, false);
     return help + footer_of(program);

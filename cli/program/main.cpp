@@ -41,15 +41,15 @@ constexpr int kBadInput = 2;
 constexpr int kEnvironment = 3;
 constexpr int kEndedBySignal = 128;  // and the signal's number, as shells count
 
-constexpr const char* kDescription = "Subdivision volumes: refine hexahedral meshes, splat them, turn them into OpenVDB grids.";
+constexpr const char* kDescription = "Refine hexahedral meshes, render them as splats, and convert them to OpenVDB grids.";
 constexpr const char* kFooter = R"(Start here:
-  subvol model --list                    models to play with
-  subvol info part.vtk                   what is in a mesh, is it sound
-  subvol render model:ball -o ball.png   a picture of a model (or of part.vtk)
-  subvol vdb part.vtk -o part.vdb        an OpenVDB grid
-  subvol help render                     a verb's options; --help-all: all
+  subvol model --list                    list the built-in models
+  subvol info part.vtk                   print mesh statistics and check the mesh
+  subvol render model:ball -o ball.png   render a model (or part.vtk)
+  subvol vdb part.vtk -o part.vdb        write an OpenVDB grid
+  subvol help render                     show the options of a command
 
-Exit codes: 0 done, 1 a comparison failed, 2 bad input, 3 the environment lacks something, 130 interrupted (143 by SIGTERM).)";
+Exit codes: 0 done, 1 a comparison failed, 2 bad input, 3 a required component is missing, 130 interrupted (143 by SIGTERM).)";
 
 int exit_code(ErrorCode code) {
     switch (code) {
@@ -196,7 +196,7 @@ int run(CLI::App& program, std::vector<std::string> arguments) {
         if (!verb->chosen()) continue;
         const auto rank = subvol::cli::rank_in_environment();
         if (rank && !verb->works_in_ranks()) {
-            throw Error(ErrorCode::InvalidInput, "is done by one process, not by several of MPI", verb->name(),
+            throw Error(ErrorCode::InvalidInput, "does not support MPI", verb->name(),
                         "leave out mpirun; points, vdb, render and info work in ranks");
         }
         const auto threads = static_cast<std::size_t>(verb->common().threads);

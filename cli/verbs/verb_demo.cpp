@@ -87,7 +87,7 @@ class DemoVerb : public Verb {
 public:
     explicit DemoVerb(CLI::App& program)
         : Verb(program, "demo",
-               "Run the whole chain on generated models: grid, splats, a reference by rays, their difference, a summary.",
+               "Run the full pipeline on built-in models: grid, splats, ray-cast reference, comparison and summary.",
                "  subvol demo -o out\n"
                "  subvol demo -o out --size 256",
                Reads::NoMesh) {

@@ -42,7 +42,7 @@ Json device_json(const GlDevice& device) {
 class InfoVerb : public Verb {
 public:
     explicit InfoVerb(CLI::App& program)
-        : Verb(program, "info", "Show what is in a mesh, a .vdb file or a file of points, and whether a mesh is sound.",
+        : Verb(program, "info", "Print statistics of a mesh, a .vdb file or a kernel file, and check the mesh for errors.",
                "  subvol info model:ball\n"
                "  subvol info ball.vdb --at 0,0,0 --at .5,0,0\n"
                "  subvol info --gl") {

@@ -36,7 +36,7 @@ namespace {
 class JoinVerb : public Verb {
 public:
     explicit JoinVerb(CLI::App& program)
-        : Verb(program, "join", "Put the parts together that --part made.",
+        : Verb(program, "join", "Merge the part files written with --part.",
                "  subvol join part1.vdb part2.vdb part3.vdb -o big.vdb\n"
                "  subvol join part*.ply -o big.ply\n"
                "  subvol join part*.svshare -o iso.stl\n"

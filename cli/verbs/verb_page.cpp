@@ -28,7 +28,7 @@ namespace {
 class PageVerb : public Verb {
 public:
     explicit PageVerb(CLI::App& program)
-        : Verb(program, "page", "A page that one can send: the volume alive in a browser.",
+        : Verb(program, "page", "Write a self-contained HTML page that shows the volume interactively.",
                "  subvol page part.vtu -o part.html\n"
                "  subvol page part.vtu -o part.html --fields Temp,Pres --tf inferno\n"
                "  subvol page run.exo -o run.html --step 0-9 --max-bytes 10e6\n"

@@ -26,7 +26,7 @@ namespace {
 class ProbeVerb : public Verb {
 public:
     explicit ProbeVerb(CLI::App& program)
-        : Verb(program, "probe", "Values and gradients of the limit at places, along a line, or summed up.",
+        : Verb(program, "probe", "Evaluate the limit at points or along a line, or integrate it.",
                "  subvol probe part.vtu --at 0.1,0.2,0.3 --at 1,0,0\n"
                "  subvol probe part.vtu --line -1,0,0,1,0,0 --count 500 -o line.svg\n"
                "  subvol probe part.vtu --points bolts.csv -o values.csv --json\n"

@@ -36,7 +36,7 @@ ShownField united(const ShownField& a, const ShownField& b) {
 class RenderVerb : public Verb {
 public:
     explicit RenderVerb(CLI::App& program)
-        : Verb(program, "render", "Make a picture.",
+        : Verb(program, "render", "Render an image or a video.",
                "  subvol render model:ball -o ball.png\n"
                "  subvol render model:ball -o side.exr --view -y --size 1024x768 --tf coolwarm\n"
                "  subvol render model:ball -o turn.mp4 --turntable 120 --legend turn.svg\n"

@@ -24,7 +24,7 @@ namespace {
 class SliceVerb : public Verb {
 public:
     explicit SliceVerb(CLI::App& program)
-        : Verb(program, "slice", "A field of the limit on a plane, as a picture, a surface or a table.",
+        : Verb(program, "slice", "Sample a field on a plane and write an image, a surface or a table.",
                "  subvol slice part.vtu -o slice.png --plane 0,0,0,0,0,1\n"
                "  subvol slice part.vtu -o slice.png --plane 0,0,0,1,1,0 --contours 10\n"
                "  subvol slice part.vtu -o slice.vtp --plane 0,0,0,0,1,0 --field Temp\n"

@@ -27,7 +27,7 @@ namespace {
 class SurfaceVerb : public Verb {
 public:
     explicit SurfaceVerb(CLI::App& program)
-        : Verb(program, "surface", "Isosurfaces of the limit, and its boundary, as triangles.",
+        : Verb(program, "surface", "Extract isosurfaces or the boundary surface as triangles.",
                "  subvol surface part.vtu -o part.stl --boundary\n"
                "  subvol surface part.vtu -o iso.ply --iso 300 --iso 350 --field Temp\n"
                "  subvol surface part.vtu -o hot.stl --iso 350 --cap --tolerance 3e-4\n"

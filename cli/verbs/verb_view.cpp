@@ -52,14 +52,14 @@ std::string text_of(const std::string& file) {
 class ViewVerb : public Verb {
 public:
     explicit ViewVerb(CLI::App& program)
-        : Verb(program, "view", "Look at a mesh: in a window, or by a script.",
+        : Verb(program, "view", "Show a mesh in an interactive window, or run a script of actions.",
                "  subvol view part.vtk\n"
                "  subvol view run.pvd --field T --tf coolwarm\n"
                "  subvol view model:pawn --script turn.json --screenshot pawn.png") {
         app()
             .add_option("FILE", input_, text(input_help(), "; or points (.ply, .vtp, .svk, .vdb), or a .vdb grid of floats"))
             ->required();
-        app().add_option("--script", script_, "play these actions, then quit; without a window")->type_name("FILE.json");
+        app().add_option("--script", script_, "run a script of actions without a window, then quit")->type_name("FILE.json");
         app().add_option("--screenshot", screenshot_, "write the last picture (.png or .exr), then quit")->type_name("FILE");
         app().add_flag("--window", window_, "play the --script in the window; --screenshot is then of the whole window");
         app().add_option("--state", saved_, "begin with a state that a session has saved")->type_name("FILE.json");
