@@ -33,7 +33,8 @@ struct VdbFunctions {
     void (*rasterize_parts)(const HexMesh&, std::span<const std::string>, const RasterizeOptions&, std::size_t,
                             const std::function<void(GridPart)>&);
     BlockGrids (*rasterize_block)(const HexMesh&, std::span<const std::string>, const RasterizeOptions&, const VoxelCubes&);
-    std::vector<VdbGrid> (*rasterize_share)(const HexMesh&, std::span<const std::string>, const RasterizeOptions&, int, int);
+    std::vector<VdbGrid> (*rasterize_share)(const HexMesh&, std::span<const std::string>, const RasterizeOptions&,
+                                            const Share&);
     std::vector<VdbGrid> (*rasterize_points)(const RbfVolume&, std::span<const std::size_t>, const RasterizeOptions&);
     VdbGrid (*sample_at_voxels)(const VdbGrid&, const std::string&,
                                 const std::function<std::vector<double>(std::span<const Vec3>)>&);

@@ -78,26 +78,19 @@ public:
     }
 
 private:
-    /// The layers of a share; none if there are more shares than layers. A layer belongs to the share in which its middle lies.
+    /// The layers of a share; none if there are more shares than layers.
     [[nodiscard]] VoxelCubes slab_of(const VoxelCubes& all, const Share& share) const {
         std::vector<double> bytes;
-        double sum = 0, held = 0;
         for (int layer = all.lower[0]; layer < all.upper[0]; ++layer) {
             VoxelCubes one = all;
             one.lower[0] = layer;
             one.upper[0] = layer + 1;
-            sum += bytes.emplace_back(bytes_of(one));
+            bytes.push_back(bytes_of(one));
         }
+        const auto [begin, end] = share.range_by_weight(bytes);
         VoxelCubes slab = all;
-        slab.upper[0] = all.lower[0];
-        for (std::size_t l = 0; l < bytes.size(); ++l) {
-            const double middle = held + bytes[l] / 2;
-            held += bytes[l];
-            const int part = std::min(share.of, 1 + static_cast<int>(share.of * (sum > 0 ? middle / sum : 0)));
-            const int layer = all.lower[0] + static_cast<int>(l);
-            if (part < share.part) slab.lower[0] = layer + 1;
-            if (part <= share.part) slab.upper[0] = layer + 1;
-        }
+        slab.lower[0] = all.lower[0] + static_cast<int>(begin);
+        slab.upper[0] = all.lower[0] + static_cast<int>(end);
         return slab;
     }
 

@@ -6,9 +6,9 @@
 
 #include "mesh_frames.h"
 #include "outputs.h"
+#include "part_kinds.h"
 #include "ranked_splats.h"
 #include "subvol/detail/part_of_progress.h"
-#include "subvol/detail/picture_part.h"
 #include "subvol/detail/stopwatch.h"
 #include "subvol/error.h"
 #include "subvol/image_io.h"
@@ -187,16 +187,12 @@ void PictureOutput::write_frame(std::size_t frame, const Picture& picture) {
     }
 }
 
-/// A share without rows, as there may be more shares than bands, has one transparent row that does not count.
+/// A share without rows, as there may be more shares than rows of tiles, has one transparent row that does not count.
 void PictureOutput::write_rows(const Picture& picture) {
     const Image& image = picture.image;
     const PixelRows rows = rows_of(*share_, image.height);
-    const int first = std::min(rows.first, image.height - 1), count = std::max(rows.end - rows.first, 1);
-    detail::PicturePart part{.rows = Image(image.width, count), .first_row = first, .whole_height = image.height};
-    const auto begin = static_cast<std::ptrdiff_t>(first) * image.width;
-    std::copy_n(image.rgba.begin() + 4 * begin, part.rows.rgba.size(), part.rows.rgba.begin());
-    if (!picture.depth.empty())
-        part.depth.assign(picture.depth.begin() + begin, picture.depth.begin() + begin + count * image.width);
+    const int first = std::min(rows.first, image.height - 1);
+    detail::PicturePart part = rows_of(picture, {first, std::max(rows.end, first + 1)});
     note_.how = {{"first_row", rows.first},
                  {"end_row", rows.end},
                  {"height", image.height},

@@ -2,12 +2,12 @@
 #include "ranked_bricks.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <cstring>
 #include <functional>
 #include <optional>
-#include <type_traits>
 
+#include "subvol/detail/byte_lists.h"
 #include "subvol/detail/kernel_bytes.h"
 #include "subvol/detail/kernel_rows.h"
 #include "subvol/detail/points_range.h"
@@ -16,58 +16,51 @@
 namespace subvol::cli {
 namespace {
 
-/// Kernels with their numbers in the whole mesh: the numbers behind their count, then the kernels.
-std::string packed(const RbfVolume& volume, const std::vector<std::uint64_t>& numbers) {
-    if (numbers.empty()) return {};
-    const std::uint64_t count = numbers.size();
-    std::string bytes(reinterpret_cast<const char*>(&count), sizeof count);
-    bytes.append(reinterpret_cast<const char*>(numbers.data()), count * sizeof count);
-    return bytes += detail::bytes_of_kernels(volume, /*with_boundary=*/false);
-}
-
+/// Kernels, and their numbers in the whole mesh.
 struct NumberedKernels {
     RbfVolume volume;
     std::vector<std::uint64_t> numbers;
 };
 
+std::string packed(const RbfVolume& volume, const std::vector<std::uint64_t>& numbers) {
+    if (numbers.empty()) return {};
+    detail::BytePacker out;
+    out.put(numbers);
+    return out.take() + detail::bytes_of_kernels(volume, /*with_boundary=*/false);
+}
+
 NumberedKernels unpacked(const std::string& bytes) {
     NumberedKernels kernels;
     if (bytes.empty()) return kernels;
-    std::uint64_t count = 0;
-    std::memcpy(&count, bytes.data(), sizeof count);
-    kernels.numbers.resize(count);
-    std::memcpy(kernels.numbers.data(), bytes.data() + sizeof count, count * sizeof count);
-    kernels.volume = detail::kernels_from_bytes(std::string_view(bytes).substr((count + 1) * sizeof count));
+    detail::ByteUnpacker in(bytes, "these bytes are not kernels");
+    in.take(kernels.numbers);
+    kernels.volume = detail::kernels_from_bytes(in.rest());
     return kernels;
 }
 
-/// The figures of bricks, then their number and their boxes.
-struct PackedTets {
-    Box bounds;
-    double overhang = 0;
-    std::size_t tets = 0, degenerate_tets = 0, inverted_tets = 0, bricks = 0;
-};
-static_assert(std::is_trivially_copyable_v<PackedTets>);
-
-std::string packed(const BrickTets& of) {
-    const PackedTets figures{of.bounds, of.overhang, of.tets, of.degenerate_tets, of.inverted_tets, of.of_bricks.size()};
-    std::string bytes(reinterpret_cast<const char*>(&figures), sizeof figures);
-    return bytes.append(reinterpret_cast<const char*>(of.of_bricks.data()), of.of_bricks.size() * sizeof(Box));
+std::string packed(const BrickTets& tets) {
+    detail::BytePacker out;
+    out.put(std::array{tets.bounds});
+    out.put(std::array{tets.overhang});
+    out.put(std::array{tets.tets, tets.degenerate_tets, tets.inverted_tets});
+    out.put(tets.of_bricks);
+    return out.take();
 }
 
-/// at: where they begin; gets where they end
-BrickTets unpacked_tets(const std::string& bytes, std::size_t& at) {
-    PackedTets of;
-    std::memcpy(&of, bytes.data() + at, sizeof of);
-    at += sizeof of;
-    BrickTets tets{.bounds = of.bounds,
-                   .of_bricks = std::vector<Box>(of.bricks),
-                   .overhang = of.overhang,
-                   .tets = of.tets,
-                   .degenerate_tets = of.degenerate_tets,
-                   .inverted_tets = of.inverted_tets};
-    if (of.bricks > 0) std::memcpy(tets.of_bricks.data(), bytes.data() + at, of.bricks * sizeof(Box));
-    at += of.bricks * sizeof(Box);
+BrickTets take_tets(detail::ByteUnpacker& in) {
+    std::vector<Box> bounds;
+    std::vector<double> overhang;
+    std::vector<std::size_t> counts;
+    BrickTets tets;
+    in.take(bounds);
+    in.take(overhang);
+    in.take(counts);
+    in.take(tets.of_bricks);
+    tets.bounds = bounds.at(0);
+    tets.overhang = overhang.at(0);
+    tets.tets = counts.at(0);
+    tets.degenerate_tets = counts.at(1);
+    tets.inverted_tets = counts.at(2);
     return tets;
 }
 
@@ -122,27 +115,16 @@ SplatResult render_bricks_ranked(const Bricks& bricks, const BrickFields& fields
                                  const Optics& optics, BrickSplatOptions options, Ranks& ranks, ShippedKernels& shipped) {
     options.rows = rows_of(ranks.share(), view.height());
     BrickPicture picture(std::move(boundary), view, optics, options);
-    std::vector<float> reaches;
     SampleOptions sample = options.sample;
     sample.progress = options.splat.progress;
-    std::vector<std::int64_t> points(1);
     sample_in_rounds(bricks, sample, fields, ranks, [&](const BrickPoints& own) {
-        points[0] += static_cast<std::int64_t>(own.numbers.size());
-        if (options.splat.sheets == 0) {
-            const std::vector<float> more = picture.reaches(own.volume);
-            reaches.insert(reaches.end(), more.begin(), more.end());
-        }
+        picture.count(own.volume);
         const std::vector<PixelRows> touched = picture.rows_of(own.volume);
         std::vector<std::string> to;
         for (int rank = 0; rank < ranks.size(); ++rank) {
-            const PixelRows rows = rows_of(ranks.share_of(rank), view.height());
-            std::vector<std::size_t> places;
+            const std::vector<std::size_t> places = touching(touched, rows_of(ranks.share_of(rank), view.height()));
             std::vector<std::uint64_t> numbers;
-            for (std::size_t i = 0; i < touched.size(); ++i) {
-                if (touched[i].first >= rows.end || touched[i].end <= rows.first) continue;
-                places.push_back(i);
-                numbers.push_back(own.numbers[i]);
-            }
+            for (const std::size_t place : places) numbers.push_back(own.numbers[place]);
             to.push_back(packed(detail::chosen_kernels(own.volume, places), numbers));
             if (rank == ranks.rank()) continue;
             shipped.kernels += numbers.size();
@@ -153,13 +135,7 @@ SplatResult render_bricks_ranked(const Bricks& bricks, const BrickFields& fields
             picture.add(volume, numbers);
         }
     });
-    ranks.sum(points);
-    const auto count = static_cast<std::size_t>(points[0]);
-    float finest = 0;
-    if (options.splat.sheets == 0 && count > 0) finest = ranks.in_place(reaches, place_of_finest_reach(count));
-    SplatResult drawn = picture.draw(finest);
-    drawn.report.points = count;
-    return drawn;
+    return picture.draw([&](auto& counts) { ranks.sum(counts); });
 }
 
 BrickTets measure_tets(const Bricks& bricks, const BrickTetsOptions& options, const OwnRows& rows) {
@@ -169,7 +145,7 @@ BrickTets measure_tets(const Bricks& bricks, const BrickTetsOptions& options, co
     for (const std::string& bytes : rows.ranks->gather(packed(subvol::measure_tets(bricks, options, begin, end)))) all += bytes;
     all = rows.ranks->broadcast(std::move(all));
     BrickTets sum;
-    for (std::size_t at = 0; at < all.size();) sum.add(unpacked_tets(all, at));
+    for (detail::ByteUnpacker in(all, "these bytes are not the figures of bricks"); in.left() > 0;) sum.add(take_tets(in));
     return sum;
 }
 

@@ -10,11 +10,9 @@
 #include "share.h"
 #include "subvol/render_bricks.h"
 #include "subvol/splat.h"
+#include "subvol/splat_shares.h"
 
 namespace subvol::cli {
-
-/// The rows of a share of a picture: whole bands of `kBandRows`.
-[[nodiscard]] PixelRows rows_of(const Share& share, int height);
 
 /// The rows of a picture that this process draws.
 ///

@@ -22,7 +22,6 @@
 #include "interrupt.h"
 #include "manual.h"
 #include "mistakes.h"
-#include "rank_report.h"
 #include "ranks.h"
 #include "subvol/detail/atomic_file.h"
 #include "subvol/detail/printable.h"
@@ -123,7 +122,7 @@ int run_in_ranks(subvol::cli::Verb& verb, subvol::cli::Report& report, subvol::c
     int code = 0;
     try {
         code = run_naming_input(verb, report);
-        subvol::cli::report_ranks(ranks, report);
+        report.merge(ranks.facts());
     } catch (...) {
         auto [error, wrong] = error_at_hand();
         try {

@@ -72,8 +72,8 @@ PartNote make_note(const CLI::App& app, const std::string& input, const Share& s
 }
 
 std::string text_of(const PartNote& note) {
-    const Json json{{"part", note.share.part}, {"of", note.share.of}, {"verb", note.verb},
-                    {"input", note.input},     {"task", note.task},   {"how", note.how}};
+    const Json json{{"part", note.share.number}, {"of", note.share.count}, {"verb", note.verb},
+                    {"input", note.input},       {"task", note.task},      {"how", note.how}};
     // Only ASCII, so that it can be a comment in any format of files.
     return json.dump(-1, ' ', true, Json::error_handler_t::replace);
 }
@@ -105,10 +105,11 @@ void check_same_work(const FoundPart& part, const FoundPart& first) {
                     "belongs to other work than " + first.file + ": the verb, the input, an option or the version differs",
                     part.file);
     }
-    if (part.note.share.of != first.note.share.of) {
-        throw Error(ErrorCode::InvalidInput,
-                    text("is one of ", part.note.share.of, " parts, but ", first.file, " is one of ", first.note.share.of),
-                    part.file);
+    if (part.note.share.count != first.note.share.count) {
+        throw Error(
+            ErrorCode::InvalidInput,
+            text("is one of ", part.note.share.count, " parts, but ", first.file, " is one of ", first.note.share.count),
+            part.file);
     }
 }
 
@@ -137,14 +138,14 @@ std::vector<std::size_t> order_of(std::span<const FoundPart> parts) {
     for (const FoundPart& part : parts) check_same_work(part, parts.front());
     std::vector<std::size_t> order(parts.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
-    const auto number = [&](std::size_t i) { return parts[i].note.share.part; };
+    const auto number = [&](std::size_t i) { return parts[i].note.share.number; };
     std::ranges::stable_sort(order, {}, number);
     if (const auto twice = std::ranges::adjacent_find(order, {}, number); twice != order.end()) {
         const FoundPart &one = parts[twice[0]], &other = parts[twice[1]];
         throw Error(ErrorCode::InvalidInput,
                     text("is part ", other.note.share.name(), ", and so is ", one.file, ": each is needed once"), other.file);
     }
-    const int of = parts.front().note.share.of;
+    const int of = parts.front().note.share.count;
     if (order.size() == static_cast<std::size_t>(of)) return order;
     std::vector<int> numbers;
     for (const std::size_t i : order) numbers.push_back(number(i));

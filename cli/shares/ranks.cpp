@@ -2,12 +2,12 @@
 #include "ranks.h"
 
 #include <array>
-#include <bit>
 #include <charconv>
 #include <cstdlib>
 #include <cstring>
 
 #include "mpi_functions.h"
+#include "subvol/detail/byte_lists.h"
 #include "subvol/detail/module.h"
 #include "subvol/error.h"
 
@@ -28,27 +28,20 @@ const MpiFunctions& load_mpi() {
     return *reinterpret_cast<Entry>(detail::load_module("mpi", "working in several processes of MPI"))();
 }
 
-/// An error as bytes: its code, and its three texts, each after its length.
 std::string bytes_of(const Error& error) {
-    std::string bytes(1, static_cast<char>(error.code()));
-    for (const std::string& part : {error.message(), error.where(), error.allowed()}) {
-        const std::uint64_t length = part.size();
-        bytes.append(reinterpret_cast<const char*>(&length), sizeof length);
-        bytes += part;
-    }
-    return bytes;
+    detail::BytePacker out;
+    out.put(std::array{error.code()});
+    for (const std::string& text : {error.message(), error.where(), error.allowed()}) out.put(text);
+    return out.take();
 }
 
 Error error_from(const std::string& bytes) {
-    std::array<std::string, 3> parts;
-    std::size_t at = 1;
-    for (std::string& part : parts) {
-        std::uint64_t length = 0;
-        std::memcpy(&length, bytes.data() + at, sizeof length);
-        part = bytes.substr(at + sizeof length, length);
-        at += sizeof length + length;
-    }
-    return {static_cast<ErrorCode>(bytes[0]), parts[0], parts[1], parts[2]};
+    detail::ByteUnpacker in(bytes, "these bytes are not an error");
+    std::vector<ErrorCode> code;
+    std::array<std::string, 3> texts;
+    in.take(code);
+    for (std::string& text : texts) in.take(text);
+    return {code.at(0), texts[0], texts[1], texts[2]};
 }
 
 }  // namespace
@@ -129,31 +122,36 @@ void Ranks::sum(std::vector<std::int64_t>& numbers) {
     bytes_sent_ += static_cast<std::int64_t>(numbers.size() * sizeof(std::int64_t));
 }
 
-// Floats that are not negative have the order of their bits, so the place is found digit by digit: how many numbers begin with
-// each value of the next bits.
-float Ranks::in_place(const std::vector<float>& mine, std::size_t place) {
-    constexpr unsigned kBits = 11;
-    std::uint32_t found = 0, known = 0;  // the digits that are found, and their mask
-    auto left = static_cast<std::int64_t>(place);
-    for (unsigned shift = 32; shift > 0;) {
-        const unsigned digits = std::min(kBits, shift);
-        shift -= digits;
-        std::vector<std::int64_t> counts(std::size_t{1} << digits);
-        for (const float number : mine) {
-            const auto bits = std::bit_cast<std::uint32_t>(number);
-            if ((bits & known) == found) ++counts[(bits >> shift) & ((1U << digits) - 1)];
-        }
-        sum(counts);
-        std::uint32_t digit = 0;
-        while (digit + 1 < counts.size() && left >= counts[digit]) left -= counts[digit++];
-        found |= digit << shift;
-        known |= ((1U << digits) - 1) << shift;
-    }
-    return std::bit_cast<float>(found);
-}
-
 void Ranks::finish() {
     mpi_.finish();
+}
+
+Json Ranks::gather_list(const Json& mine) {
+    Json all = Json::array();
+    for (const std::string& bytes : gather(mine.dump())) {
+        for (const Json& item : Json::parse(bytes)) all.push_back(item);
+    }
+    return all;
+}
+
+Facts Ranks::facts() {
+    const std::array figures{bytes_sent_, peak_memory_bytes()};  // without what this call sends
+    detail::BytePacker out;
+    out.put(figures);
+    std::int64_t sent = 0;
+    std::vector<std::int64_t> peaks;
+    for (const std::string& bytes : gather(out.take())) {
+        std::vector<std::int64_t> one;
+        detail::ByteUnpacker(bytes, "these bytes are not the figures of a rank").take(one);
+        sent += one.at(0);
+        peaks.push_back(one.at(1));
+    }
+    Facts facts;
+    if (!first()) return facts;
+    facts["ranks"] = size_;
+    facts["bytes_sent"] = sent;
+    facts["peak_bytes_of_ranks"] = peaks;
+    return facts;
 }
 
 }  // namespace subvol::cli

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "report.h"
 #include "share.h"
 
 namespace subvol {
@@ -55,12 +56,14 @@ public:
     /// Adds up, over all ranks, number by number; exact, in whatever order.
     void sum(std::vector<std::int64_t>& numbers);
 
-    /// The number in this place, from 0, of all ranks' numbers in ascending order. They must not be negative, and there must be
-    /// more of them than `place`.
-    [[nodiscard]] float in_place(const std::vector<float>& mine, std::size_t place);
+    /// The lists of all ranks one behind the other, at rank 0; elsewhere an empty one.
+    [[nodiscard]] Json gather_list(const Json& mine);
 
     /// Payload sent to other ranks so far.
     [[nodiscard]] std::int64_t bytes_sent() const { return bytes_sent_; }
+
+    /// "ranks", "bytes_sent" and each rank's peak, at rank 0; elsewhere nothing.
+    [[nodiscard]] Facts facts();
 
     /// Waits for all ranks. error: that of this rank, or null
     ///

@@ -1,30 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstddef>
 #include <string>
-#include <utility>
+
+#include "subvol/share.h"
 
 namespace CLI {
 class App;
 }
 
 namespace subvol::cli {
-
-/// One of several shares of the work of a verb.
-///
-/// part: from 1 to `of`
-struct Share {
-    int part = 1, of = 1;
-
-    [[nodiscard]] bool whole() const { return of == 1; }
-
-    /// The first of so many things that is the share's, and the first that is not: all shares together have each once.
-    [[nodiscard]] std::pair<std::size_t, std::size_t> range(std::size_t things) const;
-
-    /// "2/4"
-    [[nodiscard]] std::string name() const;
-};
 
 /// "2/4" is the second of four shares.
 ///

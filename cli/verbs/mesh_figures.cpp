@@ -4,6 +4,9 @@
 #include <array>
 #include <limits>
 
+#include "mesh_lines.h"
+#include "subvol/detail/json_depth.h"
+#include "subvol/detail/read_file.h"
 #include "subvol/error.h"
 
 namespace subvol::cli {
@@ -104,6 +107,26 @@ detail::MeshShare mesh_share_from(const Json& json, const std::string& file) {
     } catch (const Json::exception&) {
         fail_figures(file);
     }
+}
+
+Json object_in(const std::string& file) {
+    Json json = Json::parse(detail::of_limited_depth(detail::read_text(file), file), nullptr, false);
+    if (!json.is_object()) throw Error(ErrorCode::InvalidInput, "is not one object of JSON", file);
+    return json;
+}
+
+detail::MeshShare FigureParts::join(const std::vector<detail::MeshShare>& parts, std::span<const std::string>) {
+    return detail::join_shares(parts, kCellsNamed);
+}
+
+detail::MeshShare FigureParts::unpack(const std::string& bytes) {
+    return mesh_share_from(Json::parse(bytes), "rank");
+}
+
+LoadedPart<detail::MeshShare> FigureParts::load(const std::string& file) {
+    const Json json = object_in(file);
+    if (!json.contains("part_note") || !json["part_note"].is_string()) return {};
+    return {json["part_note"].get<std::string>(), mesh_share_from(json.value("part_figures", Json::object()), file)};
 }
 
 }  // namespace subvol::cli

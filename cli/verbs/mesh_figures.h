@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <span>
 #include <string>
+#include <vector>
 
 #include "report.h"
 #include "subvol/detail/mesh_share.h"
+#include "transport.h"
 
 namespace subvol::cli {
 
@@ -24,5 +27,22 @@ void put_mesh_report(Report& report, const MeshReport& mesh);
 ///
 /// throws: Error(InvalidInput)
 [[nodiscard]] detail::MeshShare mesh_share_from(const Json& json, const std::string& file);
+
+/// An object of JSON in a file.
+///
+/// throws: Error(Io), Error(InvalidInput)
+[[nodiscard]] Json object_in(const std::string& file);
+
+/// The figures of some cells as parts; transport.h says what each kind has. Those of --part are in the output of `info --json`.
+struct FigureParts {
+    using Made = detail::MeshShare;
+    using Whole = detail::MeshShare;
+
+    [[nodiscard]] static detail::MeshShare join(const std::vector<detail::MeshShare>& parts,
+                                                std::span<const std::string> names);
+    [[nodiscard]] static std::string pack(const detail::MeshShare& part) { return json_of(part).dump(); }
+    [[nodiscard]] static detail::MeshShare unpack(const std::string& bytes);
+    [[nodiscard]] static LoadedPart<detail::MeshShare> load(const std::string& file);
+};
 
 }  // namespace subvol::cli

@@ -11,6 +11,7 @@
 #include "ranks.h"
 #include "report.h"
 #include "share.h"
+#include "transport.h"
 
 namespace CLI {
 class App;
@@ -58,6 +59,11 @@ protected:
     ///
     /// throws: Error(InvalidInput) if both do
     [[nodiscard]] Share share_of(const ShareArgument& part) const;
+
+    /// How the part that this process makes comes to the others: by --part into a file, or to rank 0.
+    ///
+    /// how: what `join` must know to write the whole
+    [[nodiscard]] Transport transport(const ShareArgument& part, const std::string& input, Json how, Report& report) const;
 
     void set_essentials(std::vector<std::string> options) { essentials_ = std::move(options); }
 

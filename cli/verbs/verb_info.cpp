@@ -172,7 +172,7 @@ private:
         detail::MeshShare about;
         if (shares(share_)) {
             const Share share = share_of(share_);
-            about = joined(share, report, [&] { return detail::inspect_share(read.mesh, share.part, share.of, kCellsNamed); });
+            about = joined(share, report, [&] { return detail::inspect_share(read.mesh, share, kCellsNamed); });
             if (!speaks()) return;
         } else {
             about.counts = report.timed("inspect", [&] { return figures_of(read); });
@@ -257,12 +257,7 @@ private:
             report["part_figures"] = json_of(own);
             return own;
         }
-        if (ranks() == nullptr) return detail::join_shares(std::span(&own, 1), kCellsNamed);
-        std::vector<detail::MeshShare> all;
-        for (const std::string& bytes : ranks()->gather(json_of(own).dump())) {
-            all.push_back(mesh_share_from(Json::parse(bytes), "rank"));
-        }
-        return all.empty() ? own : detail::join_shares(all, kCellsNamed);
+        return report.unpack(join_ranks(FigureParts{}, own, ranks(), report.progress())).value_or(own);
     }
 
     void put_steps(const ReadResult& read, Report& report) const {

@@ -10,25 +10,21 @@
 #include "input.h"
 #include "numbers.h"
 #include "outputs.h"
-#include "part_note.h"
+#include "part_kinds.h"
 #include "picture_arguments.h"
 #include "points_input.h"
 #include "quantities.h"
-#include "rank_report.h"
 #include "ranked_bricks.h"
 #include "sampled_points.h"
 #include "share.h"
 #include "steps.h"
 #include "subvol/clamp_channel.h"
-#include "subvol/detail/kernel_bytes.h"
 #include "subvol/detail/points_range.h"
-#include "subvol/detail/surface_io.h"
 #include "subvol/error.h"
 #include "subvol/kernel_file.h"
 #include "subvol/kernel_hierarchy.h"
 #include "subvol/points_error.h"
 #include "subvol/points_io.h"
-#include "subvol/vdb_points.h"
 #include "tet_refinement.h"
 #include "text.h"
 #include "vdb_functions.h"
@@ -166,18 +162,17 @@ public:
                         ".ply or .vtp; `subvol join` writes .svk");
         }
         RbfVolume volume = is_vdb_file(input_) ? points_of_grid(report) : points_of_mesh(common(), report);
-        if (share_.given()) {
+        if (shares(share_)) {
             const auto [begin, end] = share.range(volume.size());
-            volume = detail::kernels_between(volume, begin, end);
-            report["points"] = volume.size();
-            report["part"] = share.name();
-            note_ = text_of(make_note(app(), input_, share, {{"ascii", ascii_}, {"splats", splats_}, {"up", up_}}));
+            RbfVolume own = detail::kernels_between(volume, begin, end);
+            volume = {};
+            const Transport to = transport(share_, input_, {{"ascii", ascii_}, {"splats", splats_}, {"up", up_}}, report);
+            auto whole = report.unpack(deliver(KernelParts{output_, written(), report.progress()}, std::move(own), to));
+            if (!whole) return 0;
+            volume = std::move(*whole);
         }
-        if (ranks() != nullptr && !gather(volume, report)) return 0;
-        write(output_, volume, report);
-        report["output"] = output_;
-        const bool inside = extension == ".svk" || (extension == ".ply" && !splats_);
-        if (!inside && !volume.boundary.triangles.empty()) report["boundary"] = detail::boundary_path(output_).string();
+        report.merge(write_kernels(output_, volume, written(), report.progress()));
+        report.merge(files_of_kernels(output_, volume, written()));
         return 0;
     }
 
@@ -216,20 +211,8 @@ private:
         throw Error(ErrorCode::InvalidInput, "is not a part of the range", option, "greater than 0, at most 1");
     }
 
-    void write(const std::string& path, const RbfVolume& volume, Report& report) const {
-        report.timed("write", [&] {
-            if (path.ends_with(".vdb")) {
-                vdb().write_vdb_points(path, volume, {});
-            } else if (path.ends_with(".svk")) {
-                const KernelFileContents written = write_kernel_file(path, volume, report.progress());
-                report["levels"] = written.levels;
-                report["blocks"] = written.blocks;
-                report["bytes"] = written.bytes;
-            } else {
-                write_points(path, volume,
-                             {.ascii = ascii_, .splats = splats_, .up = named<UpAxis>(up_, "--up"), .note = note_});
-            }
-        });
+    [[nodiscard]] PointsWriteOptions written() const {
+        return {.ascii = ascii_, .splats = splats_, .up = named<UpAxis>(up_, "--up")};
     }
 
     /// Brick by brick into one file; the memory is that of a brick.
@@ -266,24 +249,6 @@ private:
         report["output"] = output_;
     }
 
-    /// Puts the shares of all ranks together at rank 0; false elsewhere.
-    bool gather(RbfVolume& volume, Report& report) const {
-        const auto [begin, end] = ranks()->share().range(volume.size());
-        const RbfVolume own = detail::kernels_between(volume, begin, end);
-        volume = {};
-        report.timed("gather", [&] {
-            for (const std::string& bytes : ranks()->gather(detail::bytes_of_kernels(own, /*with_boundary=*/true))) {
-                RbfVolume next = detail::kernels_from_bytes(bytes);
-                if (volume.channels.empty()) {
-                    volume = std::move(next);
-                } else {
-                    detail::append_kernels(volume, next);
-                }
-            }
-        });
-        return ranks()->first();
-    }
-
     void write_steps(const Share& share, Report& report) {
         check_numbered(output_);
         const MeshSeries series = open_series(input_);
@@ -292,13 +257,13 @@ private:
         report["frames"] = Json::array();
         for (int step = range.first; step <= range.last; ++step) {
             const std::string path = with_number(output_, step);
-            write(path, points_of_mesh(of_step(common(), step), report), report);
+            report.merge(write_kernels(path, points_of_mesh(of_step(common(), step), report), written(), report.progress()));
             report["frames"].push_back({{"frame", step},
                                         {"time", series.times[static_cast<std::size_t>(step)]},
                                         {"points", report["points"]},
                                         {"output", path}});
         }
-        if (ranks() != nullptr) gather_list(*ranks(), report, "frames");
+        if (ranks() != nullptr) report["frames"] = ranks()->gather_list(report["frames"]);
         report["input"] = input_;
         report["output"] = output_;
     }
@@ -371,7 +336,6 @@ private:
     bool splats_ = false, clamp_ = false, error_ = false;
     std::optional<double> merge_error_, wavelet_tolerance_, wavelet_point_tolerance_;
     std::string up_ = "z", transfer_function_;
-    std::string note_;  // of a share
     ShareArgument share_;
     SampleArguments sample_;
     RefineArguments refine_;

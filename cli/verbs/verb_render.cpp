@@ -11,7 +11,6 @@
 #include "part_note.h"
 #include "picture_output.h"
 #include "points_input.h"
-#include "rank_report.h"
 #include "reference_pictures.h"
 #include "render_arguments.h"
 #include "render_method.h"
@@ -106,7 +105,8 @@ private:
 
     void finish(PictureOutput& output, Report& report) {
         output.finish(report);
-        if (ranks() != nullptr && !by_rows_) gather_list(*ranks(), report, "outputs");
+        if (ranks() != nullptr && !by_rows_)
+            report["outputs"] = ranks()->gather_list(report.json().value("outputs", Json::array()));
     }
 
     void set_groups() {

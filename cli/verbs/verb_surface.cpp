@@ -7,7 +7,7 @@
 #include "input.h"
 #include "numbers.h"
 #include "outputs.h"
-#include "part_note.h"
+#include "part_kinds.h"
 #include "picture_arguments.h"
 #include "quantities.h"
 #include "refine_arguments.h"
@@ -143,22 +143,9 @@ private:
     [[nodiscard]] std::optional<LimitSurface> made(const Whole& whole, const Part& part, const SurfaceOutput& output,
                                                    Report& report) {
         if (!shares(share_)) return report.timed("surface", whole);
-        const Share share = share_of(share_);
-        const detail::SurfaceShareOf own{static_cast<std::size_t>(share.part - 1), static_cast<std::size_t>(share.of)};
-        std::string bytes = report.timed("surface", [&] { return part(own); });
-        if (share_.given()) {
-            const std::string note = text_of(make_note(app(), input_, share, json_of(output)));
-            report["part"] = share.name();
-            report["output"] = output_;
-            report["bytes"] = bytes.size();
-            report.timed("write", [&] { detail::write_surface_share(output_, {note, std::move(bytes)}); });
-            return std::nullopt;
-        }
-        std::vector<std::string> all = report.timed("gather", [&] { return ranks()->gather(std::move(bytes)); });
-        if (!ranks()->first()) return std::nullopt;
-        std::vector<std::string> names;
-        for (std::size_t rank = 0; rank < all.size(); ++rank) names.push_back(text("rank ", rank));
-        return report.timed("join", [&] { return detail::join_surface(std::move(all), names, report.progress()); });
+        const Transport transport = this->transport(share_, input_, json_of(output), report);
+        std::string own = report.timed("surface", [&] { return part(transport.share); });
+        return report.unpack(deliver(SurfaceParts{output_, report.progress()}, std::move(own), transport));
     }
 
     /// As of a mesh in one piece, with the ranges that the index has.

@@ -10,11 +10,9 @@
 #include "mesh_frames.h"
 #include "mesh_grids.h"
 #include "outputs.h"
-#include "part_note.h"
+#include "part_kinds.h"
 #include "points_input.h"
-#include "rank_report.h"
 #include "share.h"
-#include "shared_grids.h"
 #include "steps.h"
 #include "subvol/error.h"
 #include "subvol/nanovdb.h"
@@ -148,11 +146,10 @@ private:
             report.merge(write_bricks_vdb(input_, what, output_));
             return;
         }
-        std::vector<VdbGrid> all = report.unpack(grids_of_bricks(what, output_.memory_bytes, share));
-        all = of_all_shares(std::move(all), ranks(), note_of(share), asked_.half, output_, report);
-        if (all.empty()) return;
-        if (!has_voxels(all)) throw no_voxels(input_, "try a smaller --voxel-size");
-        report.merge(write_reported(all, output_, report.progress()));
+        const auto all = whole_of(report.unpack(grids_of_bricks(what, output_.memory_bytes, share)), report);
+        if (!all) return;
+        if (!has_voxels(*all)) throw no_voxels(input_, "try a smaller --voxel-size");
+        report.merge(write_reported(*all, output_, report.progress()));
     }
 
     /// One slab of the voxels, as a file of its own.
@@ -164,13 +161,25 @@ private:
         const HexMesh mesh = report.unpack(maker.load(input_, common(), report.progress()));
         const RasterizeOptions options = report.unpack(maker.set_up(mesh, report.progress()));
         std::vector<VdbGrid> grids =
-            report.timed("rasterize", [&] { return vdb().rasterize_share(mesh, names_of(mesh), options, share.part, share.of); });
+            report.timed("rasterize", [&] { return vdb().rasterize_share(mesh, names_of(mesh), options, share); });
         maker.fields().clamp(mesh, grids);
-        grids = of_all_shares(std::move(grids), ranks(), note_of(share), asked_.half, output_, report);
-        if (grids.empty()) return;
-        if (!has_voxels(grids)) throw no_voxels(input_, finer_voxels(mesh));
-        report.merge(maker.fields().overshoot(mesh, grids));
-        report.merge(write_reported(grids, output_, report.progress()));
+        const auto all = whole_of(std::move(grids), report);
+        if (!all) return;
+        if (!has_voxels(*all)) throw no_voxels(input_, finer_voxels(mesh));
+        report.merge(maker.fields().overshoot(mesh, *all));
+        report.merge(write_reported(*all, output_, report.progress()));
+    }
+
+    /// The grids of all shares, if this process has them; nothing if it has written or sent its own.
+    ///
+    /// own: of this process's share. They are not rounded to 16 bits: that is done with all voxels at hand
+    [[nodiscard]] std::optional<std::vector<VdbGrid>> whole_of(std::vector<VdbGrid> own, Report& report) {
+        for (VdbGrid& grid : own) vdb().store_in_half(grid, false);
+        const Transport to = transport(share_, input_, {{"half", asked_.half}, {"compression", asked_.compression}}, report);
+        auto all = report.unpack(deliver(GridParts{output_, report.progress()}, std::move(own), to));
+        if (!all) return all;
+        for (VdbGrid& grid : *all) vdb().store_in_half(grid, asked_.half);
+        return all;
     }
 
     void run_points(const MeshGrids& maker, Report& report) {
@@ -240,7 +249,7 @@ private:
                               static_cast<std::size_t>(range.count()));
             report["frames"].push_back(json_of(report.unpack(writer.write(frame))));
         }
-        if (ranks() != nullptr) gather_list(*ranks(), report, "frames");
+        if (ranks() != nullptr) report["frames"] = ranks()->gather_list(report["frames"]);
         report["input"] = input_;
         report["output"] = output_.path;
     }
@@ -249,10 +258,6 @@ private:
                                       Report& report) {
         report["input"] = input;
         return report.unpack(maker.load(input, options, report.progress()));
-    }
-
-    [[nodiscard]] PartNote note_of(const Share& share) {
-        return make_note(app(), input_, share, {{"half", asked_.half}, {"compression", asked_.compression}});
     }
 
     void check_frame_names() const {

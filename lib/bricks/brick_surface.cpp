@@ -86,7 +86,7 @@ LimitSurface limit_surface(const Bricks& bricks, std::string_view field, const S
 }
 
 std::string detail::share_of_surface(const Bricks& bricks, std::string_view field, const SurfaceOptions& options,
-                                     const SurfaceShareOf& share, const BrickFields& fields) {
+                                     const Share& share, const BrickFields& fields) {
     check_surface_options(options);
     check_halo_of_limit(bricks);
     const auto about = about_surface(bricks, field, options, fields, layers_of_shares(options));

@@ -101,7 +101,7 @@ LimitSurface limit_surface(const HexMesh& mesh, std::string_view field, const Su
 }
 
 std::string detail::share_of_surface(const HexMesh& mesh, std::string_view field, const SurfaceOptions& options,
-                                     const SurfaceShareOf& share) {
+                                     const Share& share) {
     check_surface_options(options);
     validate(mesh);
     const Tagged tagged(mesh, options);
@@ -158,7 +158,7 @@ std::optional<LimitSurface> detail::limit_surface_of_part(const HexMesh& part, s
 
 std::optional<std::string> detail::share_of_part(const HexMesh& part, std::span<const std::uint8_t> owned,
                                                  const LimitExtent& whole, std::string_view field,
-                                                 const SurfaceOptions& options, const SurfaceShareOf& share,
+                                                 const SurfaceOptions& options, const Share& share,
                                                  const std::function<void(LimitQuery&)>& rename) {
     const Tagged tagged(part, options);
     const SurfaceMaker maker(tagged.mesh(), owned, whole, field, tagged.options);

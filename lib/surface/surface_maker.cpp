@@ -81,7 +81,7 @@ int SurfaceMaker::next_level(int level, double deviation, double triangles) cons
 
 /// A surface that passes few cells is cut as a whole at each level; of others some cells are looked at until the level is
 /// known.
-std::optional<SettledCut> SurfaceMaker::make(const Cut& cut, const SurfaceShareOf& share) const {
+std::optional<SettledCut> SurfaceMaker::make(const Cut& cut, const Share& share) const {
     SettledCut made{.level = std::min(kFirstLevel, options_.max_level), .soup = {}, .settled = {}};
     const int first_level = made.level;
     SurfaceSoup first = cutter_.cut(cut, first_level, cutter_.candidates(cut));
@@ -101,13 +101,14 @@ std::optional<SettledCut> SurfaceMaker::make(const Cut& cut, const SurfaceShareO
         if (made.soup.leads_out) return {};
     }
     made.converged = made.deviation_world <= 1.1 * tolerance_world_;
-    if (few && share.of == 1) return made;
-    if (!few && share.of == 1 && made.level == first_level) {
+    if (few && share.whole()) return made;
+    if (!few && share.whole() && made.level == first_level) {
         made.soup = std::move(first);
     } else {
         const std::vector<Index> all = few ? made.soup.cells : active;
-        const auto begin = [&](std::size_t p) { return all.begin() + static_cast<std::ptrdiff_t>(p * all.size() / share.of); };
-        made.soup = cutter_.cut(cut, made.level, {begin(share.part), begin(share.part + 1)}, {.not_into = all});
+        const auto [begin, end] = share.range(all.size());
+        made.soup = cutter_.cut(cut, made.level, {all.begin() + std::ptrdiff_t(begin), all.begin() + std::ptrdiff_t(end)},
+                                {.not_into = all});
         if (made.soup.leads_out) return {};
     }
     made.settled = settler_.settle(made.soup, cut, made.level);

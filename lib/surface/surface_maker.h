@@ -32,7 +32,7 @@ public:
 
     /// One share of a surface: a range of the cells that it passes. All shares find the same level. Nothing if the surface
     /// leads into a cell that is not owned.
-    [[nodiscard]] std::optional<SettledCut> make(const Cut& cut, const SurfaceShareOf& share) const;
+    [[nodiscard]] std::optional<SettledCut> make(const Cut& cut, const Share& share) const;
 
     /// All fields of the mesh at places.
     [[nodiscard]] std::vector<ProbedField> fields_at(std::span<const LimitQuery> places) const;

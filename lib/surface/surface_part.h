@@ -39,7 +39,7 @@ void check_surface_options(const SurfaceOptions& options);
 /// rename: changes each place after all that is to be known there
 [[nodiscard]] std::optional<std::string> share_of_part(const HexMesh& part, std::span<const std::uint8_t> owned,
                                                        const LimitExtent& whole, std::string_view field,
-                                                       const SurfaceOptions& options, const SurfaceShareOf& share,
+                                                       const SurfaceOptions& options, const Share& share,
                                                        const std::function<void(LimitQuery&)>& rename);
 
 /// How many layers of cells about the candidates a share looks at: the same for all, so that none can look farther if the

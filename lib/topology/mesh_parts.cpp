@@ -121,12 +121,10 @@ void each_part(const HexMesh& mesh, const std::function<void(const MeshPart&)>& 
     for (std::size_t slab = 0; slab < parts.count(); ++slab) visit(parts.part(slab));
 }
 
-void each_part_of_share(const HexMesh& mesh, int part, int of, const std::function<void(const MeshPart&)>& visit) {
+void each_part(const HexMesh& mesh, const Share& share, const std::function<void(const MeshPart&)>& visit) {
     Parts parts(mesh);
-    const auto shares = static_cast<std::size_t>(of), before = static_cast<std::size_t>(part - 1);
-    for (std::size_t slab = parts.count() * before / shares; slab < parts.count() * (before + 1) / shares; ++slab) {
-        visit(parts.part(slab));
-    }
+    const auto [begin, end] = share.range(parts.count());
+    for (std::size_t slab = begin; slab < end; ++slab) visit(parts.part(slab));
 }
 
 }  // namespace subvol::detail

@@ -3,6 +3,7 @@
 
 #include <functional>
 
+#include "subvol/share.h"
 #include "subvol/topology.h"
 
 namespace subvol::detail {
@@ -27,7 +28,7 @@ struct MeshPart {
 ///         sixteenth of a small mesh
 void each_part(const HexMesh& mesh, const std::function<void(const MeshPart&)>& visit);
 
-/// The parts of one of several shares: those of all shares together are those of `each_part`. part: from 1 to `of`
-void each_part_of_share(const HexMesh& mesh, int part, int of, const std::function<void(const MeshPart&)>& visit);
+/// The parts of one of several shares: those of all shares together are those of the whole.
+void each_part(const HexMesh& mesh, const Share& share, const std::function<void(const MeshPart&)>& visit);
 
 }  // namespace subvol::detail

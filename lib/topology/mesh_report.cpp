@@ -187,38 +187,37 @@ MeshReport inspect(const HexMesh& mesh) {
     return report;
 }
 
-detail::MeshShare detail::inspect_share(const HexMesh& mesh, int part, int of, std::size_t inverted_at_most) {
+detail::MeshShare detail::inspect_share(const HexMesh& mesh, const Share& share, std::size_t inverted_at_most) {
     validate(mesh);
+    validate(share);
     HexMesh untagged;
     if (!mesh.creases.empty() || !mesh.sharp_faces.empty()) {
         untagged.points = mesh.points;
         untagged.cells = mesh.cells;
     }
-    MeshShare share;
-    MeshReport& counts = share.counts;
+    MeshShare made;
+    MeshReport& counts = made.counts;
     counts.points = mesh.points.size();
     counts.cells = mesh.cells.size();
     counts.bounds = bounds(mesh);
     counts.min_scaled_jacobian = 1;
-    each_part_of_share(untagged.cells.empty() ? mesh : untagged, part, of, [&](const MeshPart& some) {
+    each_part(untagged.cells.empty() ? mesh : untagged, share, [&](const MeshPart& some) {
         count_points(some, counts);
         count_edges(some, counts);
         count_faces(some, counts);
     });
-    const std::size_t parts = summed_parts(mesh), shares = static_cast<std::size_t>(of);
-    const std::size_t begin = parts * static_cast<std::size_t>(part - 1) / shares,
-                      end = parts * static_cast<std::size_t>(part) / shares;
+    const auto [begin, end] = share.range(summed_parts(mesh));
     for (const ShapeReport& shape : shapes_of_parts(mesh, begin, end)) {
-        share.volumes.push_back(shape.volume);
+        made.volumes.push_back(shape.volume);
         counts.inverted_cells += shape.inverted_cells;
         counts.degenerate_cells += shape.degenerate_cells;
         counts.min_scaled_jacobian = std::min(counts.min_scaled_jacobian, shape.min_scaled_jacobian);
     }
     for (std::size_t c = begin * kPart; c < std::min(end * kPart, mesh.cells.size()); ++c) {
-        if (counts.inverted_cells == 0 || share.inverted.size() == inverted_at_most) break;
-        if (quality_of(mesh, c).inverted) share.inverted.push_back(c);
+        if (counts.inverted_cells == 0 || made.inverted.size() == inverted_at_most) break;
+        if (quality_of(mesh, c).inverted) made.inverted.push_back(c);
     }
-    return share;
+    return made;
 }
 
 detail::MeshShare detail::join_shares(std::span<const MeshShare> shares, std::size_t inverted_at_most) {

@@ -2,10 +2,7 @@
 #include "subvol/render_bricks.h"
 
 #include <algorithm>
-#include <array>
-#include <bit>
 #include <cmath>
-#include <map>
 
 #include "kernel_regions.h"
 #include "sheet_count.h"
@@ -30,32 +27,6 @@ void check(const BrickSplatOptions& options) {
         throw Error(ErrorCode::InvalidInput, "bricks are drawn by the CPU", {}, "--backend cpu");
     }
 }
-
-/// Finds the k-th smallest of many positive floats without keeping them: their bits have the order of their values.
-class Selection {
-public:
-    void add(float value) {
-        const auto bits = std::bit_cast<std::uint32_t>(value);
-        auto& counts = counts_[bits >> 16];
-        if (counts.empty()) counts.resize(std::size_t{1} << 16);
-        ++counts[bits & 0xffff];
-        ++size_;
-    }
-    [[nodiscard]] std::uint64_t size() const { return size_; }
-    [[nodiscard]] float at(std::uint64_t place) const {
-        for (const auto& [high, counts] : counts_) {
-            for (std::uint32_t low = 0; low < counts.size(); ++low) {
-                if (place < counts[low]) return std::bit_cast<float>(high << 16 | low);
-                place -= counts[low];
-            }
-        }
-        return 0;
-    }
-
-private:
-    std::map<std::uint32_t, std::vector<std::uint32_t>> counts_;
-    std::uint64_t size_ = 0;
-};
 
 void copy(const SplatResult& from, const KernelRegions::Region& region, SplatResult& to) {
     for (int y = region.y0; y < region.y1; ++y) {
@@ -96,6 +67,7 @@ struct BrickPicture::State {
     std::uint64_t memory_bytes;
     SplatScene empty;  // without kernels
     KernelRegions regions;
+    FloatCounts reaches{};  // of all kernels of this process
 };
 
 BrickPicture::BrickPicture(Surface boundary, const View& view, const Optics& optics, const BrickSplatOptions& options) {
@@ -115,10 +87,8 @@ std::vector<PixelRows> BrickPicture::rows_of(const RbfVolume& kernels) const {
     return state_->regions.rows_of(kernels);
 }
 
-std::vector<float> BrickPicture::reaches(const RbfVolume& kernels) const {
-    std::vector<float> reaches;
-    for (const Symmetric3& frame : kernels.frames) reaches.push_back(depth_reach(state_->empty, state_->view, frame));
-    return reaches;
+void BrickPicture::count(const RbfVolume& kernels) {
+    for (const Symmetric3& frame : kernels.frames) state_->reaches.add(depth_reach(state_->empty, state_->view, frame));
 }
 
 void BrickPicture::add(const RbfVolume& kernels, std::span<const std::uint64_t> numbers) {
@@ -128,58 +98,60 @@ void BrickPicture::add(const RbfVolume& kernels, std::span<const std::uint64_t> 
     state_->regions.add(kernels, numbers);
 }
 
-SplatResult BrickPicture::draw(float finest_reach) {
-    auto& [drawn, view, optics, splat, memory_bytes, empty, regions] = *state_;
+SplatResult BrickPicture::draw(const SumCounts& sum) {
+    auto& [drawn, view, optics, splat, memory_bytes, empty, regions, reaches] = *state_;
+    std::vector<std::int64_t> kernels{static_cast<std::int64_t>(reaches.size())};
+    if (sum) sum(kernels);
     if (splat.sheets == 0) {
         const DepthRange depths = depth_range_of(empty, view);
-        splat.sheets = sheets_for_reach(finest_reach, depths.max - depths.min);
+        splat.sheets = sheets_needed(static_cast<std::size_t>(kernels[0]), depths.max - depths.min,
+                                     [&](std::size_t place) { return reaches.in_place(place, sum); });
     }
     SplatResult result{Image(view.width(), view.height()), {}, {}};
     result.depth.resize(result.image.rgba.size() / 4);
     const auto most = std::max<std::uint64_t>(memory_bytes / kBytesOfKernel, 1);
-    std::vector<std::size_t> own;
+    std::vector<std::size_t> wanted;
     for (std::size_t k = 0; k < regions.size(); ++k) {
-        if (regions.is_drawn(k)) own.push_back(k);
+        if (regions.is_drawn(k)) wanted.push_back(k);
     }
     std::vector<std::size_t> group;
     bool first = true;
-    for (std::size_t i = 0; i < own.size(); ++i) {
-        group.push_back(own[i]);
-        std::uint64_t kernels = 0;
-        for (const std::size_t g : group) kernels += regions.kernels_in(g);
-        const bool last = i + 1 == own.size();
-        if (!last && kernels + regions.kernels_in(own[i + 1]) <= most) continue;
-        report_progress(splat.progress, "splat", static_cast<double>(i) / static_cast<double>(own.size()));
-        if (kernels > 0 || first) {
+    for (std::size_t i = 0; i < wanted.size(); ++i) {
+        group.push_back(wanted[i]);
+        std::uint64_t waiting = 0;
+        for (const std::size_t g : group) waiting += regions.kernels_in(g);
+        const bool last = i + 1 == wanted.size();
+        if (!last && waiting + regions.kernels_in(wanted[i + 1]) <= most) continue;
+        report_progress(splat.progress, "splat", static_cast<double>(i) / static_cast<double>(wanted.size()));
+        if (waiting > 0 || first) {
             regions.take(group, drawn);
             SplatOptions quiet = splat;
             quiet.progress = nullptr;
-            SplatResult part = Splatter(drawn, quiet).draw(view, optics);
-            result.report.seconds_prepare += part.report.seconds_prepare;
-            result.report.seconds_draw += part.report.seconds_draw;
-            result.report.bin_entries += part.report.bin_entries;
-            if (first) {  // where no kernel is, all parts have the same
-                result.image = part.image;
-                result.depth = part.depth;
-                result.report.backend = part.report.backend;
-                result.report.device = part.report.device;
-                result.report.sheets = part.report.sheets;
-                result.report.boundary_hits = part.report.boundary_hits;
+            SplatResult some = Splatter(drawn, quiet).draw(view, optics);
+            result.report.seconds_prepare += some.report.seconds_prepare;
+            result.report.seconds_draw += some.report.seconds_draw;
+            result.report.bin_entries += some.report.bin_entries;
+            if (first) {  // where no kernel is, all of them have the same
+                result.image = some.image;
+                result.depth = some.depth;
+                result.report.backend = some.report.backend;
+                result.report.device = some.report.device;
+                result.report.sheets = some.report.sheets;
+                result.report.boundary_hits = some.report.boundary_hits;
             }
             first = false;
-            for (const std::size_t g : group) copy(part, regions.region(g), result);
+            for (const std::size_t g : group) copy(some, regions.region(g), result);
         }
         group.clear();
     }
     report_progress(splat.progress, "splat", 1);
+    result.report.points = static_cast<std::size_t>(kernels[0]);
     return result;
 }
 
 SplatResult render_bricks(const Bricks& bricks, const BrickFields& fields, Surface boundary, const View& view,
                           const Optics& optics, const BrickSplatOptions& options) {
     BrickPicture picture(std::move(boundary), view, optics, options);
-    Selection reaches;
-    std::uint64_t points = 0;
     for (std::size_t b = 0; b < bricks.bricks.size(); ++b) {
         report_progress(options.splat.progress, "sample", static_cast<double>(b) / static_cast<double>(bricks.bricks.size()));
         BrickMesh brick = read_brick(bricks, b);
@@ -188,14 +160,9 @@ SplatResult render_bricks(const Bricks& bricks, const BrickFields& fields, Surfa
         quiet.progress = nullptr;
         const BrickPoints sampled = sample_brick(bricks, std::move(brick), quiet);
         picture.add(sampled.volume, sampled.numbers);
-        points += sampled.numbers.size();
-        if (options.splat.sheets != 0) continue;
-        for (const float reach : picture.reaches(sampled.volume)) reaches.add(reach);
+        picture.count(sampled.volume);
     }
-    const bool any = reaches.size() > 0;
-    SplatResult result = picture.draw(any ? reaches.at(place_of_finest(reaches.size())) : 0);
-    result.report.points = points;
-    return result;
+    return picture.draw();
 }
 
 }  // namespace subvol

@@ -15,41 +15,53 @@ View fine_view(const View& view, const SplatOptions& options) {
 
 }  // namespace
 
-static_assert(kBandRows == detail::SplatFrame::kTile_px);
+static_assert(kRowsOfTile == detail::SplatFrame::kTile_px);
 
-std::vector<float> kernel_reaches(const RbfVolume& volume, const View& view, const SplatOptions& options) {
-    return detail::depth_reaches(detail::make_scene(volume, options), fine_view(view, options));
+PixelRows rows_of(const Share& share, int height) {
+    const auto tiles = static_cast<std::size_t>((height + kRowsOfTile - 1) / kRowsOfTile);
+    const auto [begin, end] = share.range(tiles);
+    return {std::min(kRowsOfTile * static_cast<int>(begin), height), std::min(kRowsOfTile * static_cast<int>(end), height)};
 }
 
-std::size_t place_of_finest_reach(std::size_t kernels) {
-    return detail::place_of_finest(kernels);
-}
-
-int sheets_of_picture(const RbfVolume& volume, const View& view, const SplatOptions& options, float finest_reach) {
+int sheets_of_picture(const RbfVolume& volume, const View& view, const SplatOptions& options, const detail::SumCounts& sum) {
     if (options.sheets != 0) return options.sheets;
-    const auto [min, max, near] = detail::depth_range_of(detail::make_scene(volume, options), fine_view(view, options));
-    return detail::sheets_for_reach(finest_reach, max - min);
+    const detail::SplatScene scene = detail::make_scene(volume, options);
+    const View fine = fine_view(view, options);
+    const auto [min, max, near] = detail::depth_range_of(scene, fine);
+    const std::vector<float> reaches = detail::depth_reaches(scene, fine);
+    std::vector<std::int64_t> kernels{static_cast<std::int64_t>(reaches.size())};
+    if (sum) sum(kernels);
+    return detail::sheets_needed(static_cast<std::size_t>(kernels[0]), max - min,
+                                 [&](std::size_t place) { return detail::number_in_place(place, reaches, sum); });
 }
 
-std::vector<KernelBands> bands_of_kernels(const RbfVolume& volume, const View& view, const Optics& optics,
-                                          const SplatOptions& options) {
+std::vector<PixelRows> rows_of_kernels(const RbfVolume& volume, const View& view, const Optics& optics,
+                                       const SplatOptions& options) {
     const detail::SplatScene scene = detail::make_scene(volume, options);
     const View fine = fine_view(view, options);
     detail::SplatFrame frame;
     frame.scene = &scene;
     frame.view = &fine;
     frame.sheets = detail::make_sheets(scene, fine, options.sheets);
-    frame.tiles_x = (fine.width() + kBandRows - 1) / kBandRows;
-    frame.tiles_y = (fine.height() + kBandRows - 1) / kBandRows;
+    frame.tiles_x = (fine.width() + kRowsOfTile - 1) / kRowsOfTile;
+    frame.tiles_y = (fine.height() + kRowsOfTile - 1) / kRowsOfTile;
     detail::eye_splats(frame.kernels, scene, fine, detail::classify(scene, optics));
     const detail::TileFinder finder(frame);
-    std::vector<KernelBands> bands(volume.size());
-    for (std::size_t i = 0; i < bands.size(); ++i) {
+    std::vector<PixelRows> rows(volume.size(), PixelRows{0, 0});
+    for (std::size_t i = 0; i < rows.size(); ++i) {
         const detail::TileRect tiles = finder.find(frame.kernels.splats[i]);
         if (tiles.x1 < tiles.x0 || tiles.y1 < tiles.y0) continue;
-        bands[i] = {tiles.y0 / options.samples, tiles.y1 / options.samples};
+        rows[i] = {kRowsOfTile * (tiles.y0 / options.samples), kRowsOfTile * (tiles.y1 / options.samples + 1)};
     }
-    return bands;
+    return rows;
+}
+
+std::vector<std::size_t> touching(std::span<const PixelRows> kernels, const PixelRows& rows) {
+    std::vector<std::size_t> numbers;
+    for (std::size_t i = 0; i < kernels.size() && rows.first < rows.end; ++i) {
+        if (kernels[i].first < rows.end && kernels[i].end > rows.first) numbers.push_back(i);
+    }
+    return numbers;
 }
 
 }  // namespace subvol

@@ -14,6 +14,7 @@
 #include "boundary_intervals.h"
 #include "kernel_axes.h"
 #include "sheet_count.h"
+#include "subvol/detail/number_in_place.h"
 #include "subvol/detail/number_text.h"
 #include "subvol/error.h"
 
@@ -277,16 +278,6 @@ Classification classify(const SplatScene& scene, const Optics& optics) {
     return classification;
 }
 
-namespace {
-
-// A kernel's section changes over its reach like (1−e)³: linear interpolation between sheets this far apart is right to about
-// 1e-3 of what the kernel adds (measured against the dense grid, see docs/science.md).
-constexpr double kSheetsPerReach = 4;
-constexpr double kFinestShare = 0.05;  // of the kernels: these may have fewer sheets, so that a few slivers do not decide
-constexpr int kFewestSheets = 64, kMostSheets = 2048;
-
-}  // namespace
-
 float depth_reach(const SplatScene& scene, const View& view, const Symmetric3& frame) {
     const Vec3& forward = view.axes()[2];
     const double widening = scene.form == KernelForm::Separable ? 3 : 1;
@@ -302,27 +293,6 @@ std::vector<float> depth_reaches(const SplatScene& scene, const View& view) {
     });
     return reaches;
 }
-
-std::size_t place_of_finest(std::size_t kernels) {
-    return static_cast<std::size_t>(kFinestShare * static_cast<double>(kernels - 1));
-}
-
-int sheets_for_reach(float finest, double depth_range) {
-    const double needed = kSheetsPerReach * depth_range / std::max(static_cast<double>(finest), 1e-9 * depth_range);
-    return static_cast<int>(std::clamp(std::ceil(needed) + 1, double{kFewestSheets}, double{kMostSheets}));
-}
-
-namespace {
-
-int sheets_needed(const SplatScene& scene, const View& view, double depth_range) {
-    std::vector<float> reaches = depth_reaches(scene, view);
-    if (reaches.empty()) return kFewestSheets;
-    const auto finest = reaches.begin() + static_cast<std::ptrdiff_t>(place_of_finest(reaches.size()));
-    std::nth_element(reaches.begin(), finest, reaches.end());
-    return sheets_for_reach(*finest, depth_range);
-}
-
-}  // namespace
 
 DepthRange depth_range_of(const SplatScene& scene, const View& view) {
     const RbfVolume& volume = *scene.volume;
@@ -348,7 +318,10 @@ DepthRange depth_range_of(const SplatScene& scene, const View& view) {
 SheetStack make_sheets(const SplatScene& scene, const View& view, int count) {
     const double middle = view.to_eye(scene.middle).z;
     const auto [z_min, z_max, near] = depth_range_of(scene, view);
-    if (count == 0) count = sheets_needed(scene, view, z_max - z_min);
+    if (count == 0) {
+        const std::vector<float> reaches = depth_reaches(scene, view);
+        count = sheets_needed(reaches.size(), z_max - z_min, [&](std::size_t place) { return number_in_place(place, reaches); });
+    }
     return {.count = count,
             .first = static_cast<float>(z_min - middle),
             .distance = static_cast<float>((z_max - z_min) / (count - 1)),

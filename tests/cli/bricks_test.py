@@ -338,7 +338,7 @@ class WhatGoesWrong(InFolder):
         self.each_verb("not an index of bricks")
 
     def test_lists_that_cannot_be_joined(self):
-        no_list = "is no list of grids in several files"
+        no_list = "is not a list of grids in several files"
         self.assert_said(no_list, "join", "t.bricks/index.json", "-o", "a.vdb")
         for text in ("[", "{}", '{"parts": []}', '{"parts": [3]}', '{"parts": [{"file": 3}]}', '{"parts": [{"file": "a"}, 3]}'):
             (self.folder / "list.json").write_text(text)

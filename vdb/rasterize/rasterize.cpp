@@ -203,26 +203,16 @@ std::vector<double> bytes_of_layers(const CellRequest& request, std::size_t byte
     return bytes;
 }
 
-/// The slab of whole bricks across x that is one of `of` shares; those of all shares take about as many bytes each, and the
-/// outermost two extend to the largest voxel index. Empty if there are more shares than layers of bricks.
-std::optional<VoxelBox> slab_of_share(const CellRequest& request, std::size_t bytes_per_voxel, int part, int of) {
+/// The slab of whole bricks across x that is a share; the outermost two extend to the largest voxel index. Nothing if there are
+/// more shares than layers of bricks.
+std::optional<VoxelBox> slab_of_share(const CellRequest& request, std::size_t bytes_per_voxel, const Share& share) {
     int first = 0;
     const std::vector<double> bytes = bytes_of_layers(request, bytes_per_voxel, first);
-    double all = 0;
-    for (const double layer : bytes) all += layer;
-    // A layer belongs to the share in which its middle lies.
-    const auto share_at = [&](double held) { return std::min(of, 1 + static_cast<int>(of * (all > 0 ? held / all : 0))); };
-    std::optional<VoxelBox> slab;
-    double held = 0;
-    for (std::size_t l = 0; l < bytes.size(); ++l) {
-        const int share = share_at(held + bytes[l] / 2);
-        held += bytes[l];
-        if (share != part) continue;
-        const int layer = (first + static_cast<int>(l)) * kBrickSide;
-        if (!slab) slab = VoxelBox{{l == 0 ? -kFar : layer, -kFar, -kFar}, {kFar - 1, kFar - 1, kFar - 1}};
-        slab->upper[0] = l + 1 == bytes.size() ? kFar - 1 : layer + kBrickSide - 1;
-    }
-    return slab;
+    const auto [begin, end] = share.range_by_weight(bytes);
+    if (begin >= end) return {};
+    const auto layer = [&](std::size_t number) { return (first + static_cast<int>(number)) * kBrickSide; };
+    return VoxelBox{{begin == 0 ? -kFar : layer(begin), -kFar, -kFar},
+                    {end == bytes.size() ? kFar - 1 : layer(end) - 1, kFar - 1, kFar - 1}};
 }
 
 /// Slabs of whole bricks across x. The outermost two extend to the largest voxel index, as refined cells may lie beyond the
@@ -296,15 +286,12 @@ BlockGrids rasterize_block(const HexMesh& part, std::span<const std::string> fie
 }
 
 std::vector<VdbGrid> rasterize_share(const HexMesh& mesh, std::span<const std::string> fields, const RasterizeOptions& options,
-                                     int part, int of) {
-    if (of < 1 || part < 1 || part > of) {
-        throw Error(ErrorCode::InvalidInput, "there is no part " + std::to_string(part) + " of " + std::to_string(of), {},
-                    "1 to the number of parts");
-    }
+                                     const Share& share) {
+    validate(share);
     const CellRequest request = make_request(mesh, fields, options);
     MeshRasterizer rasterizer(request, options);
     constexpr VoxelBox kNowhere{{kBrickSide, kBrickSide, kBrickSide}, {kBrickSide - 1, kBrickSide - 1, kBrickSide - 1}};
-    return rasterizer.run(slab_of_share(request, bytes_per_voxel(request, options), part, of).value_or(kNowhere));
+    return rasterizer.run(slab_of_share(request, bytes_per_voxel(request, options), share).value_or(kNowhere));
 }
 
 std::vector<Option> options_of(RasterizeOptions& options) {

@@ -70,6 +70,7 @@
 #include "subvol/sample_mixed.h"
 #include "subvol/sample_tables.h"
 #include "subvol/scheme.h"
+#include "subvol/share.h"
 #include "subvol/shells.h"
 #include "subvol/split.h"
 #include "subvol/srgb.h"

@@ -17,10 +17,10 @@ namespace surface_share_test {
 using test::error_of;
 using testing::HasSubstr;
 
-std::vector<std::string> shares_of(const HexMesh& mesh, const SurfaceOptions& options, std::size_t count) {
+std::vector<std::string> shares_of(const HexMesh& mesh, const SurfaceOptions& options, int count) {
     std::vector<std::string> shares;
-    for (std::size_t part = 0; part < count; ++part) {
-        shares.push_back(detail::share_of_surface(mesh, "f", options, {part, count}));
+    for (int number = 1; number <= count; ++number) {
+        shares.push_back(detail::share_of_surface(mesh, "f", options, {number, count}));
     }
     return shares;
 }
@@ -77,7 +77,7 @@ TEST(SurfaceShare, SharesHaveTheBitsOfTheWhole) {
         options.tolerance = 1e-2;
         const LimitSurface whole = limit_surface(mesh, "f", options);
         ASSERT_GT(whole.surface.triangles.size(), 100U);
-        for (const std::size_t count : {1u, 2u, 7u}) {
+        for (const int count : {1, 2, 7}) {
             SCOPED_TRACE(count);
             expect_same(joined(shares_of(mesh, options, count)), whole);
         }
@@ -133,7 +133,7 @@ TEST(SurfaceShare, RefusesBytesThatAreNoShares) {
 class SurfaceShareFiles : public test::TempFolder {};
 
 TEST_F(SurfaceShareFiles, AreReadAsTheyWereWritten) {
-    const std::string bytes = detail::share_of_surface(ball(2), "f", {.boundary = true}, {0, 2});
+    const std::string bytes = detail::share_of_surface(ball(2), "f", {.boundary = true}, {1, 2});
     detail::write_surface_share(path("a.svshare"), {"a note", bytes});
     const detail::SurfaceShareFile read = detail::read_surface_share(path("a.svshare"));
     EXPECT_EQ(read.note, "a note");

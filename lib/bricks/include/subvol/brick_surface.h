@@ -28,7 +28,7 @@ namespace detail {
 ///
 /// throws: also Error(InvalidInput) if an isosurface leads two cells farther than the first look finds
 [[nodiscard]] std::string share_of_surface(const Bricks& bricks, std::string_view field, const SurfaceOptions& options,
-                                           const SurfaceShareOf& share, const BrickFields& fields = {});
+                                           const Share& share, const BrickFields& fields = {});
 
 }  // namespace detail
 

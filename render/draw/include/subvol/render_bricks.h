@@ -8,15 +8,16 @@
 #include <vector>
 
 #include "subvol/brick_points.h"
+#include "subvol/detail/number_in_place.h"
 #include "subvol/pixel_rows.h"
 #include "subvol/splat.h"
 
 namespace subvol {
 
-/// rows:         of the picture that are drawn, whole bands of `kBandRows`; the others stay empty, or have some kernels only
-/// memory_bytes: about the most that kernels take while a part of the picture is drawn; besides there are the boundary and a
+/// rows:         of the picture that are drawn, whole rows of tiles; the others stay empty, or have some kernels only
+/// memory_bytes: about the most that kernels take while some regions are drawn; besides there are the boundary and a
 ///               brick
-/// scratch:      a folder for kernels that wait for their part of the picture, some 90 bytes each; empty: the folder for
+/// scratch:      a folder for kernels that wait for their region of the picture, some 90 bytes each; empty: the folder for
 ///               temporary files
 struct BrickSplatOptions {
     SampleOptions sample{};
@@ -27,8 +28,8 @@ struct BrickSplatOptions {
 };
 
 /// Draws a mesh in bricks as kernels at its points: the picture has the bits of `render_splats` of the whole mesh. Each brick
-/// is sampled once; its kernels wait in files, one for each part of the picture that they touch, and are drawn part by part in
-/// the order of the whole mesh.
+/// is sampled once; its kernels wait in files, one for each region of the picture that they touch, and are drawn region by
+/// region in the order of the whole mesh.
 ///
 /// fields:   leaves one field of one channel in a brick
 /// boundary: as `sample_bricks_boundary` makes it
@@ -50,16 +51,16 @@ public:
     /// The rows that each kernel may touch.
     [[nodiscard]] std::vector<PixelRows> rows_of(const RbfVolume& kernels) const;
 
-    /// What decides the number of sheets, as `kernel_reaches` of these kernels.
-    [[nodiscard]] std::vector<float> reaches(const RbfVolume& kernels) const;
+    /// Counts kernels of the picture, each once in all processes: they decide the number of sheets.
+    void count(const RbfVolume& kernels);
 
     /// Adds kernels of one channel, in any order of calls. numbers: in the whole mesh, ascending
     void add(const RbfVolume& kernels, std::span<const std::uint64_t> numbers);
 
     /// Draws all kernels that were added; to be called once.
     ///
-    /// finest_reach: of all kernels of the picture, the reach in place `place_of_finest_reach`
-    [[nodiscard]] SplatResult draw(float finest_reach);
+    /// sum: adds counts up over all processes that draw the picture; empty: this one is alone
+    [[nodiscard]] SplatResult draw(const detail::SumCounts& sum = {});
 
 private:
     struct State;

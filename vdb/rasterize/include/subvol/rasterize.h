@@ -14,6 +14,7 @@
 #include "subvol/progress.h"
 #include "subvol/rbf_volume.h"
 #include "subvol/refine.h"
+#include "subvol/share.h"
 #include "subvol/vdb_grid.h"
 
 namespace subvol {
@@ -109,10 +110,11 @@ void rasterize_parts(const HexMesh& mesh, std::span<const std::string> fields, c
 /// Rasterizes one of several shares: a slab across x, for processes that share the work. The slabs are chosen so that their
 /// grids take about as much memory each. Together the leaves of all shares are those of `rasterize`; see `join_grids`.
 ///
-/// part:    from 1 to `of`; a share may have no voxels, its grids are empty then
-/// throws:  Error(InvalidInput) as `rasterize`, or for another part
+/// A share may have no voxels: its grids are empty then.
+///
+/// throws:  Error(InvalidInput) as `rasterize`, or for a share that does not exist
 [[nodiscard]] std::vector<VdbGrid> rasterize_share(const HexMesh& mesh, std::span<const std::string> fields,
-                                                   const RasterizeOptions& options, int part, int of);
+                                                   const RasterizeOptions& options, const Share& share);
 
 /// Sums kernels at voxel centres: a grid of floats per channel, the first a fog volume.
 ///

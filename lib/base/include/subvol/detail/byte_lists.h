@@ -48,6 +48,8 @@ public:
     }
 
     [[nodiscard]] std::size_t left() const { return left_.size(); }
+    /// What has not been taken.
+    [[nodiscard]] std::string_view rest() const { return left_; }
     [[noreturn]] void refuse() const { throw Error(ErrorCode::InvalidInput, refusal_); }
 
 private:

@@ -8,13 +8,9 @@
 #include <vector>
 
 #include "subvol/limit_surface.h"
+#include "subvol/share.h"
 
 namespace subvol::detail {
-
-/// One of several shares of a surface. part: from 0
-struct SurfaceShareOf {
-    std::size_t part = 0, of = 1;
-};
 
 /// A share of a surface as bytes: what is cut out of a range of the cells that it passes, with points on the limit and their
 /// fields. Every share finds these cells and the level by itself.
@@ -22,7 +18,7 @@ struct SurfaceShareOf {
 /// throws: as `limit_surface`
 /// cost:   memory: the topology of the mesh; some 300 bytes for each triangle of the share, and of the whole at level 1
 [[nodiscard]] std::string share_of_surface(const HexMesh& mesh, std::string_view field, const SurfaceOptions& options,
-                                           const SurfaceShareOf& share);
+                                           const Share& share);
 
 /// All shares of a surface as `limit_surface` returns it, bit by bit: slivers are mended, and the whole is measured.
 ///

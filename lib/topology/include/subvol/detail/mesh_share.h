@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "subvol/mesh_report.h"
+#include "subvol/share.h"
 
 namespace subvol::detail {
 
@@ -22,9 +23,8 @@ struct MeshShare {
     std::vector<std::size_t> inverted{};
 };
 
-/// part:   from 1 to `of`
 /// throws: Error(InvalidInput) as `inspect`
-[[nodiscard]] MeshShare inspect_share(const HexMesh& mesh, int part, int of, std::size_t inverted_at_most);
+[[nodiscard]] MeshShare inspect_share(const HexMesh& mesh, const Share& share, std::size_t inverted_at_most);
 
 /// The report of the whole mesh, as `inspect` makes it, and the first inverted cells.
 ///
