@@ -55,7 +55,7 @@ std::optional<std::set<std::string>> parts_of_list(const fs::path& list) {
     Json json;
     try {
         json = Json::parse(detail::of_limited_depth(detail::read_text(list), list.string()), nullptr, false);
-    } catch (const Error&) {  // it cannot be read, or is no list of ours
+    } catch (const Error&) {  // it cannot be read, or is not such a list
     }
     if (!json.is_object() || !json.contains("voxel_size") || !json.contains("parts") || !json["parts"].is_array()) return {};
     for (const Json& part : json["parts"]) {
@@ -69,7 +69,7 @@ std::optional<std::set<std::string>> parts_of_list(const fs::path& list) {
 }
 
 [[noreturn]] void refuse_list(const fs::path& list) {
-    throw Error(ErrorCode::InvalidInput, "exists and is no list of grids; the list of the parts would have this name",
+    throw Error(ErrorCode::InvalidInput, "exists and is not a list of grids; the list of the parts would have this name",
                 list.string(), "another name for -o");
 }
 
@@ -181,7 +181,7 @@ void VdbParts::check_names() const {
         const auto name = part.at("file").get<std::string>();
         std::error_code error;
         if (earlier_->contains(name) || !fs::exists(folder / name, error)) continue;
-        throw Error(ErrorCode::InvalidInput, "exists and is no part of grids that an earlier run has listed",
+        throw Error(ErrorCode::InvalidInput, "exists and is not a part of grids that an earlier run has listed",
                     (folder / name).string(), "another name for -o, or more --memory");
     }
 }

@@ -24,7 +24,7 @@ class VdbParts {
 public:
     /// memory_bytes: what the grids may take together
     ///
-    /// throws: Error(InvalidInput) if there is a NAME.json that is no such list, and there has to be one
+    /// throws: Error(InvalidInput) if NAME.json exists, is not such a list, and a list has to be written
     VdbParts(const VdbOutput& output, std::uint64_t memory_bytes);
 
     /// Writes the part with a number.

@@ -17,7 +17,7 @@ namespace subvol::cli {
 /// The name of the note in metadata.
 inline constexpr const char* kPartNote = "subvol_part";
 
-/// What a file with one share of some work says of itself, so that `join` takes only parts that belong together.
+/// What the file of a part says about itself, so that `join` takes only parts that belong together.
 ///
 /// task: a hash of the verb, its options, the input and the version: the same for all shares
 /// how:  what `join` must know to write the whole
@@ -35,13 +35,13 @@ struct PartNote {
 [[nodiscard]] std::string text_of(const PartNote& note);
 
 /// file:   named in the error
-/// throws: Error(InvalidInput) if the text is no note
+/// throws: Error(InvalidInput) if the text is not a note
 [[nodiscard]] PartNote note_from(const std::string& text, const std::string& file);
 
-/// The error of a note that says nothing that `join` could use.
+/// The error of a note that `join` cannot use.
 [[noreturn]] void fail_note(const std::string& file);
 
-/// What a note says of how the whole is written, or `otherwise` if it says nothing of it.
+/// What a note says about how the whole is written, or `otherwise` if it does not say it.
 ///
 /// throws: Error(InvalidInput) naming the file if it is of another type
 template <class Value>
@@ -54,7 +54,7 @@ template <class Value>
     }
 }
 
-/// A part that a file says to be.
+/// A file, and the part that it says it is.
 struct FoundPart {
     std::string file;
     PartNote note;

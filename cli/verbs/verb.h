@@ -50,7 +50,7 @@ protected:
     /// Null: this process is alone.
     [[nodiscard]] Ranks* ranks() const { return ranks_; }
 
-    /// Whether this process writes what all do together, and speaks.
+    /// Whether this process writes the result and prints the report.
     [[nodiscard]] bool speaks() const { return ranks_ == nullptr || ranks_->first(); }
 
     /// Whether this process does one share of the work only.

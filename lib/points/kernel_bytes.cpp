@@ -28,7 +28,7 @@ std::string bytes_of_kernels(const RbfVolume& volume, bool with_boundary) {
 }
 
 RbfVolume kernels_from_bytes(std::string_view bytes) {
-    ByteUnpacker in(bytes, "these bytes are no kernels");
+    ByteUnpacker in(bytes, "these bytes are not kernels");
     RbfVolume volume;
     std::string kernel;
     in.take(kernel);

@@ -36,18 +36,18 @@ void check_surface_options(const SurfaceOptions& options);
 
 /// The same for `share_of_surface`. All shares must have the same part.
 ///
-/// rename: changes each place after all that is to be known there
+/// rename: gives each place the cell number of the whole mesh, when everything is known there
 [[nodiscard]] std::optional<std::string> share_of_part(const HexMesh& part, std::span<const std::uint8_t> owned,
                                                        const LimitExtent& whole, std::string_view field,
                                                        const SurfaceOptions& options, const Share& share,
                                                        const std::function<void(LimitQuery&)>& rename);
 
-/// How many layers of cells about the candidates a share looks at: the same for all, so that none can look farther if the
+/// How many layers of cells around the candidates a share looks at: the same for all, so that none can look farther if the
 /// surface leads out there.
 [[nodiscard]] int layers_of_shares(const SurfaceOptions& options);
 [[noreturn]] void fail_far_share(const std::string& where);
 
-/// A share of a surface that no cell may have.
+/// The share of a surface that does not pass any cell.
 [[nodiscard]] std::string empty_surface_share();
 
 }  // namespace subvol::detail

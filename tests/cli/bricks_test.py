@@ -192,7 +192,7 @@ class SameAsTheWhole(InFolder):
         before = self.files()
         (self.folder / "scene.json").write_text('{"camera": "mine"}')
         (self.folder / "shots_0001.vdb").write_text("mine")
-        for name, said in (("scene.vdb", "scene.json: exists and is no list"), ("shots.vdb", "shots_0001.vdb: exists and is no part")):
+        for name, said in (("scene.vdb", "scene.json: exists and is not a list"), ("shots.vdb", "shots_0001.vdb: exists and is not a part")):
             refused = subvol(*few, name, folder=self.folder)
             self.assertEqual(refused.code, 2)
             self.assertIn(said, refused.err)
