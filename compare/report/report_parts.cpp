@@ -45,7 +45,8 @@ std::map<std::string, std::size_t> varying(const Study& study, std::span<const s
     }
     std::map<std::string, std::size_t> counts;
     for (const auto& [key, different] : values) {
-        const bool everywhere = std::ranges::all_of(cases, [&](std::size_t c) { return study.cases[c].has(key); });
+        const bool everywhere =
+            std::ranges::all_of(cases, [&, &name = key](std::size_t c) { return study.cases[c].has(name); });
         if (different.size() + (everywhere ? 0 : 1) > 1) counts[key] = different.size() + (everywhere ? 0 : 1);
     }
     return counts;

@@ -64,7 +64,7 @@ std::size_t Hdf5File::columns(const std::string& path) const {
 }
 
 std::string Hdf5File::bytes(const std::string& path, const Hdf5Dataset& dataset, std::size_t first, std::size_t count) const {
-    const std::size_t rows = rows_of(dataset), row = columns_of(dataset) * size_of(dataset.type);
+    const std::size_t rows = rows_of(dataset);
     if (first > rows || count > rows - first) {
         fail(in_quotes(path) + " has " + counted(rows, "row", "rows") + "; " + std::to_string(count) + " from row " +
              std::to_string(first) + " on are needed");

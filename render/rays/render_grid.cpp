@@ -297,7 +297,8 @@ private:
 
 GridResult render_grid(const Voxels& grid, const View& view, const Optics& optics, const GridOptions& options) {
     check(grid, options);
-    const auto [lower, upper] = grid.range();
+    const std::array<Voxel, 2> range = grid.range();
+    const Voxel &lower = range[0], &upper = range[1];
     if (lower[0] > upper[0]) return {{view.width(), view.height()}, {}};
     GridResult result;
     const Stopwatch watch;
