@@ -133,8 +133,7 @@ WithFacts<HexMesh> load_mesh(const std::string& input, const CommonOptions& opti
                              ShellsAlone alone) {
     auto [read, facts] = read_input(input, options, progress, alone);
     if (shells != nullptr) {
-        *shells = std::move(read.shells);
-        if (options.density && !shells->empty()) put_density_first(*shells, *options.density);
+        *shells = with_density(std::move(read.shells), options);
     } else {
         facts.warn(shells_left_out(read.shells));
     }
@@ -178,6 +177,11 @@ std::string shells_left_out(const Shells& shells) {
     const std::string lines = shells.lines.empty() ? "" : counted(shells.lines.size(), "line");
     return text(quads, quads.empty() || lines.empty() ? "" : " and ", lines,
                 " of shells and beams left out: render, surface, subdivide and info read them");
+}
+
+Shells with_density(Shells shells, const CommonOptions& options) {
+    if (options.density && !shells.empty()) put_density_first(shells, *options.density);
+    return shells;
 }
 
 Shells with_fields_of(Shells shells, const HexMesh& mesh) {

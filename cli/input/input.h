@@ -44,6 +44,9 @@ enum class ShellsAlone { Refuse, Take };
 /// A warning that shells and beams are left out; empty if there are none.
 [[nodiscard]] std::string shells_left_out(const Shells& shells);
 
+/// The shells with --density as their first attribute.
+[[nodiscard]] Shells with_density(Shells shells, const CommonOptions& options);
+
 /// The shells with the fields that the mesh has, which were selected from the same ones.
 [[nodiscard]] Shells with_fields_of(Shells shells, const HexMesh& mesh);
 

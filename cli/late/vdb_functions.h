@@ -14,7 +14,6 @@
 #include "subvol/join_grids.h"
 #include "subvol/nanovdb.h"
 #include "subvol/rasterize.h"
-#include "subvol/rasterize_block.h"
 #include "subvol/spread_vectors.h"
 #include "subvol/vdb_contents.h"
 #include "subvol/vdb_grid.h"
@@ -30,11 +29,9 @@ struct VdbFunctions {
     std::vector<VdbGrid> (*rasterize)(const HexMesh&, std::span<const std::string>, const RasterizeOptions&);
     void (*check_voxels)(const HexMesh&, const RasterizeOptions&);
     RefinementTables (*rasterization_tables)(const HexMesh&, const RasterizeOptions&);
-    void (*rasterize_parts)(const HexMesh&, std::span<const std::string>, const RasterizeOptions&, std::size_t,
-                            const std::function<void(GridPart)>&);
-    BlockGrids (*rasterize_block)(const HexMesh&, std::span<const std::string>, const RasterizeOptions&, const VoxelCubes&);
-    std::vector<VdbGrid> (*rasterize_share)(const HexMesh&, std::span<const std::string>, const RasterizeOptions&,
-                                            const Share&);
+    PartsReport (*rasterize_parts)(const MeshSource&, std::span<const std::string>, const RasterizeOptions&, std::size_t,
+                                   const std::function<void(GridPart)>&);
+    GridShare (*rasterize_share)(const MeshSource&, std::span<const std::string>, const RasterizeOptions&, const Share&);
     std::vector<VdbGrid> (*rasterize_points)(const RbfVolume&, std::span<const std::size_t>, const RasterizeOptions&);
     VdbGrid (*sample_at_voxels)(const VdbGrid&, const std::string&,
                                 const std::function<std::vector<double>(std::span<const Vec3>)>&);

@@ -15,7 +15,6 @@ const subvol::cli::VdbFunctions* subvol_openvdb() {
         .check_voxels = &check_voxels,
         .rasterization_tables = &rasterization_tables,
         .rasterize_parts = &rasterize_parts,
-        .rasterize_block = &rasterize_block,
         .rasterize_share = &rasterize_share,
         .rasterize_points = &rasterize_points,
         .sample_at_voxels = &sample_at_voxels,

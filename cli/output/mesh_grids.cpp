@@ -5,7 +5,6 @@
 #include <cmath>
 #include <utility>
 
-#include "bricks_input.h"
 #include "input.h"
 #include "quantities.h"
 #include "subvol/error.h"
@@ -43,8 +42,7 @@ WithFacts<LimitCells> reported_limit(const HexMesh& mesh, const RefineOptions& r
 }
 
 MeshGrids::MeshGrids(std::string input, const VdbArguments& asked, RefineArguments& refine)
-    : input_(std::move(input)), asked_(asked), refine_(refine), fields_(asked) {
-    if (!is_bricks_input(input_)) tets_ = TetRefinement(refine);
+    : input_(std::move(input)), asked_(asked), refine_(refine), fields_(asked), tets_(refine) {
     if (!asked.like.empty()) like_grids_ = vdb().read_vdb(asked.like);
 }
 

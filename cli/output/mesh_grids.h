@@ -30,12 +30,12 @@ class MeshGrids {
 public:
     /// input:  of the command, for the metadata
     /// asked:  referred to
-    /// refine: referred to; unless the input is a folder of bricks, a scheme of tetrahedra is taken out of it, see
-    ///         `TetRefinement`
+    /// refine: referred to; a scheme of tetrahedra is taken out of it, see `TetRefinement`
     /// throws: Error(InvalidInput) for options that cannot be read; Error(Io) if --like cannot be read
     MeshGrids(std::string input, const VdbArguments& asked, RefineArguments& refine);
 
     [[nodiscard]] const WrittenFields& fields() const { return fields_; }
+    [[nodiscard]] const TetRefinement& tets() const { return tets_; }
 
     /// Reads a mesh, with the fields that are written, turned and scaled.
     [[nodiscard]] WithFacts<HexMesh> load(const std::string& input, const CommonOptions& options, Progress* progress) const;

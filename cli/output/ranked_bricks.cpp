@@ -76,7 +76,7 @@ void sample_in_rounds(const Bricks& bricks, const SampleOptions& options, const 
         report_progress(options.progress, "sample", static_cast<double>(round) / static_cast<double>(rounds));
         BrickPoints points;
         if (begin + round < end) {
-            BrickMesh brick = read_brick(bricks, begin + round);
+            MeshPiece brick = read_brick(bricks, begin + round);
             brick.mesh = fields(std::move(brick.mesh));
             points = sample_brick(bricks, std::move(brick), quiet);
         }

@@ -62,7 +62,9 @@ bool has_voxels(std::span<const VdbGrid> grids) {
     return std::ranges::any_of(grids, [](const VdbGrid& grid) { return grid.report().active_voxels > 0; });
 }
 
-std::string finer_voxels(const HexMesh& mesh) {
+std::string finer_voxels(const MeshSource& source) {
+    if (source.mesh() == nullptr) return "try a smaller --voxel-size";
+    const HexMesh& mesh = *source.mesh();
     constexpr double kMostVoxels = 2e9;  // of `rasterize`
     constexpr double kAcross = 2;        // voxels across the mean thickness
     const Vec3 size = bounds(mesh).size();
@@ -114,28 +116,83 @@ WithFacts<Facts> write_frame(int frame, std::span<const VdbGrid> grids, const Vd
     return written;
 }
 
-Facts write_parts(const std::string& input, const HexMesh& mesh, std::span<const std::string> fields,
+Facts facts_of(const PartsReport& parts) {
+    Facts facts;
+    if (!parts.converged) facts.warn("the limit is coarser than its tolerance in some cells");
+    if (parts.folded > 0) facts.note(text("cells fold over in ", parts.folded, " of ", parts.blocks, " blocks of voxels"));
+    return facts;
+}
+
+namespace {
+
+/// Adds up what is in the grids of all parts.
+class GridSums {
+public:
+    void add(std::span<const VdbGrid> grids) {
+        for (std::size_t g = 0; g < grids.size(); ++g) {
+            const GridReport& grid = grids[g].report();
+            if (sums_.size() <= g) sums_.push_back({grid.name, grid.kind, 0, 0, grid.min, grid.max});
+            Sum& sum = sums_[g];
+            sum.active_voxels += grid.active_voxels;
+            sum.bytes += grid.bytes;
+            sum.min = std::min(sum.min, static_cast<double>(grid.min));
+            sum.max = std::max(sum.max, static_cast<double>(grid.max));
+        }
+    }
+
+    [[nodiscard]] FactValue::List list() const {
+        FactValue::List list;
+        for (const Sum& sum : sums_) {
+            Facts grid;
+            grid["name"] = sum.name;
+            grid["kind"] = sum.kind;
+            grid["active_voxels"] = sum.active_voxels;
+            grid["min"] = sum.min;
+            grid["max"] = sum.max;
+            grid["bytes"] = sum.bytes;
+            list.emplace_back(std::move(grid));
+        }
+        return list;
+    }
+
+private:
+    struct Sum {
+        std::string name, kind;
+        std::uint64_t active_voxels, bytes;
+        double min, max;
+    };
+    std::vector<Sum> sums_;
+};
+
+}  // namespace
+
+Facts write_parts(const std::string& input, const MeshSource& source, std::span<const std::string> fields,
                   const RasterizeOptions& options, const VdbOutput& output,
                   const std::function<void(std::vector<VdbGrid>&)>& prepare) {
-    VdbParts parts(output, output.memory_bytes);
-    double voxel_size_world = 0;
+    const std::size_t memory_bytes = output.memory_bytes > 0 ? output.memory_bytes : options.block_bytes;
+    VdbParts parts(output, memory_bytes);
+    GridSums sums;
+    double voxel_size_world = options.voxel_size_world;
     // The parts are written between the stages of the rasterizer, whose own time is what is left.
     const detail::Stopwatch whole;
     double writing = 0;
-    vdb().rasterize_parts(mesh, fields, options, output.memory_bytes, [&](GridPart part) {
-        prepare(part.grids);
+    const PartsReport report = vdb().rasterize_parts(source, fields, options, memory_bytes, [&](GridPart part) {
+        if (prepare) prepare(part.grids);
         voxel_size_world = part.grids.front().report().voxel_size_world;
+        sums.add(part.grids);
         Facts grids;
         grids["grids"] = about(part.grids, output);
         const detail::Stopwatch one;
         parts.write(part.grids, static_cast<std::size_t>(part.number), json_of(grids));
         writing += one.seconds();
     });
-    if (parts.active_voxels() == 0) throw no_voxels(input, finer_voxels(mesh));
+    if (parts.active_voxels() == 0) throw no_voxels(input, finer_voxels(source));
     Facts facts;
     facts.add_seconds("rasterize", whole.seconds() - writing);
     facts.add_seconds("write", writing);
+    facts.merge(facts_of(report));
     facts.merge(parts.finish(input, voxel_size_world, options.progress));
+    if (facts.find("grids") == nullptr) facts["grids"] = sums.list();
     return facts;
 }
 

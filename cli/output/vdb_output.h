@@ -24,18 +24,21 @@ struct VdbOutput {
 [[nodiscard]] bool has_voxels(std::span<const VdbGrid> grids);
 
 /// What helps where a volume lies between the voxels' centres, as thin ones may: "try --voxel-size 0.01".
-[[nodiscard]] std::string finer_voxels(const HexMesh& mesh);
+[[nodiscard]] std::string finer_voxels(const MeshSource& source);
 
 /// The error that nothing would be written. hint: what helps
 [[nodiscard]] Error no_voxels(const std::string& input, const std::string& hint);
 
-/// Rasterizes and writes slab by slab, in the memory of `output`: what VdbParts says.
+/// A warning and a note on how a mesh in pieces was rasterized, if there is reason.
+[[nodiscard]] Facts facts_of(const PartsReport& parts);
+
+/// Rasterizes and writes part by part, in the memory of `output` or of options.block_bytes: what VdbParts says.
 ///
 /// input:   the name of the mesh, for NAME.json
-/// prepare: changes the grids of each slab before they are written
-[[nodiscard]] Facts write_parts(const std::string& input, const HexMesh& mesh, std::span<const std::string> fields,
+/// prepare: changes the grids of each part before they are written
+[[nodiscard]] Facts write_parts(const std::string& input, const MeshSource& source, std::span<const std::string> fields,
                                 const RasterizeOptions& options, const VdbOutput& output,
-                                const std::function<void(std::vector<VdbGrid>&)>& prepare);
+                                const std::function<void(std::vector<VdbGrid>&)>& prepare = {});
 
 /// Writes grids. returns: what is in them
 [[nodiscard]] Facts write_reported(std::span<const VdbGrid> grids, const VdbOutput& output, Progress* progress);

@@ -14,7 +14,6 @@
 #include "points_input.h"
 #include "share.h"
 #include "steps.h"
-#include "subvol/detail/bricks_share.h"
 #include "subvol/detail/byte_hash.h"
 #include "subvol/error.h"
 #include "subvol/join_grids.h"
@@ -220,8 +219,7 @@ private:
         if (common().field) (void)named_brick_field(bricks, *common().field, true);  // refuses what does not exist
         const Share share = share_of(share_);
         const detail::MeshShare about = joined(share, report, [&] {
-            const auto [begin, end] = share.range(bricks.bricks.size());
-            return detail::inspect_share(bricks, begin, end, kCellsNamed, report.progress());
+            return detail::inspect_share(source_of(bricks), share.part, share.of, kCellsNamed, report.progress());
         });
         if (!speaks()) return;
         put_mesh_report(report, about.counts);

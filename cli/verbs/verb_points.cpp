@@ -143,7 +143,7 @@ public:
             throw Error(ErrorCode::InvalidInput, "turns what viewers of splats read; all else keeps its place", "--up",
                         "--splats");
         }
-        if (!is_bricks_input(input_)) tets_ = TetRefinement(refine_);
+        tets_ = TetRefinement(refine_);
         report.if_long(sample_.reduce_rmse ? "a larger --reduce, and no --refine" : "a larger --spacing or --tolerance");
         if (is_bricks_input(input_)) {
             write_bricks(share, report);
@@ -226,6 +226,8 @@ private:
         }
         refuse_options(app(), {"--levels", "--threshold", "--tf", "--reduce", "--clamp", "--error", "--merge"},
                        "needs the whole mesh in memory; this is a folder of bricks");
+        tets_.refuse_bricks(input_);
+        report["input"] = input_;
         const Bricks bricks = report.unpack(open_bricks_input(input_, app()));
         const StreamedField field = report.unpack(select_brick_field(bricks, common()));
         const SampleOptions options = sample_.options(bricks.bounds, refine_.options(0, report.progress()));

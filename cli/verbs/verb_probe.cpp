@@ -3,15 +3,13 @@
 #include <algorithm>
 
 #include "block_cells.h"
-#include "bricks_input.h"
+#include "body_input.h"
 #include "input.h"
 #include "numbers.h"
 #include "outputs.h"
 #include "places_input.h"
 #include "probe_output.h"
 #include "refine_arguments.h"
-#include "subvol/brick_measure.h"
-#include "subvol/brick_probe.h"
 #include "subvol/error.h"
 #include "subvol/measure.h"
 #include "subvol/mixed_probe.h"
@@ -71,23 +69,16 @@ public:
                         "--scheme tetoct or boxspline, whose volume is that of a level");
         }
         const LimitOptions limit{.scheme = scheme_.options(0, report.progress()).scheme, .progress = report.progress()};
-        if (is_bricks_input(input_)) {
-            tets.refuse_bricks(input_);
-            probe_the_bricks(places, limit, report);
-            return 0;
-        }
         report["input"] = input_;
-        ReadResult read = report.unpack(read_input(input_, common(), report.progress()));
-        report.warn(shells_left_out(read.shells));
-        const HexMesh mesh = used_mesh(std::move(read.mesh), common());
-        const HexMesh chosen = with_chosen_first(mesh, report);
-        report["cells"] = mesh.cells.size();
+        BodyInput body = report.unpack(open_body(input_, common(), app(), report.progress()));
+        (void)report.unpack(body.select(common(), OtherFields::Keep));
+        report["cells"] = body.source().cells();
         if (tets.asked()) {
-            probe_tets(tets, chosen, places, report);
-            if (stats_ && read.blocks.size() > 1) report.warn("tetoct and boxspline measure the whole, not its blocks");
+            probe_tets(tets, body.mesh_for(tets), places, report);
+            if (stats_ && body.blocks.size() > 1) report.warn("tetoct and boxspline measure the whole, not its blocks");
         } else {
-            if (!places.empty()) probe(chosen, places, limit, report);
-            if (stats_) measure(chosen, read.blocks, limit.scheme, report);
+            if (!places.empty()) probe(body.source(), places, limit, report);
+            if (stats_) measure(body, limit.scheme, report);
         }
         if (!output_.empty()) report["output"] = output_;
         return 0;
@@ -124,47 +115,9 @@ private:
         }
     }
 
-    /// The selected field first, then all others as they are.
-    [[nodiscard]] HexMesh with_chosen_first(const HexMesh& mesh, Report& report) const {
-        HexMesh chosen = report.unpack(with_selected_field(mesh, common()));
-        for (const Attribute& attribute : mesh.attributes) {
-            if (attribute.name != chosen.attributes.front().name) chosen.attributes.push_back(attribute);
-        }
-        return chosen;
-    }
-
-    void probe_the_bricks(const std::vector<Vec3>& places, const LimitOptions& limit, Report& report) {
-        const Bricks bricks = report.unpack(open_bricks_input(input_, app()));
-        (void)report.unpack(select_brick_field(bricks, common()));
-        const auto chosen_first = [&](HexMesh brick) {
-            const std::string first = report.json().at("field");
-            (void)std::ranges::stable_partition(brick.attributes, [&](const Attribute& field) { return field.name == first; });
-            if (brick.attributes.empty()) brick.attributes.push_back(select_field(brick, {}).scalar);
-            return brick;
-        };
-        if (!places.empty()) {
-            const ProbeResult found = report.timed("probe", [&] {
-                LimitOptions quiet = limit;
-                quiet.progress = nullptr;
-                return probe_bricks(bricks, places, {.limit = quiet}, chosen_first, report.progress());
-            });
-            show_probed(found, places, output_, common().json, report);
-        }
-        if (stats_) {
-            show_measured(report.timed("measure",
-                                       [&] {
-                                           return measure_limit(
-                                               bricks, {.scheme = limit.scheme, .bins = bins_, .progress = report.progress()},
-                                               chosen_first);
-                                       }),
-                          report);
-        }
-        if (!output_.empty()) report["output"] = output_;
-    }
-
-    void probe(const HexMesh& mesh, const std::vector<Vec3>& places, const LimitOptions& limit, Report& report) const {
-        const auto probe = report.timed("prepare", [&] { return LimitProbe(mesh, {.limit = limit}); });
-        const ProbeResult found = report.timed("probe", [&] { return probe.at(places, report.progress()); });
+    void probe(const MeshSource& source, const std::vector<Vec3>& places, const LimitOptions& limit, Report& report) const {
+        const ProbeResult found =
+            report.timed("probe", [&] { return probe_limit(source, places, {.limit = limit}, report.progress()); });
         show_probed(found, places, output_, common().json, report);
     }
 
@@ -185,12 +138,16 @@ private:
             report);
     }
 
-    void measure(const HexMesh& mesh, const std::vector<MeshBlock>& blocks, const SchemeOptions& scheme, Report& report) const {
-        const BlockCells parts =
-            report.unpack(report.timed("blocks", [&] { return cells_of_blocks(input_, blocks, mesh, common()); }));
+    void measure(const BodyInput& body, const SchemeOptions& scheme, Report& report) const {
+        const MeshSource source = body.source();
+        BlockCells parts;
+        if (source.mesh() != nullptr) {
+            parts = report.unpack(
+                report.timed("blocks", [&] { return cells_of_blocks(input_, body.blocks, *source.mesh(), common()); }));
+        }
         const LimitMeasure found = report.timed("measure", [&] {
             return measure_limit(
-                mesh,
+                source,
                 {.scheme = scheme, .bins = bins_, .groups = parts.groups, .names = parts.names, .progress = report.progress()});
         });
         show_measured(found, report);

@@ -2,14 +2,13 @@
 #include <CLI/CLI.hpp>
 #include <cmath>
 
-#include "bricks_input.h"
+#include "body_input.h"
 #include "input.h"
 #include "numbers.h"
 #include "outputs.h"
 #include "picture_arguments.h"
 #include "places_input.h"
 #include "refine_arguments.h"
-#include "subvol/brick_probe.h"
 #include "subvol/error.h"
 #include "subvol/image_io.h"
 #include "subvol/limit_slice.h"
@@ -73,7 +72,7 @@ public:
         std::vector<double> plane;
         if (!plane_.empty()) plane = parse_numbers("--plane", plane_, 6, "0,0,0,0,0,1");
         report.if_long("a lower --resolution");
-        const LimitSlice slice = is_bricks_input(input_) ? slice_of_bricks(plane, report) : slice_of_mesh(plane, report);
+        const LimitSlice slice = this->slice(plane, report);
         std::vector<double> values;
         for (int c = 0; c < contours_; ++c) values.push_back(slice.min + (slice.max - slice.min) * (c + 1) / (contours_ + 1));
         const auto lines = contour_lines(slice, values);
@@ -103,31 +102,17 @@ private:
     }
 
     /// plane: a point and a normal, or empty; becomes that of the box's centre and z
-    static void choose_plane(const Box& box, std::vector<double>& plane) {
-        const Vec3 center = box.center();
-        if (plane.empty()) plane = {center.x, center.y, center.z, 0, 0, 1};
-    }
-
-    [[nodiscard]] LimitSlice slice_of_mesh(std::vector<double>& plane, Report& report) {
+    [[nodiscard]] LimitSlice slice(std::vector<double>& plane, Report& report) {
         const TetRefinement tets(scheme_);
         report["input"] = input_;
-        HexMesh mesh = report.unpack(load_mesh(input_, common(), report.progress()));
-        mesh = report.unpack(with_selected_field(std::move(mesh), common()));
-        mesh = report.unpack(tets.hexes(std::move(mesh), 2, report.progress()));
-        choose_plane(bounds(mesh), plane);
+        BodyInput body = report.unpack(open_body(input_, common(), app(), report.progress()));
+        (void)report.unpack(body.select(common(), OtherFields::Drop));
+        report.merge(body.refine(tets, 2, report.progress()));
+        const MeshSource source = body.source();
+        const Vec3 center = source.bounds().center();
+        if (plane.empty()) plane = {center.x, center.y, center.z, 0, 0, 1};
         return report.timed("slice", [&] {
-            return slice_limit(mesh, {}, {plane[0], plane[1], plane[2]}, {plane[3], plane[4], plane[5]}, options(report));
-        });
-    }
-
-    [[nodiscard]] LimitSlice slice_of_bricks(std::vector<double>& plane, Report& report) {
-        TetRefinement(scheme_).refuse_bricks(input_);
-        const Bricks bricks = report.unpack(open_bricks_input(input_, app()));
-        const StreamedField field = report.unpack(select_brick_field(bricks, common()));
-        choose_plane(bricks.bounds, plane);
-        return report.timed("slice", [&] {
-            return slice_limit(bricks, {plane[0], plane[1], plane[2]}, {plane[3], plane[4], plane[5]}, options(report),
-                               [&](HexMesh brick) { return with_brick_fields(std::move(brick), {field}); });
+            return slice_limit(source, {}, {plane[0], plane[1], plane[2]}, {plane[3], plane[4], plane[5]}, options(report));
         });
     }
 

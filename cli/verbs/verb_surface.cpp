@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <optional>
 
-#include "bricks_input.h"
+#include "body_input.h"
 #include "input.h"
 #include "numbers.h"
 #include "outputs.h"
@@ -11,7 +11,6 @@
 #include "picture_arguments.h"
 #include "quantities.h"
 #include "refine_arguments.h"
-#include "subvol/brick_surface.h"
 #include "subvol/detail/surface_share.h"
 #include "subvol/error.h"
 #include "subvol/limit_shells.h"
@@ -93,41 +92,33 @@ public:
                                .max_level = max_level_,
                                .improve = !keep_slivers_,
                                .progress = report.progress()};
-        if (is_bricks_input(input_)) {
-            tets.refuse_bricks(input_);
-            extract_from_bricks(options, report);
-            return 0;
-        }
-        Shells shells;
         report["input"] = input_;
-        Shells* const wanted = options.boundary && !tets.asked() ? &shells : nullptr;
-        HexMesh mesh = report.unpack(load_mesh(input_, common(), report.progress(), wanted));
-        mesh = report.unpack(tets.hexes(std::move(mesh), 2, report.progress()));
-        HexMesh chosen = report.unpack(with_selected_field(mesh, common()));
-        const std::string field = chosen.attributes.front().name;
-        for (const Attribute& attribute : mesh.attributes) {
-            if (attribute.name != field) chosen.attributes.push_back(attribute);
-        }
-        if (share_.given() && !shells.empty()) {
+        const bool with_shells = options.boundary && !tets.asked();
+        BodyInput body = report.unpack(open_body(input_, common(), app(), report.progress(), with_shells));
+        report.merge(body.refine(tets, 2, report.progress()));
+        const std::string field = report.unpack(body.select(common(), OtherFields::Keep));
+        if (share_.given() && !body.shells.empty()) {
             throw Error(ErrorCode::InvalidInput, "shells are written with the whole surface", "--part",
                         "one process, or mpirun");
         }
-        SurfaceOutput output{.field = field, .range = field_range(chosen), .isos = isos_.size()};
+        SurfaceOutput output{.field = field, .range = body.range(field), .isos = isos_.size()};
         if (!color_field_.empty()) {
-            const std::size_t number = add_color_field(chosen);
-            output.file = {number, find_transfer_function(function_, field_range(chosen, number))};
+            const std::size_t number = body.add_scalar(color_field_);
+            output.file = {number, find_transfer_function(function_, body.range(color_field_))};
         }
+        const MeshSource source = body.source();
         std::optional<LimitSurface> surface =
-            made([&] { return limit_surface(chosen, field, options); },
-                 [&](const auto& share) { return detail::share_of_surface(chosen, field, options, share); }, output, report);
+            made([&] { return limit_surface(source, field, options); },
+                 [&](const auto& share) { return detail::share_of_surface(source, field, options, share); }, output, report);
         if (!surface) return 0;
         check_not_empty(*surface, output);
         const std::size_t of_volume = surface->surface.triangles.size();
-        if (!shells.empty()) {
-            shells = with_fields_of(std::move(shells), chosen);
+        if (!body.shells.empty()) {
+            const HexMesh& mesh = *source.mesh();
+            const Shells shells = with_fields_of(std::move(body.shells), mesh);
             report.timed("sheets", [&] {
                 const int level = std::clamp(surface->report.level, 3, 4);  // a flat body may carry a bent shell
-                add_shells(*surface, limit_shells(chosen, shells, {.scheme = options.scheme, .levels = level}));
+                add_shells(*surface, limit_shells(mesh, shells, {.scheme = options.scheme, .levels = level}));
             });
             report["sheet_triangles"] = surface->surface.triangles.size() - of_volume;
             if (!shells.lines.empty()) report.warn("beams have no surface and are not written");
@@ -146,46 +137,6 @@ private:
         const Transport transport = this->transport(share_, input_, json_of(output), report);
         std::string own = report.timed("surface", [&] { return part(transport.share); });
         return report.unpack(deliver(SurfaceParts{output_, report.progress()}, std::move(own), transport));
-    }
-
-    /// As of a mesh in one piece, with the ranges that the index has.
-    void extract_from_bricks(const SurfaceOptions& options, Report& report) {
-        const Bricks bricks = report.unpack(open_bricks_input(input_, app()));
-        const StreamedField field = report.unpack(select_brick_field(bricks, common()));
-        const auto chosen = [&](HexMesh brick) {
-            std::vector<Attribute> all = brick.attributes;
-            brick = with_brick_fields(std::move(brick), {field});
-            const std::string name = brick.attributes.front().name;
-            for (Attribute& attribute : all) {
-                if (attribute.name != name) brick.attributes.push_back(std::move(attribute));
-            }
-            if (!color_field_.empty()) (void)add_color_field(brick);
-            return brick;
-        };
-        HexMesh like = chosen(stand_in(bricks));
-        const std::string name = like.attributes.front().name;
-        SurfaceOutput output{.field = name, .range = {field.min, field.max}, .isos = isos_.size()};
-        if (!color_field_.empty()) {
-            const StreamedField color = named_brick_field(bricks, color_field_, false);
-            output.file = {add_color_field(like), find_transfer_function(function_, {color.min, color.max})};
-        }
-        const std::optional<LimitSurface> surface = made(
-            [&] { return limit_surface(bricks, name, options, chosen); },
-            [&](const auto& share) { return detail::share_of_surface(bricks, name, options, share, chosen); }, output, report);
-        if (!surface) return;
-        check_not_empty(*surface, output);
-        report.merge(write_reported(output_, *surface, output, report.progress()));
-    }
-
-    /// The number of the attribute with the colours' values, one for each point; it is added if there is none.
-    [[nodiscard]] std::size_t add_color_field(HexMesh& mesh) const {
-        const auto named = [&] {
-            return std::ranges::find(mesh.attributes, color_field_, &Attribute::name) - mesh.attributes.begin();
-        };
-        if (named() == std::ssize(mesh.attributes)) mesh.attributes.push_back(select_field(mesh, color_field_).scalar);
-        const auto number = static_cast<std::size_t>(named());
-        if (mesh.attributes[number].channels > 1) mesh.attributes[number] = select_field(mesh, color_field_).scalar;
-        return number;
     }
 
     std::string input_, output_, color_field_, function_ = "viridis";

@@ -4,7 +4,6 @@
 #include <optional>
 
 #include "bricks_input.h"
-#include "bricks_vdb.h"
 #include "choices.h"
 #include "input.h"
 #include "mesh_frames.h"
@@ -19,9 +18,9 @@
 #include "subvol/rasterize.h"
 #include "text.h"
 #include "vdb_frames.h"
+#include "vdb_functions.h"
 #include "verb.h"
 #include "voxels_of_points.h"
-#include "vdb_functions.h"
 
 namespace subvol::cli {
 namespace {
@@ -125,6 +124,8 @@ private:
                        {"--budget", "--remap", "--clamp", "--up", "--scale", "--cell-ids", "--error", "--coverage", "--sdf",
                         "--from", "--nano", "--frames", "--to", "--velocity"},
                        "needs the whole mesh in memory; this is a folder of bricks");
+        maker.tets().refuse_bricks(input_);
+        report["input"] = input_;
         const Bricks bricks = report.unpack(open_bricks_input(input_, app()));
         const Vec3 size = bricks.bounds.size();
         RasterizeOptions options = maker.options(report.progress());
@@ -134,6 +135,31 @@ private:
         options.refine = refine_.options(0, report.progress());
         options.on_limit = !interpolates(options.refine.scheme.kind);
         options.metadata.emplace_back("subvol_scheme", refine_.scheme);
+        options.find_limit = !refine_.levels;
+        if (output_.memory_bytes > 0) options.block_bytes = output_.memory_bytes;
+        const std::vector<StreamedField> fields = fields_of_bricks(maker, bricks, report);
+        std::vector<SourceField> written;
+        std::vector<std::string> names;
+        for (const StreamedField& field : fields) {
+            const std::string& name = names.emplace_back(field.name.empty() ? "density" : field.name);
+            written.push_back({name, field.vector ? 3 : 1, field.min, field.max});
+        }
+        const auto chosen = [&](HexMesh brick) { return with_brick_fields(std::move(brick), fields); };
+        const MeshSource source = source_of(bricks).changed(chosen, written);
+        if (!shares(share_)) {
+            report.merge(write_parts(input_, source, names, options, output_));
+            return;
+        }
+        GridShare made = report.timed("rasterize", [&] { return vdb().rasterize_share(source, names, options, share); });
+        report.merge(facts_of(made.report));
+        const auto all = whole_of(std::move(made.grids), report);
+        if (!all) return;
+        if (!has_voxels(*all)) throw no_voxels(input_, finer_voxels(source));
+        report.merge(write_reported(*all, output_, report.progress()));
+    }
+
+    [[nodiscard]] std::vector<StreamedField> fields_of_bricks(const MeshGrids& maker, const Bricks& bricks,
+                                                              Report& report) const {
         std::vector<StreamedField> fields;
         for (const auto& [name, source] : maker.fields().asked()) {
             if (name != source)
@@ -141,15 +167,7 @@ private:
             fields.push_back(named_brick_field(bricks, name, true));
         }
         if (fields.empty()) fields.push_back(report.unpack(select_brick_field(bricks, common())));
-        const BricksToVoxels what{bricks, fields, options, !refine_.levels.has_value()};
-        if (!shares(share_)) {
-            report.merge(write_bricks_vdb(input_, what, output_));
-            return;
-        }
-        const auto all = whole_of(report.unpack(grids_of_bricks(what, output_.memory_bytes, share)), report);
-        if (!all) return;
-        if (!has_voxels(*all)) throw no_voxels(input_, "try a smaller --voxel-size");
-        report.merge(write_reported(*all, output_, report.progress()));
+        return fields;
     }
 
     /// One slab of the voxels, as a file of its own.
@@ -161,7 +179,7 @@ private:
         const HexMesh mesh = report.unpack(maker.load(input_, common(), report.progress()));
         const RasterizeOptions options = report.unpack(maker.set_up(mesh, report.progress()));
         std::vector<VdbGrid> grids =
-            report.timed("rasterize", [&] { return vdb().rasterize_share(mesh, names_of(mesh), options, share); });
+            report.timed("rasterize", [&] { return vdb().rasterize_share(mesh, names_of(mesh), options, share).grids; });
         maker.fields().clamp(mesh, grids);
         const auto all = whole_of(std::move(grids), report);
         if (!all) return;

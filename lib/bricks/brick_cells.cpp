@@ -5,6 +5,16 @@
 #include <array>
 #include <iterator>
 
+// Which cells each brick stores: its own, and a halo of layers about them, found from a file of corners without a topology.
+//
+//      . . 2 2 2 2 .        0  owned cells; their points are reached by the brick
+//      . 2 1 1 1 2 .        1  cells with a reached point: the first layer, whose points are reached next
+//      . 2 1 0 1 2 .        2  the second layer, and so on
+//      . 2 1 1 1 2 .
+//
+// Each layer is one pass over the file of corners. Of each point the owner is kept, 4 bytes; only points near borders of bricks
+// are reached by others too, and these pairs (point, brick) lie in a sorted list. Memory does not grow with the halos.
+
 namespace subvol::detail {
 
 namespace {

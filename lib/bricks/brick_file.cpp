@@ -18,6 +18,15 @@
 #include "vtk_xml.h"
 #include "vtk_xml_writer.h"
 
+// A brick is a .vtu file that opens alone: one piece of appended raw arrays, so that it is written and read without copies.
+//
+//      points, cells, fields       as in any .vtu file
+//      GlobalNodeId, GlobalCellId  numbers in the whole mesh, ascending
+//      vtkGhostType                1 in the halo: ParaView then shows no cell twice
+//      subvol_creases, …           tags of edges and faces, in the field data, with the id of the folder
+//
+// The index has a hash of the bytes, and the reader refuses a file with another one.
+
 namespace subvol::detail {
 
 namespace {
@@ -153,9 +162,9 @@ std::optional<std::uint64_t> id_of(std::string_view text, const std::string& fil
     }
 }
 
-BrickMesh parse(std::string_view text, const std::string& file) {
+MeshPiece parse(std::string_view text, const std::string& file) {
     const RawReader in(text, file);
-    BrickMesh brick;
+    MeshPiece brick;
     HexMesh& mesh = brick.mesh;
     const pugi::xml_node of_points = in.group("PointData"), of_cells = in.group("CellData");
     in.read(in.array(in.group("Points"), "Points"), "Float64", in.points(), mesh.points);
@@ -186,7 +195,7 @@ BrickMesh parse(std::string_view text, const std::string& file) {
 
 }  // namespace
 
-WrittenBrick write_brick_file(const std::filesystem::path& path, const BrickMesh& brick, std::uint64_t id) {
+WrittenBrick write_brick_file(const std::filesystem::path& path, const MeshPiece& brick, std::uint64_t id) {
     const HexMesh& mesh = brick.mesh;
     const std::size_t points = mesh.points.size(), cells = mesh.cells.size();
     if (8 * cells >= std::numeric_limits<std::int32_t>::max()) {
@@ -238,7 +247,7 @@ WrittenBrick write_brick_file(const std::filesystem::path& path, const BrickMesh
     return {bytes, hash.value()};
 }
 
-BrickMesh read_brick_file(const std::filesystem::path& path, std::uint64_t hash, std::uint64_t id) {
+MeshPiece read_brick_file(const std::filesystem::path& path, std::uint64_t hash, std::uint64_t id) {
     const std::string text = read_regular(path);
     ByteHash found;
     found.add(text);

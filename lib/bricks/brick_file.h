@@ -23,10 +23,10 @@ struct WrittenBrick {
 /// is 1 in the halo; tags are field data. The file is on the disk once `sync_files_in` has been called for the folder.
 ///
 /// id: of the folder
-WrittenBrick write_brick_file(const std::filesystem::path& path, const BrickMesh& brick, std::uint64_t id);
+WrittenBrick write_brick_file(const std::filesystem::path& path, const MeshPiece& brick, std::uint64_t id);
 
 /// throws: Error(InvalidInput) unless the file has this hash and was written by `write_brick_file` for this folder
-[[nodiscard]] BrickMesh read_brick_file(const std::filesystem::path& path, std::uint64_t hash, std::uint64_t id);
+[[nodiscard]] MeshPiece read_brick_file(const std::filesystem::path& path, std::uint64_t hash, std::uint64_t id);
 
 /// Whether a file was written by `write_brick_file` for this folder, or is what a loss of power left of one; throws: Error(Io)
 [[nodiscard]] bool is_brick_of(const std::filesystem::path& path, std::uint64_t id);

@@ -15,6 +15,16 @@
 #include "subvol/error.h"
 #include "text_scanner.h"
 
+// How a folder of bricks appears whole or not at all:
+//
+//      big.bricks.unfinished/     brick_00000.vtu …    each with its hash in progress.json, saved from time to time
+//                │                progress.json        (a killed run is continued: bricks with the right hash are kept)
+//                │ all bricks are there
+//                ▼
+//                                 index.json           written last
+//      big.bricks/  ◀── renamed; a folder of bricks that was there is removed file by file, and only if it holds nothing but
+//                       its index and the bricks that this lists
+
 namespace subvol::detail {
 
 namespace fs = std::filesystem;
@@ -209,7 +219,7 @@ bool BricksWriter::keeps(std::size_t k) {
     return false;
 }
 
-void BricksWriter::write(std::size_t k, const BrickMesh& brick) {
+void BricksWriter::write(std::size_t k, const MeshPiece& brick) {
     Brick about = describe(brick);
     about.file = brick_name(k);
     const WrittenBrick written = write_brick_file(work_ / about.file, brick, done_.id);

@@ -27,7 +27,7 @@ public:
     /// Whether brick k need not be made again.
     bool keeps(std::size_t k);
 
-    void write(std::size_t k, const BrickMesh& brick);
+    void write(std::size_t k, const MeshPiece& brick);
 
     /// Writes the index and puts the folder in its place.
     SplitResult finish();

@@ -10,12 +10,21 @@
 #include <string_view>
 
 #include "brick_folder.h"
-#include "brick_layers.h"
+#include "mesh_pieces.h"
 #include "subvol/detail/byte_hash.h"
 #include "subvol/detail/json_depth.h"
 #include "subvol/detail/printable.h"
 #include "subvol/error.h"
 #include "subvol/version.h"
+
+// The index of a folder says all that is known about a brick before it is read: what it owns and stores, the box of its cells,
+// and its reach, the box that the limit of its cells does not leave:
+//
+//      +--------------------+      reach = box of the cells and of all cells at their points, a quarter larger; a scheme's
+//      |  +-------------+   |      weights may be negative, but their absolute values add up to less than 1.5
+//      |  | own cells   |   |
+//      |  +-------------+   |      Readers skip a brick whose reach does not touch what they look for.
+//      +--------------------+
 
 namespace subvol::detail {
 
@@ -201,7 +210,7 @@ bool is_brick_name(const std::string& name) {
     return name == brick_name(brick);
 }
 
-Brick describe(const BrickMesh& brick) {
+Brick describe(const MeshPiece& brick) {
     const HexMesh& mesh = brick.mesh;
     Brick about;
     about.cells = static_cast<std::uint64_t>(std::ranges::count(brick.owned_cells, 1));
@@ -330,7 +339,7 @@ void check_files(const Bricks& bricks) {
     }
 }
 
-void check_contents(const Bricks& bricks, const Brick& about, const BrickMesh& read, const std::string& file) {
+void check_contents(const Bricks& bricks, const Brick& about, const MeshPiece& read, const std::string& file) {
     if (!read.cell_numbers.empty() && read.cell_numbers.back() >= bricks.cells) {
         throw Error(ErrorCode::InvalidInput,
                     "has cell " + std::to_string(read.cell_numbers.back()) + " of the mesh, and by the index the mesh has " +

@@ -29,12 +29,12 @@ void sum_up(Bricks& bricks);
 [[nodiscard]] bool is_brick_name(const std::string& name);
 
 /// What the index says of a brick, apart from its file.
-[[nodiscard]] Brick describe(const BrickMesh& brick);
+[[nodiscard]] Brick describe(const MeshPiece& brick);
 
 /// throws: Error(InvalidInput) if a file of the index is missing, no regular file (a link, for example) or has another length
 void check_files(const Bricks& bricks);
 
 /// throws: Error(InvalidInput) if a brick that was read is not what the index says of it
-void check_contents(const Bricks& bricks, const Brick& about, const BrickMesh& read, const std::string& file);
+void check_contents(const Bricks& bricks, const Brick& about, const MeshPiece& read, const std::string& file);
 
 }  // namespace subvol::detail

@@ -12,6 +12,10 @@
 #include "subvol/detail/sample_part.h"
 #include "subvol/error.h"
 
+// Kernels of a mesh in bricks. A kernel depends on the cells about its point: with the halo, a brick has them all, in the order
+// of the whole mesh, so its own points get the bits that they have there. Other bricks own the halo's points. The boundary of
+// the volume is made once, of the cells at the hull of all bricks.
+
 namespace subvol {
 
 namespace {
@@ -27,7 +31,7 @@ void check_halo(const Bricks& bricks, const SampleOptions& options) {
 
 }  // namespace
 
-BrickPoints sample_brick(const Bricks& bricks, BrickMesh brick, const SampleOptions& options) {
+BrickPoints sample_brick(const Bricks& bricks, MeshPiece brick, const SampleOptions& options) {
     check_halo(bricks, options);
     SampleResult sampled = detail::sample_part(std::move(brick.mesh), options, bricks.bounds.diagonal());
     std::vector<std::size_t> places;
@@ -69,7 +73,7 @@ BrickPointsReport write_points_of_bricks(const std::filesystem::path& path, cons
         report_progress(&progress, "sample", 0);
         SampleOptions of_brick = options;
         of_brick.progress = &progress;
-        BrickMesh brick = read_brick(bricks, b);
+        MeshPiece brick = read_brick(bricks, b);
         brick.mesh = fields(std::move(brick.mesh));
         const BrickPoints points = sample_brick(bricks, std::move(brick), of_brick);
         if (points.numbers.empty()) continue;  // other bricks own all its points

@@ -11,6 +11,17 @@
 #include "subvol/detail/parallel_each.h"
 #include "subvol/error.h"
 
+// Compact bricks by halving: the cells, sorted by the coordinate of their centres along the longest side of their box, are cut
+// where so many lie below that each brick gets the same number, to one cell:
+//
+//      +---------+----+        5 bricks: 2/5 of the cells to the left, 3/5 to the right; these are cut again, along the
+//      |    0    | 2  |        longest side of their own box. Slabs are cut along one axis only.
+//      |         +----+
+//      +---------+ 3  |        Only the numbers of cells and the coordinates along one axis are in memory; the centres may lie
+//      |    1    +----+        in files. Cells with the coordinate of the cut are taken in the order of their numbers: the
+//      bricks |         | 4  |        depend on nothing else.
+//      +---------+----+
+
 namespace subvol {
 
 using namespace detail;

@@ -7,14 +7,15 @@
 #include "boundary_level.h"
 #include "brick_file.h"
 #include "brick_index.h"
-#include "brick_layers.h"
-#include "subvol/detail/bricks_share.h"
+#include "mesh_pieces.h"
 #include "subvol/detail/gather_cells.h"
-#include "subvol/detail/mesh_share.h"
 #include "subvol/detail/read_file.h"
 #include "subvol/error.h"
 #include "text_scanner.h"
 #include "topology_parts.h"
+
+// Bricks as a mesh: the index is open, a brick is read when it is needed. What is worked out brick by brick takes
+// `source_of(bricks)`; here is only what needs more of bricks than that, the whole mesh and the cells at its hull.
 
 namespace subvol {
 
@@ -33,61 +34,39 @@ Bricks open_bricks(const std::filesystem::path& path) {
     return bricks;
 }
 
-BrickMesh read_brick(const Bricks& bricks, std::size_t brick) {
+MeshPiece read_brick(const Bricks& bricks, std::size_t brick) {
     const Brick& about = bricks.bricks.at(brick);
     const std::filesystem::path file = bricks.path / about.file;
-    BrickMesh read = read_brick_file(file, about.hash, bricks.id);
+    MeshPiece read = read_brick_file(file, about.hash, bricks.id);
     check_contents(bricks, about, read, file.string());
     return read;
 }
 
-BrickMesh gather(const Bricks& bricks, const Box& box) {
-    const auto reads = [&](std::size_t b) { return touch(bricks.bricks[b].reach, box); };
-    const auto chooses = [&](const BrickMesh& brick) {
-        const CellReaches reaches(brick.mesh);
-        std::vector<std::uint8_t> chosen = brick.owned_cells;
-        for (std::size_t c = 0; c < chosen.size(); ++c) chosen[c] = chosen[c] && touch(reaches(c), box);
-        return chosen;
-    };
-    return *gather_cells(bricks, {.reads = reads, .chooses = chooses, .layers = bricks.halo_layers});
+Bricks::operator MeshSource() const {
+    return source_of(*this);
 }
 
-MeshShare detail::inspect_share(const Bricks& bricks, std::size_t begin, std::size_t end, std::size_t inverted_at_most,
-                                Progress* progress) {
-    MeshShare share;
-    MeshReport& counts = share.counts;
-    for (std::size_t b = begin; b < end; ++b) {
-        report_progress(progress, "inspect", static_cast<double>(b - begin) / static_cast<double>(end - begin));
-        const BrickMesh brick = read_brick(bricks, b);
-        counts.volume = 0;
-        const std::size_t inverted_before = counts.inverted_cells;
-        add_part(brick.mesh, brick.owned_points, brick.owned_cells, counts);
-        share.volumes.push_back(counts.volume);
-        if (counts.inverted_cells == inverted_before) continue;
-        for (const std::size_t cell : inverted_cells(brick.mesh, brick.mesh.cells.size())) {
-            if (brick.owned_cells[cell]) share.inverted.push_back(static_cast<std::size_t>(brick.cell_numbers[cell]));
-        }
-        std::ranges::sort(share.inverted);
-        share.inverted.resize(std::min(share.inverted.size(), inverted_at_most));
+MeshSource source_of(const Bricks& bricks, const BrickFields& fields) {
+    MeshSource::Stored stored{.name = bricks.path.string(),
+                              .cells = bricks.cells,
+                              .points = bricks.points,
+                              .bounds = bricks.bounds,
+                              .halo_layers = bricks.halo_layers};
+    for (const Brick& brick : bricks.bricks) stored.pieces.push_back({brick.cells, brick.bounds, brick.reach});
+    for (const BrickField& field : bricks.fields) {
+        stored.fields.push_back({field.name, field.channels, std::ranges::min(field.min), std::ranges::max(field.max)});
     }
-    if (begin == end) counts.min_scaled_jacobian = 1;
-    counts.volume = 0;
-    counts.points = bricks.points;
-    counts.cells = bricks.cells;
-    counts.bounds = bricks.bounds;
-    return share;
-}
-
-MeshReport inspect(const Bricks& bricks, Progress* progress) {
-    const MeshShare all = inspect_share(bricks, 0, bricks.bricks.size(), 0, progress);
-    return join_shares(std::span(&all, 1), 0).counts;
+    stored.read = [&bricks, fields](std::size_t number) {
+        MeshPiece piece = read_brick(bricks, number);
+        if (fields) piece.mesh = fields(std::move(piece.mesh));
+        return piece;
+    };
+    return MeshSource(std::move(stored));
 }
 
 BrickHull gather_hull(const Bricks& bricks, const BrickFields& fields, Progress* progress) {
-    std::vector<BrickMesh> parts;
-    for (std::size_t b = 0; b < bricks.bricks.size(); ++b) {
-        report_progress(progress, "hull", static_cast<double>(b) / static_cast<double>(bricks.bricks.size()));
-        BrickMesh brick = read_brick(bricks, b);
+    std::vector<MeshPiece> parts;
+    for_each_piece(source_of(bricks).stored(), "hull", progress, [&](std::size_t, MeshPiece brick) {
         const std::vector<std::uint8_t> on_hull = hull_points_of_owned(brick);
         if (fields) {
             brick.mesh = fields(std::move(brick.mesh));
@@ -100,10 +79,9 @@ BrickHull gather_hull(const Bricks& bricks, const BrickFields& fields, Progress*
             kept[c] =
                 brick.owned_cells[c] && std::ranges::any_of(brick.mesh.cells[c], [&](Index p) { return on_hull[p] != 0; });
         }
-        if (std::ranges::find(kept, 1) == kept.end()) continue;
-        parts.push_back(subset(brick, kept));
-    }
-    BrickMesh all = merged(std::move(parts));
+        if (std::ranges::find(kept, 1) != kept.end()) parts.push_back(subset(brick, kept));
+    });
+    MeshPiece all = merged(std::move(parts));
     const auto at_hull = [&](const auto& tag) {
         return std::ranges::any_of(tag, [&](Index p) { return all.owned_points[p] != 0; });
     };
@@ -122,10 +100,10 @@ BoundaryValues boundary_values(const BrickHull& hull, const SchemeOptions& schem
 
 HexMesh whole_mesh(const Bricks& bricks, Progress* progress) {
     const detail::GatherOptions all{.reads = [](std::size_t) { return true; },
-                                    .chooses = [](const BrickMesh& brick) { return brick.owned_cells; },
+                                    .chooses = [](const MeshPiece& brick) { return brick.owned_cells; },
                                     .layers = 0,
                                     .progress = progress};
-    return std::move(detail::gather_cells(bricks, all)->mesh);
+    return std::move(detail::gather_cells(source_of(bricks).stored(), all)->mesh);
 }
 
 }  // namespace subvol

@@ -14,6 +14,15 @@
 #include "spill_file.h"
 #include "subvol/error.h"
 
+// Tetrahedra, prisms and pyramids of a mesh in tables become hexahedra: each cell gets a point at its centre, and one for each
+// of its edges and faces. Cells that share an edge or a face must share its new point, although they lie far apart in the file:
+//
+//      chunk of cells ──▶ keys: the sorted corners of each edge, face, cell ──▶ buckets in files, by key
+//      bucket, sorted ──▶ equal keys get one number, which goes back to the chunks that asked, again in buckets
+//      chunk of cells ──▶ hexahedra with the numbers of their new points
+//
+// Numbers are given in the order in which the whole mesh in memory would give them, so that the bricks have its bits.
+
 namespace subvol::detail {
 
 namespace {

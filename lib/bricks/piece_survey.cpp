@@ -9,6 +9,10 @@
 #include "subvol/detail/byte_hash.h"
 #include "subvol/error.h"
 
+// The first look at all pieces, one at a time: which arrays all of them have, whether their numbers of points and cells are
+// whole and different, how large the mesh is, and a hash of each piece, by which a later round finds that a file has changed.
+// It ends at the first piece that cannot be joined by itself, and says why.
+
 namespace subvol::detail {
 
 namespace {

@@ -14,6 +14,18 @@
 #include "subvol/detail/byte_hash.h"
 #include "subvol/error.h"
 
+// Pieces become tables with one record for each point and each cell of the whole. The pieces are read in rounds:
+//
+//      survey     which arrays and numbers do all pieces have?  a hash of each piece, so that a change meanwhile is found
+//      places     only if points have no numbers: points of different pieces at the same place are one point
+//      fill       each record goes to the rank of its point or cell:
+//
+//          piece 0   7 3 9        rank(7) = 1 ┐      table   │ 3 │ 7 │ 9 │12 │
+//          piece 1   9 12         rank(9) = 2 ┴──▶           └───┴───┴───┴───┘   a point of two pieces is written once
+//
+// Numbers of points that differ at one place, or agree at two places, are none; then the places decide after all. Cells that
+// repeat points make the mesh one that must be held whole.
+
 namespace subvol::detail {
 
 namespace {
@@ -24,11 +36,11 @@ std::size_t& count_of(CellCounts& counts, std::size_t corners) {
     return corners == 8 ? counts.hexes : corners == 4 ? counts.tets : corners == 6 ? counts.prisms : counts.pyramids;
 }
 
-// Reads the pieces, and puts them into the tables.
-class Maker {
+/// Reads the pieces, and fills the tables.
+class TableFiller {
 public:
-    Maker(const PartFiles& files, std::string list, std::filesystem::path folder, const ReadOptions& options,
-          Progress* progress, std::string& why)
+    TableFiller(const PartFiles& files, std::string list, std::filesystem::path folder, const ReadOptions& options,
+                Progress* progress, std::string& why)
         : files_(files),
           list_(std::move(list)),
           folder_(std::move(folder)),
@@ -51,14 +63,15 @@ public:
         } else if (numbers != survey_.point_numbers.end()) {
             by_numbers_ = &*numbers;
             numbers->ranks.finish();
-            if (fill()) return finished();
-            if (!why_.empty()) return {};
+            const Filled filled = fill();
+            if (filled == Filled::Done) return finished();
+            if (filled == Filled::HoldWhole) return {};
             survey_.warnings.push_back(does_not_number(numbers->name, "points"));
             by_numbers_ = nullptr;
         }
         survey_.point_numbers.clear();
         find_places();
-        return fill() ? finished() : nullptr;
+        return fill() == Filled::Done ? finished() : nullptr;
     }
 
 private:
@@ -70,9 +83,14 @@ private:
         places_->finish();
     }
 
-    // The last round. Returns false if the points' numbers are none, or if the cells must be held whole: then there is a
-    // reason.
-    bool fill() {
+    /// What comes of a round that fills the tables.
+    ///
+    /// NumbersContradict: the points' numbers do not say which points are the same
+    /// HoldWhole:         the mesh cannot be joined piece by piece; `why_` is the reason
+    enum class Filled { Done, NumbersContradict, HoldWhole };
+
+    // The last round.
+    Filled fill() {
         tables_ = std::make_unique<PieceTables>(folder_);
         for (const auto& [array, parts] : survey_.arrays) {
             if (!survey_.is_field(array)) continue;
@@ -95,12 +113,14 @@ private:
             if (k == survey_.pieces() || hash_of(*piece) != survey_.hashes[k]) {
                 throw Error(ErrorCode::InvalidInput, "has changed while it was being read", stream_.file().path.string());
             }
-            if (!add_points(*piece, known) || !add_cells(*piece, k)) return false;
+            if (!add_points(*piece, known)) return Filled::NumbersContradict;
+            if (!add_cells(*piece, k)) return Filled::HoldWhole;
             ++k;
         }
-        return true;
+        return Filled::Done;
     }
 
+    // Returns false if the numbers of points contradict each other.
     bool add_points(const MeshFile& piece, PointFlags& known) {
         std::vector<std::uint8_t> is_first;
         if (by_numbers_) {
@@ -177,6 +197,7 @@ private:
         return records;
     }
 
+    // Returns false if the cells must be held whole.
     bool add_cells(const MeshFile& piece, std::size_t k) {
         const FileArray* numbers = survey_.order ? find_array(piece, survey_.order->name, true, 1) : nullptr;
         std::vector<Index> ranks, in_file;
@@ -271,7 +292,7 @@ private:
         }
     }
 
-    // Of the first component, and of the values that are finite.
+    // Keeps the least finite value of the first component.
     void keep_least(const FileArray& array, const std::vector<double>& records, std::size_t column, std::size_t length) {
         double least = HUGE_VAL;
         for (std::size_t i = column; i < records.size(); i += length) {
@@ -282,7 +303,7 @@ private:
         kept = std::min(kept, least);
     }
 
-    // What is said of the arrays of a mesh, whatever its cells are: of a cube that has the least value of each everywhere.
+    // The warnings that arrays give rise to, whatever the cells are: those of a cube with the least value of each everywhere.
     [[nodiscard]] std::vector<std::string> warnings_of_arrays() const {
         MeshFile cube;
         for (const Vec3 x : {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(1, 1, 0), Vec3(0, 1, 0)}) cube.points.push_back(x);
@@ -305,8 +326,8 @@ private:
         check_point_values();
         tables.used.count();
         ByteHash hash;
-        for (const std::uint64_t of_piece : survey_.hashes)
-            hash.add({reinterpret_cast<const char*>(&of_piece), sizeof of_piece});
+        for (const std::uint64_t piece_hash : survey_.hashes)
+            hash.add({reinterpret_cast<const char*>(&piece_hash), sizeof piece_hash});
         const std::string by = by_numbers_ ? in_quotes(std::string(by_numbers_->name)) : "their places";
         const std::string order = survey_.order ? in_quotes(std::string(survey_.order->name)) : std::string();
         hash.add_text(by);
@@ -358,7 +379,7 @@ std::unique_ptr<PieceTables> tables_of_pieces(const PartFiles& files, const std:
                                               const std::filesystem::path& folder, const ReadOptions& options,
                                               Progress* progress, std::string& why) {
     why.clear();
-    std::unique_ptr<PieceTables> tables = Maker(files, list, folder, options, progress, why).run();
+    std::unique_ptr<PieceTables> tables = TableFiller(files, list, folder, options, progress, why).run();
     const bool hexes_alone = !tables || (tables->counts.hexes == tables->cells && !tables->cut);
     return hexes_alone ? std::move(tables) : split_tables(std::move(tables), list, folder, progress);
 }

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "assemble.h"
-#include "point_flags.h"
+#include "piece_numbers.h"
 #include "spill_file.h"
 #include "subvol/mesh_io.h"
 #include "subvol/progress.h"
@@ -26,7 +26,6 @@ namespace subvol::detail {
 /// counts:        of each kind of cells; cut: as in MeshFile
 /// turned:        left-handed cells were turned, and what is negative stays so
 /// hash:          of all that is in the tables
-/// by, order_by:  as in `joining_report`
 struct PieceTables {
     explicit PieceTables(const std::filesystem::path& folder);
 

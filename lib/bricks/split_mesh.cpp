@@ -3,10 +3,14 @@
 
 #include "brick_file.h"
 #include "brick_folder.h"
-#include "brick_layers.h"
+#include "mesh_pieces.h"
 #include "subvol/detail/bucket_sort.h"
 #include "subvol/detail/byte_hash.h"
 #include "subvol/error.h"
+
+// A mesh in memory is cut by numbers alone: the brick of each cell is given, a point belongs to the brick of the first cell
+// that has it, and a halo is grown from the owned cells layer by layer. Points and cells keep their order, so that sums over a
+// brick have their terms in the order of the whole, and results its bits.
 
 namespace subvol {
 
@@ -61,7 +65,7 @@ public:
 
     [[nodiscard]] bool empty(std::size_t brick) const { return of_brick_[brick].empty(); }
 
-    [[nodiscard]] BrickMesh take(std::size_t brick, int layers) {
+    [[nodiscard]] MeshPiece take(std::size_t brick, int layers) {
         std::vector<Index> cells = of_brick_[brick];
         for (const Index c : cells) seen_[c] = 1;
         for (std::size_t from = 0; layers > 0; --layers) {
@@ -82,8 +86,8 @@ public:
     }
 
 private:
-    [[nodiscard]] BrickMesh taken(std::size_t brick, const std::vector<Index>& cells) {
-        BrickMesh part;
+    [[nodiscard]] MeshPiece taken(std::size_t brick, const std::vector<Index>& cells) {
+        MeshPiece part;
         std::vector<Index> points;
         for (const Index c : cells) {
             seen_[c] = 0;

@@ -1,22 +1,90 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <array>
+#include <atomic>
 #include <cmath>
 
 #include "assemble.h"
 #include "brick_cells.h"
 #include "brick_file.h"
 #include "brick_folder.h"
-#include "brick_layers.h"
-#include "piece_centers.h"
+#include "brick_shapes.h"
+#include "mesh_pieces.h"
 #include "piece_tables.h"
+#include "subvol/cell.h"
 #include "subvol/detail/byte_hash.h"
+#include "subvol/detail/parallel_each.h"
 #include "subvol/error.h"
+
+// A mesh that comes in pieces is cut into bricks without being held:
+//
+//      pieces ──read one at a time──▶ tables in files ──▶ centres of cells ──▶ the brick of each cell
+//                                          │                                        │
+//                                          └──▶ brick by brick: its cells, halo, points and values ◀──┘
+//
+// Tables have a record for each point and each cell of the whole, so a brick reads the records that it needs. A mesh whose
+// pieces cannot be joined one at a time (curved cells, welded points) is left to the caller, which holds it whole.
 
 namespace subvol {
 
 using namespace detail;
 
 namespace {
+
+constexpr std::size_t kCellsOfChunk = std::size_t{1} << 16;  // cells that are worked on together
+
+/// The centres of cells in files, one for each axis.
+class SpilledCenters : public CellCenters {
+public:
+    SpilledCenters(std::size_t count, const std::filesystem::path& folder)
+        : count_(count),
+          files_{SpillFile(folder, sizeof(double)), SpillFile(folder, sizeof(double)), SpillFile(folder, sizeof(double))} {}
+    [[nodiscard]] std::size_t count() const override { return count_; }
+    void read(int axis, std::span<const Index> cells, std::span<double> values) const override {
+        files_[static_cast<std::size_t>(axis)].read_some(cells, {reinterpret_cast<char*>(values.data()), values.size_bytes()});
+    }
+    void write(std::size_t axis, std::uint64_t first, const std::vector<double>& values) {
+        files_[axis].write(first, records_of(values));
+    }
+
+private:
+    std::size_t count_;
+    std::array<SpillFile, 3> files_;
+};
+
+/// The centres of the cells of the tables. Adds the warnings of left-handed and folded cells.
+std::unique_ptr<CellCenters> centers_of(PieceTables& tables, const std::filesystem::path& folder, Progress* progress) {
+    auto centers = std::make_unique<SpilledCenters>(tables.cells, folder);
+    std::atomic<std::size_t> turned = 0, folded = 0;
+    std::vector<std::array<Index, 8>> cells;
+    std::vector<Vec3> points;
+    std::array<std::vector<double>, 3> coordinates;
+    for (std::uint64_t begin = 0; begin < tables.cells; begin += kCellsOfChunk) {
+        report_progress(progress, "measure", static_cast<double>(begin) / static_cast<double>(tables.cells));
+        cells.resize(std::min<std::uint64_t>(kCellsOfChunk, tables.cells - begin));
+        tables.corners.read(begin, records_of(cells));
+        const CornersOfCells corners(cells);
+        points.resize(corners.points().size());
+        tables.coordinates.read_some(corners.points(), records_of(points));
+        for (auto& values : coordinates) values.resize(cells.size());
+        parallel_each(cells.size(), [&](std::size_t c) {
+            std::array<Vec3, 8> x;
+            for (std::size_t k = 0; k < 8; ++k) x[k] = points[corners.place(cells[c][k])];
+            if (!tables.turned && cell_volume(x) < 0) {
+                std::swap_ranges(x.begin(), x.begin() + 4, x.begin() + 4);
+                ++turned;
+            }
+            if (is_folded(x)) ++folded;
+            Vec3 sum(0.0);
+            for (const Vec3& corner : x) sum += corner;
+            for (int axis = 0; axis < 3; ++axis) coordinates[static_cast<std::size_t>(axis)][c] = sum[axis] / 8.0;
+        });
+        for (std::size_t axis = 0; axis < 3; ++axis) centers->write(axis, begin, coordinates[axis]);
+    }
+    if (turned > 0) tables.warnings.push_back(cells_turned(turned, tables.cells));
+    if (folded > 0) tables.warnings.push_back(cells_folded(folded, tables.cells));
+    return centers;
+}
 
 constexpr std::size_t kRecordsOfChunk = std::size_t{1} << 16;  // records that are taken apart together
 
@@ -26,13 +94,13 @@ public:
     BrickMaker(const PieceTables& tables, const BrickCells& cells, std::string list, const PiecesOptions& pieces, int layers)
         : tables_(tables), cells_(cells), list_(std::move(list)), pieces_(pieces), layers_(layers) {}
 
-    [[nodiscard]] BrickMesh make(std::size_t b) const {
+    [[nodiscard]] MeshPiece make(std::size_t b) const {
         std::vector<Index> stored = cells_.stored(b);
-        BrickMesh brick;
-        const std::span<const Index> own = cells_.owned_by(b);
-        auto next = own.begin();
+        MeshPiece brick;
+        const std::span<const Index> owned_cells = cells_.owned_by(b);
+        auto next = owned_cells.begin();
         for (const Index c : stored) {
-            const bool owned = next != own.end() && *next == c;
+            const bool owned = next != owned_cells.end() && *next == c;
             next += owned;
             brick.cell_numbers.push_back(c);
             brick.owned_cells.push_back(owned);
@@ -48,7 +116,7 @@ public:
     }
 
 private:
-    [[nodiscard]] HexMesh mesh_of(const std::vector<Index>& stored, BrickMesh& brick, std::size_t b) const {
+    [[nodiscard]] HexMesh mesh_of(const std::vector<Index>& stored, MeshPiece& brick, std::size_t b) const {
         MeshFile part;
         part.turned = tables_.turned;
         part.hexes.corners.resize(stored.size());

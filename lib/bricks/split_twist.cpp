@@ -9,6 +9,11 @@
 #include "subvol/detail/twist_block.h"
 #include "subvol/error.h"
 
+// The model `twist` is a box of cells, so each brick is a smaller box: it is computed with its halo, and nothing else is.
+//
+//      i0 - halo    i0         i1    i1 + halo        along each axis: own cells i0 to i1, clipped at the ends of the box
+//         +---------+----------+---------+
+
 namespace subvol {
 
 using namespace detail;
@@ -85,7 +90,7 @@ SplitResult split_twist(const std::filesystem::path& folder, int resolution, con
             stored.begin[d] = owned.begin[d] - std::min(owned.begin[d], halo);
             stored.end[d] = std::min(n, owned.end[d] + halo);
         }
-        BrickMesh brick{
+        MeshPiece brick{
             .mesh = twist_block(n, stored), .point_numbers = {}, .cell_numbers = {}, .owned_points = {}, .owned_cells = {}};
         for (std::uint64_t z = stored.begin[2]; z <= stored.end[2]; ++z) {
             for (std::uint64_t y = stored.begin[1]; y <= stored.end[1]; ++y) {

@@ -7,7 +7,6 @@
 #include <map>
 
 #include "output_file.h"
-#include "slice_part.h"
 #include "subvol/detail/number_text.h"
 #include "subvol/detail/printable.h"
 #include "subvol/error.h"
@@ -198,9 +197,8 @@ void write_vtp(detail::OutputFile& out, const LimitSlice& slice, std::span<const
     xml.end();
 }
 
-}  // namespace
-
-void detail::check_plane(const Vec3& point, const Vec3& normal, const SliceOptions& options) {
+/// throws: Error(InvalidInput) if the normal has no length, or an option is out of range
+void check_plane(const Vec3& point, const Vec3& normal, const SliceOptions& options) {
     if (!is_finite(point) || !is_finite(normal) || !(glm::length(normal) > 0)) {
         throw Error(ErrorCode::InvalidInput, "the plane has no place or no direction", "slice", "a point and a normal");
     }
@@ -209,8 +207,10 @@ void detail::check_plane(const Vec3& point, const Vec3& normal, const SliceOptio
     }
 }
 
-LimitSlice detail::empty_slice(const Box& box, const Vec3& point, const Vec3& normal, const SliceOptions& options) {
-    check_plane(point, normal, options);
+/// A slice without values: its places cover the part of a plane that is in a box.
+///
+/// throws: Error(InvalidInput) if the plane misses the box
+LimitSlice empty_slice(const Box& box, const Vec3& point, const Vec3& normal, const SliceOptions& options) {
     LimitSlice slice;
     const Vec3 facing = glm::normalize(normal);
     const auto [right, down] = axes_of(facing);
@@ -237,7 +237,7 @@ LimitSlice detail::empty_slice(const Box& box, const Vec3& point, const Vec3& no
     return slice;
 }
 
-std::vector<Vec3> detail::places_of(const LimitSlice& slice) {
+std::vector<Vec3> places_of(const LimitSlice& slice) {
     std::vector<Vec3> places;
     places.reserve(pixel_count(slice.width, slice.height));
     for (int row = 0; row < slice.height; ++row) {
@@ -246,7 +246,10 @@ std::vector<Vec3> detail::places_of(const LimitSlice& slice) {
     return places;
 }
 
-void detail::take_found(LimitSlice& slice, ProbeResult found) {
+/// Puts the first field that was found at the places into the slice, and counts.
+///
+/// throws: Error(InvalidInput) if no place is in the volume
+void take_found(LimitSlice& slice, ProbeResult found) {
     slice.values = std::move(found.fields[0].values);
     slice.gradients = std::move(found.fields[0].gradients);
     slice.cells = std::move(found.cells);
@@ -267,16 +270,28 @@ void detail::take_found(LimitSlice& slice, ProbeResult found) {
     }
 }
 
-LimitSlice slice_limit(const HexMesh& mesh, std::string_view field, const Vec3& point, const Vec3& normal,
+}  // namespace
+
+LimitSlice slice_limit(const MeshSource& source, std::string_view field, const Vec3& point, const Vec3& normal,
                        const SliceOptions& options) {
-    detail::check_plane(point, normal, options);
-    validate(mesh);
-    HexMesh chosen = with_scalar_field(mesh, field);
-    std::string name = chosen.attributes.front().name;
-    const LimitProbe probe(std::move(chosen), {.limit = options.limit});
-    LimitSlice slice = detail::empty_slice(probe.box(), point, normal, options);
-    slice.field = std::move(name);
-    detail::take_found(slice, probe.at(detail::places_of(slice), options.progress));
+    check_plane(point, normal, options);
+    if (const HexMesh* mesh = source.mesh()) {
+        validate(*mesh);
+        HexMesh chosen = with_scalar_field(*mesh, field);
+        std::string name = chosen.attributes.front().name;
+        const LimitProbe probe(std::move(chosen), {.limit = options.limit});
+        LimitSlice slice = empty_slice(probe.box(), point, normal, options);
+        slice.field = std::move(name);
+        take_found(slice, probe.at(places_of(slice), options.progress));
+        return slice;
+    }
+    LimitSlice slice = empty_slice(source.bounds(), point, normal, options);
+    const MeshSource scalar = source.changed([&](const HexMesh& piece) {
+        HexMesh chosen = with_scalar_field(piece, field);
+        slice.field = chosen.attributes.front().name;
+        return chosen;
+    });
+    take_found(slice, probe_limit(scalar, places_of(slice), {.limit = options.limit}, options.progress));
     return slice;
 }
 

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "measure_part.h"
 #include "piece_tree.h"
+#include "subvol/detail/limit_of_part.h"
 #include "subvol/error.h"
 #include "subvol/limit_level.h"
 
@@ -80,11 +80,12 @@ struct Sums {
 
 class Measurer {
 public:
-    /// measured: without flags all cells are measured
-    Measurer(const HexMesh& mesh, const detail::MeasuredCells& measured, const MeasureOptions& options)
-        : mesh_(mesh), options_(options), owned_(measured.owned) {
+    /// owned:        a flag for each cell that is measured, the others are a halo; none: all are
+    /// longest_side: of the box of the whole mesh
+    Measurer(const HexMesh& mesh, std::span<const std::uint8_t> owned, double longest_side, const MeasureOptions& options)
+        : mesh_(mesh), options_(options), owned_(owned) {
         check();
-        const LimitCellsOptions cells{.position_world = options.tolerance * std::max(measured.longest_side, 1e-300),
+        const LimitCellsOptions cells{.position_world = options.tolerance * std::max(longest_side, 1e-300),
                                       .value_of_range = options.tolerance,
                                       .max_bytes = kMostBytes};
         pieces_ = find_limit_cells(mesh, {.scheme = options.scheme, .levels = 0, .progress = options.progress}, cells).pieces;
@@ -108,16 +109,16 @@ public:
             for (std::size_t p = 0; p < parts_; ++p) found[p + 1].name = p < options_.names.size() ? options_.names[p] : "";
             for (const Index group : options_.groups) ++found[group + 1].cells;
         }
-        std::vector<const Sums*> of{&whole};
-        for (std::size_t p = 0; p + 1 < found.size(); ++p) of.push_back(&sums[p]);
-        search(of, found);
+        std::vector<const Sums*> searched{&whole};
+        for (std::size_t p = 0; p + 1 < found.size(); ++p) searched.push_back(&sums[p]);
+        search(searched, found);
         if (histograms) add_histograms(found);
         LimitMeasure result{std::move(found.front()), {}, count_pieces()};
         result.parts.assign(std::make_move_iterator(found.begin() + 1), std::make_move_iterator(found.end()));
         return result;
     }
 
-    /// Adds the histograms of the whole, which is the first, and of the parts, each between its extremes.
+    /// found: the whole, whose extremes are those of the histograms, and then the parts
     void add_histograms(std::vector<PartMeasure>& found) const {
         const auto bins = static_cast<std::size_t>(options_.bins);
         const std::size_t size = found.size() * channels_ * bins;
@@ -356,27 +357,64 @@ private:
     std::size_t channels_ = 0, parts_ = 1;
 };
 
-}  // namespace
-
-LimitMeasure measure_limit(const HexMesh& mesh, const MeasureOptions& options) {
-    validate(mesh);
-    const Vec3 size = bounds(mesh).size();
-    return Measurer(mesh, {{}, std::max({size.x, size.y, size.z})}, options).measure(true);
+LimitExtreme in_whole(LimitExtreme extreme, const MeshPiece& piece) {
+    const std::uint64_t number = extreme.cell == kNone ? kNone : piece.cell_numbers[extreme.cell];
+    extreme.cell = number < kNone ? static_cast<Index>(number) : kNone;
+    return extreme;
 }
 
-LimitMeasure detail::measure_part(const HexMesh& part, const MeasuredCells& cells, const MeasureOptions& options) {
-    return Measurer(part, cells, options).measure(false);
+/// Adds the measure of a piece to those before it. first: there are none
+void add(const LimitMeasure& measured, const MeshPiece& piece, bool first, LimitMeasure& all) {
+    all.pieces += measured.pieces;
+    all.whole.cells += measured.whole.cells;
+    all.whole.volume += measured.whole.volume;
+    all.whole.fields.resize(measured.whole.fields.size());
+    for (std::size_t f = 0; f < measured.whole.fields.size(); ++f) {
+        const FieldMeasure& from = measured.whole.fields[f];
+        FieldMeasure& to = all.whole.fields[f];
+        to.name = from.name;
+        to.integral += from.integral;
+        if (first || from.min.value < to.min.value) to.min = in_whole(from.min, piece);
+        if (first || from.max.value > to.max.value) to.max = in_whole(from.max, piece);
+    }
 }
 
-void detail::add_to_histograms(const HexMesh& part, const MeasuredCells& cells, const MeasureOptions& options,
-                               PartMeasure& whole) {
-    std::vector<PartMeasure> measures(1, whole);
-    Measurer(part, cells, options).add_histograms(measures);
+/// Adds the volumes of a piece to the histograms of the whole.
+void add_to_histograms(const Measurer& measurer, PartMeasure& whole) {
+    std::vector<PartMeasure> piece(1, whole);
+    measurer.add_histograms(piece);
     for (std::size_t f = 0; f < whole.fields.size(); ++f) {
         for (std::size_t b = 0; b < whole.fields[f].histogram.size(); ++b) {
-            whole.fields[f].histogram[b] += measures[0].fields[f].histogram[b];
+            whole.fields[f].histogram[b] += piece[0].fields[f].histogram[b];
         }
     }
+}
+
+}  // namespace
+
+LimitMeasure measure_limit(const MeshSource& source, const MeasureOptions& options) {
+    const Vec3 size = source.bounds().size();
+    const double longest_side = std::max({size.x, size.y, size.z});
+    if (const HexMesh* mesh = source.mesh()) {
+        validate(*mesh);
+        return Measurer(*mesh, {}, longest_side, options).measure(true);
+    }
+    source.check_halo(detail::kHaloOfLimit, "values of the limit");
+    if (!options.groups.empty()) throw Error(ErrorCode::InvalidInput, "bricks have no groups of cells", "measure");
+    MeasureOptions quiet = options;
+    quiet.progress = nullptr;
+    LimitMeasure all;
+    for_each_piece(source.stored(), "measure", options.progress, [&](std::size_t number, const MeshPiece& piece) {
+        add(Measurer(piece.mesh, piece.owned_cells, longest_side, quiet).measure(false), piece, number == 0, all);
+    });
+    for (FieldMeasure& field : all.whole.fields) {
+        field.mean = all.whole.volume != 0 ? field.integral / all.whole.volume : 0;
+        field.histogram.assign(static_cast<std::size_t>(options.bins), 0);
+    }
+    for_each_piece(source.stored(), "histogram", options.progress, [&](std::size_t, const MeshPiece& piece) {
+        add_to_histograms(Measurer(piece.mesh, piece.owned_cells, longest_side, quiet), all.whole);
+    });
+    return all;
 }
 
 }  // namespace subvol

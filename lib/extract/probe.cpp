@@ -10,16 +10,21 @@
 #include <optional>
 
 #include "limit_place.h"
+#include "mesh_pieces.h"
 #include "piece_tree.h"
 #include "space_order.h"
+#include "subvol/detail/median_tree.h"
 #include "subvol/detail/number_text.h"
 #include "subvol/detail/parallel_each.h"
 #include "subvol/error.h"
 
 namespace subvol {
 
+using detail::CellReaches;
 using detail::LimitPlace;
+using detail::MedianTree;
 using detail::NearPlace;
+using detail::touch;
 
 namespace {
 
@@ -226,6 +231,100 @@ ProbeResult LimitProbe::at(std::span<const Vec3> places, Progress* progress) con
     }
     report_progress(progress, "probe", 1);
     return result;
+}
+
+namespace {
+
+bool contains(const Box& box, const Vec3& x) {
+    return touch(box, {x, x});
+}
+
+/// The owned cells of a piece that a place may lie in, with the halo that their limit needs.
+MeshPiece about_places(MeshPiece piece, const std::vector<Vec3>& places, int layers) {
+    const CellReaches reaches(piece.mesh);
+    const MedianTree<Box> tree(places, 16, [&](Index p) { return Box{places[p], places[p]}; });
+    const auto has_place = [&](const Box& box) {
+        bool found = false;
+        tree.visit_leaves([&](const Box& node) { return touch(box, node); },
+                          [&](std::size_t first, std::size_t last) {
+                              for (; first < last && !found; ++first) found = contains(box, places[tree.item(first)]);
+                              return found;
+                          });
+        return found;
+    };
+    detail::parallel_each(piece.owned_cells.size(), [&](std::size_t c) {
+        auto& wanted = piece.owned_cells[c];
+        wanted = wanted && !places.empty() && has_place(reaches(c));
+    });
+    std::vector<std::uint8_t> kept = piece.owned_cells;
+    detail::grow(piece.mesh, kept, layers);
+    return detail::subset(piece, kept);
+}
+
+/// Takes one place of a result.
+void take(const ProbeResult& from, std::size_t i, ProbeResult& to, std::size_t place) {
+    to.parameters[place] = from.parameters[i];
+    for (std::size_t f = 0; f < to.fields.size(); ++f) {
+        const std::size_t channels = to.fields[f].channels;
+        for (std::size_t c = 0; c < channels; ++c) {
+            to.fields[f].values[place * channels + c] = from.fields[f].values[i * channels + c];
+            to.fields[f].gradients[place * channels + c] = from.fields[f].gradients[i * channels + c];
+        }
+    }
+}
+
+/// The fields of a result, without values at the places.
+std::vector<ProbedField> empty_fields(const HexMesh& mesh, std::size_t places) {
+    std::vector<ProbedField> fields;
+    for (const Attribute& field : mesh.attributes) {
+        const auto channels = static_cast<std::size_t>(field.channels);
+        fields.push_back(
+            {field.name, channels, std::vector<double>(places * channels), std::vector<Vec3>(places * channels, Vec3(0.0))});
+    }
+    return fields;
+}
+
+ProbeResult probe_pieces(const MeshSource::Stored& stored, std::span<const Vec3> places, const ProbeOptions& options,
+                         Progress* progress) {
+    ProbeResult result;
+    result.cells.assign(places.size(), kNone);
+    result.parameters.resize(places.size());
+    result.distances.assign(places.size(), 0);
+    for (std::size_t b = 0; b < stored.pieces.size(); ++b) {
+        report_progress(progress, "probe", static_cast<double>(b) / static_cast<double>(stored.pieces.size()));
+        std::vector<std::size_t> numbers;
+        std::vector<Vec3> near;
+        for (std::size_t p = 0; p < places.size(); ++p) {
+            if (!contains(stored.pieces[b].reach, places[p])) continue;
+            numbers.push_back(p);
+            near.push_back(places[p]);
+        }
+        if (near.empty() && !(b == 0 && result.fields.empty())) continue;
+        const MeshPiece part = about_places(stored.read(b), near, stored.halo_layers);
+        if (result.fields.empty()) result.fields = empty_fields(part.mesh, places.size());
+        if (part.mesh.cells.empty()) continue;
+        const ProbeResult found = LimitProbe(part.mesh, options).at(near);
+        result.rounds = std::max(result.rounds, found.rounds);
+        for (std::size_t i = 0; i < near.size(); ++i) {
+            if (!found.inside(i) || !part.owned_cells[found.cells[i]]) continue;
+            const std::uint64_t cell = part.cell_numbers[found.cells[i]];
+            if (cell >= kNone || (result.cells[numbers[i]] != kNone && result.cells[numbers[i]] < cell)) continue;
+            result.cells[numbers[i]] = static_cast<Index>(cell);
+            take(found, i, result, numbers[i]);
+        }
+    }
+    return result;
+}
+
+}  // namespace
+
+ProbeResult probe_limit(const MeshSource& source, std::span<const Vec3> places, const ProbeOptions& options,
+                        Progress* progress) {
+    if (const HexMesh* mesh = source.mesh()) return LimitProbe(*mesh, options).at(places, progress);
+    if (options.reach_world > 0) throw Error(ErrorCode::InvalidInput, "distances to bricks are not found");
+    ProbeOptions quiet = options;
+    quiet.limit.progress = nullptr;
+    return probe_pieces(source.stored(), places, quiet, progress);
 }
 
 std::vector<Vec3> places_on_line(const Vec3& from, const Vec3& to, std::size_t count) {

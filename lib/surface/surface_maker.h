@@ -5,7 +5,8 @@
 #include <string_view>
 
 #include "settled_cut.h"
-#include "surface_part.h"
+#include "subvol/detail/limit_of_part.h"
+#include "subvol/detail/surface_share.h"
 
 namespace subvol::detail {
 

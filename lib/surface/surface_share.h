@@ -19,4 +19,7 @@ struct SurfaceShare {
 
 [[nodiscard]] std::string bytes_of(const SurfaceShare& share);
 
+/// A share of a surface that passes no cell.
+[[nodiscard]] std::string empty_surface_share();
+
 }  // namespace subvol::detail

@@ -161,13 +161,15 @@ void detail::add_part(const HexMesh& part, std::span<const std::uint8_t> owned_p
     report.volume += shape.volume;
 }
 
-MeshReport inspect(const HexMesh& mesh) {
+namespace {
+
+MeshReport inspect_mesh(const HexMesh& mesh) {
     validate(mesh);
     if (!mesh.creases.empty() || !mesh.sharp_faces.empty()) {  // tags matter only to schemes
         HexMesh untagged;
         untagged.points = mesh.points;
         untagged.cells = mesh.cells;
-        return inspect(untagged);
+        return inspect_mesh(untagged);
     }
     MeshReport report;
     report.points = mesh.points.size();
@@ -187,7 +189,8 @@ MeshReport inspect(const HexMesh& mesh) {
     return report;
 }
 
-detail::MeshShare detail::inspect_share(const HexMesh& mesh, const Share& share, std::size_t inverted_at_most) {
+detail::MeshShare share_of_mesh(const HexMesh& mesh, const Share& share, std::size_t inverted_at_most) {
+    using namespace detail;
     validate(mesh);
     validate(share);
     HexMesh untagged;
@@ -218,6 +221,49 @@ detail::MeshShare detail::inspect_share(const HexMesh& mesh, const Share& share,
         if (quality_of(mesh, c).inverted) made.inverted.push_back(c);
     }
     return made;
+}
+
+/// The figures of some pieces, from `begin` to before `end`.
+detail::MeshShare share_of_pieces(const MeshSource::Stored& stored, std::size_t begin, std::size_t end,
+                                  std::size_t inverted_at_most, Progress* progress) {
+    detail::MeshShare share;
+    MeshReport& counts = share.counts;
+    for (std::size_t p = begin; p < end; ++p) {
+        report_progress(progress, "inspect", static_cast<double>(p - begin) / static_cast<double>(end - begin));
+        const MeshPiece piece = stored.read(p);
+        counts.volume = 0;
+        const std::size_t inverted_before = counts.inverted_cells;
+        detail::add_part(piece.mesh, piece.owned_points, piece.owned_cells, counts);
+        share.volumes.push_back(counts.volume);
+        if (counts.inverted_cells == inverted_before) continue;
+        for (const std::size_t cell : inverted_cells(piece.mesh, piece.mesh.cells.size())) {
+            if (piece.owned_cells[cell]) share.inverted.push_back(static_cast<std::size_t>(piece.cell_numbers[cell]));
+        }
+        std::ranges::sort(share.inverted);
+        share.inverted.resize(std::min(share.inverted.size(), inverted_at_most));
+    }
+    if (begin == end) counts.min_scaled_jacobian = 1;
+    counts.volume = 0;
+    counts.points = stored.points;
+    counts.cells = stored.cells;
+    counts.bounds = stored.bounds;
+    return share;
+}
+
+}  // namespace
+
+MeshReport inspect(const MeshSource& source, Progress* progress) {
+    if (source.mesh() != nullptr) return inspect_mesh(*source.mesh());
+    const detail::MeshShare all = share_of_pieces(source.stored(), 0, source.stored().pieces.size(), 0, progress);
+    return detail::join_shares(std::span(&all, 1), 0).counts;
+}
+
+detail::MeshShare detail::inspect_share(const MeshSource& source, const Share& share, std::size_t inverted_at_most,
+                                        Progress* progress) {
+    if (source.mesh() != nullptr) return share_of_mesh(*source.mesh(), share, inverted_at_most);
+    validate(share);
+    const auto [begin, end] = share.range(source.stored().pieces.size());
+    return share_of_pieces(source.stored(), begin, end, inverted_at_most, progress);
 }
 
 detail::MeshShare detail::join_shares(std::span<const MeshShare> shares, std::size_t inverted_at_most) {

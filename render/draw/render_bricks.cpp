@@ -154,7 +154,7 @@ SplatResult render_bricks(const Bricks& bricks, const BrickFields& fields, Surfa
     BrickPicture picture(std::move(boundary), view, optics, options);
     for (std::size_t b = 0; b < bricks.bricks.size(); ++b) {
         report_progress(options.splat.progress, "sample", static_cast<double>(b) / static_cast<double>(bricks.bricks.size()));
-        BrickMesh brick = read_brick(bricks, b);
+        MeshPiece brick = read_brick(bricks, b);
         brick.mesh = fields(std::move(brick.mesh));
         SampleOptions quiet = options.sample;
         quiet.progress = nullptr;

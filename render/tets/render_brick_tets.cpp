@@ -17,6 +17,7 @@
 #include "pixel_tiles.h"
 #include "pixel_wedge.h"
 #include "subvol/detail/gather_cells.h"
+#include "subvol/detail/limit_of_part.h"
 #include "subvol/detail/parallel_each.h"
 #include "subvol/detail/ray_clip.h"
 #include "subvol/detail/stopwatch.h"
@@ -54,14 +55,14 @@ std::size_t cells_at_once(const BrickTetsOptions& options) {
 }
 
 void check(const Bricks& bricks, const BrickTetsOptions& options) {
-    check_halo_of_limit(bricks);
+    source_of(bricks).check_halo(kHaloOfLimit, "values of the limit");
     if (options.refine.levels < 0 || options.refine.levels > 10) {
         throw Error(ErrorCode::InvalidInput, "the number of levels is " + std::to_string(options.refine.levels), {}, "0 to 10");
     }
     if (cells_at_once(options) == 0) fail_memory("the tetrahedra of one cell");
 }
 
-std::vector<Index> owned_cells(const BrickMesh& part) {
+std::vector<Index> owned_cells(const MeshPiece& part) {
     std::vector<Index> cells;
     for (std::size_t c = 0; c < part.owned_cells.size(); ++c) {
         if (part.owned_cells[c]) cells.push_back(static_cast<Index>(c));
@@ -180,22 +181,22 @@ public:
     }
 
     /// The control cells that the rays through a part of the picture may cross; nothing if they are too many.
-    [[nodiscard]] std::optional<BrickMesh> gather(const Bricks& bricks, const BrickFields& fields, const PixelRect& part,
+    [[nodiscard]] std::optional<MeshPiece> gather(const MeshSource::Stored& bricks, const PixelRect& part,
                                                   std::size_t most_cells) {
         const PixelWedge wedge(view_, part, margin_);
         return gather_cells(bricks, {.reads = [&](std::size_t b) { return wedge.may_touch(all_.of_bricks[b]); },
-                                     .chooses = [&](const BrickMesh& brick) { return crossed(brick, wedge); },
+                                     .chooses = [&](const MeshPiece& brick) { return crossed(brick, wedge); },
+                                     .layers = kHaloOfLimit,
                                      .most_cells = most_cells,
-                                     .fields = fields,
                                      .progress = &progress_});
     }
 
     /// Draws a part of the picture from the control cells that its rays may cross; false if it is too large.
-    bool draw(const PixelRect& part, const BrickMesh& control, std::size_t most_cells) {
+    bool draw(const PixelRect& part, const MeshPiece& control, std::size_t most_cells) {
         const Stopwatch build;
         const std::vector<std::uint8_t> chosen = crossed(control, PixelWedge(view_, part, margin_));
         if (static_cast<std::size_t>(std::ranges::count(chosen, 1)) > most_cells) return false;
-        const BrickMesh gathered = chosen_cells(control, chosen, kHaloOfLimit);
+        const MeshPiece gathered = chosen_cells(control, chosen, kHaloOfLimit);
         const std::vector<Index> cells = owned_cells(gathered);
         progress_.begin(part);
         if (!cells.empty()) trace(part, limit_of_cells(gathered.mesh, cells, quiet()), build);
@@ -207,7 +208,7 @@ public:
 
 private:
     /// Which of the owned cells of a part some rays may cross.
-    [[nodiscard]] std::vector<std::uint8_t> crossed(const BrickMesh& part, const PixelWedge& wedge) const {
+    [[nodiscard]] std::vector<std::uint8_t> crossed(const MeshPiece& part, const PixelWedge& wedge) const {
         std::vector<std::uint8_t> flags = part.owned_cells;
         parallel_each(flags.size(), [&](std::size_t c) {
             if (!flags[c]) return;
@@ -266,7 +267,7 @@ BrickTets measure_tets(const Bricks& bricks, const BrickTetsOptions& options, st
     const std::size_t most = cells_in(memory, children(refine) * kBytesOfRefined);
     BrickTets all;
     for (std::size_t b = begin; b < end; ++b) {
-        BrickMesh brick = read_brick(bricks, b);
+        MeshPiece brick = read_brick(bricks, b);
         brick.mesh.attributes.clear();
         BrickTets gathered;
         const std::vector<Index> cells = owned_cells(brick);
@@ -298,8 +299,9 @@ TetsResult render_tets(const Bricks& bricks, const BrickFields& fields, const Br
     const std::size_t most_control = cells_in(0.25 * static_cast<double>(options.memory_bytes), kBytesOfControl);
     const std::size_t most_tets = cells_at_once(options);
     PictureParts outer, inner;
+    const MeshSource source = source_of(bricks, fields);
     outer.each(picture, [&](const PixelRect& gathered) {
-        const auto control = drawer.gather(bricks, fields, gathered, most_control);
+        const auto control = drawer.gather(source.stored(), gathered, most_control);
         if (!control) return false;
         inner.each(gathered, [&](const PixelRect& part) { return drawer.draw(part, *control, most_tets); });
         return true;

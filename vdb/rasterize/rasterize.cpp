@@ -16,8 +16,9 @@
 #include "level_set.h"
 #include "subvol/error.h"
 #include "subvol/mesh_report.h"
-#include "subvol/rasterize_block.h"
+#include "subvol/rasterize.h"
 #include "vdb_data.h"
+#include "voxel_blocks.h"
 
 namespace subvol {
 
@@ -254,18 +255,20 @@ RefinementTables rasterization_tables(const HexMesh& mesh, const RasterizeOption
     return tables_of(mesh, request.refine, request.on_limit);
 }
 
-void rasterize_parts(const HexMesh& mesh, std::span<const std::string> fields, const RasterizeOptions& options,
-                     std::size_t memory_bytes, const std::function<void(GridPart)>& take) {
-    const CellRequest request = make_request(mesh, fields, options);
+PartsReport rasterize_parts(const MeshSource& source, std::span<const std::string> fields, const RasterizeOptions& options,
+                            std::size_t memory_bytes, const std::function<void(GridPart)>& take) {
+    if (source.mesh() == nullptr) return rasterize_blocks(source, fields, options, static_cast<double>(memory_bytes), take);
+    const CellRequest request = make_request(*source.mesh(), fields, options);
     MeshRasterizer rasterizer(request, options);
     const auto slabs = slabs_of(request, bytes_per_voxel(request, options), memory_bytes);
     for (std::size_t s = 0; s < slabs.size(); ++s) {
         take({static_cast<int>(s), static_cast<int>(slabs.size()), rasterizer.run(slabs[s])});
     }
+    return {};
 }
 
-BlockGrids rasterize_block(const HexMesh& part, std::span<const std::string> fields, const RasterizeOptions& options,
-                           const VoxelCubes& block) {
+BlockGrids detail::rasterize_block(const HexMesh& part, std::span<const std::string> fields, const RasterizeOptions& options,
+                                   const VoxelCubes& block) {
     static_assert(VoxelCubes::kSide == kBrickSide);
     if (options.cell_numbers || options.coverage || options.level_set) {
         throw Error(ErrorCode::InvalidInput, "blocks of voxels have no cell numbers, coverage and level sets");
@@ -285,13 +288,14 @@ BlockGrids rasterize_block(const HexMesh& part, std::span<const std::string> fie
     return result;
 }
 
-std::vector<VdbGrid> rasterize_share(const HexMesh& mesh, std::span<const std::string> fields, const RasterizeOptions& options,
-                                     const Share& share) {
+GridShare rasterize_share(const MeshSource& source, std::span<const std::string> fields, const RasterizeOptions& options,
+                          const Share& share) {
     validate(share);
-    const CellRequest request = make_request(mesh, fields, options);
+    if (source.mesh() == nullptr) return rasterize_share_of_pieces(source, fields, options, share);
+    const CellRequest request = make_request(*source.mesh(), fields, options);
     MeshRasterizer rasterizer(request, options);
     constexpr VoxelBox kNowhere{{kBrickSide, kBrickSide, kBrickSide}, {kBrickSide - 1, kBrickSide - 1, kBrickSide - 1}};
-    return rasterizer.run(slab_of_share(request, bytes_per_voxel(request, options), share).value_or(kNowhere));
+    return {rasterizer.run(slab_of_share(request, bytes_per_voxel(request, options), share).value_or(kNowhere)), {}};
 }
 
 std::vector<Option> options_of(RasterizeOptions& options) {

@@ -5,10 +5,7 @@
 
 #include "subvol/basis_function.h"
 #include "subvol/boundary_values.h"
-#include "subvol/brick_measure.h"
 #include "subvol/brick_points.h"
-#include "subvol/brick_probe.h"
-#include "subvol/brick_surface.h"
 #include "subvol/bricks.h"
 #include "subvol/camera.h"
 #include "subvol/camera_fit.h"
@@ -46,6 +43,7 @@
 #include "subvol/mesh_motion.h"
 #include "subvol/mesh_report.h"
 #include "subvol/mesh_series.h"
+#include "subvol/mesh_source.h"
 #include "subvol/mixed_cells.h"
 #include "subvol/mixed_file.h"
 #include "subvol/mixed_mesh.h"

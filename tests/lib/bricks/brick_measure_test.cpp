@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Integrals, extremes and histograms of a mesh in bricks are those of the mesh.
-#include "subvol/brick_measure.h"
-
 #include <gmock/gmock.h>
 
 #include <numeric>
 
 #include "../temp_folder.h"
 #include "../test_meshes.h"
+#include "subvol/measure.h"
 #include "subvol/model.h"
 #include "subvol/split.h"
 

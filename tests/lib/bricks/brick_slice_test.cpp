@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Slices of a mesh in bricks have the values of the mesh, wherever it is cut into bricks.
-#include "subvol/brick_probe.h"
-
 #include <gmock/gmock.h>
 
 #include "../temp_folder.h"
 #include "../test_meshes.h"
+#include "subvol/limit_slice.h"
 #include "subvol/model.h"
 #include "subvol/split.h"
 
@@ -22,7 +21,7 @@ TEST_F(BrickSlice, ALinearFieldHasItsValues) {
     test::add_field(mesh, "f", [](const Vec3& x) { return 2 * x.x - x.y + 0.5 * x.z; });
     for (const BrickShape shape : {BrickShape::Blocks, BrickShape::Slabs, BrickShape::Random}) {
         const Bricks bricks = split_mesh(path("b"), mesh, {.bricks = 4, .shape = shape}).bricks;
-        const LimitSlice slice = slice_limit(bricks, {3, 2, 1.5}, {0, 0, 1}, {.resolution = 30});
+        const LimitSlice slice = slice_limit(bricks, {}, {3, 2, 1.5}, {0, 0, 1}, {.resolution = 30});
         EXPECT_EQ(slice.field, "f");
         EXPECT_EQ(slice.width, 30);
         EXPECT_EQ(slice.height, 25);
@@ -47,7 +46,7 @@ TEST_F(BrickSlice, IsThatOfTheWholeWhereFramesAreTheSame) {
     const SliceOptions options{.resolution = 33, .limit = {.scheme = {.kind = Scheme::Linear}}};
     const LimitSlice whole = slice_limit(mesh, "f", {0.02, 0.01, 0.03}, {0.3, 0.2, 1}, options);
     const Bricks bricks = split_mesh(path("b"), mesh, {.bricks = 5}).bricks;
-    const LimitSlice found = slice_limit(bricks, {0.02, 0.01, 0.03}, {0.3, 0.2, 1}, options);
+    const LimitSlice found = slice_limit(bricks, {}, {0.02, 0.01, 0.03}, {0.3, 0.2, 1}, options);
     // The pieces' boxes are of floats.
     const double near = 1e-5 * bounds(mesh).diagonal();
     ASSERT_EQ(found.width, whole.width);
@@ -64,10 +63,10 @@ TEST_F(BrickSlice, RefusesWhatIsMalformed) {
     HexMesh mesh = test::make_box(4, 4, 4);
     test::add_field(mesh, "f", [](const Vec3& x) { return x.x; });
     const Bricks bricks = split_mesh(path("b"), mesh, {.bricks = 2}).bricks;
-    EXPECT_THAT(error_of([&] { (void)slice_limit(bricks, {2, 2, 9}, {0, 0, 1}); }), HasSubstr("misses the volume"));
-    EXPECT_THAT(error_of([&] { (void)slice_limit(bricks, {2, 2, 2}, {0, 0, 0}); }), HasSubstr("no direction"));
+    EXPECT_THAT(error_of([&] { (void)slice_limit(bricks, {}, {2, 2, 9}, {0, 0, 1}); }), HasSubstr("misses the volume"));
+    EXPECT_THAT(error_of([&] { (void)slice_limit(bricks, {}, {2, 2, 2}, {0, 0, 0}); }), HasSubstr("no direction"));
     EXPECT_THAT(error_of([&] {
-                    (void)slice_limit(bricks, {2, 2, 2}, {0, 0, 1}, {.resolution = 1});
+                    (void)slice_limit(bricks, {}, {2, 2, 2}, {0, 0, 1}, {.resolution = 1});
                 }),
                 HasSubstr("2 to 20,000"));
 }

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Surfaces of a mesh in bricks have the bits of the mesh in one piece.
-#include "subvol/brick_surface.h"
-
 #include <gmock/gmock.h>
 
 #include "../temp_folder.h"
 #include "../test_meshes.h"
+#include "subvol/limit_surface.h"
 #include "subvol/model.h"
 #include "subvol/split.h"
 

@@ -12,7 +12,7 @@
 #include "../temp_folder.h"
 #include "cut_meshes.h"
 #include "subvol/brick_points.h"
-#include "subvol/detail/bricks_share.h"
+#include "subvol/detail/mesh_share.h"
 #include "subvol/mesh_io.h"
 #include "subvol/model.h"
 #include "subvol/points_io.h"
@@ -38,7 +38,7 @@ TEST_F(BricksTest, TogetherTheyAreTheMesh) {
         EXPECT_EQ(split.bricks.points, mesh.points.size());
         std::set<std::uint64_t> cells, points;
         for (std::size_t b = 0; b < split.bricks.bricks.size(); ++b) {
-            const BrickMesh brick = read_brick(split.bricks, b);
+            const MeshPiece brick = read_brick(split.bricks, b);
             for (std::size_t c = 0; c < brick.cell_numbers.size(); ++c) {
                 const auto& corners = mesh.cells[brick.cell_numbers[c]];
                 for (std::size_t k = 0; k < 8; ++k) EXPECT_EQ(brick.point_numbers[brick.mesh.cells[c][k]], corners[k]);
@@ -71,8 +71,8 @@ TEST_F(BricksTest, FiguresOfSharesAreThoseOfAll) {
     const MeshReport whole = inspect(bricks);
     for (const std::size_t count : kCounts) {
         std::vector<detail::MeshShare> shares;
-        for (std::size_t k = 0; k < count; ++k) {
-            shares.push_back(detail::inspect_share(bricks, 5 * k / count, 5 * (k + 1) / count, 2, nullptr));
+        for (int part = 1; part <= static_cast<int>(count); ++part) {
+            shares.push_back(detail::inspect_share(bricks, part, static_cast<int>(count), 2));
         }
         const detail::MeshShare joined = detail::join_shares(shares, 2);
         EXPECT_EQ(joined.counts.volume, whole.volume);
@@ -113,7 +113,7 @@ TEST_F(BricksTest, GatherHasAllThatTouchesTheBox) {
     const HexMesh mesh = irregular_ball();
     const Bricks bricks = split_mesh(path("m.bricks"), mesh, {.bricks = 7}).bricks;
     const Box box{{-0.2, -0.3, 0.1}, {0.1, 0.2, 0.4}};
-    const BrickMesh part = gather(bricks, box);
+    const MeshPiece part = gather(bricks, box);
     EXPECT_TRUE(std::ranges::is_sorted(part.cell_numbers));
     EXPECT_LT(part.mesh.cells.size(), mesh.cells.size());
     std::set<std::uint64_t> owned, all(part.cell_numbers.begin(), part.cell_numbers.end());

@@ -125,7 +125,7 @@ protected:
         EXPECT_EQ(found.cells, expected.cells) << what;
         EXPECT_EQ(found.points, expected.points) << what;
         for (std::size_t b = 0; b < found.bricks.size(); ++b) {
-            const BrickMesh a = read_brick(found, b), e = read_brick(expected, b);
+            const MeshPiece a = read_brick(found, b), e = read_brick(expected, b);
             EXPECT_EQ(a.point_numbers, e.point_numbers) << what;
             EXPECT_EQ(a.cell_numbers, e.cell_numbers) << what;
             EXPECT_EQ(a.owned_points, e.owned_points) << what;

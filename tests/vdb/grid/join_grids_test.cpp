@@ -29,7 +29,7 @@ RasterizeOptions all_kinds() {
 
 std::vector<VdbGrid> joined(const HexMesh& mesh, const RasterizeOptions& options, int count) {
     std::vector<std::vector<VdbGrid>> shares;
-    for (int part = 1; part <= count; ++part) shares.push_back(rasterize_share(mesh, kField, options, {part, count}));
+    for (int part = 1; part <= count; ++part) shares.push_back(rasterize_share(mesh, kField, options, {part, count}).grids);
     std::vector<VdbGrid> grids;
     for (std::size_t g = 0; g < shares.front().size(); ++g) {
         std::vector<VdbGrid> parts;
@@ -81,7 +81,7 @@ TEST(JoinGrids, HashesDifferWhereVoxelsDo) {
 TEST(JoinGrids, RefusesWhatDoesNotFit) {
     const HexMesh mesh = bent_box();
     const auto share = [&](int part, double voxel) {
-        return std::move(rasterize_share(mesh, kField, {.voxel_size_world = voxel}, {part, 2}).front());
+        return std::move(rasterize_share(mesh, kField, {.voxel_size_world = voxel}, {part, 2}).grids.front());
     };
     const auto join = [](VdbGrid a, VdbGrid b) {
         std::vector<VdbGrid> parts;

@@ -7,7 +7,6 @@
 #include "subvol/join_grids.h"
 #include "subvol/nanovdb.h"
 #include "subvol/rasterize.h"
-#include "subvol/rasterize_block.h"
 #include "subvol/spread_vectors.h"
 #include "subvol/vdb_contents.h"
 #include "subvol/vdb_grid.h"

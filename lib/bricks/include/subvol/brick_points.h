@@ -28,7 +28,7 @@ struct BrickPoints {
 /// brick:   as `read_brick` returns it, perhaps with other attributes
 /// options: one interval per edge, values of the scheme
 /// throws:  Error(InvalidInput) as `sample_rbf_points`, for other options, and if the bricks have too few layers of halo
-[[nodiscard]] BrickPoints sample_brick(const Bricks& bricks, BrickMesh brick, const SampleOptions& options = {});
+[[nodiscard]] BrickPoints sample_brick(const Bricks& bricks, MeshPiece brick, const SampleOptions& options = {});
 
 /// The boundary of the whole mesh, as `sample_rbf_points` makes it.
 ///
@@ -36,7 +36,8 @@ struct BrickPoints {
 [[nodiscard]] Surface sample_bricks_boundary(const Bricks& bricks, const SampleOptions& options = {});
 [[nodiscard]] Surface sample_bricks_boundary(const BrickHull& hull, const SampleOptions& options = {});
 
-/// points: how many were written; clamped, min, max: of the first channel
+/// points:      how many were written; flat_frames: of them, those whose cells are flat
+/// min, max:    of the first channel; triangles: of the boundary
 struct BrickPointsReport {
     std::uint64_t points = 0;
     std::size_t flat_frames = 0;

@@ -10,7 +10,7 @@
 
 #include "subvol/boundary_values.h"
 #include "subvol/hex_mesh.h"
-#include "subvol/mesh_report.h"
+#include "subvol/mesh_source.h"
 #include "subvol/progress.h"
 
 namespace subvol {
@@ -55,17 +55,9 @@ struct Bricks {
     int halo_layers = 0;
     std::vector<BrickField> fields;
     std::vector<Brick> bricks;
-};
 
-/// A part of a mesh. Points and cells have the order that they have in the whole mesh, so that sums have their terms in the
-/// same order, and results the same bits.
-///
-/// point_numbers, cell_numbers: in the whole mesh, ascending
-/// owned_points, owned_cells:   a flag for each; the others are the halo
-struct BrickMesh {
-    HexMesh mesh;
-    std::vector<std::uint64_t> point_numbers, cell_numbers;
-    std::vector<std::uint8_t> owned_points, owned_cells;
+    /// `source_of` with the fields as they are; refers to these bricks.
+    operator MeshSource() const;
 };
 
 /// What is done with the attributes of a brick before it is used: the field that is wanted is left, for example.
@@ -83,7 +75,7 @@ using BrickFields = std::function<HexMesh(HexMesh)>;
 ///
 /// throws: Error(Io); Error(InvalidInput) if the file is not the one that the index describes: changed, or of another mesh
 /// cost:   memory: about twice the file while it is read
-[[nodiscard]] BrickMesh read_brick(const Bricks& bricks, std::size_t brick);
+[[nodiscard]] MeshPiece read_brick(const Bricks& bricks, std::size_t brick);
 
 /// The mesh of all bricks, for what cannot be done brick by brick: points, cells, fields and tags as they were when it was
 /// split, without unused points.
@@ -92,17 +84,11 @@ using BrickFields = std::function<HexMesh(HexMesh)>;
 /// cost:   memory: the result twice, and one brick
 [[nodiscard]] HexMesh whole_mesh(const Bricks& bricks, Progress* progress = nullptr);
 
-/// All cells whose limit may touch a box, as owned cells, with their halo. Bricks that are far from the box are not read.
+/// The mesh in the bricks, for all that takes a `MeshSource`.
 ///
-/// throws: as `read_brick`
-/// cost:   memory: the result twice, and one brick at a time
-[[nodiscard]] BrickMesh gather(const Bricks& bricks, const Box& box);
-
-/// Counts and measures the mesh brick by brick, as `inspect` does in one piece: counts, extremes and bounds are the same, the
-/// volume is the sum of the bricks' volumes in their order.
-///
-/// throws: as `read_brick`; Error(Cancelled)
-[[nodiscard]] MeshReport inspect(const Bricks& bricks, Progress* progress = nullptr);
+/// bricks: is referred to
+/// fields: changes the attributes of each brick when it is read; none: they stay
+[[nodiscard]] MeshSource source_of(const Bricks& bricks, const BrickFields& fields = {});
 
 /// The cells with a point on the hull of the whole mesh: all that the boundary of the limit depends on.
 ///

@@ -45,11 +45,14 @@ struct LimitSlice {
 /// Samples a field where a plane cuts the volume. The picture's upper edge is where z is greater, or y for a plane z =
 /// constant.
 ///
+/// The frame of a mesh in memory is the box of its limit, that of a mesh in pieces the box of its control points, as the limit
+/// is known only when all pieces have been read. Pieces that the plane misses are not read.
+///
 /// field:  name of an attribute with one channel; empty: the first
 /// throws: Error(InvalidInput) as `scalar_field` and `LimitProbe`, if the normal has no length, an option is out of range, or
 ///         the plane misses the volume
-/// cost:   as `LimitProbe::at` for all places
-[[nodiscard]] LimitSlice slice_limit(const HexMesh& mesh, std::string_view field, const Vec3& point, const Vec3& normal,
+/// cost:   as `probe_limit` for all places
+[[nodiscard]] LimitSlice slice_limit(const MeshSource& source, std::string_view field, const Vec3& point, const Vec3& normal,
                                      const SliceOptions& options = {});
 
 /// A line along which the field of a slice has one value. places: in columns and rows of the slice

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "subvol/limit.h"
+#include "subvol/mesh_source.h"
 
 namespace subvol {
 
@@ -65,9 +66,13 @@ struct LimitMeasure {
 /// volumes). The extremes are then searched for on the limit itself, to its own tolerance, from the largest and the smallest
 /// values at the nodes and Gauss points of the pieces.
 ///
-/// throws: Error(InvalidInput) as `evaluate_limit`, or if an option is out of range; Error(MissingCapability) if the pieces
-///         take more than 4 GB
-/// cost:   parallel; the same bits for any number of threads
-[[nodiscard]] LimitMeasure measure_limit(const HexMesh& mesh, const MeasureOptions& options = {});
+/// A mesh that is stored in pieces is measured piece by piece: each is read and cut twice, the second time for the histograms,
+/// whose bins lie between the extremes of the whole. Sums are those of the pieces in their order. The cells of extremes have
+/// their numbers in the whole mesh; kNone if an Index cannot hold them.
+///
+/// throws: Error(InvalidInput) as `evaluate_limit`, if an option is out of range, if there are groups of a mesh in pieces, or
+///         if these have fewer than three layers of halo; Error(MissingCapability) if the limit's pieces take more than 4 GB
+/// cost:   parallel; the same bits for any number of threads. Memory: that of one piece
+[[nodiscard]] LimitMeasure measure_limit(const MeshSource& source, const MeasureOptions& options = {});
 
 }  // namespace subvol

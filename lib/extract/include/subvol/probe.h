@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "subvol/limit.h"
+#include "subvol/mesh_source.h"
 
 namespace subvol {
 
@@ -72,6 +73,15 @@ private:
     struct State;
     std::unique_ptr<State> state_;
 };
+
+/// Values and gradients of the limit at places, as `LimitProbe::at`. A mesh that is stored in pieces is probed piece by piece:
+/// each is read once, if a place may lie in it. Where cells meet, the one with the smallest number is found.
+///
+/// throws: Error(InvalidInput) as `LimitProbe`, or for a mesh in pieces if options.reach_world is not 0; what reading throws;
+///         Error(Cancelled)
+/// cost:   memory: as `LimitProbe`; of a mesh in pieces one piece, and the cells about the places in it
+[[nodiscard]] ProbeResult probe_limit(const MeshSource& source, std::span<const Vec3> places, const ProbeOptions& options = {},
+                                      Progress* progress = nullptr);
 
 /// `count` places on a line, its ends included, equally far apart.
 ///

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "subvol/limit.h"
+#include "subvol/mesh_source.h"
 #include "subvol/option.h"
 #include "subvol/probe.h"
 #include "subvol/surface.h"
@@ -82,12 +83,16 @@ struct LimitSurface {
 /// limit, by Newton's method. The level is raised until the triangles are within tolerance; of more than 2048 cells some stand
 /// for all.
 ///
+/// The pieces of a mesh that is not in memory are searched for cells that a surface may pass through; these are then gathered
+/// with their halos, and the surface is cut from them alone: with the same bits. The places of the result have the cells'
+/// numbers in the whole mesh; kNone if an Index cannot hold them.
+///
 /// field:  name of an attribute with one channel; empty: the first
-/// throws: Error(InvalidInput) as `evaluate_limit` and `scalar_field`, if neither an isovalue nor the boundary is asked for,
-///         or if an option is out of range; Error(Cancelled)
+/// throws: Error(InvalidInput) as `evaluate_limit` and `scalar_field`, if neither an isovalue nor the boundary is asked for, if
+///         an option is out of range, or if pieces have fewer than three layers of halo; what reading throws; Error(Cancelled)
 /// cost:   parallel; the same bits for any number of threads. Memory: some 300 bytes for each triangle, and the topology of the
-///         mesh
-[[nodiscard]] LimitSurface limit_surface(const HexMesh& mesh, std::string_view field, const SurfaceOptions& options);
+///         mesh; of a mesh in pieces that of one piece, then some 2 kB for each cell that the surface passes
+[[nodiscard]] LimitSurface limit_surface(const MeshSource& source, std::string_view field, const SurfaceOptions& options);
 
 /// What else a file of a surface holds.
 ///

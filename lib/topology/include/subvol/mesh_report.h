@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "subvol/hex_mesh.h"
+#include "subvol/mesh_source.h"
 
 namespace subvol {
 
@@ -30,10 +30,11 @@ struct MeshReport {
     Box bounds;
 };
 
-/// Counts and measures a mesh.
+/// Counts and measures a mesh. Of a mesh in pieces counts, extremes and bounds are those of the whole, the volume is the sum of
+/// the pieces' volumes in their order.
 ///
-/// throws: Error(InvalidInput) as `validate` and `build_topology`
-[[nodiscard]] MeshReport inspect(const HexMesh& mesh);
+/// throws: Error(InvalidInput) as `validate` and `build_topology`; what reading pieces throws; Error(Cancelled)
+[[nodiscard]] MeshReport inspect(const MeshSource& source, Progress* progress = nullptr);
 
 /// The figures of the same names in MeshReport, which depend only on the shapes of the cells.
 struct ShapeReport {

@@ -10,6 +10,7 @@
 
 #include "subvol/hex_mesh.h"
 #include "subvol/limit_level.h"
+#include "subvol/mesh_source.h"
 #include "subvol/option.h"
 #include "subvol/progress.h"
 #include "subvol/rbf_volume.h"
@@ -35,6 +36,10 @@ struct LevelSetOptions {
 /// tables:           null, or the result of `rasterization_tables` for a mesh of the same cells: nothing of the refinement is
 ///                   computed again, but the whole refined mesh is in memory. The grids are the same; with a limit, they are
 ///                   those of cells whose nodes all have the finest level of the limit
+/// find_limit:       of a mesh in pieces: the cells that approximate the limit replace refine.levels and on_limit; they are
+/// found
+///                   for each block of voxels
+/// block_bytes:      of a mesh in pieces: about the most that a block of voxels and the cells about it take
 /// half:             store floats in 16 bits
 /// cell_numbers:     adds a grid of integers named "cell": the control cell that contains the voxel's centre
 /// mask:             adds a grid of bits named "mask": where the volume is
@@ -51,6 +56,8 @@ struct RasterizeOptions {
     bool on_limit = false;
     const LimitCells* limit = nullptr;
     const RefinementTables* tables = nullptr;
+    bool find_limit = false;
+    std::size_t block_bytes = std::size_t{1} << 30;
     bool half = false;
     bool cell_numbers = false;
     bool mask = false;
@@ -100,21 +107,41 @@ struct GridPart {
     std::vector<VdbGrid> grids;
 };
 
-/// Rasterizes in slabs across x, one after the other. Together their leaves are those of `rasterize`.
+/// How a mesh in pieces was rasterized.
 ///
-/// memory_bytes: about the most that the grids of one slab take, without a level set; but a slab is at least 32 voxels thick
-/// throws:       as `rasterize`
-void rasterize_parts(const HexMesh& mesh, std::span<const std::string> fields, const RasterizeOptions& options,
-                     std::size_t memory_bytes, const std::function<void(GridPart)>& take);
+/// blocks:    of voxels; in `folded` of them cells fold over, and all cells above and below were read, too
+/// converged: the limit is within its tolerance in all cells
+struct PartsReport {
+    std::size_t blocks = 0, folded = 0;
+    bool converged = true;
+};
+
+/// Rasterizes part by part. Together their leaves are those of `rasterize`.
+///
+/// A mesh in memory is rasterized in slabs across x, one after the other. For a mesh in pieces the space is halved until the
+/// voxels of a block and the cells about it fit into the memory; parts are the blocks that have voxels.
+///
+/// memory_bytes: about the most that the grids of one part take, without a level set; of a mesh in pieces also the cells that
+///               are read for it; but a part is at least 32 voxels thick
+/// throws:       as `rasterize`; Error(InvalidInput) if a mesh in pieces has no voxel size, or cell numbers, coverage or a
+///               level set are asked for; what reading pieces throws
+PartsReport rasterize_parts(const MeshSource& source, std::span<const std::string> fields, const RasterizeOptions& options,
+                            std::size_t memory_bytes, const std::function<void(GridPart)>& take);
+
+struct GridShare {
+    std::vector<VdbGrid> grids;
+    PartsReport report{};
+};
 
 /// Rasterizes one of several shares: a slab across x, for processes that share the work. The slabs are chosen so that their
-/// grids take about as much memory each. Together the leaves of all shares are those of `rasterize`; see `join_grids`.
+/// grids take about as much memory each. Together the leaves of all shares are those of `rasterize`; see `join_grids`. Only the
+/// pieces that touch the slab are read.
 ///
 /// A share may have no voxels: its grids are empty then.
 ///
-/// throws:  Error(InvalidInput) as `rasterize`, or for a share that does not exist
-[[nodiscard]] std::vector<VdbGrid> rasterize_share(const HexMesh& mesh, std::span<const std::string> fields,
-                                                   const RasterizeOptions& options, const Share& share);
+/// throws: Error(InvalidInput) as `rasterize_parts`, or for a share that does not exist
+[[nodiscard]] GridShare rasterize_share(const MeshSource& source, std::span<const std::string> fields,
+                                        const RasterizeOptions& options, const Share& share);
 
 /// Sums kernels at voxel centres: a grid of floats per channel, the first a fog volume.
 ///

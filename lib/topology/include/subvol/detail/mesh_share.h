@@ -23,8 +23,9 @@ struct MeshShare {
     std::vector<std::size_t> inverted{};
 };
 
-/// throws: Error(InvalidInput) as `inspect`
-[[nodiscard]] MeshShare inspect_share(const HexMesh& mesh, const Share& share, std::size_t inverted_at_most);
+/// throws: as `inspect`
+[[nodiscard]] MeshShare inspect_share(const MeshSource& source, const Share& share, std::size_t inverted_at_most,
+                                      Progress* progress = nullptr);
 
 /// The report of the whole mesh, as `inspect` makes it, and the first inverted cells.
 ///

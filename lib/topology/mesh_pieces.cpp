@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "brick_layers.h"
+#include "mesh_pieces.h"
 
 #include <algorithm>
 #include <set>
@@ -16,14 +16,6 @@ namespace {
 constexpr double kWiden = 0.25;
 
 }  // namespace
-
-void check_halo_of_limit(const Bricks& bricks) {
-    if (bricks.halo_layers >= kHaloOfLimit) return;
-    throw Error(ErrorCode::InvalidInput,
-                "its bricks have " + std::to_string(bricks.halo_layers) + " layers of halo, values of the limit need " +
-                    std::to_string(kHaloOfLimit),
-                bricks.path.string(), "split with --halo " + std::to_string(kHaloOfLimit));
-}
 
 CellReaches::CellReaches(const HexMesh& mesh) : mesh_(mesh), about_(mesh.points.size()) {
     for (const auto& cell : mesh.cells) {
@@ -47,9 +39,9 @@ bool touch(const Box& a, const Box& b) {
     return true;
 }
 
-BrickMesh subset(const BrickMesh& part, std::span<const std::uint8_t> cells) {
+MeshPiece subset(const MeshPiece& part, std::span<const std::uint8_t> cells) {
     MeshSubset some = subset(part.mesh, cells);
-    BrickMesh result;
+    MeshPiece result;
     result.mesh = std::move(some.mesh);
     for (const Index c : some.cells) {
         result.cell_numbers.push_back(part.cell_numbers[c]);
@@ -62,11 +54,11 @@ BrickMesh subset(const BrickMesh& part, std::span<const std::uint8_t> cells) {
     return result;
 }
 
-BrickMesh merged(std::vector<BrickMesh> parts) {
-    BrickMesh all;
+MeshPiece merged(std::vector<MeshPiece> parts) {
+    MeshPiece all;
     if (parts.empty()) return all;
     if (parts.size() == 1) return std::move(parts.front());
-    for (const BrickMesh& part : parts) {
+    for (const MeshPiece& part : parts) {
         all.point_numbers.insert(all.point_numbers.end(), part.point_numbers.begin(), part.point_numbers.end());
         all.cell_numbers.insert(all.cell_numbers.end(), part.cell_numbers.begin(), part.cell_numbers.end());
     }
@@ -85,8 +77,8 @@ BrickMesh merged(std::vector<BrickMesh> parts) {
     }
     std::set<std::array<Index, 2>> creases;
     std::set<std::array<Index, 4>> faces;
-    for (BrickMesh& part_left : parts) {
-        const BrickMesh part = std::move(part_left);  // frees each part after its turn
+    for (MeshPiece& part_left : parts) {
+        const MeshPiece part = std::move(part_left);  // frees each part after its turn
         std::vector<Index> places(part.point_numbers.size());
         std::size_t at = 0;
         for (std::size_t p = 0; p < places.size(); ++p) {
@@ -120,7 +112,7 @@ BrickMesh merged(std::vector<BrickMesh> parts) {
     return all;
 }
 
-std::vector<std::uint8_t> hull_points_of_owned(const BrickMesh& part) {
+std::vector<std::uint8_t> hull_points_of_owned(const MeshPiece& part) {
     std::vector<std::uint8_t> of_owned(part.mesh.points.size(), 0), on_hull(part.mesh.points.size(), 0);
     for (std::size_t c = 0; c < part.mesh.cells.size(); ++c) {
         if (!part.owned_cells[c]) continue;
@@ -136,4 +128,73 @@ std::vector<std::uint8_t> hull_points_of_owned(const BrickMesh& part) {
     return on_hull;
 }
 
+MeshPiece chosen_cells(const MeshPiece& part, std::span<const std::uint8_t> chosen, int layers) {
+    if (std::ranges::find(chosen, 1) == chosen.end()) return {};
+    std::vector<std::uint8_t> kept(chosen.begin(), chosen.end());
+    grow(part.mesh, kept, layers);
+    MeshPiece result = subset(part, kept);
+    result.owned_cells.clear();
+    for (std::size_t c = 0; c < kept.size(); ++c) {
+        if (kept[c]) result.owned_cells.push_back(chosen[c]);
+    }
+    return result;
+}
+
+std::optional<MeshPiece> gather_cells(const MeshSource::Stored& stored, const GatherOptions& options) {
+    std::vector<MeshPiece> parts;
+    std::uint64_t cells = 0;
+    for (std::size_t p = 0; p < stored.pieces.size(); ++p) {
+        report_progress(options.progress, "gather", static_cast<double>(p) / static_cast<double>(stored.pieces.size()));
+        if (!options.reads(p)) continue;
+        const MeshPiece piece = stored.read(p);
+        MeshPiece part = chosen_cells(piece, options.chooses(piece), options.layers);
+        cells += part.mesh.cells.size();
+        if (!part.mesh.cells.empty()) parts.push_back(std::move(part));
+        if (cells <= options.most_cells) continue;
+        MeshPiece sum = merged(std::move(parts));  // cells about the chosen ones may be in several parts
+        cells = sum.mesh.cells.size();
+        if (cells > options.most_cells) return std::nullopt;
+        parts.clear();
+        parts.push_back(std::move(sum));
+    }
+    return merged(std::move(parts));
+}
+
 }  // namespace subvol::detail
+
+namespace subvol {
+
+MeshSource MeshSource::changed(std::function<HexMesh(HexMesh)> change, std::vector<SourceField> fields) const {
+    Stored stored = stored_;
+    stored.fields = std::move(fields);
+    stored.read = [read = stored_.read, change = std::move(change)](std::size_t number) {
+        MeshPiece piece = read(number);
+        piece.mesh = change(std::move(piece.mesh));
+        return piece;
+    };
+    return MeshSource(std::move(stored));
+}
+
+void MeshSource::check_halo(int layers, const std::string& what) const {
+    if (mesh_ != nullptr || stored_.halo_layers >= layers) return;
+    throw Error(ErrorCode::InvalidInput,
+                "its bricks have " + std::to_string(stored_.halo_layers) + " layers of halo, " + what + " need " +
+                    std::to_string(layers),
+                stored_.name, "split with --halo " + std::to_string(layers));
+}
+
+MeshPiece gather(const MeshSource& source, const Box& box) {
+    using detail::touch;
+    const MeshSource::Stored& stored = source.stored();
+    const auto chooses = [&](const MeshPiece& piece) {
+        const detail::CellReaches reaches(piece.mesh);
+        std::vector<std::uint8_t> chosen = piece.owned_cells;
+        for (std::size_t c = 0; c < chosen.size(); ++c) chosen[c] = chosen[c] && touch(reaches(c), box);
+        return chosen;
+    };
+    return *detail::gather_cells(stored, {.reads = [&](std::size_t p) { return touch(stored.pieces[p].reach, box); },
+                                          .chooses = chooses,
+                                          .layers = stored.halo_layers});
+}
+
+}  // namespace subvol

@@ -2,13 +2,15 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "subvol/rasterize.h"
 
-namespace subvol {
+namespace subvol::detail {
 
 /// Cubes of 32³ voxels, which are whole leaves: from `lower` to before `upper` along each axis; cube i begins at voxel 32·i.
 struct VoxelCubes {
@@ -32,4 +34,10 @@ struct BlockGrids {
 [[nodiscard]] BlockGrids rasterize_block(const HexMesh& part, std::span<const std::string> fields,
                                          const RasterizeOptions& options, const VoxelCubes& block);
 
-}  // namespace subvol
+/// `rasterize_parts` and `rasterize_share` of a mesh in pieces.
+PartsReport rasterize_blocks(const MeshSource& source, std::span<const std::string> fields, const RasterizeOptions& options,
+                             double memory_bytes, const std::function<void(GridPart)>& take);
+[[nodiscard]] GridShare rasterize_share_of_pieces(const MeshSource& source, std::span<const std::string> fields,
+                                                  const RasterizeOptions& options, const Share& share);
+
+}  // namespace subvol::detail

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "mesh_subset.h"
-#include "subvol/bricks.h"
 #include "subvol/detail/gather_cells.h"
+#include "subvol/mesh_source.h"
 
 namespace subvol::detail {
 
@@ -20,18 +20,18 @@ public:
 
 private:
     const HexMesh& mesh_;
-    std::vector<Box> about_;  // of each point: the cells that have it
+    std::vector<Box> about_;  // each point: the cells that have it
 };
 
 [[nodiscard]] bool touch(const Box& a, const Box& b);
 
 /// Some cells of a part with their points, and the tags that belong to them.
-[[nodiscard]] BrickMesh subset(const BrickMesh& part, std::span<const std::uint8_t> cells);
+[[nodiscard]] MeshPiece subset(const MeshPiece& part, std::span<const std::uint8_t> cells);
 
 /// Parts of one mesh as one; what they have in common is in the result once, and owned if one of them owns it.
-[[nodiscard]] BrickMesh merged(std::vector<BrickMesh> parts);
+[[nodiscard]] MeshPiece merged(std::vector<MeshPiece> parts);
 
 /// The points of owned cells that lie on the hull of the whole mesh. There must be a layer of halo at least.
-[[nodiscard]] std::vector<std::uint8_t> hull_points_of_owned(const BrickMesh& part);
+[[nodiscard]] std::vector<std::uint8_t> hull_points_of_owned(const MeshPiece& part);
 
 }  // namespace subvol::detail
