@@ -41,13 +41,13 @@ WithFacts<std::string> BodyInput::select(const CommonOptions& options, OtherFiel
         mesh_ = with_others(std::move(selected), std::move(fields));
         return {mesh_.attributes.front().name, std::move(facts)};
     }
-    auto [field, facts] = select_brick_field(*bricks_, options);
-    change_ = [field, others](HexMesh brick) {
+    WithFacts<StreamedField> selected = select_brick_field(*bricks_, options);
+    change_ = [field = selected.value, others](HexMesh brick) {
         std::vector<Attribute> all;
         if (others == OtherFields::Keep) all = brick.attributes;
         return with_others(with_brick_fields(std::move(brick), {field}), std::move(all));
     };
-    return {change_(stand_in(*bricks_)).attributes.front().name, std::move(facts)};
+    return {change_(stand_in(*bricks_)).attributes.front().name, std::move(selected.facts)};
 }
 
 std::size_t BodyInput::add_scalar(const std::string& field) {

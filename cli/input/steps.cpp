@@ -3,6 +3,10 @@
 
 #include <charconv>
 
+#include "bricks_input.h"
+#include "grid_input.h"
+#include "input.h"
+#include "points_input.h"
 #include "subvol/error.h"
 #include "text.h"
 
@@ -27,6 +31,10 @@ std::size_t existing(std::size_t step, const MeshSeries& series) {
 }
 
 }  // namespace
+
+bool may_have_steps(const std::string& input) {
+    return !is_model(input) && !is_bricks_input(input) && !holds_points(input) && !is_vdb_file(input);
+}
 
 bool asks_for_steps(const CommonOptions& options) {
     return options.step && (*options.step == "all" || options.step->find('-') != std::string::npos);

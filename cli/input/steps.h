@@ -10,6 +10,9 @@
 
 namespace subvol::cli {
 
+/// Whether an input may be a series of steps: a file of a mesh.
+[[nodiscard]] bool may_have_steps(const std::string& input);
+
 /// Whether --step asks for more than one step: a verb then writes a file for each.
 [[nodiscard]] bool asks_for_steps(const CommonOptions& options);
 

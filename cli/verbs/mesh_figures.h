@@ -7,6 +7,9 @@
 
 #include "report.h"
 #include "subvol/detail/mesh_share.h"
+#include "subvol/hex_mesh.h"
+#include "subvol/mesh_io.h"
+#include "subvol/mesh_report.h"
 #include "transport.h"
 
 namespace subvol::cli {
@@ -44,5 +47,22 @@ struct FigureParts {
     [[nodiscard]] static detail::MeshShare unpack(const std::string& bytes);
     [[nodiscard]] static LoadedPart<detail::MeshShare> load(const std::string& file);
 };
+
+/// What `info` says to people about a mesh: a line for each figure, with units, and at the end whether the mesh is sound.
+///
+/// joined:  all shares
+/// seconds: of each stage, as in the report
+[[nodiscard]] std::string mesh_lines(const ReadResult& read, const detail::MeshShare& joined, const Json& seconds);
+
+/// The number of inverted cells that a verdict names.
+inline constexpr std::size_t kCellsNamed = 8;
+
+/// "sound", or what is wrong, as "51 cells inverted: 3, 17, 20, …".
+///
+/// inverted: the first inverted cells
+[[nodiscard]] std::string verdict(const MeshReport& report, std::span<const std::size_t> inverted);
+
+/// A line about the mesh that a scheme of tetrahedra makes, from `TetRefinement::figures`.
+[[nodiscard]] std::string refined_lines(const Json& figures);
 
 }  // namespace subvol::cli

@@ -8,7 +8,6 @@
 #include "grid_input.h"
 #include "input.h"
 #include "mesh_figures.h"
-#include "mesh_lines.h"
 #include "numbers.h"
 #include "part_note.h"
 #include "points_input.h"
@@ -80,6 +79,7 @@ public:
             throw Error(ErrorCode::InvalidInput, "only the figures of a mesh are found in shares",
                         ranks() != nullptr ? "info in several processes" : "--part");
         }
+        in_bricks_ = is_bricks_input(input_);
         set_refinement();
         if (!input_.empty() && (holds_points(input_) || is_vdb_file(input_))) {
             refuse_mesh_options(app(), "needs a mesh; these are points or grids");
@@ -88,7 +88,7 @@ public:
         if (gl_) describe_gl(report);
         if (input_.empty()) {
             if (!gl_) throw Error(ErrorCode::InvalidInput, "a FILE is needed, or --gl", "info");
-        } else if (is_bricks_input(input_)) {
+        } else if (in_bricks_) {
             describe_bricks(report);
         } else if (holds_points(input_)) {
             describe_points(report);
@@ -105,8 +105,7 @@ private:
         if (refine_.scheme.empty()) return;
         check_choice("--scheme", refine_.scheme, tet_schemes());
         tets_ = TetRefinement(refine_);
-        if (list_fields_ || input_.empty() || shares(share_) || is_bricks_input(input_) || holds_points(input_) ||
-            is_vdb_file(input_)) {
+        if (list_fields_ || input_.empty() || shares(share_) || in_bricks_ || holds_points(input_) || is_vdb_file(input_)) {
             throw Error(ErrorCode::InvalidInput, "needs a mesh in one piece, and one process", "--scheme", "no --scheme");
         }
     }
@@ -127,7 +126,7 @@ private:
             report["fields"].push_back({{"name", name}});
             report.say(name);
         };
-        if (is_bricks_input(input_)) {
+        if (in_bricks_) {
             for (const BrickField& field : report.unpack(open_bricks_input(input_, app())).fields) list(field.name);
         } else if (holds_levels(input_)) {
             report["input"] = input_;
@@ -219,7 +218,7 @@ private:
         if (common().field) (void)named_brick_field(bricks, *common().field, true);  // refuses what does not exist
         const Share share = share_of(share_);
         const detail::MeshShare about = joined(share, report, [&] {
-            return detail::inspect_share(source_of(bricks), share.part, share.of, kCellsNamed, report.progress());
+            return detail::inspect_share(source_of(bricks), share, kCellsNamed, report.progress());
         });
         if (!speaks()) return;
         put_mesh_report(report, about.counts);
@@ -357,6 +356,7 @@ private:
     std::string input_;
     bool gl_ = false;
     bool list_fields_ = false;
+    bool in_bricks_ = false;
     std::vector<std::string> points_;
     RefineArguments refine_;  // of --scheme
     TetRefinement tets_;

@@ -6,7 +6,6 @@
 #include <set>
 
 #include "mesh_figures.h"
-#include "mesh_lines.h"
 #include "outputs.h"
 #include "part_kinds.h"
 #include "subvol/brick_points.h"

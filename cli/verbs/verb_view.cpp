@@ -205,7 +205,7 @@ private:
             body.points.volume ? std::vector<Vec3>{} : picture_.framed_points(body.mesh, optics);
         const View view = picture_.make_views(body.box, framed).front();
         ViewState state{.camera = view.camera(), .width = view.width(), .height = view.height(), .field = field.value_or("")};
-        const bool one_state = is_model(input_) || is_bricks_input(input_) || body.points.volume;
+        const bool one_state = !may_have_steps(input_) || body.points.volume;
         const auto series_step = one_state ? std::nullopt : one_step(input_, common());
         state.step = series_step.value_or(times().size() - 1);
         state.method = method_;
@@ -218,8 +218,7 @@ private:
     }
 
     [[nodiscard]] std::vector<double> times() const {
-        const bool one_state = is_model(input_) || is_bricks_input(input_) || holds_points(input_) || is_vdb_file(input_);
-        return one_state ? std::vector<double>{0} : open_series(input_).times;
+        return may_have_steps(input_) ? open_series(input_).times : std::vector<double>{0};
     }
 
     [[nodiscard]] ViewSource source(Report& report) {

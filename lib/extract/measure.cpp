@@ -393,12 +393,11 @@ void add_to_histograms(const Measurer& measurer, PartMeasure& whole) {
 }  // namespace
 
 LimitMeasure measure_limit(const MeshSource& source, const MeasureOptions& options) {
+    const HexMesh* const mesh = source.mesh();
+    if (mesh != nullptr) validate(*mesh);
     const Vec3 size = source.bounds().size();
     const double longest_side = std::max({size.x, size.y, size.z});
-    if (const HexMesh* mesh = source.mesh()) {
-        validate(*mesh);
-        return Measurer(*mesh, {}, longest_side, options).measure(true);
-    }
+    if (mesh != nullptr) return Measurer(*mesh, {}, longest_side, options).measure(true);
     source.check_halo(detail::kHaloOfLimit, "values of the limit");
     if (!options.groups.empty()) throw Error(ErrorCode::InvalidInput, "bricks have no groups of cells", "measure");
     MeasureOptions quiet = options;

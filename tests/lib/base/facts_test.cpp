@@ -42,6 +42,19 @@ TEST(Facts, HoldListsAndGroups) {
     EXPECT_EQ(std::get<std::string>(std::get<Facts>(facts.find("field")->value).find("name")->value), "density");
 }
 
+TEST(Facts, OfAResultAreMergedWhenItsValueIsTaken) {
+    WithFacts<std::string> made{"picture"};
+    made.facts["pixels"] = 4;
+    made.facts.note("small");
+    made.facts.note("small");
+    Facts whole;
+    whole.note("drawn");
+    EXPECT_EQ(whole.unpack(std::move(made)), "picture");
+    EXPECT_EQ(std::get<std::int64_t>(whole.find("pixels")->value), 4);
+    EXPECT_EQ(std::get<FactValue::List>(whole.find("notes")->value).size(), 2U);
+    EXPECT_EQ(whole.find("warnings"), nullptr);
+}
+
 TEST(Facts, OfTwoCallsAddSecondsAndWarnings) {
     Facts whole, part;
     whole["levels"] = 1;

@@ -59,6 +59,32 @@ TEST_F(BrickSlice, IsThatOfTheWholeWhereFramesAreTheSame) {
     }
 }
 
+TEST_F(BrickSlice, PlacesHaveTheValuesOfAMeshInMemory) {
+    HexMesh mesh = make_model("ball", 3);
+    mesh.attributes.clear();
+    test::add_field(mesh, "f", [](const Vec3& x) { return x.x * x.x + x.y * x.z; });
+    test::add_field(mesh, "g", [](const Vec3& x) { return x.z; });
+    const std::vector<Vec3> places = places_on_line({-2, 0.1, 0.05}, {2, 0.1, 0.05}, 41);
+    const ProbeResult whole = probe_limit(mesh, places);
+    const Bricks bricks = split_mesh(path("b"), mesh, {.bricks = 4}).bricks;
+    const ProbeResult found = probe_limit(bricks, places);
+    ASSERT_EQ(found.fields.size(), 2U);
+    std::size_t inside = 0;
+    for (std::size_t p = 0; p < places.size(); ++p) {
+        ASSERT_EQ(found.inside(p), whole.inside(p)) << p;
+        if (!whole.inside(p)) continue;
+        ++inside;
+        for (std::size_t f = 0; f < 2; ++f) EXPECT_NEAR(found.fields[f].values[p], whole.fields[f].values[p], 1e-5);
+    }
+    EXPECT_GT(inside, 10U);
+    EXPECT_THAT(error_of([&] { (void)probe_limit(bricks, places, {.reach_world = 1}); }), HasSubstr("distances"));
+    const MeshSource only_g = source_of(bricks).changed([](HexMesh brick) {
+        brick.attributes.erase(brick.attributes.begin());
+        return brick;
+    });
+    EXPECT_EQ(probe_limit(only_g, places).fields.at(0).name, "g");
+}
+
 TEST_F(BrickSlice, RefusesWhatIsMalformed) {
     HexMesh mesh = test::make_box(4, 4, 4);
     test::add_field(mesh, "f", [](const Vec3& x) { return x.x; });

@@ -72,7 +72,7 @@ TEST_F(BricksTest, FiguresOfSharesAreThoseOfAll) {
     for (const std::size_t count : kCounts) {
         std::vector<detail::MeshShare> shares;
         for (int part = 1; part <= static_cast<int>(count); ++part) {
-            shares.push_back(detail::inspect_share(bricks, part, static_cast<int>(count), 2));
+            shares.push_back(detail::inspect_share(bricks, {part, static_cast<int>(count)}, 2));
         }
         const detail::MeshShare joined = detail::join_shares(shares, 2);
         EXPECT_EQ(joined.counts.volume, whole.volume);

@@ -5,8 +5,10 @@
 
 #include <cmath>
 
+#include "lib/temp_folder.h"
 #include "subvol/error.h"
 #include "subvol/rasterize.h"
+#include "subvol/split.h"
 #include "vdb/test_meshes.h"
 
 namespace subvol {
@@ -51,6 +53,37 @@ TEST(JoinGrids, SharesHaveTheBitsOfOnePiece) {
             EXPECT_EQ(text_of_grid(grids[g], "made"), "here");
         }
     }
+}
+
+class GridsOfPieces : public TempFolder {};
+
+// A mesh in bricks is made block by block of voxels, or share by share: its grids are those of the mesh in memory.
+TEST_F(GridsOfPieces, HaveTheBitsOfAMeshInMemory) {
+    const HexMesh mesh = bent_box();
+    const Bricks bricks = split_mesh(path("m.bricks"), mesh, {.bricks = 5}).bricks;
+    RasterizeOptions options{.voxel_size_world = 0.011, .mask = true};
+    const std::vector<VdbGrid> whole = rasterize(mesh, kField, options);
+    std::vector<std::vector<VdbGrid>> blocks(whole.size());
+    int parts = 0;
+    const PartsReport report = rasterize_parts(bricks, kField, options, 300'000, [&](GridPart part) {
+        EXPECT_EQ(part.number, parts++);
+        for (std::size_t g = 0; g < blocks.size(); ++g) blocks[g].push_back(std::move(part.grids.at(g)));
+    });
+    EXPECT_GT(parts, 1);
+    EXPECT_GE(report.blocks, static_cast<std::size_t>(parts));
+    EXPECT_TRUE(report.converged);
+    for (std::size_t g = 0; g < whole.size(); ++g) {
+        EXPECT_EQ(hash_of_grid(join_grids(std::move(blocks[g]))), hash_of_grid(whole[g])) << whole[g].report().name;
+    }
+    for (const int count : {1, 3, 30}) {
+        std::vector<VdbGrid> shares;
+        for (int part = 1; part <= count; ++part) {
+            shares.push_back(std::move(rasterize_share(bricks, kField, options, {part, count}).grids.front()));
+        }
+        EXPECT_EQ(hash_of_grid(join_grids(std::move(shares))), hash_of_grid(whole.front())) << count;
+    }
+    options.voxel_size_world = 0;
+    EXPECT_THROW((void)rasterize_share(bricks, kField, options, {1, 2}), Error);
 }
 
 // Tiles of one value that fill an inner node are merged only when all shares are there.
