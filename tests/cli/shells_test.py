@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Sheets and curves beside hexahedra, through the whole command."""
+"""Shells and beams beside hexahedra, through the whole command."""
 
 import unittest
 from pathlib import Path
