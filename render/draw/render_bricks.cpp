@@ -99,7 +99,8 @@ void BrickPicture::add(const RbfVolume& kernels, std::span<const std::uint64_t> 
 }
 
 SplatResult BrickPicture::draw(const SumCounts& sum) {
-    auto& [drawn, view, optics, splat, memory_bytes, empty, regions, reaches] = *state_;
+    auto& [drawn, view, optics, splat, memory_bytes, empty, regions, counted] = *state_;
+    const FloatCounts& reaches = counted;  // by a name that lambdas can take
     std::vector<std::int64_t> kernels{static_cast<std::int64_t>(reaches.size())};
     if (sum) sum(kernels);
     if (splat.sheets == 0) {
