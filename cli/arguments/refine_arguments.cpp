@@ -6,13 +6,11 @@
 #include <cmath>
 #include <iterator>
 
-#include "choices.h"
-#include "numbers.h"
+#include "options.h"
 #include "subvol/detail/refined_memory.h"
 #include "subvol/error.h"
 #include "subvol/limit.h"
 #include "subvol/refine_mixed.h"
-#include "text.h"
 
 namespace subvol::cli {
 
@@ -41,30 +39,24 @@ Scheme scheme_named(const std::string& name) {
 void RefineArguments::add_scheme_to(CLI::App& app) {
     std::vector<std::string> schemes = names_of<Scheme>();
     std::ranges::copy(tet_schemes(), std::back_inserter(schemes));
-    app.add_option(
-           "--scheme", scheme,
-           "mcq (smooth, through the control points; the default), cc (Catmull-Clark), bsxw (Bajaj-Schaefer-Warren-Xu), "
-           "linear; of tetrahedra as tetrahedra: tetoct, boxspline")
-        ->type_name("NAME")
-        ->check(offered(schemes));
-    app.add_option("--tension", tension, "of mcq: 0 is linear; the default, 1/16, reproduces cubics")
-        ->type_name("W")
-        ->transform(number_in(0.0, 0.125));
-    app.add_option("--crease-angle", crease_angle_deg,
-                   "keep boundary edges sharp that bend by more than this, in degrees (tetoct, boxspline: 60)")
-        ->type_name("DEG")
-        ->transform(number_in(0.0, 180.0));
+    std::vector<Option> described = options_of(rules);
+    described.front() = Option("scheme", scheme)  // those of tetrahedra, too
+                            .offer(std::move(schemes))
+                            .help("NAME",
+                                  "mcq (smooth, through the control points), cc (Catmull-Clark), bsxw "
+                                  "(Bajaj-Schaefer-Warren-Xu), linear; of tetrahedra as tetrahedra: tetoct, boxspline");
+    add_options(app, described);
 }
 
 void RefineArguments::add_to(CLI::App& app, const std::string& levels_help) {
     add_scheme_to(app);
-    app.add_option("--levels", levels, levels_help)->type_name("L")->transform(whole_number(0, 10));
+    add_option(app, Option("levels", levels).between(0, 10).help("L", levels_help));
 }
 
 RefineOptions RefineArguments::options(int default_levels, Progress* progress) const {
-    return {.scheme = {scheme_named(scheme), tension, crease_angle_deg},
-            .levels = levels.value_or(default_levels),
-            .progress = progress};
+    RefineOptions options{.scheme = rules, .levels = levels.value_or(default_levels), .progress = progress};
+    options.scheme.kind = scheme_named(scheme);
+    return options;
 }
 
 WithFacts<HexMesh> refine_reported(const HexMesh& mesh, const RefineOptions& options, Vertices vertices) {

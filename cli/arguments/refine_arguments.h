@@ -24,9 +24,8 @@ namespace subvol::cli {
 /// The options of refinement, the same for every verb that refines.
 struct RefineArguments {
     std::string scheme = "mcq";
-    double tension = 1.0 / 16.0;
+    SchemeOptions rules{};  // all but its kind, which may be one of tetrahedra
     std::optional<int> levels;
-    std::optional<double> crease_angle_deg;
 
     /// All but --levels, for verbs that evaluate the limit.
     void add_scheme_to(CLI::App& app);

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <optional>
 #include <string>
 
 #include "refine_arguments.h"
+#include "subvol/reduce.h"
 #include "subvol/sample.h"
 
 namespace CLI {
@@ -14,26 +14,17 @@ class Option;
 
 namespace subvol::cli {
 
-/// The options of sampling a mesh into radial basis functions, for `points` and `render --method splat`.
+/// The options of sampling a mesh into radial basis functions, for all verbs that make kernels.
 struct SampleArguments {
-    int per_edge = 1;
-    bool centers = false;
-    double spacing_world = 0;
+    SampleOptions sampling{};
+    ReduceOptions reduction{.rmse = 0};  // > 0: as few kernels as this error needs, instead of samples at a spacing
     double spacing_voxels = 0;
-    double tolerance = 0;
     std::string footprint;  // a camera
     std::string footprint_size = "512x512";
-    std::string correction = "second";
-    std::string values = "scheme";
-    std::string kernel;        // a name or JSON; empty: the compact one
-    std::string value_kernel;  // the same; empty: the paper's BC spline
-    std::string threshold;     // a number; empty: the transfer function decides
-    double reduce_rmse = 0;    // > 0: as few kernels as this error needs, instead of samples at a spacing
-    bool move_kernels = false;
+    std::string threshold;  // a number; empty: the transfer function decides
 
     void add_to(CLI::App& app);
 
-    /// throws: Error(InvalidInput) if a name is unknown
     [[nodiscard]] SampleOptions options(const Box& box, const RefineOptions& refinement) const;
 
     /// Whether --threshold was given, with a number or without.
@@ -45,7 +36,7 @@ private:
     CLI::Option* threshold_option_ = nullptr;
 };
 
-/// The kernel of a name or of JSON; `fallback` names the kernel of an empty text.
-[[nodiscard]] Kernel kernel_from(const std::string& text, const char* fallback);
+/// A distance in units of 1/200 of the longest side of a box, in world units.
+[[nodiscard]] double world_of_voxels(double voxels, const Box& box);
 
 }  // namespace subvol::cli

@@ -21,10 +21,10 @@ TetRefinement::TetRefinement(RefineArguments& arguments) {
     if (!is_tet_scheme(arguments.scheme)) return;
     scheme_ = named<TetScheme>(arguments.scheme, "--scheme");
     levels_ = arguments.levels;
-    crease_angle_deg_ = arguments.crease_angle_deg.value_or(kCreaseAngleDeg);
+    crease_angle_deg_ = arguments.rules.crease_angle_deg.value_or(kCreaseAngleDeg);
     arguments.scheme = "linear";
     arguments.levels.reset();
-    arguments.crease_angle_deg.reset();
+    arguments.rules.crease_angle_deg.reset();
 }
 
 void TetRefinement::refuse_bricks(const std::string& bricks) const {

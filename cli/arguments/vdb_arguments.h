@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "subvol/rasterize.h"
+#include "subvol/vdb_grid.h"
 
 namespace CLI {
 class App;
@@ -17,8 +18,7 @@ namespace subvol::cli {
 
 /// The options of `subvol vdb`: how large voxels are, which grids are written, how, and for which frames.
 struct VdbArguments {
-    double voxel_size = 0;
-    int resolution = 200;
+    RasterizeOptions grids{};
     std::uint64_t budget_bytes = 0;
     std::string like;
 
@@ -26,13 +26,13 @@ struct VdbArguments {
     bool clamp = false;
     std::string up = "z";
     double scale = 1;
-    bool half = false, cell_numbers = false, mask = false, coverage = false, error = false;
+    bool error = false;
     LevelSetOptions level_set_asked{.name = {}};
     CLI::Option* level_set_option = nullptr;
     std::string from = "mesh";
     int per_edge = 1;
 
-    std::string compression = "blosc";
+    VdbCompression compression = VdbCompression::Blosc;
     std::size_t memory_bytes = 0;
     bool nano = false;
 

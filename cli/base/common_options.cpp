@@ -5,7 +5,9 @@
 
 #include "choices.h"
 #include "numbers.h"
+#include "options.h"
 #include "subvol/error.h"
+#include "subvol/read_options.h"
 
 namespace subvol::cli {
 
@@ -17,12 +19,12 @@ void add_mesh_options(CLI::App& app, CommonOptions& options) {
                    "what to do with tetrahedra, prisms and pyramids: split (all cells, into hexahedra), ignore, refuse")
         ->group(group)
         ->type_name("WHAT")
-        ->check(one_of({"split", "ignore", "refuse"}));
+        ->check(one_of(names_of<OtherCells>()));
     app.add_flag("--weld", options.weld, "join points of a file that are at the same place")->group(group);
-    app.add_option("--weld-distance", options.weld_distance_world, "join points of a file that are no farther apart than this")
-        ->group(group)
-        ->type_name("D")
-        ->transform(positive_number());
+    add_option(app, Option("weld-distance", options.weld_distance_world)
+                        .positive()
+                        .help("D", "join points of a file that are no farther apart than this"))
+        ->group(group);
     app.add_option(
            "--curved,--curved-tolerance", options.curved,
            "split curved hexahedra into smaller ones, to within this part T of the mesh's size from their true shape, and "
@@ -72,20 +74,18 @@ void add_common_options(CLI::App& app, CommonOptions& options, Reads reads) {
         ->type_name("EXPR")
         ->excludes(field);
     if (reads == Reads::Meshes) add_mesh_options(app, options);
-    app.add_option("--threads", options.threads, "number of threads (0: all); results do not depend on it")
-        ->group(group)
-        ->type_name("N")
-        ->transform(whole_number(0, 4096));
+    options.app = &app;
+    add_option(app, Option("threads", options.threads)
+                        .between(0, 4096)
+                        .help("N", "number of threads (0: all); results do not depend on it"))
+        ->group(group);
     app.add_flag("--json", options.json, "print one JSON object on standard output, also if there is an error")->group(group);
     app.add_flag("--quiet", options.quiet, "print nothing but errors (and the JSON object)")->group(group);
     app.add_option("--progress", options.progress, "show a progress bar on standard error: auto (on a terminal), on, off")
         ->group(group)
         ->type_name("WHEN")
         ->check(one_of({"auto", "on", "off"}));
-    app.add_option("--seed", options.seed, "seed of the random numbers that place samples")
-        ->group(group)
-        ->type_name("N")
-        ->transform(seed_number());
+    add_option(app, Option("seed", options.seed).help("N", "seed of the random numbers that place samples"))->group(group);
 }
 
 void refuse_options(const CLI::App& app, std::initializer_list<const char*> names, const std::string& reason) {
@@ -97,12 +97,13 @@ void refuse_options(const CLI::App& app, std::initializer_list<const char*> name
 
 void refuse_mesh_options(const CLI::App& app, const std::string& reason) {
     refuse_options(app, {"--density"}, reason);
-    refuse_file_options(app, reason);
+    refuse_file_options(&app, reason);
 }
 
-void refuse_file_options(const CLI::App& app, const std::string& reason) {
+void refuse_file_options(const CLI::App* app, const std::string& reason) {
+    if (app == nullptr) return;
     refuse_options(
-        app,
+        *app,
         {"--other-cells", "--curved", "--cell-values", "--step", "--time", "--blocks", "--weld", "--weld-distance", "--sharp"},
         reason);
 }

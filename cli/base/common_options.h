@@ -34,6 +34,7 @@ struct CommonOptions {
     bool quiet = false;
     std::string progress = "auto";
     std::uint64_t seed = 0;
+    const CLI::App* app = nullptr;  // which knows what was given
 };
 
 /// Of a verb that reads no mesh, --field and --density are accepted, because scripts may give them to any verb, but no help
@@ -45,8 +46,8 @@ void add_common_options(CLI::App& app, CommonOptions& options, Reads reads);
 /// throws: Error(InvalidInput) if one of `names` was given
 void refuse_options(const CLI::App& app, std::initializer_list<const char*> names, const std::string& reason);
 
-/// Refuses the options that say how the file of a mesh is read. throws: as above
-void refuse_file_options(const CLI::App& app, const std::string& reason);
+/// Refuses the options that say how the file of a mesh is read. app: null: nothing was given. throws: as above
+void refuse_file_options(const CLI::App* app, const std::string& reason);
 
 /// The same, and --density, whose expression needs a mesh.
 void refuse_mesh_options(const CLI::App& app, const std::string& reason);

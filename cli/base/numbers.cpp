@@ -2,9 +2,7 @@
 #include "numbers.h"
 
 #include <CLI/CLI.hpp>
-#include <array>
 #include <charconv>
-#include <cmath>
 #include <memory>
 
 #include "subvol/detail/number_text.h"
@@ -16,11 +14,15 @@
 namespace subvol::cli {
 namespace {
 
-constexpr double kMostNumber = 1e300;  // the difference of two is finite
-constexpr const char* kAnyNumber = "-1e+300 to 1e+300";
-
-std::string refusal(const std::string& given, const std::string& why, const std::string& range) {
-    return "'" + detail::shortened(given) + "' " + why + " (" + range + ")";
+/// Why our own check refuses a text, without the option's name, which the parser of the command line adds.
+template <class Check>
+std::string refusal_of(const Check& check) {
+    try {
+        check();
+        return {};
+    } catch (const Error& error) {
+        return error.what();
+    }
 }
 
 /// The check of a description, for an option that has none of its own.
@@ -29,14 +31,10 @@ CLI::Validator as_described(const Describe& describe, const std::string& in_manu
     const auto value = std::make_shared<Number>();
     Option option("", value.get());
     describe(option);
-    const auto check = [value, option](std::string& text) -> std::string {
-        try {
-            option.read(text, {});
-        } catch (const Error& error) {
-            return error.what();
-        }
-        text = option.text();
-        return {};
+    const auto check = [value, option](std::string& text) {
+        const std::string refusal = refusal_of([&] { option.read(text, {}); });
+        if (refusal.empty()) text = option.text();
+        return refusal;
     };
     return {check, in_manual, "number"};
 }
@@ -84,53 +82,41 @@ CLI::Validator number_or(const std::string& word, const CLI::Validator& number) 
 }
 
 CLI::Validator number_list(std::size_t count, const std::string& example) {
-    const auto check = [=](std::string& text) -> std::string {
-        std::size_t numbers = 0;
-        bool sound = true;
-        for (std::string_view rest = text; sound; ++numbers) {
-            const std::size_t comma = rest.find(',');
-            const auto number = detail::number_from(rest.substr(0, comma));
-            sound = number && std::abs(*number) <= kMostNumber;  // not if it is NaN
-            if (comma == std::string_view::npos) {
-                ++numbers;
-                break;
-            }
-            rest.remove_prefix(comma + 1);
-        }
-        if (sound && numbers == count) return {};
-        return refusal(text, count == 3 ? "is not three numbers" : ("is not " + std::to_string(count) + " numbers").c_str(),
-                       "write it as " + example);
-    };
+    const auto check = [=](std::string& text) { return refusal_of([&] { (void)parse_numbers({}, text, count, example); }); };
     return {check, "", "numbers"};
 }
 
+FrameRange parse_frames(const std::string& text) {
+    constexpr int kMostFrames = 1'000'000;
+    const auto number_in = [](std::string_view digits) {
+        int number = -1;
+        const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
+        return error == std::errc() && end == digits.data() + digits.size() ? number : -1;
+    };
+    const std::string_view all = text;
+    const std::size_t dash = all.find('-');
+    const int first = dash == std::string::npos ? 1 : number_in(all.substr(0, dash));
+    const int last = number_in(dash == std::string::npos ? all : all.substr(dash + 1));
+    const std::string given = "'" + detail::shortened(text) + "'";
+    if (first < 0 || last < first)
+        throw Error(ErrorCode::InvalidInput, given + " is not a range of frames", "--frames", "1-10, or 10 for the same");
+    if (last - first >= kMostFrames)
+        throw Error(ErrorCode::InvalidInput, given + " has too many frames", "--frames", "at most a million");
+    return {first, last};
+}
+
 CLI::Validator frame_range() {
-    const auto check = [](std::string& text) -> std::string {
-        constexpr int kMostFrames = 1'000'000;
-        const auto number_in = [](std::string_view digits) {
-            int number = -1;
-            const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
-            return error == std::errc() && end == digits.data() + digits.size() ? number : -1;
-        };
-        const std::size_t dash = text.find('-');
-        const std::string_view all = text;
-        const int first = dash == std::string::npos ? 1 : number_in(all.substr(0, dash));
-        const int last = number_in(dash == std::string::npos ? all : all.substr(dash + 1));
-        if (first < 0 || last < first) return refusal(text, "is not a range of frames", "1-10, or 10 for the same");
-        return last - first < kMostFrames ? "" : refusal(text, "has too many frames", "at most a million");
+    const auto check = [](const std::string& text) -> std::string {
+        (void)parse_frames(text);
+        return {};
     };
     return {check, "", "frames"};
 }
 
 double parse_number(const std::string& option, const std::string& value) {
-    const auto number = detail::plain_number(value);
-    if (!number) {
-        throw Error(ErrorCode::InvalidInput, "'" + detail::shortened(value) + "' is not a number", option);
-    }
-    if (std::abs(*number) > kMostNumber) {
-        throw Error(ErrorCode::InvalidInput, "'" + detail::shortened(value) + "' is out of range", option, kAnyNumber);
-    }
-    return *number;
+    double number = 0;
+    Option("", number).read(value, option);
+    return number;
 }
 
 }  // namespace subvol::cli

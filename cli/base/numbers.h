@@ -32,6 +32,18 @@ namespace subvol::cli {
 /// "500M", "1G", "1048576": in units of 1024, 1024² and so on.
 [[nodiscard]] CLI::Validator byte_count();
 
+/// The first and the last frame of a sequence.
+struct FrameRange {
+    int first = 1, last = 1;
+
+    [[nodiscard]] int count() const { return last - first + 1; }
+};
+
+/// "3-12", or "10" for 1 to 10.
+///
+/// throws: Error(InvalidInput) if it is anything else, or has more than a million frames
+[[nodiscard]] FrameRange parse_frames(const std::string& text);
+
 /// option: named in the error
 ///
 /// throws: Error(InvalidInput) if it is not a finite number

@@ -12,7 +12,6 @@
 namespace subvol::cli {
 namespace {
 
-constexpr std::string_view kOnlyWith = "only with ";
 constexpr double kMostShown = 1e9;  // a larger bound says nothing
 constexpr int kDigitsShown = 10;
 
@@ -40,16 +39,6 @@ std::string words_of(const OptionNeed& need) {
     return all;
 }
 
-void refuse_together(CLI::App& app, const std::string& name, const std::string& other) {
-    CLI::Option* const second = app.get_option_no_throw(other);
-    if (second == nullptr) return;
-    const auto check = [=](const std::string&) -> std::string {
-        if (second->count() > 0) throw Error(ErrorCode::InvalidInput, "cannot be given together with " + other, name);
-        return {};
-    };
-    app.get_option(name)->excludes(second)->check(CLI::Validator(check, "", "not with"));
-}
-
 }  // namespace
 
 CLI::Option* add_option(CLI::App& app, const Option& option) {
@@ -60,7 +49,8 @@ CLI::Option* add_option(CLI::App& app, const Option& option) {
     } else if (auto* const* list = std::get_if<std::vector<std::string>*>(&option.value)) {
         added = app.add_option(name, **list, option.sentence)->type_name(option.about);
     } else {
-        const bool has_default = !option.is_optional() && !option.text().empty() && option.text() != "0";
+        const bool said = option.sentence.find("(default") != std::string::npos;
+        const bool has_default = !said && !option.is_optional() && !option.text().empty() && option.text() != "0";
         const std::string help = option.sentence + (has_default ? " (default " + option.text() + ")" : "");
         const auto read = [option, name](const std::string& given) { option.read(given, name); };
         added = app.add_option_function<std::string>(name, read, help)->type_name(option.about)->default_str(option.text());
@@ -69,7 +59,9 @@ CLI::Option* add_option(CLI::App& app, const Option& option) {
     for (const OptionNeed& need : option.needs) {
         if (app.get_option_no_throw("--" + need.option) != nullptr) only_with(app, name, {"--" + need.option, need.words});
     }
-    for (const std::string& other : option.excludes) refuse_together(app, name, "--" + other);
+    for (const std::string& other : option.excludes) {
+        if (CLI::Option* const second = app.get_option_no_throw("--" + other); second != nullptr) added->excludes(second);
+    }
     return added;
 }
 
@@ -87,20 +79,12 @@ void only_with(CLI::App& app, const std::string& name, const OptionNeed& need) {
         return {};
     };
     CLI::Option* const option = app.get_option(name);
-    if (need.words.empty()) option->needs(other);
-    option->check(CLI::Validator(check, "", std::string(kOnlyWith) + words));
-}
-
-std::vector<std::string> needs_of(CLI::Option& option) {
-    std::vector<std::string> needs;
-    try {
-        for (int k = 0;; ++k) {
-            const std::string& name = option.get_validator(k)->get_name();
-            if (name.starts_with(kOnlyWith)) needs.push_back(name.substr(kOnlyWith.size()));
-        }
-    } catch (const CLI::OptionNotFound&) {  // there are no more validators
-        return needs;
+    if (need.words.empty()) {
+        option->needs(other);  // which the help says
+    } else {
+        option->description(option->get_description() + "; with " + words);
     }
+    option->check(CLI::Validator(check, "", "only with"));
 }
 
 }  // namespace subvol::cli

@@ -25,7 +25,4 @@ void add_options(CLI::App& app, const std::vector<Option>& options);
 /// name, need.option: with dashes before them; the other one exists already
 void only_with(CLI::App& app, const std::string& name, const OptionNeed& need);
 
-/// What `only_with` was told about an option, as "--values paper".
-[[nodiscard]] std::vector<std::string> needs_of(CLI::Option& option);
-
 }  // namespace subvol::cli

@@ -6,6 +6,7 @@
 
 #include "subvol/detail/near_name.h"
 #include "subvol/detail/number_text.h"
+#include "subvol/detail/printable.h"
 #include "subvol/error.h"
 
 namespace subvol::cli {
@@ -17,16 +18,7 @@ std::string join(const std::vector<std::string>& parts) {
 }
 
 Vec3 parse_vector(const std::string& option, const std::string& value) {
-    std::vector<double> numbers;
-    for (std::string_view rest = value; numbers.size() < 4;) {
-        const std::size_t comma = rest.find(',');
-        numbers.push_back(detail::number_from(rest.substr(0, comma)).value_or(NAN));
-        if (comma == std::string_view::npos) break;
-        rest.remove_prefix(comma + 1);
-    }
-    if (numbers.size() != 3 || !std::ranges::all_of(numbers, [](double x) { return std::isfinite(x); })) {
-        throw Error(ErrorCode::InvalidInput, "'" + value + "' is not three numbers", option, "write it as 1,2,3");
-    }
+    const std::vector<double> numbers = parse_numbers(option, value, 3, "1,2,3");
     return {numbers[0], numbers[1], numbers[2]};
 }
 
@@ -39,11 +31,12 @@ std::vector<double> parse_numbers(const std::string& option, const std::string& 
         if (comma == std::string_view::npos) break;
         rest.remove_prefix(comma + 1);
     }
-    bool sound = numbers.size() == count;
-    for (const double number : numbers) sound = sound && std::isfinite(number);
-    if (!sound) {
-        throw Error(ErrorCode::InvalidInput, text("'", value, "' is not ", count, " numbers"), option,
-                    "write it as " + example);
+    constexpr double kMostNumber = 1e300;                                                 // the difference of two is finite
+    const auto is_sound = [](double number) { return std::abs(number) <= kMostNumber; };  // not if it is NaN
+    if (numbers.size() != count || !std::ranges::all_of(numbers, is_sound)) {
+        throw Error(ErrorCode::InvalidInput,
+                    text("'", detail::shortened(value), "' is not ", count == 3 ? "three" : std::to_string(count), " numbers"),
+                    option, "write it as " + example);
     }
     return numbers;
 }

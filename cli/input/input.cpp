@@ -57,28 +57,9 @@ std::optional<double> curved_tolerance(const CommonOptions& options) {
     return tolerance;
 }
 
-/// Refuses options that change how a file is read, which have no effect on a model.
-void refuse_of_files(const CommonOptions& options) {
-    const CommonOptions unset;
-    const char* given = options.weld                               ? "--weld"
-                        : options.weld_distance_world              ? "--weld-distance"
-                        : options.other_cells != unset.other_cells ? "--other-cells"
-                        : options.curved != unset.curved           ? "--curved"
-                        : options.cell_values != unset.cell_values ? "--cell-values"
-                                                                   : nullptr;
-    if (given != nullptr) throw Error(ErrorCode::InvalidInput, "says how a file is read; this is a model", given);
-}
-
 /// For what is not done brick by brick.
 HexMesh mesh_of_bricks(const std::string& input, const CommonOptions& options, Progress* progress, Facts& facts) {
-    const CommonOptions unset;
-    const bool of_files = options.weld || options.weld_distance_world || !options.sharp.empty() || options.step ||
-                          options.time || !options.blocks.empty() || options.other_cells != unset.other_cells ||
-                          options.curved != unset.curved || options.cell_values != unset.cell_values;
-    if (of_files) {
-        throw Error(ErrorCode::InvalidInput, "is a folder of bricks: how a file is read is settled when it is split", input,
-                    "no --weld, --weld-distance, --sharp, --step, --time, --blocks, --other-cells, --curved and --cell-values");
-    }
+    refuse_file_options(options.app, "is settled when a mesh is split; this is a folder of bricks");
     const Bricks bricks = open_bricks(input);
     facts.warn(text("all ", counted(bricks.bricks.size(), "brick"), " (", counted(bricks.cells, "cell"),
                     ") are held in memory together: this is not done brick by brick"));
@@ -115,7 +96,7 @@ WithFacts<ReadResult> read_input(const std::string& input, const CommonOptions& 
         return {std::move(read), std::move(facts)};
     }
     const bool model = is_model(input);
-    if (model) refuse_of_files(options);
+    if (model) refuse_file_options(options.app, "says how a file is read; this is a model");
     if (model && !options.sharp.empty()) throw Error(ErrorCode::InvalidInput, "a model has no groups", "--sharp");
     if (model && (options.step || options.time)) throw Error(ErrorCode::InvalidInput, "a model has no steps", "--step, --time");
     if (model && !options.blocks.empty()) throw Error(ErrorCode::InvalidInput, "a model has no blocks", "--blocks");

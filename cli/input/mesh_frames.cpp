@@ -2,7 +2,6 @@
 #include "mesh_frames.h"
 
 #include <algorithm>
-#include <charconv>
 #include <filesystem>
 
 #include "subvol/error.h"
@@ -11,13 +10,6 @@
 
 namespace subvol::cli {
 namespace {
-
-std::optional<int> frame_number(std::string_view text) {
-    int number = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-    if (error != std::errc() || end != text.data() + text.size() || number < 0) return std::nullopt;
-    return number;
-}
 
 bool same_fields(const HexMesh& a, const HexMesh& b) {
     return std::equal(a.attributes.begin(), a.attributes.end(), b.attributes.begin(), b.attributes.end(),
@@ -29,17 +21,6 @@ bool same_fields(const HexMesh& a, const HexMesh& b) {
 FrameRange frames_of(const Share& share, const FrameRange& all) {
     const auto [begin, end] = share.range(static_cast<std::size_t>(all.count()));
     return {all.first + static_cast<int>(begin), all.first + static_cast<int>(end) - 1};
-}
-
-FrameRange parse_frames(const std::string& text) {
-    const std::string_view all = text;
-    const std::size_t dash = all.find('-');
-    const auto first = dash == std::string::npos ? std::optional(1) : frame_number(all.substr(0, dash));
-    const auto last = frame_number(dash == std::string::npos ? all : all.substr(dash + 1));
-    if (!first || !last || *last < *first) {
-        throw Error(ErrorCode::InvalidInput, "'" + text + "' is not a range of frames", "--frames", "1-10, or 10 for the same");
-    }
-    return {*first, *last};
 }
 
 bool has_number(const std::string& pattern) {

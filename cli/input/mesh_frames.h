@@ -7,25 +7,14 @@
 #include <string>
 #include <vector>
 
+#include "numbers.h"
 #include "share.h"
 #include "subvol/hex_mesh.h"
 
 namespace subvol::cli {
 
-/// The first and the last frame of a sequence.
-struct FrameRange {
-    int first = 1, last = 1;
-
-    [[nodiscard]] int count() const { return last - first + 1; }
-};
-
 /// The frames of a share; `last` is before `first` if there are none.
 [[nodiscard]] FrameRange frames_of(const Share& share, const FrameRange& all);
-
-/// "3-12", or "10" for 1 to 10.
-///
-/// throws: Error(InvalidInput) if it is anything else
-[[nodiscard]] FrameRange parse_frames(const std::string& text);
 
 /// Whether a file's name has a place for the number of a frame: one or more #.
 [[nodiscard]] bool has_number(const std::string& pattern);

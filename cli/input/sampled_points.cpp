@@ -40,11 +40,10 @@ WithFacts<RbfVolume> without_invisible(RbfVolume volume, const SampleArguments& 
 }
 
 RbfVolume reduce_reported(const HexMesh& mesh, const SampleArguments& arguments, const LimitOptions& limit, Facts& facts) {
-    const ReduceOptions options{.rmse = arguments.reduce_rmse,
-                                .kernel = kernel_from(arguments.kernel, "compact"),
-                                .move = arguments.move_kernels,
-                                .limit = limit,
-                                .progress = limit.progress};
+    ReduceOptions options = arguments.reduction;
+    options.kernel = arguments.sampling.kernel;
+    options.limit = limit;
+    options.progress = limit.progress;
     ReduceResult reduced = facts.timed(limit.progress, "reduce", [&] { return reduce_rbf(mesh, {}, options); });
     facts["points_before"] = mesh.points.size();
     facts["field_rmse"] = reduced.report.validation.rmse;
@@ -52,7 +51,7 @@ RbfVolume reduce_reported(const HexMesh& mesh, const SampleArguments& arguments,
         facts.warn("these are more kernels than control points; --per-edge 1 has fewer, perhaps with no larger error");
     }
     if (!reduced.report.reached) {
-        facts.warn(text("the field's error is ", reduced.report.validation.rmse, ", not ", arguments.reduce_rmse,
+        facts.warn(text("the field's error is ", reduced.report.validation.rmse, ", not ", arguments.reduction.rmse,
                         ": the samples of the volume are too far apart for more kernels"));
     }
     return std::move(reduced.volume);
@@ -84,7 +83,7 @@ WithFacts<RbfVolume> sample_reported(HexMesh mesh, const SampleArguments& argume
         options.boundary_levels = 0;
     }
     RbfVolume all;
-    if (arguments.reduce_rmse > 0) {
+    if (arguments.reduction.rmse > 0) {
         const LimitOptions limit{
             .scheme = options.scheme, .tolerance = ReduceOptions{}.limit.tolerance, .progress = options.progress};
         all = reduce_reported(mesh, arguments, limit, facts);
@@ -96,7 +95,7 @@ WithFacts<RbfVolume> sample_reported(HexMesh mesh, const SampleArguments& argume
 
 void refuse_other_places(const SampleArguments& arguments, const SampleOptions& options) {
     const bool placed = options.per_edge != 1 || options.centers || options.spacing_world > 0 || options.footprint ||
-                        options.tolerance > 0 || arguments.reduce_rmse > 0 || options.values != ValueRule::Scheme;
+                        options.tolerance > 0 || arguments.reduction.rmse > 0 || options.values != ValueRule::Scheme;
     if (placed) {
         throw Error(ErrorCode::InvalidInput, "the schemes of tetrahedra have one kernel at each point of a level", "--scheme",
                     "--levels makes more of them");

@@ -58,25 +58,25 @@ WithFacts<HexMesh> MeshGrids::load(const std::string& input, const CommonOptions
 
 RasterizeOptions MeshGrids::options(Progress* progress) const {
     return {.like = like_grids_.empty() ? nullptr : &like_grids_.front(),
-            .half = asked_.half,
-            .cell_numbers = asked_.cell_numbers,
-            .mask = asked_.mask,
-            .coverage = asked_.coverage,
+            .half = asked_.grids.half,
+            .cell_numbers = asked_.grids.cell_numbers,
+            .mask = asked_.grids.mask,
+            .coverage = asked_.grids.coverage,
             .metadata = {{"subvol_input", input_}, {"subvol_from", asked_.from}, {"subvol_version", SUBVOL_VERSION}},
             .progress = progress};
 }
 
 double MeshGrids::voxel_size_world(const HexMesh& mesh) const {
     if (!like_grids_.empty()) return like_grids_.front().report().voxel_size_world;
-    if (asked_.voxel_size > 0) return asked_.voxel_size;
+    if (asked_.grids.voxel_size_world > 0) return asked_.grids.voxel_size_world;
     if (asked_.budget_bytes > 0) {
-        double channels = asked_.cell_numbers ? 1 : 0;
+        double channels = asked_.grids.cell_numbers ? 1 : 0;
         for (const Attribute& attribute : mesh.attributes) channels += attribute.channels;
         return std::cbrt(std::abs(measure_cells(mesh).volume) * kBytesOfChannel * channels /
                          static_cast<double>(asked_.budget_bytes));
     }
     const Vec3 size = bounds(mesh).size();
-    return std::max({size.x, size.y, size.z}) / asked_.resolution;
+    return std::max({size.x, size.y, size.z}) / asked_.grids.resolution;
 }
 
 WithFacts<RasterizeOptions> MeshGrids::set_up(const HexMesh& mesh, Progress* progress) {
@@ -128,7 +128,7 @@ WithFacts<std::vector<GridErrorFigures>> MeshGrids::add_errors(const HexMesh& me
         if (field == nullptr || field->channels != 1) continue;
         GridError error = result.facts.timed(options.progress, "error", [&] {
             return vdb().grid_error(grids[g], mesh, field->name,
-                              {.scheme = options.refine.scheme, .half = asked_.half, .progress = options.progress});
+                              {.scheme = options.refine.scheme, .half = asked_.grids.half, .progress = options.progress});
         });
         result.value.push_back({g, error.max, error.rms});
         outside = std::max(outside, error.outside);

@@ -190,6 +190,8 @@ int run(CLI::App& program, std::vector<std::string> arguments) {
         throw;
     } catch (const CLI::ParseError& error) {
         throw subvol::cli::explained(program, error);
+    } catch (const Error& error) {
+        throw subvol::cli::explained(program, error);
     }
     for (const auto& verb : verbs) {
         if (!verb->chosen()) continue;

@@ -3,12 +3,11 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <cmath>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "manual.h"
 #include "subvol/detail/near_name.h"
-#include "subvol/detail/number_text.h"
 #include "subvol/detail/printable.h"
 #include "text.h"
 
@@ -75,7 +74,7 @@ std::string usage_name(const CLI::App& verb, const std::string& name) {
     return name;
 }
 
-/// "OPTION: words (allowed)" in its parts.
+/// "OPTION: words (allowed)", which our own checks of values say, in its parts.
 Error of_an_option(const std::string& message) {
     const std::size_t colon = message.find(": "), open = message.rfind(" (");
     if (colon == std::string::npos) return {ErrorCode::InvalidInput, message};
@@ -86,19 +85,20 @@ Error of_an_option(const std::string& message) {
             message.substr(open + 2, message.size() - open - 3)};
 }
 
-/// "--levels = abc", or "-1" for one that must not be negative, of a value that is no number.
-Error of_a_value(const std::string& message) {
-    const std::string begin = "Could not convert: ";
-    const std::size_t equals = message.find(" = ");
-    if (!message.starts_with(begin) || equals == std::string::npos) return {ErrorCode::InvalidInput, message};
-    const std::string value = message.substr(equals + 3);
-    const auto number = detail::number_from(value);
-    const bool whole = number && *number == std::floor(*number);
-    return {ErrorCode::InvalidInput,
-            detail::in_quotes(value) + (!number ? " is not a number"
-                                        : whole ? " is out of range"
-                                                : " is not a whole number"),
-            message.substr(begin.size(), equals - begin.size())};
+/// Options that need or exclude each other, as the command was given them.
+std::optional<Error> conflict_of(const CLI::App& verb) {
+    for (const CLI::Option* option : verb.get_options()) {
+        if (option->count() == 0) continue;
+        for (const CLI::Option* other : option->get_needs()) {
+            if (other->count() == 0)
+                return Error(ErrorCode::InvalidInput, "has no effect without " + other->get_name(), option->get_name());
+        }
+        for (const CLI::Option* other : option->get_excludes()) {
+            if (other->count() > 0)
+                return Error(ErrorCode::InvalidInput, "cannot be given together with " + other->get_name(), option->get_name());
+        }
+    }
+    return std::nullopt;
 }
 
 }  // namespace
@@ -126,14 +126,22 @@ Error explained(const CLI::App& program, const CLI::ParseError& error) {
     } catch (const Error& extra) {
         return extra;
     }
-    const auto* required = dynamic_cast<const CLI::RequiredError*>(&error);
-    if (required != nullptr && message.ends_with(" is required")) {
-        const std::string name = usage_name(*verb, message.substr(0, message.find(' ')));
-        return {ErrorCode::InvalidInput, name + " is needed", verb->get_name(), help_hint(verb)};
+    const bool missing = dynamic_cast<const CLI::RequiredError*>(&error) != nullptr;
+    for (const CLI::Option* option : verb->get_options()) {
+        if (!missing || !option->get_required() || option->count() > 0) continue;
+        return {ErrorCode::InvalidInput, usage_name(*verb, option->get_name()) + " is needed", verb->get_name(),
+                help_hint(verb)};
     }
+    const bool in_conflict = dynamic_cast<const CLI::RequiresError*>(&error) != nullptr ||
+                             dynamic_cast<const CLI::ExcludesError*>(&error) != nullptr;
+    if (const auto conflict = in_conflict ? conflict_of(*verb) : std::nullopt) return *conflict;
     if (dynamic_cast<const CLI::ValidationError*>(&error) != nullptr) return of_an_option(message);
-    if (dynamic_cast<const CLI::ConversionError*>(&error) != nullptr) return of_a_value(message);
     return {ErrorCode::InvalidInput, message, {}, help_hint(verb)};
+}
+
+Error explained(const CLI::App& program, const Error& error) {
+    if (const CLI::App* verb = parsed_verb(program)) check_extras(program, *verb);
+    return error;
 }
 
 std::string error_json(const Error& error, int code) {

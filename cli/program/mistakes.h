@@ -21,6 +21,9 @@ void check_verb(const CLI::App& program, const std::vector<std::string>& argumen
 /// What the parser found wrong, as a sentence that names the option, what would be right, and the verb's own help.
 [[nodiscard]] Error explained(const CLI::App& program, const CLI::ParseError& error);
 
+/// The same of an error of our own: an unknown option on the line says more than what it leaves wrong.
+[[nodiscard]] Error explained(const CLI::App& program, const Error& error);
+
 /// An error as the JSON object that --json prints: {"error": {code, what, where, allowed}}. code: the program's exit code
 [[nodiscard]] std::string error_json(const Error& error, int code);
 

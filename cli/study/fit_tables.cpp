@@ -1,15 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "fit_tables.h"
 
+#include <algorithm>
 #include <cmath>
 #include <iomanip>
 
-#include "kernel_shapes.h"
 #include "text.h"
 
 namespace subvol::cli {
 
 namespace {
+
+const std::vector<NamedShape> kSums{{"two_gaussians", KernelShape::GaussianSum, 2},
+                                    {"three_gaussians", KernelShape::GaussianSum, 3}};
 
 /// A row of the paper's table 1.
 struct PaperRow {
@@ -112,6 +115,25 @@ void add_kernel(Report& report, const std::string& name, const Json& parameters,
 }
 
 }  // namespace
+
+std::vector<std::string> shape_names() {
+    std::vector<std::string> names = names_of<KernelShape>();
+    auto place = std::ranges::find(names, name_of(KernelShape::GaussianSum));
+    for (const NamedShape& sum : kSums) place = names.insert(place, sum.name) + 1;
+    return names;
+}
+
+std::optional<NamedShape> shape_named(const std::string& name) {
+    const auto sum = std::ranges::find(kSums, name, &NamedShape::name);
+    if (sum != kSums.end()) return *sum;
+    const auto shape = find_named<KernelShape>(name);
+    return shape ? std::optional(NamedShape{name, *shape}) : std::nullopt;
+}
+
+KernelFit fit_shape(const BasisFunction& basis, const NamedShape& named, FitOptions options) {
+    options.terms = named.terms.value_or(options.terms);
+    return fit_kernel(basis, named.shape, options);
+}
 
 Json to_json(const FitErrors& errors) {
     return {{"mse", errors.mse}, {"rmse", errors.rmse}, {"mae", errors.mae}, {"max", errors.max}};

@@ -6,7 +6,6 @@
 #include <map>
 
 #include "fit_tables.h"
-#include "kernel_shapes.h"
 #include "study_work.h"
 #include "subvol/error.h"
 #include "subvol/fit_kernel.h"

@@ -27,13 +27,13 @@ Kernel study_kernel(const std::string& text) {
 }
 
 SampleOptions study_sampling(const StudyCase& of, const HexMesh& mesh) {
-    SampleArguments arguments;
-    arguments.per_edge = std::max(of.whole("per_edge"), 1);
-    arguments.spacing_voxels = of.number("spacing_voxels");
-    arguments.centers = of.flag("centers");
-    if (of.has("correction")) arguments.correction = of.text("correction");
-    if (of.has("kernel")) arguments.kernel = of.text("kernel");
-    SampleOptions options = arguments.options(bounds(mesh), {});
+    SampleOptions options{.per_edge = std::max(of.whole("per_edge"), 1),
+                          .spacing_world = world_of_voxels(of.number("spacing_voxels"), bounds(mesh)),
+                          .centers = of.flag("centers")};
+    for (const Option& option : options_of(options)) {
+        if ((option.name == "correction" || option.name == "kernel") && of.has(option.key()))
+            option.read(of.text(option.key()), option.key());
+    }
     if (of.has("boundary_levels")) options.boundary_levels = of.whole("boundary_levels");
     return options;
 }

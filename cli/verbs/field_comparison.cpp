@@ -4,7 +4,7 @@
 #include <CLI/CLI.hpp>
 
 #include "field_input.h"
-#include "numbers.h"
+#include "options.h"
 #include "subvol/error.h"
 #include "subvol/field_metrics.h"
 #include "subvol/field_places.h"
@@ -14,24 +14,23 @@ namespace subvol::cli {
 
 void FieldComparison::add_to(CLI::App& app) {
     const std::string group = "Fields";
-    app.add_option("--samples", samples, "number of random places in the second field's domain (default 100000; see --seed)")
-        ->group(group)
-        ->type_name("N")
-        ->transform(whole_number(1, 100'000'000));
-    app.add_option("--coverage", least_coverage,
-                   "the least share of these places at which the first field must have a value, too, for any demand to be met "
-                   "(default 0.99)")
-        ->group(group)
-        ->type_name("SHARE")
-        ->transform(number_in(0.0, 1.0));
-    app.add_option("--iso", iso, "also the Hausdorff distance between the isosurfaces of this value (hausdorff)")
-        ->group(group)
-        ->type_name("V")
-        ->transform(any_number());
-    app.add_option("--resolution", resolution, "cells along the longest side for mass and isosurfaces (default 128)")
-        ->group(group)
-        ->type_name("N")
-        ->transform(whole_number(2, 2000));
+    add_option(app, Option("samples", samples)
+                        .between(1, 1e8)
+                        .help("N", "number of random places in the second field's domain; see --seed"))
+        ->group(group);
+    add_option(app, Option("coverage", least_coverage)
+                        .between(0, 1)
+                        .help("SHARE",
+                              "the least share of these places at which the first field must have a value, too, for any demand "
+                              "to be met"))
+        ->group(group);
+    add_option(app,
+               Option("iso", iso).help("V", "also the Hausdorff distance between the isosurfaces of this value (hausdorff)"))
+        ->group(group);
+    add_option(
+        app,
+        Option("resolution", resolution).between(2, 2000).help("N", "cells along the longest side for mass and isosurfaces"))
+        ->group(group);
     refine.add_to(app, "compare meshes at this level; omitted: at a level within tolerance of the limit");
     for (const char* name : {"--scheme", "--tension", "--levels", "--crease-angle"}) app.get_option(name)->group(group);
 }

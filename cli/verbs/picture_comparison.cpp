@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <array>
 
-#include "choices.h"
 #include "input.h"
 #include "numbers.h"
+#include "options.h"
 #include "outputs.h"
 #include "subvol/error.h"
 #include "subvol/image_io.h"
@@ -21,6 +21,7 @@
 namespace subvol::cli {
 namespace {
 
+const std::vector<std::string> kHeatmaps{"abs", "flip", "ssim"};
 const std::vector<std::string> kDifferences{"mse", "rmse", "mae", "max", "psnr"};
 
 void put_differences(const ImageMetrics& m, const std::string& prefix, Figures& figures) {
@@ -57,19 +58,20 @@ MetricMap dissimilarity(MetricMap map) {
 void PictureComparison::add_to(CLI::App& app) {
     const std::string group = "Pictures";
     app.add_option("--heatmap", heatmap, "write a picture of the differences (.png, .exr)")->group(group)->type_name("FILE");
-    app.add_option("--heatmap-of", heatmap_of,
-                   "what it shows: abs (the largest channel's difference; default), flip, ssim (1 - ssim)")
-        ->group(group)
-        ->type_name("METRIC")
-        ->check(offered({"abs", "flip", "ssim"}));
-    app.add_option("--heatmap-scale", heatmap_scale, "the value of the last colour (default: the largest value)")
-        ->group(group)
-        ->type_name("V")
-        ->transform(positive_number());
-    app.add_option("--ppd", pixels_per_degree, "flip: pixels per degree of the viewer's sight (default 67.02)")
-        ->group(group)
-        ->type_name("N")
-        ->transform(number_in(1.0, 1000.0));
+    add_option(app, Option("heatmap-of", heatmap_of)
+                        .offer(kHeatmaps)
+                        .help("METRIC", "what it shows: abs (the largest channel's difference), flip, ssim (1 - ssim)")
+                        .only_with("heatmap"))
+        ->group(group);
+    add_option(app, Option("heatmap-scale", heatmap_scale)
+                        .positive()
+                        .help("V", "the value of the last colour (default: the largest value)")
+                        .only_with("heatmap"))
+        ->group(group);
+    add_option(app, Option("ppd", pixels_per_degree)
+                        .between(1, 1000)
+                        .help("N", "flip: pixels per degree of the viewer's sight (default 67.02)"))
+        ->group(group);
     app.add_flag("--hdr", hdr, "also HDR-FLIP (hdr_flip), over all exposures that the second picture needs")->group(group);
     app.add_flag("--oiio", oiio, "also the figures of OpenImageIO's idiff: warnings, failures, Yee's perceptual failures")
         ->group(group);
@@ -78,20 +80,20 @@ void PictureComparison::add_to(CLI::App& app) {
            "also the relative error of the summed optical depth -ln(1-alpha), which with --ortho is the volume's integral "
            "(optical_depth_error)")
         ->group(group);
-    app.add_option("--edge-band", edge_band_px,
-                   "measure separately within N pixels of the second picture's silhouette, and inside it")
-        ->group(group)
-        ->type_name("N")
-        ->transform(whole_number(1, 1000));
+    add_option(app, Option("edge-band", edge_band_px)
+                        .between(1, 1000)
+                        .help("N", "measure separately within N pixels of the second picture's silhouette, and inside it"))
+        ->group(group);
     app.add_option("--background", background,
                    "with --edge-band: the background of pictures without alpha (linear RGB; default black)")
         ->group(group)
         ->type_name("R,G,B")
         ->transform(number_list(3, "0,0,0"));
+    only_with(app, "--background", {"--edge-band"});
 }
 
 void PictureComparison::check() const {
-    check_choice("--heatmap-of", heatmap_of, {"abs", "flip", "ssim"});
+    check_choice("--heatmap-of", heatmap_of, kHeatmaps);
     (void)parse_vector("--background", background);
     if (!heatmap.empty()) check_output(heatmap, {".png", ".exr"});
 }

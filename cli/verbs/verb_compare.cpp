@@ -60,7 +60,7 @@ public:
         if (a != InputKind::Mesh && b != InputKind::Mesh) {
             refuse_mesh_options(app(), text("needs a mesh; these are ", pictures ? "pictures" : "points or grids"));
         }
-        if (is_model(a_) && is_model(b_)) refuse_file_options(app(), "says how a file is read; these are models");
+        if (is_model(a_) && is_model(b_)) refuse_file_options(&app(), "says how a file is read; these are models");
         if (pictures) refuse_options(app(), {"--field"}, "is for fields; these are pictures");
         pictures_.check();
         std::vector<Demand> demands;

@@ -6,7 +6,7 @@
 #include <iomanip>
 
 #include "input.h"
-#include "numbers.h"
+#include "options.h"
 #include "outputs.h"
 #include "picture_arguments.h"
 #include "subvol/detail/atomic_file.h"
@@ -95,10 +95,9 @@ public:
             .add_option("-o,--output", folder_, "the folder for the files (created if it does not exist)")
             ->type_name("DIR")
             ->required();
-        app()
-            .add_option("--resolution", resolution_, "cells along a model's main direction (default: the model's own)")
-            ->type_name("N")
-            ->transform(whole_number(2, 512));
+        add_option(app(), Option("resolution", resolution_)
+                              .between(2, 512)
+                              .help("N", "cells along a model's main direction (default: the model's own)"));
         app().add_option("--size", size_, "size of the pictures (default 512x512)")->type_name("WxH");
     }
 

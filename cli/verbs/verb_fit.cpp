@@ -2,11 +2,8 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 
-#include "choices.h"
 #include "fit_tables.h"
-#include "kernel_shapes.h"
-#include "numbers.h"
-#include "refine_arguments.h"
+#include "options.h"
 #include "subvol/detail/near_name.h"
 #include "subvol/error.h"
 #include "text.h"
@@ -37,44 +34,26 @@ public:
                Reads::NoMesh) {
         app().add_flag("--table1", table1_, "table 1 of the EuroVis 2007 paper: its figures, ours, and the difference");
         app().add_flag("--kernels", kernels_, "fit every kind of kernel: parameters and errors");
-        app()
-            .add_option("--kernel", kernel_,
-                        text("fit this one: ", join(kernel_names()),
-                             " (the last three have nothing to fit); or the errors of a "
-                             "kernel given as JSON"))
-            ->type_name("NAME|JSON")
-            ->check(offered(kernel_names()));
-        app()
-            .add_option("--scheme", scheme_, "mcq (the default), cc, bsxw, linear")
-            ->type_name("NAME")
-            ->check(offered(names_of<Scheme>()));
-        app()
-            .add_option("--level", level_, "samples of the basis function: 2^L per unit (default 5)")
-            ->type_name("L")
-            ->transform(whole_number(0, 6));
-        app()
-            .add_option("--extent", options_.extent, "the distance at which bc and cardinal end (default 2)")
-            ->type_name("R")
-            ->transform(number_in(1e-3, 3.0));
-        app()
-            .add_option("--terms", options_.terms, "number of gaussians in a sum, 1 to 6 (default 2)")
-            ->type_name("N")
-            ->transform(whole_number(1, 6));
-        app().add_flag("--sign-slip", options_.sign_slip,
-                       "fit bc with the sign error of the paper's fits in the inner cubic coefficient");
+        add_option(app(), Option("kernel", kernel_)
+                              .offer(kernel_names())
+                              .help("NAME|JSON", text("fit this one: ", join(kernel_names()),
+                                                      " (the last three have nothing to fit); or the errors of a kernel given "
+                                                      "as JSON")));
+        add_option(app(), Option("scheme", scheme_).help("NAME", "mcq, cc, bsxw, linear"));
+        add_option(app(), Option("level", level_).between(0, 6).help("L", "samples of the basis function: 2^L per unit"));
+        add_options(app(), options_of(options_));
     }
 
     int run(Report& report) override {
         if (!table1_ && !kernels_ && kernel_.empty()) {
             throw Error(ErrorCode::InvalidInput, "nothing was chosen", "fit", "--table1, --kernels or --kernel NAME");
         }
-        if (table1_ && (scheme_ != "mcq" || level_ != kPaperLevel)) {
+        if (table1_ && (scheme_ != Scheme::Mcq || level_ != kPaperLevel)) {
             throw Error(ErrorCode::InvalidInput, "the paper's table is for mcq at level 5", "--table1",
                         "leave out --scheme and --level");
         }
-        const Scheme scheme = scheme_named(scheme_);
-        const BasisFunction basis = report.timed("sample", [&] { return sample_basis_function(scheme, level_); });
-        report["scheme"] = scheme_;
+        const BasisFunction basis = report.timed("sample", [&] { return sample_basis_function(scheme_, level_); });
+        report["scheme"] = name_of(scheme_);
         report["level"] = level_;
         if (table1_) report_table1(basis, report);
         if (kernels_) report_kernels(basis, report);
@@ -108,7 +87,7 @@ private:
     bool table1_ = false;
     bool kernels_ = false;
     std::string kernel_;
-    std::string scheme_ = "mcq";
+    Scheme scheme_ = Scheme::Mcq;
     int level_ = kPaperLevel;
     FitOptions options_;
 };

@@ -9,6 +9,7 @@
 #include "input.h"
 #include "mesh_figures.h"
 #include "numbers.h"
+#include "options.h"
 #include "part_note.h"
 #include "points_input.h"
 #include "share.h"
@@ -58,17 +59,12 @@ public:
             .add_option("--scheme", refine_.scheme, "figures of the refined tetrahedra, too: of tetoct or boxspline")
             ->type_name("NAME")
             ->check(offered(tet_schemes()));
-        app()
-            .add_option("--levels", refine_.levels, "of --scheme (default 2)")
-            ->type_name("L")
-            ->transform(whole_number(0, 8))
-            ->needs("--scheme");
-        app()
-            .add_option("--crease-angle", refine_.crease_angle_deg,
-                        "of --scheme: boundary edges that bend by more are sharp (default 60)")
-            ->type_name("DEG")
-            ->transform(number_in(0.0, 180.0))
-            ->needs("--scheme");
+        add_option(app(),
+                   Option("levels", refine_.levels).between(0, 8).help("L", "of --scheme (default 2)").only_with("scheme"));
+        add_option(app(), Option("crease-angle", refine_.rules.crease_angle_deg)
+                              .between(0, 180)
+                              .help("DEG", "of --scheme: boundary edges that bend by more are sharp (default 60)")
+                              .only_with("scheme"));
         share_.add_to(app(), "the figures of some cells of a mesh, with --json");
     }
 

@@ -3,7 +3,7 @@
 #include <iomanip>
 
 #include "input.h"
-#include "numbers.h"
+#include "options.h"
 #include "outputs.h"
 #include "subvol/error.h"
 #include "subvol/mesh_io.h"
@@ -23,10 +23,7 @@ public:
                Reads::NoMesh) {
         app().add_option("NAME", name_, "the model's name");
         app().add_option("-o,--output", output_, "the mesh to write (.vtu with its field, .mesh without)")->type_name("FILE");
-        app()
-            .add_option("--resolution", resolution_, "cells along the main direction, 2..512")
-            ->type_name("N")
-            ->transform(whole_number(2, 512));
+        add_option(app(), Option("resolution", resolution_).between(2, 512).help("N", "cells along the main direction"));
         app().add_flag("--list", list_, "list the models");
     }
 

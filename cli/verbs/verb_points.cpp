@@ -4,11 +4,11 @@
 #include <optional>
 
 #include "bricks_input.h"
-#include "choices.h"
 #include "grid_fields.h"
 #include "grid_input.h"
 #include "input.h"
 #include "numbers.h"
+#include "options.h"
 #include "outputs.h"
 #include "part_kinds.h"
 #include "picture_arguments.h"
@@ -77,37 +77,32 @@ public:
             .add_option("-o,--output", output_, "the points to write (.ply, .vtp, .svk, .vdb; .svw with --wavelet-tolerance)")
             ->type_name("FILE")
             ->required();
-        app().add_flag("--ascii", ascii_, ".ply: write text instead of binary numbers");
-        app().add_flag("--splats", splats_,
-                       ".ply: also for viewers of Gaussian splats; the boundary is then in a file beside it");
-        app()
-            .add_option("--up", up_, "with --splats: the axis that these viewers show at the top: x, y or z (default z)")
-            ->type_name("AXIS")
-            ->check(offered(subvol::names_of<UpAxis>()));
+        add_options(app(), options_of(written_));
         sample_.add_to(app());
-        app().add_option("--tf", transfer_function_, "the colour map for --threshold, as for `render`")->type_name("FILE|NAME");
+        add_option(app(), Option("tf", transfer_function_)
+                              .help("FILE|NAME", "the colour map for --threshold, as for `render`")
+                              .only_with("threshold"));
         app().add_flag("--clamp", clamp_, "keep the kernels' values within the field's range: interpolating schemes overshoot");
         app().add_flag("--error", error_,
                        "also write a channel NAME_error: about how far the sum of kernels is from the limit near each");
-        app()
-            .add_option("--merge", merge_error_,
-                        "merge neighbouring kernels as long as the values at their centres change by at most ERROR, in the "
-                        "field's unit: few kernels where the field is smooth")
-            ->type_name("ERROR")
-            ->transform(positive_number());
-        app()
-            .add_option(
-                "--wavelet-tolerance", wavelet_tolerance_,
-                "write control values and wavelet details (.svw) instead of kernels, with a root mean square error of at "
-                "most T, in parts of the field's range: for refined meshes and structured grids")
-            ->type_name("T")
-            ->transform(number_in(1e-15, 1.0));
-        app()
-            .add_option("--wavelet-point-tolerance", wavelet_point_tolerance_,
-                        "the same for the points, in parts of the mesh's longest side (default: a tenth of "
-                        "--wavelet-tolerance, and less where cells would be inverted)")
-            ->type_name("T")
-            ->transform(number_in(1e-15, 1.0));
+        add_option(app(),
+                   Option("merge", merge_error_)
+                       .positive()
+                       .help("ERROR",
+                             "merge neighbouring kernels as long as the values at their centres change by at most ERROR, "
+                             "in the field's unit: few kernels where the field is smooth"));
+        add_option(app(), Option("wavelet-tolerance", wavelet_tolerance_)
+                              .between(1e-15, 1)
+                              .help("T",
+                                    "write control values and wavelet details (.svw) instead of kernels, with a root mean "
+                                    "square error of at most T, in parts of the field's range: for refined meshes and "
+                                    "structured grids"));
+        add_option(app(), Option("wavelet-point-tolerance", wavelet_point_tolerance_)
+                              .between(1e-15, 1)
+                              .help("T",
+                                    "the same for the points, in parts of the mesh's longest side (default: a tenth of "
+                                    "--wavelet-tolerance, and less where cells would be inverted)")
+                              .only_with("wavelet-tolerance"));
         refine_.add_to(app(), "sample the refined mesh of this level instead of the limit");
         share_.add_to(app(), "a range of the points in their order, of bricks, or of the steps");
         set_essentials({"--output", "--field", "--per-edge", "--spacing", "--tolerance", "--footprint", "--threshold",
@@ -123,28 +118,17 @@ public:
 
     int run(Report& report) override {
         if (wavelet_tolerance_) return write_wavelets(report);
-        if (wavelet_point_tolerance_) {
-            throw Error(ErrorCode::InvalidInput, "needs --wavelet-tolerance", "--wavelet-point-tolerance");
-        }
         if (output_.ends_with(".svw")) {
             throw Error(ErrorCode::InvalidInput, "wavelets need a tolerance", output_, "--wavelet-tolerance 1e-3");
         }
         check_output(output_, {".ply", ".vtp", ".svk", ".vdb"});
         const std::string extension = std::filesystem::path(output_).extension().string();
-        if (extension != ".ply" && (ascii_ || splats_)) {
-            throw Error(ErrorCode::InvalidInput, "only .ply files have it", ascii_ ? "--ascii" : "--splats");
-        }
-        (void)named<UpAxis>(up_, "--up");
-        if (merge_error_ && !std::isfinite(*merge_error_)) {
-            throw Error(ErrorCode::InvalidInput, "is not an error of the field", "--merge", "a number above 0");
+        if (extension != ".ply" && (written_.ascii || written_.splats)) {
+            throw Error(ErrorCode::InvalidInput, "only .ply files have it", written_.ascii ? "--ascii" : "--splats");
         }
         const Share share = share_of(share_);
-        if (app().count("--up") > 0 && !splats_) {
-            throw Error(ErrorCode::InvalidInput, "turns what viewers of splats read; all else keeps its place", "--up",
-                        "--splats");
-        }
         tets_ = TetRefinement(refine_);
-        report.if_long(sample_.reduce_rmse ? "a larger --reduce, and no --refine" : "a larger --spacing or --tolerance");
+        report.if_long(sample_.reduction.rmse > 0 ? "a larger --reduce, and no --refine" : "a larger --spacing or --tolerance");
         if (is_bricks_input(input_)) {
             write_bricks(share, report);
             return 0;
@@ -166,13 +150,15 @@ public:
             const auto [begin, end] = share.range(volume.size());
             RbfVolume own = detail::kernels_between(volume, begin, end);
             volume = {};
-            const Transport to = transport(share_, input_, {{"ascii", ascii_}, {"splats", splats_}, {"up", up_}}, report);
-            auto whole = report.unpack(deliver(KernelParts{output_, written(), report.progress()}, std::move(own), to));
+            const Transport to = transport(
+                share_, input_,
+                {{"ascii", written_.ascii}, {"splats", written_.splats}, {"up", std::string(name_of(written_.up))}}, report);
+            auto whole = report.unpack(deliver(KernelParts{output_, written_, report.progress()}, std::move(own), to));
             if (!whole) return 0;
             volume = std::move(*whole);
         }
-        report.merge(write_kernels(output_, volume, written(), report.progress()));
-        report.merge(files_of_kernels(output_, volume, written()));
+        report.merge(write_kernels(output_, volume, written_, report.progress()));
+        report.merge(files_of_kernels(output_, volume, written_));
         return 0;
     }
 
@@ -193,11 +179,9 @@ private:
                         "1 to 10");
         }
         WaveletFileOptions options{.scheme = refine.scheme,
-                                   .tolerance = part(*wavelet_tolerance_, "--wavelet-tolerance"),
+                                   .tolerance = *wavelet_tolerance_,
+                                   .point_tolerance = wavelet_point_tolerance_,
                                    .progress = report.progress()};
-        if (wavelet_point_tolerance_) {
-            options.point_tolerance = part(*wavelet_point_tolerance_, "--wavelet-point-tolerance");
-        }
         if (app().count("--levels") > 0) options.levels = refine.levels;
         report["input"] = input_;
         HexMesh mesh = report.unpack(load_mesh(input_, common(), report.progress()));
@@ -206,19 +190,10 @@ private:
         return 0;
     }
 
-    static double part(double tolerance, const std::string& option) {
-        if (tolerance > 0 && tolerance <= 1) return tolerance;
-        throw Error(ErrorCode::InvalidInput, "is not a part of the range", option, "greater than 0, at most 1");
-    }
-
-    [[nodiscard]] PointsWriteOptions written() const {
-        return {.ascii = ascii_, .splats = splats_, .up = named<UpAxis>(up_, "--up")};
-    }
-
     /// Brick by brick into one file; the memory is that of a brick.
     void write_bricks(const Share& share, Report& report) {
         const bool blocks = output_.ends_with(".svk") && !share_.given();
-        if ((!output_.ends_with(".ply") && !blocks) || ascii_ || splats_) {
+        if ((!output_.ends_with(".ply") && !blocks) || written_.ascii || written_.splats) {
             const std::string form = share_.given() ? "shares of points of bricks are" : "points of bricks are";
             throw Error(ErrorCode::InvalidInput,
                         form + " written as binary .ply" + (share_.given() ? "" : " or .svk") + " only", output_,
@@ -259,7 +234,7 @@ private:
         report["frames"] = Json::array();
         for (int step = range.first; step <= range.last; ++step) {
             const std::string path = with_number(output_, step);
-            report.merge(write_kernels(path, points_of_mesh(of_step(common(), step), report), written(), report.progress()));
+            report.merge(write_kernels(path, points_of_mesh(of_step(common(), step), report), written_, report.progress()));
             report["frames"].push_back({{"frame", step},
                                         {"time", series.times[static_cast<std::size_t>(step)]},
                                         {"points", report["points"]},
@@ -334,10 +309,10 @@ private:
 
     std::string input_;
     std::string output_;
-    bool ascii_ = false;
-    bool splats_ = false, clamp_ = false, error_ = false;
+    PointsWriteOptions written_;
+    bool clamp_ = false, error_ = false;
     std::optional<double> merge_error_, wavelet_tolerance_, wavelet_point_tolerance_;
-    std::string up_ = "z", transfer_function_;
+    std::string transfer_function_;
     ShareArgument share_;
     SampleArguments sample_;
     RefineArguments refine_;

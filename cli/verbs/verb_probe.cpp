@@ -6,6 +6,7 @@
 #include "body_input.h"
 #include "input.h"
 #include "numbers.h"
+#include "options.h"
 #include "outputs.h"
 #include "places_input.h"
 #include "probe_output.h"
@@ -39,20 +40,15 @@ public:
             ->type_name("X,Y,Z")
             ->transform(number_list(3, "1,2,3"))
             ->allow_extra_args(false);
-        auto* line = app().add_option("--line", line_, "places on a line, from its first end to its second");
-        line->type_name("X0,Y0,Z0,X1,Y1,Z1")->transform(number_list(6, "0,0,0,1,1,1: its two ends"));
         app()
-            .add_option("--count", count_, "how many places on the line (default 200)")
-            ->type_name("N")
-            ->transform(whole_number(2, 10000000))
-            ->needs(line);
+            .add_option("--line", line_, "places on a line, from its first end to its second")
+            ->type_name("X0,Y0,Z0,X1,Y1,Z1")
+            ->transform(number_list(6, "0,0,0,1,1,1: its two ends"));
+        add_option(app(),
+                   Option("count", count_).between(2, 10000000).help("N", "how many places on the line").only_with("line"));
         app().add_option("--points", points_, "a table of places: three numbers a line, or columns x, y, z")->type_name("FILE");
-        auto* stats = app().add_flag("--stats", stats_, "integral, mean, extremes with their places, histogram; by block too");
-        app()
-            .add_option("--bins", bins_, "intervals of the histogram (default 32)")
-            ->type_name("N")
-            ->transform(whole_number(1, 100000))
-            ->needs(stats);
+        app().add_flag("--stats", stats_, "integral, mean, extremes with their places, histogram; by block too");
+        add_option(app(), Option("bins", bins_).between(1, 100000).help("N", "intervals of the histogram").only_with("stats"));
         app()
             .add_option("-o,--output", output_, "a table of all fields (.csv), or a plot along the line (.svg)")
             ->type_name("FILE");

@@ -5,6 +5,7 @@
 #include "body_input.h"
 #include "input.h"
 #include "numbers.h"
+#include "options.h"
 #include "outputs.h"
 #include "picture_arguments.h"
 #include "places_input.h"
@@ -37,26 +38,18 @@ public:
             .add_option("--plane", plane_, "a point of the plane and its normal (default: the box's centre, and z)")
             ->type_name("PX,PY,PZ,NX,NY,NZ")
             ->transform(number_list(6, "0,0,0,0,0,1: a point of the plane and its normal"));
-        app()
-            .add_option("--resolution", resolution_, "places along the longer side (default 512)")
-            ->type_name("N")
-            ->transform(whole_number(2, 20000));
-        app()
-            .add_option("--contours", contours_, "lines at this many values between the least and the largest on the plane")
-            ->type_name("N")
-            ->transform(whole_number(1, 1000));
-        app()
-            .add_option("--tf", function_, "the colours: a preset, or a colour map of ParaView (default viridis)")
-            ->type_name("FILE|NAME");
+        add_options(app(), options_of(options_));
+        add_option(app(), Option("contours", contours_)
+                              .between(1, 1000)
+                              .help("N", "lines at this many values between the least and the largest on the plane"));
+        add_option(app(), Option("tf", function_).help("FILE|NAME", "the colours: a preset, or a colour map of ParaView"));
         app()
             .add_option("--range", range_, "the values of the first and of the last colour (default: those on the plane)")
             ->type_name("MIN,MAX")
             ->transform(number_list(2, "0,1"));
-        app()
-            .add_option("--background", background_, "the colour outside the volume, of a .png (default white)")
-            ->type_name("COLOR");
+        add_option(app(), Option("background", background_).help("COLOR", "the colour outside the volume, of a .png"));
         app().add_flag("--no-legend", no_legend_, "the picture alone");
-        app().add_option("--unit", unit_, "of the field, for the legend")->type_name("TEXT");
+        add_option(app(), Option("unit", unit_).help("TEXT", "of the field, for the legend").instead_of({"no-legend"}));
         scheme_.add_scheme_to(app());
         set_essentials({"--output", "--plane", "--resolution", "--contours", "--tf", "--range", "--field", "--json"});
     }
@@ -96,9 +89,10 @@ public:
 
 private:
     [[nodiscard]] SliceOptions options(Report& report) const {
-        return {.resolution = resolution_,
-                .limit = {.scheme = scheme_.options(0, report.progress()).scheme, .progress = report.progress()},
-                .progress = report.progress()};
+        SliceOptions options = options_;
+        options.limit = {.scheme = scheme_.options(0, report.progress()).scheme, .progress = report.progress()};
+        options.progress = report.progress();
+        return options;
     }
 
     /// plane: a point and a normal, or empty; becomes that of the box's centre and z
@@ -160,7 +154,8 @@ private:
 
     static constexpr int kLeastLegend_px = 200;
     std::string input_, output_, plane_, function_ = "viridis", range_, background_ = "white", unit_;
-    int resolution_ = 512, contours_ = 0;
+    SliceOptions options_;
+    int contours_ = 0;
     bool no_legend_ = false;
     RefineArguments scheme_;
 };

@@ -11,7 +11,7 @@
 #include "child_process.h"
 #include "input.h"
 #include "kept_studies.h"
-#include "numbers.h"
+#include "options.h"
 #include "outputs.h"
 #include "quantities.h"
 #include "study_host.h"
@@ -65,10 +65,9 @@ public:
         app()
             .add_option("--mesh", meshes_, "another mesh for the study, with the options of its first input (repeatable)")
             ->type_name("FILE");
-        app()
-            .add_option("--jobs", jobs_, "cases that run at the same time, unless costs are measured (default: one per core)")
-            ->type_name("N")
-            ->transform(whole_number(1, 1024));
+        add_option(app(), Option("jobs", jobs_)
+                              .between(1, 1024)
+                              .help("N", "cases that run at the same time, unless costs are measured (default: one per core)"));
         auto* resume = app().add_flag(
             "--resume", resume_, "keep the cases that an earlier run of this version finished in the folder (the default)");
         app().add_flag("--fresh", fresh_, "run all cases again")->excludes(resume);

@@ -6,6 +6,7 @@
 #include "body_input.h"
 #include "input.h"
 #include "numbers.h"
+#include "options.h"
 #include "outputs.h"
 #include "part_kinds.h"
 #include "picture_arguments.h"
@@ -42,29 +43,18 @@ public:
             .add_option("-o,--output", output_, "the surface to write (.ply, .stl, .vtp, .obj, .glb; .svshare with --part)")
             ->type_name("FILE")
             ->required();
-        auto* iso = app().add_option("--iso", isos_, "the value of an isosurface (repeatable)");
-        iso->type_name("V")->transform(any_number())->allow_extra_args(false);
-        app().add_flag("--boundary", boundary_, "the boundary of the volume (the default without --iso)");
         app()
-            .add_flag("--cap", cap_,
-                      "close each isosurface with the part of the boundary where the field is at least its value")
-            ->needs(iso);
-        app()
-            .add_option("--tolerance", tolerance_,
-                        "how far triangles may lie from the limit, as a part of the longest side of the box (default 1e-3)")
-            ->type_name("E")
-            ->transform(number_in(1e-9, 1.0));
-        app()
-            .add_option("--max-level", max_level_, "refine no further (default 6)")
-            ->type_name("L")
-            ->transform(whole_number(1, 8));
+            .add_option("--iso", options_.isos, "the value of an isosurface (repeatable)")
+            ->type_name("V")
+            ->transform(any_number())
+            ->allow_extra_args(false);
+        add_options(app(), options_of(options_));
         app().add_flag("--keep-slivers", keep_slivers_, "leave triangles with small angles as they are");
-        app()
-            .add_option("--color-field", color_field_, "colour the points by this field (default in .ply, .obj, .glb: none)")
-            ->type_name("NAME");
-        app()
-            .add_option("--tf", function_, "the colours: a preset, or a colour map of ParaView (default viridis)")
-            ->type_name("FILE|NAME");
+        add_option(app(), Option("color-field", color_field_)
+                              .help("NAME", "colour the points by this field (default in .ply, .obj, .glb: none)"));
+        add_option(app(), Option("tf", function_)
+                              .help("FILE|NAME", "the colours: a preset, or a colour map of ParaView")
+                              .only_with("color-field"));
         scheme_.add_scheme_to(app());
         share_.add_to(app(), "a range of the cells that the surface passes");
         set_essentials({"--output", "--iso", "--boundary", "--cap", "--tolerance", "--color-field", "--field", "--json"});
@@ -84,14 +74,11 @@ public:
         }
         report.if_long("a larger --tolerance");
         const TetRefinement tets(scheme_);
-        SurfaceOptions options{.scheme = scheme_.options(0, report.progress()).scheme,
-                               .isos = isos_,
-                               .boundary = boundary_ || isos_.empty(),
-                               .cap = cap_,
-                               .tolerance = tolerance_,
-                               .max_level = max_level_,
-                               .improve = !keep_slivers_,
-                               .progress = report.progress()};
+        SurfaceOptions options = options_;
+        options.scheme = scheme_.options(0, report.progress()).scheme;
+        options.boundary = options.boundary || options.isos.empty();
+        options.improve = !keep_slivers_;
+        options.progress = report.progress();
         report["input"] = input_;
         const bool with_shells = options.boundary && !tets.asked();
         BodyInput body = report.unpack(open_body(input_, common(), app(), report.progress(), with_shells));
@@ -101,7 +88,7 @@ public:
             throw Error(ErrorCode::InvalidInput, "shells are written with the whole surface", "--part",
                         "one process, or mpirun");
         }
-        SurfaceOutput output{.field = field, .range = body.range(field), .isos = isos_.size()};
+        SurfaceOutput output{.field = field, .range = body.range(field), .isos = options_.isos.size()};
         if (!color_field_.empty()) {
             const std::size_t number = body.add_scalar(color_field_);
             output.file = {number, find_transfer_function(function_, body.range(color_field_))};
@@ -140,10 +127,8 @@ private:
     }
 
     std::string input_, output_, color_field_, function_ = "viridis";
-    std::vector<double> isos_;
-    bool boundary_ = false, cap_ = false, keep_slivers_ = false;
-    double tolerance_ = 1e-3;
-    int max_level_ = 6;
+    SurfaceOptions options_;
+    bool keep_slivers_ = false;
     RefineArguments scheme_;
     ShareArgument share_;
 };

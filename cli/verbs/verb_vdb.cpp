@@ -68,7 +68,7 @@ public:
         }
         output_.memory_bytes = asked_.memory_bytes;
         output_.nano = asked_.nano;
-        output_.compression = named<VdbCompression>(asked_.compression, "--compression");
+        output_.compression = asked_.compression;
         report.if_long("a lower --resolution, or --levels 1");
         check_output(output_.path, {".vdb"});
         const Share share = share_of(share_);
@@ -129,9 +129,10 @@ private:
         const Bricks bricks = report.unpack(open_bricks_input(input_, app()));
         const Vec3 size = bricks.bounds.size();
         RasterizeOptions options = maker.options(report.progress());
-        options.voxel_size_world = options.like            ? options.like->report().voxel_size_world
-                                   : asked_.voxel_size > 0 ? asked_.voxel_size
-                                                           : std::max({size.x, size.y, size.z}) / asked_.resolution;
+        options.voxel_size_world = options.like ? options.like->report().voxel_size_world
+                                   : asked_.grids.voxel_size_world > 0
+                                       ? asked_.grids.voxel_size_world
+                                       : std::max({size.x, size.y, size.z}) / asked_.grids.resolution;
         options.refine = refine_.options(0, report.progress());
         options.on_limit = !interpolates(options.refine.scheme.kind);
         options.metadata.emplace_back("subvol_scheme", refine_.scheme);
@@ -193,10 +194,11 @@ private:
     /// own: of this process's share. They are not rounded to 16 bits: that is done with all voxels at hand
     [[nodiscard]] std::optional<std::vector<VdbGrid>> whole_of(std::vector<VdbGrid> own, Report& report) {
         for (VdbGrid& grid : own) vdb().store_in_half(grid, false);
-        const Transport to = transport(share_, input_, {{"half", asked_.half}, {"compression", asked_.compression}}, report);
+        const Transport to = transport(
+            share_, input_, {{"half", asked_.grids.half}, {"compression", std::string(name_of(asked_.compression))}}, report);
         auto all = report.unpack(deliver(GridParts{output_, report.progress()}, std::move(own), to));
         if (!all) return all;
-        for (VdbGrid& grid : *all) vdb().store_in_half(grid, asked_.half);
+        for (VdbGrid& grid : *all) vdb().store_in_half(grid, asked_.grids.half);
         return all;
     }
 
@@ -205,8 +207,8 @@ private:
         if (asked_.velocity) throw Error(ErrorCode::InvalidInput, "needs a sequence", "--velocity", "--frames A-B");
         asked_.from = "points";
         RasterizeOptions options = maker.options(report.progress());
-        options.voxel_size_world = asked_.voxel_size;
-        options.resolution = asked_.resolution;
+        options.voxel_size_world = asked_.grids.voxel_size_world;
+        options.resolution = asked_.grids.resolution;
         options.level_set = asked_.level_set();
         refuse_options(app(), {"--remap", "--clamp", "--up", "--scale"}, "needs a mesh; these are points");
         std::vector<std::string> names;

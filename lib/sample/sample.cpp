@@ -300,7 +300,7 @@ std::vector<Option> options_of(SampleOptions& options) {
             .help("NAME", "values between control points: scheme (exact), cubic (Catmull-Rom), paper (weighted mean)"),
         kernel_option("kernel", options.kernel).help("NAME|JSON", "the kernel of the points; see subvol fit --kernels"),
         kernel_option("value-kernel", options.value_kernel)
-            .help("NAME|JSON", "the kernel of --values paper")
+            .help("NAME|JSON", "the kernel that weighs the values of control points")
             .only_with("values", {"paper"}),
         Option("correction", options.correction)
             .help("NAME", "the derivatives of the field that kernels carry: none, gradient, second, full"),

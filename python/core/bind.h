@@ -16,6 +16,7 @@
 #include "subvol/error.h"
 #include "subvol/hex_mesh.h"
 #include "subvol/optics.h"
+#include "subvol/option.h"
 #include "subvol/progress.h"
 #include "subvol/refine.h"
 #include "subvol/refine_mixed.h"
@@ -89,6 +90,13 @@ template <class Work>
     run(progress, [&](Progress* listener) { result.emplace(work(listener)); });
     return std::move(*result);
 }
+
+/// Keywords set the members of options by their descriptions; None leaves the default.
+///
+/// throws: TypeError for another keyword or type; Error(InvalidInput) for a value that the description does not allow
+void set_options(const std::vector<Option>& options, const py::kwargs& given);
+/// The options of a scheme and others; the error for a scheme of tetrahedra says what to do.
+[[nodiscard]] std::vector<Option> scheme_and(SchemeOptions& scheme, std::vector<Option> others);
 
 /// Words of the command for the library's enumerators. throws: Error(InvalidInput) that lists the words
 [[nodiscard]] Scheme scheme_named(const std::string& name);

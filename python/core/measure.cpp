@@ -110,9 +110,9 @@ py::dict measure(const HexMesh& mesh, const std::string& scheme, double tension,
 }
 
 py::dict slice(const HexMesh& mesh, const std::string& field, const std::array<double, 3>& point,
-               const std::array<double, 3>& normal, int resolution, const std::string& scheme, double tension,
-               const std::optional<double>& crease_angle, const py::object& progress) {
-    SliceOptions options{.resolution = resolution, .limit = {.scheme = scheme_of(scheme, tension, crease_angle)}};
+               const std::array<double, 3>& normal, const py::object& progress, const py::kwargs& given) {
+    SliceOptions options;
+    set_options(scheme_and(options.limit.scheme, options_of(options)), given);
     LimitSlice found = result_of(progress, [&](Progress* listener) {
         options.progress = options.limit.progress = listener;
         return slice_limit(mesh, field, {point[0], point[1], point[2]}, {normal[0], normal[1], normal[2]}, options);
@@ -129,16 +129,10 @@ py::dict slice(const HexMesh& mesh, const std::string& field, const std::array<d
     return result;
 }
 
-py::dict surface(const HexMesh& mesh, const std::string& field, std::vector<double> isos, bool boundary, bool cap,
-                 double tolerance, int max_level, const std::string& scheme, double tension,
-                 const std::optional<double>& crease_angle, const std::optional<std::string>& path,
-                 const py::object& progress) {
-    SurfaceOptions options{.scheme = scheme_of(scheme, tension, crease_angle),
-                           .isos = std::move(isos),
-                           .boundary = boundary,
-                           .cap = cap,
-                           .tolerance = tolerance,
-                           .max_level = max_level};
+py::dict surface(const HexMesh& mesh, const std::string& field, std::vector<double> isos,
+                 const std::optional<std::string>& path, const py::object& progress, const py::kwargs& given) {
+    SurfaceOptions options{.isos = std::move(isos)};
+    set_options(scheme_and(options.scheme, options_of(options)), given);
     LimitSurface found = result_of(progress, [&](Progress* listener) {
         options.progress = listener;
         LimitSurface made = limit_surface(mesh, field, options);
@@ -176,11 +170,8 @@ void bind_measure(py::module_& module) {
                py::arg("tension"), py::arg("crease_angle"), py::arg("channel"), py::arg("progress"));
     module.def("measure", &measure, py::arg("mesh"), py::arg("scheme"), py::arg("tension"), py::arg("crease_angle"),
                py::arg("tolerance"), py::arg("bins"), py::arg("progress"));
-    module.def("slice", &slice, py::arg("mesh"), py::arg("field"), py::arg("point"), py::arg("normal"), py::arg("resolution"),
-               py::arg("scheme"), py::arg("tension"), py::arg("crease_angle"), py::arg("progress"));
-    module.def("surface", &surface, py::arg("mesh"), py::arg("field"), py::arg("isos"), py::arg("boundary"), py::arg("cap"),
-               py::arg("tolerance"), py::arg("max_level"), py::arg("scheme"), py::arg("tension"), py::arg("crease_angle"),
-               py::arg("path"), py::arg("progress"));
+    module.def("slice", &slice, py::arg("mesh"), py::arg("field"), py::arg("point"), py::arg("normal"), py::arg("progress"));
+    module.def("surface", &surface, py::arg("mesh"), py::arg("field"), py::arg("isos"), py::arg("path"), py::arg("progress"));
 }
 
 }  // namespace subvol::python

@@ -85,20 +85,10 @@ py::tuple boundary_arrays(const py::object& self) {
     return py::make_tuple(view_of_points(boundary.points, self), view(corners, {length(boundary.triangles.size()), 3}, self));
 }
 
-py::tuple sample(const HexMesh& mesh, const std::string& scheme, double tension, const std::optional<double>& crease_angle,
-                 int per_edge, bool centers, double spacing_world, double tolerance, const std::string& correction,
-                 const std::string& values, const std::string& kernel, const std::optional<int>& boundary_levels,
-                 const std::optional<Camera>& footprint, const std::pair<int, int>& footprint_size,
-                 const py::object& progress) {
-    SampleOptions options{.scheme = refine_options(scheme, 0, tension, crease_angle).scheme,
-                          .per_edge = per_edge,
-                          .spacing_world = spacing_world,
-                          .tolerance = tolerance,
-                          .centers = centers,
-                          .correction = named<Correction>(correction, "correction"),
-                          .values = named<ValueRule>(values, "values"),
-                          .kernel = kernel_from_json(kernel),
-                          .boundary_levels = boundary_levels};
+py::tuple sample(const HexMesh& mesh, const std::optional<Camera>& footprint, const std::pair<int, int>& footprint_size,
+                 const py::object& progress, const py::kwargs& given) {
+    SampleOptions options;
+    set_options(scheme_and(options.scheme, options_of(options)), given);
     if (footprint) {
         options.footprint =
             Footprint{.camera = *footprint, .width_px = footprint_size.first, .height_px = footprint_size.second};
@@ -128,10 +118,10 @@ py::dict as_dict(const ErrorAtSamples& error) {
     return figures;
 }
 
-py::tuple reduce(const HexMesh& mesh, const std::string& field, double rmse, const std::string& kernel, double overlap,
-                 std::size_t max_points, bool move, const std::string& scheme, const py::object& progress) {
-    ReduceOptions options{
-        .rmse = rmse, .kernel = kernel_from_json(kernel), .overlap = overlap, .max_points = max_points, .move = move};
+py::tuple reduce(const HexMesh& mesh, const std::string& field, const std::string& scheme, const py::object& progress,
+                 const py::kwargs& given) {
+    ReduceOptions options;
+    set_options(options_of(options), given);
     options.limit.scheme.kind = scheme_named(scheme);
     ReduceResult result = result_of(progress, [&](Progress* listener) {
         options.progress = listener;
@@ -147,12 +137,14 @@ py::tuple reduce(const HexMesh& mesh, const std::string& field, double rmse, con
     return py::make_tuple(std::move(result.volume), report);
 }
 
-py::tuple fit(const std::string& shape, const std::string& scheme, int level, double extent, int terms) {
+py::tuple fit(const std::string& shape, const std::string& scheme, int level, const py::kwargs& given) {
+    FitOptions options;
+    set_options(options_of(options), given);
     const KernelShape kind = named<KernelShape>(shape, "shape");
     const Scheme rule = scheme_named(scheme);
     const KernelFit best = [&] {
         const py::gil_scoped_release without_gil;
-        return fit_kernel(sample_basis_function(rule, level), kind, {.extent = extent, .terms = terms});
+        return fit_kernel(sample_basis_function(rule, level), kind, options);
     }();
     py::dict errors;
     errors["mse"] = best.report.errors.mse;
@@ -206,13 +198,9 @@ void bind_points(py::module_& module) {
                 if (corners.size() == 2) volume.bounds = {corners[0], corners[1]};
                 return volume;
             }));
-    module.def("sample", &sample, py::arg("mesh"), py::arg("scheme"), py::arg("tension"), py::arg("crease_angle"),
-               py::arg("per_edge"), py::arg("centers"), py::arg("spacing_world"), py::arg("tolerance"), py::arg("correction"),
-               py::arg("values"), py::arg("kernel"), py::arg("boundary_levels"), py::arg("footprint"),
-               py::arg("footprint_size"), py::arg("progress"));
+    module.def("sample", &sample, py::arg("mesh"), py::arg("footprint"), py::arg("footprint_size"), py::arg("progress"));
     module.def("sample_tets", &sample_tets, py::arg("mesh"), py::arg("correction"), py::arg("kernel"), py::arg("progress"));
-    module.def("reduce", &reduce, py::arg("mesh"), py::arg("field"), py::arg("rmse"), py::arg("kernel"), py::arg("overlap"),
-               py::arg("max_points"), py::arg("move"), py::arg("scheme"), py::arg("progress"));
+    module.def("reduce", &reduce, py::arg("mesh"), py::arg("field"), py::arg("scheme"), py::arg("progress"));
     module.def(
         "drop_invisible",
         [](const RbfVolume& volume, const TransferFunction& knots) {
@@ -231,17 +219,18 @@ void bind_points(py::module_& module) {
         "is_points_file", [](const std::string& path) { return is_points_file(path); }, py::arg("path"));
     module.def(
         "write_points",
-        [](const std::string& path, const RbfVolume& volume, bool ascii, bool splats, const std::string& up) {
-            const UpAxis axis = named<UpAxis>(up, "up");
+        [](const std::string& path, const RbfVolume& volume, const py::kwargs& given) {
+            PointsWriteOptions options;
+            set_options(options_of(options), given);
             const py::gil_scoped_release without_gil;
             if (std::filesystem::path(path).extension() == ".svk") {
                 static_cast<void>(write_kernel_file(path, volume));
                 return;
             }
-            write_points(path, volume, {.ascii = ascii, .splats = splats, .up = axis});
+            write_points(path, volume, options);
         },
-        py::arg("path"), py::arg("volume"), py::arg("ascii"), py::arg("splats"), py::arg("up"));
-    module.def("fit", &fit, py::arg("shape"), py::arg("scheme"), py::arg("level"), py::arg("extent"), py::arg("terms"));
+        py::arg("path"), py::arg("volume"));
+    module.def("fit", &fit, py::arg("shape"), py::arg("scheme"), py::arg("level"));
     module.def(
         "named_kernel", [](const std::string& name) { return to_json(named_kernel(name)); }, py::arg("name"));
     module.def("kernel_names", &kernel_names);

@@ -111,8 +111,8 @@ def slice(mesh: HexMesh, point: Sequence[float], normal: Sequence[float], field:
     """
     chosen = _selected(mesh, field)
     with listening(progress) as listener:
-        found: dict[str, Any] = _core.slice(chosen, next(iter(chosen.fields)), [float(x) for x in point], [float(x) for x in normal], resolution, scheme, tension,
-                                            crease_angle, listener)
+        found: dict[str, Any] = _core.slice(chosen, next(iter(chosen.fields)), [float(x) for x in point], [float(x) for x in normal], listener,
+                                            resolution=resolution, scheme=scheme, tension=tension, crease_angle=crease_angle)
     return Slice(**found)
 
 
@@ -143,6 +143,7 @@ def surface(mesh: HexMesh, iso: Union[float, Sequence[float], None] = None, fiel
     isos = [] if iso is None else [float(value) for value in np.atleast_1d(np.asarray(iso, dtype=float))]
     chosen = _selected(mesh, field)
     with listening(progress) as listener:
-        found: dict[str, Any] = _core.surface(chosen, next(iter(chosen.fields)), isos, not isos if boundary is None else boundary, cap, tolerance, max_level, scheme,
-                                              tension, crease_angle, None if path is None else os.fspath(path), listener)
+        found: dict[str, Any] = _core.surface(chosen, next(iter(chosen.fields)), isos, None if path is None else os.fspath(path), listener,
+                                              boundary=not isos if boundary is None else boundary, cap=cap, tolerance=tolerance,
+                                              max_level=max_level, scheme=scheme, tension=tension, crease_angle=crease_angle)
     return SurfaceMesh(**found)

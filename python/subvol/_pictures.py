@@ -191,8 +191,8 @@ def _sampled(mesh: HexMesh, levels: Optional[int], scheme: str, tension: float, 
     if levels is not None:
         mesh = _core.subdivide(mesh, levels, scheme, tension, crease_angle, True, listener)
         scheme, boundary_levels = "linear", 0
-    return _core.sample(mesh, scheme, tension, crease_angle, per_edge, False, 0.0, 0.0, "second", "scheme",
-                        _core.named_kernel("compact"), boundary_levels, None, (512, 512), listener)[0]
+    return _core.sample(mesh, None, (512, 512), listener, scheme=scheme, tension=tension, crease_angle=crease_angle, per_edge=per_edge,
+                        boundary_levels=boundary_levels)[0]
 
 
 def _channel(names: list[str], field: Optional[str]) -> int:

@@ -37,10 +37,10 @@ def sample(mesh: HexMesh, field: Optional[str] = None, per_edge: int = 1, *, cen
     correction: what a kernel has beside its value: "none", "gradient", "second", "full"
     values:     between control points: "scheme", "cubic" or "paper"
     """
-    check_numbers(tension=tension)
-    check_numbers(0, spacing=spacing, tolerance=tolerance, crease_angle=crease_angle)
     chosen = _selected(mesh, field)
     if scheme in TET_SCHEMES:
+        check_numbers(tension=tension)
+        check_numbers(0, spacing=spacing, tolerance=tolerance, crease_angle=crease_angle)
         if per_edge != 1 or centers or spacing > 0 or tolerance > 0 or footprint is not None or values != "scheme":
             raise InvalidInput("the schemes of tetrahedra have one kernel at each point of a level", "scheme", "levels makes more of them")
         with listening(progress) as listener:
@@ -53,8 +53,10 @@ def sample(mesh: HexMesh, field: Optional[str] = None, per_edge: int = 1, *, cen
         chosen = _core.subdivide(chosen, levels, scheme, tension, crease_angle, True, None)
         scheme, boundary_levels = "linear", 0
     with listening(progress) as listener:
-        volume, flat, error = _core.sample(chosen, scheme, tension, crease_angle, per_edge, centers, spacing, tolerance, correction,
-                                           values, kernel_json(kernel), boundary_levels, footprint, footprint_size, listener)
+        volume, flat, error = _core.sample(chosen, footprint, footprint_size, listener, scheme=scheme, tension=tension,
+                                           crease_angle=crease_angle, per_edge=per_edge, centers=centers, spacing=spacing,
+                                           tolerance=tolerance, correction=correction, values=values, kernel=kernel_json(kernel),
+                                           boundary_levels=boundary_levels)
     if flat > 0:
         warn(f"{flat} points lie where cells are flat; their kernels were thickened")
     if tolerance > 0 and error > tolerance:
@@ -73,8 +75,8 @@ def reduce(mesh: HexMesh, field: Optional[str] = None, rmse: float = 0.01, *, ke
     """
     chosen = _selected(mesh, field)
     with listening(progress) as listener:
-        volume, report = _core.reduce(chosen, next(iter(chosen.fields)), rmse, kernel_json(kernel), overlap, max_points, move, scheme,
-                                      listener)
+        volume, report = _core.reduce(chosen, next(iter(chosen.fields)), scheme, listener, rmse=rmse, kernel=kernel_json(kernel),
+                                      overlap=overlap, max_points=max_points, move=move)
     return volume, report
 
 
@@ -85,7 +87,7 @@ def fit(shape: str = "gaussian", scheme: str = "mcq", *, level: int = 5, extent:
     shape: gaussian, scaled_gaussian, bc, cardinal, wendland_c2, wendland_c4, gaussians, separable_gaussian, separable_table
     level: the basis function is sampled at (2^level)^3 places per lattice cell, 0 to 7
     """
-    kernel, errors = _core.fit(shape, scheme, level, extent, terms)
+    kernel, errors = _core.fit(shape, scheme, level, extent=extent, terms=terms)
     return json.loads(kernel), errors
 
 
@@ -120,4 +122,4 @@ def write_points(volume: RbfVolume, path: Path, *, ascii: bool = False, splats: 
 
         _grids.write_points(path_bytes(path), volume)
     else:
-        _core.write_points(path_bytes(path), volume, ascii, splats, up or "z")
+        _core.write_points(path_bytes(path), volume, ascii=ascii, splats=splats, up=up)

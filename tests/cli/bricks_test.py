@@ -348,7 +348,7 @@ class WhatGoesWrong(InFolder):
         self.assert_said("x.vdb: cannot be read", "join", "list.json", "-o", "a.vdb")
 
     def test_what_cannot_be_done_by_bricks(self):
-        self.assert_said("settled when it is split", "subdivide", "t.bricks", "-o", "a.vtu", "--weld")
+        self.assert_said("settled when a mesh is split", "subdivide", "t.bricks", "-o", "a.vtu", "--weld")
         self.assert_said("misses the volume", "slice", "t.bricks", "-o", "a.png", "--plane", "0,0,9,0,0,1")
         self.assert_said("which is not refined by", "slice", "t.bricks", "-o", "a.png", "--scheme", "tetoct")
         self.assert_said("whole mesh in memory", "vdb", "t.bricks", "-o", "a.vdb", "--sdf")

@@ -34,7 +34,7 @@ SLIPS = [
     (["render", "model:ball", "-o", "a.png", "--levels", "two"], "--levels: 'two' is not a number (0 to 10)"),
     (["render", "model:ball", "-o", "a.png", "--levels", "12"], "--levels: '12' is out of range (0 to 10)"),
     (["surface", "model:ball", "-o", "a.stl", "--tolerance", "0"], "--tolerance: '0' is out of range (more than 0, at most 1)"),
-    (["surface", "model:ball", "-o", "a.stl", "--iso", "x"], '--iso: "x" is not a number'),
+    (["surface", "model:ball", "-o", "a.stl", "--iso", "x"], "--iso: 'x' is not a number"),
     (["probe", "model:ball", "--points", "gone.csv"], "gone.csv: cannot be read: No such file or directory"),
     (["render", "model:ball", "-o", "a.png", "--spacing", "-1"], "--spacing: '-1' is out of range (more than 0)"),
     (["vdb", "in_##.vtu", "-o", "out_##.vdb", "--frames", "1-5"], "5 of 5 frames are missing: in_01.vtu, in_02.vtu, in_03.vtu and 2 more"),

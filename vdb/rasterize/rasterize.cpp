@@ -298,16 +298,4 @@ GridShare rasterize_share(const MeshSource& source, std::span<const std::string>
     return {rasterizer.run(slab_of_share(request, bytes_per_voxel(request, options), share).value_or(kNowhere)), {}};
 }
 
-std::vector<Option> options_of(RasterizeOptions& options) {
-    return {Option("voxel-size", options.voxel_size_world).positive_or_none().help("H", "edge of a voxel in world units"),
-            Option("resolution", options.resolution)
-                .between(1, 1 << 20)
-                .help("N", "voxels along the longest side of the bounding box")
-                .instead_of({"voxel-size"}),
-            Option("half", options.half).help("store floats in 16 bits"),
-            Option("cell-ids", options.cell_numbers).help("also write a grid: the number of the control cell"),
-            Option("mask", options.mask).help("also write a grid: a mask of the volume"),
-            Option("coverage", options.coverage).help("also write a grid: the part of each voxel that the volume fills")};
-}
-
 }  // namespace subvol

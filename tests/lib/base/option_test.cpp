@@ -6,6 +6,13 @@
 #include <cmath>
 
 #include "subvol/error.h"
+#include "subvol/fit_kernel.h"
+#include "subvol/limit_slice.h"
+#include "subvol/limit_surface.h"
+#include "subvol/points_io.h"
+#include "subvol/reduce.h"
+#include "subvol/sample.h"
+#include "subvol/wavelet_file.h"
 
 namespace subvol {
 
@@ -115,6 +122,37 @@ TEST(Option, ANumberIsSetByItsKey) {
     EXPECT_THROW(options[0].set(1.5, "count"), Error);
     EXPECT_EQ(options[0].text(), "1");
     EXPECT_EQ(options[5].text(), "");  // not given
+}
+
+template <class Options>
+void expect_sound() {
+    EXPECT_NO_THROW(check_options(Options{}));
+    Options options;
+    for (const Option& option : options_of(options)) {
+        const std::string before = option.text();
+        EXPECT_FALSE(option.sentence.empty()) << option.name;
+        if (before.empty() || before == "0" || option.is_switch()) continue;
+        option.read(before, option.name);
+        EXPECT_EQ(option.text(), before) << option.name;
+    }
+}
+
+TEST(Option, DefaultsOfTheLibraryAreAllowedAndReadBack) {
+    expect_sound<SchemeOptions>();
+    expect_sound<RefineOptions>();
+    expect_sound<SampleOptions>();
+    expect_sound<ReduceOptions>();
+    expect_sound<FitOptions>();
+    expect_sound<WaveletFileOptions>();
+    expect_sound<SurfaceOptions>();
+    expect_sound<SliceOptions>();
+    expect_sound<PointsWriteOptions>();
+    SampleOptions options;
+    for (const Option& option : options_of(options)) {
+        if (option.name == "value-kernel") {
+            EXPECT_EQ(option.text(), "paper_bc");
+        }
+    }
 }
 
 }  // namespace option_test

@@ -68,7 +68,18 @@ struct RasterizeOptions {
     Progress* progress = nullptr;
 };
 
-[[nodiscard]] std::vector<Option> options_of(RasterizeOptions& options);
+/// In the header, so that programs which load this component when they need it know its options before.
+[[nodiscard]] inline std::vector<Option> options_of(RasterizeOptions& options) {
+    return {Option("voxel-size", options.voxel_size_world).positive_or_none().help("H", "edge of a voxel in world units"),
+            Option("resolution", options.resolution)
+                .between(1, 1 << 20)
+                .help("N", "voxels along the longest side of the bounding box")
+                .instead_of({"voxel-size"}),
+            Option("half", options.half).help("store floats in 16 bits"),
+            Option("cell-ids", options.cell_numbers).help("also write a grid: the number of the control cell"),
+            Option("mask", options.mask).help("also write a grid: a mask of the volume"),
+            Option("coverage", options.coverage).help("also write a grid: the part of each voxel that the volume fills")};
+}
 
 /// Rasterizes attributes of a hexahedral mesh: cubic voxels, values at voxel centres, active where the centre lies inside the
 /// mesh. A field of one channel becomes a grid of floats, one of three channels a grid of vectors; the first field, if it has
