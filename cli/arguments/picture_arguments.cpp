@@ -182,16 +182,6 @@ Vec3 PictureArguments::background_color() const {
     return background_of(look);
 }
 
-bool PictureArguments::paints_boundary(const CLI::App& app, const RefineArguments& refine) const {
-    if (look != Look::Solid || opacity || opacity_unit_world || refine.levels) return false;
-    for (const char* name : {"--per-edge", "--centers", "--spacing", "--spacing-voxels", "--tolerance", "--footprint",
-                             "--values", "--kernel", "--threshold", "--correction", "--reduce", "--plain-sums", "--sheets"}) {
-        const CLI::Option* option = app.get_option_no_throw(name);
-        if (option != nullptr && option->count() > 0) return false;
-    }
-    return true;
-}
-
 Camera camera_of_option(const std::string& option, const std::string& text, const Box& box, double aspect) {
     try {
         return parse_camera(text, box, aspect);
@@ -267,10 +257,6 @@ Optics PictureArguments::make_optics(const Box& box, const Range& field, const R
     return picture_optics(look_options(field), box, field, colors);
 }
 
-std::vector<Vec3> PictureArguments::framed_points(const HexMesh& mesh, const Optics& optics) const {
-    return subvol::framed_points(mesh, look, optics);
-}
-
 void PictureArguments::check() const {
     const Box any{{0, 0, 0}, {1, 1, 1}};
     const auto [width, height] = parse_size("--size", size);
@@ -297,10 +283,12 @@ LegendOptions PictureArguments::legend_options(const ShownField& field, const Sh
     return options;
 }
 
-void PictureArguments::write_legend(const Optics& optics, const LegendOptions& options, Report& report) const {
-    if (!legend || legend_inside()) return;
+Facts PictureArguments::write_legend(const Optics& optics, const LegendOptions& options) const {
+    Facts facts;
+    if (!legend || legend_inside()) return facts;
     subvol::write_legend(*legend, optics.function(), options);
-    report["legend"] = *legend;
+    facts["legend"] = *legend;
+    return facts;
 }
 
 }  // namespace subvol::cli

@@ -6,9 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "refine_arguments.h"
-#include "report.h"
 #include "subvol/camera.h"
+#include "subvol/facts.h"
 #include "subvol/hex_mesh.h"
 #include "subvol/legend.h"
 #include "subvol/optics.h"
@@ -81,12 +80,7 @@ struct PictureArguments {
     void settle_look(bool has_boundary);
     [[nodiscard]] bool lit() const { return is_lit(look); }
     [[nodiscard]] Vec3 background_color() const;
-    /// Whether the colours of a solid are those of its boundary: unless the picture is to show what kernels make of it.
-    [[nodiscard]] bool paints_boundary(const CLI::App& app, const RefineArguments& refine) const;
 
-    /// The points to which the camera is fitted: those of a solid; of other bodies those of the cells that can be seen, or
-    /// nothing if these are most of the body.
-    [[nodiscard]] std::vector<Vec3> framed_points(const HexMesh& mesh, const Optics& optics) const;
     /// One view, or those of the turntable, or the four of a sheet, each a quarter of the picture. points: a
     /// named view is fitted to them; none: to the box
     [[nodiscard]] std::vector<View> make_views(const Box& box, std::span<const Vec3> points = {}) const;
@@ -104,7 +98,7 @@ struct PictureArguments {
     /// The legend of what is shown: titles and ranges.
     [[nodiscard]] LegendOptions legend_options(const ShownField& field, const ShownField& colors) const;
     /// Writes the --legend into its file, if it has one.
-    void write_legend(const Optics& optics, const LegendOptions& options, Report& report) const;
+    [[nodiscard]] Facts write_legend(const Optics& optics, const LegendOptions& options) const;
 
 private:
     /// The range of --tf-range; without it the field's range.

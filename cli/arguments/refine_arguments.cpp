@@ -9,7 +9,7 @@
 #include "options.h"
 #include "subvol/detail/refined_memory.h"
 #include "subvol/error.h"
-#include "subvol/limit.h"
+#include "subvol/mesh_kernels.h"
 #include "subvol/refine_mixed.h"
 
 namespace subvol::cli {
@@ -60,13 +60,11 @@ RefineOptions RefineArguments::options(int default_levels, Progress* progress) c
 }
 
 WithFacts<HexMesh> refine_reported(const HexMesh& mesh, const RefineOptions& options, Vertices vertices) {
+    if (vertices == Vertices::OnTheLimit) return refined_on_limit(mesh, options, "--levels");
     check_memory(options.levels, static_cast<double>(mesh.cells.size()) * std::pow(8.0, options.levels),
                  detail::kBytesOfRefinedCell);
     Facts facts;
-    HexMesh fine = facts.timed(options.progress, "refine", [&] {
-        HexMesh refined = refine(mesh, options);
-        return vertices == Vertices::OnTheLimit ? on_limit(std::move(refined), options.scheme.kind) : refined;
-    });
+    HexMesh fine = facts.timed(options.progress, "refine", [&] { return refine(mesh, options); });
     facts["levels"] = options.levels;
     facts["cells"] = fine.cells.size();
     return {std::move(fine), std::move(facts)};

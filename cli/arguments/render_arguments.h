@@ -2,14 +2,15 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "clip_arguments.h"
 #include "picture_arguments.h"
-#include "reference_arguments.h"
 #include "refine_arguments.h"
 #include "sample_arguments.h"
 #include "splat_arguments.h"
+#include "subvol/picture_maker.h"
 #include "tet_refinement.h"
 
 namespace CLI {
@@ -18,29 +19,48 @@ class App;
 
 namespace subvol::cli {
 
+/// The options that were given to a command.
+[[nodiscard]] GivenOptions given_options(const CLI::App& app);
+
 /// What `subvol render` is told about a picture: all options but the files and the shares.
 ///
-/// options: of kernels, as settled; clip: also as settled
+/// method, body: as settled
 struct RenderArguments {
-    std::string method = "splat";
-    std::uint64_t memory_bytes = std::uint64_t{1} << 30;
+    Method method = Method::Splat;
+    BodyKind body = BodyKind::Mesh;
     PictureArguments picture{};
-    ReferenceArguments reference{};
     SampleArguments sample{};
     ClipArguments clip{};
     SplatArguments splat{};
     RefineArguments refine{};
     TetRefinement tets{};
-    SplatOptions options{};
+    std::optional<int> samples{};
+    std::optional<double> lod{};
 
     void add_to(CLI::App& app);
 
-    /// Decides what the options leave open, and refuses those that do not go together.
+    /// Decides what the options leave open, and refuses those that do not go together or have no effect.
     ///
-    /// has_cells: the input has a boundary, unlike points and voxels
-    /// in_bricks: the input is a folder of bricks, which schemes of tetrahedra do not refine
-    /// throws:    Error(InvalidInput)
-    void settle(bool has_cells, bool in_bricks);
+    /// input:  the kind of body that the input has; a scheme of tetrahedra makes a mesh one of tetrahedra
+    /// throws: Error(InvalidInput)
+    void settle(BodyKind input, const CLI::App& app);
+
+    /// The options of the library.
+    ///
+    /// box:   of the body
+    /// field: the range of the field that gives the opacities
+    [[nodiscard]] MethodOptions method_options(const Box& box, const Range& field, Progress* progress) const;
+
+    [[nodiscard]] std::uint64_t memory_bytes() const { return memory_bytes_; }
+
+private:
+    std::string method_name_ = "splat";
+    double image_tolerance_ = 1e-3;
+    std::string order_ = "topological";
+    int kbuffer_ = 6;
+    std::uint64_t memory_bytes_ = std::uint64_t{1} << 30;
+
+    void add_references_to(CLI::App& app);
 };
 
 }  // namespace subvol::cli

@@ -6,6 +6,8 @@
 
 #include "options.h"
 #include "picture_arguments.h"
+#include "numbers.h"
+#include "subvol/visible_points.h"
 
 namespace subvol::cli {
 
@@ -54,8 +56,20 @@ SampleOptions SampleArguments::options(const Box& box, const RefineOptions& refi
     return options;
 }
 
+KernelOptions SampleArguments::kernel_options(const Box& box, const RefineOptions& refinement,
+                                              std::optional<int> levels) const {
+    KernelOptions kernels{.sample = options(box, refinement),
+                          .levels = levels,
+                          .reduce_rmse = reduction.rmse,
+                          .move = reduction.move,
+                          .levels_option = "--levels",
+                          .progress = refinement.progress};
+    if (!threshold.empty()) kernels.visible = opaque_above(parse_number("--threshold", threshold));
+    return kernels;
+}
+
 bool SampleArguments::drops_invisible() const {
-    return threshold_option_ != nullptr && threshold_option_->count() > 0;
+    return threshold_option_ != nullptr && threshold_option_->count() > 0 && threshold.empty();
 }
 
 Footprint SampleArguments::footprint_of(const Box& box) const {

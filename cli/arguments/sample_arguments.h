@@ -4,8 +4,8 @@
 #include <string>
 
 #include "refine_arguments.h"
+#include "subvol/mesh_kernels.h"
 #include "subvol/reduce.h"
-#include "subvol/sample.h"
 
 namespace CLI {
 class App;
@@ -27,7 +27,11 @@ struct SampleArguments {
 
     [[nodiscard]] SampleOptions options(const Box& box, const RefineOptions& refinement) const;
 
-    /// Whether --threshold was given, with a number or without.
+    /// levels: of --levels; without a number for --threshold, what is invisible depends on the picture (`drops_invisible`)
+    [[nodiscard]] KernelOptions kernel_options(const Box& box, const RefineOptions& refinement,
+                                               std::optional<int> levels) const;
+
+    /// Whether --threshold was given, and without a number.
     [[nodiscard]] bool drops_invisible() const;
 
 private:

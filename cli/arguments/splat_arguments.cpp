@@ -5,17 +5,8 @@
 
 #include "choices.h"
 #include "numbers.h"
-#include "subvol/error.h"
-#include "subvol/gl_device.h"
-#include "text.h"
 
 namespace subvol::cli {
-
-SplatMethod splat_method(const std::string& method, const std::string& backend) {
-    if (method == "sheets") return SplatMethod::Sheets;
-    if (method == "footprints") return SplatMethod::Footprints;
-    return backend == "gl" ? SplatMethod::Gl : backend == "cpu" ? SplatMethod::Cpu : SplatMethod::Auto;
-}
 
 void SplatArguments::add_to(CLI::App& app) {
     app.add_option("--backend", backend, "where to splat: auto (default: a GPU, else the CPU), gl, cpu")
@@ -53,42 +44,18 @@ void SplatArguments::add_to(CLI::App& app) {
         ->excludes("--footprint");
 }
 
-SplatOptions SplatArguments::options(const std::string& method) const {
+SplatOptions SplatArguments::options() const {
     check_choice("--backend", backend, {"auto", "gl", "cpu"});
-    const bool by_sheets = method == "sheets", by_footprints = method == "footprints";
-    if (by_sheets && backend == "cpu") {
-        throw Error(ErrorCode::InvalidInput, "sheets are drawn by OpenGL only", "--backend cpu", "auto or gl");
-    }
-    if (by_footprints && (backend == "gl" || device)) {
-        throw Error(ErrorCode::InvalidInput, "footprints are drawn by the CPU only", "--backend gl, --device", "auto or cpu");
-    }
-    if (by_footprints && (sheets != 0 || seconds)) {
-        throw Error(ErrorCode::InvalidInput, "footprints are drawn without them", "--sheets, --seconds", "--method splat");
-    }
-    if (device && backend == "cpu") {
-        throw Error(ErrorCode::InvalidInput, "is for OpenGL, not for --backend cpu", "--device");
-    }
-    SplatOptions options{
-        .method = splat_method(method, backend), .device = device, .sheets = sheets, .normalized = !plain_sums};
-    if (color_field) options.color_channel = 1;
+    SplatOptions options{.method = backend == "gl"    ? SplatMethod::Gl
+                                   : backend == "cpu" ? SplatMethod::Cpu
+                                                      : SplatMethod::Auto,
+                         .device = device,
+                         .sheets = sheets,
+                         .normalized = !plain_sums,
+                         .shadows = shadows,
+                         .ambient_occlusion = ambient_occlusion};
     if (shade) options.shading = Shading{};
-    options.shadows = shadows;
-    options.ambient_occlusion = ambient_occlusion;
-    if ((by_sheets || by_footprints) && (shadows || ambient_occlusion > 0)) {
-        throw Error(ErrorCode::InvalidInput, method + " are drawn without them", "--shadows, --ambient-occlusion",
-                    "--method splat");
-    }
     return options;
-}
-
-void report_splats(const SplatReport& splats, Report& report) {
-    if (splats.seconds_light > 0) report.add_seconds("light", splats.seconds_light);
-    report.add_seconds("prepare", splats.seconds_prepare - splats.seconds_light);
-    report.add_seconds("draw", splats.seconds_draw);
-    if (splats.seconds_colors > 0) report.add_seconds("colors", splats.seconds_colors);
-    report["backend"] = splats.backend;
-    report["device"] = splats.device;
-    report["sheets"] = splats.sheets;
 }
 
 }  // namespace subvol::cli

@@ -26,9 +26,6 @@ namespace subvol::cli {
 [[nodiscard]] WithFacts<RbfVolume> sample_tets_reported(const HexMesh& mesh, const SampleArguments& arguments,
                                                         const std::optional<TransferFunction>& seen, Progress* progress);
 
-/// throws: Error(InvalidInput) for options that place kernels elsewhere than at the points of a level of tetrahedra
-void refuse_other_places(const SampleArguments& arguments, const SampleOptions& options);
-
 /// The same of a grid's voxels.
 ///
 /// app: the verb's; its options that apply to meshes only are refused

@@ -14,8 +14,8 @@
 #include "subvol/vdb_contents.h"
 #include "subvol/version.h"
 #include "text.h"
-#include "voxels_of_points.h"
 #include "vdb_functions.h"
+#include "voxels_of_points.h"
 
 namespace subvol::cli {
 namespace {
@@ -112,7 +112,8 @@ WithFacts<std::vector<VdbGrid>> MeshGrids::make(const HexMesh& mesh, const Raste
     if (asked_.from == "points") {
         made = kernel_sums(mesh, options, asked_.per_edge);
     } else {
-        made.value = made.facts.timed(options.progress, "rasterize", [&] { return vdb().rasterize(mesh, names_of(mesh), options); });
+        made.value =
+            made.facts.timed(options.progress, "rasterize", [&] { return vdb().rasterize(mesh, names_of(mesh), options); });
     }
     fields_.clamp(mesh, made.value);
     return made;

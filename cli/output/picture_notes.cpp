@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "sheet_scene.h"
+#include "shell_scene.h"
 #include "subvol/error.h"
 #include "subvol/overlay.h"
 
@@ -31,8 +31,8 @@ Picture widened(const Picture& from, int width) {
 
 }  // namespace
 
-void PictureNotes::draw_sheets(Picture& picture, const View& view) const {
-    if (sheets) sheets->draw_into(picture, view);
+void PictureNotes::draw_shells(Picture& picture, const View& view) const {
+    if (shells) shells->draw_into(picture, view);
 }
 
 void PictureNotes::draw_over(Picture& picture, const View& view) const {
@@ -40,8 +40,8 @@ void PictureNotes::draw_over(Picture& picture, const View& view) const {
         const double scale = std::max(1.0, std::min(view.width(), view.height()) / 512.0);
         if (!edges->cells.empty())
             draw_edges(picture.image, picture.depth, view, *edges, {.width_px = scale, .color = ink, .alpha = 0.6});
-        if (sheets) {
-            draw_edges(picture.image, picture.depth, view, sheets->control, {.width_px = scale, .color = ink, .alpha = 0.6});
+        if (shells) {
+            draw_edges(picture.image, picture.depth, view, shells->control, {.width_px = scale, .color = ink, .alpha = 0.6});
         }
     }
     if (axes) draw_axes(picture.image, view, ink);

@@ -6,20 +6,12 @@
 #include <vector>
 
 #include "picture_arguments.h"
-#include "subvol/image.h"
 #include "subvol/legend.h"
+#include "subvol/picture_maker.h"
 
 namespace subvol::cli {
 
-/// A drawn picture.
-///
-/// depth: one per pixel for .exr, see `write_image`; empty: not known
-struct Picture {
-    Image image;
-    std::vector<float> depth{};
-};
-
-struct SheetScene;
+struct ShellScene;
 
 /// The colours of the pictures of a run, and the legend that explains them.
 struct ShownColors {
@@ -31,14 +23,14 @@ struct ShownColors {
 struct PictureNotes {
     bool axes = false;
     const HexMesh* edges = nullptr;  // of this mesh
-    std::shared_ptr<const SheetScene> sheets{};
+    std::shared_ptr<const ShellScene> shells{};
     Vec3 ink{0.0};
     TransferFunction function{};
     std::optional<LegendOptions> legend{};
     int legend_px = 0;  // its width
 
     /// Draws shells and beams, which come first.
-    void draw_sheets(Picture& picture, const View& view) const;
+    void draw_shells(Picture& picture, const View& view) const;
     /// Draws axes and edges.
     void draw_over(Picture& picture, const View& view) const;
     /// Makes room at the right for the legend, and draws it.

@@ -34,19 +34,19 @@ bool is_blank(const Image& image, const Vec3& background) {
     return true;
 }
 
-void warn_if_blank(bool blank, float opacity, Report& report) {
+void warn_if_blank(bool blank, float opacity, Facts& facts) {
     if (opacity == 0 || !blank) return;
-    report.warn("the picture is blank: what is drawn has the colour of the background (--background black, or another --tf)");
+    facts.warn("the picture is blank: what is drawn has the colour of the background (--background black, or another --tf)");
 }
 
-void warn_if_empty(float opacity, Report& report) {
+void warn_if_empty(float opacity, Facts& facts) {
     constexpr float kLeastByte = 0.5F / 255;  // what is less is 0 in a .png
     if (opacity == 0) {
-        report.warn(
+        facts.warn(
             "the picture is empty: no pixel is hit where the volume is opaque (--fit, --view, --clip, --opacity, --samples)");
     } else if (opacity < kLeastByte) {
-        report.warn(text("the picture is nearly empty: no pixel is more opaque than ", opacity,
-                         " (a shorter --opacity-unit makes the volume more opaque)"));
+        facts.warn(text("the picture is nearly empty: no pixel is more opaque than ", opacity,
+                        " (a shorter --opacity-unit makes the volume more opaque)"));
     }
 }
 
@@ -90,15 +90,17 @@ bool PictureOutput::wants_next() const {
     return written_ >= begin && written_ < end;
 }
 
-void PictureOutput::write_sheet(const std::vector<View>& views, const DrawPicture& draw, Report& report) {
+Facts PictureOutput::write_sheet(const std::vector<View>& views, const DrawPicture& draw, Progress* progress) {
+    Facts facts;
     const int width = views.front().width(), height = views.front().height();
     Picture sheet{Image(2 * width, 2 * height), {}};
     sheet.depth.assign(sheet.image.rgba.size() / 4, std::numeric_limits<float>::infinity());
     const bool is_png = path_.extension() == ".png";
     bool blank = true;
     for (std::size_t i = 0; i < views.size(); ++i) {
-        Picture part = draw(views[i], report.progress());
-        notes_.draw_sheets(part, views[i]);
+        Picture part = draw(views[i], progress);
+        facts.merge(part.facts);
+        notes_.draw_shells(part, views[i]);
         opacity_ = std::max(opacity_, most_opaque(part.image));  // before anything is drawn over it
         blank = blank && is_png && is_blank(part.image, background_);
         notes_.draw_over(part, views[i]);
@@ -113,58 +115,65 @@ void PictureOutput::write_sheet(const std::vector<View>& views, const DrawPictur
             }
         }
     }
-    if (silent_) return;
-    if (is_png) warn_if_blank(blank, opacity_, report);
+    if (silent_) return facts;
+    if (is_png) warn_if_blank(blank, opacity_, facts);
     const detail::Stopwatch watch;
     notes_.add_legend(sheet);
     write_frame(0, sheet);
-    report.add_seconds("write", watch.seconds());
+    facts.add_seconds("write", watch.seconds());
+    return facts;
 }
 
-void PictureOutput::write(const std::vector<View>& views, const DrawPicture& draw, Report& report) {
-    if (sheet_) return write_sheet(views, draw, report);
+Facts PictureOutput::write(const std::vector<View>& views, const DrawPicture& draw, Progress* whole) {
+    if (sheet_) return write_sheet(views, draw, whole);
+    Facts facts;
     for (const View& view : views) {
         if (!wants_next()) {
             skip();
             continue;
         }
         const auto frames = static_cast<std::size_t>(frames_.value_or(1));
-        detail::PartOfProgress of_frame(report.progress(), text("frame ", written_ + 1, " of ", frames), written_, frames);
-        Progress* const progress = frames_ ? &of_frame : report.progress();
+        detail::PartOfProgress of_frame(whole, text("frame ", written_ + 1, " of ", frames), written_, frames);
+        Progress* const progress = frames_ ? &of_frame : whole;
         report_progress(progress, "draw", 0);
         Picture picture = draw(view, progress);
+        facts.merge(picture.facts);
         if (silent_) {
             ++written_;
             continue;
         }
-        notes_.draw_sheets(picture, view);
+        notes_.draw_shells(picture, view);
         const float opacity = most_opaque(picture.image);
         opacity_ = std::max(opacity_, opacity);
         if (written_ == 0 && path_.extension() == ".png") {
-            warn_if_blank(is_blank(picture.image, background_), opacity, report);
+            warn_if_blank(is_blank(picture.image, background_), opacity, facts);
         }
         const detail::Stopwatch watch;
         notes_.draw_over(picture, view);
         notes_.add_legend(picture);
         write_frame(written_++, picture);
-        report.add_seconds("write", watch.seconds());
+        facts.add_seconds("write", watch.seconds());
     }
+    return facts;
 }
 
-void PictureOutput::finish(Report& report) {
-    if (silent_) return;
-    if (!share_) warn_if_empty(opacity_, report);
-    if (share_) report["part"] = share_->name();
-    report["output"] = frame_path(0).string();
-    if (!frames_) return;
-    report["frames"] = *frames_;
+Facts PictureOutput::finish(Progress* progress) {
+    Facts facts;
+    if (silent_) return facts;
+    if (!share_) warn_if_empty(opacity_, facts);
+    if (share_) facts["part"] = share_->name();
+    facts["output"] = frame_path(0).string();
+    if (!frames_) return facts;
+    facts["frames"] = *frames_;
     if (video_) {
-        report.timed("write", [&] { video_->finish(); });
+        facts.timed(progress, "write", [&] { video_->finish(); });
     } else {
         const auto [begin, end] = share_.value_or(Share{}).range(static_cast<std::size_t>(*frames_));
-        report["outputs"] = Json::array();
-        for (std::size_t i = begin; i < std::min(end, written_); ++i) report["outputs"].push_back(frame_path(i).string());
+        FactValue::List outputs;
+        for (std::size_t i = begin; i < std::min(end, written_); ++i) outputs.emplace_back(frame_path(i).string());
+        facts["outputs"] = outputs;
     }
+    return facts;
 }
 
 std::filesystem::path PictureOutput::frame_path(std::size_t frame) const {

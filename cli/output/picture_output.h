@@ -10,9 +10,7 @@
 #include "part_note.h"
 #include "picture_arguments.h"
 #include "picture_notes.h"
-#include "report.h"
 #include "share.h"
-#include "subvol/image.h"
 #include "video_file.h"
 
 namespace subvol::cli {
@@ -48,14 +46,18 @@ public:
     void set_notes(PictureNotes notes) { notes_ = std::move(notes); }
 
     /// Draws and writes one picture for each view, after those of earlier calls.
-    void write(const std::vector<View>& views, const DrawPicture& draw, Report& report);
+    ///
+    /// returns: the facts of all pictures
+    Facts write(const std::vector<View>& views, const DrawPicture& draw, Progress* progress);
 
-    /// To be called after the last picture: puts the names of the files into the report.
-    void finish(Report& report);
+    /// To be called after the last picture.
+    ///
+    /// returns: the names of the files
+    Facts finish(Progress* progress);
 
 private:
     [[nodiscard]] std::filesystem::path frame_path(std::size_t frame) const;
-    void write_sheet(const std::vector<View>& views, const DrawPicture& draw, Report& report);
+    Facts write_sheet(const std::vector<View>& views, const DrawPicture& draw, Progress* progress);
     void write_frame(std::size_t frame, const Picture& picture);
     void write_rows(const Picture& picture);
 

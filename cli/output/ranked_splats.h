@@ -5,9 +5,9 @@
 #include <optional>
 #include <span>
 
-#include "picture_notes.h"
 #include "ranks.h"
 #include "share.h"
+#include "subvol/picture_maker.h"
 #include "subvol/render_bricks.h"
 #include "subvol/splat.h"
 #include "subvol/splat_shares.h"

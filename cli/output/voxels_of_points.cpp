@@ -54,7 +54,8 @@ WithFacts<std::vector<VdbGrid>> grids_of_points(const std::string& input, std::v
     if (fields.empty()) fields.push_back(common.field.value_or(volume.channels.front().name));
     std::vector<std::size_t> channels;
     for (const std::string& field : fields) channels.push_back(find_channel(volume, field, input));
-    auto grids = facts.timed(options.progress, "kernel sums", [&] { return vdb().rasterize_points(volume, channels, options); });
+    auto grids =
+        facts.timed(options.progress, "kernel sums", [&] { return vdb().rasterize_points(volume, channels, options); });
     return {std::move(grids), std::move(facts)};
 }
 

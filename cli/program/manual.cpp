@@ -12,6 +12,7 @@
 #include <sstream>
 
 #include "manual_chapters.h"
+#include "subvol/method.h"
 #include "subvol/version.h"
 
 namespace subvol::cli {
@@ -240,6 +241,10 @@ void write_man_page(std::ostream& out, const CLI::App& program) {
 void write_manual(std::ostream& out, const std::string& kind, const CLI::App& program) {
     if (kind == "man") return write_man_page(out, program);
     if (kind == "bash") return write_bash_completion(out, program);
+    if (kind == "methods") {
+        out << option_table();
+        return;
+    }
     write_zsh_completion(out, program);
 }
 

@@ -11,8 +11,8 @@ class App;
 
 namespace subvol::cli {
 
-/// What `subvol --generate` can write from the argument table.
-inline const std::vector<std::string> kManuals{"man", "bash", "zsh"};
+/// What `subvol --generate` can write: from the argument table, and the table of methods and options for docs/pictures.md.
+inline const std::vector<std::string> kManuals{"man", "bash", "zsh", "methods"};
 
 /// The manual page subvol(1), in man's macros. Its date is that of SOURCE_DATE_EPOCH, else today.
 void write_man_page(std::ostream& out, const CLI::App& program);

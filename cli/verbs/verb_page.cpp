@@ -213,7 +213,7 @@ private:
         const PageField& first = options.fields.front();
         const Range range{first.min, first.max};
         const Optics optics = picture_.make_optics(box_, range, range);
-        const std::vector<View> views = picture_.make_views(box_, picture_.framed_points(mesh_, optics));
+        const std::vector<View> views = picture_.make_views(box_, framed_points(mesh_, picture_.look, optics));
         options.camera = views.front().camera();
         if (no_reference_) return;
         SplatOptions splat{.samples = solid ? 2 : 1, .progress = report.progress()};

@@ -10,20 +10,17 @@
 #include "mesh_pictures.h"
 #include "part_note.h"
 #include "picture_output.h"
+#include "picture_shares.h"
 #include "points_input.h"
-#include "reference_pictures.h"
 #include "render_arguments.h"
-#include "render_method.h"
 #include "sampled_points.h"
 #include "share.h"
-#include "sheet_scene.h"
-#include "splat_pictures.h"
+#include "shell_scene.h"
 #include "steps.h"
-#include "subvol/boundary_shading.h"
-#include "subvol/boundary_values.h"
 #include "subvol/error.h"
 #include "text.h"
 #include "verb.h"
+#include "video_file.h"
 
 namespace subvol::cli {
 namespace {
@@ -60,42 +57,62 @@ public:
     [[nodiscard]] bool works_in_ranks() const override { return true; }
 
     int run(Report& report) override {
-        const bool in_bricks = is_bricks_input(input_);
-        arguments_.settle(!holds_points(input_) && !is_vdb_file(input_), in_bricks);
-        report.if_long(arguments_.method == "dense"      ? "--levels 2, a smaller --size, or --method splat"
-                       : is_of_splats(arguments_.method) ? "a smaller --size, a larger --spacing, or fewer --sheets"
-                                                         : "a smaller --size, fewer --samples, or --method splat");
+        arguments_.settle(kind_of_input(), app());
+        refuse_frames_per_second();
+        const Method method = arguments_.method;
+        report.if_long(method == Method::Dense ? "--levels 2, a smaller --size, or --method splat"
+                       : draws_kernels(method) ? "a smaller --size, a larger --spacing, or fewer --sheets"
+                                               : "a smaller --size, fewer --samples, or --method splat");
+        const bool in_bricks = arguments_.body == BodyKind::Bricks;
         if (asks_for_steps(common()) && !in_bricks) {
             draw_steps(report);
             return 0;
         }
         PictureOutput output(output_, picture_.turntable_frames, picture_);
         set_share(output, picture_.turntable_frames.has_value());
-        if (in_bricks) {
-            draw_bricks(output, report);
-        } else if (arguments_.method != "grid" && holds_points(input_)) {
-            draw_points(output, report);
-        } else if (arguments_.method == "grid" || is_vdb_file(input_)) {
-            draw_voxels(output, report);
-        } else {
-            draw_mesh(output, report);
+        switch (arguments_.body) {
+            case BodyKind::Mesh:
+            case BodyKind::Tets:
+                draw_mesh(output, report);
+                break;
+            case BodyKind::Bricks:
+                draw_bricks(output, report);
+                break;
+            case BodyKind::Voxels:
+                draw_voxels(output, report);
+                break;
+            case BodyKind::Kernels:
+            case BodyKind::KernelFile:
+                draw_points(output, report);
         }
         finish(output, report);
         return 0;
     }
 
 private:
+    [[nodiscard]] BodyKind kind_of_input() const {
+        if (is_bricks_input(input_)) return BodyKind::Bricks;
+        if (holds_points(input_)) {
+            return holds_levels(input_) && arguments_.lod.value_or(0) > 0 ? BodyKind::KernelFile : BodyKind::Kernels;
+        }
+        return is_vdb_file(input_) ? BodyKind::Voxels : BodyKind::Mesh;
+    }
+
+    void refuse_frames_per_second() {
+        if (is_video(output_)) return;
+        refuse_options(app(), {"--fps"}, "has no effect without a video (-o NAME.mp4, .webm or .gif)");
+    }
+
     /// Shares are of frames; of a single picture they are of rows, which only splats and tetrahedra can be drawn in.
     void set_share(PictureOutput& output, bool frames) {
         if (!shares(share_)) return;
         const Share share = share_of(share_);
-        const bool in_rows = is_of_splats(arguments_.method) ? arguments_.method != "footprints" : arguments_.method == "tets";
-        if (!frames && (!in_rows || arguments_.splat.seconds)) {
+        if (!frames && (!draws_rows(arguments_.method) || arguments_.splat.seconds)) {
             throw Error(ErrorCode::InvalidInput, "is not drawn in shares",
-                        arguments_.splat.seconds ? "--seconds" : "--method " + arguments_.method,
+                        arguments_.splat.seconds ? "--seconds" : "--method " + std::string(name_of(arguments_.method)),
                         "--method splat or tets, or shares of frames: --turntable N, --step all");
         }
-        by_rows_ = !frames;
+        if (!frames) rows_.emplace(OwnRows{share, ranks()});
         if (ranks() == nullptr || frames) {
             output.set_share(share, make_note(app(), input_, share));
         } else if (!ranks()->first()) {
@@ -104,8 +121,8 @@ private:
     }
 
     void finish(PictureOutput& output, Report& report) {
-        output.finish(report);
-        if (ranks() != nullptr && !by_rows_)
+        report.merge(output.finish(report.progress()));
+        if (ranks() != nullptr && !rows_)
             report["outputs"] = ranks()->gather_list(report.json().value("outputs", Json::array()));
     }
 
@@ -128,15 +145,52 @@ private:
     template <class Draw>
     void show(const Box& box, const ShownField& field, const ShownField& colors, PictureOutput& output, Report& report,
               const Draw& draw) {
+        box_ = box;
+        range_ = field.range;
         const ShownColors shown{picture_.make_optics(box, field.range, colors.range), picture_.legend_options(field, colors)};
         draw(shown);
         output.set_notes({});  // what they refer to is gone
-        if (speaks()) picture_.write_legend(shown.optics, shown.legend, report);
+        if (speaks()) report.merge(picture_.write_legend(shown.optics, shown.legend));
+    }
+
+    [[nodiscard]] PictureMaker maker_of(PictureBody body, Report& report) {
+        return {std::move(body), arguments_.method_options(box_, range_, report.progress()), rows_ ? &*rows_ : nullptr};
+    }
+
+    static void write(PictureMaker& maker, const std::vector<View>& views, const Optics& optics, PictureOutput& output,
+                      Report& report) {
+        const auto draw = [&](const View& view, Progress* progress) { return maker.draw(view, optics, progress); };
+        report.merge(output.write(views, draw, report.progress()));
+    }
+
+    /// The pictures of a body without notes of its own, framed by its box.
+    void write(PictureBody body, const ShownColors& shown, PictureOutput& output, Report& report) {
+        output.set_notes(make_notes(picture_, shown, nullptr));
+        PictureMaker maker = maker_of(std::move(body), report);
+        Facts facts;
+        const std::vector<Vec3> framed = maker.framed_points(shown.optics, report.progress(), facts);
+        report.merge(facts);
+        write(maker, picture_.make_views(box_, framed), shown.optics, output, report);
+    }
+
+    void set_notes(const ShownMesh& mesh, const ShownColors& shown, PictureOutput& output, Report& report) {
+        Facts facts;
+        output.set_notes(make_notes(mesh, shown, arguments_, report.progress(), facts));
+        report.merge(facts);
+    }
+
+    [[nodiscard]] ShownMesh load_shown(const CommonOptions& options, Report& report, ShellsAlone alone = ShellsAlone::Refuse) {
+        report["input"] = input_;  // for errors
+        return report.unpack(load_shown_mesh(input_, options, arguments_, report.progress(), alone));
+    }
+
+    [[nodiscard]] PictureBody body_of(const ShownMesh& shown) const {
+        return {.mesh = &shown.mesh, .tets = arguments_.tets.asked()};
     }
 
     /// A picture of each step, in one box and with one range of colours: all are read once for these.
     void draw_steps(Report& report) {
-        if (picture_.turntable_frames || arguments_.splat.seconds || arguments_.method == "grid") {
+        if (picture_.turntable_frames || arguments_.splat.seconds || arguments_.method == Method::Grid) {
             throw Error(ErrorCode::InvalidInput, "steps are drawn without it",
                         picture_.turntable_frames  ? "--turntable"
                         : arguments_.splat.seconds ? "--seconds"
@@ -149,12 +203,12 @@ private:
         Box box, seen;
         ShownField field, colors;
         for (int step = steps.first; step <= steps.last; ++step) {
-            const ShownMesh of = load_shown_mesh(input_, of_step(common(), step), arguments_, report);
+            const ShownMesh mesh = load_shown(of_step(common(), step), report);
             const bool first = step == steps.first;
-            field = first ? of.field() : united(field, of.field());
-            colors = first ? of.colors() : united(colors, of.colors());
-            box.add(of.box());
-            for (const Vec3& p : of.sheets.points) seen.add(p);
+            field = first ? mesh.field() : united(field, mesh.field());
+            colors = first ? mesh.colors() : united(colors, mesh.colors());
+            box.add(mesh.box());
+            for (const Vec3& p : mesh.shells.points) seen.add(p);
         }
         seen.add(box);
         show(box, field, colors, output, report, [&](const ShownColors& shown) {
@@ -164,10 +218,11 @@ private:
                     output.skip();
                     continue;
                 }
-                const ShownMesh of = load_shown_mesh(input_, of_step(common(), step), arguments_, report);
-                output.set_notes(make_notes(of, shown, arguments_, report));
+                const ShownMesh mesh = load_shown(of_step(common(), step), report);
+                set_notes(mesh, shown, output, report);
                 if (views.empty()) views = picture_.make_views(seen);
-                write_mesh_pictures(of.mesh, views, shown.optics, arguments_, splat_work(), app(), output, report);
+                PictureMaker maker = maker_of(body_of(mesh), report);
+                write(maker, views, shown.optics, output, report);
             }
         });
         finish(output, report);
@@ -175,136 +230,78 @@ private:
     }
 
     void draw_mesh(PictureOutput& output, Report& report) {
-        const ShownMesh of = load_shown_mesh(input_, common(), arguments_, report, ShellsAlone::Take);
-        const Box box = of.box();
-        show(box, of.field(), of.colors(), output, report, [&](const ShownColors& shown) {
-            const std::vector<Vec3>& sheets = of.sheets.points;
-            output.set_notes(make_notes(of, shown, arguments_, report));
+        const ShownMesh mesh = load_shown(common(), report, ShellsAlone::Take);
+        const Box box = mesh.box();
+        show(box, mesh.field(), mesh.colors(), output, report, [&](const ShownColors& shown) {
+            const std::vector<Vec3>& shells = mesh.shells.points;
+            set_notes(mesh, shown, output, report);
             Box seen = box;
-            for (const Vec3& p : sheets) seen.add(p);
-            if (of.mesh.cells.empty()) {
+            for (const Vec3& p : shells) seen.add(p);
+            if (mesh.mesh.cells.empty()) {
                 const auto draw = [](const View& view, Progress*) { return empty_picture(view); };
-                return output.write(picture_.make_views(seen, sheets), draw, report);
+                return report.merge(output.write(picture_.make_views(seen, shells), draw, report.progress()));
             }
-            std::vector<Vec3> framed = picture_.framed_points(of.mesh, shown.optics);
-            if (!framed.empty()) framed.insert(framed.end(), sheets.begin(), sheets.end());
-            write_mesh_pictures(of.mesh, picture_.make_views(seen, framed), shown.optics, arguments_, splat_work(), app(),
-                                output, report);
+            PictureMaker maker = maker_of(body_of(mesh), report);
+            Facts facts;
+            std::vector<Vec3> framed = maker.framed_points(shown.optics, report.progress(), facts);
+            if (!framed.empty()) framed.insert(framed.end(), shells.begin(), shells.end());
+            write(maker, picture_.make_views(seen, framed), shown.optics, output, report);
         });
     }
 
     void draw_bricks(PictureOutput& output, Report& report) {
-        const bool by_tets = arguments_.method == "tets";
-        if (!by_tets && arguments_.method != "splat") {
-            throw Error(ErrorCode::InvalidInput, "a folder of bricks is not drawn by this method",
-                        "--method " + arguments_.method, "splat or tets");
-        }
-        if (!by_tets) refuse_options(app(), {"--levels"}, "needs the whole mesh in memory; this is a folder of bricks");
-        refuse_options(app(), {"--threshold", "--reduce", "--seconds", "--edges", "--color-field", "--lod"},
-                       "needs the whole mesh in memory; this is a folder of bricks");
         const Bricks bricks = report.unpack(open_bricks_input(input_, app()));
-        const StreamedField field = report.unpack(select_brick_field(bricks, common()));
-        const BrickFields fields = [&](HexMesh brick) { return with_brick_fields(std::move(brick), {field}); };
-        const ShownField what{report.json().at("field"), {field.min, field.max}};
-        show(bricks.bounds, what, what, output, report, [&](const ShownColors& shown) {
-            output.set_notes(make_notes(picture_, shown, nullptr));
-            const bool solid = picture_.look == Look::Solid;
-            std::optional<BrickHull> hull;
-            if (solid || !by_tets) hull = report.timed("hull", [&] { return gather_hull(bricks, fields, report.progress()); });
-            const std::vector<View> views = picture_.make_views(bricks.bounds, solid ? hull->mesh.points : std::vector<Vec3>());
-            if (by_tets) {
-                return write_brick_tets(bricks, fields, std::move(hull), views, shown.optics, arguments_, splat_work().rows,
-                                        output, report);
-            }
-            const RefineOptions refine = arguments_.refine.options(0, report.progress());
-            BrickSplatOptions options{.sample = arguments_.sample.options(bricks.bounds, refine),
-                                      .splat = arguments_.options,
-                                      .memory_bytes = arguments_.memory_bytes};
-            options.splat.color_channel.reset();
-            options.splat.progress = report.progress();
-            BoundaryValues skin;
-            if ((!by_rows_ || speaks()) && picture_.paints_boundary(app(), arguments_.refine)) {
-                skin = report.timed("boundary", [&] { return boundary_values(*hull, refine.scheme); });
-            }
-            Surface boundary = report.timed("boundary", [&] { return sample_bricks_boundary(*hull, options.sample); });
-            hull.reset();
-            write_splats({bricks, fields, options, std::move(boundary), skin, arguments_.reference.samples}, views,
-                         shown.optics, splat_work(), output, report);
-        });
+        const StreamedField chosen = report.unpack(select_brick_field(bricks, common()));
+        const BrickFields fields = [&](HexMesh brick) { return with_brick_fields(std::move(brick), {chosen}); };
+        const ShownField field{report.json().at("field"), {chosen.min, chosen.max}};
+        show(bricks.bounds, field, field, output, report,
+             [&](const ShownColors& shown) { write({.bricks = &bricks, .fields = fields}, shown, output, report); });
     }
 
     /// Rays through voxels, or the voxels as kernels.
     void draw_voxels(PictureOutput& output, Report& report) {
-        if (arguments_.method != "grid" && !is_of_splats(arguments_.method)) {
-            throw Error(ErrorCode::InvalidInput, "a grid has no cells", "--method " + arguments_.method,
-                        "use grid, splat or sheets");
-        }
         refuse_mesh_options(app(), "needs a mesh; this is a grid of voxels");
         report["input"] = input_;
         const VdbGrid grid = report.unpack(load_grid(input_, common(), report.progress()));
-        const Box box = box_of(grid.report());
         const ShownField field{grid.report().name, {grid.report().min, grid.report().max}};
-        show(box, field, field, output, report, [&](const ShownColors& shown) {
-            output.set_notes(make_notes(picture_, shown, nullptr));
-            if (arguments_.method == "grid") {
+        show(box_of(grid.report()), field, field, output, report, [&](const ShownColors& shown) {
+            if (arguments_.method == Method::Grid) {
                 const auto voxels = grid.voxels();
-                const auto draw = [&](const View& view, Progress* progress) {
-                    return draw_grid(*voxels, view, shown.optics, arguments_.reference, progress, report);
-                };
-                return output.write(picture_.make_views(box), draw, report);
+                return write({.voxels = voxels.get()}, shown, output, report);
             }
-            const RbfVolume volume =
+            const RbfVolume kernels =
                 report.unpack(sample_reported(grid, arguments_.sample, shown.optics.function(), app(), report.progress()));
-            splat(volume, box, shown, output, report);
+            write({.kernels = &kernels}, shown, output, report);
         });
     }
 
     /// Of a file with levels of detail each view reads what it needs. Without a boundary, all kernels decide where the volume
     /// ends.
     void draw_points(PictureOutput& output, Report& report) {
-        if (!is_of_splats(arguments_.method))
-            throw Error(ErrorCode::InvalidInput, "points can only be splatted", "--method " + arguments_.method);
         report["input"] = input_;
-        if (holds_levels(input_) && arguments_.reference.lod.value_or(0) > 0) {
-            const std::uint64_t kept = picture_.turntable_frames ? arguments_.memory_bytes : 0;
+        if (arguments_.body == BodyKind::KernelFile) {
+            const std::uint64_t kept = picture_.turntable_frames ? arguments_.memory_bytes() : 0;
             LevelsInput levels =
                 report.unpack(open_levels(input_, common(), arguments_.splat.color_field, kept, app(), report.progress()));
             if (levels.file.contents().boundary_triangles > 0) return draw_levels(levels, output, report);
         }
         const RbfVolume volume =
             report.unpack(load_points(input_, common(), arguments_.splat.color_field, app(), report.progress()));
-        if (volume.channels.size() == 1) arguments_.options.color_channel.reset();
         const std::size_t last = volume.channels.size() - 1;
         const ShownField field{volume.channels.front().name, channel_range(volume, 0)};
         const ShownField colors{volume.channels.back().name, channel_range(volume, last)};
-        show(volume.bounds, field, colors, output, report, [&](const ShownColors& shown) {
-            output.set_notes(make_notes(picture_, shown, nullptr));
-            splat(volume, volume.bounds, shown, output, report);
-        });
+        show(volume.bounds, field, colors, output, report,
+             [&](const ShownColors& shown) { write({.kernels = &volume}, shown, output, report); });
     }
 
     void draw_levels(LevelsInput& levels, PictureOutput& output, Report& report) {
         const KernelFileContents& contents = levels.file.contents();
         const auto& field = contents.channels[levels.channels.front()];
         const auto& color = contents.channels[levels.channels.back()];
-        if (levels.channels.size() == 1) arguments_.options.color_channel.reset();
         show(contents.bounds, {field.name, {field.min, field.max}}, {color.name, {color.min, color.max}}, output, report,
              [&](const ShownColors& shown) {
-                 output.set_notes(make_notes(picture_, shown, nullptr));
-                 LevelOfDetail level(levels.file, levels.channels, *arguments_.reference.lod);
-                 write_splats(level, {}, picture_.make_views(contents.bounds), shown.optics, splat_work(), output, report);
+                 write({.file = &levels.file, .channels = levels.channels}, shown, output, report);
              });
-    }
-
-    [[nodiscard]] SplatWork splat_work() const {
-        return {arguments_.method, arguments_.options,
-                OwnRows{by_rows_ ? std::optional(share_of(share_)) : std::nullopt, ranks()}};
-    }
-
-    /// Kernels without a boundary that has its own colours.
-    void splat(const RbfVolume& volume, const Box& box, const ShownColors& shown, PictureOutput& output, Report& report) const {
-        write_splats(volume, arguments_.reference.lod.value_or(0), {}, picture_.make_views(box), shown.optics, splat_work(),
-                     output, report);
     }
 
     std::string input_;
@@ -312,7 +309,9 @@ private:
     RenderArguments arguments_;
     PictureArguments& picture_ = arguments_.picture;
     ShareArgument share_;
-    bool by_rows_ = false;  // this process draws some rows only
+    std::optional<PictureShares> rows_{};  // this process draws some rows only
+    Box box_{};                            // of what is shown, with its range
+    Range range_{};
 };
 
 }  // namespace

@@ -13,7 +13,7 @@
 #include "outputs.h"
 #include "picture_arguments.h"
 #include "points_input.h"
-#include "render_method.h"
+#include "render_arguments.h"
 #include "sample_arguments.h"
 #include "sampled_points.h"
 #include "splat_arguments.h"
@@ -89,13 +89,12 @@ public:
     }
 
     int run(Report& report) override {
-        check_choice("--method", method_, {"splat", "sheets", "tets", "pt", "dense", "grid"});
-        check_edges(method_, picture_);
+        (void)named<Method>(method_, "--method");
         const bool voxels = !holds_points(input_) && is_vdb_file(input_);
         const bool points = voxels || holds_points(input_);
         picture_.settle_look(!points);
         picture_.check();
-        const SplatOptions splat = splat_.options(method_);
+        const SplatOptions splat = splat_.options();
         if (!screenshot_.empty()) check_output(screenshot_, {".png", ".exr"});
         const bool headless = !window_ && (!script_.empty() || !screenshot_.empty());
         const std::string script = script_.empty() ? "[]" : text_of(script_);
@@ -105,6 +104,13 @@ public:
             from.tets = [this, &report](HexMesh mesh, int level) {
                 return report.unpack(tets_.hexes(std::move(mesh), level, report.progress()));
             };
+        const BodyKind kind = voxels          ? BodyKind::Voxels
+                              : points        ? BodyKind::Kernels
+                              : tets_.asked() ? BodyKind::Tets
+                                              : BodyKind::Mesh;
+        const bool method_may_change = !headless || !script_.empty();
+        const Methods methods = method_may_change ? methods_of(kind) : bit(named<Method>(method_, "--method"));
+        check_options(methods, kind, given_options(app()));
         if (points) from.points = voxels ? voxels_of_file(report) : points_of_file(report);
         play(std::move(from), script, splat, headless, report);
         return 0;
@@ -139,7 +145,7 @@ private:
         ViewBody body = points ? view_body(mesh, from.points, field) : view_body(mesh, field);
         if (from.tets) {
             const std::string name = body.field();
-            body = view_body(from.tets(std::move(body.mesh), is_of_splats(method_) ? 1 : 2), name);
+            body = view_body(from.tets(std::move(body.mesh), default_tet_level(named<Method>(method_, "--method"))), name);
         }
         const auto methods = methods_of(body);
         if (std::ranges::find(methods, method_) == methods.end()) {
@@ -147,13 +153,9 @@ private:
                         "--method " + method_, join(methods));
         }
         report["field"] = body.field();
-        DrawSettings settings{.sample = sample_.options(body.box, refine_.options(0, report.progress())),
-                              .levels = refine_.levels,
-                              .splat = splat,
-                              .painted = picture_.look != Look::Solid || picture_.paints_boundary(app(), refine_)};
-        settings.sample.progress = nullptr;
-        if (from.tets) refuse_other_places(sample_, settings.sample);
-        if (samples_ > 0) settings.samples = samples_;
+        MethodOptions settings{.kernels = sample_.kernel_options(body.box, refine_.options(0, nullptr), refine_.levels),
+                               .splat = splat};
+        if (samples_ > 0) settings.style.samples = samples_;
         ViewSession session(std::move(from), std::move(mesh), start_state(body, field), settings);
         if (!saved_.empty()) session.run(Json{{"load_state", saved_}}.dump());
         if (!headless) {
@@ -202,7 +204,7 @@ private:
     [[nodiscard]] ViewState start_state(const ViewBody& body, const std::optional<std::string>& field) const {
         const Optics optics = picture_.make_optics(body.box, body.range, body.range);
         const std::vector<Vec3> framed =  // of kernels and voxels it is their box, as in `render`
-            body.points.volume ? std::vector<Vec3>{} : picture_.framed_points(body.mesh, optics);
+            body.points.volume ? std::vector<Vec3>{} : framed_points(body.mesh, picture_.look, optics);
         const View view = picture_.make_views(body.box, framed).front();
         ViewState state{.camera = view.camera(), .width = view.width(), .height = view.height(), .field = field.value_or("")};
         const bool one_state = !may_have_steps(input_) || body.points.volume;

@@ -45,13 +45,15 @@ def _box_of(box: Optional[Sequence[float]]) -> Optional[list[float]]:
 def render(what: Drawable, *, method: str = "splat", view: str = "iso", camera: Union[None, str, Camera] = None, ortho: bool = False,
            size: tuple[int, int] = (512, 512), field: Optional[str] = None, color_field: Optional[str] = None,
            tf: Union[None, str, TransferFunction] = None, opacity_unit: Optional[float] = None, look: Optional[str] = None,
-           shade: bool = False, shadows: bool = False, ambient_occlusion: float = 0, lod: float = 0, samples: Optional[int] = None,
-           sheets: int = 0, levels: Optional[int] = None, scheme: str = "mcq",
-           tension: float = 1 / 16, crease_angle: Optional[float] = None, per_edge: int = 1, seconds: Optional[float] = None,
-           order: str = "topological", image_tolerance: float = 1e-3, backend: str = "auto", device: Optional[int] = None,
-           clip: Planes = None, clip_box: Optional[Sequence[float]] = None, slice: Planes = None, around: bool = False,
-           progress: Progress = None) -> Image:
+           shade: bool = False, shadows: bool = False, ambient_occlusion: Optional[float] = None, lod: Optional[float] = None,
+           samples: Optional[int] = None, sheets: Optional[int] = None, levels: Optional[int] = None, scheme: Optional[str] = None,
+           tension: Optional[float] = None, crease_angle: Optional[float] = None, per_edge: Optional[int] = None,
+           seconds: Optional[float] = None, order: Optional[str] = None, image_tolerance: Optional[float] = None,
+           backend: Optional[str] = None, device: Optional[int] = None, clip: Planes = None,
+           clip_box: Optional[Sequence[float]] = None, slice: Planes = None, around: bool = False, progress: Progress = None) -> Image:
     """Draws a mesh, points or a grid: the picture of `subvol render` with the same options, bit for bit.
+
+    A keyword that has no effect with the method is refused; docs/pictures.md has the table.
 
     method:       "splat" (kernels), "sheets" (the same by OpenGL sheet buffers), "footprints" (kernels coloured first, as
                   Westover did), "tets" (rays through tetrahedra), "pt" (tetrahedra projected by OpenGL), "dense" (rays through the
@@ -59,16 +61,25 @@ def render(what: Drawable, *, method: str = "splat", view: str = "iso", camera: 
     view:         the side to look from: +x -x +y -y +z -z iso
     camera:       instead: a Camera, or text as of --camera
     size:         width and height in pixels
+    color_field:  takes the colours from this field; opacities stay those of `field` (kernels only)
     tf:           a TransferFunction or its name; None: viridis over the field's range
     opacity_unit: the world distance that opacities are for; None: 1/100 of the bounding box's diagonal
     look:         "solid" (opaque and lit; what a mesh without tf, opacity_unit and shade gets), "volume", "xray" or "isosurface"
-    shade:        lit surfaces of equal value (splats only)
-    shadows:      the volume shadows itself from the light at the upper left (splats only)
-    ambient_occlusion: > 0: darkens hollows that are narrower than this part of the bounding box's diagonal, at most 1 (splats only)
-    lod:          > 0: kernels are merged as long as they are narrower than so many pixels (splats only)
+    shade:        lit surfaces of equal value (kernels only)
+    shadows:      the volume shadows itself from the light at the upper left (splat only)
+    ambient_occlusion: > 0: darkens hollows that are narrower than this part of the bounding box's diagonal, at most 1 (splat only)
+    lod:          > 0: kernels are merged as long as they are narrower than so many pixels; pt with order "havs": the fraction of
+                  the inner faces that is drawn
     samples:      n x n rays or places for each pixel, 1 to 16; None: 2 for solids, else 1
+    sheets:       planes over the volume's depth; None: as many as the kernels need (splat and sheets)
     levels:       draw the trilinear cells of this level; None: 1 for tets and pt, the limit for the others
-    seconds:      a time limit (splat and pt)
+    scheme:       "mcq" (None), "cc", "bsxw" or "linear"; tension: of mcq, None: 1/16
+    per_edge:     kernels for each cell edge; None: 1
+    seconds:      a time limit (splat, sheets and pt)
+    order:        how pt sorts: "topological" (None), "centroid", "lists" or "havs"
+    image_tolerance: of dense without levels; None: 1e-3
+    backend:      where to splat: "auto" (None), "gl" or "cpu"
+    device:       the OpenGL device's number in gl_devices()
     clip:         planes that cut the volume open, each (px, py, pz, nx, ny, nz): what lies on the normal's side goes. One or several
     clip_box:     (x0, y0, z0, x1, y1, z1): what lies outside goes
     slice:        planes that are drawn alone, opaque and coloured by value. One or several
@@ -80,119 +91,62 @@ def render(what: Drawable, *, method: str = "splat", view: str = "iso", camera: 
     check_numbers(tension=tension)
     check_numbers(0, opacity_unit=opacity_unit, ambient_occlusion=ambient_occlusion, crease_angle=crease_angle, seconds=seconds,
                   image_tolerance=image_tolerance)
-    if method not in ("splat", "sheets", "footprints", "tets", "pt", "dense", "grid"):
-        raise InvalidInput(f"method: '{method}' is not known (splat, sheets, footprints, tets, pt, dense or grid)", "method",
-                           "splat, sheets, footprints, tets, pt, dense or grid")
     if isinstance(what, Field):
         raise InvalidInput("what: a Field cannot be drawn; draw the mesh or the points that it is of", "what", "a mesh, points or a grid")
     if len(size) != 2 or not (1 <= size[0] <= 65536 and 1 <= size[1] <= 65536):
         raise InvalidInput(f"size: {size} is not a picture size", "size", "width and height, 1 to 65536")
-    splats = method in ("splat", "sheets", "footprints")
-    if isinstance(what, HexMesh):
-        body = True
-    elif isinstance(what, (RbfVolume, Grid)):
-        body = False
-        if isinstance(what, Grid) and splats:
-            what = sample_grid(what)
-        if isinstance(what, RbfVolume) and not splats:
-            raise InvalidInput(f"method: points can only be splatted, not drawn by {method}", "method", "splat or sheets")
-        if isinstance(what, Grid) and method != "grid":
-            raise InvalidInput(f"method: a grid has no cells for {method}", "method", "grid, splat or sheets")
-    else:
+    if isinstance(what, Grid) and method in ("splat", "sheets", "footprints"):
+        what = sample_grid(what)
+    if not isinstance(what, (HexMesh, RbfVolume, Grid)):
         raise TypeError(f"render() takes a HexMesh, RbfVolume or Grid, not {type(what).__name__}")
-    if body and method == "grid":
-        raise InvalidInput("method: a mesh has no voxels", "method", "subvol.rasterize makes a grid of it")
-    if not splats and shade:
-        raise InvalidInput(f"shade: method {method} draws without light", "shade", "splat or sheets")
-    if (shadows or ambient_occlusion) and method != "splat":
-        raise InvalidInput(f"shadows, ambient_occlusion: method {method} draws without them (splat does)", "shadows", "splat")
-    if not 0 <= lod < float("inf"):
-        raise InvalidInput(f"lod: {lod} is not a number of pixels", "lod", "0 or more")
-    if lod and not (splats and seconds is None):
-        raise InvalidInput("lod: merged kernels are drawn by splat and sheets, without a time limit", "lod", "splat or sheets, without seconds")
-    if seconds is not None and (shadows or ambient_occlusion):
-        raise InvalidInput("seconds: pictures within a time have no shadows", "seconds", "without shadows and ambient_occlusion")
-    if seconds is not None and method not in ("splat", "sheets", "pt"):
-        raise InvalidInput(f"seconds: method {method} has no time limit", "seconds", "splat, sheets or pt")
-    kind = _look_of(look, body and not shade, tf, opacity_unit)
-    solid, lit = kind == _core.Look.solid, _is_lit(kind)
-    if lit and not splats and not solid:
-        raise InvalidInput(f"look: method {method} lights the boundary only", "look", "solid")
-    many = samples if samples is not None else 2 if solid else 1
+    keywords = {"color_field": color_field, "look": look, "shade": shade, "shadows": shadows, "ambient_occlusion": ambient_occlusion,
+                "lod": lod, "samples": samples, "sheets": sheets, "levels": levels, "scheme": scheme, "tension": tension,
+                "crease_angle": crease_angle, "per_edge": per_edge, "seconds": seconds, "order": order,
+                "image_tolerance": image_tolerance, "backend": backend, "device": device, "clip": _planes_of(clip, "clip"),
+                "clip_box": _box_of(clip_box), "slice": _planes_of(slice, "slice"), "around": around}
+    given = {name: value for name, value in keywords.items() if value is not None and value is not False and value != []}
+    kind = _look_of(look, isinstance(what, HexMesh) and not shade, tf, opacity_unit)
 
-    channel, color_channel = 0, None
-    if isinstance(what, HexMesh):
-        mesh = _selected(what, field)
-        values = next(iter(mesh.fields.values()))
-        low, high = _range_of(values)
-        bounds = mesh.bounds
-    elif isinstance(what, RbfVolume):
-        names = list(what.values)
-        channel = _channel(names, field)
-        if color_field is not None:
-            color_channel = _channel(names, color_field)
-        low, high = _range_of(what.values[names[channel]])
-        bounds = what.bounds
-    else:
-        about = what.report
-        low, high = about["min"], about["max"]
-        half = about["voxel_size"] / 2
-        bounds = np.array(what.bounds) + [[-half], [half]]
-    knots = _knots_of(tf, kind, low, high)
-    if color_channel is not None and isinstance(what, RbfVolume):
-        other = _knots_of(tf, kind, *_range_of(what.values[names[color_channel]]))
-        knots = _core.Knots(other.color, knots.opacity)
+    mesh = _selected(what, field) if isinstance(what, HexMesh) else None
+    other = _selected(what, color_field) if isinstance(what, HexMesh) and color_field is not None else None
+    body, shown, colors, bounds = _body_of(what if mesh is None else mesh, other, field, color_field)
+    knots = _knots_of(tf, kind, *shown)
+    if colors is not None:
+        knots = _core.Knots(_knots_of(tf, kind, *colors).color, knots.opacity)
     unit = opacity_unit or _core.look_opacity_unit(kind, bounds)
-    framed = _core.framed_points(mesh, kind, knots, unit) if isinstance(what, HexMesh) else None
+    framed = _core.framed_points(mesh, kind, knots, unit) if mesh is not None else None
     eye = _camera_of(view, camera, bounds, framed, size, ortho)
-    scene = _core.Scene(eye, (int(size[0]), int(size[1])), knots, unit, _planes_of(clip, "clip"), _box_of(clip_box),
-                        _planes_of(slice, "slice"), bool(around))
-    way = backend if method == "splat" else method
-
+    own_opacity = opacity_unit is not None or (isinstance(tf, TransferFunction) and tf.opacity is not None)
     with listening(progress) as listener:
-        if isinstance(what, RbfVolume):
-            image = _core.splat(what, scene, way, device, many, sheets, channel, color_channel, shade or lit, shadows, ambient_occlusion, lod, None,
-                                listener)
-        elif isinstance(what, Grid):
-            image = _core.grid(what.voxels(), scene, many, listener)
-        elif splats and seconds is not None:
-            image = _core.splat_in_time(mesh, scene, seconds, scheme, way, device, many, sheets, shade or lit, listener)
-        elif splats:
-            volume = _sampled(mesh, levels, scheme, tension, crease_angle, per_edge, listener)
-            own_opacity = isinstance(tf, TransferFunction) and tf.opacity is not None
-            painted = solid and levels is None and opacity_unit is None and sheets == 0 and per_edge == 1 and not own_opacity
-            skin = _core.skin(mesh, scheme, tension, crease_angle, None) if painted and not (shadows or ambient_occlusion) else None
-            image = _core.splat(volume, scene, way, device, many, sheets, 0, None, shade or lit, shadows, ambient_occlusion, lod, skin,
-                                listener)
-        else:
-            name = next(iter(mesh.fields))
-            if method == "dense":
-                image = _core.dense(mesh, name, scene, scheme, tension, crease_angle, levels, image_tolerance, many, listener)
-            else:
-                level = 1 if levels is None else levels
-                fine = _core.subdivide(mesh, level, scheme, tension, crease_angle, True, listener)
-                if method == "tets":
-                    image = _core.tets(fine, name, scene, many, listener)
-                else:
-                    image = _core.projected(fine, name, scene, order, device, many, seconds, listener)
-            if lit:
-                image = _core.lit(image, _core.skin(mesh, scheme, tension, crease_angle, levels), scene, many)
-    image.report["method"] = method
+        image = _core.render(body, method, eye, (int(size[0]), int(size[1])), _core.PictureLight(kind, knots, unit, own_opacity), given,
+                             listener)
     image.report["background"] = _core.look_background(kind)
-    lost = image.report.get("lost_rays", 0)
-    if lost:
-        warn(f"{lost} rays were lost inside the mesh")
+    for warning in image.report.get("warnings", []):
+        warn(warning)
     return image
 
 
-def _sampled(mesh: HexMesh, levels: Optional[int], scheme: str, tension: float, crease_angle: Optional[float], per_edge: int,
-             listener: Any) -> RbfVolume:
-    boundary_levels = None
-    if levels is not None:
-        mesh = _core.subdivide(mesh, levels, scheme, tension, crease_angle, True, listener)
-        scheme, boundary_levels = "linear", 0
-    return _core.sample(mesh, None, (512, 512), listener, scheme=scheme, tension=tension, crease_angle=crease_angle, per_edge=per_edge,
-                        boundary_levels=boundary_levels)[0]
+_Range = tuple[float, float]
+
+
+def _body_of(what: Drawable, colors: Optional[HexMesh], field: Optional[str],
+             color_field: Optional[str]) -> tuple[_core.DrawnBody, _Range, Optional[_Range], npt.NDArray[Any]]:
+    """What is drawn, the range of its field, that of the field of the colours if it is another, and its bounds."""
+    if isinstance(what, HexMesh):
+        if colors is not None and list(colors.fields) == list(what.fields):
+            colors = None
+        of_colors = None if colors is None else _range_of(next(iter(colors.fields.values())))
+        return _core.DrawnBody(mesh=what, colors=colors), _range_of(next(iter(what.fields.values()))), of_colors, what.bounds
+    if isinstance(what, RbfVolume):
+        names = list(what.values)
+        channels = [_channel(names, field)]
+        if color_field is not None:
+            channels.append(_channel(names, color_field))
+        ranges = [_range_of(what.values[names[channel]]) for channel in channels]
+        return _core.DrawnBody(points=what, channels=channels), ranges[0], ranges[1] if len(ranges) > 1 else None, what.bounds
+    about = what.report
+    half = about["voxel_size"] / 2
+    return _core.DrawnBody(voxels=what.voxels()), (about["min"], about["max"]), None, np.array(what.bounds) + [[-half], [half]]
 
 
 def _channel(names: list[str], field: Optional[str]) -> int:

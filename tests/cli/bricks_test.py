@@ -356,7 +356,7 @@ class WhatGoesWrong(InFolder):
         self.assert_said("--per-edge 1", "points", "t.bricks", "-o", "a.ply", "--per-edge", 2)
         self.assert_said("binary .ply or .svk only", "points", "t.bricks", "-o", "a.vtp")
         self.assert_said("binary .ply only", "points", "t.bricks", "-o", "a.svk", "--part", "1/2")
-        self.assert_said("is not drawn by this method", "render", "t.bricks", "-o", "a.png", "--method", "dense")
+        self.assert_said("cannot draw a folder of bricks", "render", "t.bricks", "-o", "a.png", "--method", "dense")
         tets = ["render", "t.bricks", "-o", "a.png", "--method", "tets"]
         self.assert_said("these kernels need 4", "points", "t.bricks", "-o", "a.ply", "--scheme", "cc")
         self.assert_said("split with --halo 4", "render", "t.bricks", "-o", "a.png", "--scheme", "bsxw")

@@ -91,9 +91,9 @@ class LevelsFiles(InFolder):
         for options in ["--ascii"], ["--splats"]:
             self.assertIn(".ply", self.refused("points", "model:ball:4", "-o", "a.svk", *options))
         self.write("a.svk", options=())
-        self.assertIn("mesh", self.refused("render", "a.svk", "-o", "a.png", "--lod", "2", "--per-edge", "2"))
+        self.assertIn("no effect on points", self.refused("render", "a.svk", "-o", "a.png", "--lod", "2", "--per-edge", "2"))
         self.assertIn("no field 'x'", self.refused("render", "a.svk", "-o", "a.png", "--lod", "2", "--field", "x"))
-        self.assertIn("splatted", self.refused("render", "a.svk", "-o", "a.png", "--method", "dense"))
+        self.assertIn("cannot draw points", self.refused("render", "a.svk", "-o", "a.png", "--method", "dense"))
         good = (self.folder / "a.svk").read_bytes()
         cases = {"cut": good[:-5], "empty": b"", "other": b"solid" + good, "version": good[:20] + b"\7" + good[21:],
                  "head": good[:60] + b"xx" + good[62:], "kernels": good[:-9] + b"xx" + good[-7:]}

@@ -35,7 +35,7 @@ struct DrawWorker::State {
         std::uint64_t serial = 0;
     };
 
-    State(const DrawSettings& settings, std::function<void()> wake) : drawer(settings), on_picture(std::move(wake)) {}
+    State(const MethodOptions& settings, std::function<void()> wake) : drawer(settings), on_picture(std::move(wake)) {}
 
     void work(const std::stop_token& stop) {
         std::unique_lock lock(mutex);
@@ -129,7 +129,7 @@ struct DrawWorker::State {
     std::jthread thread{};
 };
 
-DrawWorker::DrawWorker(const DrawSettings& settings, std::function<void()> on_picture)
+DrawWorker::DrawWorker(const MethodOptions& settings, std::function<void()> on_picture)
     : state_(std::make_unique<State>(settings, std::move(on_picture))) {
     state_->thread = std::jthread([state = state_.get()](const std::stop_token& stop) { state->work(stop); });
 }

@@ -2,158 +2,87 @@
 #include "subvol/picture_drawer.h"
 
 #include <algorithm>
-#include <tuple>
 #include <utility>
+#include <variant>
 
 #include "few_kernels.h"
 #include "picture_overlays.h"
-#include "subvol/boundary_shading.h"
-#include "subvol/boundary_values.h"
 #include "subvol/detail/stopwatch.h"
-#include "subvol/error.h"
-#include "subvol/limit.h"
-#include "subvol/refine.h"
-#include "subvol/render_dense.h"
-#include "subvol/render_grid.h"
-#include "subvol/render_projected.h"
-#include "subvol/render_tets.h"
-#include "subvol/sample_mixed.h"
-#include "subvol/sample_tables.h"
-#include "subvol/splat.h"
 #include "surface_preview.h"
 
 namespace subvol {
 
 using namespace detail;
 
+namespace {
+
+PictureBody picture_body(const ViewBody& body) {
+    PictureBody shown{.tets = body.tets, .shape = body.shape, .moved = body.moved};
+    if (body.points.volume) {
+        shown.kernels = body.points.volume.get();
+        shown.voxels = body.points.voxels.get();
+        shown.channels = {body.channel};
+    } else {
+        shown.mesh = &body.mesh;
+    }
+    return shown;
+}
+
+double seconds_of(const Facts& facts, std::initializer_list<std::string_view> stages) {
+    double sum = 0;
+    const FactValue* seconds = facts.find("seconds");
+    if (seconds == nullptr) return sum;
+    for (const Fact& stage : std::get<Facts>(seconds->value).all()) {
+        if (std::ranges::find(stages, stage.name) != stages.end()) sum += std::get<double>(stage.value.value);
+    }
+    return sum;
+}
+
+void add_facts(const Facts& facts, DrawnPicture& picture) {
+    picture.seconds_boundary += seconds_of(facts, {"boundary"});
+    picture.seconds_kernels += seconds_of(facts, {"refine", "sample", "reduce", "threshold"});
+    if (const FactValue* backend = facts.find("backend")) picture.backend = std::get<std::string>(backend->value);
+    for (const char* name : {"cells", "micro_cells", "tets", "points"}) {
+        if (const FactValue* count = facts.find(name)) picture.points = std::get<std::uint64_t>(count->value);
+    }
+}
+
+}  // namespace
+
 struct PictureDrawer::State {
-    DrawSettings settings;
+    MethodOptions settings;
+    std::optional<int> samples{};  // of full pictures
     std::shared_ptr<const ViewBody> body{};
-    std::optional<BoundaryTables> tables{};       // of the cells of the body; made when it is moved
-    std::optional<SampleTables> kernel_tables{};  // likewise
-    std::optional<BoundaryValues> skin{};
-    std::optional<RbfVolume> volume{};
-    std::unique_ptr<FewKernels> few{};  // of the volume, for coarse pictures
-    std::optional<TetsRenderer> tets{};
-    std::optional<ProjectedRenderer> projected{};
+    std::optional<PictureMaker> maker{};
+    std::unique_ptr<FewKernels> few{};  // of the kernels, for coarse pictures
 
-    /// A splatter for each way of drawing: samples, light, sheet buffers, whether of few kernels.
-    using SplatterKey = std::tuple<int, bool, bool, bool>;
-    std::vector<std::pair<SplatterKey, Splatter>> splatters{};
-
-    void take(const std::shared_ptr<const ViewBody>& next) {
-        if (body == next) return;
-        splatters.clear();  // they refer to the kernels
-        few.reset();        // so does this
-        if (body && body->shape != next->shape) {
-            tables.reset();
-            kernel_tables.reset();
+    void take(const std::shared_ptr<const ViewBody>& next, const PictureStyle& style) {
+        if (body != next) {
+            few.reset();  // it refers to the kernels
+            if (maker) maker->set_body(picture_body(*next));
+            body = next;
         }
-        body = next;
-        skin.reset();
-        volume.reset();
-        tets.reset();
-        projected.reset();
-    }
-
-    [[nodiscard]] HexMesh refined(int levels, Progress* progress) const {
-        const SchemeOptions& scheme = settings.sample.scheme;
-        HexMesh fine = refine(body->mesh, {.scheme = scheme, .levels = levels, .progress = progress});
-        return interpolates(scheme.kind) ? fine : on_limit(std::move(fine), scheme.kind);
-    }
-
-    /// As boundary_values has it, up to rounding where the body has been moved.
-    const BoundaryValues& skin_of(Progress* progress, DrawnPicture& picture) {
-        if (skin) return *skin;
-        const Stopwatch watch;
-        const auto options = [&] {
-            return RefineOptions{.scheme = settings.sample.scheme,
-                                 .levels = picture_levels(body->mesh, body->tets ? std::optional(0) : settings.levels),
-                                 .progress = progress};
-        };
-        if (body->moved) {
-            if (!tables) tables.emplace(body->mesh, options());
-            skin = tables->apply(body->mesh);
-        } else {
-            skin = boundary_values(body->mesh, options());
-        }
-        picture.seconds_boundary = watch.seconds();
-        return *skin;
-    }
-
-    const RbfVolume& volume_of(Progress* progress, DrawnPicture& picture) {
-        if (body->points.volume) return *body->points.volume;
-        if (volume) return *volume;
-        const Stopwatch watch;
-        SampleOptions options = settings.sample;
-        options.progress = progress;
-        if (body->tets) {
-            volume = sample_rbf_points(join_split_cells(body->mesh),
-                                       {.correction = options.correction, .kernel = options.kernel, .progress = progress})
-                         .volume;
-        } else if (settings.levels) {  // the refined mesh with its trilinear cells takes the place of the limit
-            HexMesh fine = refined(*settings.levels, progress);
-            options.scheme.kind = Scheme::Linear;
-            options.boundary_levels = 0;
-            volume = sample_rbf_points(std::move(fine), options).volume;
-        } else if (body->moved && SampleTables::are_for(options)) {
-            if (!kernel_tables) kernel_tables.emplace(body->mesh, options);
-            volume = kernel_tables->apply(body->mesh).volume;
-        } else {
-            volume = sample_rbf_points(body->mesh, options).volume;
-        }
-        picture.seconds_kernels = watch.seconds();
-        return *volume;
-    }
-
-    Splatter& splatter(int samples, bool lit, bool sheets, Progress* progress, DrawnPicture& picture) {
-        const RbfVolume& all = volume_of(progress, picture);
-        if (picture.scale > 1 && !few && !body->moved) few = std::make_unique<FewKernels>(all);  // a moved body's soon change
-        const RbfVolume* merged = picture.scale > 1 && few ? few->ready() : nullptr;
-        const SplatterKey key{samples, lit, sheets, merged != nullptr};
-        for (auto& [of, one] : splatters) {
-            if (of == key) return one;
-        }
-        SplatOptions options = settings.splat;
-        options.samples = samples;
-        options.channel = body->channel;
-        if (sheets) options.method = SplatMethod::Sheets;
-        if (lit) options.shading = Shading{};
-        options.progress = nullptr;
-        return splatters.emplace_back(key, Splatter(merged != nullptr ? *merged : all, options)).second;
-    }
-
-    [[nodiscard]] bool paints(const ViewState& state) const {
-        return settings.painted && state.look.look == Look::Solid && state.look.opacity.empty() &&
-               !state.look.opacity_unit_world && !settings.levels && !body->points.volume;
-    }
-
-    void draw_splats(const ViewState& state, const View& view, const Optics& optics, int samples, DrawnPicture& picture,
-                     Progress* progress) {
-        Stopwatch watch;
-        const bool lit = is_lit(state.look.look), painted = paints(state);
-        if (painted) (void)skin_of(progress, picture);
-        Splatter& drawer = splatter(samples, lit, state.method == "sheets", progress, picture);
-        picture.seconds_build = watch.seconds();
-        drawer.set_clip(state.clip);
-        if (painted)
-            drawer.set_boundary_colors(skin->surface, skin->values.back());
+        settings.style = style;
+        if (maker)
+            maker->set_style(style);
         else
-            drawer.set_boundary_colors({}, {});
-        SplatResult drawn = drawer.draw(view, optics, progress);
-        picture.image = std::move(drawn.image);
-        picture.depth = std::move(drawn.depth);
-        picture.backend = drawn.report.backend;
-        picture.points = drawn.report.points;
-        picture.seconds_draw = watch.seconds() - picture.seconds_build;
+            maker.emplace(picture_body(*body), settings);
+    }
+
+    /// Few kernels in place of very many, as soon as there are; null: all of them.
+    const RbfVolume* stand_in(const Optics& optics, Progress* progress, Facts& facts) {
+        if (!few && !body->moved) few = std::make_unique<FewKernels>(maker->kernels(optics, progress, facts));
+        return few ? few->ready() : nullptr;  // those of a moved body soon change
     }
 
     /// A coarse picture of a solid, whatever the method: its boundary alone.
-    void draw_preview(const View& view, const Optics& optics, const Clip& clip, DrawnPicture& picture, Progress* progress) {
+    void draw_preview(const View& view, const Optics& optics, DrawnPicture& picture, Progress* progress) {
         const Stopwatch watch;
-        const BoundaryValues& boundary = skin_of(progress, picture);
+        Facts facts;
+        const BoundaryValues& boundary = maker->skin(progress, facts);
+        add_facts(facts, picture);
         picture.seconds_build = watch.seconds();
-        Preview preview = surface_preview(boundary, view, optics, clip);
+        Preview preview = surface_preview(boundary, view, optics, picture.state.clip);
         picture.image = std::move(preview.image);
         picture.depth = std::move(preview.depth);
         picture.backend = "cpu";
@@ -161,70 +90,25 @@ struct PictureDrawer::State {
         picture.seconds_draw = watch.seconds() - picture.seconds_build;
     }
 
-    void light(const ViewState& state, const View& view, int samples, DrawnPicture& picture) {
-        if (is_lit(state.look.look)) light_boundary(picture.image, skin->surface, view, Shading{}, samples, state.clip);
-    }
-
-    void draw_voxels(const ViewState& state, const View& view, const Optics& optics, int samples, DrawnPicture& picture,
-                     Progress* progress) {
+    void draw(const View& view, const Optics& optics, DrawnPicture& picture, Progress* progress) {
         const Stopwatch watch;
-        if (!body->points.voxels) throw Error(ErrorCode::InvalidInput, "a mesh has no voxels", "method grid", "another method");
-        GridResult drawn =
-            render_grid(*body->points.voxels, view, optics, {.samples = samples, .clip = state.clip, .progress = progress});
-        picture.image = std::move(drawn.image);
-        picture.points = drawn.report.cells;
-        picture.backend = "cpu";
-        picture.seconds_draw = watch.seconds();
-    }
-
-    void draw_reference(const ViewState& state, const View& view, const Optics& optics, int samples, DrawnPicture& picture,
-                        Progress* progress) {
-        Stopwatch watch;
-        const bool lit = is_lit(state.look.look);
-        if (lit && state.look.look != Look::Solid) {
-            throw Error(ErrorCode::InvalidInput, "method " + state.method + " lights the boundary only", "look isosurface",
-                        "method splat, or the colour map isosurface for surfaces without light");
-        }
-        if (body->points.volume) {
-            throw Error(ErrorCode::InvalidInput, "points and voxels have no cells", "method " + state.method, "method splat");
-        }
-        if (lit) (void)skin_of(progress, picture);
-        const auto with_cells = [&](const auto& make) {
-            if (body->tets) return make(join_split_cells(body->mesh));
-            return make(refined(settings.levels.value_or(1), progress));
-        };
-        if (state.method == "pt" && !projected)
-            with_cells([&](const auto& fine) { projected.emplace(fine, "", settings.splat.device, progress); });
-        if (state.method == "tets" && !tets) with_cells([&](const auto& fine) { tets.emplace(fine, "", progress); });
+        Facts facts;
+        const bool few_suffice = picture.scale > 1 && draws_kernels(settings.style.method);
+        const RbfVolume* merged = few_suffice ? stand_in(optics, progress, facts) : nullptr;
+        facts.merge(maker->prepare(optics, progress, merged == nullptr));
         picture.seconds_build = watch.seconds();
-        picture.backend = "cpu";
-        if (state.method == "tets") {
-            TetsResult drawn = tets->draw(view, optics, {.samples = samples, .clip = state.clip, .progress = progress});
-            picture.image = std::move(drawn.image);
-            picture.points = drawn.report.tets;
-        } else if (state.method == "pt") {
-            ProjectedResult drawn =
-                projected->draw(view, optics, {.samples = samples, .clip = state.clip, .progress = progress});
-            picture.image = std::move(drawn.image);
-            picture.points = drawn.report.tets;
-            picture.backend = "gl";
-        } else {
-            DenseResult drawn = render_dense(body->mesh, {}, view, optics,
-                                             {.refine = {.scheme = settings.sample.scheme},
-                                              .levels = settings.levels,
-                                              .image_tolerance = settings.image_tolerance,
-                                              .samples = samples,
-                                              .clip = state.clip,
-                                              .progress = progress});
-            picture.image = std::move(drawn.image);
-            picture.points = drawn.report.micro_cells;
-        }
-        light(state, view, samples, picture);
+        Picture drawn = maker->draw(view, optics, progress, merged);
+        facts.merge(drawn.facts);
+        add_facts(facts, picture);
+        picture.image = std::move(drawn.image);
+        picture.depth = std::move(drawn.depth);
         picture.seconds_draw = watch.seconds() - picture.seconds_build;
     }
 };
 
-PictureDrawer::PictureDrawer(const DrawSettings& settings) : state_(std::make_unique<State>(State{.settings = settings})) {
+PictureDrawer::PictureDrawer(const MethodOptions& settings)
+    : state_(std::make_unique<State>(State{.settings = settings, .samples = settings.style.samples})) {
+    state_->settings.names = OptionNames::Keywords;
 }
 PictureDrawer::~PictureDrawer() = default;
 PictureDrawer::PictureDrawer(PictureDrawer&&) noexcept = default;
@@ -232,22 +116,19 @@ PictureDrawer& PictureDrawer::operator=(PictureDrawer&&) noexcept = default;
 
 DrawnPicture PictureDrawer::draw(const ViewState& state, const std::shared_ptr<const ViewBody>& body, int scale,
                                  Progress* progress) {
-    state_->take(body);
+    PictureStyle style{.method = named<Method>(state.method, "method"), .look = state.look, .clip = state.clip};
+    style.samples = scale > 1 ? std::optional(1) : state_->samples;
+    state_->take(body, style);
     const Optics optics = optics_of(state, *body);
     const int width = state.width - legend_columns(state, *body, optics);
     const View view(state.camera, std::max(1, width / scale), std::max(1, state.height / scale));
     DrawnPicture picture;
     picture.scale = scale;
     picture.state = state;
-    const int samples = scale > 1 ? 1 : state_->settings.samples.value_or(state.look.look == Look::Solid ? 2 : 1);
-    if (scale > 1 && state_->paints(state) && state.clip.slices.empty()) {
-        state_->draw_preview(view, optics, state.clip, picture, progress);
-    } else if (state.method == "splat" || state.method == "sheets") {
-        state_->draw_splats(state, view, optics, samples, picture, progress);
-    } else if (state.method == "grid") {
-        state_->draw_voxels(state, view, optics, samples, picture, progress);
+    if (scale > 1 && state_->maker->paints_boundary() && state.clip.slices.empty()) {
+        state_->draw_preview(view, optics, picture, progress);
     } else {
-        state_->draw_reference(state, view, optics, samples, picture, progress);
+        state_->draw(view, optics, picture, progress);
     }
     if (scale == 1) draw_overlays(picture, view, *body, optics);
     return picture;

@@ -33,10 +33,18 @@ HexMesh mesh_of_points(const RbfVolume& volume) {
     return mesh;
 }
 
+BodyKind kind_of(const ViewBody& body) {
+    if (body.points.volume) return body.points.voxels ? BodyKind::Voxels : BodyKind::Kernels;
+    return body.tets ? BodyKind::Tets : BodyKind::Mesh;
+}
+
 std::vector<std::string> methods_of(const ViewBody& body) {
-    if (body.points.voxels) return {"splat", "sheets", "grid"};
-    if (body.points.volume) return {"splat", "sheets"};
-    return {"splat", "sheets", "tets", "pt", "dense"};
+    const Methods able = methods_of(kind_of(body)) & ~bit(Method::Footprints);  // these cannot be cut
+    std::vector<std::string> names;
+    for (const auto& row : NameTable<Method>::rows) {
+        if ((able & bit(row.value)) != 0) names.emplace_back(row.name);
+    }
+    return names;
 }
 
 Optics optics_of(const ViewState& state, const ViewBody& body) {

@@ -97,7 +97,7 @@ void edit_level(Session& session, const Json& value) {
     if (level == 0) {
         session.coarse.reset();
     } else {
-        session.coarse = CoarseEdit(session.body->mesh, level, session.settings.sample.scheme);
+        session.coarse = CoarseEdit(session.body->mesh, level, session.settings.kernels.sample.scheme);
     }
     session.edit_level = level;
     session.selection.clear();

@@ -35,6 +35,18 @@ std::string opacity_text(const std::vector<TransferFunction::OpacityKnot>& knots
     return text;
 }
 
+
+/// The words without the options that the method does not read; their values follow them.
+std::vector<std::string> words_of_method(const std::vector<std::string>& words, Method method, BodyKind body) {
+    std::vector<std::string> kept;
+    bool keeps = true;
+    for (const std::string& word : words) {
+        if (word.starts_with("--")) keeps = reads(method, body, std::string_view(word).substr(2));
+        if (keeps) kept.push_back(word);
+    }
+    return kept;
+}
+
 }  // namespace
 
 std::string render_command(const ViewState& state, const ViewBody& body, const ViewSource& source) {
@@ -74,9 +86,11 @@ std::string render_command(const ViewState& state, const ViewBody& body, const V
     for (const CutPlane& plane : state.clip.slices) add("--slice", plane_text(plane));
     if (state.clip.around_slices && !state.clip.slices.empty()) words.emplace_back("--around");
     if (state.axes) words.emplace_back("--axes");
-    if (state.edges && (state.method == "splat" || state.method == "sheets")) words.emplace_back("--edges");
+    const auto method = named<Method>(state.method, "method");
+    if (state.edges && reads(method, kind_of(body), "edges")) words.emplace_back("--edges");
     if (state.legend) words.emplace_back("--legend");
-    words.insert(words.end(), source.more_words.begin(), source.more_words.end());
+    const std::vector<std::string> more = words_of_method(source.more_words, method, kind_of(body));
+    words.insert(words.end(), more.begin(), more.end());
     std::string line;
     for (const std::string& word : words) line += (line.empty() ? "" : " ") + quoted(word);
     return line;

@@ -36,7 +36,7 @@ std::pair<std::string, Json> split_action(std::string_view action) {
 
 /// Kernels have enough of one level; straight cells need the second.
 int tet_level(const std::string& method) {
-    return method == "splat" || method == "sheets" ? 1 : 2;
+    return default_tet_level(named<Method>(method, "method"));
 }
 
 std::shared_ptr<const ViewBody> tet_body(const ViewSource& source, HexMesh mesh, const std::string& field,
@@ -56,7 +56,7 @@ detail::Json detail::parsed(std::string_view text, const std::string& where) {
     }
 }
 
-ViewSession::State::State(ViewSource from, HexMesh read, const ViewState& start, const DrawSettings& drawn,
+ViewSession::State::State(ViewSource from, HexMesh read, const ViewState& start, const MethodOptions& drawn,
                           std::function<void()> wake)
     : source(std::move(from)),
       settings(drawn),
@@ -98,7 +98,7 @@ std::shared_ptr<const ViewBody> ViewSession::State::body_for(const std::string& 
 }
 
 std::shared_ptr<const PickedField> ViewSession::State::field() {
-    if (!picked_field) picked_field = std::make_shared<const PickedField>(body, settings.sample.scheme);
+    if (!picked_field) picked_field = std::make_shared<const PickedField>(body, settings.kernels.sample.scheme);
     return picked_field;
 }
 
@@ -175,7 +175,7 @@ void ViewSession::State::note_wait() {
     waits.push_back({action, times.first, times.full, times.coarse_scale, times.boundary, times.kernels, times.draw});
 }
 
-ViewSession::ViewSession(ViewSource source, HexMesh mesh, const ViewState& start, const DrawSettings& settings,
+ViewSession::ViewSession(ViewSource source, HexMesh mesh, const ViewState& start, const MethodOptions& settings,
                          std::function<void()> on_picture)
     : state_(std::make_unique<State>(std::move(source), std::move(mesh), start, settings, std::move(on_picture))) {
 }

@@ -66,7 +66,7 @@ private:
 namespace subvol {
 
 struct ViewSession::State {
-    State(ViewSource from, HexMesh read, const ViewState& start, const DrawSettings& drawn, std::function<void()> on_picture);
+    State(ViewSource from, HexMesh read, const ViewState& start, const MethodOptions& drawn, std::function<void()> on_picture);
 
     /// Takes the field of the state from the mesh.
     void choose_body();
@@ -93,7 +93,7 @@ struct ViewSession::State {
     [[nodiscard]] Image composed(const DrawnPicture& picture) const;
 
     ViewSource source;
-    DrawSettings settings;
+    MethodOptions settings;
     HexMesh mesh;  // all fields of the step
     ViewState state;
     std::shared_ptr<const ViewBody> body;

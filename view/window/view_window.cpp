@@ -67,10 +67,9 @@ public:
     [[nodiscard]] std::string figures() const override {
         const auto latest = session_.worker().latest();
         if (!latest) return "drawing ...";
-        const std::string& method = latest->state.method;
-        const std::string things = method == "tets" || method == "pt"      ? " tetrahedra"
-                                   : method == "dense" || method == "grid" ? " small cells"
-                                                                           : " kernels";
+        const auto method = named<Method>(latest->state.method, "method");
+        const bool cells = method == Method::Dense || method == Method::Grid;
+        const std::string things = draws_kernels(method) ? " kernels" : cells ? " small cells" : " tetrahedra";
         std::string text = std::to_string(latest->points) + things + "   " + fixed_text(1e3 * latest->seconds_draw, 0) +
                            " ms   " + latest->state.method + ", " + latest->backend + "   " +
                            std::to_string(latest->image.width) + " x " + std::to_string(latest->image.height);

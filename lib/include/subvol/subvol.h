@@ -40,6 +40,7 @@
 #include "subvol/limit_surface.h"
 #include "subvol/measure.h"
 #include "subvol/mesh_io.h"
+#include "subvol/mesh_kernels.h"
 #include "subvol/mesh_motion.h"
 #include "subvol/mesh_report.h"
 #include "subvol/mesh_series.h"

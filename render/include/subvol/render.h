@@ -7,6 +7,8 @@
 #include "subvol/draw_shells.h"
 #include "subvol/gl_device.h"
 #include "subvol/pixel_rows.h"
+#include "subvol/method.h"
+#include "subvol/picture_maker.h"
 #include "subvol/progressive.h"
 #include "subvol/render_brick_tets.h"
 #include "subvol/render_bricks.h"

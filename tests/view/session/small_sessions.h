@@ -9,7 +9,7 @@
 
 namespace subvol {
 
-inline const DrawSettings kByCpu{.splat = {.method = SplatMethod::Cpu}};
+inline const MethodOptions kByCpu{.splat = {.method = SplatMethod::Cpu}};
 
 /// A small ball with its field and with z.
 inline HexMesh ball_with_height() {

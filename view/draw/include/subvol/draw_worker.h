@@ -23,7 +23,7 @@ struct DrawTimes {
 class DrawWorker {
 public:
     /// on_picture: called from the thread after each picture and each error, so that a window can wake up
-    explicit DrawWorker(const DrawSettings& settings, std::function<void()> on_picture = {});
+    explicit DrawWorker(const MethodOptions& settings, std::function<void()> on_picture = {});
     ~DrawWorker();
     DrawWorker(const DrawWorker&) = delete;
     DrawWorker& operator=(const DrawWorker&) = delete;

@@ -7,29 +7,11 @@
 #include <vector>
 
 #include "subvol/image.h"
+#include "subvol/picture_maker.h"
 #include "subvol/progress.h"
-#include "subvol/sample.h"
-#include "subvol/splat_options.h"
 #include "subvol/view_state.h"
 
 namespace subvol {
-
-/// How pictures are drawn: what does not change in a session.
-///
-/// sample:          how kernels are made; its scheme is that of all methods
-/// levels:          the refined mesh of this level instead of the limit; none: the limit, of tets level 1
-/// splat:           backend, device, sheets; samples, shading and progress are replaced
-/// samples:         n × n rays for each pixel; none: 2 for solids, else 1
-/// image_tolerance: of the method dense
-/// painted:         whether the colours of a solid are those of its boundary
-struct DrawSettings {
-    SampleOptions sample{};
-    std::optional<int> levels{};
-    SplatOptions splat{};
-    std::optional<int> samples{};
-    double image_tolerance = 1e-3;
-    bool painted = true;
-};
 
 /// depth: for each pixel, as of SplatResult; empty: not known
 /// scale: 1 for a full picture; else its pixels are so many times as wide and as high, and the image is smaller
@@ -49,7 +31,7 @@ struct DrawnPicture {
 /// for several threads at once.
 class PictureDrawer {
 public:
-    explicit PictureDrawer(const DrawSettings& settings);
+    explicit PictureDrawer(const MethodOptions& settings);
     ~PictureDrawer();
     PictureDrawer(PictureDrawer&&) noexcept;
     PictureDrawer& operator=(PictureDrawer&&) noexcept;

@@ -11,6 +11,7 @@
 #include "subvol/camera.h"
 #include "subvol/clip.h"
 #include "subvol/hex_mesh.h"
+#include "subvol/method.h"
 #include "subvol/picture_look.h"
 #include "subvol/rbf_volume.h"
 #include "subvol/voxels.h"
@@ -88,6 +89,8 @@ struct ViewBody {
 
 /// The centres of kernels as points without cells, with the values of all channels.
 [[nodiscard]] HexMesh mesh_of_points(const RbfVolume& volume);
+
+[[nodiscard]] BodyKind kind_of(const ViewBody& body);
 
 /// The methods that can draw a body.
 [[nodiscard]] std::vector<std::string> methods_of(const ViewBody& body);

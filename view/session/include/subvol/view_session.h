@@ -70,7 +70,7 @@ public:
     /// start:      its field may be empty; its camera is taken as it is
     /// mesh:       of the state's step, with all fields; of points as of `mesh_of_points`
     /// on_picture: as of DrawWorker
-    ViewSession(ViewSource source, HexMesh mesh, const ViewState& start, const DrawSettings& settings,
+    ViewSession(ViewSource source, HexMesh mesh, const ViewState& start, const MethodOptions& settings,
                 std::function<void()> on_picture = {});
     ~ViewSession();
     ViewSession(const ViewSession&) = delete;

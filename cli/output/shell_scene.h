@@ -14,7 +14,7 @@ namespace subvol::cli {
 /// The shells and beams of a picture on the limit, and the boundary of the volume that may hide them.
 ///
 /// control: as they were read, for --edges
-struct SheetScene {
+struct ShellScene {
     ColoredSurface drawn;
     Surface boundary;
     Shells control;
@@ -25,17 +25,17 @@ struct SheetScene {
     void draw_into(Picture& picture, const View& view) const;
 };
 
-/// The picture without cells, into which sheets are drawn.
+/// The picture without cells, into which shells are drawn.
 [[nodiscard]] Picture empty_picture(const View& view);
 
 /// Puts shells and beams on the limit. Null if there are none.
 ///
 /// mesh:   with the field that is shown and, last, the one of the colours
-/// sheets: with the fields of their file, or with the same
+/// shells: with the fields of their file, or with the same
 /// levels: no more than these, if given
-[[nodiscard]] std::shared_ptr<const SheetScene> make_sheet_scene(const HexMesh& mesh, const Shells& sheets,
+[[nodiscard]] std::shared_ptr<const ShellScene> make_shell_scene(const HexMesh& mesh, const Shells& shells,
                                                                  RefineOptions refine, std::optional<int> levels,
                                                                  const Optics& optics, int samples, const Clip& clip,
-                                                                 Report& report);
+                                                                 Facts& facts);
 
 }  // namespace subvol::cli

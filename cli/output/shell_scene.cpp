@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sheet_scene.h"
+#include "shell_scene.h"
 
 #include <algorithm>
 #include <limits>
 
 #include "input.h"
-#include "report.h"
 #include "subvol/boundary_values.h"
 #include "subvol/limit_shells.h"
 
@@ -15,16 +14,16 @@ namespace {
 constexpr double kTubeRadius = 0.004;        // of the diagonal
 constexpr std::size_t kMostQuads = 200'000;  // that a level more may make
 
-int levels_of(const Shells& sheets, std::optional<int> most) {
+int levels_of(const Shells& shells, std::optional<int> most) {
     int levels = 1;
-    for (std::size_t quads = 16 * sheets.quads.size() + 8 * sheets.lines.size(); levels < 4 && quads <= kMostQuads; quads *= 4)
+    for (std::size_t quads = 16 * shells.quads.size() + 8 * shells.lines.size(); levels < 4 && quads <= kMostQuads; quads *= 4)
         ++levels;
     return most ? std::min(levels, *most) : levels;
 }
 
 }  // namespace
 
-void SheetScene::draw_into(Picture& picture, const View& view) const {
+void ShellScene::draw_into(Picture& picture, const View& view) const {
     draw_shells(picture.image, picture.depth, drawn, boundary, view, optics, {.samples = samples, .clip = clip});
 }
 
@@ -34,12 +33,12 @@ Picture empty_picture(const View& view) {
     return picture;
 }
 
-std::shared_ptr<const SheetScene> make_sheet_scene(const HexMesh& mesh, const Shells& sheets, RefineOptions refine,
+std::shared_ptr<const ShellScene> make_shell_scene(const HexMesh& mesh, const Shells& shells, RefineOptions refine,
                                                    std::optional<int> levels, const Optics& optics, int samples,
-                                                   const Clip& clip, Report& report) {
-    if (sheets.empty()) return nullptr;
-    const Shells control = with_fields_of(sheets, mesh);
-    return report.timed("sheets", [&] {
+                                                   const Clip& clip, Facts& facts) {
+    if (shells.empty()) return nullptr;
+    const Shells control = with_fields_of(shells, mesh);
+    return facts.timed(refine.progress, "sheets", [&] {
         refine.levels = levels_of(control, levels);
         const Shells fine = limit_shells(mesh, control, refine);
         Box box = bounds(mesh);
@@ -54,8 +53,8 @@ std::shared_ptr<const SheetScene> make_sheet_scene(const HexMesh& mesh, const Sh
             refine.levels = picture_levels(mesh, levels);
             boundary = boundary_values(mesh, refine).surface;
         }
-        return std::make_shared<const SheetScene>(
-            SheetScene{std::move(colored), std::move(boundary), control, optics, std::max(1, samples), clip});
+        return std::make_shared<const ShellScene>(
+            ShellScene{std::move(colored), std::move(boundary), control, optics, std::max(1, samples), clip});
     });
 }
 

@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "subvol/boundary_values.h"
+#include "subvol/camera.h"
+#include "subvol/clip.h"
+#include "subvol/facts.h"
+#include "subvol/image.h"
+#include "subvol/kernel_file.h"
+#include "subvol/mesh_kernels.h"
+#include "subvol/method.h"
+#include "subvol/picture_look.h"
+#include "subvol/render_brick_tets.h"
+#include "subvol/render_bricks.h"
+#include "subvol/render_projected.h"
+#include "subvol/splat.h"
+#include "subvol/voxels.h"
+
+namespace subvol {
+
+/// What may change from picture to picture.
+///
+/// samples: n × n rays or places for each pixel; none: 2 for solids, else 1
+struct PictureStyle {
+    Method method = Method::Splat;
+    LookOptions look{};
+    std::optional<int> samples{};
+    Clip clip{};
+
+    [[nodiscard]] int sample_count() const { return samples.value_or(look.look == Look::Solid ? 2 : 1); }
+};
+
+/// All options of pictures, for every method.
+///
+/// kernels:         how meshes become kernels; its scheme is that of all methods, and so are its levels (none: the limit, for
+///                  tets and pt level 1)
+/// drop_invisible:  kernels that the colours of the picture make invisible are dropped
+/// splat:           how kernels are drawn; method, samples and clip are those of the style, channels those of the body, and
+///                  light is added where the look has it
+/// order, kbuffer:  of pt
+/// image_tolerance: of dense
+/// max_levels:      of dense
+/// lod:             kernels are merged as long as they are narrower than so many pixels; of pt the fraction of inner faces
+///                  that is drawn
+/// seconds:         the time that a picture may take
+/// memory_bytes:    of bricks, for kernels or cells of a part of the picture
+/// names:           how errors call the options
+struct MethodOptions {
+    PictureStyle style{};
+    KernelOptions kernels{};
+    bool drop_invisible = false;
+    SplatOptions splat{};
+    ProjectedOrder order = ProjectedOrder::Topological;
+    int kbuffer = 6;
+    double image_tolerance = 1e-3;
+    int max_levels = 6;
+    std::optional<double> lod{};
+    std::optional<double> seconds{};
+    std::uint64_t memory_bytes = std::uint64_t{1} << 30;
+    OptionNames names = OptionNames::Flags;
+};
+
+/// throws: Error(InvalidInput) if values contradict each other: light of a look that a method cannot draw, levels of detail that
+///         it does not have
+void validate(const MethodOptions& options);
+
+/// What is drawn; one of the pointers is set. All is referred to, not copied.
+///
+/// mesh:     its first attribute is shown, its last one gives the colours
+/// tets:     the mesh is a level of a scheme of tetrahedra on its limit, in hexahedra
+/// kernels:  with `voxels` those that were made of them, for the methods that draw kernels
+/// file:     each view reads what it needs
+/// channels: of kernels or of the file: the first is shown, the last gives the colours; empty: all
+/// bricks:   with the fields that are taken from each
+/// shape:    meshes with the same number have the same cells; 0: no other has them
+/// moved:    the mesh is being moved, so that tables for its cells are worth while
+struct PictureBody {
+    const HexMesh* mesh = nullptr;
+    bool tets = false;
+    const RbfVolume* kernels = nullptr;
+    const Voxels* voxels = nullptr;
+    KernelFile* file = nullptr;
+    std::vector<std::size_t> channels{};
+    const Bricks* bricks = nullptr;
+    BrickFields fields{};
+    std::uint64_t shape = 0;
+    bool moved = false;
+
+    [[nodiscard]] BodyKind kind() const;
+};
+
+/// depth: for each pixel, as of SplatResult; empty: the method finds none
+struct Picture {
+    Image image;
+    std::vector<float> depth{};
+    Facts facts{};
+};
+
+/// How a picture is drawn whose rows belong to several processes, or to one after the other: this process draws its rows.
+class PictureTeam {
+public:
+    virtual ~PictureTeam() = default;
+
+    [[nodiscard]] virtual PixelRows rows(int height) const = 0;
+    /// Whether this process gets the finished picture.
+    [[nodiscard]] virtual bool finishes() const = 0;
+    /// Draws the rows of a volume that every process has.
+    ///
+    /// skin: gives the boundary its colours; without values: the kernels do
+    [[nodiscard]] virtual SplatResult splat(const RbfVolume& volume, const SplatOptions& options, const BoundaryValues& skin, const View& view, const Optics& optics, Progress* progress,
+                                            Facts& facts) = 0;
+    [[nodiscard]] virtual SplatResult splat(const Bricks& bricks, const BrickFields& fields, Surface boundary,
+                                            const BrickSplatOptions& options, const View& view, const Optics& optics,
+                                            Facts& facts) = 0;
+    [[nodiscard]] virtual BrickTets measure(const Bricks& bricks, const BrickTetsOptions& options) = 0;
+    /// Adds up what all have counted.
+    virtual void add_up(std::span<std::size_t> counts) = 0;
+    /// Puts the rows of all together, where the picture is finished.
+    virtual void gather(Picture& picture) = 0;
+};
+
+/// Draws one body as often as cameras, colours and styles change; keeps what pictures share: refined meshes, kernels,
+/// splatters, the values on the boundary. The pictures of the command, the window, Python and studies are made here.
+///
+/// Kernels show the values on the boundary of a solid exactly there, unless an option says what kernels are to be made:
+/// then one sees them. Methods that compute no light get that of the boundary afterwards. Not for several threads at once.
+class PictureMaker {
+public:
+    /// team: null: this process draws whole pictures alone
+    /// throws: Error(InvalidInput) as `validate`, or if the method cannot draw the body
+    PictureMaker(PictureBody body, MethodOptions options, PictureTeam* team = nullptr);
+    ~PictureMaker();
+    PictureMaker(PictureMaker&&) noexcept;
+    PictureMaker& operator=(PictureMaker&&) noexcept;
+
+    /// Another body from the next picture on; tables for its cells are kept if it has the same.
+    void set_body(PictureBody body);
+    /// throws: Error(InvalidInput) if the method cannot draw the look
+    void set_style(const PictureStyle& style);
+
+    /// Makes what does not depend on the view, unless it is there.
+    ///
+    /// splatter: also what the next picture of all kernels needs
+    /// returns:  what was found; empty if everything is there
+    Facts prepare(const Optics& optics, Progress* progress = nullptr, bool splatter = true);
+
+    /// stand_in: few kernels that are drawn in place of the body's; null: the body's
+    [[nodiscard]] Picture draw(const View& view, const Optics& optics, Progress* progress = nullptr,
+                               const RbfVolume* stand_in = nullptr);
+
+    /// The points that a named view frames; empty: the bounding box.
+    [[nodiscard]] std::vector<Vec3> framed_points(const Optics& optics, Progress* progress, Facts& facts);
+    /// Whether the colours of the style's pictures are those of the boundary.
+    [[nodiscard]] bool paints_boundary() const;
+    /// The values on the boundary, made by the first call.
+    [[nodiscard]] const BoundaryValues& skin(Progress* progress, Facts& facts);
+    /// The kernels of a mesh or of points, made by the first call.
+    [[nodiscard]] const RbfVolume& kernels(const Optics& optics, Progress* progress, Facts& facts);
+
+private:
+    struct State;
+    std::unique_ptr<State> state_;
+};
+
+}  // namespace subvol

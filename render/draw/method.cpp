@@ -1,0 +1,275 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "subvol/method.h"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+#include <vector>
+
+#include "subvol/error.h"
+
+namespace subvol {
+namespace {
+
+constexpr Methods kSplat = bit(Method::Splat), kSheets = bit(Method::Sheets), kTets = bit(Method::Tets),
+                  kProjected = bit(Method::Projected), kDense = bit(Method::Dense), kGrid = bit(Method::Grid);
+constexpr Methods kKernels = kSplat | kSheets | bit(Method::Footprints), kCells = kTets | kProjected | kDense,
+                  kEvery = kKernels | kCells | kGrid;
+
+constexpr Bodies kMesh = bit(BodyKind::Mesh), kTetMesh = bit(BodyKind::Tets), kVoxels = bit(BodyKind::Voxels),
+                 kBricks = bit(BodyKind::Bricks), kFile = bit(BodyKind::KernelFile);
+constexpr Bodies kMeshes = kMesh | kTetMesh, kPoints = bit(BodyKind::Kernels) | kFile,
+                 kAll = kMeshes | kPoints | kVoxels | kBricks;
+
+constexpr std::string_view kNoKernels = "it draws no kernels";
+constexpr std::string_view kNoSheets = "it sums no kernels on planes of equal depth";
+constexpr std::string_view kOwnDevice = "it always runs on the same kind of device";
+constexpr std::string_view kNoShadows = "it does not compute the light inside the volume";
+constexpr std::string_view kNoLimit = "it draws voxels as they are";
+constexpr std::string_view kNoCuts = "its kernels cannot be cut";
+
+constexpr OptionCondition kNotForReduced{.option = "reduce", .excluded = true};
+
+/// An option, its keyword, the methods and the bodies that read it, why others do not, what else it needs.
+constexpr std::array kUses{
+    OptionUse{"per-edge", "per_edge", kKernels, kMesh, kNoKernels},
+    OptionUse{"centers", "", kKernels, kMesh, kNoKernels},
+    OptionUse{"spacing", "", kKernels, kMesh | kVoxels, kNoKernels},
+    OptionUse{"spacing-voxels", "", kKernels, kMesh | kVoxels, kNoKernels},
+    OptionUse{"tolerance", "", kKernels, kMesh, kNoKernels},
+    OptionUse{"footprint", "", kKernels, kMesh, kNoKernels},
+    OptionUse{"footprint-size", "", kKernels, kMesh, kNoKernels, {{.option = "footprint"}}},
+    OptionUse{"values", "", kKernels, kMesh, kNoKernels, {kNotForReduced}},
+    OptionUse{"value-kernel", "", kKernels, kMesh, kNoKernels, {{.option = "values", .values = "paper"}}},
+    OptionUse{"kernel", "", kKernels, kMeshes | kBricks | kVoxels, kNoKernels},
+    OptionUse{"threshold", "", kKernels, kMeshes | kVoxels, kNoKernels},
+    OptionUse{"correction", "", kKernels, kMeshes | kBricks | kVoxels, kNoKernels, {kNotForReduced}},
+    OptionUse{"reduce", "", kKernels, kMesh, kNoKernels},
+    OptionUse{"refine", "", kKernels, kMesh, kNoKernels, {{.option = "reduce"}}},
+    OptionUse{"scheme", "scheme", kKernels | kCells, kMeshes | kBricks, kNoLimit},
+    OptionUse{"tension",
+              "tension",
+              kKernels | kCells,
+              kMesh | kBricks,
+              kNoLimit,
+              {{.option = "scheme", .values = "mcq", .unset = true}}},
+    OptionUse{"crease-angle",
+              "crease_angle",
+              kKernels | kCells,
+              kMeshes | kBricks,
+              kNoLimit,
+              {{.option = "scheme", .values = "linear", .excluded = true}}},
+    OptionUse{.name = "levels",
+              .keyword = "levels",
+              .methods = kKernels | kCells,
+              .bodies = kMeshes | kBricks,
+              .reason = kNoLimit,
+              .bricks = kTets},
+    OptionUse{"samples", "samples", kEvery, kAll, ""},
+    OptionUse{"tolerance-image",
+              "image_tolerance",
+              kDense,
+              kMeshes,
+              "it draws one level only",
+              {{.option = "levels", .excluded = true}}},
+    OptionUse{"order", "order", kProjected, kMeshes, "it does not sort tetrahedra", {{.option = "seconds", .excluded = true}}},
+    OptionUse{"kbuffer",
+              "",
+              kProjected,
+              kMeshes,
+              "it has no k-buffer",
+              {{.option = "order", .values = "havs", .instead = "seconds"}}},
+    OptionUse{
+        "lod", "lod", kKernels | kProjected, kAll & ~kBricks, "it draws everything", {{.option = "seconds", .excluded = true}}},
+    OptionUse{"seconds", "seconds", kSplat | kSheets | kProjected, kMeshes, "it has no time limit"},
+    OptionUse{"backend", "backend", kSplat, kAll, kOwnDevice},
+    OptionUse{"device",
+              "device",
+              kSplat | kSheets | kProjected,
+              kAll & ~kBricks,
+              "it runs on the CPU",
+              {{.option = "backend", .values = "cpu", .excluded = true}}},
+    OptionUse{"sheets", "sheets", kSplat | kSheets, kAll, kNoSheets},
+    OptionUse{"plain-sums", "", kKernels, kAll, kNoKernels},
+    OptionUse{"shade",
+              "shade",
+              kKernels,
+              kAll,
+              "it draws without light",
+              {{.option = "look", .values = "solid|isosurface", .excluded = true}}},
+    OptionUse{"shadows", "shadows", kSplat, kAll & ~kBricks, kNoShadows},
+    OptionUse{"ambient-occlusion", "ambient_occlusion", kSplat, kAll & ~kBricks, kNoShadows},
+    OptionUse{"color-field", "color_field", kKernels, kMeshes | kPoints, "it draws one field"},
+    OptionUse{"edges", "", kKernels, kMeshes, "it finds no depths that could hide lines"},
+    OptionUse{"clip", "clip", kEvery & ~bit(Method::Footprints), kAll, kNoCuts},
+    OptionUse{"clip-box", "clip_box", kEvery & ~bit(Method::Footprints), kAll, kNoCuts},
+    OptionUse{"slice", "slice", kEvery & ~bit(Method::Footprints), kAll, kNoCuts},
+    OptionUse{"around", "around", kEvery & ~bit(Method::Footprints), kAll, kNoCuts, {{.option = "slice"}}},
+    OptionUse{"memory", "", kKernels | kTets, kBricks | kFile, "it holds everything in memory"},
+};
+
+std::string shown(const OptionUse& use, OptionNames names) {
+    return names == OptionNames::Flags ? "--" + std::string(use.name) : std::string(use.keyword);
+}
+
+std::string shown(std::string_view name, OptionNames names) {
+    const auto* use = std::ranges::find(kUses, name, &OptionUse::name);
+    return use != kUses.end() ? shown(*use, names) : names == OptionNames::Flags ? "--" + std::string(name) : std::string(name);
+}
+
+std::string_view noun_of(BodyKind body) {
+    switch (body) {
+        case BodyKind::Mesh:
+            return "a mesh";
+        case BodyKind::Tets:
+            return "a mesh that is refined as tetrahedra";
+        case BodyKind::Kernels:
+        case BodyKind::KernelFile:
+            return "points";
+        case BodyKind::Voxels:
+            return "a grid of voxels";
+        case BodyKind::Bricks:
+            return "a folder of bricks";
+    }
+    return "";
+}
+
+std::vector<std::string_view> words_of(std::string_view values) {
+    std::vector<std::string_view> words;
+    while (!values.empty()) {
+        const std::size_t end = std::min(values.find('|'), values.size());
+        words.push_back(values.substr(0, end));
+        values.remove_prefix(std::min(end + 1, values.size()));
+    }
+    return words;
+}
+
+bool is_met(const OptionCondition& need, const GivenOptions& given) {
+    const std::optional<std::string> value = given(need.option);
+    const auto words = words_of(need.values);
+    if (!need.instead.empty() && given(need.instead)) return true;
+    const bool matches = value ? words.empty() || std::ranges::find(words, *value) != words.end() : need.unset;
+    return matches != need.excluded;
+}
+
+/// "order havs": as users write it.
+std::string shown(const OptionCondition& need, std::string_view value, OptionNames names) {
+    const std::string option = shown(need.option, names);
+    if (value.empty()) return option;
+    return names == OptionNames::Flags ? option + " " + std::string(value) : option + "='" + std::string(value) + "'";
+}
+
+std::string joined(const std::vector<std::string>& names) {
+    std::string text;
+    for (std::size_t i = 0; i < names.size(); ++i) text += (i == 0 ? "" : i + 1 == names.size() ? " or " : ", ") + names[i];
+    return text;
+}
+
+[[noreturn]] void refuse(const OptionUse& use, const OptionCondition& need, const GivenOptions& given, OptionNames names) {
+    if (need.excluded) {
+        const std::string value = need.values.empty() ? "" : given(need.option).value_or("");
+        throw Error(ErrorCode::InvalidInput, "has no effect with " + shown(need, value, names), shown(use, names),
+                    "leave one of them out");
+    }
+    std::vector<std::string> choices;
+    if (need.values.empty()) choices.push_back(shown(need, "", names));
+    for (const std::string_view value : words_of(need.values)) choices.push_back(shown(need, value, names));
+    throw Error(ErrorCode::InvalidInput, "has no effect without " + joined(choices), shown(use, names));
+}
+
+}  // namespace
+
+std::span<const OptionUse> option_uses() {
+    return kUses;
+}
+
+bool reads(Method method, BodyKind body, std::string_view option) {
+    const auto* use = std::ranges::find(kUses, option, &OptionUse::name);
+    if (use == kUses.end()) return true;
+    const Methods able = body == BodyKind::Bricks ? use->methods & use->bricks : use->methods;
+    return (able & bit(method)) != 0 && (use->bodies & bit(body)) != 0;
+}
+
+std::string option_table() {
+    constexpr std::pair<BodyKind, const char*> kBodies[]{{BodyKind::Mesh, "mesh"},
+                                                         {BodyKind::Tets, "tetrahedra"},
+                                                         {BodyKind::Kernels, "points"},
+                                                         {BodyKind::Voxels, "voxels"},
+                                                         {BodyKind::Bricks, "bricks"}};
+    std::string table = "| option | keyword |", rule = "\n|---|---|";
+    for (const auto& row : NameTable<Method>::rows) {
+        table += " " + std::string(row.name) + " |";
+        rule += "---|";
+    }
+    table += " bodies | also |" + rule + "---|---|\n";
+    for (const OptionUse& use : kUses) {
+        table += "| `" + shown(use, OptionNames::Flags) + "` | " +
+                 (use.keyword.empty() ? "" : "`" + std::string(use.keyword) + "`") + " |";
+        for (const auto& row : NameTable<Method>::rows) table += (use.methods & bit(row.value)) != 0 ? " x |" : " |";
+        std::string bodies, needs;
+        for (const auto& [body, name] : kBodies) {
+            if ((use.bodies & bit(body)) != 0) bodies += (bodies.empty() ? "" : ", ") + std::string(name);
+        }
+        for (const OptionCondition& need : use.needs) {
+            if (need.option.empty()) continue;
+            std::string values;
+            for (const std::string_view value : words_of(need.values))
+                values += (values.empty() ? " " : ", ") + std::string(value);
+            needs += (need.excluded ? "not with `" : "with `") + shown(need.option, OptionNames::Flags) + values + "`";
+        }
+        table += " " + bodies + " | " + needs + " |\n";
+    }
+    return table;
+}
+
+std::string names_of(Methods methods) {
+    std::vector<std::string> names;
+    for (const auto& row : NameTable<Method>::rows) {
+        if ((methods & bit(row.value)) != 0) names.emplace_back(row.name);
+    }
+    return joined(names);
+}
+
+Methods methods_of(BodyKind body) {
+    switch (body) {
+        case BodyKind::Mesh:
+        case BodyKind::Tets:
+            return kKernels | kCells;
+        case BodyKind::Kernels:
+        case BodyKind::KernelFile:
+            return kKernels;
+        case BodyKind::Voxels:
+            return kKernels | kGrid;
+        case BodyKind::Bricks:
+            return kSplat | kTets;
+    }
+    return 0;
+}
+
+void check_method(Method method, BodyKind body, OptionNames names) {
+    const Methods able = methods_of(body);
+    if ((able & bit(method)) != 0) return;
+    const std::string option = names == OptionNames::Flags ? "--method" : "method";
+    throw Error(ErrorCode::InvalidInput, "'" + std::string(name_of(method)) + "' cannot draw " + std::string(noun_of(body)),
+                option, "use " + names_of(able));
+}
+
+void check_options(Methods methods, BodyKind body, const GivenOptions& given, OptionNames names) {
+    for (const OptionUse& use : kUses) {
+        if (names == OptionNames::Keywords && use.keyword.empty()) continue;
+        if (!given(use.name)) continue;
+        if ((use.methods & methods) == 0) {
+            throw Error(ErrorCode::InvalidInput,
+                        "has no effect with method '" + names_of(methods) + "': " + std::string(use.reason), shown(use, names),
+                        "methods that use it: " + names_of(use.methods));
+        }
+        const bool in_bricks = body == BodyKind::Bricks;
+        if ((use.bodies & bit(body)) == 0 || (in_bricks && (use.bricks & use.methods & methods) == 0))
+            throw Error(ErrorCode::InvalidInput, "has no effect on " + std::string(noun_of(body)), shown(use, names));
+        for (const OptionCondition& need : use.needs) {
+            if (!need.option.empty() && !is_met(need, given)) refuse(use, need, given, names);
+        }
+    }
+}
+
+}  // namespace subvol

@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "subvol/picture_maker.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "subvol/boundary_shading.h"
+#include "subvol/error.h"
+#include "subvol/limit.h"
+#include "subvol/model.h"
+#include "subvol/render_tets.h"
+
+namespace subvol {
+namespace picture_maker_test {
+
+const HexMesh& ball() {
+    static const HexMesh mesh = make_model("ball", 3);
+    return mesh;
+}
+
+Optics optics_of(Look look) {
+    return picture_optics({.look = look}, bounds(ball()), {0, 1}, {0, 1});
+}
+
+View view_of(const Box& box) {
+    return {fit_camera(box, {0.3, 1, -0.4}), 32, 24};
+}
+
+MethodOptions solid_by(Method method) {
+    return {.style = {.method = method, .look = {.look = Look::Solid}}, .splat = {.method = SplatMethod::Cpu}};
+}
+
+GivenOptions given(const std::set<std::pair<std::string, std::string>>& words) {
+    return [words](std::string_view name) -> std::optional<std::string> {
+        for (const auto& [option, value] : words) {
+            if (option == name) return value;
+        }
+        return std::nullopt;
+    };
+}
+
+TEST(OptionUses, NameEveryOptionOnceAndSayWhyOthersDoNotReadIt) {
+    std::set<std::string_view> names;
+    for (const OptionUse& use : option_uses()) {
+        EXPECT_TRUE(names.insert(use.name).second) << use.name;
+        EXPECT_NE(use.methods, 0U) << use.name;
+        EXPECT_NE(use.bodies, 0U) << use.name;
+        const bool by_all = use.methods == (1U << std::size(NameTable<Method>::rows)) - 1;
+        EXPECT_NE(use.reason.empty(), !by_all) << use.name;
+    }
+}
+
+TEST(OptionUses, AnOptionWithoutEffectIsRefusedByItsName) {
+    const auto refusal = [](Method method, BodyKind body, const GivenOptions& options, OptionNames names) -> std::string {
+        try {
+            check_options(bit(method), body, options, names);
+        } catch (const Error& error) {
+            return error.what();
+        }
+        return "";
+    };
+    const auto order = given({{"order", "havs"}});
+    EXPECT_EQ(refusal(Method::Projected, BodyKind::Mesh, order, OptionNames::Flags), "");
+    EXPECT_EQ(refusal(Method::Tets, BodyKind::Mesh, order, OptionNames::Flags),
+              "--order: has no effect with method 'tets': it does not sort tetrahedra (methods that use it: pt)");
+    EXPECT_EQ(refusal(Method::Splat, BodyKind::Kernels, given({{"per-edge", "2"}}), OptionNames::Keywords),
+              "per_edge: has no effect on points");
+    EXPECT_EQ(refusal(Method::Dense, BodyKind::Mesh, given({{"tolerance-image", ".1"}, {"levels", "1"}}), OptionNames::Flags),
+              "--tolerance-image: has no effect with --levels (leave one of them out)");
+    EXPECT_EQ(refusal(Method::Projected, BodyKind::Mesh, given({{"kbuffer", "3"}}), OptionNames::Flags),
+              "--kbuffer: has no effect without --order havs");
+    EXPECT_EQ(refusal(Method::Projected, BodyKind::Mesh, given({{"kbuffer", "3"}, {"seconds", "1"}}), OptionNames::Flags), "");
+}
+
+TEST(OptionUses, WithSeveralMethodsOneThatReadsAnOptionIsEnough) {
+    const Methods able = methods_of(BodyKind::Mesh);
+    EXPECT_NO_THROW(check_options(able, BodyKind::Mesh, given({{"per-edge", "2"}})));
+    EXPECT_THROW(check_options(able, BodyKind::Tets, given({{"per-edge", "2"}})), Error);
+}
+
+TEST(PictureMaker, ASolidByTetrahedraIsTheirPictureWithTheLightOfTheBoundary) {
+    const View view = view_of(bounds(ball()));
+    const Optics optics = optics_of(Look::Solid);
+    Image expected =
+        TetsRenderer(on_limit(refine(ball(), {.levels = 1}), Scheme::Mcq)).draw(view, optics, {.samples = 2}).image;
+    const BoundaryValues skin = boundary_values(ball(), {.levels = picture_levels(ball())});
+    light_boundary(expected, skin.surface, view, Shading{}, 2);
+    Picture picture = PictureMaker({.mesh = &ball()}, solid_by(Method::Tets)).draw(view, optics);
+    EXPECT_EQ(picture.image.rgba, expected.rgba);
+    ASSERT_NE(picture.facts.find("tets"), nullptr);
+    EXPECT_EQ(std::get<std::uint64_t>(picture.facts.find("tets")->value), 27U * 8 * 6);
+}
+
+TEST(PictureMaker, StylesAndBodiesChangeBetweenPictures) {
+    const View view = view_of(bounds(ball()));
+    PictureMaker maker({.mesh = &ball()}, solid_by(Method::Splat));
+    const Picture first = maker.draw(view, optics_of(Look::Solid));
+    maker.set_style({.method = Method::Splat, .look = {.look = Look::Volume}});
+    const Picture volume = maker.draw(view, optics_of(Look::Volume));
+    EXPECT_NE(volume.image.rgba, first.image.rgba);
+    const HexMesh twist = make_model("twist", 3);
+    maker.set_body({.mesh = &twist});
+    EXPECT_NE(maker.draw(view, optics_of(Look::Volume)).image.rgba, volume.image.rgba);
+    maker.set_body({.mesh = &ball()});
+    maker.set_style(solid_by(Method::Splat).style);
+    EXPECT_EQ(maker.draw(view, optics_of(Look::Solid)).image.rgba, first.image.rgba);
+}
+
+TEST(PictureMaker, WhatAnOptionIsDecidesWhetherTheBoundaryIsPainted) {
+    const auto painted = [](const MethodOptions& options) {
+        return PictureMaker({.mesh = &ball()}, options).paints_boundary();
+    };
+    MethodOptions options = solid_by(Method::Splat);
+    EXPECT_TRUE(painted(options));
+    options.kernels.sample.per_edge = 1;
+    EXPECT_TRUE(painted(options)) << "as without the option";
+    options.kernels.sample.per_edge = 2;
+    EXPECT_FALSE(painted(options));
+    options = solid_by(Method::Splat);
+    options.style.look.opacity = {{0, 0.5}};
+    EXPECT_FALSE(painted(options));
+    options = solid_by(Method::Splat);
+    options.kernels.sample.kernel = GaussianKernel{};
+    EXPECT_FALSE(painted(options));
+}
+
+TEST(PictureMaker, WhatAMethodCannotDrawIsRefusedBeforeAnyWork) {
+    EXPECT_THROW(PictureMaker({.mesh = &ball()}, solid_by(Method::Grid)), Error);
+    MethodOptions lit = solid_by(Method::Dense);
+    lit.style.look.look = Look::Isosurface;
+    EXPECT_THROW(PictureMaker({.mesh = &ball()}, lit), Error);
+    MethodOptions lod = solid_by(Method::Projected);
+    lod.lod = 0.5;
+    EXPECT_THROW(PictureMaker({.mesh = &ball()}, lod), Error);
+}
+
+}  // namespace picture_maker_test
+}  // namespace subvol
