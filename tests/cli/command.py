@@ -75,6 +75,11 @@ class Run:
         return json.loads(self.out)
 
 
+def on_cpu(options):
+    """What lets splats be drawn by the CPU, as the methods are that draw something else: these do not have the option."""
+    return [] if "--method" in options else ["--backend", "cpu"]
+
+
 def subvol(*arguments, folder=None):
     done = subprocess.run([COMMAND, *map(str, arguments)], cwd=folder, capture_output=True, text=True, timeout=HANGS_AFTER)
     return Run(done.returncode, done.stdout, done.stderr)

@@ -11,7 +11,7 @@ from xml.etree import ElementTree
 
 from command import COMMAND, HANGS_AFTER, TWO_FIELDS, InFolder, Run
 
-SMALL = ["--backend", "cpu", "--sheets", "20"]
+SMALL = ["--backend", "cpu", "--sheets", "20"]  # of splats
 CAMERA = ["--camera", "3,-4,2,0,0,0,0,0,1,35"]
 
 # The last argument is file:NAME.
@@ -30,7 +30,8 @@ exit 1
 class Pictures(InFolder):
     def render(self, *arguments, path=None, size="48x32"):
         environment = dict(os.environ, **({"PATH": path} if path else {}))
-        done = subprocess.run([COMMAND, "render", "model:ball:2", *map(str, arguments), "--size", size, *SMALL], cwd=self.folder,
+        small = [] if "--method" in arguments else SMALL
+        done = subprocess.run([COMMAND, "render", "model:ball:2", *map(str, arguments), "--size", size, *small], cwd=self.folder,
                               capture_output=True, text=True, timeout=HANGS_AFTER, env=environment)
         return Run(done.returncode, done.stdout, done.stderr)
 

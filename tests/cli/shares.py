@@ -8,7 +8,7 @@ import subprocess
 import unittest
 from pathlib import Path
 
-from command import COMMAND, InFolder, children, has_ended, subvol, wait_for_end
+from command import COMMAND, InFolder, children, has_ended, subvol, wait_for_end, on_cpu
 
 COUNTS = (1, 2, 7)  # 3 and 4, too, in bench/equality.py
 BALL = "model:ball:4"
@@ -16,6 +16,12 @@ MPIRUN = shutil.which("mpirun")
 AS_ROOT = {**os.environ, "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
 WIDTH, HEIGHT = 96, 80  # tiles have 32×32 pixels: three columns, and three rows, the last one cut
 PICTURE = ["--size", f"{WIDTH}x{HEIGHT}", "--backend", "cpu", "--quiet"]
+
+
+def picture(options):
+    return [*PICTURE[:2], *on_cpu(options), "--quiet", *options]
+
+
 SURFACES = [[*options, "--tolerance", "1e-2"] for options in (
     [], ["--iso", "0.3", "--color-field", "density"], ["--iso", "0.1", "--iso", "0.4", "--cap", "--crease-angle", "40"])]
 

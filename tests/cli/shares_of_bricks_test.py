@@ -10,7 +10,7 @@ import time
 import unittest
 
 from command import COMMAND, children
-from shares import AS_ROOT, BALL, COUNTS, PICTURE, SURFACES, Shared, WithRanks, end_of, in_ranks, rank_of, run_in_ranks, without_times
+from shares import AS_ROOT, BALL, COUNTS, PICTURE, SURFACES, Shared, WithRanks, end_of, in_ranks, rank_of, run_in_ranks, without_times, picture
 
 
 class PartsOfBricks(Shared):
@@ -51,9 +51,9 @@ class PartsOfBricks(Shared):
 
     def test_pictures(self):
         for options in ([], ["--look", "volume", "--samples", "2"], ["--method", "tets"]):
-            self.run_ok("render", BALL, "-o", "one.exr", *PICTURE, *options)
+            self.run_ok("render", BALL, "-o", "one.exr", *picture(options))
             for count in COUNTS if not options else (3,):
-                names = self.parts("render", "b.bricks", ".exr", count, *PICTURE, *options)
+                names = self.parts("render", "b.bricks", ".exr", count, *picture(options))
                 self.run_ok("join", *names, "-o", "joined.exr")
                 self.assertEqual(self.bytes_of("joined.exr"), self.bytes_of("one.exr"), (count, options))
 
@@ -147,10 +147,10 @@ class RanksOfBricks(WithRanks):
 
     def test_pictures(self):
         for options in ([], ["--look", "volume", "--samples", "2"], ["--method", "tets"]):
-            self.run_ok("render", BALL, "-o", "one.exr", *PICTURE, *options)
+            self.run_ok("render", BALL, "-o", "one.exr", *picture(options))
             for count in COUNTS[1:] if not options else (3,):
                 memory = "10M" if "tets" in options else "100K"  # several parts for each rank
-                self.ranks(count, "render", "b.bricks", "-o", "ranks.exr", *PICTURE, *options, "--memory", memory)
+                self.ranks(count, "render", "b.bricks", "-o", "ranks.exr", *picture(options), "--memory", memory)
                 self.assertEqual(self.bytes_of("ranks.exr"), self.bytes_of("one.exr"), (options, count))
 
     def test_frames_are_divided(self):

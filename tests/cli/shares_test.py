@@ -4,7 +4,7 @@
 import json
 import unittest
 
-from shares import COUNTS, HEIGHT, PICTURE, SURFACES, WIDTH, Shared, WithRanks, without_times
+from shares import COUNTS, HEIGHT, PICTURE, SURFACES, WIDTH, Shared, WithRanks, without_times, picture
 
 
 class Parts(Shared):
@@ -43,10 +43,10 @@ class Parts(Shared):
     def test_rows_of_shares_are_the_picture_of_one_process(self):
         for options in ([], ["--look", "volume"], ["--samples", "2", "--edges"], ["--legend"], ["--method", "tets"],
                         ["--method", "tets", "--levels", "0", "--samples", "2", "--clip", "0,0,0,1,1,0"]):
-            self.run_ok("render", "model:ball:4", "-o", "one.exr", *PICTURE, *options)
-            self.run_ok("render", "model:ball:4", "-o", "one.png", *PICTURE, *options)
+            self.run_ok("render", "model:ball:4", "-o", "one.exr", *picture(options))
+            self.run_ok("render", "model:ball:4", "-o", "one.png", *picture(options))
             for count in COUNTS if not options else (3,):
-                names = self.parts("render", "model:ball:4", ".exr", count, *PICTURE, *options)
+                names = self.parts("render", "model:ball:4", ".exr", count, *picture(options))
                 for extension in (".exr", ".png"):
                     self.run_ok("join", *names, "-o", "joined" + extension)
                     self.assertEqual(self.bytes_of("joined" + extension), self.bytes_of("one" + extension), (options, count))
@@ -166,9 +166,9 @@ class Ranks(WithRanks):
 
     def test_pictures(self):
         for options in ([], ["--look", "volume", "--samples", "2"], ["--method", "tets"]):
-            self.run_ok("render", "model:ball:4", "-o", "one.exr", *PICTURE, *options)
+            self.run_ok("render", "model:ball:4", "-o", "one.exr", *picture(options))
             for count in COUNTS[1:] if not options else (3,):
-                self.ranks(count, "render", "model:ball:4", "-o", "ranks.exr", *PICTURE, *options)
+                self.ranks(count, "render", "model:ball:4", "-o", "ranks.exr", *picture(options))
                 self.assertEqual(self.bytes_of("ranks.exr"), self.bytes_of("one.exr"), (options, count))
 
     def test_sums_of_sheets_are_floats(self):

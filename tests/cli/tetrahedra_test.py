@@ -5,7 +5,7 @@ import shlex
 import unittest
 from itertools import permutations
 
-from command import CUBE, InFolder, subvol
+from command import CUBE, InFolder, subvol, on_cpu
 
 SIDE = 3
 
@@ -143,12 +143,12 @@ class Tetrahedra(InFolder):
 
     # Levels are 1 for kernels and 2 for tetrahedra, also after another method was chosen.
     def test_a_session_shows_the_pictures_of_render(self):
-        small = ("--size", "64x48", "--backend", "cpu", "--density", "sin(2*x)*y+z*z", "--quiet")
+        small = ("--size", "64x48", "--density", "sin(2*x)*y+z*z", "--quiet")
         (self.folder / "other.json").write_text('[{"method": "tets"}, {"wait": true}, {"clip": [[1, 1, 1, 1, 0, 0]]}]')
         (self.folder / "pick.json").write_text('[{"pick": [32, 24]}]')
         for scheme in ("tetoct", "boxspline"):
             for options in ([], ["--look", "volume", "--levels", "2"], ["--edges"], ["--method", "tets", "--axes"], ["--method", "dense"]):
-                asked = ("small.mesh" if "dense" in options else "box.mesh", "--scheme", scheme, *options, *small)
+                asked = ("small.mesh" if "dense" in options else "box.mesh", "--scheme", scheme, *options, *on_cpu(options), *small)
                 self.run_ok("view", *asked, "--screenshot", "view.png")
                 self.run_ok("render", *asked, "-o", "render.png")
                 self.assertEqual((self.folder / "view.png").read_bytes(), (self.folder / "render.png").read_bytes(), asked)
@@ -157,7 +157,7 @@ class Tetrahedra(InFolder):
             self.run_ok(*shlex.split(done["render"])[1:], "--quiet")
             self.assertEqual((self.folder / "view.png").read_bytes(), (self.folder / "picture.png").read_bytes(), done["render"])
             x, y, z = (picked := self.run_ok(*asked, "pick.json").json()["picked"])["at"]
-            probed = self.run_ok("probe", "box.mesh", "--at", f"{x},{y},{z}", "--scheme", scheme, "--levels", 1, *small[4:6],
+            probed = self.run_ok("probe", "box.mesh", "--at", f"{x},{y},{z}", "--scheme", scheme, "--levels", 1, *small[2:4],
                                  "--json").json()["values"][0]
             self.assertAlmostEqual(picked["value"], probed["value"], delta=.05)  # cells of level 1 have other diagonals
 

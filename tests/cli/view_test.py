@@ -9,10 +9,11 @@ import subprocess
 import time
 import unittest
 
-from command import COMMAND, HANGS_AFTER, InFolder, Run, subvol
+from command import COMMAND, HANGS_AFTER, InFolder, Run, on_cpu, subvol
 
 BALL = "model:ball:3"
-SMALL = ["--size", "64x48", "--backend", "cpu"]
+SIZE = ["--size", "64x48"]
+SMALL = [*SIZE, "--backend", "cpu"]
 
 
 class InSession(InFolder):
@@ -21,7 +22,7 @@ class InSession(InFolder):
         return name
 
     def view(self, *actions, options=(), model=BALL, shot="view.png"):
-        return self.run_ok("view", model, *SMALL, *options, "--script", self.script(*actions), "--screenshot", shot, "--json").json()
+        return self.run_ok("view", model, *SIZE, *on_cpu(options), *options, "--script", self.script(*actions), "--screenshot", shot, "--json").json()
 
     def bytes_of(self, name):
         return (self.folder / name).read_bytes()
@@ -31,7 +32,7 @@ class WithoutWindow(InSession):
     def test_begins_with_the_picture_of_render(self):
         for options in ([], ["--look", "volume", "--tf", "coolwarm"], ["--view", "-y", "--ortho"], ["--method", "tets", "--axes"]):
             self.view(options=options)
-            self.run_ok("render", BALL, *SMALL, *options, "-o", "render.png", "--quiet")
+            self.run_ok("render", BALL, *SIZE, *on_cpu(options), *options, "-o", "render.png", "--quiet")
             self.assertEqual(self.bytes_of("view.png"), self.bytes_of("render.png"), options)
 
     def test_shows_points_and_voxels(self):
@@ -39,13 +40,13 @@ class WithoutWindow(InSession):
         self.run_ok("vdb", BALL, "-o", "ball.vdb", "--resolution", "20", "--quiet")
         for model, options in (("ball.ply", []), ("ball.vdb", ["--method", "grid"]), ("ball.vdb", ["--look", "solid"])):
             said = self.view(options=options, model=model)
-            self.run_ok("render", model, *SMALL, *options, "-o", "render.png", "--quiet")
+            self.run_ok("render", model, *SIZE, *on_cpu(options), *options, "-o", "render.png", "--quiet")
             self.assertEqual(self.bytes_of("view.png"), self.bytes_of("render.png"), (model, options))
             self.run_ok(*shlex.split(said["render"])[1:], "--quiet")
             self.assertEqual(self.bytes_of("view.png"), self.bytes_of("picture.png"), said["render"])
         for words in (["ball.ply", "--method", "tets"], [BALL, "--method", "grid"], ["ball.ply", "--per-edge", "2"],
                       ["ball.ply", "--field", "T"], [BALL, "--edges", "--method", "tets"]):
-            done = subvol("view", *words, *SMALL, "--screenshot", "x.png", folder=self.folder)
+            done = subvol("view", *words, *SIZE, "--screenshot", "x.png", folder=self.folder)
             self.assertEqual(done.code, 2, done.err)
 
     def test_shadows_are_those_of_render(self):
