@@ -121,7 +121,7 @@ py::dict metrics_of(const Picture& a, const Picture& b) {
 }
 
 py::tuple as_map(double mean, MetricMap map) {
-    return py::make_tuple(mean, owned(std::move(map.values), {map.height, map.width}));
+    return py::make_tuple(mean, owned(std::move(map.values), {length(map.height), length(map.width)}));
 }
 
 }  // namespace
