@@ -86,7 +86,7 @@ class Parts(Shared):
         self.assertIn("the limit does not take this value", self.refused(
             "join", *self.parts("surface", "model:ball:4", ".svshare", 3, "--iso", "99"), "-o", "j.ply"))
         sound = self.bytes_of(two)
-        for changed, said in ((sound[:10], "is no share"), (sound[:2000], "is cut off"), (sound[:-1], "is cut off"),
+        for changed, said in ((sound[:10], "is not a share"), (sound[:2000], "is cut off"), (sound[:-1], "is cut off"),
                               (sound + b"x", "is damaged"), (sound.replace(b'"of":2', b'"of":3', 1), "is damaged")):
             (self.folder / "wrong.svshare").write_bytes(changed)
             self.assertIn(said, self.refused("join", one, "wrong.svshare", "-o", "j.ply"))
