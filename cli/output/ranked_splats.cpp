@@ -61,7 +61,9 @@ RbfVolume ship_kernels(const RbfVolume& own, const View& view, const Optics& opt
 void gather_rows(Picture& picture, Ranks& ranks) {
     detail::PicturePart own = rows_of(picture, rows_of(ranks.share(), picture.image.height));
     auto whole = join_ranks(PictureParts{}, std::move(own), &ranks, nullptr).value;
-    if (whole) picture = std::move(*whole);
+    if (!whole) return;
+    picture.image = std::move(whole->image);
+    picture.depth = std::move(whole->depth);
 }
 
 void add_up(const OwnRows& rows, std::span<std::size_t> counts) {

@@ -43,7 +43,7 @@ constexpr int kEndedBySignal = 128;  // and the signal's number, as shells count
 constexpr const char* kDescription = "Refine hexahedral meshes, render them as splats, and convert them to OpenVDB grids.";
 constexpr const char* kFooter = R"(Start here:
   subvol model --list                    list the built-in models
-  subvol info part.vtk                   print mesh statistics and check the mesh
+  subvol info part.vtk                   print mesh statistics, check the mesh
   subvol render model:ball -o ball.png   render a model (or part.vtk)
   subvol vdb part.vtk -o part.vdb        write an OpenVDB grid
   subvol help render                     show the options of a command

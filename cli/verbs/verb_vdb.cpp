@@ -267,7 +267,8 @@ private:
             const int number = frame - range.first;
             report.begin_part(text("frame ", number + 1, " of ", range.count()), static_cast<std::size_t>(number),
                               static_cast<std::size_t>(range.count()));
-            report["frames"].push_back(json_of(report.unpack(writer.write(frame))));
+            const Facts entry = report.unpack(writer.write(frame));  // may move the list
+            report["frames"].push_back(json_of(entry));
         }
         if (ranks() != nullptr) report["frames"] = ranks()->gather_list(report["frames"]);
         report["input"] = input_;

@@ -369,7 +369,7 @@ class WhatGoesWrong(InFolder):
         self.assert_said("the limit does not take this value", "surface", "t.bricks", "-o", "a.ply", "--iso", 99)
         for scheme in ("tetoct", "boxspline"):
             for verb, name in (("points", "a.ply"), ("vdb", "a.vdb"), ("render", "a.png")):
-                self.assert_said("has hexahedra only", verb, "t.bricks", "-o", name, "--scheme", scheme)
+                self.assert_said(scheme, verb, "t.bricks", "-o", name, "--scheme", scheme)
             self.assert_said("is not refined by", "probe", "t.bricks", "-o", "a.csv", "--scheme", scheme, "--at", "0,0,0")
 
     def test_voxels_that_are_too_small(self):

@@ -165,7 +165,7 @@ class Tetrahedra(InFolder):
         for action in ('{"select": "all"}', '{"edit_level": 1}', '{"save_mesh": "a.vtu"}'):
             (self.folder / "edit.json").write_text(f"[{action}]")
             self.refused("no control points to edit", "view", "box.mesh", "--scheme", "tetoct", "--script", "edit.json")
-        self.refused("--levels", "view", "box.mesh", "--scheme", "tetoct", "--per-edge", 2, "--screenshot", "a.png")
+        self.refused("--per-edge", "view", "box.mesh", "--scheme", "tetoct", "--per-edge", 2, "--screenshot", "a.png")
 
     def test_hexahedra_are_refined_too(self):
         done = self.run_ok("subdivide", "cube.mesh", "-o", "fine.vtu", "--scheme", "tetoct", "--json").json()

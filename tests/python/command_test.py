@@ -38,7 +38,7 @@ def test_splats_for_other_viewers_stand_upright(tmp_path, command):
         same(tmp_path / "a.ply", tmp_path / "b.ply")
     with pytest.raises(subvol.InvalidInput, match="splats"):
         subvol.write_points(points, tmp_path / "b.ply", up="y")
-    with pytest.raises(subvol.InvalidInput, match="x, y or z"):
+    with pytest.raises(subvol.InvalidInput, match="x, y, z"):
         subvol.write_points(points, tmp_path / "b.ply", splats=True, up="w")
 
 
