@@ -151,7 +151,7 @@ void Report::merge(const Facts& facts) {
 }
 
 void Report::note(const std::string& note) {
-    if (print_json_ || quiet_) return;
+    if (note.empty() || print_json_ || quiet_) return;
     progress_.clear();
     std::cerr << "subvol: " << detail::printable_message(note) << '\n';
 }

@@ -45,7 +45,7 @@ public:
     /// For people on standard error, and under "warnings". An empty text is ignored.
     void warn(const std::string& warning);
 
-    /// For people on standard error; not printed with --json or --quiet.
+    /// For people on standard error; not printed with --json or --quiet. An empty text is ignored.
     void note(const std::string& note);
 
     /// A line for people; not printed with --json or --quiet.
