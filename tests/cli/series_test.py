@@ -89,7 +89,7 @@ class Series(InFolder):
         self.assertIn("only one step can be read here", self.error("info", "run.pvd", "--step", "all"))
         self.assertIn("has no # for the number of the step", self.error("vdb", "run.pvd", "-o", "a.vdb", "--step", "all"))
         self.assertIn("such files have no named blocks", self.error("info", "t0.vtu", "--blocks", "a"))
-        self.assertIn("a model has no steps", self.error("info", "model:ball", "--step", "0"))
+        self.assertIn("this is a model", self.error("info", "model:ball", "--step", "0"))
         self.assertIn("--curved", self.error("info", "t0.vtu", "--curved", "0"))
         (self.folder / "one.pvd").write_text('<VTKFile type="Collection"><Collection><DataSet timestep="0" file="t0.vtu"/>'
                                              '</Collection></VTKFile>')
