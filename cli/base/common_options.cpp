@@ -23,7 +23,7 @@ void add_mesh_options(CLI::App& app, CommonOptions& options) {
     app.add_flag("--weld", options.weld, "join points of a file that are at the same place")->group(group);
     add_option(app, Option("weld-distance", options.weld_distance_world)
                         .positive()
-                        .help("D", "join points of a file that are no farther apart than this"))
+                        .help("D", "join points of a file whose distance is at most D"))
         ->group(group);
     app.add_option(
            "--curved,--curved-tolerance", options.curved,

@@ -37,8 +37,8 @@ struct CommonOptions {
     const CLI::App* app = nullptr;  // which knows what was given
 };
 
-/// Of a verb that reads no mesh, --field and --density are accepted, because scripts may give them to any verb, but no help
-/// shows them; the other options for reading meshes are unknown to it.
+/// Adds the options of every verb. A verb that reads no mesh accepts --field and --density, too, because scripts may give them
+/// to any verb, but its help does not show them; it refuses the other options for reading meshes.
 void add_common_options(CLI::App& app, CommonOptions& options, Reads reads);
 
 /// Refuses options that do not apply to an input.

@@ -19,7 +19,7 @@ namespace subvol::cli {
 /// A number of 64 bits, from 0.
 [[nodiscard]] CLI::Validator seed_number();
 [[nodiscard]] CLI::Validator number_in(double least, double most);
-/// More than 0. Numbers so small or so large that their squares or cubes are 0 or infinite are no lengths, errors or factors.
+/// More than 0. Numbers so small or so large that their squares or cubes are 0 or infinite are refused.
 [[nodiscard]] CLI::Validator positive_number();
 [[nodiscard]] CLI::Validator not_negative_number();
 [[nodiscard]] CLI::Validator any_number();

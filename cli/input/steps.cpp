@@ -21,7 +21,7 @@ std::optional<std::size_t> step_number(std::string_view text) {
 }
 
 [[noreturn]] void refuse(const std::string& text) {
-    throw Error(ErrorCode::InvalidInput, "'" + text + "' is no step", "--step", "a number from 0, last, all, or A-B");
+    throw Error(ErrorCode::InvalidInput, "'" + text + "' is not a step", "--step", "a number from 0, last, all, or A-B");
 }
 
 std::size_t existing(std::size_t step, const MeshSeries& series) {

@@ -63,7 +63,7 @@ int exit_code(ErrorCode code) {
     return kBadInput;
 }
 
-/// Of several processes that MPI started, one speaks for all.
+/// Whether this process prints messages: if MPI started several, only rank 0 does.
 bool speaks() {
     const auto rank = subvol::cli::rank_in_environment();
     return !rank || rank->rank == 0;
@@ -73,7 +73,7 @@ bool speaks() {
 int complain(const Error& error, int code, bool json) {
     if (!speaks()) return code;
     subvol::cli::say_at_last([&] {
-        // Of its parts, as what() ends at a zero byte.
+        // The message is put together from the error's parts, because what() ends at a zero byte.
         const std::string where = error.where().empty() ? "" : error.where() + ": ";
         const std::string allowed = error.allowed().empty() ? "" : " (" + error.allowed() + ")";
         std::cerr << "subvol: " + printable_message(where + error.message() + allowed) +

@@ -90,28 +90,22 @@ std::string error_columns(const Json& errors) {
     return text(std::fixed, std::setprecision(6), errors["rmse"].get<double>(), ' ', errors["mae"].get<double>(), "  ");
 }
 
-void say_table1_row(const Json& row, Report& report) {
+std::string table1_line(const Json& row) {
     const std::string extent = row["extent"].is_null() ? "" : text(row["extent"].get<double>());
-    report.say(text(std::left, std::setw(9), row["kernel"].get<std::string>(), std::setw(3), extent,
-                    error_columns(row["paper"]), error_columns(row["float32"]), error_columns(row["double"]), std::right,
-                    std::scientific, std::setprecision(1), std::setw(8), row["difference"]["rmse"].get<double>(), "  ",
-                    short_parameters(row["parameters"])));
+    return text(std::left, std::setw(9), row["kernel"].get<std::string>(), std::setw(3), extent, error_columns(row["paper"]),
+                error_columns(row["float32"]), error_columns(row["double"]), std::right, std::scientific, std::setprecision(1),
+                std::setw(8), row["difference"]["rmse"].get<double>(), "  ", short_parameters(row["parameters"]));
 }
 
-void say_fits(const Json& row, Report& report) {
+/// The lines of the row's own fits.
+std::vector<std::string> fit_lines(const Json& row) {
+    std::vector<std::string> lines;
     for (const auto& [key, label] : {std::pair{"fitted", "fitted"}, {"fitted_with_slip", "fitted with the sign slip"}}) {
         if (!row.contains(key)) continue;
-        report.say(text("  ", std::left, std::setw(29), label, std::setw(25), "", error_columns(row[key]["double"]),
-                        std::setw(10), "", short_parameters(row[key]["parameters"])));
+        lines.push_back(text("  ", std::left, std::setw(29), label, std::setw(25), "", error_columns(row[key]["double"]),
+                             std::setw(10), "", short_parameters(row[key]["parameters"])));
     }
-}
-
-void add_kernel(Report& report, const std::string& name, const Json& parameters, const FitErrors& errors, int numbers) {
-    Json row{{"kernel", name}, {"numbers", numbers}, {"parameters", parameters}, {"double", to_json(errors)}};
-    report.say(text(std::left, std::setw(20), name, std::right, std::setw(4), numbers ? text(numbers) : "", "  ",
-                    error_columns(row["double"]), std::fixed, std::setprecision(4), errors.max, "  ",
-                    short_parameters(parameters)));
-    report["kernels"].push_back(std::move(row));
+    return lines;
 }
 
 }  // namespace
@@ -155,29 +149,36 @@ void report_table1(const BasisFunction& basis, Report& report) {
     for (const PaperRow& row : paper_rows()) {
         Json fitted = report.timed("fit", [&] { return table1_row(basis, row); });  // adds the seconds, which moves the rows
         report["rows"].push_back(std::move(fitted));
-        say_table1_row(report["rows"].back(), report);
-        say_fits(report["rows"].back(), report);
+        report.say(table1_line(report["rows"].back()));
+        for (const std::string& line : fit_lines(report["rows"].back())) report.say(line);
     }
     report.all_said();
 }
 
 void report_kernels(const BasisFunction& basis, Report& report) {
     report.say(text(std::left, std::setw(18), "kernel", "numbers RMSE     MAE       max     parameters"));
+    const auto add = [&](const std::string& name, const Json& parameters, const FitErrors& errors, int numbers) {
+        Json row{{"kernel", name}, {"numbers", numbers}, {"parameters", parameters}, {"double", to_json(errors)}};
+        report.say(text(std::left, std::setw(20), name, std::right, std::setw(4), numbers ? text(numbers) : "", "  ",
+                        error_columns(row["double"]), std::fixed, std::setprecision(4), errors.max, "  ",
+                        short_parameters(parameters)));
+        report["kernels"].push_back(std::move(row));
+    };
     const Kernel paper = GaussianKernel{.sigma = 0.43};
-    add_kernel(report, "paper_gaussian", parameters_of(paper), kernel_errors(basis, paper), 1);
+    add("paper_gaussian", parameters_of(paper), kernel_errors(basis, paper), 1);
     const auto add_fitted = [&](const std::string& name) {
         const KernelFit fit = report.timed("fit", [&] { return fit_shape(basis, shape_named(name).value()); });
-        add_kernel(report, name, parameters_of(fit.kernel), fit.report.errors, fit.report.parameters);
+        add(name, parameters_of(fit.kernel), fit.report.errors, fit.report.parameters);
     };
     for (const char* name :
          {"gaussian", "scaled_gaussian", "bc", "cardinal", "wendland_c2", "wendland_c4", "two_gaussians", "three_gaussians"}) {
         add_fitted(name);
     }
-    add_kernel(report, "radial_bound", Json::object(), radial_bound(basis), 0);
+    add("radial_bound", Json::object(), radial_bound(basis), 0);
     for (const char* name : {"separable_gaussian", "separable_table"}) add_fitted(name);
     for (const int rank : {2, 3, 4}) {
         const TuckerFit fit = report.timed("fit", [&] { return fit_tucker(basis, rank); });
-        add_kernel(report, text("tucker_", rank), {{"rank", rank}}, fit.report.errors, fit.report.parameters);
+        add(text("tucker_", rank), {{"rank", rank}}, fit.report.errors, fit.report.parameters);
     }
     report.all_said();
 }

@@ -46,50 +46,50 @@ RbfVolume every_second(RbfVolume volume, std::size_t count) {
 }
 
 /// How many points the mesh had before its last refinement.
-std::size_t coarse_points(const StudyCase& of) {
-    if (of.whole("input.refine") < 1) {
+std::size_t coarse_points(const StudyCase& item) {
+    if (item.whole("input.refine") < 1) {
         throw Error(ErrorCode::InvalidInput, "needs an input that is refined", "every_second", "refine 1 or more");
     }
-    StudyCase coarse = of;
-    coarse.values["input.refine"] = of.number("input.refine") - 1;
+    StudyCase coarse = item;
+    coarse.values["input.refine"] = item.number("input.refine") - 1;
     return study_mesh(coarse).points.size();
 }
 
-FieldSamples places_of(const StudyCase& of, const HexMesh& mesh) {
-    const std::string& where = of.text("where");
+FieldSamples places_of(const StudyCase& item, const HexMesh& mesh) {
+    const std::string& where = item.text("where");
     FieldSamples places =
-        random_places(mesh, mesh.attributes.front().name, named<PlaceKind>(where, "where"), of.number("within"),
-                      static_cast<std::size_t>(of.number("places")), static_cast<std::uint64_t>(of.number("seed")));
+        random_places(mesh, mesh.attributes.front().name, named<PlaceKind>(where, "where"), item.number("within"),
+                      static_cast<std::size_t>(item.number("places")), static_cast<std::uint64_t>(item.number("seed")));
     if (places.size() == 0) throw Error(ErrorCode::InvalidInput, "the mesh has no such places", where);
     return places;
 }
 
-CaseResult field_case(const StudyCase& of, const HexMesh& mesh) {
+CaseResult field_case(const StudyCase& item, const HexMesh& mesh) {
     CaseResult result;
-    RbfVolume volume = sample_rbf_points(mesh, study_sampling(of, mesh)).volume;
-    if (of.flag("every_second")) volume = every_second(std::move(volume), coarse_points(of));
-    const ErrorAtSamples error = error_at_samples(volume, places_of(of, mesh));
+    RbfVolume volume = sample_rbf_points(mesh, study_sampling(item, mesh)).volume;
+    if (item.flag("every_second")) volume = every_second(std::move(volume), coarse_points(item));
+    const ErrorAtSamples error = error_at_samples(volume, places_of(item, mesh));
     result.metrics["rmse"] = error.rmse;
     result.metrics["max"] = error.max_abs;
     result.metrics["uncovered"] = static_cast<double>(error.uncovered);
     result.metrics["kernels"] = static_cast<double>(volume.size());
-    result.metrics["spacing"] = of.flag("every_second") ? 2 : 1 / of.number("per_edge");  // in cells
+    result.metrics["spacing"] = item.flag("every_second") ? 2 : 1 / item.number("per_edge");  // in cells
     return result;
 }
 
 /// Compares kernels with the limit as fields: norms, gradients, the integral and an isosurface.
-CaseResult volume_case(const StudyCase& of, const HexMesh& mesh) {
+CaseResult volume_case(const StudyCase& item, const HexMesh& mesh) {
     CaseResult result;
     const std::string name = mesh.attributes.front().name;
-    const MeshField limit(on_limit(refine(mesh, {.levels = of.whole("levels")}), Scheme::Mcq), name);
-    const RbfVolume volume = sample_rbf_points(mesh, study_sampling(of, mesh)).volume;
+    const MeshField limit(on_limit(refine(mesh, {.levels = item.whole("levels")}), Scheme::Mcq), name);
+    const RbfVolume volume = sample_rbf_points(mesh, study_sampling(item, mesh)).volume;
     const PointsField kernels(volume);
     const FieldDifference errors = compare_fields(
         kernels.view(), limit.view(),
-        {.samples = static_cast<std::size_t>(of.number("places")), .seed = static_cast<std::uint64_t>(of.number("seed"))});
+        {.samples = static_cast<std::size_t>(item.number("places")), .seed = static_cast<std::uint64_t>(item.number("seed"))});
     const auto [low, high] = std::ranges::minmax(mesh.attributes.front().values);
-    const double iso = of.has("iso") ? of.number("iso") : .5 * (low + high);
-    const int cubes = of.whole("resolution");
+    const double iso = item.has("iso") ? item.number("iso") : .5 * (low + high);
+    const int cubes = item.whole("resolution");
     result.metrics = {{"kernels", static_cast<double>(volume.size())},
                       {"l1", errors.l1},
                       {"l2", errors.l2},
@@ -102,10 +102,11 @@ CaseResult volume_case(const StudyCase& of, const HexMesh& mesh) {
     return result;
 }
 
-CaseResult voxels_case(const StudyCase& of, const HexMesh& mesh) {
+CaseResult voxels_case(const StudyCase& item, const HexMesh& mesh) {
     CaseResult result;
-    const VdbGrid grid = study_grid(of, mesh, result);
-    const FieldDifference errors = compare_field({.value = [&](const Vec3& x) { return grid.value(x); }}, places_of(of, mesh));
+    const VdbGrid grid = study_grid(item, mesh, result);
+    const FieldDifference errors =
+        compare_field({.value = [&](const Vec3& x) { return grid.value(x); }}, places_of(item, mesh));
     result.metrics["rmse"] = errors.l2;
     result.metrics["max"] = errors.linf;
     result.metrics["uncovered"] = static_cast<double>(errors.uncovered);
@@ -123,18 +124,18 @@ double rmse_between(std::span<const double> a, std::span<const double> b) {
 
 /// The paper's table 2: the error of a value rule at the points that one refinement adds. Most points of a model lie in
 /// constant parts and have no error; `solid_rmse` relates the error to the points of the solid, which makes models comparable.
-CaseResult values_case(const StudyCase& of, const HexMesh& mesh) {
+CaseResult values_case(const StudyCase& item, const HexMesh& mesh) {
     CaseResult result;
     const Attribute& density = mesh.attributes.front();
     const auto exact = values_at_new_points(mesh, density.name, ValueRule::Scheme, Kernel{});
     std::vector<double> ours;
-    if (of.text("rule") == "samples") {
+    if (item.text("rule") == "samples") {
         const RbfVolume points = sample_rbf_points(mesh, {.per_edge = 2}).volume;
         const auto& values = points.channels.front().values;
         ours.assign(values.begin() + static_cast<std::ptrdiff_t>(mesh.points.size()), values.end());
     } else {
-        ours = values_at_new_points(mesh, density.name, named<ValueRule>(of.text("rule"), "rule"),
-                                    study_kernel(of.text("kernel")));
+        ours = values_at_new_points(mesh, density.name, named<ValueRule>(item.text("rule"), "rule"),
+                                    study_kernel(item.text("kernel")));
     }
     // Densities are signed; where they are not positive the volume is empty, as in the paper.
     const auto positive = [](std::span<const double> values) {
@@ -150,9 +151,9 @@ CaseResult values_case(const StudyCase& of, const HexMesh& mesh) {
 }
 
 /// The numbers of kernels and of tetrahedra for the same number of intervals per cell edge.
-CaseResult counts_case(const StudyCase& of, const HexMesh& mesh) {
+CaseResult counts_case(const StudyCase& item, const HexMesh& mesh) {
     CaseResult result;
-    const int n = of.whole("per_edge");
+    const int n = item.whole("per_edge");
     const double small = static_cast<double>(mesh.cells.size()) * n * n * n;
     result.metrics["kernels"] = static_cast<double>(sample_rbf_points(mesh, {.per_edge = n}).report.points);
     result.metrics["tets5"] = 5 * small;
@@ -169,11 +170,11 @@ const std::map<std::string, FieldCase> kFieldCases{
 
 }  // namespace
 
-CaseResult run_field_case(const StudyCase& of) {
-    const auto found = kFieldCases.find(of.text("method"));
+CaseResult run_field_case(const StudyCase& item) {
+    const auto found = kFieldCases.find(item.text("method"));
     assert(found != kFieldCases.end());
-    const HexMesh mesh = study_mesh(of);
-    CaseResult result = found->second(of, mesh);
+    const HexMesh mesh = study_mesh(item);
+    CaseResult result = found->second(item, mesh);
     result.metrics["points"] = static_cast<double>(mesh.points.size());
     result.metrics["cells"] = static_cast<double>(mesh.cells.size());
     return result;

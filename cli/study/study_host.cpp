@@ -31,7 +31,7 @@ std::string processor() {
     return "unknown";
 }
 
-/// Of the report; SOURCE_DATE_EPOCH sets it.
+/// The date of the report; SOURCE_DATE_EPOCH sets it.
 std::string today() {
     const char* epoch = std::getenv("SOURCE_DATE_EPOCH");
     const std::time_t now = epoch ? std::strtoll(epoch, nullptr, 10) : std::time(nullptr);

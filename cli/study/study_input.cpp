@@ -37,36 +37,36 @@ std::vector<double> smooth_density(const HexMesh& mesh) {
     return values;
 }
 
-HexMesh load(const StudyCase& of) {
-    if (of.has("input.file")) return without_unused_points(read_mesh(of.text("input.file")).mesh);
-    if (of.text("input.model") == "cell") return one_cell();
-    return make_model(of.text("input.model"), of.whole("input.resolution"));
+HexMesh load(const StudyCase& item) {
+    if (item.has("input.file")) return without_unused_points(read_mesh(item.text("input.file")).mesh);
+    if (item.text("input.model") == "cell") return one_cell();
+    return make_model(item.text("input.model"), item.whole("input.resolution"));
 }
 
 }  // namespace
 
-HexMesh study_mesh(const StudyCase& of) {
-    HexMesh mesh = load(of);
-    if (of.whole("input.refine") > 0) mesh = refine(mesh, {.levels = of.whole("input.refine")});
-    const std::string& density = of.text("input.density");
+HexMesh study_mesh(const StudyCase& item) {
+    HexMesh mesh = load(item);
+    if (item.whole("input.refine") > 0) mesh = refine(mesh, {.levels = item.whole("input.refine")});
+    const std::string& density = item.text("input.density");
     if (density == "smooth") {
         mesh.attributes = {{"density", 1, smooth_density(mesh)}};
     } else if (!density.empty()) {
         mesh.attributes = {{"density", 1, evaluate_expression(density, mesh.points)}};
     } else {
-        const auto field = of.has("input.field") ? std::optional(of.text("input.field")) : std::nullopt;
+        const auto field = item.has("input.field") ? std::optional(item.text("input.field")) : std::nullopt;
         mesh.attributes = {select_field(mesh, field).scalar};
     }
     validate(mesh);
     return mesh;
 }
 
-VdbGrid study_grid(const StudyCase& of, const HexMesh& mesh, CaseResult& result) {
+VdbGrid study_grid(const StudyCase& item, const HexMesh& mesh, CaseResult& result) {
     const Vec3 size = bounds(mesh).size();
-    const double voxel = std::max({size.x, size.y, size.z}) / of.whole("resolution");
+    const double voxel = std::max({size.x, size.y, size.z}) / item.whole("resolution");
     const LimitCells limit = limit_for_voxels(mesh, {}, voxel);
     const std::vector<std::string> names{mesh.attributes.front().name};
-    auto grids = vdb().rasterize(mesh, names, {.voxel_size_world = voxel, .limit = &limit, .half = of.flag("half")});
+    auto grids = vdb().rasterize(mesh, names, {.voxel_size_world = voxel, .limit = &limit, .half = item.flag("half")});
     const GridReport& about = grids.front().report();
     result.metrics["voxels"] = static_cast<double>(about.active_voxels);
     result.metrics["grid_bytes"] = static_cast<double>(about.bytes);
@@ -74,17 +74,17 @@ VdbGrid study_grid(const StudyCase& of, const HexMesh& mesh, CaseResult& result)
     return std::move(grids.front());
 }
 
-View study_view(const StudyCase& of, const HexMesh& mesh, const Optics& optics) {
-    const int width = of.whole("width"), height = of.whole("height");
-    const Box box = of.flag("camera.visible") ? visible_bounds(mesh, optics) : bounds(mesh);
-    return {parse_camera(of.text("camera"), box, static_cast<double>(width) / height), width, height};
+View study_view(const StudyCase& item, const HexMesh& mesh, const Optics& optics) {
+    const int width = item.whole("width"), height = item.whole("height");
+    const Box box = item.flag("camera.visible") ? visible_bounds(mesh, optics) : bounds(mesh);
+    return {parse_camera(item.text("camera"), box, static_cast<double>(width) / height), width, height};
 }
 
-Optics study_optics(const StudyCase& of, const HexMesh& mesh) {
+Optics study_optics(const StudyCase& item, const HexMesh& mesh) {
     PictureArguments arguments;
-    if (of.has("tf.colors")) arguments.transfer_function = of.text("tf.colors");
-    if (of.has("tf.opacity")) arguments.opacity = of.text("tf.opacity");
-    if (of.has("tf.opacity_unit")) arguments.opacity_unit_world = of.number("tf.opacity_unit");
+    if (item.has("tf.colors")) arguments.transfer_function = item.text("tf.colors");
+    if (item.has("tf.opacity")) arguments.opacity = item.text("tf.opacity");
+    if (item.has("tf.opacity_unit")) arguments.opacity_unit_world = item.number("tf.opacity_unit");
     const Range range = field_range(mesh);
     return arguments.make_optics(bounds(mesh), range, range);
 }

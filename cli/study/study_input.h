@@ -13,16 +13,16 @@ namespace subvol::cli {
 ///
 /// "density": an expression in x, y, z, or "smooth": ½(sin 3x cos 2y + z) on a box of about [-1,1]³ around the mesh, so that
 /// meshes of different size have similar densities
-[[nodiscard]] HexMesh study_mesh(const StudyCase& of);
+[[nodiscard]] HexMesh study_mesh(const StudyCase& item);
 
 /// The limit of the mesh as voxels, at the resolution of the case.
 ///
 /// result: gets the metrics of the voxels
-[[nodiscard]] VdbGrid study_grid(const StudyCase& of, const HexMesh& mesh, CaseResult& result);
+[[nodiscard]] VdbGrid study_grid(const StudyCase& item, const HexMesh& mesh, CaseResult& result);
 
-[[nodiscard]] Optics study_optics(const StudyCase& of, const HexMesh& mesh);
+[[nodiscard]] Optics study_optics(const StudyCase& item, const HexMesh& mesh);
 
 /// The camera of a case; a side view is fitted to the mesh's box, or to its visible part.
-[[nodiscard]] View study_view(const StudyCase& of, const HexMesh& mesh, const Optics& optics);
+[[nodiscard]] View study_view(const StudyCase& item, const HexMesh& mesh, const Optics& optics);
 
 }  // namespace subvol::cli

@@ -47,9 +47,9 @@ void put_parameters(const Kernel& kernel, CaseResult& result) {
     result.notes["parameters"] = words;
 }
 
-CaseResult errors_case(const StudyCase& of, const CasePlace&) {
+CaseResult errors_case(const StudyCase& item, const CasePlace&) {
     const BasisFunction basis = sample_basis_function(Scheme::Mcq, kPaperLevel);
-    const Kernel kernel = study_kernel(of.text("kernel"));
+    const Kernel kernel = study_kernel(item.text("kernel"));
     CaseResult result;
     put(kernel_errors(basis, kernel), "", result);
     put(kernel_errors_float32(basis, kernel), "float32_", result);
@@ -57,9 +57,9 @@ CaseResult errors_case(const StudyCase& of, const CasePlace&) {
     return result;
 }
 
-CaseResult fit_case(const StudyCase& of, const CasePlace&) {
+CaseResult fit_case(const StudyCase& item, const CasePlace&) {
     const BasisFunction basis = sample_basis_function(Scheme::Mcq, kPaperLevel);
-    const std::string& shape = of.text("shape");
+    const std::string& shape = item.text("shape");
     CaseResult result;
     if (shape == "radial_bound") {
         put(radial_bound(basis), "", result);
@@ -67,11 +67,11 @@ CaseResult fit_case(const StudyCase& of, const CasePlace&) {
     }
     FitReport report;
     if (shape == "tucker") {
-        report = fit_tucker(basis, of.has("rank") ? of.whole("rank") : 2).report;
+        report = fit_tucker(basis, item.has("rank") ? item.whole("rank") : 2).report;
     } else {
-        FitOptions options{.sign_slip = of.flag("sign_slip")};
-        if (of.has("extent")) options.extent = of.number("extent");
-        if (of.has("terms")) options.terms = of.whole("terms");
+        FitOptions options{.sign_slip = item.flag("sign_slip")};
+        if (item.has("extent")) options.extent = item.number("extent");
+        if (item.has("terms")) options.terms = item.whole("terms");
         const KernelFit fit = fit_shape(basis, shape_named(shape).value(), options);
         report = fit.report;
         put_parameters(fit.kernel, result);
@@ -108,25 +108,25 @@ Image slice(int pixels, const Value& value) {
     return image;
 }
 
-CaseResult slice_case(const StudyCase& of, const CasePlace& place) {
+CaseResult slice_case(const StudyCase& item, const CasePlace& place) {
     const BasisFunction basis = sample_basis_function(Scheme::Mcq, kSliceLevel);
-    const int pixels = of.whole("pixels");
+    const int pixels = item.whole("pixels");
     const auto index = [](double x) { return static_cast<int>(std::lround(x * (1 << kSliceLevel))); };
     const Image exact = slice(pixels, [&](double x, double y) { return basis.at(index(x), index(y), 0); });
     CaseResult result;
     std::filesystem::create_directories(place.folder / "pictures");
     const auto write = [&](const char* kind, const std::string& ending, const Image& image) {
-        result.files[kind] = "pictures/" + case_file(of, ending);
+        result.files[kind] = "pictures/" + case_file(item, ending);
         write_image(place.folder / result.files[kind], image);
     };
-    if (!of.has("kernel")) {
+    if (!item.has("kernel")) {
         write("picture", ".png", grey(exact));
         double least = 0;
         for (const double value : basis.values) least = std::min(least, value);
         result.metrics["least"] = least;
         return result;
     }
-    const Kernel kernel = study_kernel(of.text("kernel"));
+    const Kernel kernel = study_kernel(item.text("kernel"));
     const Image ours = slice(pixels, [&](double x, double y) { return kernel_value(kernel, {x, y, 0}); });
     write("picture", ".png", grey(ours));
     write("reference", "_exact.png", grey(exact));
@@ -142,10 +142,10 @@ const std::map<std::string, KernelCase> kKernelCases{{"errors", errors_case}, {"
 
 }  // namespace
 
-CaseResult run_kernel_case(const StudyCase& of, const CasePlace& place) {
-    const auto found = kKernelCases.find(of.text("method"));
+CaseResult run_kernel_case(const StudyCase& item, const CasePlace& place) {
+    const auto found = kKernelCases.find(item.text("method"));
     assert(found != kKernelCases.end());
-    return found->second(of, place);
+    return found->second(item, place);
 }
 
 }  // namespace subvol::cli

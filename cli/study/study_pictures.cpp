@@ -124,7 +124,7 @@ CaseResult run_picture_case(const StudyCase& item, const CasePlace& place) {
     const HexMesh mesh = study_mesh(item);
     const Image image = measured(item, mesh, result);
     const auto reference_case = reference_of(item);
-    // Of a reference that is a part of another picture only that part is left, whose size is refused below.
+    // If the reference is a part of another picture, only that part is left, and its size is refused below.
     const Image reference =
         common_pixels(whole_image(image), read_placed_image(place.references / (reference_case->id + ".exr"))).b;
     for (const auto& [name, value] : picture_metrics(image, reference, item.text("metrics"))) result.metrics[name] = value;

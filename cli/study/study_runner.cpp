@@ -31,9 +31,9 @@ std::string last_error(std::string text) {
 
 }  // namespace
 
-CaseResult StudyRunner::run(const StudyCase& of, const std::string& study) {
-    if (const auto reference = reference_of(of)) make_reference(*reference);
-    return in_child(of, study, threads_);
+CaseResult StudyRunner::run(const StudyCase& item, const std::string& study) {
+    if (const auto reference = reference_of(item)) make_reference(*reference);
+    return in_child(item, study, threads_);
 }
 
 void StudyRunner::make_reference(const StudyCase& reference) {
@@ -55,9 +55,9 @@ void StudyRunner::make_reference(const StudyCase& reference) {
     }
 }
 
-CaseResult StudyRunner::in_child(const StudyCase& of, const std::string& study, int threads) const {
-    std::vector<std::string> arguments{"study",          "--case", to_json(of), "-o",
-                                       folder_.string(), "--json", "--threads", std::to_string(threads)};
+CaseResult StudyRunner::in_child(const StudyCase& item, const std::string& study, int threads) const {
+    std::vector<std::string> arguments{"study",          "--case", to_json(item), "-o",
+                                       folder_.string(), "--json", "--threads",   std::to_string(threads)};
     if (!study.empty()) arguments.insert(arguments.end(), {"--case-of", study});
     const ChildResult ended = run_self(arguments);
     if (interrupted(ended)) throw Error(ErrorCode::Cancelled, "interrupted");
@@ -70,9 +70,9 @@ CaseResult StudyRunner::in_child(const StudyCase& of, const std::string& study, 
 }
 
 CaseResult run_given_case(const std::string& json, const std::filesystem::path& folder, const std::string& study) {
-    const StudyCase of = study_case_from_json(json);
+    const StudyCase item = study_case_from_json(json);
     const CasePlace place{folder / study, folder / kReferences};
-    return study.empty() ? run_reference(of, place) : run_case(of, place);
+    return study.empty() ? run_reference(item, place) : run_case(item, place);
 }
 
 }  // namespace subvol::cli

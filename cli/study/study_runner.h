@@ -21,11 +21,11 @@ public:
         : folder_(std::move(folder)), threads_(threads), reference_threads_(reference_threads) {}
 
     /// study: the name of its folder
-    [[nodiscard]] CaseResult run(const StudyCase& of, const std::string& study);
+    [[nodiscard]] CaseResult run(const StudyCase& item, const std::string& study);
 
 private:
     void make_reference(const StudyCase& reference);
-    [[nodiscard]] CaseResult in_child(const StudyCase& of, const std::string& study, int threads) const;
+    [[nodiscard]] CaseResult in_child(const StudyCase& item, const std::string& study, int threads) const;
 
     std::filesystem::path folder_;
     int threads_, reference_threads_;

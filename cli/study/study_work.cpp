@@ -18,31 +18,31 @@ double cpu_seconds() {
     return seconds(usage.ru_utime) + seconds(usage.ru_stime);
 }
 
-std::string case_file(const StudyCase& of, const std::string& ending) {
-    return of.name + "_" + of.id.substr(0, 8) + ending;
+std::string case_file(const StudyCase& item, const std::string& ending) {
+    return item.name + "_" + item.id.substr(0, 8) + ending;
 }
 
 Kernel study_kernel(const std::string& text) {
     return text.starts_with("{") ? kernel_from_json(text) : named_kernel(text);
 }
 
-SampleOptions study_sampling(const StudyCase& of, const HexMesh& mesh) {
-    SampleOptions options{.per_edge = std::max(of.whole("per_edge"), 1),
-                          .spacing_world = world_of_voxels(of.number("spacing_voxels"), bounds(mesh)),
-                          .centers = of.flag("centers")};
+SampleOptions study_sampling(const StudyCase& item, const HexMesh& mesh) {
+    SampleOptions options{.per_edge = std::max(item.whole("per_edge"), 1),
+                          .spacing_world = world_of_voxels(item.number("spacing_voxels"), bounds(mesh)),
+                          .centers = item.flag("centers")};
     for (const Option& option : options_of(options)) {
-        if ((option.name == "correction" || option.name == "kernel") && of.has(option.key()))
-            option.read(of.text(option.key()), option.key());
+        if ((option.name == "correction" || option.name == "kernel") && item.has(option.key()))
+            option.read(item.text(option.key()), option.key());
     }
-    if (of.has("boundary_levels")) options.boundary_levels = of.whole("boundary_levels");
+    if (item.has("boundary_levels")) options.boundary_levels = item.whole("boundary_levels");
     return options;
 }
 
-CaseResult run_case(const StudyCase& of, const CasePlace& place) {
-    const StudyKind kind = method_kind(of.text("method"));
-    if (kind == StudyKind::Pictures) return run_picture_case(of, place);
+CaseResult run_case(const StudyCase& item, const CasePlace& place) {
+    const StudyKind kind = method_kind(item.text("method"));
+    if (kind == StudyKind::Pictures) return run_picture_case(item, place);
     const detail::Stopwatch watch;
-    CaseResult result = kind == StudyKind::Fields ? run_field_case(of) : run_kernel_case(of, place);
+    CaseResult result = kind == StudyKind::Fields ? run_field_case(item) : run_kernel_case(item, place);
     const double seconds = watch.seconds();
     result.costs = {
         {"seconds", seconds}, {"cpu_seconds", cpu_seconds()}, {"peak_bytes", static_cast<double>(peak_memory_bytes())}};

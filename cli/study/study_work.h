@@ -21,24 +21,24 @@ struct CasePlace {
 /// Runs a case in this process.
 ///
 /// throws: Error(InvalidInput) if there is no such method
-[[nodiscard]] CaseResult run_case(const StudyCase& of, const CasePlace& place);
+[[nodiscard]] CaseResult run_case(const StudyCase& item, const CasePlace& place);
 
 /// Run a case of one kind. The case's method must be of that kind.
-[[nodiscard]] CaseResult run_picture_case(const StudyCase& of, const CasePlace& place);
-[[nodiscard]] CaseResult run_field_case(const StudyCase& of);
-[[nodiscard]] CaseResult run_kernel_case(const StudyCase& of, const CasePlace& place);
+[[nodiscard]] CaseResult run_picture_case(const StudyCase& item, const CasePlace& place);
+[[nodiscard]] CaseResult run_field_case(const StudyCase& item);
+[[nodiscard]] CaseResult run_kernel_case(const StudyCase& item, const CasePlace& place);
 
 /// The options for sampling a case's mesh into kernels.
-[[nodiscard]] SampleOptions study_sampling(const StudyCase& of, const HexMesh& mesh);
+[[nodiscard]] SampleOptions study_sampling(const StudyCase& item, const HexMesh& mesh);
 
 /// A kernel by its name or JSON.
 [[nodiscard]] Kernel study_kernel(const std::string& text);
 
 /// Draws a reference, which is a case itself (method dense), as references/ID.exr and .png.
-[[nodiscard]] CaseResult run_reference(const StudyCase& of, const CasePlace& place);
+[[nodiscard]] CaseResult run_reference(const StudyCase& item, const CasePlace& place);
 
 /// The file of a case in a folder of the study: NAME_ID.ending.
-[[nodiscard]] std::string case_file(const StudyCase& of, const std::string& ending);
+[[nodiscard]] std::string case_file(const StudyCase& item, const std::string& ending);
 
 /// CPU seconds of all threads of this process so far.
 [[nodiscard]] double cpu_seconds();

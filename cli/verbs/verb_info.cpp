@@ -199,7 +199,7 @@ private:
         report.all_said();
     }
 
-    /// Of shells without cells: their points and their box.
+    /// The figures of a mesh; shells without cells have only points and a box.
     [[nodiscard]] static MeshReport figures_of(const ReadResult& read) {
         if (!read.mesh.cells.empty()) return inspect(read.mesh);
         MeshReport report;
@@ -213,9 +213,8 @@ private:
         const Bricks bricks = report.unpack(open_bricks_input(input_, app()));
         if (common().field) (void)named_brick_field(bricks, *common().field, true);  // refuses what does not exist
         const Share share = share_of(share_);
-        const detail::MeshShare about = joined(share, report, [&] {
-            return detail::inspect_share(source_of(bricks), share, kCellsNamed, report.progress());
-        });
+        const detail::MeshShare about = joined(
+            share, report, [&] { return detail::inspect_share(source_of(bricks), share, kCellsNamed, report.progress()); });
         if (!speaks()) return;
         put_mesh_report(report, about.counts);
         report["halo_layers"] = bricks.halo_layers;
@@ -243,14 +242,14 @@ private:
             throw Error(ErrorCode::InvalidInput, "the figures of a share are for `subvol join`, which reads JSON", "--part",
                         "--json, and the output in a file");
         }
-        detail::MeshShare own = report.timed("inspect", inspect);
+        detail::MeshShare figures = report.timed("inspect", inspect);
         if (share_.given()) {
             report["part"] = share.name();
             report["part_note"] = text_of(make_note(app(), input_, share));
-            report["part_figures"] = json_of(own);
-            return own;
+            report["part_figures"] = json_of(figures);
+            return figures;
         }
-        return report.unpack(join_ranks(FigureParts{}, own, ranks(), report.progress())).value_or(own);
+        return report.unpack(join_ranks(FigureParts{}, figures, ranks(), report.progress())).value_or(figures);
     }
 
     void put_steps(const ReadResult& read, Report& report) const {

@@ -148,12 +148,12 @@ public:
         RbfVolume volume = is_vdb_file(input_) ? points_of_grid(report) : points_of_mesh(common(), report);
         if (shares(share_)) {
             const auto [begin, end] = share.range(volume.size());
-            RbfVolume own = detail::kernels_between(volume, begin, end);
+            RbfVolume kernels = detail::kernels_between(volume, begin, end);
             volume = {};
             const Transport to = transport(
                 share_, input_,
                 {{"ascii", written_.ascii}, {"splats", written_.splats}, {"up", std::string(name_of(written_.up))}}, report);
-            auto whole = report.unpack(deliver(KernelParts{output_, written_, report.progress()}, std::move(own), to));
+            auto whole = report.unpack(deliver(KernelParts{output_, written_, report.progress()}, std::move(kernels), to));
             if (!whole) return 0;
             volume = std::move(*whole);
         }
@@ -208,15 +208,15 @@ private:
         const SampleOptions options = sample_.options(bricks.bounds, refine_.options(0, report.progress()));
         const BrickFields fields = [&](HexMesh brick) { return with_brick_fields(std::move(brick), {field}); };
         const auto [begin, end] = share.range(bricks.bricks.size());
-        BrickShare own{begin, end, {}};
+        BrickShare brick_share{begin, end, {}};
         if (share_.given()) {
             report["part"] = share.name();
-            own.note = text_of(make_note(app(), input_, share, {{"points", bricks.points}}));
+            brick_share.note = text_of(make_note(app(), input_, share, {{"points", bricks.points}}));
         }
         const BrickPointsReport written = report.timed("sample", [&] {
             return ranks() != nullptr
                        ? write_points_ranked(output_, bricks, options, fields, *ranks())
-                       : write_points_of_bricks(output_, bricks, options, fields, share_.given() ? &own : nullptr);
+                       : write_points_of_bricks(output_, bricks, options, fields, share_.given() ? &brick_share : nullptr);
         });
         if (!speaks()) return;
         if (written.points > 0)

@@ -275,8 +275,8 @@ private:
         });
     }
 
-    /// Of a file with levels of detail each view reads what it needs. Without a boundary, all kernels decide where the volume
-    /// ends.
+    /// Draws a file of points. Each view reads what it needs of a file with levels of detail; without a boundary, all kernels
+    /// are read, because all of them decide where the volume ends.
     void draw_points(PictureOutput& output, Report& report) {
         report["input"] = input_;
         if (arguments_.body == BodyKind::KernelFile) {

@@ -60,7 +60,7 @@ public:
         std::vector<double> range;
         if (!range_.empty()) range = parse_numbers("--range", range_, 2, "0,1");
         if (!range.empty() && !(range[0] <= range[1])) {
-            throw Error(ErrorCode::InvalidInput, "'" + range_ + "' is no range", "--range", "the smaller value first");
+            throw Error(ErrorCode::InvalidInput, "'" + range_ + "' is not a range", "--range", "the smaller value first");
         }
         std::vector<double> plane;
         if (!plane_.empty()) plane = parse_numbers("--plane", plane_, 6, "0,0,0,0,0,1");

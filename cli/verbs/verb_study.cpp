@@ -198,14 +198,14 @@ private:
         const fs::path folder = fs::path(output_) / "pages";
         std::set<std::string> known;
         for (const Study& study : studies) {
-            for (const StudyCase& of : study.cases) {
-                if (!of.has("input") || !(of.has("input.model") || of.has("input.file"))) continue;
-                const std::string name = plain_name(of.text("input"));
+            for (const StudyCase& item : study.cases) {
+                if (!item.has("input") || !(item.has("input.model") || item.has("input.file"))) continue;
+                const std::string name = plain_name(item.text("input"));
                 if (!known.insert(name).second) continue;
                 fs::create_directories(folder);
                 const fs::path page = folder / (name + ".html");
                 const detail::TemporaryFile mesh(name + ".vtu");
-                (void)write_mesh(mesh.path(), study_mesh(of));
+                (void)write_mesh(mesh.path(), study_mesh(item));
                 const ChildResult made = report.timed("pages", [&] {
                     return run_self({"page", mesh.path().string(), "-o", page.string(), "--title", name, "--max-bytes",
                                      kPageBytes, "--quiet"});
@@ -214,7 +214,7 @@ private:
                     report.warn(text("no page of ", name, ": ", made.err.substr(0, made.err.find('\n'))));
                     continue;
                 }
-                pages.emplace_back(of.text("input"), "pages/" + name + ".html");
+                pages.emplace_back(item.text("input"), "pages/" + name + ".html");
                 report["pages"].push_back(page.string());
             }
         }
@@ -265,11 +265,11 @@ private:
         const auto cores = static_cast<int>(tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
         const int jobs = study.timed ? 1 : jobs_.value_or(cores);
         StudyRunner runner(output_, std::max(cores / jobs, 1), cores);
-        const auto finished = [&](const StudyCase& of, const CaseResult& result, bool ran) {
-            if (!result.failure.empty()) report.warn(text(study.name, ": ", of.name, ": ", result.failure));
-            if (ran && result.failure.empty()) report.say(text(study.name, ": ", of.name));
+        const auto finished = [&](const StudyCase& item, const CaseResult& result, bool ran) {
+            if (!result.failure.empty()) report.warn(text(study.name, ": ", item.name, ": ", result.failure));
+            if (ran && result.failure.empty()) report.say(text(study.name, ": ", item.name));
         };
-        return run_study(study, [&](const StudyCase& of) { return runner.run(of, study.name); },
+        return run_study(study, [&](const StudyCase& item) { return runner.run(item, study.name); },
                          {.folder = fs::path(output_) / study.name,
                           .jobs = jobs,
                           .fresh = fresh_,

@@ -191,12 +191,12 @@ private:
 
     /// The grids of all shares, if this process has them; nothing if it has written or sent its own.
     ///
-    /// own: of this process's share. They are not rounded to 16 bits: that is done with all voxels at hand
-    [[nodiscard]] std::optional<std::vector<VdbGrid>> whole_of(std::vector<VdbGrid> own, Report& report) {
-        for (VdbGrid& grid : own) vdb().store_in_half(grid, false);
+    /// grids: those of this process's share. They are not rounded to 16 bits: that is done with all voxels at hand
+    [[nodiscard]] std::optional<std::vector<VdbGrid>> whole_of(std::vector<VdbGrid> grids, Report& report) {
+        for (VdbGrid& grid : grids) vdb().store_in_half(grid, false);
         const Transport to = transport(
             share_, input_, {{"half", asked_.grids.half}, {"compression", std::string(name_of(asked_.compression))}}, report);
-        auto all = report.unpack(deliver(GridParts{output_, report.progress()}, std::move(own), to));
+        auto all = report.unpack(deliver(GridParts{output_, report.progress()}, std::move(grids), to));
         if (!all) return all;
         for (VdbGrid& grid : *all) vdb().store_in_half(grid, asked_.grids.half);
         return all;

@@ -21,7 +21,7 @@ struct StudyScenes {
 
 /// A list of a study; an empty one if the key is missing.
 ///
-/// throws: Error(InvalidInput) if it is no list, or is empty or too long
+/// throws: Error(InvalidInput) if it is not a list, or is empty or too long
 [[nodiscard]] const Json& list_of(const Json& json, const std::string& root, const char* key);
 
 /// The name of a study or of a part of it. Names become parts of file names.

@@ -50,7 +50,7 @@ void require_box(const Box& box) {
             "coordinates up to 1e150");
 }
 
-/// Fits a camera to points around the box's centre that are no farther from it than the box's corners.
+/// Fits a camera to points around the box's centre whose distance from it is at most that of the box's corners.
 Camera fit(const Camera& camera, std::span<const Vec3> points, const Box& box, double aspect) {
     validate(camera);
     require_box(box);

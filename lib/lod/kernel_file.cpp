@@ -124,7 +124,7 @@ private:
     [[nodiscard]] const detail::SvkArrays& nodes_of(int level) {
         const std::size_t part = detail::SvkLayout::part_of_level(level);
         if (!nodes_[part]) {
-            nodes_[part].emplace(file_.contents(), detail::SvkArrays::Of::Nodes, cache_.part(cut_.block, part),
+            nodes_[part].emplace(file_.contents(), detail::SvkArrays::Kind::Nodes, cache_.part(cut_.block, part),
                                  layout_.part(cut_.block, part).count);
         }
         return *nodes_[part];
@@ -200,7 +200,7 @@ struct KernelFile::State {
         const detail::NodeTest test(&view, options, contents.kernels, contents.channels.size());
         cache.begin_view();
         if (top.empty()) top = file.top();
-        const detail::SvkArrays nodes(file.contents(), detail::SvkArrays::Of::Nodes, top, file.layout().top().count);
+        const detail::SvkArrays nodes(file.contents(), detail::SvkArrays::Kind::Nodes, top, file.layout().top().count);
         const std::vector<Piece> pieces = cut_top(nodes, test);
         std::vector<BlockCut> cuts;
         for (const Piece& piece : pieces) {
@@ -239,7 +239,7 @@ struct KernelFile::State {
         std::erase_if(cuts, [](const BlockCut& cut) { return cut.slots.empty(); });
         in_turns(cuts.size(), progress, "read kernels", [&](std::size_t k) {
             const std::size_t part = file.layout().kernels_part();
-            const detail::SvkArrays arrays(file.contents(), detail::SvkArrays::Of::Kernels, cache.part(cuts[k].block, part),
+            const detail::SvkArrays arrays(file.contents(), detail::SvkArrays::Kind::Kernels, cache.part(cuts[k].block, part),
                                            file.layout().part(cuts[k].block, part).count);
             for (std::size_t i = 0; i < cuts[k].slots.size(); ++i) {
                 arrays.copy(cuts[k].slots[i], volume, kernels.rank(cuts[k].numbers[i]), channels);

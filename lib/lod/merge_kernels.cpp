@@ -74,10 +74,10 @@ Terms mean_of(std::span<const Moments> parts, std::span<const Quadratic> quadrat
         const Vec3 b = glm::transpose(l) * quadratics[i].gradient_at(d);
         const Mat3 q = 0.5 * (glm::transpose(l) * quadratics[i].bend * l);
         const double along = trace(q) / 3;
-        const Terms own =
+        const Terms terms =
             full ? Terms{quadratics[i].at(d), b.x, b.y, b.z, q[0][0], q[1][1], q[2][2], 2 * q[0][1], 2 * q[0][2], 2 * q[1][2]}
                  : Terms{quadratics[i].at(d), b.x, b.y, b.z, along};
-        for (std::size_t k = 0; k < own.size(); ++k) mean[k] += share * own[k];
+        for (std::size_t k = 0; k < terms.size(); ++k) mean[k] += share * terms[k];
     }
     return mean;
 }

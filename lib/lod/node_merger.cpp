@@ -15,7 +15,7 @@ namespace subvol::detail {
 ///
 /// errors: of the nodes; null: a kernel
 struct NodeMerger::Part {
-    const RbfVolume* of;
+    const RbfVolume* volume;
     std::size_t number;
     Moments moments;
     Box box;
@@ -91,7 +91,7 @@ void NodeMerger::merge(std::span<const Part> parts, KernelHierarchy& tree, std::
     for (std::size_t c = 0; c < tree.errors.size(); ++c) {
         std::array<Quadratic, kLeafSize> of_channel;
         for (std::size_t i = 0; i < parts.size(); ++i) {
-            of_channel[i] = quadratic_of(*parts[i].of, parts[i].of->channels[c], parts[i].number);
+            of_channel[i] = quadratic_of(*parts[i].volume, parts[i].volume->channels[c], parts[i].number);
         }
         const auto quadratics = std::span<const Quadratic>(of_channel).first(parts.size());
         RbfChannel& channel = tree.nodes.channels[c];

@@ -14,7 +14,7 @@ namespace subvol::detail {
 inline constexpr std::array<std::string_view, 3> kPointNumberArrays{"GlobalNodeId", "GlobalNodeID", "GlobalPointIds"};
 inline constexpr std::array<std::string_view, 3> kCellNumberArrays{"GlobalCellId", "GlobalElementId", "GlobalCellIds"};
 
-/// Points of different parts with the same number are no farther apart than this part of the diagonal of all points.
+/// The most that points of different parts with the same number may be apart, as a part of the diagonal of all points.
 inline constexpr double kNearOfDiagonal = 1e-6;
 
 /// The number of cells of all kinds that the part's file has.

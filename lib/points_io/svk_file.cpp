@@ -196,14 +196,14 @@ std::string SvkFile::part(std::size_t block, std::size_t part) const {
     std::string bytes = read(extent, layout_.hash_of_part(block, part), block_name(block));
     if (part == layout_.numbers_part()) return bytes;
     const bool nodes = part < layout_.node_parts();
-    const SvkArrays arrays(contents_, nodes ? SvkArrays::Of::Nodes : SvkArrays::Of::Kernels, bytes, extent.count);
+    const SvkArrays arrays(contents_, nodes ? SvkArrays::Kind::Nodes : SvkArrays::Kind::Kernels, bytes, extent.count);
     check_kernels(arrays, block_name(block));
     return bytes;
 }
 
 std::string SvkFile::top() const {
     std::string bytes = read(layout_.top(), 1, "the top of the tree");
-    check_kernels({contents_, SvkArrays::Of::Nodes, bytes, layout_.top().count}, "the top of the tree");
+    check_kernels({contents_, SvkArrays::Kind::Nodes, bytes, layout_.top().count}, "the top of the tree");
     return bytes;
 }
 
@@ -329,7 +329,7 @@ RbfVolume read_svk(const std::filesystem::path& path) {
     volume.boundary = file.boundary();
     tbb::parallel_for(std::size_t{0}, layout.blocks(), [&](std::size_t block) {
         const std::string bytes = file.part(block, layout.kernels_part());
-        const SvkArrays kernels(contents, SvkArrays::Of::Kernels, bytes, numbers[block].size());
+        const SvkArrays kernels(contents, SvkArrays::Kind::Kernels, bytes, numbers[block].size());
         for (std::size_t i = 0; i < kernels.size(); ++i) kernels.copy(i, volume, numbers[block][i], channels);
     });
     return volume;

@@ -81,9 +81,9 @@ SvkExtent SvkLayout::part(std::size_t block, std::size_t part) const {
     return {part_offsets_[part] + first * each, count * each, static_cast<std::size_t>(count)};
 }
 
-SvkArrays::SvkArrays(const SvkContents& contents, Of of, std::string_view bytes, std::size_t count)
+SvkArrays::SvkArrays(const SvkContents& contents, Kind kind, std::string_view bytes, std::size_t count)
     : contents_(contents), bytes_(bytes.data()), count_(count) {
-    centers_ = of == Of::Nodes ? (1 + contents.channels.size()) * sizeof(float) * count : 0;
+    centers_ = kind == Kind::Nodes ? (1 + contents.channels.size()) * sizeof(float) * count : 0;
     frames_ = centers_ + count * sizeof(Vec3);
     std::size_t next = frames_ + count * sizeof(Symmetric3);
     for (const SvkChannel& channel : contents.channels) {

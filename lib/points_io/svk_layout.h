@@ -99,9 +99,9 @@ private:
 /// The arrays of kernels or nodes in the bytes of an extent. The bytes are referred to.
 class SvkArrays {
 public:
-    enum class Of { Kernels, Nodes };  // nodes have widths and errors, too
+    enum class Kind { Kernels, Nodes };  // nodes have widths and errors, too
 
-    SvkArrays(const SvkContents& contents, Of of, std::string_view bytes, std::size_t count);
+    SvkArrays(const SvkContents& contents, Kind kind, std::string_view bytes, std::size_t count);
 
     [[nodiscard]] std::size_t size() const { return count_; }
     [[nodiscard]] float width(std::size_t i) const;

@@ -122,7 +122,7 @@ public:
         candidates_ = surface_candidates(tagged_->mesh(), field, tagged_->options);
     }
 
-    /// Of the whole mesh; after the first call of `find`.
+    /// The extent of the whole mesh, known after the first call of `find`.
     [[nodiscard]] const LimitExtent& whole() const { return whole_; }
     /// The mesh in memory with its creases; null if it is in pieces.
     [[nodiscard]] const HexMesh* mesh() const { return tagged_ ? &tagged_->mesh() : nullptr; }

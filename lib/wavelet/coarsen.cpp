@@ -152,12 +152,12 @@ private:
         // The first small cell gives the axes. Opposite face points never belong to one small cell.
         std::array<std::array<Index, 2>, 3> ends;
         for (std::size_t a = 0; a < 3; ++a) {
-            const Index own = face_point(cells[0], a);
+            const Index face = face_point(cells[0], a);
             Index opposite = kNone;
             for (const Index c : cells) {
                 for (std::size_t b = 0; b < 3; ++b) {
                     const Index p = face_point(c, b);
-                    if (p != own && !together(cells, own, p)) {
+                    if (p != face && !together(cells, face, p)) {
                         if (opposite != kNone && opposite != p) return false;
                         opposite = p;
                     }
@@ -165,7 +165,7 @@ private:
             }
             if (opposite == kNone) return false;
             const std::size_t side = side_of(old_corner_[cells[0]], a);
-            ends[a][side] = own;
+            ends[a][side] = face;
             ends[a][1 - side] = opposite;
         }
         std::array<Index, 8> corners, children;

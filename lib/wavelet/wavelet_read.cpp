@@ -264,8 +264,8 @@ HexMesh read_wavelet_mesh(std::string_view text, const std::string& file) {
     for (std::size_t k = 0; k < 8; ++k) {
         length |= std::uint64_t{static_cast<unsigned char>(text[kWaveletMagic.size() + k])} << 8 * k;
     }
-    // What is longer is read as it is decompressed, so that what is no mesh ends it; no mesh of which there are so many details
-    // has so little to say.
+    // Longer contents are read while they are decompressed, so that bytes that do not describe a mesh end the reading early. A
+    // mesh with so many details never packs this well.
     constexpr std::uint64_t kAtOnce = std::uint64_t{64} << 20, kMostGrowth = 8192;  // LZMA packs zeros 6,800 : 1
     const std::string_view packed = text.substr(head);
     if (length > 4 * kAtOnce && length / kMostGrowth > packed.size()) {

@@ -112,9 +112,9 @@ void bind_default_looks(py::module_& module) {
     module.def(
         "solid",
         [](TransferFunction knots, bool keep_opacity, bool plain) {
-            const auto own = knots.opacity;
+            const auto opacity = knots.opacity;
             make_solid(knots, plain);
-            if (keep_opacity) knots.opacity = own;
+            if (keep_opacity) knots.opacity = opacity;
             return knots;
         },
         py::arg("knots"), py::arg("keep_opacity"), py::arg("plain"));

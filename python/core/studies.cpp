@@ -25,11 +25,11 @@ py::dict as_dict(const CaseResult& result) {
 }
 
 /// The metrics that Python's function returns for a case. An error in it is the case's failure; Ctrl-C ends the run.
-CaseResult work_on(const py::object& work, const StudyCase& of, std::optional<py::error_already_set>& interruption) {
+CaseResult work_on(const py::object& work, const StudyCase& item, std::optional<py::error_already_set>& interruption) {
     const py::gil_scoped_acquire with_gil;
     try {
         if (PyErr_CheckSignals() != 0) throw py::error_already_set();
-        const py::object metrics = work(of);
+        const py::object metrics = work(item);
         CaseResult result;
         for (const auto& [name, value] : metrics.cast<py::dict>())
             result.metrics[py::str(name)] = py::float_(value.cast<py::object>());
@@ -51,7 +51,7 @@ std::unique_ptr<StudyResults> run_here(const Study& study, const py::object& wor
     auto results = std::make_unique<StudyResults>();
     try {
         const py::gil_scoped_release without_gil;
-        *results = run_study(study, [&](const StudyCase& of) { return work_on(work, of, interruption); },
+        *results = run_study(study, [&](const StudyCase& item) { return work_on(work, item, interruption); },
                              {.folder = folder, .jobs = 1, .fresh = fresh});
     } catch (const Error&) {
         if (interruption) throw py::error_already_set(std::move(*interruption));
@@ -78,8 +78,8 @@ void bind_studies(py::module_& module) {
     py::class_<StudyCase>(module, "StudyCase", "One computation of a study.")
         .def_readonly("id", &StudyCase::id)
         .def_readonly("name", &StudyCase::name)
-        .def_property_readonly("values", [](const StudyCase& of) { return as_dict(of.values); })
-        .def("__repr__", [](const StudyCase& of) { return "<subvol.StudyCase: " + of.name + ">"; });
+        .def_property_readonly("values", [](const StudyCase& item) { return as_dict(item.values); })
+        .def("__repr__", [](const StudyCase& item) { return "<subvol.StudyCase: " + item.name + ">"; });
     py::class_<Study>(module, "Study", "Cases to run and measure, and how to show them.")
         .def_readonly("name", &Study::name)
         .def_readonly("title", &Study::title)

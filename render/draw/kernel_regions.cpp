@@ -74,8 +74,8 @@ KernelRegions::Region KernelRegions::region(std::size_t k) const {
 }
 
 bool KernelRegions::is_drawn(std::size_t k) const {
-    const Region of = region(k);
-    return of.y0 < rows_.end && of.y1 > rows_.first;
+    const Region pixels = region(k);
+    return pixels.y0 < rows_.end && pixels.y1 > rows_.first;
 }
 
 /// The box around a kernel on the picture, with a margin.

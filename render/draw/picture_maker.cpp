@@ -215,20 +215,21 @@ struct PictureMaker::State {
     const RbfVolume& kernels(const Optics& optics, Progress* progress, Facts& facts) {
         if (body.kernels != nullptr) return *body.kernels;
         if (volume) return *volume;
-        KernelOptions how = options.kernels;
-        how.tets = body.tets;
-        how.progress = progress;
-        if (options.drop_invisible && !how.visible) how.visible = optics.function();
-        SampleOptions sample = how.sample;
+        KernelOptions choices = options.kernels;
+        choices.tets = body.tets;
+        choices.progress = progress;
+        if (options.drop_invisible && !choices.visible) choices.visible = optics.function();
+        SampleOptions sample = choices.sample;
         sample.progress = progress;
-        if (body.moved && !how.tets && !how.levels && !how.visible && how.reduce_rmse == 0 && SampleTables::are_for(sample)) {
+        if (body.moved && !choices.tets && !choices.levels && !choices.visible && choices.reduce_rmse == 0 &&
+            SampleTables::are_for(sample)) {
             volume = facts.timed(progress, "sample", [&] {
                 if (!kernel_tables) kernel_tables.emplace(*body.mesh, sample);
                 return kernel_tables->apply(*body.mesh).volume;
             });
             return *volume;
         }
-        volume = facts.unpack(make_mesh_kernels(*body.mesh, how));
+        volume = facts.unpack(make_mesh_kernels(*body.mesh, choices));
         return *volume;
     }
 
@@ -407,19 +408,19 @@ struct PictureMaker::State {
     }
 
     Picture draw_tets(const View& view, const Optics& optics, Progress* progress) const {
-        const TetsOptions how{.samples = options.style.sample_count(),
-                              .clip = options.style.clip,
-                              .rows = team != nullptr ? team->rows(view.height()) : PixelRows{},
-                              .progress = progress};
+        const TetsOptions tets_options{.samples = options.style.sample_count(),
+                                       .clip = options.style.clip,
+                                       .rows = team != nullptr ? team->rows(view.height()) : PixelRows{},
+                                       .progress = progress};
         Picture picture;
         TetsResult drawn;
         if (body.bricks != nullptr) {
             BrickTetsOptions brick = brick_tets_options(progress);
-            brick.tets = how;
+            brick.tets = tets_options;
             drawn = render_tets(*body.bricks, body.fields, *brick_tets, view, optics, brick);
             picture.facts.add_seconds("prepare", drawn.report.seconds_build);
         } else {
-            drawn = tets->draw(view, optics, how);
+            drawn = tets->draw(view, optics, tets_options);
         }
         std::array counts{drawn.report.rays, drawn.report.lost_rays};
         if (team != nullptr) team->add_up(counts);
@@ -434,26 +435,26 @@ struct PictureMaker::State {
     }
 
     Picture draw_projected(const View& view, const Optics& optics, Progress* progress) {
-        ProjectedOptions how{.order = options.order,
-                             .kbuffer = options.kbuffer,
-                             .lod = options.lod.value_or(1),
-                             .samples = options.style.sample_count(),
-                             .clip = options.style.clip};
+        ProjectedOptions projected_options{.order = options.order,
+                                           .kbuffer = options.kbuffer,
+                                           .lod = options.lod.value_or(1),
+                                           .samples = options.style.sample_count(),
+                                           .clip = options.style.clip};
         Picture picture;
         ProjectedResult drawn;
         if (options.seconds) {
-            auto best = render_progressively(*projected, view, optics,
-                                             {.seconds = *options.seconds, .projected = how, .progress = progress});
-            how.order = best.order;
+            auto best = render_progressively(
+                *projected, view, optics, {.seconds = *options.seconds, .projected = projected_options, .progress = progress});
+            projected_options.order = best.order;
             drawn = std::move(best.projected);
             picture.facts["steps"] = best.steps;
             picture.facts["finished"] = best.finished;
         } else {
-            how.progress = progress;
-            drawn = projected->draw(view, optics, how);
+            projected_options.progress = progress;
+            drawn = projected->draw(view, optics, projected_options);
         }
         add_method(Method::Projected, "gl", picture.facts);
-        add_projected(drawn.report, how.order, picture.facts);
+        add_projected(drawn.report, projected_options.order, picture.facts);
         picture.image = std::move(drawn.image);
         return picture;
     }

@@ -15,7 +15,7 @@ using namespace detail;
 
 namespace {
 
-// Of a kernel while it is drawn: its record, itself, in eye space, and its place in the lists of some tiles.
+// The memory of a kernel while it is drawn: its record, the kernel in eye space, and its entries in the lists of some tiles.
 constexpr std::uint64_t kBytesOfKernel = 320;
 
 void check(const BrickSplatOptions& options) {

@@ -133,7 +133,7 @@ struct Splatter::State {
         options.method = resolved(wanted);
         if (options.method == SplatMethod::Gl) gpu.emplace(scene, options.device);
         if (options.method == SplatMethod::Sheets && scene.shadowed()) {
-            throw Error(ErrorCode::InvalidInput, "sheet buffers know no shadows and no ambient occlusion", {},
+            throw Error(ErrorCode::InvalidInput, "sheet buffers support neither shadows nor ambient occlusion", {},
                         "the method splat");
         }
         if (options.method == SplatMethod::Sheets) sheets = make_sheet_drawer(options);

@@ -139,15 +139,15 @@ double value_at(const TetMesh& mesh, const Vec3& point) {
         const auto& corner = mesh.tets[t].corner;
         const double volume = signed_volume(mesh, corner);
         if (volume == 0) return best;
-        Best here{std::numeric_limits<double>::infinity(), 0};
+        Best candidate{std::numeric_limits<double>::infinity(), 0};
         for (std::size_t k = 0; k < 4; ++k) {
             std::array<Vec3, 4> p;
             for (std::size_t i = 0; i < 4; ++i) p[i] = i == k ? point : mesh.points[corner[i]].position;
             const double weight = dot(cross(p[1] - p[0], p[2] - p[0]), p[3] - p[0]) / volume;
-            here.inside = std::min(here.inside, weight);
-            here.value += weight * mesh.points[corner[k]].value;
+            candidate.inside = std::min(candidate.inside, weight);
+            candidate.value += weight * mesh.points[corner[k]].value;
         }
-        return here.inside > best.inside ? here : best;
+        return candidate.inside > best.inside ? candidate : best;
     };
     return tbb::parallel_reduce(
                tbb::blocked_range<std::size_t>(0, mesh.tets.size(), 4096), Best{},

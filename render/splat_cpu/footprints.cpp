@@ -52,7 +52,7 @@ void check_footprints(const SplatScene& scene) {
     };
     if (!is_radial(scene.volume->kernel))
         refuse("kernels that are not radial have no footprint for all directions", "a radial kernel");
-    if (scene.shadowed()) refuse("footprints know no shadows and no ambient occlusion", "the method splat");
+    if (scene.shadowed()) refuse("footprints support neither shadows nor ambient occlusion", "the method splat");
     if (!scene.clip.empty()) refuse("footprints cannot be cut", "the method splat");
 }
 

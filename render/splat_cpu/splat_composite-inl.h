@@ -30,7 +30,7 @@ struct SheetValues {
 /// sixteenth at most.
 constexpr int kMostSteps = 96;
 
-/// Of a stretch between two sheets, where optical depths are summed.
+/// The largest optical depth of a stretch between two sheets where optical depths are kept: no light passes more than that.
 constexpr float kMostDepth = 50;
 
 /// 1 − exp(−x) of optical depths x ≥ 0, with all digits where they are small; the same as opacity_of in exp_log.glsl.
@@ -54,10 +54,11 @@ inline bool see_boundary(const SplatFrame& frame, BlockState& state, std::size_t
     const View& view = *frame.view;
     const float across = view.perspective() ? frame.sheets.middle + state.enter[lane] : 1.0f;
     const float skin = kSkin_px * static_cast<float>(view.pixel()) * across;
-    const std::array<float, 4> here = frame.classification->light_at(end.x);
-    if (!(here[0] * skin * state.ray_length[lane] > kOpaqueDepth && state.exit[lane] - state.enter[lane] > skin)) return false;
+    const std::array<float, 4> light_at_end = frame.classification->light_at(end.x);
+    if (!(light_at_end[0] * skin * state.ray_length[lane] > kOpaqueDepth && state.exit[lane] - state.enter[lane] > skin))
+        return false;
     std::array<float, 3> color;
-    for (std::size_t c = 0; c < 3; ++c) color[c] = std::min(here[c + 1] / here[0], 1.0f);
+    for (std::size_t c = 0; c < 3; ++c) color[c] = std::min(light_at_end[c + 1] / light_at_end[0], 1.0f);
     if (frame.scene->color_channel) color = frame.classification->color_at(end.color);
     const float light = 1 - state.opacity[lane];
     state.red[lane] += light * (color[0] * end.light.diffuse + end.light.specular);
@@ -140,21 +141,21 @@ public:
         hn::Store(last_.light.specular, d, state_.specular);
     }
 
-    /// Composites what lies between the last sheet, at `front_z`, and the next one, at `back_z` with the values `here`.
-    HWY_ATTR void go(float front_z, float back_z, const SheetValues& here) {
+    /// Composites what lies between the last sheet, at `front_z`, and the next one, at `back_z` with the values `sheet`.
+    HWY_ATTR void go(float front_z, float back_z, const SheetValues& sheet) {
         const Lanes d;
         const auto back = hn::Set(d, back_z);
         bool placed = false;
         Place place;
         for (auto active = hn::Lt(enter_, back); !hn::AllFalse(d, active); active = hn::And(active, hn::Lt(enter_, back))) {
-            stretch(active, front_z, back_z, here, place, placed);
+            stretch(active, front_z, back_z, sheet, place, placed);
             const auto opaque = hn::And(active, is_opaque());
             enter_ = hn::IfThenElse(opaque, hn::Set(d, kNever), enter_);
             active = hn::And(hn::AndNot(opaque, active), hn::Le(exit_, back));
             if (hn::AllFalse(d, active)) break;
             next_intervals(active);
         }
-        last_ = here;
+        last_ = sheet;
         last_placed_ = placed;
         if (placed) last_place_ = place;
     }
@@ -163,8 +164,8 @@ public:
     [[nodiscard]] HWY_ATTR Floats optical_depth() const { return depth_; }
 
     /// Takes the values of a sheet without compositing what lies before it.
-    HWY_ATTR void skip_to(const SheetValues& here) {
-        last_ = here;
+    HWY_ATTR void skip_to(const SheetValues& sheet) {
+        last_ = sheet;
         last_placed_ = false;
     }
 
@@ -192,26 +193,26 @@ private:
     };
 
     /// Composites the part of each ray between two sheets that lies in its interval.
-    HWY_ATTR void stretch(Mask active, float front_z, float back_z, const SheetValues& here, Place& place, bool& placed) {
+    HWY_ATTR void stretch(Mask active, float front_z, float back_z, const SheetValues& sheet, Place& place, bool& placed) {
         const Lanes d;
         const auto front = hn::Set(d, front_z), back = hn::Set(d, back_z);
         auto from = hn::Max(enter_, front), to = hn::Min(exit_, back);
         if constexpr (!kPlain) {
-            if (frame_.scene->half_weight > 0) cut_where_weights_end(front, back, here.weight, from, to);
+            if (frame_.scene->half_weight > 0) cut_where_weights_end(front, back, sheet.weight, from, to);
         }
         const auto limit = hn::Set(d, 0.5f * kUnknownValue);
         const auto enter_x = hn::Load(d, state_.enter_x), exit_x = hn::Load(d, state_.exit_x);
         const auto at_enter = hn::And(hn::Gt(enter_, front), hn::Lt(enter_x, limit));
         const auto at_exit = hn::And(hn::Lt(exit_, back), hn::Lt(exit_x, limit));
-        const auto on_sheet = hn::Or(last_.known, here.known);
+        const auto on_sheet = hn::Or(last_.known, sheet.known);
         const auto known = hn::Or(on_sheet, hn::Or(at_enter, at_exit));
         const auto seen = hn::And(hn::And(active, hn::Lt(from, to)), known);
         if (hn::AllFalse(d, seen)) return;
         // The depths of rays that are done are infinite and would lead to NaN.
         from = hn::IfThenElse(seen, from, front);
         to = hn::IfThenElse(seen, to, front);
-        const auto x_front = hn::IfThenElse(last_.known, last_.x, here.x);
-        const auto x_back = hn::IfThenElse(here.known, here.x, last_.x);
+        const auto x_front = hn::IfThenElse(last_.known, last_.x, sheet.x);
+        const auto x_back = hn::IfThenElse(sheet.known, sheet.x, last_.x);
         const auto per_depth = hn::Div(hn::Set(d, 1.0f), hn::Sub(back, front));
         const auto slope = hn::Mul(hn::Sub(x_back, x_front), per_depth);
         auto x0 = hn::IfThenElse(hn::Eq(from, front), x_front, hn::MulAdd(slope, hn::Sub(from, front), x_front));
@@ -224,10 +225,10 @@ private:
         if (classifier_.transparent(seen, x0, x1)) return;
 
         Floats mean[4];
-        const auto whole = hn::And(hn::Eq(x0, last_.x), hn::Eq(x1, here.x));
+        const auto whole = hn::And(hn::Eq(x0, last_.x), hn::Eq(x1, sheet.x));
         if (hn::AllTrue(d, hn::Or(whole, hn::Not(seen)))) {
             if (!last_placed_) last_place_ = classifier_.place(last_.x);
-            if (!placed) place = classifier_.place(here.x);
+            if (!placed) place = classifier_.place(sheet.x);
             last_placed_ = placed = true;
             classifier_.means(last_place_, place, mean);
         } else {
@@ -236,8 +237,8 @@ private:
         End e0{x0, x0, {x0, x0}}, e1{x1, x1, {x1, x1}};
         if constexpr (!kPlain) {
             const auto f0 = hn::Mul(hn::Sub(from, front), per_depth), f1 = hn::Mul(hn::Sub(to, front), per_depth);
-            find_rest(here, f0, at_enter, state_.enter_color, state_.enter_diffuse, state_.enter_specular, e0);
-            find_rest(here, f1, at_exit, state_.exit_color, state_.exit_diffuse, state_.exit_specular, e1);
+            find_rest(sheet, f0, at_enter, state_.enter_color, state_.enter_diffuse, state_.enter_specular, e0);
+            find_rest(sheet, f1, at_exit, state_.exit_color, state_.exit_diffuse, state_.exit_specular, e1);
             take_other_end(hn::Or(on_sheet, at_enter), e1, e0);
             take_other_end(hn::Or(on_sheet, at_exit), e0, e1);
         }
@@ -256,16 +257,16 @@ private:
     }
 
     /// Where an end is at a part of the way between the sheets, and where it is an end of the interval.
-    HWY_ATTR void find_rest(const SheetValues& here, Floats part, Mask at_end, const float* color, const float* diffuse,
+    HWY_ATTR void find_rest(const SheetValues& sheet, Floats part, Mask at_end, const float* color, const float* diffuse,
                             const float* specular, End& end) const {
         const Lanes d;
         const auto between = [&](Floats front, Floats back, const float* at) HWY_ATTR {
-            const auto f = hn::IfThenElse(last_.known, front, back), b = hn::IfThenElse(here.known, back, front);
+            const auto f = hn::IfThenElse(last_.known, front, back), b = hn::IfThenElse(sheet.known, back, front);
             return hn::IfThenElse(at_end, hn::Load(d, at), hn::MulAdd(part, hn::Sub(b, f), f));
         };
-        end.color = between(last_.color, here.color, color);
-        end.light.diffuse = between(last_.light.diffuse, here.light.diffuse, diffuse);
-        end.light.specular = between(last_.light.specular, here.light.specular, specular);
+        end.color = between(last_.color, sheet.color, color);
+        end.light.diffuse = between(last_.light.diffuse, sheet.light.diffuse, diffuse);
+        end.light.specular = between(last_.light.specular, sheet.light.specular, specular);
     }
 
     /// An end of which nothing is known is taken to be like the other.

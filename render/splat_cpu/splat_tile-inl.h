@@ -256,11 +256,11 @@ private:
         BlockWalk<kPlain> walk(frame_, classifier_, state);
         for (int k = 0; k < batch_.end; ++k) {
             const int sheet = batch * kBatch + k;
-            const SheetValues here = values(block, k);
+            const SheetValues at_sheet = values(block, k);
             if (sheet > 0) {
-                walk.go(sheets_.depth(sheet - 1), sheets_.depth(sheet), here);
+                walk.go(sheets_.depth(sheet - 1), sheets_.depth(sheet), at_sheet);
             } else {
-                walk.skip_to(here);
+                walk.skip_to(at_sheet);
             }
             if (frame_.optical_depths) keep_depths(block, sheet, walk.optical_depth());
         }
@@ -283,26 +283,26 @@ private:
     HWY_ATTR SheetValues values(std::size_t block, int k) const {
         const Lanes d;
         const float* sums = scratch().sums + (static_cast<std::size_t>(k) * kBlocks + block) * (kStride * kBlock);
-        SheetValues here;
-        here.weight = hn::Load(d, sums);
-        here.color = here.light.diffuse = here.light.specular = hn::Zero(d);
+        SheetValues result;
+        result.weight = hn::Load(d, sums);
+        result.color = result.light.diffuse = result.light.specular = hn::Zero(d);
         const bool normalized = kPlain || frame_.scene->normalized;
-        here.known =
-            normalized ? hn::Gt(here.weight, hn::Set(d, static_cast<float>(kLeastWeight))) : hn::Eq(here.weight, here.weight);
-        const auto per_weight = hn::Div(hn::Set(d, 1.0f), hn::IfThenElse(here.known, here.weight, hn::Set(d, 1.0f)));
+        result.known = normalized ? hn::Gt(result.weight, hn::Set(d, static_cast<float>(kLeastWeight)))
+                                  : hn::Eq(result.weight, result.weight);
+        const auto per_weight = hn::Div(hn::Set(d, 1.0f), hn::IfThenElse(result.known, result.weight, hn::Set(d, 1.0f)));
         const auto mean = [&](std::size_t which, float offset) HWY_ATTR {
             const auto total = hn::Load(d, sums + which * kBlock);
             if (!normalized) return hn::Add(total, hn::Set(d, offset));
-            return hn::IfThenElseZero(here.known, hn::Div(total, here.weight));
+            return hn::IfThenElseZero(result.known, hn::Div(total, result.weight));
         };
         const auto far = hn::Set(d, kFarCells);
-        here.x = hn::Min(hn::Max(mean(kValue, x_offset_), hn::Neg(far)), far);
+        result.x = hn::Min(hn::Max(mean(kValue, x_offset_), hn::Neg(far)), far);
         if constexpr (!kPlain) {
-            if (frame_.scene->color_channel) here.color = hn::Min(hn::Max(mean(kColor, color_offset_), hn::Neg(far)), far);
-            here.light = light_on(block, sums, per_weight, batch_.across[static_cast<std::size_t>(k)],
-                                  batch_.depth[static_cast<std::size_t>(k)]);
+            if (frame_.scene->color_channel) result.color = hn::Min(hn::Max(mean(kColor, color_offset_), hn::Neg(far)), far);
+            result.light = light_on(block, sums, per_weight, batch_.across[static_cast<std::size_t>(k)],
+                                    batch_.depth[static_cast<std::size_t>(k)]);
         }
-        return here;
+        return result;
     }
 
     HWY_ATTR Light light_on(std::size_t block, const float* sums, Floats per_weight, float across, float depth) const {

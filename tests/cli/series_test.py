@@ -85,7 +85,7 @@ class Series(InFolder):
     def test_mistakes_are_explained(self):
         self.assertIn("run.pvd: there is no step 3 (steps are 0 to 2)", self.error("info", "run.pvd", "--step", "3"))
         self.assertIn("there is no step 5", self.error("vdb", "run.pvd", "-o", "a_#.vdb", "--step", "1-5"))
-        self.assertIn("'x' is no step", self.error("info", "run.pvd", "--step", "x"))
+        self.assertIn("'x' is not a step", self.error("info", "run.pvd", "--step", "x"))
         self.assertIn("only one step can be read here", self.error("info", "run.pvd", "--step", "all"))
         self.assertIn("has no # for the number of the step", self.error("vdb", "run.pvd", "-o", "a.vdb", "--step", "all"))
         self.assertIn("such files have no named blocks", self.error("info", "t0.vtu", "--blocks", "a"))

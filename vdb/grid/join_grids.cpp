@@ -179,7 +179,7 @@ std::vector<VdbGrid> detail::grids_from_bytes(const std::string& bytes) {
         for (const auto& grid : *stream.getGrids()) grids.push_back(make_vdb_grid(grid));
         return grids;
     } catch (const std::exception& error) {
-        throw Error(ErrorCode::InvalidInput, "these bytes are no grids: " + printable(error.what()));
+        throw Error(ErrorCode::InvalidInput, "these bytes do not hold grids: " + printable(error.what()));
     }
 }
 

@@ -21,7 +21,8 @@ namespace {
 constexpr std::size_t kLeavesCompared = 1 << 14;  // leaves whose voxels are compared at once: up to 8 million
 constexpr double kHalfRounding = 1.0 / 2048;      // of a value of 11 bits
 constexpr double kReach_voxels = 1;
-// Of the tolerance: where the limit has little smoothness, two levels agree although the limit is this much farther.
+// A multiple of the tolerance: where the limit has little smoothness, two levels agree although the limit is this many times
+// farther away.
 constexpr double kTrust = 10;
 
 }  // namespace

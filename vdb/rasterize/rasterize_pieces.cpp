@@ -25,7 +25,7 @@ namespace subvol::detail {
 
 namespace {
 
-// Of a cell that is gathered: itself twice, its topology, and the pieces of its limit, which are sorted once.
+// The memory of a cell that is gathered: the cell twice, its topology, and the pieces of its limit, which are sorted once.
 constexpr double kBytesOfCell = 1600;
 constexpr double kBytesOfBrickChannel = 10;  // of a voxel: leaves that are not full, and the grid that is made of them
 

@@ -13,7 +13,7 @@ using Session = ViewSession::State;
 
 const std::vector<std::string> kSides{"+x", "-x", "+y", "-y", "+z", "-z", "iso"};
 
-/// Of the part of the picture beside its legend.
+/// The aspect ratio of the part of the picture beside its legend.
 double aspect_of(const Session& session) {
     const View seen = seen_view(session.state, *session.body);
     return static_cast<double>(seen.width()) / seen.height();

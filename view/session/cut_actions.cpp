@@ -75,10 +75,10 @@ void edit_plane(Session& session, const Json& value, const Edit& edit) {
 double dragged_world(const Session& session, const CutPlane& plane, const Vec2& by) {
     const View view = seen_view(session.state, *session.body);
     const double step = 1e-3 * session.body->box.diagonal();
-    const Vec3 here = view.to_eye(plane.point), there = view.to_eye(plane.point + step * plane.normal);
-    if (view.perspective() && !(here.z > 0 && there.z > 0)) return 0;
-    const Vec2 along = (view.to_pixels(there) - view.to_pixels(here)) / step;  // pixels for each world length
-    const double across = view.pixel() * (view.perspective() ? here.z : 1);    // a pixel there, world
+    const Vec3 foot = view.to_eye(plane.point), tip = view.to_eye(plane.point + step * plane.normal);
+    if (view.perspective() && !(foot.z > 0 && tip.z > 0)) return 0;
+    const Vec2 along = (view.to_pixels(tip) - view.to_pixels(foot)) / step;  // pixels for each world length
+    const double across = view.pixel() * (view.perspective() ? foot.z : 1);  // a pixel there, world
     constexpr double kSteep = 0.1;  // a normal towards the eye cannot be dragged along the picture: then all of it counts
     const double length = std::max(glm::length(along), kSteep / across);
     return glm::dot(by, along) / (length * length);

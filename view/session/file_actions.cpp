@@ -100,7 +100,7 @@ void load_state(Session& session, const Json& file) {
     }
 }
 
-/// Of the window; without one it has no effect.
+/// Changes the settings of the window; without a window it has no effect.
 void window(Session& session, const Json& value) {
     check_keys(value, {"dark", "help", "log_counts", "log_opacity", "play", "section", "tool", "brush"});
     WindowLook next = session.look;

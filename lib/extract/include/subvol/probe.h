@@ -12,7 +12,7 @@
 namespace subvol {
 
 /// limit:       the scheme, and how exact the limit is: options of `evaluate_limit`
-/// reach_world: places outside that are no farther than this from the boundary get the values of its nearest point; ≥ 0
+/// reach_world: places outside, at most this far from the boundary, get the values of its nearest point; ≥ 0
 struct ProbeOptions {
     LimitOptions limit{};
     double reach_world = 0;

@@ -81,7 +81,7 @@ public:
     [[nodiscard]] StreamedKernels choose_level(const View& view, const LevelOptions& options = {},
                                                const std::vector<std::size_t>& channels = {}, Progress* progress = nullptr);
 
-    /// Of the head and all views so far.
+    /// Returns the number of bytes read so far, for the head and all views.
     [[nodiscard]] std::uint64_t bytes_read() const;
 
 private:

@@ -12,8 +12,8 @@
 
 namespace subvol {
 
-/// Lights the picture of a body that is opaque from its boundary on, drawn by a renderer that knows no light: as the splatter
-/// does with `SplatOptions::shading`.
+/// Lights the picture of a body that is opaque from its boundary on, drawn by a renderer without light: as the splatter does
+/// with `SplatOptions::shading`.
 ///
 /// boundary: closed, outward, as of RbfVolume
 /// samples:  as those of the picture

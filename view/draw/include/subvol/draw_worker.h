@@ -39,7 +39,7 @@ public:
     [[nodiscard]] bool busy() const;
     /// The error that the newest state led to; none: there is none.
     [[nodiscard]] std::optional<std::string> error() const;
-    /// Of the newest state, as far as it is drawn.
+    /// The times of the newest state, as far as it is drawn.
     [[nodiscard]] DrawTimes times() const;
 
     /// Waits for any picture of the newest state, or its error.
