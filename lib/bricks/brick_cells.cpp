@@ -43,8 +43,12 @@ public:
         }
     }
 
+    /// Additions become visible with settle() only, so that a pass adds one layer, although it looks at the cells one after the
+    /// other.
     void add(Index p, std::uint32_t brick) {
         fresh_.emplace_back(p, brick);
+        // The same pair is added by several cells. Sorting whenever the list has doubled keeps it short at a cost of O(n log n)
+        // altogether.
         if (fresh_.size() >= kFresh + 2 * compacted_) compact();
     }
     void settle() {
@@ -95,13 +99,14 @@ void bricks_at(const Reach& reach, const std::array<Index, 8>& cell, std::uint32
 
 std::vector<Index> BrickCells::stored(std::size_t brick) const {
     const auto b = static_cast<std::uint32_t>(brick);
+    // Owned cells and those of the halo are both sorted, so merging them gives the order of the whole mesh.
     const auto begin = std::ranges::lower_bound(halo, b, {}, &std::pair<std::uint32_t, Index>::first);
     const auto end = std::ranges::upper_bound(begin, halo.end(), b, {}, &std::pair<std::uint32_t, Index>::first);
-    const std::span<const Index> own = owned_by(brick);
-    std::vector<Index> cells(own.begin(), own.end());
+    const std::span<const Index> owned = owned_by(brick);
+    std::vector<Index> cells(owned.begin(), owned.end());
     cells.reserve(cells.size() + static_cast<std::size_t>(end - begin));
     std::transform(begin, end, std::back_inserter(cells), [](const auto& pair) { return pair.second; });
-    std::ranges::inplace_merge(cells, cells.begin() + static_cast<std::ptrdiff_t>(own.size()));
+    std::ranges::inplace_merge(cells, cells.begin() + static_cast<std::ptrdiff_t>(owned.size()));
     return cells;
 }
 
@@ -114,12 +119,15 @@ BrickCells cells_of_bricks(const SpillFile& corners, std::size_t points, std::ve
     Reach reach(points);
     each_cell(corners, cells, [&](Index c, const std::array<Index, 8>& cell) {
         for (const Index p : cell) {
+            // Cells come in the order of the whole mesh, so the first cell at a point decides who owns it, as in split_mesh.
             if (reach.owners[p] == kNobody) reach.owners[p] = bricks[c];
             if (reach.owners[p] != bricks[c]) reach.add(p, bricks[c]);
         }
     });
     reach.settle();
     std::vector<std::uint32_t> others;
+    // After k of these passes a brick reaches the points of its first k layers. The last layer needs no pass: its cells are
+    // found from the points that have been reached before.
     for (int layer = 1; layer < layers; ++layer) {
         each_cell(corners, cells, [&](Index c, const std::array<Index, 8>& cell) {
             bricks_at(reach, cell, bricks[c], others);
@@ -139,6 +147,7 @@ BrickCells cells_of_bricks(const SpillFile& corners, std::size_t points, std::ve
     std::ranges::sort(result.halo);
     result.owners = std::move(reach.owners);
     const std::size_t count = std::size_t{std::ranges::max(bricks)} + 1;
+    // A counting sort of the cells by brick, which keeps their order within each brick.
     result.first.assign(count + 1, 0);
     for (const std::uint32_t brick : bricks) ++result.first[brick + 1];
     for (std::size_t b = 0; b < count; ++b) result.first[b + 1] += result.first[b];

@@ -41,7 +41,8 @@ constexpr const char* kCellNumbers = "GlobalCellId";
 
 static_assert(sizeof(Vec3) == 3 * sizeof(double), "points are written as they lie in memory");
 
-/// Arrays that are appended as they lie in memory.
+/// Arrays that are appended as they lie in memory. The elements of all arrays are written first and refer to their bytes by an
+/// offset; the bytes follow in the same order, each with its size in 8 bytes before it.
 class RawArrays {
 public:
     /// The element of an array; its bytes must live until `write_all`.
@@ -76,6 +77,7 @@ std::span<const T> flat(const std::vector<std::array<T, N>>& tuples) {
 
 const char* const kIndexType = sizeof(Index) == 4 ? "Int32" : "Int64";
 
+/// VTK's flags of duplicates, which are the opposite of the flags of what is owned.
 std::vector<std::uint8_t> ghosts(const std::vector<std::uint8_t>& owned) {
     std::vector<std::uint8_t> types(owned.size());
     for (std::size_t i = 0; i < owned.size(); ++i) types[i] = owned[i] ? 0 : kGhost;
@@ -87,6 +89,8 @@ class RawReader {
 public:
     RawReader(std::string_view text, const std::string& file)
         : file_(file), xml_(text, file, "UnstructuredGrid", "a brick is one") {
+        // The appended bytes may hold anything, also "</VTKFile>", so the XML parser must not see them: they begin after the
+        // first underscore behind the tag.
         const std::size_t tag = text.find("<AppendedData"), begin = text.find('_', tag);
         if (tag == std::string_view::npos || begin == std::string_view::npos) fail("it has no appended data");
         appended_ = text.substr(begin + 1);
@@ -109,6 +113,8 @@ public:
               std::vector<Element>& values) const {
         const std::uint64_t offset = array.attribute("offset").as_ullong(~0ULL);
         std::uint64_t size = 0;
+        // The subtraction cannot wrap, as it comes after the comparison of the sizes; an offset near 2⁶⁴ is refused in this
+        // way, too.
         if (std::string_view(array.attribute("type").as_string()) != type || appended_.size() < sizeof size ||
             offset > appended_.size() - sizeof size) {
             fail("an array is not as this program writes it");
@@ -140,6 +146,7 @@ void check_corners(const RawReader& in, const Entities& entities) {
     }
 }
 
+/// Numbers must ascend, because bricks are merged in one pass over sorted lists, which never looks back for a number.
 void check_ascending(const RawReader& in, const std::vector<std::uint64_t>& numbers) {
     for (std::size_t i = 1; i < numbers.size(); ++i) {
         if (numbers[i - 1] >= numbers[i]) in.fail("its numbers do not ascend");
@@ -150,7 +157,7 @@ void turn_into_owned(std::vector<std::uint8_t>& ghosts) {
     for (std::uint8_t& flag : ghosts) flag = flag == 0;
 }
 
-/// The id of the folder that a brick belongs to; nothing if the text is no brick.
+/// The id of the folder that a brick belongs to; nothing if the text is not that of a brick.
 std::optional<std::uint64_t> id_of(std::string_view text, const std::string& file) {
     try {
         const RawReader in(text, file);
@@ -166,6 +173,8 @@ MeshPiece parse(std::string_view text, const std::string& file) {
     const RawReader in(text, file);
     MeshPiece brick;
     HexMesh& mesh = brick.mesh;
+    // Lengths are checked against the counts of the piece while reading, corners and numbers afterwards: then later code may
+    // use them as indices.
     const pugi::xml_node of_points = in.group("PointData"), of_cells = in.group("CellData");
     in.read(in.array(in.group("Points"), "Points"), "Float64", in.points(), mesh.points);
     in.read(in.array(in.group("Cells"), "connectivity"), kIndexType, in.cells(), mesh.cells);
@@ -198,6 +207,7 @@ MeshPiece parse(std::string_view text, const std::string& file) {
 WrittenBrick write_brick_file(const std::filesystem::path& path, const MeshPiece& brick, std::uint64_t id) {
     const HexMesh& mesh = brick.mesh;
     const std::size_t points = mesh.points.size(), cells = mesh.cells.size();
+    // VTK's offsets are written in 32 bits, and the last of them is 8 times the number of cells.
     if (8 * cells >= std::numeric_limits<std::int32_t>::max()) {
         throw Error(ErrorCode::InvalidInput, std::to_string(cells) + " cells are too many for a brick", path.string(),
                     "at most 268 million: use more bricks");
@@ -235,6 +245,7 @@ WrittenBrick write_brick_file(const std::filesystem::path& path, const MeshPiece
 
     OutputFile out(path);
     ByteHash hash;
+    // The hash is taken of the bytes on their way into the file, so that the file is not read again.
     const auto write = [&](std::string_view bytes) {
         out.write(bytes);
         hash.add(bytes);
@@ -243,6 +254,7 @@ WrittenBrick write_brick_file(const std::filesystem::path& path, const MeshPiece
     arrays.write_all(write);
     write("\n</AppendedData>\n</VTKFile>\n");
     const std::uint64_t bytes = out.position();
+    // All bricks are flushed to the disk together when the split ends, and not one by one.
     out.commit(Sync::Later);
     return {bytes, hash.value()};
 }
@@ -251,6 +263,8 @@ MeshPiece read_brick_file(const std::filesystem::path& path, std::uint64_t hash,
     const std::string text = read_regular(path);
     ByteHash found;
     found.add(text);
+    // The id is looked at first, because a brick of another split of the same mesh deserves another message than a damaged
+    // file.
     const bool foreign = id_of(text, path.string()).value_or(id) != id;
     if (foreign || found.value() != hash) {
         throw Error(ErrorCode::InvalidInput,
@@ -272,6 +286,7 @@ std::uint64_t hash_of_file(const std::filesystem::path& path) {
     const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), &std::fclose);
     if (!file) throw Error(ErrorCode::Io, "cannot be read", path.string());
     ByteHash hash;
+    // The file is read in parts, because a finished brick is only compared here and need not be held in memory.
     std::vector<char> chunk(1 << 20);
     while (const std::size_t length = std::fread(chunk.data(), 1, chunk.size(), file.get())) hash.add({chunk.data(), length});
     return hash.value();

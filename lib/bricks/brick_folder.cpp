@@ -48,7 +48,7 @@ fs::path with_suffix(const fs::path& folder, const std::string& suffix) {
 fs::path place_of(const fs::path& folder) {
     fs::path place = output_place(with_suffix(folder, "")).file;
     std::error_code error;
-    if (fs::exists(place, error)) place = fs::canonical(place, error);  // "." and ".." are no names
+    if (fs::exists(place, error)) place = fs::canonical(place, error);  // "." and ".." cannot take a suffix
     if (error) fail(folder, error);
     return place;
 }
@@ -73,18 +73,18 @@ bool is_plain_file(const fs::path& file) {
 
 /// The names of the files of a folder of bricks, sorted: the index and what it lists, whether that is there or not.
 ///
-/// throws: Error(InvalidInput) if it is no folder of bricks, or holds anything else
+/// throws: Error(InvalidInput) if it is not a folder of bricks, or holds anything else
 std::vector<std::string> files_of_bricks(const fs::path& folder) {
     const auto refuse = [&](const std::string& why, const std::string& hint) {
         throw Error(ErrorCode::InvalidInput, "exists and " + why, folder.string(), hint);
     };
-    if (!is_plain_file(folder / kBricksIndex)) refuse("is no folder of bricks", "another name");
+    if (!is_plain_file(folder / kBricksIndex)) refuse("is not a folder of bricks", "another name");
     std::vector<std::string> names{kBricksIndex};
     try {
         const std::string index = (folder / kBricksIndex).string();
         for (Brick& brick : bricks_from_json(read_text(index), index).bricks) names.push_back(std::move(brick.file));
     } catch (const Error&) {
-        refuse("is no folder of bricks: its index.json is none that this program has written", "another name");
+        refuse("is not a folder of bricks: this program has not written its index.json", "another name");
     }
     std::ranges::sort(names);
     for_each_entry(folder, [&](const std::string& name, bool plain) {
@@ -108,11 +108,14 @@ void replace_folder(const fs::path& made, const fs::path& folder) {
         (void)keep_access(folder, made);
         for (int k = 0; old.empty() || fs::exists(fs::symlink_status(old, ignored)); ++k)
             old = with_suffix(folder, ".old" + std::to_string(k));
+        // The finished folder takes the name by two renames, each of which is atomic: whoever opens the name finds the old
+        // bricks, none for an instant, or the new ones, but never a mixture.
         fs::rename(folder, old, error);
         if (error) fail(folder, error);
     }
     fs::rename(made, folder, error);
     if (error) {
+        // The old folder gets its name back, as if nothing had been done.
         if (!old.empty()) fs::rename(old, folder, ignored);
         fail(folder, error);
     }
@@ -127,6 +130,7 @@ void replace_folder(const fs::path& made, const fs::path& folder) {
 }  // namespace
 
 void check_target(const fs::path& folder) {
+    // What can be checked of the last step is checked before the first brick is made, because a split may take hours.
     const fs::path target = place_of(folder), above = target.parent_path();
     if (target.empty()) throw Error(ErrorCode::InvalidInput, "the folder of bricks has no name");
     std::error_code error;
@@ -143,6 +147,7 @@ BricksWriter::BricksWriter(fs::path folder, std::uint64_t id, int halo_layers)
     : folder_(with_suffix(folder, "")), place_(place_of(folder_)), work_(with_suffix(place_, ".unfinished")) {
     check_target(folder_);
     std::error_code error;
+    // An unfinished folder of an earlier run is continued, so that a killed split loses little.
     if (fs::exists(fs::symlink_status(work_, error))) {
         take_up(id, halo_layers);
     } else {
@@ -165,7 +170,7 @@ void BricksWriter::take_up(std::uint64_t id, int halo_layers) {
         throw Error(ErrorCode::InvalidInput, "exists and " + why, work_.string(), "move it away, or use another name");
     };
     std::error_code error;
-    if (fs::symlink_status(work_, error).type() != fs::file_type::directory) refuse("is no unfinished folder of bricks");
+    if (fs::symlink_status(work_, error).type() != fs::file_type::directory) refuse("is not an unfinished folder of bricks");
     // The list of what has been done: of a run that ended while the folder got its name, the index.
     std::vector<std::string> lists, bricks;
     for_each_entry(work_, [&](const std::string& name, bool plain) {
@@ -174,7 +179,7 @@ void BricksWriter::take_up(std::uint64_t id, int halo_layers) {
         } else if (plain && is_brick_name(name)) {
             bricks.push_back(name);
         } else if (!plain || !is_temporary_name(name)) {
-            refuse("is no unfinished folder of bricks: it holds " + in_quotes(name));
+            refuse("is not an unfinished folder of bricks: it holds " + in_quotes(name));
         }
     });
     if (lists.empty() && bricks.empty()) return;  // ended before it had written anything
@@ -183,15 +188,17 @@ void BricksWriter::take_up(std::uint64_t id, int halo_layers) {
         const fs::path list = work_ / lists.at(0);
         done_ = bricks_from_json(read_text(list), list.string(), /*unfinished=*/true);
     } catch (const std::exception&) {
-        refuse("is no unfinished folder of bricks");
+        refuse("is not an unfinished folder of bricks");
     }
     std::ranges::sort(done_.bricks, {}, &Brick::file);
     for (const std::string& name : bricks) {  // also those that were written after the list
         const bool listed = std::ranges::binary_search(done_.bricks, name, {}, &Brick::file);
         if (!listed && !is_brick_of(work_ / name, done_.id)) {
-            refuse("is no unfinished folder of bricks: it holds " + in_quotes(name) + " of another mesh");
+            refuse("is not an unfinished folder of bricks: it holds " + in_quotes(name) + " of another mesh");
         }
     }
+    // The same mesh, cut in the same way: its bricks stay. Otherwise they are of no use, and since all of them are known to be
+    // bricks of one split, they may be removed.
     if (done_.id == id && done_.halo_layers == halo_layers) return;
     if (lists.front() == kBricksIndex) refuse("is a finished folder of bricks");  // somebody's, whose name happens to be this
     for (const std::string& name : bricks) fs::remove(work_ / name, error);
@@ -211,6 +218,7 @@ bool BricksWriter::keeps(std::size_t k) {
     const auto done = std::ranges::find(done_.bricks, name, &Brick::file);
     if (done == done_.bricks.end()) return false;
     std::error_code error;
+    // The size is compared first, because it costs nothing; only a file of the right size is read for its hash.
     if (fs::file_size(work_ / name, error) == done->bytes && !error && hash_of_file(work_ / name) == done->hash) {
         ++result_.kept;
         return true;
@@ -228,7 +236,8 @@ void BricksWriter::write(std::size_t k, const MeshPiece& brick) {
     ++result_.written;
     result_.bytes += written.bytes;
     done_.bricks.push_back(std::move(about));
-    // Each time all bricks are written down: of many, a killed run may lose one in a hundred.
+    // Saving rewrites the whole list, so it is not done for every brick but whenever it has grown by 1/128. The work is then
+    // linear in the number of bricks, and a killed run loses less than one brick in a hundred.
     if (done_.bricks.size() > saved_ + saved_ / 128) save_progress();
 }
 
@@ -249,6 +258,7 @@ SplitResult BricksWriter::finish() {
     });
     std::error_code ignored;
     for (const std::string& name : left) fs::remove(work_ / name, ignored);
+    // The bytes must be on the disk before the name is: a loss of power then leaves an unfinished folder, but no damaged one.
     sync_files_in(work_);
     replace_folder(work_, place_);
     result_.bricks = open_bricks(place_);
@@ -271,6 +281,7 @@ void check_options(const SplitOptions& options) {
 
 std::size_t brick_count(std::uint64_t cells, const SplitOptions& options) {
     if (options.bricks > 0) return options.bricks;
+    // Owned cells are counted; kBytesOfCell includes what their halo takes.
     const std::uint64_t most = options.memory_bytes / kBytesOfCell;
     return static_cast<std::size_t>(std::max<std::uint64_t>(1, (cells + most - 1) / most));
 }

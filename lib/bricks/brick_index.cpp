@@ -32,6 +32,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+/// Hashes are stored as 16 hexadecimal digits, because many JSON readers keep numbers as doubles, which have only 53 bits.
 std::uint64_t from_hex(const Json& text) {
     const auto digits = text.get<std::string>();
     if (digits.size() != 16 || digits.find_first_not_of("0123456789abcdef") != std::string::npos) {
@@ -40,6 +41,7 @@ std::uint64_t from_hex(const Json& text) {
     return std::stoull(digits, nullptr, 16);
 }
 
+/// A count. The JSON library would silently turn negative numbers and fractions into a count, so they are refused here.
 std::uint64_t count_from(const Json& number) {
     if (!number.is_number_unsigned()) throw std::invalid_argument("count");
     return number.get<std::uint64_t>();
@@ -82,6 +84,7 @@ std::vector<BrickField> fields_from(const Json& json) {
     return fields;
 }
 
+/// Whether a box is finite and not empty: bounds of zero thickness, as of a flat set of points, are allowed.
 bool is_sound(const Box& box) {
     for (int d = 0; d < 3; ++d) {
         if (!std::isfinite(box.lower[d]) || !std::isfinite(box.upper[d]) || box.lower[d] > box.upper[d]) return false;
@@ -126,6 +129,8 @@ bool same_ranges(const std::vector<BrickField>& a, const std::vector<BrickField>
     throw Error(ErrorCode::InvalidInput, what, file, "split the mesh again");
 }
 
+/// Refuses an index in which two entries name one file, or have one hash: a copied brick would give its cells to the mesh
+/// twice.
 void check_distinct(const Bricks& bricks, const std::string& file) {
     std::set<std::string_view> files;
     std::set<std::uint64_t> hashes;
@@ -140,6 +145,8 @@ void check_whole(const Bricks& bricks, const std::string& file) {
     for (const Brick& brick : bricks.bricks) {
         if (!same_names(brick.fields, bricks.fields)) refuse("gives " + brick.file + " other fields than the mesh", file);
     }
+    // The index stores the sums although they follow from the bricks, so that a lost or an added entry is found without reading
+    // any brick.
     Bricks sum = bricks;
     sum_up(sum);
     const auto check_count = [&](std::uint64_t counted, std::uint64_t said, const char* what) {
@@ -158,6 +165,8 @@ void check_whole(const Bricks& bricks, const std::string& file) {
     }
 }
 
+/// Widens the ranges of `into` so that they contain those of `fields`. Only the common part is merged, because the bricks of an
+/// index that has not been checked may have different fields.
 void merge(std::vector<BrickField>& into, const std::vector<BrickField>& fields) {
     if (into.empty()) into = fields;
     for (std::size_t f = 0; f < std::min(into.size(), fields.size()); ++f) {
@@ -170,6 +179,8 @@ void merge(std::vector<BrickField>& into, const std::vector<BrickField>& fields)
     }
 }
 
+/// The range of a field over the points that the brick owns. Points of the halo are left out, because other bricks own them and
+/// their ranges count there.
 BrickField range_of_owned(const Attribute& field, const std::vector<std::uint8_t>& owned) {
     const auto channels = static_cast<std::size_t>(field.channels);
     BrickField range{.name = field.name,
@@ -187,6 +198,7 @@ BrickField range_of_owned(const Attribute& field, const std::vector<std::uint8_t
             range.max[c] = std::max(range.max[c], value);
             square += value * value;
         }
+        // A scalar keeps its sign as its "length", so that its range of lengths is its range of values.
         const double length = channels == 1 ? field.values[p] : std::sqrt(square);
         range.shortest = std::min(range.shortest, length);
         range.longest = std::max(range.longest, length);
@@ -246,6 +258,7 @@ void sum_up(Bricks& bricks) {
 }
 
 std::string bricks_to_json(const Bricks& bricks) {
+    // Keys are written in a fixed order, so that the same split gives the same bytes.
     Json list = Json::array();
     for (const Brick& brick : bricks.bricks) {
         list.push_back({{"file", brick.file},
@@ -276,6 +289,7 @@ Bricks bricks_from_json(const std::string& text, const std::string& file, bool u
     const Json json = Json::parse(of_limited_depth(text, file), nullptr, false);
     if (json.is_discarded()) throw Error(ErrorCode::InvalidInput, "not well-formed JSON", file);
     try {
+        // The version is checked before anything else is read, because another version may have other keys.
         if (json.at("format") != "OpenSubVol bricks") throw std::invalid_argument("format");
         if (const std::uint64_t version = count_from(json.at("version")); version != kBricksFormat) {
             throw Error(ErrorCode::InvalidInput, "has version " + std::to_string(version) + " of the format of bricks", file,
@@ -306,16 +320,20 @@ Bricks bricks_from_json(const std::string& text, const std::string& file, bool u
         }
         if (bricks.bricks.size() > kMostBricks) throw std::invalid_argument("bricks");
         check_distinct(bricks, file);
+        // The progress of an unfinished split may have no brick yet, and it is not read as a mesh.
         if (unfinished) return bricks;
         if (bricks.bricks.empty()) throw std::invalid_argument("bricks");
         check_whole(bricks, file);
         return bricks;
     } catch (const std::exception& error) {
+        // Errors of the JSON library and those thrown above as plain exceptions get one sentence; errors with a sentence of
+        // their own keep it.
         if (const auto* ours = dynamic_cast<const Error*>(&error)) throw *ours;
         throw Error(ErrorCode::InvalidInput, "is not an index of bricks as `subvol split` writes it", file);
     }
 }
 
+// Only the sizes of the files are checked here, which costs no reading: the hash of a brick is checked when it is read.
 void check_files(const Bricks& bricks) {
     for (const Brick& brick : bricks.bricks) {
         const std::filesystem::path file = bricks.path / brick.file;
@@ -346,6 +364,8 @@ void check_contents(const Bricks& bricks, const Brick& about, const MeshPiece& r
                         std::to_string(bricks.cells) + " cells",
                     file, "split the mesh again");
     }
+    // The entry is worked out again from the brick and compared, so that an index that was edited cannot make readers skip
+    // cells.
     const Brick found = describe(read);
     // The reach is computed with roundings, which another program may have made otherwise.
     const Vec3 roundings(1e-9 * found.reach.diagonal());

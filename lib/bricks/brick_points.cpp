@@ -60,6 +60,7 @@ BrickPointsReport write_points_of_bricks(const std::filesystem::path& path, cons
     check_halo(bricks, options);
     const std::size_t begin = share ? share->begin : 0, end = share ? share->end : bricks.bricks.size();
     Surface boundary;
+    // One part of several has the boundary, the first one, so that joining the parts has it once.
     if (begin == 0) boundary = sample_bricks_boundary(bricks, options);
     std::uint64_t points_of_share = 0;
     for (std::size_t b = begin; b < end; ++b) points_of_share += bricks.bricks[b].points;
@@ -104,10 +105,12 @@ BrickPointsReport join_points_of_bricks(const std::filesystem::path& path, std::
         const auto size = std::filesystem::file_size(part, error);
         bytes += error ? 0 : size;
     }
+    // Each point takes at least a byte, so a false count in a damaged part ends here and not in the allocation below.
     if (points > bytes) {
         throw Error(ErrorCode::InvalidInput, "cannot be one of parts with " + std::to_string(points) + " points",
                     parts.front().string());
     }
+    // Parts may come in any order, but a point that two parts have is an error.
     std::vector<bool> found(points);
     Surface boundary;
     std::optional<detail::KernelRows> rows;

@@ -47,6 +47,7 @@ private:
     /// Calls call(cell, coordinate) for all cells in their order.
     template <class Call>
     void each_center(int axis, std::span<const Index> cells, const Call& call) const {
+        // Centres are read in chunks, because they may lie in a file that is larger than memory.
         std::vector<double> values(std::min(cells.size(), kCentersOfChunk));
         for (std::size_t begin = 0; begin < cells.size(); begin += kCentersOfChunk) {
             const auto some = cells.subspan(begin, std::min(kCentersOfChunk, cells.size() - begin));
@@ -73,6 +74,7 @@ private:
             for (const Index c : cells) bricks_[c] = static_cast<std::uint32_t>(first);
             return;
         }
+        // Cells are divided in proportion, also for an odd number of bricks; the product stays far below 2⁶⁴.
         const std::size_t low = count / 2, middle = cells.size() * low / count;
         const int axis = slabs_ ? axis_ : longest_side(cells);
         const Border border = border_of(axis, cells, middle);
@@ -84,6 +86,7 @@ private:
             const bool is_below = x < border.at || (x == border.at && equal++ < border.equal_below);
             (is_below ? below : above).push_back(c);
         });
+        // Freed before the halves are cut, as otherwise each level of the recursion would keep a list of all its cells.
         cells = {};
         tbb::parallel_invoke([&] { cut(std::move(below), first, low); },
                              [&] { cut(std::move(above), first + low, count - low); });
@@ -100,6 +103,7 @@ private:
         centers.reserve(cells.size());
         each_center(axis, cells, [&](Index, double x) { centers.push_back(x); });
         const auto border = centers.begin() + static_cast<std::ptrdiff_t>(place);
+        // A full sort is not needed: the element that would be at the place of the cut, in O(n).
         std::nth_element(centers.begin(), border, centers.end());
         const auto smaller = std::count_if(centers.begin(), border, [&](double x) { return x < *border; });
         return {*border, place - static_cast<std::size_t>(smaller)};
@@ -146,6 +150,7 @@ std::vector<std::uint32_t> detail::bricks_of_cells(const CellCenters& centers, c
     std::vector<std::uint32_t> bricks(cells);
     if (options.shape == BrickShape::Random) {
         parallel_each(bricks.size(), [&](std::size_t c) {
+            // The brick of a cell depends on its number and the seed alone, not on the threads.
             bricks[c] = static_cast<std::uint32_t>(scattered(options.seed ^ scattered(c)) % count);
         });
     } else {

@@ -38,6 +38,8 @@ MeshPiece read_brick(const Bricks& bricks, std::size_t brick) {
     const Brick& about = bricks.bricks.at(brick);
     const std::filesystem::path file = bricks.path / about.file;
     MeshPiece read = read_brick_file(file, about.hash, bricks.id);
+    // The hash shows that the file is the one that was written; the contents are compared with the index in addition, because
+    // the index itself has no hash.
     check_contents(bricks, about, read, file.string());
     return read;
 }
@@ -79,6 +81,7 @@ BrickHull gather_hull(const Bricks& bricks, const BrickFields& fields, Progress*
             kept[c] =
                 brick.owned_cells[c] && std::ranges::any_of(brick.mesh.cells[c], [&](Index p) { return on_hull[p] != 0; });
         }
+        // The cells at the hull are few in a large mesh, so they fit into memory although the mesh does not.
         if (std::ranges::find(kept, 1) != kept.end()) parts.push_back(subset(brick, kept));
     });
     MeshPiece all = merged(std::move(parts));

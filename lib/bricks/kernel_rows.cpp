@@ -35,6 +35,7 @@ void each_array(Volume& volume, const Call& call) {
     }
 }
 
+/// All kernels have the same channels, so their records have one length, and a kernel is found by its number.
 std::size_t bytes_of_rest(const RbfVolume& like) {
     std::size_t bytes = 0;
     each_array(like, [&](const auto& array) { bytes += sizeof array[0]; });
@@ -96,6 +97,7 @@ SpilledKernels::SpilledKernels(const std::filesystem::path& folder, const RbfVol
 
 void SpilledKernels::write(std::span<const std::uint64_t> numbers, const RbfVolume& kernels) {
     validate(kernels);
+    // A boundary encloses the volume; without one, the centres are all that is known of its extent.
     if (boundary_.points.empty()) {
         for (const Vec3& x : kernels.centers) contents_.bounds.add(x);
     }
@@ -109,6 +111,7 @@ void SpilledKernels::write(std::span<const std::uint64_t> numbers, const RbfVolu
     const std::vector<Index> places(numbers.begin(), numbers.end());
     centers_.write_some(places, records_of(kernels.centers));
     const std::size_t length = rest_.record_bytes();
+    // The arrays of a volume are columns, records are rows: each array fills its column of all records.
     std::vector<char> records(kernels.size() * length);
     std::size_t column = 0;
     each_array(kernels, [&](const auto& array) {
@@ -120,6 +123,7 @@ void SpilledKernels::write(std::span<const std::uint64_t> numbers, const RbfVolu
 }
 
 std::vector<Index> SpilledKernels::order(std::size_t leaves) const {
+    // The order needs the centres alone, which are read back in parts that fit into memory.
     return median_order(KernelCenters(centers_, contents_.kernels), leaves, kSortedAtOnce);
 }
 
@@ -188,6 +192,7 @@ void KernelRows::finish() {
         state_->ply->finish(state_->boundary);
         return;
     }
+    // A kernel that was never written would read as zeros, so the kernels are counted.
     if (state_->spilled->written() != state_->kernels) {
         throw Error(ErrorCode::InvalidInput,
                     std::to_string(state_->kernels - state_->spilled->written()) + " kernels have not been written",

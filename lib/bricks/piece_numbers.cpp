@@ -81,6 +81,8 @@ void RanksOfNumbers::add(std::span<const double> numbers) {
     if (!listed_ && !make_room(numbers)) give_up_flags();
     if (listed_) {
         numbers_.insert(numbers_.end(), numbers.begin(), numbers.end());
+        // Sorting whenever the list has doubled keeps it at about twice the different numbers, and the cost in all at O(n log
+        // n).
         if (numbers_.size() > 2 * compacted_ + kRoom) compact();
         return;
     }
@@ -88,6 +90,7 @@ void RanksOfNumbers::add(std::span<const double> numbers) {
         const std::int64_t n = static_cast<std::int64_t>(number) - 64 * first_word_;
         const std::uint64_t flag = std::uint64_t{1} << n % 64;
         std::uint64_t& word = words_[static_cast<std::size_t>(n / 64)];
+        // A flag that is set already is a number that occurs twice.
         different_ = different_ && (word & flag) == 0;
         word |= flag;
     }
@@ -97,8 +100,10 @@ void RanksOfNumbers::add(std::span<const double> numbers) {
 bool RanksOfNumbers::make_room(std::span<const double> numbers) {
     const auto [least, largest] = std::ranges::minmax(numbers);
     if (!(least >= -kLargestWhole && largest <= kLargestWhole)) return false;
+    // Rounded down, so that negative numbers belong to the word before.
     const auto word_of = [](double number) { return static_cast<std::int64_t>(std::floor(number / 64)); };
     std::int64_t begin = word_of(least), end = word_of(largest) + 1;
+    // The flags grow at both ends, as pieces may come in any order of their numbers.
     if (!words_.empty()) {
         begin = std::min(begin, first_word_);
         end = std::max(end, first_word_ + static_cast<std::int64_t>(words_.size()));
@@ -156,6 +161,8 @@ RanksOfPlaces::RanksOfPlaces(const std::filesystem::path& folder) : records_(fol
 void RanksOfPlaces::add_piece(std::span<const Vec3> points) {
     std::uint64_t number = ends_.empty() ? 0 : ends_.back();
     for (const Vec3& point : points) {
+        // Equal places must have equal hashes, so both zeros are made one. Points whose places are not finite are joined with
+        // nothing.
         const Vec3 place = point + 0.0;  // -0 is 0
         const bool finite = std::isfinite(place.x) && std::isfinite(place.y) && std::isfinite(place.z);
         if (finite) records_.add(hash_of(place) % kBuckets, {place, number});
@@ -174,6 +181,8 @@ void RanksOfPlaces::find_joined(std::vector<Record> records) {
     std::ranges::sort(records, [&](const Record& a, const Record& b) { return key(a) < key(b); });
     for (std::size_t begin = 0, end = 0; begin < records.size(); begin = end) {
         const std::uint64_t first = records[begin].number;
+        // The records of a place are sorted by the number of the point, so the first one is the point that all others are
+        // joined to.
         const std::uint64_t end_of_piece = *std::ranges::upper_bound(ends_, first);
         for (end = begin + 1; end < records.size() && records[end].place == records[begin].place; ++end) {
             // Points of one piece stay apart, as in a crack.
@@ -185,6 +194,8 @@ void RanksOfPlaces::find_joined(std::vector<Record> records) {
 void RanksOfPlaces::take_piece(std::size_t points, std::vector<Index>& ranks, std::vector<std::uint8_t>& is_first) {
     ranks.clear();
     is_first.clear();
+    // The rank of a point is its number less the joined points before it. next_joined_ is that count for the point at hand; for
+    // an earlier point it is looked up.
     const auto joined_before = [&](std::uint64_t number) {
         const auto found = std::ranges::lower_bound(joined_, number, {}, [](const auto& pair) { return pair.first; });
         return static_cast<std::uint64_t>(found - joined_.begin());

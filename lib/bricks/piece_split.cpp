@@ -31,7 +31,8 @@ constexpr std::size_t kCellsToSplit = std::size_t{1} << 16;   // that are split 
 constexpr std::size_t kKeysOfBucket = std::size_t{1} << 18;   // that are sorted together, about
 constexpr std::size_t kPointsToWrite = std::size_t{1} << 16;  // that are written together
 
-/// A key with the chunk of cells that has it, and its place among the keys of the chunk.
+/// A key with the chunk of cells that has it, and its place among the keys of the chunk. Sorted by key first: equal keys then
+/// stand together, in the order of the cells that have them.
 template <std::size_t N>
 struct KeyRecord {
     SplitKey<N> key;
@@ -83,6 +84,8 @@ public:
         number(faces_);
         number(centers_);
         if (twin_) refuse();
+        // Corners come first, then the points of edges, faces and cells, each in the order of their keys. This is the order of
+        // the split in memory.
         split_->points = next_point_;
         split_->used.resize(next_point_);
         for (std::uint64_t p = 0; p < next_point_; ++p) split_->used.set(static_cast<Index>(p));
@@ -106,6 +109,8 @@ private:
     // Calls call(chunk, its number) for all cells: first the hexahedra, then the tetrahedra, prisms and pyramids.
     template <class Call>
     void each_chunk(double progress, const Call& call) const {
+        // The kinds have different numbers of corners, by which a record is recognized. Each kind is one pass over the table,
+        // since the split in memory goes through the kinds in this order.
         const std::array<std::size_t, 4> corners{8, 4, 6, 5};
         const std::array<std::size_t, 4> counts{mixed_.counts.hexes, mixed_.counts.tets, mixed_.counts.prisms,
                                                 mixed_.counts.pyramids};
@@ -137,6 +142,8 @@ private:
         const CornersOfCells corners(cells);
         std::vector<Vec3> points(corners.points().size());
         mixed_.coordinates.read_some(corners.points(), records_of(points));
+        // Corners become places among the points of this chunk, whose coordinates alone are in memory; give_back turns the
+        // places into numbers again.
         const auto take = [&](auto& to) {
             to.resize(cells.size());
             for (std::size_t c = 0; c < cells.size(); ++c) {
@@ -166,6 +173,8 @@ private:
 
     [[nodiscard]] std::uint64_t edge_count() const {
         const CellCounts& n = mixed_.counts;
+        // Upper bounds: an edge that several cells share is counted for each of them. They only decide how many buckets there
+        // are and how far the work has come.
         return cuts_ ? 6 * tet_count() : 12 * n.hexes + 6 * n.tets + 9 * n.prisms;
     }
     [[nodiscard]] std::uint64_t tet_count() const {
@@ -174,14 +183,16 @@ private:
     }
 
     void collect() {
-        // Of faces there are fewer than edges, of cells fewer still.
         if (mixed_.cells >= kNone / 8) throw Error(ErrorCode::InvalidInput, kTooManyToSplit, list_);
+        // There are fewer faces than edges, and fewer cells than faces, so the edges alone decide about the buckets.
         const std::size_t buckets = edge_count() / kKeysOfBucket + 1;
         edges_.keys.emplace(folder_, buckets);
         faces_.keys.emplace(folder_, buckets);
         centers_.keys.emplace(folder_, buckets);
         const auto sink = [&](auto& to, Index chunk, Index& slot) {
             return [&, chunk](const auto& key) {
+                // Buckets are ranges of the smallest corner, so that going through them one by one goes through all keys in
+                // ascending order.
                 const auto bucket = static_cast<std::size_t>(std::uint64_t{key[0]} * buckets / mixed_.points);
                 to.keys->add(bucket, {key, chunk, slot++});
             };
@@ -212,6 +223,8 @@ private:
         }
     }
 
+    // Gives numbers to the keys of a kind, bucket by bucket: equal keys get one number, which is sent to every slot that asked
+    // for it. Then writes the points that belong to the keys.
     template <std::size_t N>
     void number(KeyTables<N>& tables) {
         tables.numbers.emplace(folder_, chunks_);
@@ -224,6 +237,7 @@ private:
             for (const KeyRecord<N>& record : records) {
                 const bool is_new = keys.empty() || keys.back() != record.key;
                 if (is_new) keys.push_back(record.key);
+                // Only the keys of cells are that long. Two cells with the same corners lie upon each other, which is an error.
                 if constexpr (N == 8) {
                     if (!is_new) note_twin(record);
                 }
@@ -285,6 +299,7 @@ private:
         each_chunk(0.75, [&](const CellChunk& chunk, Index number) {
             const std::vector<Index> edges = numbers_of(edges_, number), faces = numbers_of(faces_, number),
                                      centers = numbers_of(centers_, number);
+            // Slots were counted up in the order of the cells, so the numbers are used up from the front in the same order.
             std::span<const Index> edges_left = edges, faces_left = faces;
             std::vector<std::array<Index, 8>> children;
             std::vector<std::size_t> child_counts;
@@ -293,6 +308,8 @@ private:
                     SplitPoints<Shape::kCorners> points{
                         {}, edges_left.first(shape.edges.size()), faces_left.first(shape.faces.size()), centers[c]};
                     for (std::size_t k = 0; k < Shape::kCorners; ++k) {
+                        // Points that no cell uses have no number in the result: a corner's number is how many used points come
+                        // before it.
                         points.corners[k] = static_cast<Index>(mixed_.used.count_before(cells[c][k]));
                     }
                     add_children(shape, points, children);

@@ -33,6 +33,8 @@ public:
         stream_.begin(0);
         std::uint64_t points = 0;
         while (const auto piece = stream_.next()) {
+            // The reasons are known from one piece alone, so the survey ends with the first of them and the files behind it are
+            // not read for nothing.
             if (const std::string why = why_whole(*piece); !why.empty()) {
                 why_ = why;
                 return false;
@@ -58,6 +60,7 @@ public:
                 ++survey_.with_cells;
             }
             for (const std::string& warning : piece->warnings) {
+                // Each warning is kept once, although many pieces may give it.
                 if (said_.insert(warning).second) survey_.warnings.push_back(warning);
             }
         }
@@ -70,6 +73,7 @@ public:
 
 private:
     [[nodiscard]] static std::string why_whole(const MeshFile& piece) {
+        // Curved cells are split by a tolerance that is a part of the diagonal of the whole mesh, which is not known yet.
         if (piece.curved.size() > 0) return "it has curved cells";
         const FileArray* ghosts = find_array(piece, kGhostArray, false, 1);
         if (ghosts && std::ranges::any_of(ghosts->values, hides_point)) return "it has hidden points";
@@ -82,6 +86,7 @@ private:
                 survey_.arrays.push_back({{array.name, array.components, array.at_cells, {}}, 0});
             }
         }
+        // An array with another number of components in this piece counts as missing.
         std::set<std::tuple<std::string_view, bool, int>> there;
         for (const FileArray& array : piece.arrays) there.emplace(array.name, array.at_cells, array.components);
         for (auto& [array, parts] : survey_.arrays) parts += there.contains({array.name, array.at_cells, array.components});
@@ -92,6 +97,7 @@ private:
         if (numbers.parts != before) return;  // another lacks it
         const FileArray* array = find_array(piece, numbers.name, at_cells, 1);
         if (!array) {
+            // Some piece lacks the array, so its numbers are of no use: their memory is given back at once.
             numbers.ranks = {};
             return;
         }
@@ -114,6 +120,8 @@ private:
         const auto found = std::ranges::find_if(survey_.cell_numbers,
                                                 [&](const PieceSurvey::Numbers& c) { return c.parts == survey_.with_cells; });
         if (found == survey_.cell_numbers.end()) return;
+        // The first array that all pieces have decides. If its numbers are not whole and different, the cells stay in the order
+        // of the files.
         if (found->whole && found->ranks.finish()) {
             survey_.order = &*found;
         } else {

@@ -56,7 +56,7 @@ void each_cell(const MeshFile& piece, const Call& call) {
     });
 }
 
-/// Of all that was read of a piece.
+/// Returns a hash of all that was read of a piece.
 [[nodiscard]] std::uint64_t hash_of(const MeshFile& piece);
 
 /// What the pieces of a mesh have in common, and the numbers of their points and cells.

@@ -56,6 +56,8 @@ public:
             why_ = "it has other cells than hexahedra";
             return {};
         }
+        // Numbers are tried first, because points at one place may be different on purpose, as at a crack. They count only if
+        // every piece has them.
         const auto everywhere = [&](const PieceSurvey::Numbers& n) { return n.parts == survey_.pieces(); };
         const auto numbers = std::ranges::find_if(survey_.point_numbers, everywhere);
         if (numbers != survey_.point_numbers.end() && !numbers->whole) {
@@ -65,6 +67,7 @@ public:
             numbers->ranks.finish();
             const Filled filled = fill();
             if (filled == Filled::Done) return finished();
+            // The numbers agree with each other; it is the cells that need the whole mesh, so places would not help.
             if (filled == Filled::HoldWhole) return {};
             survey_.warnings.push_back(does_not_number(numbers->name, "points"));
             by_numbers_ = nullptr;
@@ -110,6 +113,7 @@ private:
         stream_.begin(1);
         std::size_t k = 0;
         while (const auto piece = stream_.next()) {
+            // The pieces are read several times, and the simulation that writes them may still be running.
             if (k == survey_.pieces() || hash_of(*piece) != survey_.hashes[k]) {
                 throw Error(ErrorCode::InvalidInput, "has changed while it was being read", stream_.file().path.string());
             }
@@ -122,6 +126,7 @@ private:
 
     // Returns false if the numbers of points contradict each other.
     bool add_points(const MeshFile& piece, PointFlags& known) {
+        // A point that several pieces have is written by the first of them, so its values are those of the first, as in memory.
         std::vector<std::uint8_t> is_first;
         if (by_numbers_) {
             const FileArray* numbers = find_array(piece, by_numbers_->name, false, 1);
@@ -149,6 +154,7 @@ private:
             numbers.push_back(ranks_[i]);
             points.push_back(piece.points[i]);
         }
+        // Sorted by rank, so that neighbouring records are written in one go.
         tables_->coordinates.write_some(numbers, records_of(points));
         if (tables_->point_values) tables_->point_values->write_some(numbers, records_of(values_of(piece, false, order)));
         return true;
@@ -224,6 +230,7 @@ private:
             why_ = "it has cells that repeat points";
             return false;
         }
+        // Cells are written at the ranks of their numbers, or in the order of the files if they have none.
         std::vector<Index> order(ranks.size());
         std::iota(order.begin(), order.end(), Index{0});
         const auto rank = [&](Index i) { return ranks[i]; };
@@ -330,6 +337,8 @@ private:
             hash.add({reinterpret_cast<const char*>(&piece_hash), sizeof piece_hash});
         const std::string by = by_numbers_ ? in_quotes(std::string(by_numbers_->name)) : "their places";
         const std::string order = survey_.order ? in_quotes(std::string(survey_.order->name)) : std::string();
+        // How points and cells were joined belongs to the hash, as the same pieces give other tables if they are joined
+        // otherwise.
         hash.add_text(by);
         hash.add_text(order);
         tables.hash = hash.value();
@@ -381,6 +390,7 @@ std::unique_ptr<PieceTables> tables_of_pieces(const PartFiles& files, const std:
     why.clear();
     std::unique_ptr<PieceTables> tables = TableFiller(files, list, folder, options, progress, why).run();
     const bool hexes_alone = !tables || (tables->counts.hexes == tables->cells && !tables->cut);
+    // Splitting is a step of its own, from tables to tables, so that all that follows handles hexahedra alone.
     return hexes_alone ? std::move(tables) : split_tables(std::move(tables), list, folder, progress);
 }
 

@@ -47,6 +47,8 @@ public:
           of_brick_(count),
           places_(mesh.points.size(), kNone),
           seen_(mesh.cells.size(), 0) {
+        // The cells at each point as one list with offsets (a counting sort): the halo grows over it without a topology of the
+        // mesh.
         first_.assign(mesh.points.size() + 1, 0);
         for (const auto& cell : mesh.cells) {
             for (const Index p : cell) ++first_[p + 1];
@@ -68,6 +70,7 @@ public:
     [[nodiscard]] MeshPiece take(std::size_t brick, int layers) {
         std::vector<Index> cells = of_brick_[brick];
         for (const Index c : cells) seen_[c] = 1;
+        // Breadth first: cells from `from` on are the last layer, and their neighbours the next one.
         for (std::size_t from = 0; layers > 0; --layers) {
             const std::size_t end = cells.size();
             for (std::size_t i = from; i < end; ++i) {
@@ -94,6 +97,8 @@ private:
             part.cell_numbers.push_back(c);
             part.owned_cells.push_back(brick_of_cell_[c] == brick);
             for (const Index p : mesh_.cells[c]) {
+                // While points are collected, 0 marks those that are in the list; then each gets its place in the brick. kNone
+                // is restored at the end, so that taking a brick costs no more than the brick.
                 if (places_[p] == 0) continue;
                 places_[p] = 0;
                 points.push_back(p);
@@ -120,6 +125,7 @@ private:
         }
         const auto take_tags = [&](const auto& tags, auto& taken) {
             for (auto tag : tags) {
+                // A crease or a sharp face can be stored only if all its points are in the brick.
                 if (std::ranges::any_of(tag, [&](Index p) { return places_[p] == kNone; })) continue;
                 for (Index& p : tag) p = places_[p];
                 taken.push_back(tag);

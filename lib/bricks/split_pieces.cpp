@@ -68,6 +68,8 @@ std::unique_ptr<CellCenters> centers_of(PieceTables& tables, const std::filesyst
         tables.coordinates.read_some(corners.points(), records_of(points));
         for (auto& values : coordinates) values.resize(cells.size());
         parallel_each(cells.size(), [&](std::size_t c) {
+            // The centre is computed from the cell as it will be stored, turned if it was left-handed, so that the sum has the
+            // same order of terms as in memory, and the same bits.
             std::array<Vec3, 8> x;
             for (std::size_t k = 0; k < 8; ++k) x[k] = points[corners.place(cells[c][k])];
             if (!tables.turned && cell_volume(x) < 0) {
@@ -106,6 +108,8 @@ public:
             brick.owned_cells.push_back(owned);
         }
         brick.mesh = mesh_of(stored, brick, b);
+        // Values at cells become the mean of the cells at each point. A point of the outermost layer lacks some of its cells,
+        // so one layer more was gathered, which is dropped here.
         if (tables_.cell_values) {  // the last layer was for the values at the points of the others
             std::vector<std::uint8_t> kept = brick.owned_cells;
             grow(brick.mesh, kept, layers_);
@@ -139,6 +143,7 @@ private:
             take_values(part, false, points);
             take_values(part, true, stored);
         }
+        // The values at cells were taken in the order of the stored cells, so these are their numbers in the arrays.
         if (tables_.cell_values) {
             for (std::size_t c = 0; c < stored.size(); ++c) part.hexes.numbers.push_back(static_cast<Index>(c));
         }
@@ -190,6 +195,8 @@ PiecesSplit split_pieces(const std::filesystem::path& folder, const std::filesys
     if (pieces.read.cell_values == CellValues::Fit) done.held_whole = "its values at cells are fitted";
     if (!done.held_whole.empty()) return done;
     check_target(folder);
+    // Tables are as large as the mesh, so they lie on the disk that the bricks go to, and not in the folder for temporary
+    // files, which is often in memory.
     const std::filesystem::path beside = std::filesystem::absolute(folder / "").parent_path().parent_path();
     const std::string list = mesh.string();
     const std::unique_ptr<PieceTables> tables =
@@ -198,6 +205,8 @@ PiecesSplit split_pieces(const std::filesystem::path& folder, const std::filesys
     std::vector<std::uint32_t> brick_of_cell = bricks_of_cells(*centers_of(*tables, beside, options.progress), options);
     ByteHash id;
     id.add({reinterpret_cast<const char*>(&tables->hash), sizeof tables->hash});
+    // The id stands for all that the bricks depend on, so that an interrupted split is continued only if it would make the same
+    // bricks.
     id.add_text(pieces.about_change);
     id.add({reinterpret_cast<const char*>(brick_of_cell.data()), brick_of_cell.size() * sizeof brick_of_cell[0]});
     BricksWriter writer(folder, id.value(), options.halo_layers);
@@ -208,6 +217,7 @@ PiecesSplit split_pieces(const std::filesystem::path& folder, const std::filesys
     const BrickMaker maker(*tables, cells, list, pieces, options.halo_layers);
     for (std::size_t b = 0; b < count; ++b) {
         report_progress(options.progress, "split", static_cast<double>(b) / static_cast<double>(count));
+        // Random bricks may be empty: they are not written. Bricks of an earlier run that are whole are not made again.
         if (!cells.owned_by(b).empty() && !writer.keeps(b)) writer.write(b, maker.make(b));
     }
     report_progress(options.progress, "split", 1);

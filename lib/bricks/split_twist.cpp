@@ -27,6 +27,8 @@ Three bricks_along(std::size_t count, std::size_t cells, BrickShape shape) {
     if (shape == BrickShape::Slabs) return {1, 1, count};
     Three best{1, 1, count};
     double least = HUGE_VAL;
+    // All ways to write count = a·b·c with a ≤ b ≤ c. The least sum is the most compact shape; the longest side goes along the
+    // last axis, in which the numbers of cells run slowest.
     for (std::size_t a = 1; a * a * a <= count; ++a) {
         if (count % a != 0) continue;
         for (std::size_t b = a; a * b * b <= count; ++b) {
@@ -85,6 +87,8 @@ SplitResult split_twist(const std::filesystem::path& folder, int resolution, con
         const Three place{k % along[0], k / along[0] % along[1], k / along[0] / along[1]};
         CellRange owned, stored;
         for (std::size_t d = 0; d < 3; ++d) {
+            // Rounded down in the same way for the end of one brick and the beginning of the next, so there are neither gaps
+            // nor overlaps, and lengths differ by one cell at most.
             owned.begin[d] = n * place[d] / along[d];
             owned.end[d] = n * (place[d] + 1) / along[d];
             stored.begin[d] = owned.begin[d] - std::min(owned.begin[d], halo);

@@ -71,6 +71,7 @@ void each_hull_face(const Topology& topology, std::span<const std::uint8_t> on_h
 /// The points of the next level that lie on the boundary: those of its faces, edges and points. The numbering says which they
 /// are, so that no face of the child has to be looked for.
 HullFlags hull_points_of_child(const Topology& parent, const HullFlags& on_hull) {
+    // Points keep their numbers; the points of edges, faces and cells follow in blocks.
     const ChildNumbering first(parent);
     HullFlags child(first.end, 0);
     each_hull_face(parent, on_hull, [&](Index face) {
@@ -102,6 +103,7 @@ Surface boundary_of_child(const HexMesh& mesh, const Topology& topology, const H
         StencilBuilder& row = scratch.local();
         row.clear();
         rows.write_row(p, row);
+        // Points of equal weight are added before they are multiplied, as where tables of stencils are applied.
         const StencilRuns stencil = row.finish();
         Vec3 position(0.0);
         std::size_t next = 0;
@@ -135,6 +137,7 @@ HexMesh hull_at_level(HexMesh mesh, const RefineOptions& options, HullFlags& on_
         HullCells near(mesh, on_hull, true);
         Topology topology = build_topology(near.mesh);
         on_hull = hull_points_of_child(topology, near.on_hull);
+        // Fields are refined with the points, since the cut mesh keeps the attributes.
         RefinedPoints child = refine_points(std::move(near.mesh), std::move(topology), once);
         mesh = std::move(child.mesh);
         mesh.cells = child_cells(child.parent);
@@ -174,7 +177,9 @@ using namespace detail;
 
 namespace {
 
-/// A mesh in which each point is where its number is on the first axis.
+/// A mesh in which each point is where its number is on the first axis. Functions that extract a surface return positions only.
+/// Run on this mesh, their "positions" tell which points they chose, so that any number of channels can be gathered afterwards.
+/// Doubles hold these numbers exactly.
 HexMesh numbered(HexMesh mesh) {
     for (std::size_t p = 0; p < mesh.points.size(); ++p) mesh.points[p] = Vec3(static_cast<double>(p), 0, 0);
     mesh.attributes.clear();
@@ -236,6 +241,7 @@ struct BoundaryTables::State {
     [[nodiscard]] std::vector<double> to_surface(std::span<const double> control, std::size_t channels) const {
         std::vector<double> values = gathered(control, used, channels);
         for (const Level& level : levels) {
+            // The table of a level goes from the points that were kept before it, so these are picked out first.
             const std::vector<double> kept = gathered(values, level.kept, channels);
             values.assign(level.table.rows() * channels, 0);
             level.table.apply(kept, channels, values);
@@ -281,6 +287,7 @@ BoundaryTables::BoundaryTables(const HexMesh& whole, const RefineOptions& option
         mesh.creases = std::move(tables.creases);
         mesh.sharp_faces = std::move(tables.sharp_faces);
     }
+    // Vertices of interpolating schemes lie on the limit already.
     if (!interpolates(options.scheme.kind)) state_->limit = limit_stencils(build_topology(mesh), options.scheme.kind);
     const Surface surface = boundary_surface_where(numbered(std::move(mesh)), OnHull{on_hull});
     state_->on_surface = numbers_in(surface.points);
@@ -310,6 +317,7 @@ BoundaryValues BoundaryTables::apply(const HexMesh& mesh) const {
 
 int detail::sensible_levels(std::size_t triangles, int levels) {
     constexpr std::size_t kMostTriangles = 8'000'000;
+    // Each level makes four triangles of one.
     while (levels > 0 && triangles > kMostTriangles >> (2 * levels)) --levels;
     return levels;
 }

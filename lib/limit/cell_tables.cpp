@@ -38,6 +38,8 @@ void CellGrid::take(const HexMesh& mesh, std::size_t node, Index point) {
 }
 
 void CellGrid::take_child(const CellGrid& part, std::size_t child, std::size_t half) {
+    // Neighbouring children share a plane of nodes. Each node is written by one child only, so children can be taken by several
+    // threads.
     const std::size_t side = 2 * half + 1;
     const auto& at = kCornerParameters[child];
     std::array<std::size_t, 3> ends, start;
@@ -168,6 +170,7 @@ void LaneValues::store(std::size_t lane, std::size_t side, std::uint8_t turn, Ce
     }
     const std::size_t from_stride = rows_ * kTableLanes;
     const double* row = &out_[lane];
+    // Rows are read in their order and written along the turned axes.
     for (std::size_t w = 0; w < side; ++w) {
         for (std::size_t v = 0; v < side; ++v) {
             std::ptrdiff_t node =

@@ -36,6 +36,8 @@ std::size_t batch_size(int levels) {
 class Gather {
 public:
     void run(const HexMesh& refined, std::size_t first, const detail::DenseBlock& block, DenseCell& cell) {
+        // The descendants of a cell follow each other in the patch, so their order tells which vertex is which node of the
+        // grid.
         block.nodes(refined, first, nodes_);
         points_.resize(nodes_.size());
         values_.resize(refined.attributes.size());
@@ -116,6 +118,7 @@ void DenseCells::for_each(std::span<const Index> cells, int levels, const std::f
     }
     if (state_->refiner) return state_->refiner->for_each(cells, levels, state_->options.progress, visit);
     const detail::DenseBlock block(levels);
+    // The fewest batches of at most this size, then all of about one size.
     const std::size_t most = batch_size(levels), at_least = std::max<std::size_t>(1, (cells.size() + most - 1) / most);
     const std::size_t batch = (cells.size() + at_least - 1) / at_least;  // of equal size, as they run side by side
     const std::size_t batches = batch == 0 ? 0 : (cells.size() + batch - 1) / batch;

@@ -109,6 +109,7 @@ Step largest_in(std::size_t child, const std::vector<Step>& steps) {
     return most;
 }
 
+/// An estimate of the next level's step: the steps of a smooth limit shrink by four with each level.
 Step quarter(const Step& step) {
     return {kLeft * step.position, kLeft * step.value};
 }
@@ -154,8 +155,11 @@ void PieceCutter::add_gathered(const DenseCell& grid, const Part& part, const St
     list.levels.push_back(static_cast<std::uint8_t>(part.level));
     list.lowest.push_back(part.lowest);
     list.left.push_back(left);
+    // How many levels trilinear cells would need for the same tolerance, starting from this part's own step.
     list.trilinear.push_back(static_cast<float>(std::max(0.0, part.level + levels_between(position_, step))));
     if (!list.has_nodes) return;
+    // Nodes are stored in floats relative to the first one: the rounding is then relative to the size of the piece, and not to
+    // its place in the world.
     list.origins.push_back(nodes_.origin());
     const std::size_t count = kPieceNodes * nodes_.channels(), first = list.nodes.size();
     list.nodes.resize(first + count);
@@ -218,6 +222,7 @@ std::uint8_t PieceCutter::cut_part(const DenseCell& grid, const Part& part, Step
 
 constexpr double kMostSurfaceCells = 3e7;  // trilinear, were all cells refined to the surface's level
 
+/// A multiplication and a shift for each word: fast, and enough to tell that pieces belong to another mesh by mistake.
 std::uint64_t mixed(std::uint64_t hash, std::uint64_t word) {
     hash = (hash ^ word) * 0x9e3779b97f4a7c15ULL;
     return hash ^ hash >> 29;
@@ -268,6 +273,8 @@ public:
         for (const Attribute& attribute : control_.attributes) node_size_ += static_cast<std::size_t>(attribute.channels);
     }
 
+    // Each callback adds the pieces that are fine enough, and returns what needs a finer grid: the cell, some children of it
+    // (one bit for each), or the child.
     void run() {
         refiner_.descend(options_.max_levels, progress_,
                          {.cell =
@@ -293,6 +300,8 @@ public:
                                   const std::size_t before = found.list.size();
                                   const bool more =
                                       found.cutter.cut(grid, 1, lowest, levels + 1 >= options_.max_levels, found.list) != 0;
+                                  // A child that needs a finer grid is cut anew from that, so what it has added so far is taken
+                                  // back.
                                   if (more) found.list.truncate(before);
                                   spare(found);
                                   return more;
@@ -313,6 +322,7 @@ public:
             cells.piece_count += found.list.size();
         }
         cells.converged = cells.position_world <= options_.position_world && cells.value_of_range <= options_.value_of_range;
+        // The level of a mesh of trilinear cells that is as near to the limit, as far as there is room for so many cells.
         while (trilinear > static_cast<float>(cells.level) && cells.level < options_.max_levels &&
                std::ldexp(static_cast<double>(control_.cells.size()), 3 * (cells.level + 1)) <= kMostSurfaceCells) {
             ++cells.level;
@@ -339,6 +349,7 @@ private:
             std::array<std::uint8_t, 3> lowest;
             std::uint32_t list, number;
         };
+        // Places are sorted and not pieces, so that the nodes are copied only once, to where they belong.
         std::vector<Place> places;
         places.reserve(count);
         for (const Found& found : found_) {

@@ -21,6 +21,7 @@ using namespace detail;
 
 namespace {
 
+/// Whether 8^level times the number of cells, which may exceed 64 bits, is small enough.
 bool fits(std::size_t count, int level, double most) {
     return static_cast<double>(count) * std::pow(8.0, level) <= most;
 }
@@ -33,6 +34,7 @@ LimitLevel find_limit_level(const HexMesh& mesh, RefineOptions refinement, const
     refinement.progress = nullptr;
     std::vector<Index> open = all_cells(mesh);
     LimitLevel result;
+    // Level `level` is computed to judge the one before it: its new vertices are compared with the means of their neighbours.
     for (int level = 1; level <= options.max_levels && fits(mesh.cells.size(), level, options.max_cells); ++level) {
         refinement.levels = level;
         result = {.level = level - 1};
@@ -51,6 +53,7 @@ LimitLevel find_limit_level(const HexMesh& mesh, RefineOptions refinement, const
         result.converged = next.empty();
         if (result.converged) return result;
         result.level = level;
+        // The threads found the cells in any order; sorted, the next round does not depend on it.
         std::ranges::sort(next);
         open = std::move(next);
     }

@@ -55,6 +55,9 @@ private:
         const auto edges = topology_.point_edges[vertex];
         const auto creases = std::count_if(edges.begin(), edges.end(), [&](Index e) { return topology_.edge_is_crease[e]; });
         if (creases > 2) return row.add(vertex, 1);
+        // The tensor product of (1,4,1)/6: inside, weights 64, 16, 4 and 1 of 216 for the vertex, its edges, faces and cells;
+        // on a side 16, 4 and 1 of 36; along a crease 4 and 1 of 6. A vertex with more than two creases is a corner, which
+        // stays.
         const double unit = inside ? 1. / 216 : creases == 2 ? 1. / 6 : 1. / 36;
         row.add(vertex, unit * (inside ? 64 : creases == 2 ? 4 : 16));
         for (const Index e : edges) {
@@ -91,6 +94,7 @@ private:
         detail::each_cell_at(topology_, vertex, [&](Index cell, std::size_t) {
             add(detail::across_cell(topology_, cell, vertex), first_.cells + topology_.cell_ordinal[cell]);
         });
+        // Points are sorted by number: one that occurs twice stands next to itself, and columns are found by bisection.
         order_.resize(points_.size());
         for (std::uint32_t i = 0; i < order_.size(); ++i) order_[i] = i;
         std::sort(order_.begin(), order_.end(), [&](auto a, auto b) { return points_[a] < points_[b]; });
@@ -99,6 +103,8 @@ private:
     }
 
     void fill_matrix() {
+        // Row i has the weights of the child point that takes the place of points_[i]. The matrix is sparse, so it is a list of
+        // entries.
         matrix_.clear();
         for (std::uint32_t i = 0; i < points_.size(); ++i) {
             row_.clear();
@@ -154,6 +160,7 @@ public:
                 child_rows_ = std::make_unique<SchemeRows>(child_, SchemeOptions{scheme_});
             });
         });
+        // limit(v) = Σ l(m) child(m) and child(m) = Σ w(m,p) p, so the weight of p is Σ l(m) w(m,p).
         StencilBuilder over_child, step;
         LocalMatrix(child_, *child_rows_).limit_of(vertex, over_child);
         for_each_term(over_child.finish(), [&](Index middle, double weight) {
@@ -212,6 +219,7 @@ StencilTable limit_stencils(const Topology& topology, Scheme scheme) {
         for (std::size_t p = begin; p < end; ++p) {
             row.clear();
             const auto vertex = static_cast<Index>(p);
+            // A point that no cell uses stays where it is.
             if (topology.point_edges[p].empty()) {
                 row.add(vertex, 1);
             } else if (!local.limit_of(vertex, row)) {

@@ -31,6 +31,7 @@ void NodeBlock::gather(const DenseCell& grid, const std::array<std::size_t, 3>& 
         for (std::size_t v = 0; v < side; ++v) {
             for (std::size_t u = 0; u < side; ++u) {
                 const std::size_t n = place(u, v, w);
+                // Relative to the first node, so that differences of positions far from the origin keep their digits.
                 const Vec3 p = grid.points[n] - origin_;
                 *to++ = p.x;
                 *to++ = p.y;
@@ -60,6 +61,8 @@ void NodeBlock::predict_along(std::size_t stride, std::size_t across, std::size_
                 if (by == Prediction::Trilinear) {
                     for (std::size_t c = 0; c < channels_; ++c, ++to) *to = 0.5 * (to[-line] + to[line]);
                 } else {
+                    // The parabola through three even nodes at −2, 0 and 2, at the odd node between the first two: 3/8, 3/4 and
+                    // −1/8.
                     const std::ptrdiff_t on = k % 4 == 1 ? line : -line;  // towards the middle of the three
                     for (std::size_t c = 0; c < channels_; ++c, ++to) {
                         *to = 0.375 * to[-on] + 0.75 * to[on] - 0.125 * to[3 * on];
@@ -93,6 +96,7 @@ Step NodeBlock::largest_step(Prediction by, const std::vector<double>& scales) {
 }
 
 double levels_between(double tolerance, double step) {
+    // Each level divides the step by four, so l levels by 4ˡ = 2²ˡ.
     return std::ceil(std::log2(step / tolerance) / 2);
 }
 

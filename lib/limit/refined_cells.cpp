@@ -102,12 +102,15 @@ std::vector<Index> RefinedCells::find_octants(const Patch& first, const Topology
                 if (is_spline && entry.on_grid) continue;
                 octants_[cell].visited.assign(walk.visited().begin(), walk.visited().end());
                 for (const auto& visited : walk.visited()) {
+                    // Walks of different octants visit the same cells; all threads write the same 1, so no order between them
+                    // is needed.
                     std::atomic_ref(wanted[visited.cell]).store(1, std::memory_order_relaxed);
                 }
             }
         }
     });
     std::vector<Index> refined;
+    // Maps a cell of level 1 to its place among the cells that are refined again.
     slots_.assign(wanted.size(), kNone);
     for (std::size_t c = 0; c < wanted.size(); ++c) {
         if (wanted[c] == 0) continue;

@@ -21,6 +21,8 @@ namespace hn = hwy::HWY_NAMESPACE;
 template <class RowAt>
 HWY_INLINE void sum(const RowAt& row_at, std::size_t stride, const std::array<CubicWeights, 3>& weights, double scale,
                     double* HWY_RESTRICT jet) {
+    // Works on at most four channels at a time: rows are padded to a multiple of four, and a position with one field has
+    // exactly four.
     const hn::CappedTag<double, 4> d;
     const std::size_t step = hn::Lanes(d);
     const auto& [u, v, w] = weights;
@@ -46,6 +48,7 @@ HWY_INLINE void sum(const RowAt& row_at, std::size_t stride, const std::array<Cu
             fv = hn::MulAdd(value, gv, fv);
             fw = hn::MulAdd(hn::Set(d, w.first[k]), g, fw);
         }
+        // Derivatives by the parameters of the control cell: 2ˡ times those by the parameters of the small cell.
         const auto factor = hn::Set(d, scale);
         hn::StoreU(f, d, jet + block);
         hn::StoreU(hn::Mul(factor, fu), d, jet + stride + block);

@@ -54,6 +54,7 @@ private:
 
     /// Whether the corners of a cell come before all middles, as the split numbers them.
     bool is_split(std::size_t first, std::size_t end) const {
+        // Hexahedra of any mesh may share their corner 6 by chance. The numbers of corners and middles tell them from a split.
         Index last_corner = 0, first_middle = kNone;
         for (std::size_t c = first; c < end; ++c) {
             last_corner = std::max(last_corner, cells_[c][0]);

@@ -28,6 +28,8 @@ namespace subvol::detail {
 
 namespace {
 
+/// A face with its corners in ascending order, by which the two sides of an inner face are equal, and in the order of its cell,
+/// which says where its outside is.
 struct FaceRecord {
     std::array<Index, 4> key;
     std::array<Index, 4> corners;
@@ -54,6 +56,7 @@ std::vector<std::array<Index, 4>> boundary_faces(const MixedMesh& mesh) {
     for (std::size_t i = 0; i < records.size();) {
         std::size_t end = i + 1;
         while (end < records.size() && records[end].key == records[i].key) ++end;
+        // One record is a face of the boundary, two are the sides of an inner face.
         if (end - i == 1) result.push_back(records[i].corners);
         if (end - i > 2) {
             std::string points;
@@ -102,6 +105,7 @@ std::vector<Index> cells_of_edges(const MixedMesh& mesh, const std::vector<std::
         for (const auto& cell : cells) {
             for (const auto& ends : table_of(kind).edges) {
                 const auto key = edge_of(cell, ends);
+                // Most edges lie inside; two look-ups of flags spare their bisection.
                 if (!on_boundary[key[0]] || !on_boundary[key[1]]) continue;
                 const auto found = std::lower_bound(edges.begin(), edges.end(), key);
                 if (found != edges.end() && *found == key) ++count[static_cast<std::size_t>(found - edges.begin())];
@@ -128,6 +132,7 @@ std::vector<std::uint8_t> count_fans(std::size_t points, const std::vector<std::
     tbb::parallel_sort(corners.begin(), corners.end());
     std::vector<Index> root(corners.size());
     for (std::size_t i = 0; i < root.size(); ++i) root[i] = static_cast<Index>(i);
+    // Halving the paths on the way keeps the trees flat.
     const auto find = [&](Index i) {
         while (root[i] != i) i = root[i] = root[root[i]];
         return i;
@@ -145,6 +150,7 @@ std::vector<std::uint8_t> count_fans(std::size_t points, const std::vector<std::
     std::vector<std::uint8_t> count(points);
     for (std::size_t i = 0; i < corners.size(); ++i) {
         auto& n = count[corners[i].point];
+        // Each fan has one corner that is its own root.
         if (find(static_cast<Index>(i)) == i && n < 255) ++n;
     }
     return count;
@@ -208,6 +214,7 @@ MixedBoundary find_boundary(const MixedMesh& mesh, std::optional<double> crease_
 
 MixedBoundary split_boundary(const MixedBoundary& parent, const SplitNumbers& numbers) {
     MixedBoundary child;
+    // Old points keep their kinds, because the new boundary meets in them as the old one did.
     child.kinds = parent.kinds;
     child.kinds.resize(numbers.size(), PointKind::Interior);
     child.faces.resize(4 * parent.faces.size());
@@ -217,6 +224,7 @@ MixedBoundary split_boundary(const MixedBoundary& parent, const SplitNumbers& nu
         std::array<Index, 4> middle{};
         for (std::size_t k = 0; k < count; ++k) {
             middle[k] = numbers.edge(corners[k], corners[(k + 1) % count]);
+            // Middles of creases are set below, after those of all faces.
             child.kinds[middle[k]] = PointKind::Smooth;
         }
         if (count == 3) {

@@ -7,7 +7,7 @@
 // old ones do:
 //
 //         w₃──────w₂                  w₃──────w₂
-//          \     /  \                  \      /  \
+//          \     /  \                  \      /  \         p' = S p, where
 //           \   /    \       ──►        \  m₃──m₂ \        S has the rows of v, m₁, m₂, m₃, …
 //            \ /      \                  \ /   /   \       and the columns of v, w₁, w₂, w₃, …
 //             v───────w₁                  v──m₁────w₁
@@ -163,6 +163,7 @@ public:
         weights_[place(v)] = 1;
         constexpr int kMostSteps = 200;
         constexpr double kLimitTol = 1e-14;  // of a weight in a step; what is left is a geometric series of ratio about ½
+        // The start is l = (1, 0, 0, …), the point itself; every start with a sum of 1 leads to the same l.
         double change = 1;
         for (int step = 0; step < kMostSteps && change > kLimitTol; ++step) {
             next_.assign(star_.size(), 0.0);

@@ -40,6 +40,7 @@ std::vector<std::uint8_t> used_points(const MixedMesh& mesh) {
     return used;
 }
 
+/// A sixth of the triple product; negative if the tetrahedron is left-handed.
 double tet_volume(const MixedMesh& mesh, Index a, Index b, Index c, Index d) {
     const auto& x = mesh.points;
     return glm::dot(x[b] - x[a], glm::cross(x[c] - x[a], x[d] - x[a])) / 6;
@@ -78,6 +79,7 @@ void drop_unused(MixedMesh& mesh) {
 std::array<Index, 4> by_numbers(const std::array<Index, 4>& tet) {
     auto sorted = tet;
     std::sort(sorted.begin(), sorted.end());
+    // The order a c b d of the sorted corners; swapping the last two turns the cell over.
     std::array<Index, 4> result{sorted[0], sorted[2], sorted[1], sorted[3]};
     // The sign of the permutation from the given order.
     int inversions = 0;
@@ -97,11 +99,15 @@ void detail::cut_octahedron(const MixedMesh& mesh, const std::array<Index, 6>& q
     double shortest = std::numeric_limits<double>::infinity();
     for (std::size_t axis = 0; axis < 3; ++axis) {
         const double length = glm::length(mesh.points[q[2 * axis]] - mesh.points[q[2 * axis + 1]]);
+        // The tolerance makes equal diagonals equal in spite of roundings, so that the first of them is taken on every
+        // computer.
         if (length < shortest * (1 - 1e-12)) {
             shortest = length;
             best = axis;
         }
     }
+    // The pairs of opposite corners are rotated so that the best axis comes first; a cyclic rotation keeps the cell
+    // right-handed.
     const auto corner = [&](std::size_t k) { return q[(2 * best + k) % 6]; };
     // The ring around the axis from corner 1 to corner 0 is +y, +z, −y, −z, right-handed about +x.
     const std::array<std::size_t, 4> ring{2, 4, 3, 5};
@@ -217,6 +223,8 @@ MixedShape measure_cells(const MixedMesh& mesh) {
         }
         count(quality(kind, cell, least) * scale);
     };
+    // The corner tetrahedra of the other kinds: a corner with its three neighbours, right-handed if the cell is. For the
+    // pyramid only those of the base, because four edges meet at its apex.
     static constexpr std::array<std::array<int, 4>, 6> kPrism{
         {{0, 1, 2, 3}, {1, 2, 0, 4}, {2, 0, 1, 5}, {3, 5, 4, 0}, {4, 3, 5, 1}, {5, 4, 3, 2}}};
     static constexpr std::array<std::array<int, 4>, 4> kPyramid{{{0, 1, 3, 4}, {1, 2, 0, 4}, {2, 3, 1, 4}, {3, 0, 2, 4}}};
@@ -233,6 +241,8 @@ MixedShape measure_cells(const MixedMesh& mesh) {
     MixedCells others;
     others.prisms = mesh.prisms;
     others.pyramids = mesh.pyramids;
+    // Prisms and pyramids are measured as the tetrahedra into which they are cut everywhere else, so that the volumes of cells
+    // with a common quad add up.
     if (!others.empty()) {
         for (const auto& t : cut_to_tets({}, others).tets) shape.volume += tet_volume(mesh, t[0], t[1], t[2], t[3]);
     }

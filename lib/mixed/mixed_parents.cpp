@@ -34,6 +34,7 @@ HexesOfMixed hexahedra_of(const MixedMesh& mesh) {
     for (Index& parent : split.parents) {
         std::size_t cell = parent;
         if (cell < mesh.hexes.size()) {
+            // Hexahedra come first in the split and last in the count of the mixed mesh.
             cell += first_hex;
         } else if (cell -= mesh.hexes.size(); cell >= tets + 4 * octahedra) {
             cell = cell - tets - 4 * octahedra + first_prism;

@@ -25,6 +25,7 @@ using namespace detail;
 
 namespace {
 
+/// Levels are tables of weights, so a level needs its cells but neither positions nor fields.
 MixedMesh cells_alone(const MixedMesh& mesh) {
     return {{}, mesh.tets, mesh.octahedra, mesh.prisms, mesh.pyramids, mesh.hexes, {}, {}};
 }
@@ -76,6 +77,8 @@ MixedTables refinement_tables(const MixedMesh& mesh, const MixedRefineOptions& o
     result.control_points = mesh.points.size();
     for (int l = 0; l < options.levels; ++l) {
         report_progress(options.progress, "refine", static_cast<double>(l) / options.levels);
+        // Only the first level sees positions (for creases by angle). All others follow from the cells, so the tables can be
+        // applied to any positions and fields afterwards.
         const SplitNumbers numbers(level.cells, level.points);
         MixedStep step = refine_level(level, numbers, options.scheme);
         result.levels.push_back(std::move(step.table));
@@ -113,6 +116,7 @@ namespace {
 double correct(std::vector<double>& values, std::span<const double> given, const std::vector<double>& limit, double range) {
     double largest = 0;
     for (std::size_t i = 0; i < values.size(); ++i) {
+        // The step p ← p + (x − M p) for one number of the array.
         const double off = given[i] - limit[i];
         values[i] += off;
         largest = std::max(largest, std::abs(off));
@@ -138,9 +142,10 @@ MixedInterpolation interpolate_vertices(const MixedMesh& given, TetScheme scheme
         double range;
     };
     std::vector<Array> arrays;
-    const auto add = [&](std::span<const double> of, std::size_t channels) {
-        arrays.push_back({{of.begin(), of.end()}, of, channels, range_of(of)});
+    const auto add = [&](std::span<const double> numbers, std::size_t channels) {
+        arrays.push_back({{numbers.begin(), numbers.end()}, numbers, channels, range_of(numbers)});
     };
+    // Positions are an array like any field: M acts on every channel in the same way.
     add(numbers_of(given.points), 3);
     for (const Attribute& attribute : given.attributes) add(attribute.values, static_cast<std::size_t>(attribute.channels));
     while (result.steps < most_steps) {

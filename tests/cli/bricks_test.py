@@ -385,7 +385,7 @@ class WhatGoesWrong(InFolder):
     def test_splitting(self):
         (self.folder / "mine").mkdir()
         (self.folder / "mine" / "letter").write_text("dear")
-        self.assert_said("is no folder of bricks", "split", "model:twist:4", "-o", "mine", "--bricks", 2)
+        self.assert_said("is not a folder of bricks", "split", "model:twist:4", "-o", "mine", "--bricks", 2)
         self.assert_said("is not a resolution", "split", "model:twist:1", "-o", "a.bricks")
         self.assert_said("'12x' is not a resolution (2..4096)", "split", "model:twist:12x", "-o", "a.bricks")
         self.assert_said("bricks along a side", "split", "model:twist:4", "-o", "a.bricks", "--bricks", 101)
@@ -407,7 +407,7 @@ class WhatGoesWrong(InFolder):
         (self.folder / "own.bricks" / "pictures").mkdir()
         (self.folder / "own.bricks" / "notes.txt").write_text("mine")
         before = self.everything()
-        for folder, said in (("web", "is no folder of bricks"), ("n.bricks", "thesis.txt"), ("own.bricks", "none of its bricks")):
+        for folder, said in (("web", "is not a folder of bricks"), ("n.bricks", "thesis.txt"), ("own.bricks", "none of its bricks")):
             self.assert_said(said, "split", "model:twist:4", "-o", folder, "--bricks", 3)
             self.assert_said(said, "split", "model:ball:2", "-o", folder, "--bricks", 3)
         self.assertEqual(self.everything(), before)

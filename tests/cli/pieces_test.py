@@ -114,7 +114,7 @@ class FromPieces(InFolder):
         first.write_bytes(sound)
         said("Unexpected end of expression", "--density", "x+")
         (self.folder / "b.bricks").mkdir()
-        said("is no folder of bricks")
+        said("is not a folder of bricks")
         (self.folder / "b.bricks").rmdir()
         self.run_ok("split", "all.pvtu", "-o", "b.bricks", "--bricks", 3, "--quiet")
 

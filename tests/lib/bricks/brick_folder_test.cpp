@@ -65,14 +65,14 @@ TEST_F(BrickFolder, AnotherFolderWithAnIndexIsNotReplaced) {
     (void)write("t.bricks/src/main.js", "main()");
     for (const char* text : {R"({"name": "my site"})", "", "[]", R"({"format": "OpenSubVol bricks"})"}) {
         (void)write("t.bricks/index.json", text);
-        expect_refused("is no folder of bricks");
+        expect_refused("is not a folder of bricks");
     }
     fs::remove(path("t.bricks/index.json"));
-    expect_refused("is no folder of bricks");
+    expect_refused("is not a folder of bricks");
     fs::create_directory(path("empty"));
-    expect_refused("is no folder of bricks", "empty");
+    expect_refused("is not a folder of bricks", "empty");
     (void)write("file", "text");
-    expect_refused("is no folder of bricks", "file");
+    expect_refused("is not a folder of bricks", "file");
     EXPECT_NE(error_of([&] { (void)split_mesh("", mesh_, {.bricks = 2}); }).find("has no name"), std::string::npos);
     EXPECT_FALSE(fs::exists(".unfinished"));
 }
@@ -98,7 +98,7 @@ TEST_F(BrickFolder, WhatIsNoneOfItsBricksStaysAndIsNamed) {
     EXPECT_EQ(split("t.bricks", 3), "no error") << "a folder of bricks with a brick missing is replaced";
     fs::rename(path("t.bricks/index.json"), path("index.json"));
     fs::create_symlink("../index.json", path("t.bricks/index.json"));
-    expect_refused("is no folder of bricks");
+    expect_refused("is not a folder of bricks");
 }
 
 TEST_F(BrickFolder, AnIndexCannotNameOtherFiles) {
@@ -109,7 +109,7 @@ TEST_F(BrickFolder, AnIndexCannotNameOtherFiles) {
          {"../x", "x", "..", ".", "", "index.json", "/etc/passwd", "brick_00001.vtu", "brick_1.vtu", "brick_00000.vtu\\u0000",
           "brick_00000.vtu/../../x", "brick_-0001.vtu", "brick_000001.vtu"}) {
         put_name(name);
-        expect_refused("is no folder of bricks");
+        expect_refused("is not a folder of bricks");
         const std::string wrong =
             name == "brick_00001.vtu" ? "names the brick brick_00001.vtu twice" : "is not an index of bricks";
         EXPECT_NE(error_of([&] { (void)open_bricks(path("t.bricks")); }).find(wrong), std::string::npos) << name;
@@ -123,24 +123,24 @@ TEST_F(BrickFolder, AnIndexCannotNameOtherFiles) {
 TEST_F(BrickFolder, AnUnfinishedFolderOfSomebodyElseStays) {
     fs::create_directory(path("t.bricks.unfinished"));
     (void)write("t.bricks.unfinished/thesis.txt", "two years");
-    expect_refused("is no unfinished folder of bricks");
+    expect_refused("is not an unfinished folder of bricks");
     for (const char* text : {R"({"steps": 3})", "", "{"}) {
         (void)write("t.bricks.unfinished/progress.json", text);
         expect_refused("it holds \"thesis.txt\"");
     }
     fs::remove(path("t.bricks.unfinished/thesis.txt"));
-    expect_refused("is no unfinished folder of bricks");  // its progress is none of ours
+    expect_refused("is not an unfinished folder of bricks");  // its progress is none of ours
     fs::remove(path("t.bricks.unfinished/progress.json"));
     (void)write("t.bricks.unfinished/brick_00000.vtu", "mine");
-    expect_refused("is no unfinished folder of bricks");
+    expect_refused("is not an unfinished folder of bricks");
     fs::remove(path("t.bricks.unfinished/brick_00000.vtu"));
     fs::remove(path("t.bricks.unfinished"));
     (void)write("t.bricks.unfinished", "");
-    expect_refused("is no unfinished folder of bricks");
+    expect_refused("is not an unfinished folder of bricks");
     fs::remove(path("t.bricks.unfinished"));
     fs::create_directory(path("there"));
     fs::create_symlink("there", path("t.bricks.unfinished"));
-    expect_refused("is no unfinished folder of bricks");
+    expect_refused("is not an unfinished folder of bricks");
 }
 
 TEST_F(BrickFolder, WhatSomebodyPutIntoAnUnfinishedFolderStays) {

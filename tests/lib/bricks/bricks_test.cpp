@@ -307,7 +307,7 @@ TEST_F(BricksTest, NothingElseIsOverwritten) {
     std::filesystem::create_directories(path("mine"));
     (void)write("mine/letter.txt", "dear");
     const HexMesh mesh = make_model("twist", 4);
-    EXPECT_NE(error_of([&] { (void)split_mesh(path("mine"), mesh, {.bricks = 2}); }).find("is no folder of bricks"),
+    EXPECT_NE(error_of([&] { (void)split_mesh(path("mine"), mesh, {.bricks = 2}); }).find("is not a folder of bricks"),
               std::string::npos);
     EXPECT_EQ(read_bytes(path("mine/letter.txt")), "dear");
     std::filesystem::create_directories(path("t.bricks.old0"));

@@ -83,7 +83,7 @@ struct PiecesOptions {
 };
 
 /// result:     nothing if the mesh must be held whole: then nothing has been written
-/// held_whole: why, such as "it has curved cells"; empty if the file is no list of pieces
+/// held_whole: why, such as "it has curved cells"; empty if the file is not a list of pieces
 /// warnings:   those of `read_mesh`
 struct PiecesSplit {
     std::optional<SplitResult> result;
@@ -95,7 +95,7 @@ struct PiecesSplit {
 /// of `split_mesh` of the mesh that `read_mesh` makes of the pieces. The pieces are read one at a time, two or three times
 /// each; their points and cells wait in files without names beside `folder`, some 100 bytes a cell.
 ///
-/// returns: nothing as result if the file is no such list, or the pieces are not hexahedra with plain corners, or
+/// returns: nothing as result if the file is not such a list, or the pieces are not hexahedra with plain corners, or
 ///          pieces.read asks for welded points or fitted values
 /// throws:  as `read_mesh` and `split_mesh`; Error(InvalidInput) if a piece changes meanwhile
 /// cost:    memory: a piece, or 16 bytes a cell, or 12 bytes a cell and a brick
