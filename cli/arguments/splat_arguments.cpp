@@ -11,7 +11,7 @@ namespace subvol::cli {
 void SplatArguments::add_to(CLI::App& app) {
     app.add_option("--backend", backend, "where to splat: auto (default: a GPU, else the CPU), gl, cpu")
         ->type_name("NAME")
-        ->check(offered({"auto", "gl", "cpu"}));
+        ->check(offered(names_of<SplatMethod>()));
     app.add_option("--device", device, "the OpenGL device's number in `info --gl` (default: the first GPU)")
         ->type_name("N")
         ->transform(whole_number(0, 1000));
@@ -45,10 +45,7 @@ void SplatArguments::add_to(CLI::App& app) {
 }
 
 SplatOptions SplatArguments::options() const {
-    check_choice("--backend", backend, {"auto", "gl", "cpu"});
-    SplatOptions options{.method = backend == "gl"    ? SplatMethod::Gl
-                                   : backend == "cpu" ? SplatMethod::Cpu
-                                                      : SplatMethod::Auto,
+    SplatOptions options{.method = named<SplatMethod>(backend, "--backend"),
                          .device = device,
                          .sheets = sheets,
                          .normalized = !plain_sums,

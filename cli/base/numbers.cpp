@@ -47,10 +47,6 @@ CLI::Validator whole_number(std::int64_t least, std::int64_t most) {
         text("INT in [", least, " - ", most, "]"));
 }
 
-CLI::Validator seed_number() {
-    return as_described<std::uint64_t>([](Option&) {}, "");
-}
-
 CLI::Validator number_in(double least, double most) {
     return as_described<double>([&](Option& option) { option.between(least, most); },
                                 "FLOAT in [" + detail::number_text(least) + " - " + detail::number_text(most) + "]");

@@ -16,8 +16,6 @@ namespace subvol::cli {
 // "0x10" and "010", and an empty text as 0.
 
 [[nodiscard]] CLI::Validator whole_number(std::int64_t least, std::int64_t most);
-/// A number of 64 bits, from 0.
-[[nodiscard]] CLI::Validator seed_number();
 [[nodiscard]] CLI::Validator number_in(double least, double most);
 /// More than 0. Numbers so small or so large that their squares or cubes are 0 or infinite are refused.
 [[nodiscard]] CLI::Validator positive_number();

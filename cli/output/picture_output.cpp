@@ -7,7 +7,7 @@
 #include "mesh_frames.h"
 #include "outputs.h"
 #include "part_kinds.h"
-#include "ranked_splats.h"
+#include "picture_shares.h"
 #include "subvol/detail/part_of_progress.h"
 #include "subvol/detail/stopwatch.h"
 #include "subvol/error.h"

@@ -1,10 +1,39 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "ranked_splats.h"
+#include <cstddef>
+#include <optional>
+#include <span>
+
+#include "ranks.h"
+#include "share.h"
 #include "subvol/picture_maker.h"
+#include "subvol/render_bricks.h"
+#include "subvol/splat.h"
+#include "subvol/splat_shares.h"
 
 namespace subvol::cli {
+
+/// The rows of a picture that this process draws.
+///
+/// share: none: all of them
+/// ranks: the processes that draw the other rows; null: this one is alone
+struct OwnRows {
+    std::optional<Share> share{};
+    Ranks* ranks = nullptr;
+
+    [[nodiscard]] PixelRows of(int height) const { return share ? rows_of(*share, height) : PixelRows{}; }
+    /// Whether rank 0 puts the rows of all ranks together.
+    [[nodiscard]] bool gathered() const { return share && ranks != nullptr; }
+    /// Whether this process gets a finished picture.
+    [[nodiscard]] bool finished() const { return !gathered() || ranks->first(); }
+};
+
+/// What ranks have sent to each other for a picture.
+struct ShippedKernels {
+    std::size_t kernels = 0;  // that another rank got; one that two ranks got counts twice
+    std::size_t bytes = 0;
+};
 
 /// A picture of which this process draws a share of the rows: for --part, or with all ranks, which join them at rank 0.
 class PictureShares : public PictureTeam {
@@ -14,8 +43,8 @@ public:
 
     [[nodiscard]] PixelRows rows(int height) const override { return rows_.of(height); }
     [[nodiscard]] bool finishes() const override { return rows_.finished(); }
-    [[nodiscard]] SplatResult splat(const RbfVolume& volume, const SplatOptions& options, const BoundaryValues& skin, const View& view, const Optics& optics, Progress* progress,
-                                    Facts& facts) override;
+    [[nodiscard]] SplatResult splat(const RbfVolume& volume, const SplatOptions& options, const BoundaryValues& skin,
+                                    const View& view, const Optics& optics, Progress* progress, Facts& facts) override;
     [[nodiscard]] SplatResult splat(const Bricks& bricks, const BrickFields& fields, Surface boundary,
                                     const BrickSplatOptions& options, const View& view, const Optics& optics,
                                     Facts& facts) override;

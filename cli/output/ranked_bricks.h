@@ -3,7 +3,7 @@
 
 #include <filesystem>
 
-#include "ranked_splats.h"
+#include "picture_shares.h"
 #include "ranks.h"
 #include "subvol/brick_points.h"
 #include "subvol/render_brick_tets.h"

@@ -29,7 +29,7 @@ std::optional<double> seen_density(const GridReport& grid) {
     return kDepth / (most * across);
 }
 
-Facts about(const GridReport& grid, const VdbOutput& output) {
+Facts contents_of(const GridReport& grid) {
     Facts facts;
     facts["name"] = grid.name;
     facts["kind"] = grid.kind;
@@ -37,6 +37,11 @@ Facts about(const GridReport& grid, const VdbOutput& output) {
     facts["min"] = grid.min;
     facts["max"] = grid.max;
     facts["bytes"] = grid.bytes;
+    return facts;
+}
+
+Facts about(const GridReport& grid, const VdbOutput& output) {
+    Facts facts = contents_of(grid);
     if (grid.name == output.level_set) {
         facts["level_set"] = true;  // distances: a renderer that took them for a density would show a shell around the body
     } else if (const auto density = seen_density(grid)) {
@@ -131,37 +136,23 @@ public:
     void add(std::span<const VdbGrid> grids) {
         for (std::size_t g = 0; g < grids.size(); ++g) {
             const GridReport& grid = grids[g].report();
-            if (sums_.size() <= g) sums_.push_back({grid.name, grid.kind, 0, 0, grid.min, grid.max});
-            Sum& sum = sums_[g];
+            if (sums_.size() <= g) sums_.push_back({.name = grid.name, .kind = grid.kind, .min = grid.min, .max = grid.max});
+            GridReport& sum = sums_[g];
             sum.active_voxels += grid.active_voxels;
             sum.bytes += grid.bytes;
-            sum.min = std::min(sum.min, static_cast<double>(grid.min));
-            sum.max = std::max(sum.max, static_cast<double>(grid.max));
+            sum.min = std::min(sum.min, grid.min);
+            sum.max = std::max(sum.max, grid.max);
         }
     }
 
     [[nodiscard]] FactValue::List list() const {
         FactValue::List list;
-        for (const Sum& sum : sums_) {
-            Facts grid;
-            grid["name"] = sum.name;
-            grid["kind"] = sum.kind;
-            grid["active_voxels"] = sum.active_voxels;
-            grid["min"] = sum.min;
-            grid["max"] = sum.max;
-            grid["bytes"] = sum.bytes;
-            list.emplace_back(std::move(grid));
-        }
+        for (const GridReport& sum : sums_) list.emplace_back(contents_of(sum));
         return list;
     }
 
 private:
-    struct Sum {
-        std::string name, kind;
-        std::uint64_t active_voxels, bytes;
-        double min, max;
-    };
-    std::vector<Sum> sums_;
+    std::vector<GridReport> sums_;
 };
 
 }  // namespace

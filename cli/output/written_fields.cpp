@@ -3,7 +3,6 @@
 
 #include <algorithm>
 
-#include "frame_velocity.h"
 #include "input.h"
 #include "subvol/field_expression.h"
 #include "subvol/field_range.h"

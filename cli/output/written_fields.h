@@ -12,6 +12,9 @@
 
 namespace subvol::cli {
 
+/// The name of the grid of velocities, as renderers know it.
+inline constexpr const char* kVelocity = "vel";
+
 /// The fields of a mesh that become grids, as --fields, --remap and --clamp of `subvol vdb` say.
 class WrittenFields {
 public:

@@ -59,9 +59,6 @@ public:
     /// The lists of all ranks one behind the other, at rank 0; elsewhere an empty one.
     [[nodiscard]] Json gather_list(const Json& mine);
 
-    /// Payload sent to other ranks so far.
-    [[nodiscard]] std::int64_t bytes_sent() const { return bytes_sent_; }
-
     /// "ranks", "bytes_sent" and each rank's peak, at rank 0; elsewhere nothing.
     [[nodiscard]] Facts facts();
 

@@ -25,11 +25,11 @@
 #include "subvol/kernel_hierarchy.h"
 #include "subvol/points_error.h"
 #include "subvol/points_io.h"
+#include "subvol/wavelet_file.h"
 #include "tet_refinement.h"
 #include "text.h"
 #include "vdb_functions.h"
 #include "verb.h"
-#include "wavelet_output.h"
 
 namespace subvol::cli {
 namespace {
@@ -56,6 +56,38 @@ constexpr std::initializer_list<const char*> kOfKernels{"--ascii",
                                                         "--clamp",
                                                         "--error",
                                                         "--part"};
+
+/// Writes a mesh with one field as wavelets. returns: what was kept
+Facts write_wavelets_reported(const std::string& path, const HexMesh& mesh, const WaveletFileOptions& options) {
+    Facts facts;
+    const WaveletFileReport written =
+        facts.timed(options.progress, "wavelets", [&] { return write_wavelet_file(path, mesh, options); });
+    std::size_t coefficients = 0, kept = 0;
+    for (const WaveletArrayReport& array : written.arrays) {
+        coefficients += array.coefficients;
+        kept += array.kept;
+    }
+    const WaveletArrayReport &points = written.arrays.front(), &field = written.arrays.back();
+    facts["points"] = mesh.points.size();
+    facts["cells"] = written.cells;
+    facts["levels"] = written.levels;
+    facts["coarse_cells"] = written.coarse_cells;
+    if (written.added_cells > 0) facts["added_cells"] = written.added_cells;
+    facts["coefficients"] = coefficients;
+    facts["coefficients_kept"] = kept;
+    facts["bytes"] = written.bytes;
+    facts["rms"] = field.rms;
+    facts["max"] = field.max;
+    facts["point_rms"] = points.rms;
+    facts["point_max"] = points.max;
+    facts["inverted_cells"] = written.inverted_cells;
+    facts["output"] = path;
+    if (written.inverted_cells > written.inverted_cells_before) {
+        facts.warn(text(count_text(written.inverted_cells - written.inverted_cells_before),
+                        " cells are inverted after rounding; a smaller --wavelet-point-tolerance keeps their shapes"));
+    }
+    return facts;
+}
 
 class PointsVerb : public Verb {
 public:

@@ -112,7 +112,6 @@ void set_options(const std::vector<Option>& options, const py::kwargs& given);
                                      std::vector<Index>* cells = nullptr);
 [[nodiscard]] RefineOptions refine_options(const std::string& scheme, int levels, double tension,
                                            const std::optional<double>& crease_angle);
-[[nodiscard]] Error unknown_word(const std::string& word, const std::string& where, const std::string& allowed);
 
 void bind_mesh(py::module_& module);
 void bind_refine(py::module_& module);

@@ -58,10 +58,6 @@ void set_threads(int threads) {
 
 }  // namespace
 
-Error unknown_word(const std::string& word, const std::string& where, const std::string& allowed) {
-    return {ErrorCode::InvalidInput, "'" + word + "' is not known", where, allowed};
-}
-
 Scheme scheme_named(const std::string& name) {
     if (tet_scheme_named(name)) {
         throw Error(ErrorCode::InvalidInput, "'" + name + "' refines tetrahedra, and this call has hexahedra only", "scheme",

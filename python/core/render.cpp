@@ -61,13 +61,6 @@ private:
     py::dict given_;
 };
 
-SplatMethod backend_named(const std::string& name) {
-    if (name == "auto") return SplatMethod::Auto;
-    if (name == "cpu") return SplatMethod::Cpu;
-    if (name == "gl") return SplatMethod::Gl;
-    throw unknown_word(name, "backend", "auto, cpu or gl");
-}
-
 /// The look of a picture, its colours, and whether the opacities are those that the look has by itself.
 struct PictureLight {
     Look look;
@@ -86,7 +79,7 @@ MethodOptions method_options(Method method, const PictureLight& light, const Key
                   .clip = clip_of(given.get<std::vector<SixNumbers>>("clip", {}), given.find<SixNumbers>("clip_box"),
                                   given.get<std::vector<SixNumbers>>("slice", {}), given.get("around", false))},
         .kernels = {.sample = {.scheme = scheme, .per_edge = given.get("per_edge", 1)}, .levels = given.find<int>("levels")},
-        .splat = {.method = backend_named(given.get<std::string>("backend", "auto")),
+        .splat = {.method = named<SplatMethod>(given.get<std::string>("backend", "auto"), "backend"),
                   .device = given.find<int>("device"),
                   .sheets = given.get("sheets", 0),
                   .shadows = given.get("shadows", false),

@@ -3,6 +3,7 @@
 
 /// All of subvol::compare: metrics of pictures and fields, picture files, studies, reports.
 
+#include "subvol/field.h"
 #include "subvol/field_metrics.h"
 #include "subvol/field_places.h"
 #include "subvol/flip.h"

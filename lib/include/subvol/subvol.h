@@ -20,7 +20,6 @@
 #include "subvol/error.h"
 #include "subvol/expression.h"
 #include "subvol/facts.h"
-#include "subvol/field.h"
 #include "subvol/field_expression.h"
 #include "subvol/field_range.h"
 #include "subvol/field_samples.h"

@@ -23,13 +23,11 @@ namespace subvol {
 ///         the boundary. By the CPU, for radial kernels, without cuts and shadows
 enum class SplatMethod { Auto, Cpu, Gl, Sheets, Footprints };
 
+/// The names of the backends; users choose the other two as methods of pictures.
 template <>
 struct NameTable<SplatMethod> {
-    static constexpr Name<SplatMethod> rows[] = {{SplatMethod::Auto, "auto"},
-                                                 {SplatMethod::Gl, "gl"},
-                                                 {SplatMethod::Cpu, "cpu"},
-                                                 {SplatMethod::Sheets, "sheets"},
-                                                 {SplatMethod::Footprints, "footprints"}};
+    static constexpr Name<SplatMethod> rows[] = {
+        {SplatMethod::Auto, "auto"}, {SplatMethod::Gl, "gl"}, {SplatMethod::Cpu, "cpu"}};
 };
 
 /// Light on surfaces: the model of Blinn and Phong, with a light at the eye and a key light. Inside the volume surfaces are
