@@ -84,7 +84,9 @@ SplatResult PictureShares::splat(const RbfVolume& volume, const SplatOptions& sp
     const auto drawn_of = [&](const RbfVolume& band) {
         Splatter splatter(band, options);
         if (!skin.values.empty()) splatter.set_boundary_colors(skin.surface, skin.values.back());
-        return splatter.draw(view, optics, progress);
+        SplatResult drawn = splatter.draw(view, optics, progress);
+        drawn.report.points = volume.size();  // of the whole picture, not of these rows
+        return drawn;
     };
     if (rows_.ranks == nullptr) return drawn_of(kernels_of_rows(volume, *rows_.share, view, optics, options));
     const auto [begin, end] = rows_.share->range(volume.size());
@@ -93,9 +95,7 @@ SplatResult PictureShares::splat(const RbfVolume& volume, const SplatOptions& sp
     ShippedKernels shipped;
     const RbfVolume band = ship_kernels(own, view, optics, options, *rows_.ranks, shipped);
     add_shipped(shipped, *rows_.ranks, facts);
-    SplatResult drawn = drawn_of(band);
-    drawn.report.points = volume.size();
-    return drawn;
+    return drawn_of(band);
 }
 
 SplatResult PictureShares::splat(const Bricks& bricks, const BrickFields& fields, Surface boundary,

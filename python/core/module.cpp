@@ -71,7 +71,9 @@ std::optional<TetScheme> tet_scheme_named(const std::string& name) {
 }
 
 RefineOptions refine_options(const std::string& scheme, int levels, double tension, const std::optional<double>& crease_angle) {
-    return {.scheme = {.kind = scheme_named(scheme), .tension = tension, .crease_angle_deg = crease_angle}, .levels = levels};
+    const SchemeOptions rules{.kind = scheme_named(scheme), .tension = tension, .crease_angle_deg = crease_angle};
+    check_options(rules);
+    return {.scheme = rules, .levels = levels};
 }
 
 }  // namespace subvol::python

@@ -28,7 +28,7 @@ public:
     /// The kernels for a view. Valid until the next call.
     [[nodiscard]] const RbfVolume& kernels(const View& view, Progress* progress, Facts& facts);
 
-    /// Changes with the kernels that `kernels` returns; 0: all of them.
+    /// Changes with the kernels that `kernels` returns; 0 before the first that were merged or read.
     [[nodiscard]] std::size_t version() const { return version_; }
 
     /// All kernels; null if they are in a file.

@@ -116,11 +116,18 @@ void check_lod(const MethodOptions& options) {
     }
 }
 
+void check_time(const MethodOptions& options) {
+    if (!options.seconds || !options.kernels.levels || !draws_kernels(options.style.method)) return;
+    throw Error(ErrorCode::InvalidInput, "has no effect with " + shown("seconds", options.names),
+                shown("levels", options.names), "leave one of them out");
+}
+
 }  // namespace
 
 void validate(const MethodOptions& options) {
     check_light(options.style, options.names);
     check_lod(options);
+    check_time(options);
 }
 
 BodyKind PictureBody::kind() const {

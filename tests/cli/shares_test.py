@@ -50,6 +50,9 @@ class Parts(Shared):
                 for extension in (".exr", ".png"):
                     self.run_ok("join", *names, "-o", "joined" + extension)
                     self.assertEqual(self.bytes_of("joined" + extension), self.bytes_of("one" + extension), (options, count))
+        said = [self.run_ok("render", "model:ball:4", "-o", "a.exr", "--size", "48", "--json", *share).json()["points"]
+                for share in ([], ["--part", "1/2"])]
+        self.assertEqual(*said)  # of the whole picture
 
     def test_figures_of_shares_are_those_of_one_process(self):
         for source in ("model:ball:4", "model:twist:20"):

@@ -75,6 +75,7 @@ def test_each_keyword_changes_the_output_or_is_refused(bodies, keyword, method):
     ({"backend": "cpu", "device": 0}, "device: has no effect with backend='cpu'"),
     ({"look": "solid", "shade": True}, "shade: has no effect with look='solid'"),
     ({"around": True}, "around: has no effect without slice"),
+    ({"seconds": 1, "levels": 1}, "levels: has no effect with seconds"),
 ])
 def test_keywords_that_others_make_useless_are_refused(options, said):
     with pytest.raises(subvol.InvalidInput, match=said):
@@ -89,3 +90,6 @@ def test_names_that_are_unknown_are_refused():
         subvol.render(ball, size=(8, 8), method="pt", order="bogus")
     with pytest.raises(subvol.InvalidInput, match="points"):
         subvol.render(subvol.sample(ball), size=(8, 8), per_edge=2)
+    for call in (lambda: subvol.render(ball, size=(8, 8), tension=.2), lambda: subvol.subdivide(ball, 1, tension=.2)):
+        with pytest.raises(subvol.InvalidInput, match="tension: 0.2 is out of range"):
+            call()
