@@ -4,9 +4,9 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 
+#include "numbers.h"
 #include "options.h"
 #include "picture_arguments.h"
-#include "numbers.h"
 #include "subvol/visible_points.h"
 
 namespace subvol::cli {

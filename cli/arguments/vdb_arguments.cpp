@@ -59,10 +59,8 @@ void VdbArguments::add_grids_to(CLI::App& app) {
                         .help("WHAT",
                               "what is rasterized: mesh, or points: kernels sampled from it, summed at the voxels of the mesh; "
                               "not needed for a FILE of points (.ply, .vtp, .svk, .vdb)"));
-    add_option(app, Option("per-edge", per_edge)
-                        .between(1, 64)
-                        .help("N", "sample intervals per edge")
-                        .only_with("from", {"points"}));
+    add_option(
+        app, Option("per-edge", per_edge).between(1, 64).help("N", "sample intervals per edge").only_with("from", {"points"}));
 }
 
 void VdbArguments::add_files_to(CLI::App& app) {

@@ -65,7 +65,8 @@ WithFacts<VdbGrid> load_grid(const std::string& input, const CommonOptions& opti
     if (!is_vdb_file(input)) {
         throw Error(ErrorCode::InvalidInput, "is not a grid", input, "a .vdb file, as `subvol vdb` makes of a mesh");
     }
-    VdbGrid found = select_grid(facts.timed(progress, "read", [&] { return vdb().read_vdb_contents(input); }), options.field, input);
+    VdbGrid found =
+        select_grid(facts.timed(progress, "read", [&] { return vdb().read_vdb_contents(input); }), options.field, input);
     const GridReport& grid = found.report();
     if (grid.active_voxels == 0) throw Error(ErrorCode::InvalidInput, "the grid has no active voxels", input);
     facts["field"] = grid.name;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "subvol/detail/module.h"
 #include "subvol/detail/atomic_file.h"
+#include "subvol/detail/module.h"
 #include "vdb_functions.h"
 
 namespace subvol::cli {

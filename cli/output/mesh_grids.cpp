@@ -129,7 +129,7 @@ WithFacts<std::vector<GridErrorFigures>> MeshGrids::add_errors(const HexMesh& me
         if (field == nullptr || field->channels != 1) continue;
         GridError error = result.facts.timed(options.progress, "error", [&] {
             return vdb().grid_error(grids[g], mesh, field->name,
-                              {.scheme = options.refine.scheme, .half = asked_.grids.half, .progress = options.progress});
+                                    {.scheme = options.refine.scheme, .half = asked_.grids.half, .progress = options.progress});
         });
         result.value.push_back({g, error.max, error.rms});
         outside = std::max(outside, error.outside);

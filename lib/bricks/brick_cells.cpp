@@ -102,11 +102,11 @@ std::vector<Index> BrickCells::stored(std::size_t brick) const {
     // Owned cells and those of the halo are both sorted, so merging them gives the order of the whole mesh.
     const auto begin = std::ranges::lower_bound(halo, b, {}, &std::pair<std::uint32_t, Index>::first);
     const auto end = std::ranges::upper_bound(begin, halo.end(), b, {}, &std::pair<std::uint32_t, Index>::first);
-    const std::span<const Index> owned = owned_by(brick);
-    std::vector<Index> cells(owned.begin(), owned.end());
+    const std::span<const Index> of_brick = owned_by(brick);
+    std::vector<Index> cells(of_brick.begin(), of_brick.end());
     cells.reserve(cells.size() + static_cast<std::size_t>(end - begin));
     std::transform(begin, end, std::back_inserter(cells), [](const auto& pair) { return pair.second; });
-    std::ranges::inplace_merge(cells, cells.begin() + static_cast<std::ptrdiff_t>(owned.size()));
+    std::ranges::inplace_merge(cells, cells.begin() + static_cast<std::ptrdiff_t>(of_brick.size()));
     return cells;
 }
 

@@ -320,7 +320,8 @@ SheetStack make_sheets(const SplatScene& scene, const View& view, int count) {
     const auto [z_min, z_max, near] = depth_range_of(scene, view);
     if (count == 0) {
         const std::vector<float> reaches = depth_reaches(scene, view);
-        count = sheets_needed(reaches.size(), z_max - z_min, [&](std::size_t place) { return number_in_place(place, reaches); });
+        count =
+            sheets_needed(reaches.size(), z_max - z_min, [&](std::size_t place) { return number_in_place(place, reaches); });
     }
     return {.count = count,
             .first = static_cast<float>(z_min - middle),

@@ -35,7 +35,6 @@ std::string opacity_text(const std::vector<TransferFunction::OpacityKnot>& knots
     return text;
 }
 
-
 /// The words without the options that the method does not read; their values follow them.
 std::vector<std::string> words_of_method(const std::vector<std::string>& words, Method method, BodyKind body) {
     std::vector<std::string> kept;

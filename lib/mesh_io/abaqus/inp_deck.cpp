@@ -90,8 +90,8 @@ public:
             }
             finish_element();
             if (const auto included = take_keyword(line)) {
-                const NamedFiles::Place place = [&in, at = position_] { return in.place_of(at); };
-                read(named_file(path.parent_path(), *included, place), place);
+                const NamedFiles::Place keyword = [&in, at = position_] { return in.place_of(at); };
+                read(named_file(path.parent_path(), *included, keyword), keyword);
             }
         }
         finish_element();

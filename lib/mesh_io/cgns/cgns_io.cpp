@@ -352,12 +352,13 @@ private:
                     if (at == numbers.size()) tree_.file().fail("node " + in_quotes(section) + " ends before its elements do");
                     kind = numbers[at++];
                 }
-                const CgnsType& type = known(kind, section);
-                if (type.nodes > numbers.size() - at)
+                const CgnsType& element = known(kind, section);
+                if (element.nodes > numbers.size() - at)
                     tree_.file().fail("node " + in_quotes(section) + " ends before its elements do");
-                take(type, std::span(numbers).subspan(at, type.nodes), first + static_cast<std::int64_t>(e), cells, found);
-                at += type.nodes;
-                if (is_volume(type)) ++cells;
+                take(element, std::span(numbers).subspan(at, element.nodes), first + static_cast<std::int64_t>(e), cells,
+                     found);
+                at += element.nodes;
+                if (is_volume(element)) ++cells;
             }
         }
         cells_of_sections_ = cells;

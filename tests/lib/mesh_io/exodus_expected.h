@@ -15,8 +15,8 @@ inline void expect_two_blocks(const ReadResult& result, const HexMesh& box) {
     EXPECT_EQ(result.mesh.points, box.points);
     EXPECT_EQ(result.mesh.cells, box.cells);
     EXPECT_THAT(result.warnings,
-                testing::ElementsAre("the file has 2 steps; the last one is read", "array \"only one\" is not in every block: ignored",
-                                     HasSubstr("cell array \"c\"")));
+                testing::ElementsAre("the file has 2 steps; the last one is read",
+                                     "array \"only one\" is not in every block: ignored", HasSubstr("cell array \"c\"")));
     ASSERT_EQ(result.fields.size(), 5u);
     EXPECT_EQ(result.mesh.find_attribute("T")->values, count_from(3 + static_cast<double>(points), points));
     EXPECT_EQ(result.mesh.find_attribute("D_y")->values,

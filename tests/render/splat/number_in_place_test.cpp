@@ -31,7 +31,9 @@ TEST(NumberInPlace, IsThatOfTheSortedNumbers) {
     EXPECT_EQ(counts.size(), numbers.size());
     for (std::size_t place = 0; place < sorted.size(); ++place) {
         EXPECT_EQ(detail::number_in_place(place, numbers), sorted[place]);
-        if (place % 100 == 0) EXPECT_EQ(counts.in_place(place), sorted[place]);
+        if (place % 100 == 0) {
+            EXPECT_EQ(counts.in_place(place), sorted[place]);
+        }
     }
 }
 

@@ -66,7 +66,8 @@ struct MethodOptions {
     OptionNames names = OptionNames::Flags;
 };
 
-/// throws: Error(InvalidInput) if values contradict each other: light of a look that a method cannot draw, levels of detail that
+/// throws: Error(InvalidInput) if values contradict each other: light of a look that a method cannot draw, levels of detail
+/// that
 ///         it does not have
 void validate(const MethodOptions& options);
 
@@ -113,8 +114,8 @@ public:
     /// Draws the rows of a volume that every process has.
     ///
     /// skin: gives the boundary its colours; without values: the kernels do
-    [[nodiscard]] virtual SplatResult splat(const RbfVolume& volume, const SplatOptions& options, const BoundaryValues& skin, const View& view, const Optics& optics, Progress* progress,
-                                            Facts& facts) = 0;
+    [[nodiscard]] virtual SplatResult splat(const RbfVolume& volume, const SplatOptions& options, const BoundaryValues& skin,
+                                            const View& view, const Optics& optics, Progress* progress, Facts& facts) = 0;
     [[nodiscard]] virtual SplatResult splat(const Bricks& bricks, const BrickFields& fields, Surface boundary,
                                             const BrickSplatOptions& options, const View& view, const Optics& optics,
                                             Facts& facts) = 0;
