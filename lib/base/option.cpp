@@ -255,7 +255,7 @@ void Option::read(const std::string& text, const std::string& where) const {
     if (!digits || range.most != kMostWhole) check_number(*number, quoted(text), where);
     // Digits of more than 53 bits are kept, which a double would round.
     if (auto* const* exact = std::get_if<std::uint64_t*>(&value); exact != nullptr && digits) {
-        **exact = *digits;
+        **exact = digits.value_or(0);
     } else {
         assign(*number);
     }
