@@ -249,16 +249,24 @@ void Option::read(const std::string& text, const std::string& where) const {
         **words_value = text;
         return;
     }
-    const auto digits = in_bytes ? std::optional(bytes_from(text, where)) : is_whole() ? digits_from(text) : std::nullopt;
-    const auto number = digits ? std::optional(static_cast<double>(*digits)) : detail::plain_number(text);
-    if (!number) refuse(quoted(text), "is not a number", where, allowed(NAN));
-    if (!digits || range.most != kMostWhole) check_number(*number, quoted(text), where);
-    // Digits of more than 53 bits are kept, which a double would round.
-    if (auto* const* exact = std::get_if<std::uint64_t*>(&value); exact != nullptr && digits) {
-        **exact = digits.value_or(0);
-    } else {
-        assign(*number);
+    const bool counts_things = in_bytes || is_whole();
+    const auto digits = in_bytes ? std::optional(bytes_from(text, where)) : digits_from(text);
+    if (counts_things && digits) {
+        const std::uint64_t whole = *digits;
+        const auto number = static_cast<double>(whole);
+        if (range.most != kMostWhole) check_number(number, quoted(text), where);
+        // Digits of more than 53 bits are kept, which a double would round.
+        if (auto* const* exact = std::get_if<std::uint64_t*>(&value)) {
+            **exact = whole;
+        } else {
+            assign(number);
+        }
+        return;
     }
+    const auto number = detail::plain_number(text);
+    if (!number) refuse(quoted(text), "is not a number", where, allowed(NAN));
+    check_number(*number, quoted(text), where);
+    assign(*number);
 }
 
 void Option::check() const {

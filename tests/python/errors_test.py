@@ -119,5 +119,5 @@ def test_values_at_cells_are_fitted_or_averaged(tmp_path):
     with pytest.warns(subvol.SubvolWarning):
         mean, fitted = (subvol.read_mesh(name, cell_values=kind).fields["heat"] for kind in ("mean", "fit"))
     assert np.ptp(mean) == 2 and np.ptp(fitted) > 2.5  # a line through the means goes on to the ends
-    with pytest.raises(subvol.InvalidInput, match="fit or mean"):
+    with pytest.raises(subvol.InvalidInput, match="auto, fit, mean"):
         subvol.read_mesh(name, cell_values="best")
