@@ -43,7 +43,8 @@ GIVEN = {
     "slice": (PLANE, []), "around": (None, ["--slice", PLANE]), "memory": ("100M", []),
 }
 OF_SOLIDS = {"correction"}  # by the light on kernels; all others are seen in a transparent volume, too
-NEED_ANOTHER = {"refine": "reduce", "around": "slice"}  # which is then refused first
+NEED_ANOTHER = {"refine": "reduce", "around": "slice", "footprint-size": "footprint",
+                "value-kernel": "per-edge"}  # of which one is then refused first
 SAME_OUTPUT = {"device", "memory"}  # they choose where the work is done
 
 
@@ -76,7 +77,7 @@ class Methods(InFolder):
             return "ball.vdb"
         if option == "memory" and method in ("splat", "sheets", "footprints", "tets"):
             return "ball.bricks"
-        return "two.vtk" if option == "color-field" else "ball.vdb" if method == "grid" else "model:ball:3"
+        return "ball.vdb" if method == "grid" else "two.vtk" if option == "color-field" else "model:ball:3"
 
     def words(self, option, method):
         value, more = GIVEN[option]
