@@ -50,7 +50,10 @@ void RefineArguments::add_scheme_to(CLI::App& app) {
 
 void RefineArguments::add_to(CLI::App& app, const std::string& levels_help) {
     add_scheme_to(app);
-    add_option(app, Option("levels", levels).between(0, 10).help("L", levels_help));
+    RefineOptions any;
+    Option described = options_of(any).back();
+    described.value = &levels;  // which may be left out
+    add_option(app, described.help("L", levels_help));
 }
 
 RefineOptions RefineArguments::options(int default_levels, Progress* progress) const {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstdint>
 #include <optional>
 #include <string>
 
@@ -25,6 +24,7 @@ namespace subvol::cli {
 /// What `subvol render` is told about a picture: all options but the files and the shares.
 ///
 /// method, body: as settled
+/// chosen:       what the library describes of pictures; the rest of it stays as it is
 struct RenderArguments {
     Method method = Method::Splat;
     BodyKind body = BodyKind::Mesh;
@@ -34,8 +34,7 @@ struct RenderArguments {
     SplatArguments splat{};
     RefineArguments refine{};
     TetRefinement tets{};
-    std::optional<int> samples{};
-    std::optional<double> lod{};
+    MethodOptions chosen{};
 
     void add_to(CLI::App& app);
 
@@ -51,16 +50,8 @@ struct RenderArguments {
     /// field: the range of the field that gives the opacities
     [[nodiscard]] MethodOptions method_options(const Box& box, const Range& field, Progress* progress) const;
 
-    [[nodiscard]] std::uint64_t memory_bytes() const { return memory_bytes_; }
-
 private:
     std::string method_name_ = "splat";
-    double image_tolerance_ = 1e-3;
-    std::string order_ = "topological";
-    int kbuffer_ = 6;
-    std::uint64_t memory_bytes_ = std::uint64_t{1} << 30;
-
-    void add_references_to(CLI::App& app);
 };
 
 }  // namespace subvol::cli

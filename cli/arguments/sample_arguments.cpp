@@ -23,7 +23,8 @@ void SampleArguments::add_to(CLI::App& app) {
     std::erase_if(all, [](const Option& option) { return option.name == "boundary-levels"; });
     add_options(app, all);
     add_option(app, Option("spacing-voxels", spacing_voxels)
-                        .positive_or_none()
+                        .positive()
+                        .or_none()
                         .help("S", "the same as --spacing in units of 1/200 of the longest side of the bounding box")
                         .instead_of({"per-edge", "spacing"}));
     add_option(app, Option("footprint", footprint)

@@ -58,7 +58,8 @@ PictureNotes make_notes(const ShownMesh& shown, const ShownColors& colors, Rende
                         Facts& facts) {
     PictureNotes notes = make_notes(arguments.picture, colors, &shown.mesh);
     if (!shown.shells.empty()) {
-        const int samples = PictureStyle{.look = {.look = arguments.picture.look}, .samples = arguments.samples}.sample_count();
+        const int samples =
+            PictureStyle{.look = {.look = arguments.picture.look}, .samples = arguments.chosen.style.samples}.sample_count();
         notes.shells = make_shell_scene(shown.mesh, shown.shells, arguments.refine.options(0, progress),
                                         arguments.refine.levels, colors.optics, samples, arguments.clip.clip(), facts);
     }

@@ -5,7 +5,6 @@
 #include <string_view>
 #include <utility>
 
-#include "splat_arguments.h"
 #include "study_input.h"
 #include "study_metrics.h"
 #include "study_work.h"
@@ -30,7 +29,7 @@ MethodOptions picture_options(const StudyCase& item, const HexMesh& mesh) {
         options.kernels.sample = study_sampling(item, mesh);
         options.drop_invisible = item.flag("visible_only");
         options.splat.sheets = item.whole("sheets");
-        if (method == Method::Splat) options.splat.method = SplatArguments{.backend = item.text("backend")}.options().method;
+        if (method == Method::Splat) options.splat.method = named<SplatMethod>(item.text("backend"), "study");
     } else if (item.has("levels")) {
         options.kernels.levels = item.whole("levels");
     }

@@ -93,7 +93,7 @@ private:
     [[nodiscard]] BodyKind kind_of_input() const {
         if (is_bricks_input(input_)) return BodyKind::Bricks;
         if (holds_points(input_)) {
-            return holds_levels(input_) && arguments_.lod.value_or(0) > 0 ? BodyKind::KernelFile : BodyKind::Kernels;
+            return holds_levels(input_) && arguments_.chosen.lod.value_or(0) > 0 ? BodyKind::KernelFile : BodyKind::Kernels;
         }
         return is_vdb_file(input_) ? BodyKind::Voxels : BodyKind::Mesh;
     }
@@ -107,9 +107,9 @@ private:
     void set_share(PictureOutput& output, bool frames) {
         if (!shares(share_)) return;
         const Share share = share_of(share_);
-        if (!frames && (!draws_rows(arguments_.method) || arguments_.splat.seconds)) {
+        if (!frames && (!draws_rows(arguments_.method) || arguments_.chosen.seconds)) {
             throw Error(ErrorCode::InvalidInput, "is not drawn in shares",
-                        arguments_.splat.seconds ? "--seconds" : "--method " + std::string(name_of(arguments_.method)),
+                        arguments_.chosen.seconds ? "--seconds" : "--method " + std::string(name_of(arguments_.method)),
                         "--method splat or tets, or shares of frames: --turntable N, --step all");
         }
         if (!frames) rows_.emplace(OwnRows{share, ranks()});
@@ -190,11 +190,11 @@ private:
 
     /// A picture of each step, in one box and with one range of colours: all are read once for these.
     void draw_steps(Report& report) {
-        if (picture_.turntable_frames || arguments_.splat.seconds || arguments_.method == Method::Grid) {
+        if (picture_.turntable_frames || arguments_.chosen.seconds || arguments_.method == Method::Grid) {
             throw Error(ErrorCode::InvalidInput, "steps are drawn without it",
-                        picture_.turntable_frames  ? "--turntable"
-                        : arguments_.splat.seconds ? "--seconds"
-                                                   : "--method grid");
+                        picture_.turntable_frames   ? "--turntable"
+                        : arguments_.chosen.seconds ? "--seconds"
+                                                    : "--method grid");
         }
         const MeshSeries series = open_series(input_);
         const FrameRange steps = chosen_steps(series, common());
@@ -280,7 +280,7 @@ private:
     void draw_points(PictureOutput& output, Report& report) {
         report["input"] = input_;
         if (arguments_.body == BodyKind::KernelFile) {
-            const std::uint64_t kept = picture_.turntable_frames ? arguments_.memory_bytes() : 0;
+            const std::uint64_t kept = picture_.turntable_frames ? arguments_.chosen.memory_bytes : 0;
             LevelsInput levels =
                 report.unpack(open_levels(input_, common(), arguments_.splat.color_field, kept, app(), report.progress()));
             if (levels.file.contents().boundary_triangles > 0) return draw_levels(levels, output, report);

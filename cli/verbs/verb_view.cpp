@@ -10,6 +10,7 @@
 #include "grid_input.h"
 #include "input.h"
 #include "numbers.h"
+#include "options.h"
 #include "outputs.h"
 #include "picture_arguments.h"
 #include "points_input.h"
@@ -32,9 +33,8 @@ namespace subvol::cli {
 namespace {
 
 /// Options of the arguments that a session does not have.
-constexpr std::array kNotHere{"--views",     "--turntable",   "--fps",    "--legend",    "--unit",
-                              "--threshold", "--reduce",      "--refine", "--footprint", "--footprint-size",
-                              "--seconds",   "--color-field", "--shade"};
+constexpr std::array kNotHere{"--views",  "--turntable", "--fps",       "--legend",         "--unit",        "--threshold",
+                              "--reduce", "--refine",    "--footprint", "--footprint-size", "--color-field", "--shade"};
 
 /// Options whose values actions change, so that the render command has them from the state; and those that only the window has.
 constexpr std::array kOfTheState{"--clip",    "--clip-box", "--slice", "--around",  "--size",         "--camera",
@@ -68,10 +68,8 @@ public:
             ->type_name("NAME")
             ->check(offered({"splat", "sheets", "tets", "pt", "dense", "grid"}));
         picture_.add_to(app());
-        app()
-            .add_option("--samples", samples_, "n x n rays for each pixel (default: 2 for solids, else 1)")
-            ->type_name("N")
-            ->transform(whole_number(1, 16));
+        const auto described = options_of(settings_);
+        add_option(app(), *std::ranges::find(described, "samples", &Option::name));
         sample_.add_to(app());
         clip_.add_to(app());
         refine_.add_to(app(), "show the refined mesh of this level (default for tets: 1; for the others: the limit)");
@@ -153,9 +151,9 @@ private:
                         "--method " + method_, join(methods));
         }
         report["field"] = body.field();
-        MethodOptions settings{.kernels = sample_.kernel_options(body.box, refine_.options(0, nullptr), refine_.levels),
-                               .splat = splat};
-        if (samples_ > 0) settings.style.samples = samples_;
+        MethodOptions settings = settings_;
+        settings.kernels = sample_.kernel_options(body.box, refine_.options(0, nullptr), refine_.levels);
+        settings.splat = splat;
         ViewSession session(std::move(from), std::move(mesh), start_state(body, field), settings);
         if (!saved_.empty()) session.run(Json{{"load_state", saved_}}.dump());
         if (!headless) {
@@ -252,7 +250,7 @@ private:
 
     std::string input_, script_, screenshot_, saved_;
     std::string method_ = "splat";
-    int samples_ = 0;
+    MethodOptions settings_;  // what options choose of them
     bool window_ = false;
     PictureArguments picture_;
     ClipArguments clip_;

@@ -142,9 +142,9 @@ Option& Option::positive() {
     return *this;
 }
 
-Option& Option::positive_or_none() {
+Option& Option::or_none() {
     zero_is_none_ = true;
-    return positive();
+    return *this;
 }
 
 Option& Option::not_negative() {

@@ -283,14 +283,16 @@ std::vector<Option> options_of(SampleOptions& options) {
             .between(1, 64)
             .help("N", "sample intervals per cell edge; 1 is one kernel per control point"),
         Option("spacing", options.spacing_world)
-            .positive_or_none()
+            .positive()
+            .or_none()
             .help(
                 "H",
                 "distance between samples in world units, instead of --per-edge; for a grid, rounded to whole voxels (default: "
                 "one kernel per voxel)")
             .instead_of({"per-edge"}),
         Option("tolerance", options.tolerance)
-            .positive_or_none()
+            .positive()
+            .or_none()
             .help("E", "instead: as many samples as an error of the field below E needs, in the field's unit")
             .instead_of({"per-edge", "spacing"}),
         Option("centers", options.centers)

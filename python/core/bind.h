@@ -91,7 +91,11 @@ template <class Work>
     return std::move(*result);
 }
 
-/// Keywords set the members of options by their descriptions; None leaves the default.
+/// A value sets the member of an option by its description; None leaves the default. key: as errors call it
+///
+/// throws: TypeError for a value of another type; Error(InvalidInput) for one that is not allowed
+void set_option(const Option& option, const py::handle& value, const std::string& key);
+/// The same for all keywords of a call.
 ///
 /// throws: TypeError for another keyword or type; Error(InvalidInput) for a value that the description does not allow
 void set_options(const std::vector<Option>& options, const py::kwargs& given);

@@ -39,12 +39,16 @@ struct SetValue {
 
 }  // namespace
 
+void set_option(const Option& option, const py::handle& value, const std::string& key) {
+    if (!value.is_none()) std::visit(SetValue{option, value, key}, option.value);  // None is the default
+}
+
 void set_options(const std::vector<Option>& options, const py::kwargs& given) {
     for (const auto& [name, value] : given) {
         const auto key = py::str(name).cast<std::string>();
         const auto option = std::ranges::find(options, key, &Option::key);
         if (option == options.end()) throw py::type_error("'" + key + "' is an unexpected keyword");
-        if (!value.is_none()) std::visit(SetValue{*option, value, key}, option->value);  // None is the default
+        set_option(*option, value, key);
     }
 }
 

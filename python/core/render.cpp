@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <iterator>
 
 #include "bind.h"
 #include "picture.h"
@@ -27,40 +28,6 @@ Clip clip_of(const std::vector<SixNumbers>& planes, const std::optional<SixNumbe
     return clip;
 }
 
-/// The keywords of render() that were given.
-class Keywords {
-public:
-    explicit Keywords(py::dict given) : given_(std::move(given)) {}
-
-    /// throws: TypeError if the value is of another type
-    template <class Value>
-    [[nodiscard]] std::optional<Value> find(const char* keyword) const {
-        if (!given_.contains(keyword)) return std::nullopt;
-        try {
-            return given_[keyword].cast<Value>();
-        } catch (const py::cast_error&) {
-            throw py::type_error(std::string(keyword) + ": a value of type " +
-                                 std::string(py::str(py::type::of(given_[keyword]).attr("__name__"))) + " is not accepted");
-        }
-    }
-    template <class Value>
-    [[nodiscard]] Value get(const char* keyword, Value otherwise) const {
-        return find<Value>(keyword).value_or(std::move(otherwise));
-    }
-
-    /// The same by the names of the table of options.
-    [[nodiscard]] std::optional<std::string> text(std::string_view name) const {
-        const auto uses = option_uses();
-        const auto use = std::ranges::find(uses, name, &OptionUse::name);
-        const std::string keyword(use != uses.end() ? use->keyword : name);
-        if (keyword.empty() || !given_.contains(keyword.c_str())) return std::nullopt;
-        return std::string(py::str(given_[keyword.c_str()]));
-    }
-
-private:
-    py::dict given_;
-};
-
 /// The look of a picture, its colours, and whether the opacities are those that the look has by itself.
 struct PictureLight {
     Look look;
@@ -68,30 +35,46 @@ struct PictureLight {
     bool own_opacity;
 };
 
-MethodOptions method_options(Method method, const PictureLight& light, const Keywords& given) {
-    const SchemeOptions scheme = refine_options(given.get<std::string>("scheme", "mcq"), 0, given.get("tension", 1.0 / 16),
-                                                given.find<double>("crease_angle"))
-                                     .scheme;
-    MethodOptions options{
-        .style = {.method = method,
-                  .look = {.look = light.look},
-                  .samples = given.find<int>("samples"),
-                  .clip = clip_of(given.get<std::vector<SixNumbers>>("clip", {}), given.find<SixNumbers>("clip_box"),
-                                  given.get<std::vector<SixNumbers>>("slice", {}), given.get("around", false))},
-        .kernels = {.sample = {.scheme = scheme, .per_edge = given.get("per_edge", 1)}, .levels = given.find<int>("levels")},
-        .splat = {.method = named<SplatMethod>(given.get<std::string>("backend", "auto"), "backend"),
-                  .device = given.find<int>("device"),
-                  .sheets = given.get("sheets", 0),
-                  .shadows = given.get("shadows", false),
-                  .ambient_occlusion = given.get("ambient_occlusion", 0.0)},
-        .order = named<ProjectedOrder>(given.get<std::string>("order", "topological"), "order"),
-        .image_tolerance = given.get("image_tolerance", 1e-3),
-        .lod = given.find<double>("lod"),
-        .seconds = given.find<double>("seconds"),
-        .names = OptionNames::Keywords};
+/// The value of a keyword of render(). throws: TypeError for another type
+template <class Value>
+Value value_of(const py::dict& given, const char* keyword, Value otherwise) {
+    if (!given.contains(keyword)) return otherwise;
+    try {
+        return given[keyword].cast<Value>();
+    } catch (const py::cast_error&) {
+        throw py::type_error(std::string(keyword) + ": a value of type " +
+                             std::string(py::str(py::type::of(given[keyword]).attr("__name__"))) + " is not accepted");
+    }
+}
+
+MethodOptions method_options(Method method, const PictureLight& light, const py::dict& given) {
+    MethodOptions options{.style = {.method = method, .look = {.look = light.look}}, .names = OptionNames::Keywords};
+    RefineOptions refinement;
+    std::vector<Option> described = scheme_and(refinement.scheme, options_of(options.kernels.sample));
+    described.push_back(options_of(refinement).back());
+    std::ranges::move(options_of(options.splat), std::back_inserter(described));
+    std::ranges::move(options_of(options), std::back_inserter(described));
+    for (const OptionUse& use : option_uses()) {
+        const std::string keyword(use.keyword);
+        const auto option = std::ranges::find(described, use.name, &Option::name);
+        if (!keyword.empty() && option != described.end() && given.contains(keyword.c_str()))
+            set_option(*option, given[keyword.c_str()], keyword);
+    }
+    options.kernels.sample.scheme = refinement.scheme;
+    if (given.contains("levels")) options.kernels.levels = refinement.levels;
+    options.style.clip = clip_of(value_of<std::vector<SixNumbers>>(given, "clip", {}),
+                                 value_of<std::optional<SixNumbers>>(given, "clip_box", {}),
+                                 value_of<std::vector<SixNumbers>>(given, "slice", {}), value_of(given, "around", false));
     if (light.own_opacity) options.style.look.opacity = light.optics.function().opacity;
-    if (given.get("shade", false)) options.splat.shading = Shading{};
+    if (value_of(given, "shade", false)) options.splat.shading = Shading{};
     return options;
+}
+
+/// What was given for an option of the command, by its keyword.
+std::optional<std::string> text_of(const py::dict& given, std::string_view name) {
+    const std::string keyword = option_name(name, OptionNames::Keywords);
+    if (keyword.empty() || !given.contains(keyword.c_str())) return std::nullopt;
+    return std::string(py::str(given[keyword.c_str()]));
 }
 
 struct ToPython {
@@ -140,14 +123,13 @@ struct DrawnBody {
 };
 
 Picture render(const DrawnBody& drawn, const std::string& method_name, const View& view, const PictureLight& light,
-               const py::dict& keywords, const py::object& progress) {
-    const Keywords given(keywords);
+               const py::dict& given, const py::object& progress) {
     const auto method = named<Method>(method_name, "method");
     HexMesh two_fields;
     PictureBody body{.mesh = drawn.mesh, .kernels = drawn.points, .voxels = drawn.voxels, .channels = drawn.channels};
     check_method(method, body.kind(), OptionNames::Keywords);
     check_options(
-        bit(method), body.kind(), [&](std::string_view name) { return given.text(name); }, OptionNames::Keywords);
+        bit(method), body.kind(), [&](std::string_view name) { return text_of(given, name); }, OptionNames::Keywords);
     if (drawn.colors != nullptr) {
         two_fields = *drawn.mesh;
         two_fields.attributes.push_back(drawn.colors->attributes.front());

@@ -88,9 +88,7 @@ def render(what: Drawable, *, method: str = "splat", view: str = "iso", camera: 
     Returns an Image: `numpy.asarray(image)` is (height, width, 4) float32, linear, premultiplied, without a copy. Its `report` has
     counts and seconds.
     """
-    check_numbers(tension=tension)
-    check_numbers(0, opacity_unit=opacity_unit, ambient_occlusion=ambient_occlusion, crease_angle=crease_angle, seconds=seconds,
-                  image_tolerance=image_tolerance)
+    check_numbers(0, opacity_unit=opacity_unit)
     if isinstance(what, Field):
         raise InvalidInput("what: a Field cannot be drawn; draw the mesh or the points that it is of", "what", "a mesh, points or a grid")
     if len(size) != 2 or not (1 <= size[0] <= 65536 and 1 <= size[1] <= 65536):

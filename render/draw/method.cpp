@@ -107,11 +107,6 @@ std::string shown(const OptionUse& use, OptionNames names) {
     return names == OptionNames::Flags ? "--" + std::string(use.name) : std::string(use.keyword);
 }
 
-std::string shown(std::string_view name, OptionNames names) {
-    const auto* use = std::ranges::find(kUses, name, &OptionUse::name);
-    return use != kUses.end() ? shown(*use, names) : names == OptionNames::Flags ? "--" + std::string(name) : std::string(name);
-}
-
 std::string_view noun_of(BodyKind body) {
     switch (body) {
         case BodyKind::Mesh:
@@ -149,7 +144,7 @@ bool is_met(const OptionCondition& need, const GivenOptions& given) {
 
 /// "order havs": as users write it.
 std::string shown(const OptionCondition& need, std::string_view value, OptionNames names) {
-    const std::string option = shown(need.option, names);
+    const std::string option = option_name(need.option, names);
     if (value.empty()) return option;
     return names == OptionNames::Flags ? option + " " + std::string(value) : option + "='" + std::string(value) + "'";
 }
@@ -176,6 +171,12 @@ std::string joined(const std::vector<std::string>& names) {
 
 std::span<const OptionUse> option_uses() {
     return kUses;
+}
+
+std::string option_name(std::string_view name, OptionNames names) {
+    const auto* use = std::ranges::find(kUses, name, &OptionUse::name);
+    if (use != kUses.end()) return shown(*use, names);
+    return (names == OptionNames::Flags ? "--" : "") + std::string(name);
 }
 
 bool reads(Method method, BodyKind body, std::string_view option) {
@@ -210,7 +211,7 @@ std::string option_table() {
             std::string values;
             for (const std::string_view value : words_of(need.values))
                 values += (values.empty() ? " " : ", ") + std::string(value);
-            needs += (need.excluded ? "not with `" : "with `") + shown(need.option, OptionNames::Flags) + values + "`";
+            needs += (need.excluded ? "not with `" : "with `") + option_name(need.option, OptionNames::Flags) + values + "`";
         }
         table += " " + bodies + " | " + needs + " |\n";
     }

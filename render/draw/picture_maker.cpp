@@ -3,15 +3,12 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <sstream>
-#include <string>
 #include <tuple>
 #include <utility>
 
 #include "kernel_levels.h"
+#include "picture_facts.h"
 #include "subvol/boundary_shading.h"
-#include "subvol/error.h"
 #include "subvol/limit.h"
 #include "subvol/progressive.h"
 #include "subvol/render_dense.h"
@@ -31,104 +28,12 @@ namespace {
 
 constexpr int kTetsLevel = 1;
 
-template <class... Parts>
-std::string sentence(const Parts&... parts) {
-    std::ostringstream stream;
-    (stream << ... << parts);
-    return stream.str();
-}
-
-std::string shown(const char* option, OptionNames names) {
-    std::string name = (names == OptionNames::Flags ? "--" : "") + std::string(option);
-    if (names == OptionNames::Keywords) std::ranges::replace(name, '-', '_');
-    return name;
-}
-
 SplatMethod splat_method(Method method, SplatMethod otherwise) {
     if (method == Method::Sheets) return SplatMethod::Sheets;
     return method == Method::Footprints ? SplatMethod::Footprints : otherwise;
 }
 
-void add_method(Method method, const char* backend, Facts& facts) {
-    facts["method"] = name_of(method);
-    facts["backend"] = backend;
-}
-
-void add_splats(Method method, const SplatReport& splats, Facts& facts) {
-    facts["method"] = name_of(method);
-    if (splats.seconds_light > 0) facts.add_seconds("light", splats.seconds_light);
-    facts.add_seconds("prepare", splats.seconds_prepare - splats.seconds_light);
-    facts.add_seconds("draw", splats.seconds_draw);
-    if (splats.seconds_colors > 0) facts.add_seconds("colors", splats.seconds_colors);
-    facts["backend"] = splats.backend;
-    facts["device"] = splats.device;
-    facts["sheets"] = splats.sheets;
-}
-
-void add_rays(std::size_t rays, std::size_t lost, Facts& facts) {
-    facts["rays"] = rays;
-    facts["lost_rays"] = lost;
-    if (lost > 0) facts.warn(sentence(lost, " rays were lost inside the mesh"));
-}
-
-void add_projected(const ProjectedReport& pt, ProjectedOrder order, Facts& facts) {
-    facts.add_seconds("prepare", pt.seconds_prepare);
-    facts.add_seconds("sort", pt.seconds_sort);
-    facts.add_seconds("draw", pt.seconds_draw);
-    facts["device"] = pt.device;
-    facts["order"] = name_of(order);
-    facts["tets"] = pt.tets;
-    facts["degenerate_tets"] = pt.degenerate_tets;
-    facts["inverted_tets"] = pt.inverted_tets;
-    if (order == ProjectedOrder::Topological) facts["cycles"] = pt.cycles;
-    if (order == ProjectedOrder::Lists || order == ProjectedOrder::Havs) facts["fragments"] = pt.fragments;
-    if (order == ProjectedOrder::Havs) {
-        facts["faces"] = pt.faces;
-        facts["faces_drawn"] = pt.faces_drawn;
-        facts["late_faces"] = pt.late_faces;
-    }
-    if (pt.violations) facts["order_violations"] = *pt.violations;
-    if (pt.cycles > 0) facts.warn(sentence("the order of the tetrahedra has cycles, which were broken ", pt.cycles, " times"));
-    if (pt.late_faces > 0)
-        facts.warn(sentence(pt.late_faces, " faces came too late for the k-buffer; use a larger --kbuffer, or --order lists"));
-}
-
-void check_light(const PictureStyle& style, OptionNames names) {
-    const bool computes_light = draws_kernels(style.method) || style.method == Method::Grid;
-    if (computes_light || !is_lit(style.look.look) || style.look.look == Look::Solid) return;
-    throw Error(ErrorCode::InvalidInput, "method " + std::string(name_of(style.method)) + " lights the boundary only",
-                shown("look", names) + (names == OptionNames::Flags ? " " : "=") + std::string(name_of(style.look.look)),
-                "use method splat or sheets, or the colour map isosurface for surfaces without light");
-}
-
-void check_lod(const MethodOptions& options) {
-    if (!options.lod) return;
-    const std::string where = shown("lod", options.names);
-    if (!std::isfinite(*options.lod) || *options.lod < 0)
-        throw Error(ErrorCode::InvalidInput, sentence(*options.lod, " is not a number of pixels"), where, "0 or more");
-    if (options.style.method != Method::Projected) return;
-    if (*options.lod > 1)
-        throw Error(ErrorCode::InvalidInput, sentence("the fraction of faces is ", *options.lod), where, "0 to 1");
-    if (options.order != ProjectedOrder::Havs) {
-        throw Error(ErrorCode::InvalidInput,
-                    "has no effect without " + shown("order", options.names) + " havs: only this order leaves faces out",
-                    where);
-    }
-}
-
-void check_time(const MethodOptions& options) {
-    if (!options.seconds || !options.kernels.levels || !draws_kernels(options.style.method)) return;
-    throw Error(ErrorCode::InvalidInput, "has no effect with " + shown("seconds", options.names),
-                shown("levels", options.names), "leave one of them out");
-}
-
 }  // namespace
-
-void validate(const MethodOptions& options) {
-    check_light(options.style, options.names);
-    check_lod(options);
-    check_time(options);
-}
 
 BodyKind PictureBody::kind() const {
     if (bricks != nullptr) return BodyKind::Bricks;
@@ -199,6 +104,9 @@ struct PictureMaker::State {
     [[nodiscard]] bool paints_splats() const {
         return paints_boundary() && !options.splat.shadows && options.splat.ambient_occlusion == 0;
     }
+
+    /// Bricks get the colours of their boundary when all rows are there.
+    [[nodiscard]] bool paints_bricks() const { return draws_kernels(method()) && paints_splats() && is_finished(); }
 
     [[nodiscard]] RefineOptions refinement(int level, Progress* progress) const {
         return {.scheme = scheme(), .levels = level, .progress = progress};
@@ -286,21 +194,20 @@ struct PictureMaker::State {
 
     void prepare_bricks(Progress* progress, Facts& facts) {
         const bool by_kernels = draws_kernels(method());
-        if (by_kernels ? brick_boundary.has_value() : brick_tets.has_value()) return;
-        if (is_finished() && (by_kernels ? paints_splats() : is_solid())) {
+        if (!skin && (by_kernels ? paints_bricks() : lights_boundary())) {
             const BrickHull& all = hull_of_bricks(progress, facts);
             skin = facts.timed(progress, "boundary", [&] {
                 return boundary_values(all, scheme(), by_kernels ? std::nullopt : options.kernels.levels);
             });
         }
-        if (by_kernels) {
+        if (by_kernels && !brick_boundary) {
             SampleOptions sample = options.kernels.sample;
             sample.progress = progress;
             const BrickHull& all = hull_of_bricks(progress, facts);
             brick_boundary = facts.timed(progress, "boundary", [&] { return sample_bricks_boundary(all, sample); });
         }
         hull.reset();
-        if (by_kernels) return;
+        if (by_kernels || brick_tets) return;
         const BrickTetsOptions tet_options = brick_tets_options(progress);
         brick_tets = facts.timed(progress, "measure", [&] {
             return team != nullptr ? team->measure(*body.bricks, tet_options)
@@ -376,7 +283,7 @@ struct PictureMaker::State {
                 kept.splatter.set_boundary_colors(colors.surface, colors.values.back());
             drawn = kept.splatter.draw(view, optics, progress);
         }
-        add_splats(method(), drawn.report, picture.facts);
+        detail::add_facts(drawn.report, method(), picture.facts);
         if (!(options.lod.value_or(0) > 0)) picture.facts["points"] = drawn.report.points;
         picture.image = std::move(drawn.image);
         picture.depth = std::move(drawn.depth);
@@ -388,7 +295,7 @@ struct PictureMaker::State {
             *body.mesh, view, optics,
             {.seconds = *options.seconds, .sample = options.kernels.sample, .splat = splat_options(), .progress = progress});
         Picture picture{std::move(drawn.splat.image), std::move(drawn.splat.depth)};
-        add_splats(method(), drawn.splat.report, picture.facts);
+        detail::add_facts(drawn.splat.report, method(), picture.facts);
         picture.facts["points"] = drawn.splat.report.points;
         picture.facts["steps"] = drawn.steps;
         picture.facts["picture_scale"] = drawn.picture_scale;
@@ -407,7 +314,7 @@ struct PictureMaker::State {
                 return team->splat(*body.bricks, body.fields, *brick_boundary, brick, view, optics, picture.facts);
             return render_bricks(*body.bricks, body.fields, *brick_boundary, view, optics, brick);
         });
-        add_splats(method(), drawn.report, picture.facts);
+        detail::add_facts(drawn.report, method(), picture.facts);
         picture.facts["points"] = drawn.report.points;
         picture.image = std::move(drawn.image);
         picture.depth = std::move(drawn.depth);
@@ -431,12 +338,9 @@ struct PictureMaker::State {
         }
         std::array counts{drawn.report.rays, drawn.report.lost_rays};
         if (team != nullptr) team->add_up(counts);
-        add_method(Method::Tets, "cpu", picture.facts);
-        picture.facts.add_seconds("draw", drawn.report.seconds_draw);
-        picture.facts["tets"] = drawn.report.tets;
-        picture.facts["degenerate_tets"] = drawn.report.degenerate_tets;
-        picture.facts["inverted_tets"] = drawn.report.inverted_tets;
-        add_rays(counts[0], counts[1], picture.facts);
+        drawn.report.rays = counts[0];
+        drawn.report.lost_rays = counts[1];
+        detail::add_facts(drawn.report, picture.facts);
         picture.image = std::move(drawn.image);
         return picture;
     }
@@ -460,8 +364,7 @@ struct PictureMaker::State {
             projected_options.progress = progress;
             drawn = projected->draw(view, optics, projected_options);
         }
-        add_method(Method::Projected, "gl", picture.facts);
-        add_projected(drawn.report, projected_options.order, picture.facts);
+        detail::add_facts(drawn.report, projected_options.order, picture.facts);
         picture.image = std::move(drawn.image);
         return picture;
     }
@@ -476,25 +379,8 @@ struct PictureMaker::State {
                                           .samples = options.style.sample_count(),
                                           .clip = options.style.clip,
                                           .progress = progress});
-        const DenseReport& dense = drawn.report;
         Picture picture{std::move(drawn.image)};
-        Facts& facts = picture.facts;
-        add_method(Method::Dense, "cpu", facts);
-        facts.add_seconds("prepare", dense.seconds_build);
-        facts.add_seconds("draw", dense.seconds_draw);
-        facts["levels"] = dense.levels;
-        if (dense.image_change) facts["image_change"] = *dense.image_change;
-        facts["converged"] = dense.converged;
-        facts["blocks"] = dense.blocks;
-        facts["skipped_blocks"] = dense.skipped_blocks;
-        facts["micro_cells"] = dense.micro_cells;
-        facts["passes"] = dense.passes;
-        facts["bytes"] = dense.bytes;
-        add_rays(dense.rays, dense.lost_rays, facts);
-        if (!level && !dense.converged) {
-            facts.warn(sentence("the picture still changes by ", dense.image_change.value_or(0), " at level ", dense.levels,
-                                ": --levels draws a finer one"));
-        }
+        detail::add_facts(drawn.report, level.has_value(), picture.facts);
         return picture;
     }
 
@@ -503,11 +389,7 @@ struct PictureMaker::State {
             render_grid(*body.voxels, view, optics,
                         {.samples = options.style.sample_count(), .clip = options.style.clip, .progress = progress});
         Picture picture{std::move(drawn.image)};
-        add_method(Method::Grid, "cpu", picture.facts);
-        picture.facts.add_seconds("draw", drawn.report.seconds_draw);
-        picture.facts["rays"] = drawn.report.rays;
-        picture.facts["cells"] = drawn.report.cells;
-        picture.facts["blocks"] = drawn.report.blocks;
+        detail::add_facts(drawn.report, picture.facts);
         return picture;
     }
 
@@ -537,7 +419,7 @@ struct PictureMaker::State {
         const Clip& clip = options.style.clip;
         if (lights_boundary()) {
             light_boundary(picture.image, skin->surface, view, Shading{}, samples, clip);
-        } else if (body.bricks != nullptr && skin && !skin->values.empty()) {
+        } else if (body.bricks != nullptr && paints_bricks() && !skin->values.empty()) {
             color_boundary(picture.image, skin->surface, skin->values.back(), view, optics, Shading{}, samples, clip);
         }
     }
@@ -558,7 +440,7 @@ void PictureMaker::set_body(PictureBody body) {
 }
 
 void PictureMaker::set_style(const PictureStyle& style) {
-    check_light(style, state_->options.names);
+    validate(style, state_->options.names);
     state_->options.style = style;
 }
 

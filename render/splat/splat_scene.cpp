@@ -200,14 +200,7 @@ std::array<float, 3> Classification::color_at(float x) const {
 }
 
 SplatScene make_scene(const RbfVolume& volume, const SplatOptions& options) {
-    if (options.sheets != 0 && (options.sheets < 2 || options.sheets > 65536)) {
-        throw Error(ErrorCode::InvalidInput, "the number of sheets is " + std::to_string(options.sheets), {},
-                    "2 to 65536, or 0 for as many as the kernels need");
-    }
-    if (!(options.ambient_occlusion >= 0 && options.ambient_occlusion <= 1)) {
-        throw Error(ErrorCode::InvalidInput, "the distance of ambient occlusion is " + number_text(options.ambient_occlusion),
-                    {}, "0 to 1, in parts of the volume's diagonal");
-    }
+    check_options(options);
     check_channel(volume, options.channel);
     if (options.color_channel) check_channel(volume, *options.color_channel);
     const Box box = box_of(volume);
@@ -331,3 +324,22 @@ SheetStack make_sheets(const SplatScene& scene, const View& view, int count) {
 }
 
 }  // namespace subvol::detail
+
+namespace subvol {
+
+std::vector<Option> options_of(SplatOptions& options) {
+    return {Option("backend", options.method).help("NAME", "where to splat: auto (default: a GPU, else the CPU), gl, cpu"),
+            Option("device", options.device)
+                .between(0, 1000)
+                .help("N", "the OpenGL device's number in `info --gl` (default: the first GPU)"),
+            Option("sheets", options.sheets)
+                .between(2, 65536)
+                .or_none()
+                .help("N", "splat: number of planes over the volume's depth (default: as many as the kernels need)"),
+            Option("shadows", options.shadows).help("splat: the volume shadows itself from the light at the upper left"),
+            Option("ambient-occlusion", options.ambient_occlusion)
+                .between(0, 1)
+                .help("R", "splat: darken hollows that are narrower than this part of the box's diagonal, such as .1")};
+}
+
+}  // namespace subvol

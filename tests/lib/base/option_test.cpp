@@ -43,7 +43,7 @@ struct Basket {
 
 std::vector<Option> options_of(Basket& basket) {
     return {Option("count", basket.count).between(1, 64).help("N", "how many"),
-            Option("net-weight", basket.weight).positive_or_none().help("KG", "how heavy"),
+            Option("net-weight", basket.weight).positive().or_none().help("KG", "how heavy"),
             Option("share", basket.share).between(0, 1).help("S", "for you"),
             Option("ripe", basket.ripe).help("to be eaten"),
             Option("fruit", basket.fruit).help("NAME", "which"),
@@ -131,7 +131,7 @@ void expect_sound() {
     for (const Option& option : options_of(options)) {
         const std::string before = option.text();
         EXPECT_FALSE(option.sentence.empty()) << option.name;
-        if (before.empty() || before == "0" || option.is_switch()) continue;
+        if (before.empty() || before == "0" || std::holds_alternative<bool*>(option.value)) continue;
         option.read(before, option.name);
         EXPECT_EQ(option.text(), before) << option.name;
     }

@@ -5,11 +5,14 @@
 
 #include <set>
 
+#include "lib/expect_error.h"
+#include "lib/temp_folder.h"
 #include "subvol/boundary_shading.h"
 #include "subvol/error.h"
 #include "subvol/limit.h"
 #include "subvol/model.h"
 #include "subvol/render_tets.h"
+#include "subvol/split.h"
 
 namespace subvol {
 namespace picture_maker_test {
@@ -105,6 +108,48 @@ TEST(PictureMaker, StylesAndBodiesChangeBetweenPictures) {
     maker.set_body({.mesh = &ball()});
     maker.set_style(solid_by(Method::Splat).style);
     EXPECT_EQ(maker.draw(view, optics_of(Look::Solid)).image.rgba, first.image.rgba);
+}
+
+class PictureMakerOfBricks : public test::TempFolder {};
+
+TEST_F(PictureMakerOfBricks, StylesChangeBetweenPictures) {
+    const Bricks bricks = split_mesh(path("ball.bricks"), ball(), {.bricks = 3}).bricks;
+    const View view = view_of(bounds(ball()));
+    const PictureBody body{.bricks = &bricks, .fields = [](HexMesh brick) { return brick; }};
+    for (const Method method : {Method::Splat, Method::Tets}) {
+        const auto alone = [&](Look look) {
+            MethodOptions options = solid_by(method);
+            options.style.look.look = look;
+            return PictureMaker(body, options).draw(view, optics_of(look)).image.rgba;
+        };
+        MethodOptions options = solid_by(method);
+        options.style.look.look = Look::Volume;
+        PictureMaker maker(body, options);
+        for (const Look look : {Look::Volume, Look::Solid, Look::Volume}) {
+            options.style.look.look = look;
+            maker.set_style(options.style);
+            EXPECT_EQ(maker.draw(view, optics_of(look)).image.rgba, alone(look)) << name_of(method) << " " << name_of(look);
+        }
+    }
+}
+
+TEST(PictureMaker, OptionsOutOfRangeAreRefusedByTheirNames) {
+    const auto refuses = [](const char* name, const auto& change) {
+        MethodOptions options = solid_by(Method::Splat);
+        change(options);
+        test::expect_error(ErrorCode::InvalidInput, name, [&] { validate(options); });
+    };
+    refuses("samples: 17 is out of range (1 to 16)", [](MethodOptions& o) { o.style.samples = 17; });
+    refuses("sheets: 1 is out of range", [](MethodOptions& o) { o.splat.sheets = 1; });
+    refuses("kbuffer: 0 is out of range", [](MethodOptions& o) { o.kbuffer = 0; });
+    refuses("--threshold: has no effect with --seconds", [](MethodOptions& o) {
+        o.seconds = 1;
+        o.drop_invisible = true;
+    });
+    refuses("--levels: has no effect with --seconds", [](MethodOptions& o) {
+        o.seconds = 1;
+        o.kernels.levels = 1;
+    });
 }
 
 TEST(PictureMaker, WhatAnOptionIsDecidesWhetherTheBoundaryIsPainted) {

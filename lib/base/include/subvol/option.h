@@ -73,8 +73,8 @@ public:
     Option& between(double least, double most);
     /// More than 0. A length, an error or a factor whose square or cube is 0 or infinite is none.
     Option& positive();
-    /// The same, but code may leave it at 0: not given.
-    Option& positive_or_none();
+    /// Code may leave it at 0: not given.
+    Option& or_none();
     Option& not_negative();
     /// Memory, which the command also takes as "500M" or "2G".
     Option& bytes();
@@ -90,7 +90,6 @@ public:
 
     /// The name where dashes are not possible: in Python and in studies.
     [[nodiscard]] std::string key() const;
-    [[nodiscard]] bool is_switch() const { return std::holds_alternative<bool*>(value); }
     [[nodiscard]] bool is_whole() const;
     [[nodiscard]] bool is_number() const;
     [[nodiscard]] bool is_optional() const;

@@ -101,6 +101,9 @@ struct OptionUse {
 /// How errors call options: as of the command, --per-edge, or as Python, per_edge.
 enum class OptionNames { Flags, Keywords };
 
+/// An option as errors call it; name: without dashes
+[[nodiscard]] std::string option_name(std::string_view name, OptionNames names);
+
 /// What was given for an option, as text; nothing if it was not given.
 using GivenOptions = std::function<std::optional<std::string>(std::string_view name)>;
 

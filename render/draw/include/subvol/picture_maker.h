@@ -40,7 +40,7 @@ struct PictureStyle {
 ///
 /// kernels:         how meshes become kernels; its scheme is that of all methods, and so are its levels (none: the limit, for
 ///                  tets and pt level 1)
-/// drop_invisible:  kernels that the colours of the picture make invisible are dropped
+/// drop_invisible:  kernels that the colours of the first picture make invisible are dropped from all
 /// splat:           how kernels are drawn; method, samples and clip are those of the style, channels those of the body, and
 ///                  light is added where the look has it
 /// order, kbuffer:  of pt
@@ -66,9 +66,13 @@ struct MethodOptions {
     OptionNames names = OptionNames::Flags;
 };
 
-/// throws: Error(InvalidInput) if values contradict each other: light of a look that a method cannot draw, levels of detail
-/// that
-///         it does not have
+/// What users choose beside the method, the kernels (`KernelOptions`) and how these are drawn (`SplatOptions`).
+[[nodiscard]] std::vector<Option> options_of(MethodOptions& options);
+
+/// throws: Error(InvalidInput) if the method cannot draw the light of the look
+void validate(const PictureStyle& style, OptionNames names = OptionNames::Flags);
+
+/// throws: Error(InvalidInput) for values that are out of range or contradict each other
 void validate(const MethodOptions& options);
 
 /// What is drawn; one of the pointers is set. All is referred to, not copied.

@@ -3,9 +3,11 @@
 
 #include <cstddef>
 #include <optional>
+#include <vector>
 
 #include "subvol/clip.h"
 #include "subvol/names.h"
+#include "subvol/option.h"
 #include "subvol/progress.h"
 #include "subvol/vec.h"
 
@@ -72,5 +74,8 @@ struct SplatOptions {
     double ambient_occlusion = 0;
     Progress* progress = nullptr;
 };
+
+/// The backend, the device, the sheets, and the light inside the volume.
+[[nodiscard]] std::vector<Option> options_of(SplatOptions& options);
 
 }  // namespace subvol

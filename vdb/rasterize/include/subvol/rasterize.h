@@ -70,7 +70,7 @@ struct RasterizeOptions {
 
 /// In the header, so that programs which load this component when they need it know its options before.
 [[nodiscard]] inline std::vector<Option> options_of(RasterizeOptions& options) {
-    return {Option("voxel-size", options.voxel_size_world).positive_or_none().help("H", "edge of a voxel in world units"),
+    return {Option("voxel-size", options.voxel_size_world).positive().or_none().help("H", "edge of a voxel in world units"),
             Option("resolution", options.resolution)
                 .between(1, 1 << 20)
                 .help("N", "voxels along the longest side of the bounding box")

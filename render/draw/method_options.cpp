@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <string>
+
+#include "subvol/detail/number_text.h"
+#include "subvol/error.h"
+#include "subvol/picture_maker.h"
+
+namespace subvol {
+namespace {
+
+void check_light(const PictureStyle& style, OptionNames names) {
+    const bool computes_light = draws_kernels(style.method) || style.method == Method::Grid;
+    if (computes_light || !is_lit(style.look.look) || style.look.look == Look::Solid) return;
+    throw Error(ErrorCode::InvalidInput, "method " + std::string(name_of(style.method)) + " lights the boundary only",
+                option_name("look", names) + (names == OptionNames::Flags ? " " : "=") + std::string(name_of(style.look.look)),
+                "use method splat or sheets, or the colour map isosurface for surfaces without light");
+}
+
+/// Kernels take any number of pixels; pt takes the fraction of the faces that only one of its orders can leave out.
+void check_lod(const MethodOptions& options) {
+    if (!options.lod || options.style.method != Method::Projected) return;
+    const std::string where = option_name("lod", options.names);
+    if (*options.lod > 1) {
+        throw Error(ErrorCode::InvalidInput, "the fraction of faces is " + detail::number_text(*options.lod), where, "0 to 1");
+    }
+    if (options.order != ProjectedOrder::Havs) {
+        throw Error(ErrorCode::InvalidInput,
+                    "has no effect without " + option_name("order", options.names) + " havs: only this order leaves faces out",
+                    where);
+    }
+}
+
+/// Within a time limit the kernels follow from the time.
+void check_time(const MethodOptions& options) {
+    if (!options.seconds || !draws_kernels(options.style.method)) return;
+    const KernelOptions& kernels = options.kernels;
+    const char* const other = kernels.levels                              ? "levels"
+                              : kernels.reduce_rmse > 0                   ? "reduce"
+                              : kernels.visible || options.drop_invisible ? "threshold"
+                              : kernels.sample.footprint                  ? "footprint"
+                                                                          : nullptr;
+    if (other == nullptr) return;
+    throw Error(ErrorCode::InvalidInput, "has no effect with " + option_name("seconds", options.names),
+                option_name(other, options.names), "leave one of them out");
+}
+
+}  // namespace
+
+std::vector<Option> options_of(MethodOptions& options) {
+    return {Option("samples", options.style.samples)
+                .between(1, 16)
+                .help("N", "n x n rays per pixel (default 1; 2 for --look solid)"),
+            Option("tolerance-image", options.image_tolerance)
+                .positive()
+                .help("RMS", "dense, without --levels: raise the level until the RMS of the picture's change is less"),
+            Option("order", options.order)
+                .help("NAME",
+                      "pt: how the tetrahedra are sorted: topological (by shared faces), centroid, lists (one per pixel) or "
+                      "havs (faces by centroid, then a k-buffer per pixel)"),
+            Option("kbuffer", options.kbuffer).between(1, 65536).help("K", "havs: entries of the k-buffer"),
+            Option("lod", options.lod)
+                .not_negative()
+                .help("PIXELS|F",
+                      "splat: merge kernels as long as they are narrower than so many pixels, such as 2 (default 0: never); "
+                      "havs: the fraction of the interior faces that is drawn (default 1)"),
+            Option("seconds", options.seconds)
+                .positive()
+                .help("S",
+                      "the best picture within this time; splat: first coarse, then with the mesh sampled for the view; pt: "
+                      "first the faces of the boundary, then more and more of those inside; kernels follow from the time then, "
+                      "not from --levels, --reduce, --threshold or --footprint")
+                .instead_of({"turntable"}),
+            Option("memory", options.memory_bytes)
+                .bytes()
+                .help("BYTES",
+                      "of bricks: what kernels or cells take while a part of the picture is drawn; of .svk files with --lod: "
+                      "what is kept for the next frame (default 1G)")};
+}
+
+void validate(const PictureStyle& style, OptionNames names) {
+    check_light(style, names);
+}
+
+void validate(const MethodOptions& options) {
+    check_options(options);
+    check_options(options.splat);
+    validate(options.style, options.names);
+    check_lod(options);
+    check_time(options);
+}
+
+}  // namespace subvol

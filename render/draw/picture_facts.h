@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "subvol/facts.h"
+#include "subvol/method.h"
+#include "subvol/render_dense.h"
+#include "subvol/render_grid.h"
+#include "subvol/render_projected.h"
+#include "subvol/render_tets.h"
+#include "subvol/splat.h"
+
+namespace subvol::detail {
+
+// What the reports of renderers say of a picture, under the keys that the command and Python have for it, with the warnings
+// that follow.
+
+/// method: the one that was asked for; the report has the backend
+void add_facts(const SplatReport& splats, Method method, Facts& facts);
+void add_facts(const TetsReport& tets, Facts& facts);
+void add_facts(const ProjectedReport& pt, ProjectedOrder order, Facts& facts);
+/// chosen_level: whether the level was given; else it is warned if the picture still changes
+void add_facts(const DenseReport& dense, bool chosen_level, Facts& facts);
+void add_facts(const GridTraceReport& grid, Facts& facts);
+
+}  // namespace subvol::detail
