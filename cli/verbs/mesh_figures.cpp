@@ -57,28 +57,6 @@ Json json_of(const Box& box) {
     return Json::array({json_of(box.lower), json_of(box.upper)});
 }
 
-void put_mesh_report(Report& report, const MeshReport& mesh) {
-    Json valences = Json::object();
-    for (const auto& [valence, count] : mesh.interior_edge_valence) valences[std::to_string(valence)] = count;
-    report["points"] = mesh.points;
-    report["points_used"] = mesh.points_used;
-    report["cells"] = mesh.cells;
-    report["edges"] = mesh.edges;
-    report["faces"] = mesh.faces;
-    report["boundary_faces"] = mesh.boundary_faces;
-    report["interior_edges"] = mesh.interior_edges;
-    report["interior_edge_valence"] = valences;
-    report["singular_nodes"] = mesh.singular_nodes;
-    report["inverted_cells"] = mesh.inverted_cells;
-    report["degenerate_cells"] = mesh.degenerate_cells;
-    report["min_scaled_jacobian"] = mesh.min_scaled_jacobian;
-    report["nonmanifold_edges"] = mesh.nonmanifold_edges;
-    report["nonmanifold_points"] = mesh.nonmanifold_points;
-    report["nonmanifold_faces"] = mesh.nonmanifold_faces;
-    report["volume"] = mesh.volume;
-    report["bounds"] = json_of(mesh.bounds);
-}
-
 Json json_of(const detail::MeshShare& share) {
     Json json;
     for (const auto& [name, count] : kCounts) json[name] = share.counts.*count;

@@ -20,9 +20,6 @@ namespace subvol::cli {
 /// [lower corner, upper corner]
 [[nodiscard]] Json json_of(const Box& box);
 
-/// Puts the figures of a mesh into a report, as `info` has them.
-void put_mesh_report(Report& report, const MeshReport& mesh);
-
 /// The figures of a share, for `join`.
 [[nodiscard]] Json json_of(const detail::MeshShare& share);
 

@@ -172,7 +172,7 @@ private:
             about.counts = report.timed("inspect", [&] { return figures_of(read); });
             if (about.counts.inverted_cells > 0) about.inverted = inverted_cells(read.mesh, kCellsNamed);
         }
-        put_mesh_report(report, about.counts);
+        report.merge(facts_of(about.counts));
         if (!read.shells.empty()) {
             const ShellReport shells = inspect(read.shells);
             report["sheets"] = {{"quads", shells.quads},           {"lines", shells.lines},
@@ -216,7 +216,7 @@ private:
         const detail::MeshShare about = joined(
             share, report, [&] { return detail::inspect_share(source_of(bricks), share, kCellsNamed, report.progress()); });
         if (!speaks()) return;
-        put_mesh_report(report, about.counts);
+        report.merge(facts_of(about.counts));
         report["halo_layers"] = bricks.halo_layers;
         std::uint64_t bytes = 0;
         for (const Brick& brick : bricks.bricks) bytes += brick.bytes;

@@ -181,7 +181,7 @@ private:
         Json json = object_in(parts_.front());  // what does not depend on the share
         for (const char* key : {"part", "part_note", "part_figures", "peak_bytes", "seconds"}) json.erase(key);
         report.take(std::move(json));
-        put_mesh_report(report, whole.counts);
+        report.merge(facts_of(whole.counts));
         report["verdict"] = verdict(whole.counts, whole.inverted);
         detail::write_text_file(output_, report.json().dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
         report["parts"] = parts_.size();

@@ -86,10 +86,6 @@ constexpr bool kIsNumber =
     std::is_same_v<Pointer, std::optional<int>*> || std::is_same_v<Pointer, std::optional<std::uint64_t>*> ||
     std::is_same_v<Pointer, std::optional<double>*>;
 
-std::string text_of(double number) {
-    return detail::number_text(number, std::numeric_limits<double>::max_digits10);
-}
-
 /// A value as users write it; empty: not given.
 struct Text {
     std::string operator()(const bool* on) const { return *on ? "true" : ""; }
@@ -235,7 +231,7 @@ void Option::assign(double number) const {
 }
 
 void Option::set(double number, const std::string& where) const {
-    if (!(zero_is_none_ && number == 0)) check_number(number, text_of(number), where);
+    if (!(zero_is_none_ && number == 0)) check_number(number, detail::exact_text(number), where);
     assign(number);
 }
 

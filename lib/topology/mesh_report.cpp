@@ -4,7 +4,9 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <string>
 
 #include "boundary_rings.h"
 #include "mesh_parts.h"
@@ -293,6 +295,31 @@ detail::MeshShare detail::join_shares(std::span<const MeshShare> shares, std::si
     std::ranges::sort(whole.inverted);  // the cells of bricks are in no order
     whole.inverted.resize(std::min(whole.inverted.size(), inverted_at_most));
     return whole;
+}
+
+Facts facts_of(const MeshReport& report) {
+    const auto corner = [](const Vec3& x) { return FactValue(std::array{x.x, x.y, x.z}); };
+    Facts valences;
+    for (const auto& [valence, edges] : report.interior_edge_valence) valences[std::to_string(valence)] = edges;
+    Facts facts;
+    facts["points"] = report.points;
+    facts["points_used"] = report.points_used;
+    facts["cells"] = report.cells;
+    facts["edges"] = report.edges;
+    facts["faces"] = report.faces;
+    facts["boundary_faces"] = report.boundary_faces;
+    facts["interior_edges"] = report.interior_edges;
+    facts["interior_edge_valence"] = valences;
+    facts["singular_nodes"] = report.singular_nodes;
+    facts["inverted_cells"] = report.inverted_cells;
+    facts["degenerate_cells"] = report.degenerate_cells;
+    facts["min_scaled_jacobian"] = report.min_scaled_jacobian;
+    facts["nonmanifold_edges"] = report.nonmanifold_edges;
+    facts["nonmanifold_points"] = report.nonmanifold_points;
+    facts["nonmanifold_faces"] = report.nonmanifold_faces;
+    facts["volume"] = report.volume;
+    facts["bounds"] = FactValue::List{corner(report.bounds.lower), corner(report.bounds.upper)};
+    return facts;
 }
 
 }  // namespace subvol

@@ -52,6 +52,24 @@ void check_columns(const py::array& array, py::ssize_t columns, const std::strin
     throw Error(ErrorCode::InvalidInput, "has the shape " + shape_of(array), what, "(n, " + std::to_string(columns) + ")");
 }
 
+struct ToPython {
+    py::object operator()(std::monostate) const { return py::none(); }
+    template <class Plain>
+    py::object operator()(const Plain& value) const {
+        return py::cast(value);
+    }
+    py::object operator()(const FactValue::List& list) const {
+        py::list items;
+        for (const FactValue& item : list) items.append(std::visit(*this, item.value));
+        return items;
+    }
+    py::object operator()(const Facts& facts) const {
+        py::dict items;
+        for (const Fact& fact : facts.all()) items[py::str(fact.name)] = std::visit(*this, fact.value.value);
+        return items;
+    }
+};
+
 }  // namespace
 
 py::array array_from(const py::handle& given, const Error& otherwise) {
@@ -140,6 +158,10 @@ py::array owned(std::vector<Vec3> values) {
 
 py::array as_array(const Box& box) {
     return owned(std::vector<Vec3>{box.lower, box.upper});
+}
+
+py::dict dict_of(const Facts& facts) {
+    return py::dict(ToPython{}(facts));
 }
 
 }  // namespace subvol::python

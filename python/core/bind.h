@@ -14,6 +14,7 @@
 
 #include "subvol/camera.h"
 #include "subvol/error.h"
+#include "subvol/facts.h"
 #include "subvol/hex_mesh.h"
 #include "subvol/optics.h"
 #include "subvol/option.h"
@@ -90,6 +91,9 @@ template <class Work>
     run(progress, [&](Progress* listener) { result.emplace(work(listener)); });
     return std::move(*result);
 }
+
+/// Facts under their names; groups are dictionaries, too.
+[[nodiscard]] py::dict dict_of(const Facts& facts);
 
 /// A value sets the member of an option by its description; None leaves the default. key: as errors call it
 ///

@@ -77,35 +77,13 @@ std::optional<std::string> text_of(const py::dict& given, std::string_view name)
     return std::string(py::str(given[keyword.c_str()]));
 }
 
-struct ToPython {
-    py::object operator()(std::monostate) const { return py::none(); }
-    template <class Plain>
-    py::object operator()(const Plain& value) const {
-        return py::cast(value);
-    }
-    py::object operator()(const FactValue::List& list) const {
-        py::list items;
-        for (const FactValue& item : list) items.append(std::visit(*this, item.value));
-        return items;
-    }
-    py::object operator()(const Facts& facts) const {
-        py::dict items;
-        for (const Fact& fact : facts.all()) items[py::str(fact.name)] = std::visit(*this, fact.value.value);
-        return items;
-    }
-};
-
 /// The facts under the names of the command's JSON; the seconds of all stages together.
 py::dict report_of(const Facts& facts) {
-    py::dict report;
-    for (const Fact& fact : facts.all()) {
-        if (fact.name == "seconds") {
-            double sum = 0;
-            for (const Fact& stage : std::get<Facts>(fact.value.value).all()) sum += std::get<double>(stage.value.value);
-            report["seconds"] = sum;
-        } else {
-            report[py::str(fact.name)] = std::visit(ToPython{}, fact.value.value);
-        }
+    py::dict report = dict_of(facts);
+    if (const FactValue* const stages = facts.find("seconds")) {
+        double sum = 0;
+        for (const Fact& stage : std::get<Facts>(stages->value).all()) sum += std::get<double>(stage.value.value);
+        report["seconds"] = sum;
     }
     return report;
 }
@@ -192,6 +170,9 @@ void bind_render(py::module_& module) {
         py::arg("progress"));
     module.def("skin", &skin, py::arg("mesh"), py::arg("scheme"), py::arg("tension"), py::arg("crease_angle"),
                py::arg("levels"));
+    module.def(
+        "draws_kernels", [](const std::string& method) { return draws_kernels(named<Method>(method, "method")); },
+        py::arg("method"));
     module.def("gl_devices", &devices);
 }
 

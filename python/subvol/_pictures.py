@@ -93,7 +93,7 @@ def render(what: Drawable, *, method: str = "splat", view: str = "iso", camera: 
         raise InvalidInput("what: a Field cannot be drawn; draw the mesh or the points that it is of", "what", "a mesh, points or a grid")
     if len(size) != 2 or not (1 <= size[0] <= 65536 and 1 <= size[1] <= 65536):
         raise InvalidInput(f"size: {size} is not a picture size", "size", "width and height, 1 to 65536")
-    if isinstance(what, Grid) and method in ("splat", "sheets", "footprints"):
+    if isinstance(what, Grid) and _core.draws_kernels(method):
         what = sample_grid(what)
     if not isinstance(what, (HexMesh, RbfVolume, Grid)):
         raise TypeError(f"render() takes a HexMesh, RbfVolume or Grid, not {type(what).__name__}")

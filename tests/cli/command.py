@@ -37,6 +37,26 @@ End
 """
 
 
+# The coordinates x and z as fields of one cell.
+X_AND_Z = """# vtk DataFile Version 3.0
+a cell with two fields
+ASCII
+DATASET UNSTRUCTURED_GRID
+POINTS 8 double
+0 0 0  1 0 0  1 1 0  0 1 0  0 0 1  1 0 1  1 1 1  0 1 1
+CELLS 1 9
+8 0 1 2 3 4 5 6 7
+CELL_TYPES 1
+12
+POINT_DATA 8
+SCALARS x double 1
+LOOKUP_TABLE default
+0 1 1 0 0 1 1 0
+SCALARS z double 1
+LOOKUP_TABLE default
+0 0 0 0 1 1 1 1
+"""
+
 # Two scalars and a vector on one cell.
 TWO_FIELDS = """# vtk DataFile Version 3.0
 two

@@ -4,30 +4,11 @@
 import unittest
 from pathlib import Path
 
-from command import InFolder, subvol
+from command import X_AND_Z, InFolder, subvol
 
 METHODS = ["splat", "sheets", "footprints", "tets", "pt", "dense", "grid"]
 PLANE = "0,0,0,1,0,0"
 FAR = "0,-60,0,0,0,0,0,0,1,30"  # a camera that sees the ball on a few pixels
-
-TWO_FIELDS = """# vtk DataFile Version 3.0
-a cell with two fields
-ASCII
-DATASET UNSTRUCTURED_GRID
-POINTS 8 double
-0 0 0  1 0 0  1 1 0  0 1 0  0 0 1  1 0 1  1 1 1  0 1 1
-CELLS 1 9
-8 0 1 2 3 4 5 6 7
-CELL_TYPES 1
-12
-POINT_DATA 8
-SCALARS x double 1
-LOOKUP_TABLE default
-0 1 1 0 0 1 1 0
-SCALARS z double 1
-LOOKUP_TABLE default
-0 0 0 0 1 1 1 1
-"""
 
 # For each option a value that matters (None: a flag), and what else it needs. Without it the value is the default one.
 GIVEN = {
@@ -57,7 +38,7 @@ class Methods(InFolder):
 
     def setUp(self):
         super().setUp()
-        (self.folder / "two.vtk").write_text(TWO_FIELDS)
+        (self.folder / "two.vtk").write_text(X_AND_Z)
         self.run_ok("vdb", "model:ball:3", "-o", "ball.vdb", "--resolution", 12)
         self.run_ok("split", "model:ball:3", "-o", "ball.bricks", "--bricks", 2)
 

@@ -3,28 +3,10 @@
 
 import unittest
 
-from command import CUBE, InFolder, subvol
+from command import CUBE, X_AND_Z, InFolder, subvol
 
 SMALL = ["--size", "64x48", "--quiet"]
 SHEETS = ["--sheets", "40"]  # of splats
-TWO_FIELDS = """# vtk DataFile Version 3.0
-a cell with two fields
-ASCII
-DATASET UNSTRUCTURED_GRID
-POINTS 8 double
-0 0 0  1 0 0  1 1 0  0 1 0  0 0 1  1 0 1  1 1 1  0 1 1
-CELLS 1 9
-8 0 1 2 3 4 5 6 7
-CELL_TYPES 1
-12
-POINT_DATA 8
-SCALARS x double 1
-LOOKUP_TABLE default
-0 1 1 0 0 1 1 0
-SCALARS z double 1
-LOOKUP_TABLE default
-0 0 0 0 1 1 1 1
-"""
 
 
 class Splats(InFolder):
@@ -75,7 +57,7 @@ class Splats(InFolder):
         self.render("same.exr", "--backend", "cpu", "--color-field", "density", source="a.vtp")
         self.render("one.exr", "--backend", "cpu", source="a.vtp")
         self.assertEqual(self.difference("same.exr", "one.exr"), 0)
-        (self.folder / "two.vtk").write_text(TWO_FIELDS)
+        (self.folder / "two.vtk").write_text(X_AND_Z)
         for name, options in [("xx", ["--field", "x"]), ("xz", ["--field", "x", "--color-field", "z"]), ("zz", ["--field", "z"])]:
             self.render(name + ".exr", "--backend", "cpu", "--view", "-y", "--look", "volume", *options, source="two.vtk")
         self.assertGreater(self.difference("xx.exr", "xz.exr"), 0.05)

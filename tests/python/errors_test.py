@@ -68,7 +68,7 @@ def test_unknown_words_are_answered_with_the_known_ones(cube):
                         (lambda: subvol.render(cube, method="tets", shadows=True), "splat"),
                         (lambda: subvol.render(cube, method="sheets", ambient_occlusion=.1), "splat"),
                         (lambda: subvol.render(cube, method="tets", lod=1), "splat"),
-                        (lambda: subvol.render(cube, lod=float("nan")), "pixels"),
+                        (lambda: subvol.render(cube, lod=float("nan")), "0 or more"),
                         (lambda: subvol.render(cube, backend="metal", method="splat"), "cpu"),
                         (lambda: subvol.render(cube, tf="virids"), "viridis"),
                         (lambda: subvol.fit("square"), "gaussian"),

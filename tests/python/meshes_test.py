@@ -12,6 +12,7 @@ def test_a_cube_is_measured(cube):
     assert report["volume"] == pytest.approx(1, abs=1e-14)
     assert report["inverted_cells"] == 0 and report["min_scaled_jacobian"] == pytest.approx(1)
     assert report["boundary_faces"] == 54
+    assert report["nonmanifold_faces"] == 0
     assert report["interior_edge_valence"] == {4: 36}
     assert np.array_equal(cube.bounds, [[0, 0, 0], [1, 1, 1]])
 

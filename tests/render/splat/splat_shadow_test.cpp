@@ -155,7 +155,8 @@ TEST(AmbientOcclusion, AThinHazeStaysAsItIs) {
 
 TEST(SplatShadows, WhatCannotBeDrawnIsRefused) {
     const RbfVolume volume = sample_rbf_points(block([](const Vec3&) { return 1; })).volume;
-    expect_error(ErrorCode::InvalidInput, "ambient occlusion", [&] { Splatter(volume, {.ambient_occlusion = 1.5}); });
+    expect_error(ErrorCode::InvalidInput, "ambient_occlusion: 1.5 is out of range",
+                 [&] { Splatter(volume, {.ambient_occlusion = 1.5}); });
     expect_error(ErrorCode::InvalidInput, "sheet buffers",
                  [&] { Splatter(volume, {.method = SplatMethod::Sheets, .shadows = true}); });
 }

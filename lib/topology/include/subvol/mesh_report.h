@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "subvol/facts.h"
 #include "subvol/mesh_source.h"
 
 namespace subvol {
@@ -29,6 +30,9 @@ struct MeshReport {
     double volume = 0;                   // of the trilinear cells, exact, world³
     Box bounds;
 };
+
+/// All of it, under the names that the command and Python have for it.
+[[nodiscard]] Facts facts_of(const MeshReport& report);
 
 /// Counts and measures a mesh. Of a mesh in pieces counts, extremes and bounds are those of the whole, the volume is the sum of
 /// the pieces' volumes in their order.
