@@ -32,12 +32,14 @@ void add_mesh_options(CLI::App& app, CommonOptions& options) {
         ->group(group)
         ->type_name("T|corners")
         ->transform(number_or("corners", positive_number()));
-    app.add_option("--cell-values", options.cell_values,
-                   "values at cells become values at points: fit (so that the volume has the cells' means; the default for "
-                   "OpenFOAM) or mean (of the cells around each point; the default for all others)")
+    app.add_option(
+           "--cell-values", options.cell_values,
+           "values at cells become values at points: fit (the volume follows the cells' means without waves; the default "
+           "for OpenFOAM), mean (of the cells around each point; the default for all others), exact (the volume has the "
+           "cells' means), auto")
         ->group(group)
         ->type_name("HOW")
-        ->check(one_of({"fit", "mean"}));
+        ->check(one_of(names_of<CellValues>()));
     auto* step =
         app.add_option("--step", options.step,
                        "a step of a series, from 0, or last (the default); of verbs that write a file a step also all or A-B");

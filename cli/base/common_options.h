@@ -24,7 +24,7 @@ struct CommonOptions {
     bool weld = false;                   // join points at the same place
     std::optional<double> weld_distance_world;
     std::string curved = "5e-6";       // of the mesh's size, or "corners"
-    std::string cell_values = "auto";  // "fit", "mean"
+    std::string cell_values = "auto";  // a name of CellValues
     std::vector<std::string> sharp;    // groups of faces and edges
     std::optional<std::string> step;   // a number from 0, "last", "all" or a range
     std::optional<double> time;        // the step nearest to it

@@ -107,6 +107,13 @@ WithFacts<ReadResult> read_input(const std::string& input, const CommonOptions& 
         return read_mesh(input, file_options);
     });
     for (const std::string& warning : read.warnings) facts.warn(warning);
+    if (read.cell_values) {
+        Facts& means = facts.group("cell_values");
+        means["method"] = std::string(name_of(read.cell_values->method));
+        means["fields"] = read.cell_values->fields;
+        means["rms_of_range"] = read.cell_values->rms_of_range;
+        means["max_of_range"] = read.cell_values->most_of_range;
+    }
     return {std::move(read), std::move(facts)};
 }
 

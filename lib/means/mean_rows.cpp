@@ -17,7 +17,7 @@ namespace subvol::detail {
 
 namespace {
 
-constexpr std::size_t kNodes = 27;
+constexpr std::size_t kNodes = kMeanNodes;
 
 // Limit points of a control cell: 3 along each axis, u fastest, from the corners of its children.
 constexpr std::array<std::array<std::size_t, 3>, 8> kCorner{
@@ -50,8 +50,9 @@ struct GaussLine {
     }
 };
 
-// The integral of each node's function times the Jacobian's determinant.
-std::array<double, kNodes> integrals(const std::array<Vec3, kNodes>& x) {
+}  // namespace
+
+std::array<double, kMeanNodes> node_integrals(const std::array<Vec3, kMeanNodes>& x) {
     static const GaussLine line;
     std::array<double, kNodes> weights{};
     for (std::size_t gw = 0; gw < 3; ++gw) {
@@ -74,6 +75,8 @@ std::array<double, kNodes> integrals(const std::array<Vec3, kNodes>& x) {
     }
     return weights;
 }
+
+namespace {
 
 // As if the cell were a box.
 std::array<double, kNodes> even_integrals() {
@@ -109,7 +112,7 @@ struct RefinedRows {
 // The weights of a cell's nodes in its integral, which are volumes; also its volume and its centre.
 void weigh_cell(const std::array<Vec3, kNodes>& x, std::array<double, kNodes>& weights, double& volume, Vec3& centre) {
     static const std::array<double, kNodes> kEven = even_integrals();
-    weights = integrals(x);
+    weights = node_integrals(x);
     volume = 0;
     double size = 0;
     for (const double weight : weights) {

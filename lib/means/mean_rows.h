@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <span>
 #include <vector>
 
@@ -22,6 +23,12 @@ struct Wholes {
 };
 
 [[nodiscard]] Wholes wholes_of(std::size_t cells, std::span<const Index> parts);
+
+/// The limit points of a cell's first level: 3 along each axis, u fastest.
+inline constexpr std::size_t kMeanNodes = 27;
+
+/// The integral of each node's parabolic function times the determinant of the Jacobian of the cell that runs through them.
+[[nodiscard]] std::array<double, kMeanNodes> node_integrals(const std::array<Vec3, kMeanNodes>& x);
 
 /// The weights of control values in the mean of each whole, and what the first guess needs of cells: volumes and centres.
 struct MeanRows {

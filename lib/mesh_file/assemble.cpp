@@ -393,7 +393,7 @@ ReadResult assemble(MeshFile&& found, std::string_view file, const EntityNames& 
     try {
         if (!others.empty()) split_all(result, std::move(others), cut, origin);
         warn_of_folded(result);
-        ArrayConversion conversion(result, origin, file, names, options.cell_values == CellValues::Fit);
+        ArrayConversion conversion(result, origin, file, names, are_means(options.cell_values));
         for (auto& array : found.arrays) conversion.take(std::move(array));
         conversion.finish();
         if (!result.cell_means.empty()) result.cell_parts = std::move(origin.cell_numbers);

@@ -124,19 +124,30 @@ std::vector<std::string> list_extensions(bool writable_only) {
 }
 
 // Puts the fitted fields in the place of those that were read.
-void fit_fields(ReadResult& result) {
-    const CellMeansFit fit = fit_cell_means(result.mesh, result.cell_means, result.cell_parts);
-    std::map<std::string_view, const Attribute*> fitted;
-    for (const Attribute& field : fit.fields) fitted.emplace(field.name, &field);
+void fit_fields(ReadResult& result, CellValues method) {
+    std::vector<Attribute> fields;
+    CellMeansReport report;
+    if (method == CellValues::Exact) {
+        ExactMeansFit fit = fit_exact_cell_means(result.mesh, result.cell_means, result.cell_parts);
+        fields = std::move(fit.fields);
+        report = fit.report.found;
+    } else {
+        CellMeansFit fit = fit_cell_means(result.mesh, result.cell_means, result.cell_parts);
+        fields = std::move(fit.fields);
+        report = fit.report;
+    }
+    result.cell_values = CellValuesReport{method, fields.size(), report.rms_off, report.most_off};
+    std::map<std::string_view, Attribute*> fitted;
+    for (Attribute& field : fields) fitted.emplace(field.name, &field);
     for (Attribute& attribute : result.mesh.attributes) {
         const auto found = fitted.find(attribute.name);
-        if (found != fitted.end()) attribute.values = found->second->values;
+        if (found != fitted.end()) attribute = std::move(*found->second);
     }
     const auto percent = [](double part) { return number_text(100 * part, 2) + " %"; };
-    result.warnings.push_back(counted(fit.fields.size(), "cell array", "cell arrays") +
+    result.warnings.push_back(counted(fields.size(), "cell array", "cell arrays") +
                               " became values at points whose volume has the cells' means to within " +
-                              percent(fit.report.rms_off) + " of their range (root mean square; at most " +
-                              percent(fit.report.most_off) + ")");
+                              percent(report.rms_off) + " of their range (root mean square; at most " +
+                              percent(report.most_off) + ")");
 }
 
 [[noreturn]] void refuse_format(const std::filesystem::path& path, const std::string& verb, const std::string& allowed) {
@@ -198,7 +209,7 @@ ReadResult read_mesh(const std::filesystem::path& path, const ReadOptions& optio
         resolved.cell_values = format.finite_volumes ? CellValues::Fit : CellValues::Mean;
     }
     ReadResult result = format.read(path, resolved);
-    if (!result.cell_means.empty()) fit_fields(result);
+    if (!result.cell_means.empty()) fit_fields(result, resolved.cell_values);
     return result;
 }
 

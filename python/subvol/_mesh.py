@@ -21,8 +21,8 @@ def read_mesh(path: Path, *, other_cells: str = "split", weld: Optional[float] =
     sharp:       names of groups of faces and edges that stay sharp (MEDIT, Gmsh)
     step:        of a series (`open_series`), from 0; None: the last one
     blocks:      names of the parts that are read; none: all
-    cell_values: "fit" (values at points whose volume has the cells' means) or "mean" (at each point the mean of its cells); None: what
-                 suits the format, "fit" for OpenFOAM
+    cell_values: "fit" (the volume follows the cells' means without waves), "mean" (at each point the mean of its cells), "exact" (the volume
+                 has the cells' means); None or "auto": what suits the format, "fit" for OpenFOAM
 
     Warns (SubvolWarning) once for each thing left out, turned round or converted.
     Raises FileError if the file cannot be opened; InvalidInput, with file and line, if it is malformed.

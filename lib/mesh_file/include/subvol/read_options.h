@@ -35,17 +35,23 @@ struct NameTable<OtherCells> {
 
 /// What values at cells are taken for. They become values at points either way.
 ///
-/// Mean: at each point the mean over its cells, weighted by their volumes
-/// Fit:  they are means over the cells, as finite volumes have them: the values at points are those whose limit volume (of the
-///       scheme MCQ) has these means, as `fit_cell_means` finds them. A warning says how well
-/// Auto: Fit for OpenFOAM, Mean for all others
-enum class CellValues { Auto, Mean, Fit };
+/// Mean:  at each point the mean over its cells, weighted by their volumes
+/// Fit:   they are means over the cells, as finite volumes have them: values at points whose limit volume (of the scheme MCQ)
+///        follows these means without waves, as `fit_cell_means` finds them. A warning says how well the means are met
+/// Exact: the same, but the means are met wherever that is possible, as by `fit_exact_cell_means`
+/// Auto:  Fit for OpenFOAM, Mean for all others
+enum class CellValues { Auto, Mean, Fit, Exact };
 
 template <>
 struct NameTable<CellValues> {
     static constexpr Name<CellValues> rows[] = {
-        {CellValues::Auto, "auto"}, {CellValues::Fit, "fit"}, {CellValues::Mean, "mean"}};
+        {CellValues::Auto, "auto"}, {CellValues::Fit, "fit"}, {CellValues::Mean, "mean"}, {CellValues::Exact, "exact"}};
 };
+
+/// Whether values at cells are taken for means over them.
+[[nodiscard]] constexpr bool are_means(CellValues values) {
+    return values == CellValues::Fit || values == CellValues::Exact;
+}
 
 /// sharp: names of groups of faces and edges (MEDIT, Gmsh): their faces inside the mesh become sharp faces, their edges on the
 ///       boundary or on such faces creases. In Gmsh the name of a physical group of dimension 2 or 1, or its number; in MEDIT a
@@ -76,9 +82,18 @@ struct MeshBlock {
     std::size_t cells = 0;
 };
 
+/// How far the means over cells that values at points were made from are met, in parts of each field's range; the largest of
+/// all fields. method: Fit or Exact
+struct CellValuesReport {
+    CellValues method = CellValues::Fit;
+    std::size_t fields = 0;
+    double rms_of_range = 0, most_of_range = 0;
+};
+
 /// blocks:     the parts that were read, of formats that have such parts
 /// cell_means: only if values at cells were fitted: the values of these fields in the file, for each cell of the mesh
 /// cell_parts: for each cell of the mesh the number of the file's cell that it is a part of; empty if there are no such fields
+/// cell_values: how well the means are met; nothing if there are no such fields
 /// shells:     the quads and lines of VTK and Gmsh files beside hexahedra that were not split, but for those that are faces and
 ///             edges of the hexahedra
 struct ReadResult {
@@ -88,6 +103,7 @@ struct ReadResult {
     std::vector<MeshBlock> blocks = {};
     std::vector<Attribute> cell_means = {};
     std::vector<Index> cell_parts = {};
+    std::optional<CellValuesReport> cell_values = {};
     Shells shells = {};
 };
 

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
+#include "mean_channels.h"
 #include "mean_rows.h"
 #include "subvol/detail/parallel_each.h"
 #include "subvol/detail/stopwatch.h"
@@ -64,48 +64,6 @@ Guess first_guess(const HexMesh& mesh, const Topology& topology, const MeanRows&
     return {std::move(sums), std::move(changes)};
 }
 
-// A channel of a field.
-struct Channel {
-    std::size_t field, number;
-};
-
-std::vector<Channel> channels_of(std::span<const Attribute> fields) {
-    std::vector<Channel> channels;
-    for (std::size_t f = 0; f < fields.size(); ++f) {
-        for (std::size_t c = 0; c < static_cast<std::size_t>(fields[f].channels); ++c) channels.push_back({f, c});
-    }
-    return channels;
-}
-
-std::vector<double> channel_values(std::span<const Attribute> fields, const Channel& channel) {
-    const Attribute& field = fields[channel.field];
-    const auto width = static_cast<std::size_t>(field.channels);
-    std::vector<double> values(field.values.size() / width);
-    for (std::size_t c = 0; c < values.size(); ++c) values[c] = field.values[c * width + channel.number];
-    return values;
-}
-
-// The power of two by which values are divided while they are fitted: sums of squares of very large and very small ones would
-// leave the range of doubles. Nothing else changes, as a power of two changes no digits.
-int exponent_of(const std::vector<double>& values) {
-    constexpr int kPlain = 300;
-    double most = 0;
-    for (const double value : values) most = std::max(most, std::abs(value));
-    const int exponent = most > 0 ? std::ilogb(most) : 0;
-    return std::abs(exponent) > kPlain ? exponent : 0;
-}
-
-void divide(std::vector<double>& values, int exponent) {
-    if (exponent == 0) return;
-    for (double& value : values) value = std::ldexp(value, -exponent);
-}
-
-double multiplied(double value, int exponent) {
-    if (exponent == 0) return value;
-    constexpr double kMost = std::numeric_limits<double>::max();
-    return std::clamp(std::ldexp(value, exponent), -kMost, kMost);  // the gradient may lead beyond
-}
-
 // Up to kLanes channels, which are fitted together.
 struct Batch {
     std::vector<Lanes> values, off;      // at points; of wholes: what their means lack
@@ -156,7 +114,7 @@ std::size_t hold(Batch& batch, std::vector<Lanes>& free) {
 
 // Finds the values. A front that is thinner than a cell makes least squares swing beyond the range of the means: such values
 // are held at their bounds while the others are searched again, a few times.
-int fit(const LaneMatrix& rows, const LaneMatrix& columns, Batch& batch, const CellMeansOptions& options) {
+int fit(const LaneMatrix& rows, const LaneMatrix& columns, Batch& batch, const ExactMeansOptions& options) {
     constexpr int kRounds = 4;
     detail::LaneSearch search{.tie = options.tie, .max_iterations = options.max_iterations};
     for (std::size_t l = 0; l < kLanes; ++l) search.enough[l] = options.tolerance * batch.range[l];
@@ -190,64 +148,49 @@ double most_rms(const Batch& batch) {
     return most;
 }
 
-void check(const HexMesh& mesh, std::span<const Attribute> means, std::span<const Index> parts,
-           const CellMeansOptions& options) {
-    const auto fail = [](const std::string& message) { throw Error(ErrorCode::InvalidInput, message); };
-    if (!parts.empty() && parts.size() != mesh.cells.size()) fail("parts are not as many as cells");
-    if (!(options.tie > 0) || !(options.tolerance > 0)) fail("tie and tolerance have to be greater than 0");
-    for (const Attribute& field : means) {
-        if (field.channels < 1 || field.values.size() != mesh.cells.size() * static_cast<std::size_t>(field.channels)) {
-            fail("field \"" + field.name + "\" does not have a mean for each cell");
-        }
-        if (!std::ranges::all_of(field.values, [](double value) { return std::isfinite(value); })) {
-            fail("a mean of field \"" + field.name + "\" is not finite");
-        }
-    }
-}
-
 }  // namespace
 
-CellMeansFit fit_cell_means(const HexMesh& mesh, std::span<const Attribute> fields, std::span<const Index> parts,
-                            const CellMeansOptions& options) {
-    check(mesh, fields, parts, options);
+ExactMeansFit fit_exact_cell_means(const HexMesh& mesh, std::span<const Attribute> fields, std::span<const Index> parts,
+                                   const ExactMeansOptions& options) {
+    detail::check_means(mesh, fields, parts);
+    if (!(options.tie > 0) || !(options.tolerance > 0)) {
+        throw Error(ErrorCode::InvalidInput, "tie and tolerance have to be greater than 0");
+    }
     const detail::Stopwatch watch;
     const Topology topology = build_topology(mesh);
     const Wholes wholes = detail::wholes_of(mesh.cells.size(), parts);
     const MeanRows means = detail::mean_rows(mesh, topology, wholes, options.scheme, options.progress);
     const LaneMatrix columns = means.matrix.transposed(mesh.points.size());
-    CellMeansFit result;
-    for (const Attribute& field : fields) {
-        result.fields.push_back(
-            {field.name, field.channels, std::vector<double>(mesh.points.size() * static_cast<std::size_t>(field.channels))});
-    }
-    const std::vector<Channel> channels = channels_of(fields);
+    ExactMeansFit result;
+    result.fields = detail::empty_fields(mesh, fields);
+    const std::vector<detail::MeanChannel> channels = detail::mean_channels(fields);
     for (std::size_t first = 0; first < channels.size(); first += kLanes) {
         const std::size_t count = std::min(kLanes, channels.size() - first);
         std::vector<std::vector<double>> of_cells;
         std::array<int, kLanes> exponents{};
         for (std::size_t l = 0; l < count; ++l) {
-            std::vector<double>& values = of_cells.emplace_back(channel_values(fields, channels[first + l]));
-            exponents[l] = exponent_of(values);
-            divide(values, exponents[l]);
+            std::vector<double>& values = of_cells.emplace_back(detail::channel_values(fields, channels[first + l]));
+            exponents[l] = detail::mean_exponent(values);
+            detail::divide_values(values, exponents[l]);
         }
         Batch batch = first_batch(mesh, topology, means, wholes, of_cells);
-        CellMeansReport& report = result.report;
+        ExactMeansReport& report = result.report;
         report.first_rms_off = std::max(report.first_rms_off, most_rms(batch));
         report.iterations = std::max(report.iterations, fit(means.matrix, columns, batch, options));
-        report.rms_off = std::max(report.rms_off, most_rms(batch));
+        report.found.rms_off = std::max(report.found.rms_off, most_rms(batch));
         const Lanes most = detail::largest(batch.off);
         for (std::size_t l = 0; l < count; ++l) {
             const bool constant = !(batch.range[l] > 0);  // has no rounding
-            if (!constant) report.most_off = std::max(report.most_off, most[l] / batch.range[l]);
+            if (!constant) report.found.most_off = std::max(report.found.most_off, most[l] / batch.range[l]);
             Attribute& fitted = result.fields[channels[first + l].field];
             const auto width = static_cast<std::size_t>(fitted.channels);
             for (std::size_t p = 0; p < batch.values.size(); ++p) {
                 const double value = constant ? batch.least[l] : batch.values[p][l];
-                fitted.values[p * width + channels[first + l].number] = multiplied(value, exponents[l]);
+                fitted.values[p * width + channels[first + l].number] = detail::multiplied_value(value, exponents[l]);
             }
         }
     }
-    result.report.seconds = watch.seconds();
+    result.report.found.seconds = watch.seconds();
     return result;
 }
 

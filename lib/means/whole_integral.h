@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "mean_channels.h"
+#include "mean_stencils.h"
+#include "subvol/progress.h"
+
+namespace subvol::detail {
+
+/// A channel whose values are found, but for the whole integral. Means and values are divided by a power of two, and then
+/// relative to the least mean, so that a large constant takes no digits from what varies.
+///
+/// low, high:   of the means
+/// least, most: what values are kept within, relative; or infinite
+/// integral:    of the relative means over the straight cells
+/// lacks:       what the integral of the values' limit over the straight cells lacks of that
+struct FittedChannel {
+    MeanChannel channel{};
+    int exponent = 0;
+    double low = 0, high = 0;
+    double least = 0, most = 0;
+    double integral = 0, lacks = 0;
+    std::vector<double> values{};
+
+    [[nodiscard]] bool is_constant() const { return !(high > low); }
+    /// What the field is kept within.
+    [[nodiscard]] std::array<double, 2> bounds() const;
+    /// The field's value at a point.
+    [[nodiscard]] double value(std::size_t point) const;
+};
+
+/// The volume of the straight cells, its first moments, and the weights of control values in the integral of their limit over
+/// it.
+struct StraightVolume {
+    double volume = 0;
+    Vec3 moment{0.0};
+    std::vector<double> weights{};
+};
+
+[[nodiscard]] StraightVolume straight_volume(const HexMesh& mesh, const MeanStencils& stencils);
+
+/// Changes the values so that the integral over all cells is that of the means.
+void correct_integrals(const HexMesh& mesh, const StraightVolume& straight, std::vector<FittedChannel>& channels,
+                       Progress* progress);
+
+}  // namespace subvol::detail
