@@ -33,11 +33,12 @@ MeshSource BodyInput::source() const {
     return bricks_ ? source_of(*bricks_, change_) : MeshSource(mesh_);
 }
 
-WithFacts<std::string> BodyInput::select(const CommonOptions& options, OtherFields others) {
+WithFacts<std::string> BodyInput::select(const CommonOptions& options, OtherFields others,
+                                         const std::optional<std::string>& second) {
     std::vector<Attribute> fields;
     if (!bricks_) {
         if (others == OtherFields::Keep) fields = mesh_.attributes;
-        auto [selected, facts] = with_selected_field(std::move(mesh_), options);
+        auto [selected, facts] = with_selected_field(std::move(mesh_), options, second);
         mesh_ = with_others(std::move(selected), std::move(fields));
         return {mesh_.attributes.front().name, std::move(facts)};
     }
@@ -86,19 +87,18 @@ const HexMesh& BodyInput::mesh_for(const TetRefinement& tets) const {
 }
 
 WithFacts<BodyInput> open_body(const std::string& input, const CommonOptions& options, const CLI::App& app, Progress* progress,
-                               bool shells) {
-    if (is_bricks_input(input)) {
+                               bool shells, ShellsAlone alone) {
+    if (kind_of(input) == InputKind::Bricks) {
         auto [bricks, facts] = open_bricks_input(input, app);
         return {{input, std::move(bricks)}, std::move(facts)};
     }
-    auto [read, facts] = read_input(input, options, progress);
-    WithFacts<BodyInput> body{{input, used_mesh(std::move(read.mesh), options)}, std::move(facts)};
-    body.value.blocks = std::move(read.blocks);
-    if (shells) {
-        body.value.shells = with_density(std::move(read.shells), options);
-    } else {
-        body.facts.warn(shells_left_out(read.shells));
-    }
+    auto [read, facts] = read_input(input, options, progress, alone);
+    std::vector<MeshBlock> blocks = std::move(read.blocks);
+    Shells taken;
+    HexMesh mesh = facts.unpack(mesh_of(std::move(read), options, shells ? &taken : nullptr));
+    WithFacts<BodyInput> body{{input, std::move(mesh)}, std::move(facts)};
+    body.value.blocks = std::move(blocks);
+    body.value.shells = std::move(taken);
     return body;
 }
 

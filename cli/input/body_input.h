@@ -26,8 +26,10 @@ public:
 
     /// Selects the field that the options name, as a scalar: the first of the fields.
     ///
+    /// second:  of a mesh in memory, a field that becomes the last one
     /// returns: its name; facts as those of `with_selected_field`
-    [[nodiscard]] WithFacts<std::string> select(const CommonOptions& options, OtherFields others);
+    [[nodiscard]] WithFacts<std::string> select(const CommonOptions& options, OtherFields others,
+                                                const std::optional<std::string>& second = {});
 
     /// Adds a field as a scalar, unless it is there.
     ///
@@ -62,7 +64,8 @@ private:
 ///
 /// app:    of the verb; options that bricks cannot have are refused
 /// shells: whether shells and beams are wanted; else a warning says that they are left out
+/// alone:  Take: of shells without cells, the mesh has the points and fields
 [[nodiscard]] WithFacts<BodyInput> open_body(const std::string& input, const CommonOptions& options, const CLI::App& app,
-                                             Progress* progress, bool shells = false);
+                                             Progress* progress, bool shells = false, ShellsAlone alone = ShellsAlone::Refuse);
 
 }  // namespace subvol::cli

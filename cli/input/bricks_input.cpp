@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <charconv>
-#include <filesystem>
 
 #include "subvol/detail/near_name.h"
 #include "subvol/error.h"
@@ -18,10 +17,6 @@ const BrickField* find(const Bricks& bricks, const std::string& name) {
 }
 
 }  // namespace
-
-bool is_bricks_input(const std::string& input) {
-    return is_bricks(input) || std::filesystem::path(input).extension() == ".bricks";
-}
 
 WithFacts<Bricks> open_bricks_input(const std::string& input, const CLI::App& app) {
     refuse_mesh_options(app, "is settled when a mesh is split; this is a folder of bricks");

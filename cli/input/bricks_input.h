@@ -15,9 +15,6 @@ class App;
 
 namespace subvol::cli {
 
-/// Whether an input is a folder of bricks.
-[[nodiscard]] bool is_bricks_input(const std::string& input);
-
 /// Opens bricks; cells and bricks are facts. Refuses the common options that bricks cannot have.
 [[nodiscard]] WithFacts<Bricks> open_bricks_input(const std::string& input, const CLI::App& app);
 

@@ -2,16 +2,13 @@
 #include "field_input.h"
 
 #include <algorithm>
-#include <filesystem>
 
-#include "bricks_input.h"
 #include "grid_input.h"
 #include "input.h"
 #include "points_input.h"
 #include "subvol/error.h"
 #include "subvol/limit_level.h"
 #include "subvol/mesh_field.h"
-#include "subvol/mesh_io.h"
 #include "subvol/points_field.h"
 #include "text.h"
 
@@ -70,22 +67,13 @@ FieldInput grid_field(const std::string& input, const CommonOptions& options, Pr
 
 }  // namespace
 
-InputKind kind_of(const std::string& input) {
-    const std::string extension = extension_of(input);
-    const std::vector<std::string> meshes = readable_mesh_extensions();
-    const bool is_mesh =
-        input.starts_with("model:") || std::ranges::find(meshes, extension) != meshes.end() || is_bricks_input(input);
-    if (is_mesh) return InputKind::Mesh;
-    if (holds_points(input)) return InputKind::Points;
-    return is_vdb_file(input) ? InputKind::Grid : InputKind::Picture;
-}
-
 WithFacts<FieldInput> load_field(const std::string& input, const CommonOptions& options, const RefineArguments& refine,
                                  const char* key, Progress* progress) {
     Facts found;
     WithFacts<FieldInput> field;
     switch (kind_of(input)) {
         case InputKind::Mesh:
+        case InputKind::Bricks:
             field.value = mesh_field(input, options, refine, progress, found);
             break;
         case InputKind::Points:

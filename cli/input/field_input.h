@@ -11,12 +11,6 @@
 
 namespace subvol::cli {
 
-enum class InputKind { Picture, Mesh, Points, Grid };
-
-/// The kind of an input. "model:…" and the extensions of mesh files are meshes, the extensions of points are points, and a .vdb
-/// file is what it contains. Anything else should be a picture.
-[[nodiscard]] InputKind kind_of(const std::string& input);
-
 /// A field from a file or a model, with what is known about it.
 struct FieldInput {
     FieldView view;

@@ -4,7 +4,8 @@
 #include <algorithm>
 #include <charconv>
 
-#include "bricks_input.h"
+#include "grid_input.h"
+#include "points_input.h"
 #include "quantities.h"
 #include "steps.h"
 #include "subvol/bricks.h"
@@ -72,6 +73,14 @@ std::string input_help() {
     return "a mesh (" + join(readable_mesh_extensions()) + "), or model:NAME or model:NAME:RESOLUTION";
 }
 
+InputKind kind_of(const std::string& input) {
+    if (is_bricks(input) || extension_of(input) == ".bricks") return InputKind::Bricks;
+    const std::vector<std::string> meshes = readable_mesh_extensions();
+    if (is_model(input) || std::ranges::find(meshes, extension_of(input)) != meshes.end()) return InputKind::Mesh;
+    if (holds_points(input)) return InputKind::Points;
+    return is_vdb_file(input) ? InputKind::Grid : InputKind::Picture;
+}
+
 bool is_model(const std::string& input) {
     return input.starts_with(kModelPrefix);
 }
@@ -90,7 +99,7 @@ WithFacts<ReadResult> read_input(const std::string& input, const CommonOptions& 
                                  ShellsAlone alone) {
     Facts facts;
     facts["input"] = input;
-    if (is_bricks_input(input)) {
+    if (kind_of(input) == InputKind::Bricks) {
         ReadResult read;
         read.mesh = mesh_of_bricks(input, options, progress, facts);
         return {std::move(read), std::move(facts)};
@@ -120,6 +129,12 @@ WithFacts<ReadResult> read_input(const std::string& input, const CommonOptions& 
 WithFacts<HexMesh> load_mesh(const std::string& input, const CommonOptions& options, Progress* progress, Shells* shells,
                              ShellsAlone alone) {
     auto [read, facts] = read_input(input, options, progress, alone);
+    HexMesh mesh = facts.unpack(mesh_of(std::move(read), options, shells));
+    return {std::move(mesh), std::move(facts)};
+}
+
+WithFacts<HexMesh> mesh_of(ReadResult read, const CommonOptions& options, Shells* shells) {
+    Facts facts;
     if (shells != nullptr) {
         *shells = with_density(std::move(read.shells), options);
     } else {

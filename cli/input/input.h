@@ -16,6 +16,13 @@ namespace subvol::cli {
 /// What an argument FILE may be, for its help: a mesh with one of the extensions that the library reads, or a model.
 [[nodiscard]] std::string input_help();
 
+/// Bricks: a mesh in a folder of bricks
+enum class InputKind { Picture, Mesh, Bricks, Points, Grid };
+
+/// The kind of an input. "model:…" and the extensions of mesh files are meshes, the extensions of points are points, and a .vdb
+/// file is what it contains. Anything else should be a picture.
+[[nodiscard]] InputKind kind_of(const std::string& input);
+
 /// Whether the input is "model:NAME" and no file.
 [[nodiscard]] bool is_model(const std::string& input);
 
@@ -35,6 +42,9 @@ enum class ShellsAlone { Refuse, Take };
 /// alone:  Take: shells without cells give a mesh of their points and fields without cells
 [[nodiscard]] WithFacts<HexMesh> load_mesh(const std::string& input, const CommonOptions& options, Progress* progress,
                                            Shells* shells = nullptr, ShellsAlone alone = ShellsAlone::Refuse);
+
+/// What `load_mesh` makes of a file that was read.
+[[nodiscard]] WithFacts<HexMesh> mesh_of(ReadResult read, const CommonOptions& options, Shells* shells);
 
 /// The fields of what `read_input` returned: with --density that one first, with --field that one alone.
 ///

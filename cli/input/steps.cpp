@@ -3,10 +3,7 @@
 
 #include <charconv>
 
-#include "bricks_input.h"
-#include "grid_input.h"
 #include "input.h"
-#include "points_input.h"
 #include "subvol/error.h"
 #include "text.h"
 
@@ -33,7 +30,8 @@ std::size_t existing(std::size_t step, const MeshSeries& series) {
 }  // namespace
 
 bool may_have_steps(const std::string& input) {
-    return !is_model(input) && !is_bricks_input(input) && !holds_points(input) && !is_vdb_file(input);
+    const InputKind kind = kind_of(input);
+    return !is_model(input) && (kind == InputKind::Mesh || kind == InputKind::Picture);
 }
 
 bool asks_for_steps(const CommonOptions& options) {

@@ -24,43 +24,39 @@ void check_points(const std::vector<Vec3>& points) {
 
 }  // namespace
 
-ShownField ShownMesh::field() const {
-    return {mesh.attributes.front().name, field_range(mesh, 0)};
-}
-
-ShownField ShownMesh::colors() const {
-    return {mesh.attributes.back().name, field_range(mesh, mesh.attributes.size() - 1)};
-}
-
-Box ShownMesh::box() const {
-    Box box = bounds(mesh);
-    if (mesh.cells.empty()) {
-        for (const Vec3& p : mesh.points) box.add(p);
-    }
-    return box;
-}
-
-WithFacts<ShownMesh> load_shown_mesh(const std::string& input, const CommonOptions& options, const RenderArguments& arguments,
-                                     Progress* progress, ShellsAlone alone) {
-    ShownMesh shown;
+WithFacts<ShownBody> load_shown_body(const std::string& input, const CommonOptions& options, const RenderArguments& arguments,
+                                     const CLI::App& app, Progress* progress, ShellsAlone alone) {
+    const bool refined = arguments.tets.asked();  // tetrahedra are refined by other rules than shells
+    if (refined) alone = ShellsAlone::Refuse;
     Facts facts;
-    Shells* const wanted = arguments.tets.asked() ? nullptr : &shown.shells;  // tetrahedra are refined by other rules
-    if (arguments.tets.asked()) alone = ShellsAlone::Refuse;
-    shown.mesh = facts.unpack(load_mesh(input, options, progress, wanted, alone));
-    shown.mesh = facts.unpack(with_selected_field(std::move(shown.mesh), options, arguments.splat.color_field));
-    shown.mesh = facts.unpack(arguments.tets.hexes(std::move(shown.mesh), default_tet_level(arguments.method), progress));
-    check_points(shown.mesh.points);
-    check_points(shown.shells.points);
+    BodyInput body = facts.unpack(open_body(input, options, app, progress, !refined, alone));
+    const std::string field = facts.unpack(body.select(options, OtherFields::Drop, arguments.splat.color_field));
+    facts.merge(body.refine(arguments.tets, default_tet_level(arguments.method), progress));
+    ShownBody shown{std::move(body), {field, {}}, {field, {}}};
+    shown.field.range = shown.body.range(field);
+    shown.colors = shown.field;
+    const MeshSource source = shown.body.source();
+    shown.box = source.bounds();
+    if (const HexMesh* mesh = source.mesh()) {
+        check_points(mesh->points);
+        check_points(shown.body.shells.points);
+        const std::string& colors = mesh->attributes.back().name;
+        shown.colors = {colors, shown.body.range(colors)};
+        if (mesh->cells.empty()) {
+            for (const Vec3& p : mesh->points) shown.box.add(p);
+        }
+    }
     return {std::move(shown), std::move(facts)};
 }
 
-PictureNotes make_notes(const ShownMesh& shown, const ShownColors& colors, RenderArguments& arguments, Progress* progress,
+PictureNotes make_notes(const ShownBody& shown, const ShownColors& colors, RenderArguments& arguments, Progress* progress,
                         Facts& facts) {
-    PictureNotes notes = make_notes(arguments.picture, colors, &shown.mesh);
-    if (!shown.shells.empty()) {
+    const MeshSource source = shown.body.source();
+    PictureNotes notes = make_notes(arguments.picture, colors, source.mesh());
+    if (!shown.body.shells.empty()) {
         const int samples =
             PictureStyle{.look = {.look = arguments.picture.look}, .samples = arguments.chosen.style.samples}.sample_count();
-        notes.shells = make_shell_scene(shown.mesh, shown.shells, arguments.refine.options(0, progress),
+        notes.shells = make_shell_scene(*source.mesh(), shown.body.shells, arguments.refine.options(0, progress),
                                         arguments.refine.levels, colors.optics, samples, arguments.clip.clip(), facts);
     }
     return notes;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <memory>
 
 #include "subvol/detail/byte_lists.h"
 #include "subvol/detail/kernel_bytes.h"
@@ -68,10 +69,16 @@ Facts KernelParts::store(const RbfVolume& part, const std::string& note) const {
     return facts;
 }
 
-LoadedPart<RbfVolume> KernelParts::load(const std::string& file) {
-    std::optional<std::string> note = is_points_file(file) ? read_points_note(file) : std::nullopt;
-    if (!note) return {};
-    return {std::move(note), read_points(file)};
+OpenedPart<RbfVolume> KernelParts::open(const std::string& file) {
+    return {is_points_file(file) ? read_points_note(file) : std::nullopt, [file] { return read_points(file); }};
+}
+
+BrickPointsReport StoredKernelParts::join(const std::vector<std::filesystem::path>& parts, std::span<const std::string>) const {
+    return join_points_of_bricks(path, parts, points, progress);
+}
+
+OpenedPart<std::filesystem::path> StoredKernelParts::open(const std::string& file) {
+    return {KernelParts::open(file).note, [file] { return std::filesystem::path(file); }};
 }
 
 std::vector<VdbGrid> GridParts::join(std::vector<std::vector<VdbGrid>> parts, std::span<const std::string> names) {
@@ -101,12 +108,12 @@ Facts GridParts::store(std::vector<VdbGrid> part, const std::string& note) const
     return write_share(part, output, progress);
 }
 
-LoadedPart<std::vector<VdbGrid>> GridParts::load(const std::string& file) {
-    LoadedPart<std::vector<VdbGrid>> part{{}, vdb().read_vdb_contents(file).grids};
-    if (part.made.empty()) return part;
-    part.note = vdb().text_of_grid(part.made.front(), kPartNote);
-    for (VdbGrid& grid : part.made) vdb().set_text_of_grid(grid, kPartNote, {});
-    return part;
+OpenedPart<std::vector<VdbGrid>> GridParts::open(const std::string& file) {
+    auto grids = std::make_shared<std::vector<VdbGrid>>(vdb().read_vdb_contents(file).grids);
+    if (grids->empty()) return {};
+    std::optional<std::string> note = vdb().text_of_grid(grids->front(), kPartNote);
+    for (VdbGrid& grid : *grids) vdb().set_text_of_grid(grid, kPartNote, {});
+    return {std::move(note), [grids] { return std::move(*grids); }};
 }
 
 LimitSurface SurfaceParts::join(std::vector<std::string> parts, std::span<const std::string> names) const {
@@ -121,9 +128,9 @@ Facts SurfaceParts::store(std::string part, const std::string& note) const {
     return facts;
 }
 
-LoadedPart<std::string> SurfaceParts::load(const std::string& file) {
+OpenedPart<std::string> SurfaceParts::open(const std::string& file) {
     detail::SurfaceShareFile part = detail::read_surface_share(file);
-    return {std::move(part.note), std::move(part.bytes)};
+    return {std::move(part.note), [bytes = std::move(part.bytes)] { return bytes; }};
 }
 
 detail::PicturePart rows_of(const Picture& picture, const PixelRows& rows) {
@@ -175,7 +182,18 @@ detail::PicturePart PictureParts::unpack(const std::string& bytes) {
     return part;
 }
 
-LoadedPart<detail::PicturePart> PictureParts::load(const std::string& file) {
+/// A part without rows, as there may be more shares than rows of tiles, has one transparent row that does not count.
+Facts PictureParts::store(detail::PicturePart part, const std::string& note) const {
+    if (part.rows.height == 0) {
+        part.rows = Image(part.rows.width, 1);
+        part.first_row = std::min(part.first_row, part.whole_height - 1);
+    }
+    part.note = note;
+    detail::write_picture_part(path, part);
+    return {};
+}
+
+OpenedPart<detail::PicturePart> PictureParts::open(const std::string& file) {
     detail::PicturePart part = detail::read_picture_part(file);
     if (part.note.empty()) return {};
     const std::string text = std::move(part.note);
@@ -189,7 +207,7 @@ LoadedPart<detail::PicturePart> PictureParts::load(const std::string& file) {
     if (begin != part.first_row || end - begin != part.rows.height) {
         throw Error(ErrorCode::InvalidInput, "its rows do not fit to those of the other parts", file);
     }
-    return {text, std::move(part)};
+    return {text, [part] { return part; }};
 }
 
 }  // namespace subvol::cli

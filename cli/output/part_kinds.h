@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
 #include "picture_notes.h"
+#include "subvol/brick_points.h"
 #include "subvol/detail/picture_part.h"
 #include "subvol/limit_surface.h"
 #include "subvol/pixel_rows.h"
@@ -37,7 +39,21 @@ struct KernelParts {
     [[nodiscard]] static std::string pack(const RbfVolume& part);
     [[nodiscard]] static RbfVolume unpack(const std::string& bytes);
     [[nodiscard]] Facts store(const RbfVolume& part, const std::string& note) const;
-    [[nodiscard]] static LoadedPart<RbfVolume> load(const std::string& file);
+    [[nodiscard]] static OpenedPart<RbfVolume> open(const std::string& file);
+};
+
+/// Kernels of a mesh in pieces, which may not fit into memory: a part is a file, from which `join_points_of_bricks` reads.
+///
+/// points: of all parts
+struct StoredKernelParts {
+    using Made = std::filesystem::path;
+    using Whole = BrickPointsReport;
+    std::string path{};
+    std::uint64_t points = 0;
+    Progress* progress = nullptr;
+
+    [[nodiscard]] BrickPointsReport join(const std::vector<std::filesystem::path>& parts, std::span<const std::string>) const;
+    [[nodiscard]] static OpenedPart<std::filesystem::path> open(const std::string& file);
 };
 
 /// Grids: slabs of voxels. Parts are not rounded to 16 bits, as whoever has all voxels rounds them.
@@ -51,7 +67,7 @@ struct GridParts {
     [[nodiscard]] static std::string pack(const std::vector<VdbGrid>& part);
     [[nodiscard]] static std::vector<VdbGrid> unpack(const std::string& bytes);
     [[nodiscard]] Facts store(std::vector<VdbGrid> part, const std::string& note) const;
-    [[nodiscard]] static LoadedPart<std::vector<VdbGrid>> load(const std::string& file);
+    [[nodiscard]] static OpenedPart<std::vector<VdbGrid>> open(const std::string& file);
 };
 
 /// Surfaces: what is cut from ranges of the cells.
@@ -65,18 +81,20 @@ struct SurfaceParts {
     [[nodiscard]] static std::string pack(std::string part) { return part; }
     [[nodiscard]] static std::string unpack(const std::string& bytes) { return bytes; }
     [[nodiscard]] Facts store(std::string part, const std::string& note) const;
-    [[nodiscard]] static LoadedPart<std::string> load(const std::string& file);
+    [[nodiscard]] static OpenedPart<std::string> open(const std::string& file);
 };
 
 /// Pictures: rows of them. What pictures draw over all rows is in each part.
 struct PictureParts {
     using Made = detail::PicturePart;
     using Whole = Picture;
+    std::filesystem::path path{};
 
     [[nodiscard]] static Picture join(std::vector<detail::PicturePart> parts, std::span<const std::string> names);
     [[nodiscard]] static std::string pack(const detail::PicturePart& part);
     [[nodiscard]] static detail::PicturePart unpack(const std::string& bytes);
-    [[nodiscard]] static LoadedPart<detail::PicturePart> load(const std::string& file);
+    [[nodiscard]] Facts store(detail::PicturePart part, const std::string& note) const;
+    [[nodiscard]] static OpenedPart<detail::PicturePart> open(const std::string& file);
 };
 
 /// Some rows of a picture.

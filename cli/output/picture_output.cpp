@@ -196,18 +196,16 @@ void PictureOutput::write_frame(std::size_t frame, const Picture& picture) {
     }
 }
 
-/// A share without rows, as there may be more shares than rows of tiles, has one transparent row that does not count.
 void PictureOutput::write_rows(const Picture& picture) {
     const Image& image = picture.image;
     const PixelRows rows = rows_of(*share_, image.height);
-    const int first = std::min(rows.first, image.height - 1);
-    detail::PicturePart part = rows_of(picture, {first, std::max(rows.end, first + 1)});
+    note_.range = {static_cast<std::uint64_t>(rows.first), static_cast<std::uint64_t>(rows.end),
+                   static_cast<std::uint64_t>(image.height)};
     note_.how = {{"first_row", rows.first},
                  {"end_row", rows.end},
                  {"height", image.height},
                  {"background", {background_.x, background_.y, background_.z}}};
-    part.note = text_of(note_);
-    detail::write_picture_part(path_, part);
+    (void)deliver(PictureParts{path_}, rows_of(picture, rows), {.share = *share_, .note = note_});
 }
 
 }  // namespace subvol::cli

@@ -30,7 +30,7 @@ public:
 
     /// Only a share is to be drawn and written: of frames those of the share, of a single picture its rows, as a part (.exr).
     ///
-    /// note:   of a single picture; it gets the rows
+    /// note:   of a single picture; it gets the rows and the background
     /// throws: Error(InvalidInput) if the output is a video or, for a single picture, not .exr
     void set_share(const Share& share, PartNote note);
 

@@ -98,17 +98,17 @@ SplatResult PictureShares::splat(const RbfVolume& volume, const SplatOptions& sp
     return drawn_of(band);
 }
 
-SplatResult PictureShares::splat(const Bricks& bricks, const BrickFields& fields, Surface boundary,
-                                 const BrickSplatOptions& options, const View& view, const Optics& optics, Facts& facts) {
-    if (rows_.ranks == nullptr) return render_bricks(bricks, fields, std::move(boundary), view, optics, options);
+SplatResult PictureShares::splat(const MeshSource& source, Surface boundary, const BrickSplatOptions& options, const View& view,
+                                 const Optics& optics, Facts& facts) {
+    if (rows_.ranks == nullptr) return render_bricks(source, std::move(boundary), view, optics, options);
     ShippedKernels shipped;
-    SplatResult drawn = render_bricks_ranked(bricks, fields, std::move(boundary), view, optics, options, *rows_.ranks, shipped);
+    SplatResult drawn = render_bricks_ranked(source, std::move(boundary), view, optics, options, *rows_.ranks, shipped);
     add_shipped(shipped, *rows_.ranks, facts);
     return drawn;
 }
 
-BrickTets PictureShares::measure(const Bricks& bricks, const BrickTetsOptions& options) {
-    return measure_tets(bricks, options, rows_);
+BrickTets PictureShares::measure(const MeshSource& source, const BrickTetsOptions& options) {
+    return measure_tets(source, options, rows_);
 }
 
 void PictureShares::add_up(std::span<std::size_t> counts) {

@@ -45,10 +45,9 @@ public:
     [[nodiscard]] bool finishes() const override { return rows_.finished(); }
     [[nodiscard]] SplatResult splat(const RbfVolume& volume, const SplatOptions& options, const BoundaryValues& skin,
                                     const View& view, const Optics& optics, Progress* progress, Facts& facts) override;
-    [[nodiscard]] SplatResult splat(const Bricks& bricks, const BrickFields& fields, Surface boundary,
-                                    const BrickSplatOptions& options, const View& view, const Optics& optics,
-                                    Facts& facts) override;
-    [[nodiscard]] BrickTets measure(const Bricks& bricks, const BrickTetsOptions& options) override;
+    [[nodiscard]] SplatResult splat(const MeshSource& source, Surface boundary, const BrickSplatOptions& options,
+                                    const View& view, const Optics& optics, Facts& facts) override;
+    [[nodiscard]] BrickTets measure(const MeshSource& source, const BrickTetsOptions& options) override;
     void add_up(std::span<std::size_t> counts) override;
     void gather(Picture& picture) override;
 

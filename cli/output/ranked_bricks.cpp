@@ -64,41 +64,38 @@ BrickTets take_tets(detail::ByteUnpacker& in) {
     return tets;
 }
 
-/// Samples this rank's bricks. All ranks take as many rounds, so that they can exchange kernels in each; those that have no
-/// brick left have no kernels.
-void sample_in_rounds(const Bricks& bricks, const SampleOptions& options, const BrickFields& fields, const Ranks& ranks,
-                      const std::function<void(const BrickPoints&)>& take) {
-    const auto [begin, end] = ranks.share().range(bricks.bricks.size());
-    const std::size_t rounds = ranks.share_of(0).range(bricks.bricks.size()).second;  // no rank has more than the first
+/// Samples this rank's pieces. All ranks take as many rounds, so that they can exchange kernels in each; those that have no
+/// piece left have no kernels.
+void sample_in_rounds(const MeshSource& source, const SampleOptions& options, const Ranks& ranks,
+                      const std::function<void(const PieceKernels&)>& take) {
+    const MeshSource::Stored stored = source.in_pieces();
+    const auto [begin, end] = ranks.share().range(stored.pieces.size());
+    const std::size_t rounds = ranks.share_of(0).range(stored.pieces.size()).second;  // no rank has more than the first
     SampleOptions quiet = options;
     quiet.progress = nullptr;
     for (std::size_t round = 0; round < rounds; ++round) {
         report_progress(options.progress, "sample", static_cast<double>(round) / static_cast<double>(rounds));
-        BrickPoints points;
-        if (begin + round < end) {
-            MeshPiece brick = read_brick(bricks, begin + round);
-            brick.mesh = fields(std::move(brick.mesh));
-            points = sample_brick(bricks, std::move(brick), quiet);
-        }
-        take(points);
+        PieceKernels kernels;
+        if (begin + round < end) kernels = sample_piece(source, stored.read(begin + round), quiet);
+        take(kernels);
     }
 }
 
 }  // namespace
 
-BrickPointsReport write_points_ranked(const std::filesystem::path& path, const Bricks& bricks, const SampleOptions& options,
-                                      const BrickFields& fields, Ranks& ranks) {
+BrickPointsReport write_points_ranked(const std::filesystem::path& path, const MeshSource& source, const SampleOptions& options,
+                                      Ranks& ranks) {
     BrickPointsReport report{.min = HUGE_VAL, .max = -HUGE_VAL};
     Surface boundary;
-    if (ranks.first()) boundary = sample_bricks_boundary(bricks, options);
+    if (ranks.first()) boundary = sample_boundary(gather_hull(source, options.progress), options);
     report.triangles = boundary.triangles.size();
     std::optional<detail::KernelRows> rows;
-    sample_in_rounds(bricks, options, fields, ranks, [&](const BrickPoints& points) {
-        report.flat_frames += points.flat_frames;
-        for (const std::string& bytes : ranks.gather(packed(points.volume, points.numbers))) {
+    sample_in_rounds(source, options, ranks, [&](const PieceKernels& kernels) {
+        report.flat_frames += kernels.flat_frames;
+        for (const std::string& bytes : ranks.gather(packed(kernels.volume, kernels.numbers))) {
             const auto [volume, numbers] = unpacked(bytes);
             if (numbers.empty()) continue;
-            if (!rows) rows.emplace(path, volume, bricks.points, boundary, std::string(), options.progress);
+            if (!rows) rows.emplace(path, volume, source.stored().points, boundary, std::string(), options.progress);
             rows->write(numbers, volume);
             report.points += numbers.size();
             for (const float value : volume.channels.front().values) {
@@ -111,13 +108,13 @@ BrickPointsReport write_points_ranked(const std::filesystem::path& path, const B
     return report;
 }
 
-SplatResult render_bricks_ranked(const Bricks& bricks, const BrickFields& fields, Surface boundary, const View& view,
-                                 const Optics& optics, BrickSplatOptions options, Ranks& ranks, ShippedKernels& shipped) {
+SplatResult render_bricks_ranked(const MeshSource& source, Surface boundary, const View& view, const Optics& optics,
+                                 BrickSplatOptions options, Ranks& ranks, ShippedKernels& shipped) {
     options.rows = rows_of(ranks.share(), view.height());
     BrickPicture picture(std::move(boundary), view, optics, options);
     SampleOptions sample = options.sample;
     sample.progress = options.splat.progress;
-    sample_in_rounds(bricks, sample, fields, ranks, [&](const BrickPoints& own) {
+    sample_in_rounds(source, sample, ranks, [&](const PieceKernels& own) {
         picture.count(own.volume);
         const std::vector<PixelRows> touched = picture.rows_of(own.volume);
         std::vector<std::string> to;
@@ -138,11 +135,12 @@ SplatResult render_bricks_ranked(const Bricks& bricks, const BrickFields& fields
     return picture.draw([&](auto& counts) { ranks.sum(counts); });
 }
 
-BrickTets measure_tets(const Bricks& bricks, const BrickTetsOptions& options, const OwnRows& rows) {
-    if (!rows.gathered()) return subvol::measure_tets(bricks, options, 0, bricks.bricks.size());
-    const auto [begin, end] = rows.share->range(bricks.bricks.size());
+BrickTets measure_tets(const MeshSource& source, const BrickTetsOptions& options, const OwnRows& rows) {
+    const std::size_t pieces = source.in_pieces().pieces.size();
+    if (!rows.gathered()) return subvol::measure_tets(source, options, 0, pieces);
+    const auto [begin, end] = rows.share->range(pieces);
     std::string all;
-    for (const std::string& bytes : rows.ranks->gather(packed(subvol::measure_tets(bricks, options, begin, end)))) all += bytes;
+    for (const std::string& bytes : rows.ranks->gather(packed(subvol::measure_tets(source, options, begin, end)))) all += bytes;
     all = rows.ranks->broadcast(std::move(all));
     BrickTets sum;
     for (detail::ByteUnpacker in(all, "these bytes are not the figures of bricks"); in.left() > 0;) sum.add(take_tets(in));

@@ -67,16 +67,37 @@ std::string task_of(const CLI::App& app, const std::string& input) {
 
 }  // namespace
 
-PartNote make_note(const CLI::App& app, const std::string& input, const Share& share, Json how) {
-    return {.share = share, .verb = app.get_name(), .input = input, .task = task_of(app, input), .how = std::move(how)};
+PartNote make_note(const CLI::App& app, const std::string& input, const Share& share, std::optional<ShareRange> range,
+                   Json how) {
+    return {.share = share,
+            .verb = app.get_name(),
+            .input = input,
+            .task = task_of(app, input),
+            .range = range,
+            .how = std::move(how)};
 }
 
 std::string text_of(const PartNote& note) {
-    const Json json{{"part", note.share.number}, {"of", note.share.count}, {"verb", note.verb},
-                    {"input", note.input},       {"task", note.task},      {"how", note.how}};
+    Json json{
+        {"part", note.share.number}, {"of", note.share.count}, {"verb", note.verb}, {"input", note.input}, {"task", note.task}};
+    if (note.range) json["range"] = {note.range->begin, note.range->end, note.range->count};
+    json["how"] = note.how;
     // Only ASCII, so that it can be a comment in any format of files.
     return json.dump(-1, ' ', true, Json::error_handler_t::replace);
 }
+
+namespace {
+
+/// Nothing if the note is of an earlier version, which did not say it.
+std::optional<ShareRange> range_from(const Json& note, const std::string& file) {
+    if (!note.contains("range")) return {};
+    const Json& range = note["range"];
+    const auto is_count = [](const Json& number) { return number.is_number_unsigned(); };
+    if (!range.is_array() || range.size() != 3 || !std::ranges::all_of(range, is_count)) fail_note(file);
+    return ShareRange{range[0].get<std::uint64_t>(), range[1].get<std::uint64_t>(), range[2].get<std::uint64_t>()};
+}
+
+}  // namespace
 
 PartNote note_from(const std::string& text, const std::string& file) {
     const Json json = Json::parse(detail::of_limited_depth(text, file), nullptr, false);
@@ -94,6 +115,7 @@ PartNote note_from(const std::string& text, const std::string& file) {
             .verb = json["verb"].get<std::string>(),
             .input = json["input"].get<std::string>(),
             .task = json["task"].get<std::string>(),
+            .range = range_from(json, file),
             .how = json["how"]};
 }
 
@@ -110,6 +132,25 @@ void check_same_work(const FoundPart& part, const FoundPart& first) {
             ErrorCode::InvalidInput,
             text("is one of ", part.note.share.count, " parts, but ", first.file, " is one of ", first.note.share.count),
             part.file);
+    }
+}
+
+/// order: of all parts
+void check_ranges(std::span<const FoundPart> parts, std::span<const std::size_t> order) {
+    const FoundPart& first = parts[order.front()];
+    std::uint64_t next = 0;
+    for (const std::size_t i : order) {
+        const FoundPart& part = parts[i];
+        bool fits = part.note.range.has_value() == first.note.range.has_value();
+        if (const auto& range = part.note.range; fits && range) {
+            fits = range->begin == next && range->end >= next && range->count == first.note.range->count &&
+                   (i != order.back() || range->end == range->count);
+            next = range->end;
+        }
+        if (fits) continue;
+        throw Error(ErrorCode::InvalidInput,
+                    "does not continue the parts before it: another build has divided the work differently", part.file,
+                    "all parts of one build");
     }
 }
 
@@ -146,7 +187,10 @@ std::vector<std::size_t> order_of(std::span<const FoundPart> parts) {
                     text("is part ", other.note.share.name(), ", and so is ", one.file, ": each is needed once"), other.file);
     }
     const int of = parts.front().note.share.count;
-    if (order.size() == static_cast<std::size_t>(of)) return order;
+    if (order.size() == static_cast<std::size_t>(of)) {
+        check_ranges(parts, order);
+        return order;
+    }
     std::vector<int> numbers;
     for (const std::size_t i : order) numbers.push_back(number(i));
     fail_missing(numbers, of);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -19,16 +20,19 @@ inline constexpr const char* kPartNote = "subvol_part";
 
 /// What the file of a part says about itself, so that `join` takes only parts that belong together.
 ///
-/// task: a hash of the verb, its options, the input and the version: the same for all shares
-/// how:  what `join` must know to write the whole
+/// task:  a hash of the verb, its options, the input and the version: the same for all shares
+/// range: what the part has of the work: parts of builds that divide it differently do not fit together
+/// how:   what `join` must know to write the whole
 struct PartNote {
     Share share;
     std::string verb, input, task;
+    std::optional<ShareRange> range{};
     nlohmann::ordered_json how = nlohmann::ordered_json::object();
 };
 
 /// The note of a share. app: the verb, whose options have been parsed; those that do not change the result do not count
 [[nodiscard]] PartNote make_note(const CLI::App& app, const std::string& input, const Share& share,
+                                 std::optional<ShareRange> range = {},
                                  nlohmann::ordered_json how = nlohmann::ordered_json::object());
 
 /// One line of JSON.
@@ -62,7 +66,8 @@ struct FoundPart {
 
 /// The order of parts: the indices of 1/N, 2/N and so on.
 ///
-/// throws: Error(InvalidInput) if one belongs to other work, occurs twice or is missing
+/// throws: Error(InvalidInput) if one belongs to other work, occurs twice or is missing, or if their ranges do not follow each
+///         other
 [[nodiscard]] std::vector<std::size_t> order_of(std::span<const FoundPart> parts);
 
 /// The error of a file that is not a part.

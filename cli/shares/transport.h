@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -28,7 +29,7 @@ namespace subvol::cli {
 //     std::string pack(Made)         as bytes, for ranks
 //     Made unpack(const std::string& bytes)
 //     Facts store(Made, const std::string& note)    writes a file with a note
-//     LoadedPart<Made> load(const std::string& file)
+//     OpenedPart<Made> open(const std::string& file)
 
 /// How the part that this process makes comes to the others.
 ///
@@ -81,11 +82,14 @@ template <class Kind>
     return result;
 }
 
-/// A part that was read from a file. note: nothing if the file has none
+/// A part in a file.
+///
+/// note: nothing if the file has none
+/// read: reads the part; to be called once
 template <class Made>
-struct LoadedPart {
+struct OpenedPart {
     std::optional<std::string> note;
-    Made made;
+    std::function<Made()> read;
 };
 
 /// A whole that was joined from files, and what the note of the first part says of how it is to be written.
@@ -95,28 +99,28 @@ struct JoinedFiles {
     nlohmann::ordered_json how;
 };
 
-/// Joins the parts in some files, in any order.
+/// Joins the parts in some files, in any order. What their notes say is checked before the parts are read.
 ///
-/// throws: Error(InvalidInput) as `order_of`, and as the kind loads and joins
+/// throws: Error(InvalidInput) as `order_of`, and as the kind opens, reads and joins
 template <class Kind>
 [[nodiscard]] WithFacts<JoinedFiles<typename Kind::Whole>> join_files(const Kind& kind, std::span<const std::string> files,
                                                                       Progress* progress) {
     Facts facts;
-    std::vector<typename Kind::Made> loaded, parts;
+    std::vector<typename Kind::Made> parts;
     std::vector<FoundPart> found;
     std::vector<std::string> names;
     facts.timed(progress, "read", [&] {
+        std::vector<OpenedPart<typename Kind::Made>> opened;
         for (const std::string& file : files) {
-            LoadedPart<typename Kind::Made> part = kind.load(file);
-            if (!part.note) refuse_whole(file);
-            found.push_back({file, note_from(*part.note, file)});
-            loaded.push_back(std::move(part.made));
+            opened.push_back(kind.open(file));
+            if (!opened.back().note) refuse_whole(file);
+            found.push_back({file, note_from(*opened.back().note, file)});
+        }
+        for (const std::size_t number : order_of(found)) {
+            parts.push_back(opened[number].read());
+            names.push_back(files[number]);
         }
     });
-    for (const std::size_t number : order_of(found)) {
-        parts.push_back(std::move(loaded[number]));
-        names.push_back(files[number]);
-    }
     auto whole = facts.timed(progress, "join", [&] { return kind.join(std::move(parts), names); });
     return {{std::move(whole), std::move(found.front().note.how)}, std::move(facts)};
 }

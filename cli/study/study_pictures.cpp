@@ -67,7 +67,7 @@ Image draw(const StudyCase& item, const HexMesh& mesh, const View& view, const O
     const Method method = options.style.method;
     const detail::Stopwatch watch;
     std::shared_ptr<const Voxels> voxels;
-    PictureBody body{.mesh = &mesh};
+    PictureBody body{.mesh = mesh};
     if (method == Method::Grid) {
         voxels = study_grid(item, mesh, result).voxels();
         body = {.voxels = voxels.get()};

@@ -104,10 +104,11 @@ detail::MeshShare FigureParts::unpack(const std::string& bytes) {
     return mesh_share_from(Json::parse(bytes), "rank");
 }
 
-LoadedPart<detail::MeshShare> FigureParts::load(const std::string& file) {
+OpenedPart<detail::MeshShare> FigureParts::open(const std::string& file) {
     const Json json = object_in(file);
     if (!json.contains("part_note") || !json["part_note"].is_string()) return {};
-    return {json["part_note"].get<std::string>(), mesh_share_from(json.value("part_figures", Json::object()), file)};
+    return {json["part_note"].get<std::string>(),
+            [figures = json.value("part_figures", Json::object()), file] { return mesh_share_from(figures, file); }};
 }
 
 namespace {

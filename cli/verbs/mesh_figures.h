@@ -42,7 +42,7 @@ struct FigureParts {
                                                 std::span<const std::string> names);
     [[nodiscard]] static std::string pack(const detail::MeshShare& part) { return json_of(part).dump(); }
     [[nodiscard]] static detail::MeshShare unpack(const std::string& bytes);
-    [[nodiscard]] static LoadedPart<detail::MeshShare> load(const std::string& file);
+    [[nodiscard]] static OpenedPart<detail::MeshShare> open(const std::string& file);
 };
 
 /// What `info` says to people about a mesh: a line for each figure, with units, and at the end whether the mesh is sound.

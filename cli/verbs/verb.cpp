@@ -26,9 +26,10 @@ Share Verb::share_of(const ShareArgument& part) const {
     return ranks_->share();
 }
 
-Transport Verb::transport(const ShareArgument& part, const std::string& input, Json how, Report& report) const {
+Transport Verb::transport(const ShareArgument& part, const std::string& input, const ShareRange& range, Json how,
+                          Report& report) const {
     Transport transport{.share = share_of(part), .ranks = ranks_, .progress = report.progress()};
-    if (part.given()) transport.note = make_note(app_, input, transport.share, std::move(how));
+    if (part.given()) transport.note = make_note(app_, input, transport.share, range, std::move(how));
     return transport;
 }
 

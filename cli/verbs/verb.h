@@ -63,7 +63,8 @@ protected:
     /// How the part that this process makes comes to the others: by --part into a file, or to rank 0.
     ///
     /// how: what `join` must know to write the whole
-    [[nodiscard]] Transport transport(const ShareArgument& part, const std::string& input, Json how, Report& report) const;
+    [[nodiscard]] Transport transport(const ShareArgument& part, const std::string& input, const ShareRange& range, Json how,
+                                      Report& report) const;
 
     void set_essentials(std::vector<std::string> options) { essentials_ = std::move(options); }
 

@@ -57,14 +57,15 @@ public:
                         "two pictures or two fields can be compared");
         }
         refuse_options_of(pictures ? "Fields" : "Pictures");
-        if (a != InputKind::Mesh && b != InputKind::Mesh) {
+        const auto is_mesh = [](InputKind kind) { return kind == InputKind::Mesh || kind == InputKind::Bricks; };
+        if (!is_mesh(a) && !is_mesh(b)) {
             refuse_mesh_options(app(), text("needs a mesh; these are ", pictures ? "pictures" : "points or grids"));
         }
         if (is_model(a_) && is_model(b_)) refuse_file_options(&app(), "says how a file is read; these are models");
         if (pictures) refuse_options(app(), {"--field"}, "is for fields; these are pictures");
         pictures_.check();
         std::vector<Demand> demands;
-        const auto names = pictures ? pictures_.names() : fields_.names(b == InputKind::Mesh);
+        const auto names = pictures ? pictures_.names() : fields_.names(is_mesh(b));
         for (const std::string& demand : demands_) demands.push_back(parse_demand(demand, names));
         if (!pictures) report.if_long("--samples 10000, --resolution 64, or --levels 1");
         check_there(a_);

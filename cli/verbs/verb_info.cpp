@@ -71,37 +71,45 @@ public:
     [[nodiscard]] bool works_in_ranks() const override { return true; }
 
     int run(Report& report) override {
-        if (shares(share_) && (list_fields_ || gl_ || input_.empty() || holds_points(input_) || is_vdb_file(input_))) {
+        kind_ = kind_of(input_);
+        if (shares(share_) && (list_fields_ || gl_ || input_.empty() || is_no_mesh())) {
             throw Error(ErrorCode::InvalidInput, "only the figures of a mesh are found in shares",
                         ranks() != nullptr ? "info in several processes" : "--part");
         }
-        in_bricks_ = is_bricks_input(input_);
         set_refinement();
-        if (!input_.empty() && (holds_points(input_) || is_vdb_file(input_))) {
-            refuse_mesh_options(app(), "needs a mesh; these are points or grids");
-        }
+        if (is_no_mesh()) refuse_mesh_options(app(), "needs a mesh; these are points or grids");
         if (list_fields_) return list_fields(report);
         if (gl_) describe_gl(report);
         if (input_.empty()) {
             if (!gl_) throw Error(ErrorCode::InvalidInput, "a FILE is needed, or --gl", "info");
-        } else if (in_bricks_) {
-            describe_bricks(report);
-        } else if (holds_points(input_)) {
-            describe_points(report);
-        } else if (is_vdb_file(input_)) {
-            describe_grids(report);
         } else {
-            describe_mesh(report);
+            describe(report);
         }
         return 0;
     }
 
 private:
+    [[nodiscard]] bool is_no_mesh() const { return kind_ == InputKind::Points || kind_ == InputKind::Grid; }
+
+    void describe(Report& report) {
+        switch (kind_) {
+            case InputKind::Bricks:
+                return describe_bricks(report);
+            case InputKind::Points:
+                return describe_points(report);
+            case InputKind::Grid:
+                return describe_grids(report);
+            case InputKind::Mesh:
+            case InputKind::Picture:
+                return describe_mesh(report);
+        }
+    }
+
     void set_refinement() {
         if (refine_.scheme.empty()) return;
         check_choice("--scheme", refine_.scheme, tet_schemes());
         tets_ = TetRefinement(refine_);
-        if (list_fields_ || input_.empty() || shares(share_) || in_bricks_ || holds_points(input_) || is_vdb_file(input_)) {
+        if (list_fields_ || input_.empty() || shares(share_) || kind_ == InputKind::Bricks || is_no_mesh()) {
             throw Error(ErrorCode::InvalidInput, "needs a mesh in one piece, and one process", "--scheme", "no --scheme");
         }
     }
@@ -122,17 +130,17 @@ private:
             report["fields"].push_back({{"name", name}});
             report.say(name);
         };
-        if (in_bricks_) {
+        if (kind_ == InputKind::Bricks) {
             for (const BrickField& field : report.unpack(open_bricks_input(input_, app())).fields) list(field.name);
         } else if (holds_levels(input_)) {
             report["input"] = input_;
             const KernelFile file(input_);
             for (const auto& channel : file.contents().channels) list(channel.name);
-        } else if (holds_points(input_)) {
+        } else if (kind_ == InputKind::Points) {
             report["input"] = input_;
             const RbfVolume volume = report.unpack(read_points_input(input_, report.progress()));
             for (const RbfChannel& channel : volume.channels) list(channel.name);
-        } else if (is_vdb_file(input_)) {
+        } else if (kind_ == InputKind::Grid) {
             for (const VdbGrid& grid : vdb().read_vdb(input_)) list(grid.report().name);
         } else {
             report["input"] = input_;
@@ -245,7 +253,7 @@ private:
         detail::MeshShare figures = report.timed("inspect", inspect);
         if (share_.given()) {
             report["part"] = share.name();
-            report["part_note"] = text_of(make_note(app(), input_, share));
+            report["part_note"] = text_of(make_note(app(), input_, share, figures.range));
             report["part_figures"] = json_of(figures);
             return figures;
         }
@@ -351,7 +359,7 @@ private:
     std::string input_;
     bool gl_ = false;
     bool list_fields_ = false;
-    bool in_bricks_ = false;
+    InputKind kind_ = InputKind::Mesh;
     std::vector<std::string> points_;
     RefineArguments refine_;  // of --scheme
     TetRefinement tets_;

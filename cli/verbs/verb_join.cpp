@@ -122,7 +122,10 @@ private:
     void join_points(Report& report) {
         check_output(output_, {".ply", ".vtp", ".svk", ".vdb"});
         const std::optional<std::string> note = read_points_note(parts_.front());
-        if (note && note_from(*note, parts_.front()).how.contains("points")) return join_points_of_bricks(report);
+        if (note) {
+            PartNote first = note_from(*note, parts_.front());
+            if (first.how.contains("points")) return join_points_of_bricks(std::move(first), report);
+        }
         const RbfVolume volume = joined(KernelParts{}, report);
         const std::optional<UpAxis> up = find_named<UpAxis>(how("up", std::string("z")));
         if (!up) fail_note(parts_.front());
@@ -133,20 +136,11 @@ private:
     }
 
     /// One part at a time: the whole may not fit into memory.
-    void join_points_of_bricks(Report& report) {
+    void join_points_of_bricks(PartNote first, Report& report) {
         check_output(output_, {".ply", ".svk"});
-        std::vector<FoundPart> found;
-        for (const std::string& part : parts_) {
-            const std::optional<std::string> note = is_points_file(part) ? read_points_note(part) : std::nullopt;
-            if (!note) refuse_whole(part);
-            found.push_back({part, note_from(*note, part)});
-        }
-        how_ = found.front().note.how;
-        const auto points = how("points", std::uint64_t{0});
-        std::vector<std::filesystem::path> files;
-        for (const std::size_t number : order_of(found)) files.emplace_back(parts_[number]);
+        how_ = std::move(first.how);
         const BrickPointsReport written =
-            report.timed("write", [&] { return subvol::join_points_of_bricks(output_, files, points, report.progress()); });
+            joined(StoredKernelParts{output_, how("points", std::uint64_t{0}), report.progress()}, report);
         report["output"] = output_;
         report["points"] = written.points;
     }

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <optional>
 
-#include "bricks_input.h"
+#include "body_input.h"
 #include "grid_fields.h"
 #include "grid_input.h"
 #include "input.h"
@@ -161,7 +161,7 @@ public:
         const Share share = share_of(share_);
         tets_ = TetRefinement(refine_);
         report.if_long(sample_.reduction.rmse > 0 ? "a larger --reduce, and no --refine" : "a larger --spacing or --tolerance");
-        if (is_bricks_input(input_)) {
+        if (kind_of(input_) == InputKind::Bricks) {
             write_bricks(share, report);
             return 0;
         }
@@ -180,10 +180,11 @@ public:
         RbfVolume volume = is_vdb_file(input_) ? points_of_grid(report) : points_of_mesh(common(), report);
         if (shares(share_)) {
             const auto [begin, end] = share.range(volume.size());
+            const ShareRange range{begin, end, volume.size()};
             RbfVolume kernels = detail::kernels_between(volume, begin, end);
             volume = {};
             const Transport to = transport(
-                share_, input_,
+                share_, input_, range,
                 {{"ascii", written_.ascii}, {"splats", written_.splats}, {"up", std::string(name_of(written_.up))}}, report);
             auto whole = report.unpack(deliver(KernelParts{output_, written_, report.progress()}, std::move(kernels), to));
             if (!whole) return 0;
@@ -201,7 +202,8 @@ private:
         refuse_options(app(), kOfKernels,
                        "makes kernels; --wavelet-tolerance writes a mesh, of which `subvol points` then makes kernels");
         refuse_options(app(), {"--crease-angle"}, "tags edges of a control mesh; here it is found, with the tags of the mesh");
-        if (is_bricks_input(input_) || is_vdb_file(input_) || asks_for_steps(common()) || ranks() != nullptr) {
+        const InputKind kind = kind_of(input_);
+        if (kind == InputKind::Bricks || kind == InputKind::Grid || asks_for_steps(common()) || ranks() != nullptr) {
             throw Error(ErrorCode::InvalidInput, "wavelets need one mesh in memory", input_,
                         "a mesh file and one of its steps");
         }
@@ -235,24 +237,25 @@ private:
                        "needs the whole mesh in memory; this is a folder of bricks");
         tets_.refuse_bricks(input_);
         report["input"] = input_;
-        const Bricks bricks = report.unpack(open_bricks_input(input_, app()));
-        const StreamedField field = report.unpack(select_brick_field(bricks, common()));
-        const SampleOptions options = sample_.options(bricks.bounds, refine_.options(0, report.progress()));
-        const BrickFields fields = [&](HexMesh brick) { return with_brick_fields(std::move(brick), {field}); };
-        const auto [begin, end] = share.range(bricks.bricks.size());
+        BodyInput body = report.unpack(open_body(input_, common(), app(), report.progress()));
+        const std::string field = report.unpack(body.select(common(), OtherFields::Drop));
+        const MeshSource source = body.source();
+        const SampleOptions options = sample_.options(source.bounds(), refine_.options(0, report.progress()));
+        const std::size_t pieces = source.stored().pieces.size();
+        const auto [begin, end] = share.range(pieces);
         BrickShare brick_share{begin, end, {}};
-        if (share_.given()) {
+        const Transport to = transport(share_, input_, {begin, end, pieces}, {{"points", source.stored().points}}, report);
+        if (to.note) {
             report["part"] = share.name();
-            brick_share.note = text_of(make_note(app(), input_, share, {{"points", bricks.points}}));
+            brick_share.note = text_of(*to.note);
         }
         const BrickPointsReport written = report.timed("sample", [&] {
             return ranks() != nullptr
-                       ? write_points_ranked(output_, bricks, options, fields, *ranks())
-                       : write_points_of_bricks(output_, bricks, options, fields, share_.given() ? &brick_share : nullptr);
+                       ? write_points_ranked(output_, source, options, *ranks())
+                       : write_points_of_bricks(output_, source, options, share_.given() ? &brick_share : nullptr);
         });
         if (!speaks()) return;
-        if (written.points > 0)
-            report.note(beyond(report.json().at("field"), {field.min, field.max}, {written.min, written.max}));
+        if (written.points > 0) report.note(beyond(field, body.range(field), {written.min, written.max}));
         report["points"] = written.points;
         report["boundary_triangles"] = written.triangles;
         report["output"] = output_;

@@ -4,7 +4,6 @@
 #include <optional>
 #include <utility>
 
-#include "bricks_input.h"
 #include "grid_input.h"
 #include "input.h"
 #include "mesh_pictures.h"
@@ -63,8 +62,7 @@ public:
         report.if_long(method == Method::Dense ? "--levels 2, a smaller --size, or --method splat"
                        : draws_kernels(method) ? "a smaller --size, a larger --spacing, or fewer --sheets"
                                                : "a smaller --size, fewer --samples, or --method splat");
-        const bool in_bricks = arguments_.body == BodyKind::Bricks;
-        if (asks_for_steps(common()) && !in_bricks) {
+        if (asks_for_steps(common()) && arguments_.body != BodyKind::Bricks) {
             draw_steps(report);
             return 0;
         }
@@ -73,10 +71,8 @@ public:
         switch (arguments_.body) {
             case BodyKind::Mesh:
             case BodyKind::Tets:
-                draw_mesh(output, report);
-                break;
             case BodyKind::Bricks:
-                draw_bricks(output, report);
+                draw_mesh(output, report);
                 break;
             case BodyKind::Voxels:
                 draw_voxels(output, report);
@@ -91,11 +87,18 @@ public:
 
 private:
     [[nodiscard]] BodyKind kind_of_input() const {
-        if (is_bricks_input(input_)) return BodyKind::Bricks;
-        if (holds_points(input_)) {
-            return holds_levels(input_) && arguments_.chosen.lod.value_or(0) > 0 ? BodyKind::KernelFile : BodyKind::Kernels;
+        switch (kind_of(input_)) {
+            case InputKind::Bricks:
+                return BodyKind::Bricks;
+            case InputKind::Points:
+                return holds_levels(input_) && arguments_.chosen.lod.value_or(0) > 0 ? BodyKind::KernelFile : BodyKind::Kernels;
+            case InputKind::Grid:
+                return BodyKind::Voxels;
+            case InputKind::Mesh:
+            case InputKind::Picture:
+                break;
         }
-        return is_vdb_file(input_) ? BodyKind::Voxels : BodyKind::Mesh;
+        return BodyKind::Mesh;
     }
 
     void refuse_frames_per_second() {
@@ -173,19 +176,19 @@ private:
         write(maker, picture_.make_views(box_, framed), shown.optics, output, report);
     }
 
-    void set_notes(const ShownMesh& mesh, const ShownColors& shown, PictureOutput& output, Report& report) {
+    void set_notes(const ShownBody& mesh, const ShownColors& shown, PictureOutput& output, Report& report) {
         Facts facts;
         output.set_notes(make_notes(mesh, shown, arguments_, report.progress(), facts));
         report.merge(facts);
     }
 
-    [[nodiscard]] ShownMesh load_shown(const CommonOptions& options, Report& report, ShellsAlone alone = ShellsAlone::Refuse) {
+    [[nodiscard]] ShownBody load_shown(const CommonOptions& options, Report& report, ShellsAlone alone = ShellsAlone::Refuse) {
         report["input"] = input_;  // for errors
-        return report.unpack(load_shown_mesh(input_, options, arguments_, report.progress(), alone));
+        return report.unpack(load_shown_body(input_, options, arguments_, app(), report.progress(), alone));
     }
 
-    [[nodiscard]] PictureBody body_of(const ShownMesh& shown) const {
-        return {.mesh = &shown.mesh, .tets = arguments_.tets.asked()};
+    [[nodiscard]] PictureBody body_of(const ShownBody& shown) const {
+        return {.mesh = shown.body.source(), .tets = arguments_.tets.asked()};
     }
 
     /// A picture of each step, in one box and with one range of colours: all are read once for these.
@@ -203,12 +206,12 @@ private:
         Box box, seen;
         ShownField field, colors;
         for (int step = steps.first; step <= steps.last; ++step) {
-            const ShownMesh mesh = load_shown(of_step(common(), step), report);
+            const ShownBody mesh = load_shown(of_step(common(), step), report);
             const bool first = step == steps.first;
-            field = first ? mesh.field() : united(field, mesh.field());
-            colors = first ? mesh.colors() : united(colors, mesh.colors());
-            box.add(mesh.box());
-            for (const Vec3& p : mesh.shells.points) seen.add(p);
+            field = first ? mesh.field : united(field, mesh.field);
+            colors = first ? mesh.colors : united(colors, mesh.colors);
+            box.add(mesh.box);
+            for (const Vec3& p : mesh.body.shells.points) seen.add(p);
         }
         seen.add(box);
         show(box, field, colors, output, report, [&](const ShownColors& shown) {
@@ -218,7 +221,7 @@ private:
                     output.skip();
                     continue;
                 }
-                const ShownMesh mesh = load_shown(of_step(common(), step), report);
+                const ShownBody mesh = load_shown(of_step(common(), step), report);
                 set_notes(mesh, shown, output, report);
                 if (views.empty()) views = picture_.make_views(seen);
                 PictureMaker maker = maker_of(body_of(mesh), report);
@@ -230,14 +233,13 @@ private:
     }
 
     void draw_mesh(PictureOutput& output, Report& report) {
-        const ShownMesh mesh = load_shown(common(), report, ShellsAlone::Take);
-        const Box box = mesh.box();
-        show(box, mesh.field(), mesh.colors(), output, report, [&](const ShownColors& shown) {
-            const std::vector<Vec3>& shells = mesh.shells.points;
+        const ShownBody mesh = load_shown(common(), report, ShellsAlone::Take);
+        show(mesh.box, mesh.field, mesh.colors, output, report, [&](const ShownColors& shown) {
+            const std::vector<Vec3>& shells = mesh.body.shells.points;
             set_notes(mesh, shown, output, report);
-            Box seen = box;
+            Box seen = mesh.box;
             for (const Vec3& p : shells) seen.add(p);
-            if (mesh.mesh.cells.empty()) {
+            if (mesh.body.source().cells() == 0) {
                 const auto draw = [](const View& view, Progress*) { return empty_picture(view); };
                 return report.merge(output.write(picture_.make_views(seen, shells), draw, report.progress()));
             }
@@ -247,15 +249,6 @@ private:
             if (!framed.empty()) framed.insert(framed.end(), shells.begin(), shells.end());
             write(maker, picture_.make_views(seen, framed), shown.optics, output, report);
         });
-    }
-
-    void draw_bricks(PictureOutput& output, Report& report) {
-        const Bricks bricks = report.unpack(open_bricks_input(input_, app()));
-        const StreamedField chosen = report.unpack(select_brick_field(bricks, common()));
-        const BrickFields fields = [&](HexMesh brick) { return with_brick_fields(std::move(brick), {chosen}); };
-        const ShownField field{report.json().at("field"), {chosen.min, chosen.max}};
-        show(bricks.bounds, field, field, output, report,
-             [&](const ShownColors& shown) { write({.bricks = &bricks, .fields = fields}, shown, output, report); });
     }
 
     /// Rays through voxels, or the voxels as kernels.

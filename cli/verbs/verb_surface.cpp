@@ -121,9 +121,10 @@ private:
     [[nodiscard]] std::optional<LimitSurface> made(const Whole& whole, const Part& part, const SurfaceOutput& output,
                                                    Report& report) {
         if (!shares(share_)) return report.timed("surface", whole);
-        const Transport transport = this->transport(share_, input_, json_of(output), report);
-        std::string own = report.timed("surface", [&] { return part(transport.share); });
-        return report.unpack(deliver(SurfaceParts{output_, report.progress()}, std::move(own), transport));
+        const Share share = share_of(share_);
+        detail::SurfaceShareBytes own = report.timed("surface", [&] { return part(share); });
+        const Transport to = transport(share_, input_, own.cells, json_of(output), report);
+        return report.unpack(deliver(SurfaceParts{output_, report.progress()}, std::move(own.bytes), to));
     }
 
     std::string input_, output_, color_field_, function_ = "viridis";

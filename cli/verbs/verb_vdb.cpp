@@ -73,13 +73,14 @@ public:
         check_output(output_.path, {".vdb"});
         const Share share = share_of(share_);
         MeshGrids maker(input_, asked_, refine_);
-        if (is_bricks_input(input_)) {
+        const InputKind kind = kind_of(input_);
+        if (kind == InputKind::Bricks) {
             run_bricks(maker, share, report);
         } else if (asks_for_steps(common())) {
             run_steps(maker, share, report);
         } else if (!asked_.frames.empty() || !asked_.to.empty() || has_number(input_)) {
             run_frames(maker, share, report);
-        } else if (holds_points(input_)) {
+        } else if (kind == InputKind::Points) {
             if (shares(share_)) {
                 throw Error(ErrorCode::InvalidInput, "works with a mesh only, not with points",
                             ranks() != nullptr ? "vdb in several processes" : "--part");
@@ -153,7 +154,7 @@ private:
         }
         GridShare made = report.timed("rasterize", [&] { return vdb().rasterize_share(source, names, options, share); });
         report.merge(facts_of(made.report));
-        const auto all = whole_of(std::move(made.grids), report);
+        const auto all = whole_of(std::move(made), report);
         if (!all) return;
         if (!has_voxels(*all)) throw no_voxels(input_, finer_voxels(source));
         report.merge(write_reported(*all, output_, report.progress()));
@@ -179,10 +180,9 @@ private:
         report["input"] = input_;
         const HexMesh mesh = report.unpack(maker.load(input_, common(), report.progress()));
         const RasterizeOptions options = report.unpack(maker.set_up(mesh, report.progress()));
-        std::vector<VdbGrid> grids =
-            report.timed("rasterize", [&] { return vdb().rasterize_share(mesh, names_of(mesh), options, share).grids; });
-        maker.fields().clamp(mesh, grids);
-        const auto all = whole_of(std::move(grids), report);
+        GridShare made = report.timed("rasterize", [&] { return vdb().rasterize_share(mesh, names_of(mesh), options, share); });
+        maker.fields().clamp(mesh, made.grids);
+        const auto all = whole_of(std::move(made), report);
         if (!all) return;
         if (!has_voxels(*all)) throw no_voxels(input_, finer_voxels(mesh));
         report.merge(maker.fields().overshoot(mesh, *all));
@@ -191,12 +191,13 @@ private:
 
     /// The grids of all shares, if this process has them; nothing if it has written or sent its own.
     ///
-    /// grids: those of this process's share. They are not rounded to 16 bits: that is done with all voxels at hand
-    [[nodiscard]] std::optional<std::vector<VdbGrid>> whole_of(std::vector<VdbGrid> grids, Report& report) {
-        for (VdbGrid& grid : grids) vdb().store_in_half(grid, false);
-        const Transport to = transport(
-            share_, input_, {{"half", asked_.grids.half}, {"compression", std::string(name_of(asked_.compression))}}, report);
-        auto all = report.unpack(deliver(GridParts{output_, report.progress()}, std::move(grids), to));
+    /// own: this process's share. Its grids are not rounded to 16 bits: that is done with all voxels at hand
+    [[nodiscard]] std::optional<std::vector<VdbGrid>> whole_of(GridShare own, Report& report) {
+        for (VdbGrid& grid : own.grids) vdb().store_in_half(grid, false);
+        const Transport to =
+            transport(share_, input_, own.layers,
+                      {{"half", asked_.grids.half}, {"compression", std::string(name_of(asked_.compression))}}, report);
+        auto all = report.unpack(deliver(GridParts{output_, report.progress()}, std::move(own.grids), to));
         if (!all) return all;
         for (VdbGrid& grid : *all) vdb().store_in_half(grid, asked_.grids.half);
         return all;

@@ -8,86 +8,44 @@
 #include "subvol/detail/kernel_rows.h"
 #include "subvol/detail/part_of_progress.h"
 #include "subvol/detail/ply_rows.h"
-#include "subvol/detail/points_range.h"
-#include "subvol/detail/sample_part.h"
 #include "subvol/error.h"
 
-// Kernels of a mesh in bricks. A kernel depends on the cells about its point: with the halo, a brick has them all, in the order
-// of the whole mesh, so its own points get the bits that they have there. Other bricks own the halo's points. The boundary of
-// the volume is made once, of the cells at the hull of all bricks.
+// Kernels of a mesh in pieces, as one file. The boundary of the volume is made once, of the cells at the hull of all pieces.
 
 namespace subvol {
 
-namespace {
-
-void check_halo(const Bricks& bricks, const SampleOptions& options) {
-    const int needed = detail::layers_of_samples(options);
-    if (bricks.halo_layers >= needed) return;
-    throw Error(ErrorCode::InvalidInput,
-                "its bricks have " + std::to_string(bricks.halo_layers) + " layers of halo, these kernels need " +
-                    std::to_string(needed),
-                bricks.path.string(), "split with --halo " + std::to_string(needed));
-}
-
-}  // namespace
-
-BrickPoints sample_brick(const Bricks& bricks, MeshPiece brick, const SampleOptions& options) {
-    check_halo(bricks, options);
-    SampleResult sampled = detail::sample_part(std::move(brick.mesh), options, bricks.bounds.diagonal());
-    std::vector<std::size_t> places;
-    BrickPoints result;
-    for (std::size_t p = 0; p < brick.owned_points.size(); ++p) {
-        if (!brick.owned_points[p]) continue;
-        places.push_back(p);
-        result.numbers.push_back(brick.point_numbers[p]);
-    }
-    result.volume = std::move(sampled.volume);
-    detail::keep_kernels(result.volume, places);
-    result.flat_frames = sampled.report.flat_frames;
-    return result;
-}
-
-Surface sample_bricks_boundary(const Bricks& bricks, const SampleOptions& options) {
-    return sample_bricks_boundary(gather_hull(bricks, {}, options.progress), options);
-}
-
-Surface sample_bricks_boundary(const BrickHull& hull, const SampleOptions& options) {
-    return detail::sample_hull(hull.mesh, hull.on_hull, options);
-}
-
-BrickPointsReport write_points_of_bricks(const std::filesystem::path& path, const Bricks& bricks, const SampleOptions& options,
-                                         const BrickFields& fields, const BrickShare* share) {
-    check_halo(bricks, options);
-    const std::size_t begin = share ? share->begin : 0, end = share ? share->end : bricks.bricks.size();
+BrickPointsReport write_points_of_bricks(const std::filesystem::path& path, const MeshSource& source,
+                                         const SampleOptions& options, const BrickShare* share) {
+    check_halo(source, options);
+    const MeshSource::Stored stored = source.in_pieces();
+    const std::size_t begin = share ? share->begin : 0, end = share ? share->end : stored.pieces.size();
     Surface boundary;
     // One part of several has the boundary, the first one, so that joining the parts has it once.
-    if (begin == 0) boundary = sample_bricks_boundary(bricks, options);
+    if (begin == 0) boundary = sample_boundary(gather_hull(source, options.progress), options);
     std::uint64_t points_of_share = 0;
-    for (std::size_t b = begin; b < end; ++b) points_of_share += bricks.bricks[b].points;
+    for (std::size_t p = begin; p < end; ++p) points_of_share += stored.pieces[p].points;
     BrickPointsReport report{.min = HUGE_VAL, .max = -HUGE_VAL, .triangles = boundary.triangles.size()};
     std::optional<detail::KernelRows> rows;
     const auto start = [&](const RbfVolume& like) {
         rows.emplace(path, like, points_of_share, boundary, share ? share->note : std::string(), options.progress);
     };
-    for (std::size_t b = begin; b < end; ++b) {
-        detail::PartOfProgress progress(options.progress, "sample", b - begin, end - begin);
+    for (std::size_t p = begin; p < end; ++p) {
+        detail::PartOfProgress progress(options.progress, "sample", p - begin, end - begin);
         report_progress(&progress, "sample", 0);
-        SampleOptions of_brick = options;
-        of_brick.progress = &progress;
-        MeshPiece brick = read_brick(bricks, b);
-        brick.mesh = fields(std::move(brick.mesh));
-        const BrickPoints points = sample_brick(bricks, std::move(brick), of_brick);
-        if (points.numbers.empty()) continue;  // other bricks own all its points
-        if (!rows) start(points.volume);
-        rows->write(points.numbers, points.volume);
-        report.points += points.numbers.size();
-        report.flat_frames += points.flat_frames;
-        for (const float value : points.volume.channels.front().values) {
+        SampleOptions of_piece = options;
+        of_piece.progress = &progress;
+        const PieceKernels kernels = sample_piece(source, stored.read(p), of_piece);
+        if (kernels.numbers.empty()) continue;  // other pieces own all its points
+        if (!rows) start(kernels.volume);
+        rows->write(kernels.numbers, kernels.volume);
+        report.points += kernels.numbers.size();
+        report.flat_frames += kernels.flat_frames;
+        for (const float value : kernels.volume.channels.front().values) {
             report.min = std::min(report.min, static_cast<double>(value));
             report.max = std::max(report.max, static_cast<double>(value));
         }
     }
-    if (!rows) {  // more shares than bricks
+    if (!rows) {  // more shares than pieces
         RbfVolume none;
         none.kernel = options.kernel;
         none.channels.push_back({.name = "value"});

@@ -198,11 +198,12 @@ BoundaryValues boundary_values(HexMesh mesh, const RefineOptions& options) {
     validate(mesh);
     mesh = without_unused_points(std::move(mesh));
     HullFlags on_hull = hull_points(mesh);
-    return boundary_values_of_hull(std::move(mesh), std::move(on_hull), options);
+    return boundary_values(MeshHull{std::move(mesh), std::move(on_hull)}, options);
 }
 
-BoundaryValues detail::boundary_values_of_hull(HexMesh mesh, std::vector<std::uint8_t> on_hull, const RefineOptions& options) {
+BoundaryValues boundary_values(MeshHull hull, const RefineOptions& options) {
     check_levels(options.levels);
+    auto& [mesh, on_hull] = hull;
     for (const Attribute& field : mesh.attributes) {
         if (field.channels != 1) throw Error(ErrorCode::InvalidInput, "has more than one component", "field " + field.name);
     }
@@ -322,14 +323,21 @@ int detail::sensible_levels(std::size_t triangles, int levels) {
     return levels;
 }
 
-int detail::picture_levels(std::size_t triangles, std::optional<int> most) {
+namespace {
+
+int picture_levels(std::size_t triangles) {
     constexpr std::size_t kManyTriangles = 8000;
-    if (most) return std::min(2, *most);
     return sensible_levels(triangles, triangles > kManyTriangles ? 1 : 2);
 }
 
+}  // namespace
+
 int picture_levels(const HexMesh& mesh, std::optional<int> most) {
-    return detail::picture_levels(most ? 0 : boundary_surface(mesh).triangles.size(), most);
+    return most ? std::min(2, *most) : picture_levels(boundary_surface(mesh).triangles.size());
+}
+
+int picture_levels(const MeshHull& hull, std::optional<int> most) {
+    return most ? std::min(2, *most) : picture_levels(2 * hull_quads(hull.mesh, OnHull{hull.on_hull}).size());
 }
 
 }  // namespace subvol

@@ -29,14 +29,7 @@ namespace subvol::detail {
 /// each point of the mesh
 [[nodiscard]] Surface boundary_at_level(HexMesh mesh, std::vector<std::uint8_t> on_hull, const RefineOptions& options);
 
-/// `boundary_values` of a mesh that may be a part, in the same way.
-[[nodiscard]] BoundaryValues boundary_values_of_hull(HexMesh mesh, std::vector<std::uint8_t> on_hull,
-                                                     const RefineOptions& options);
-
 /// `levels`, or fewer if a boundary of so many triangles would get more than eight million: they are finer than any picture.
 [[nodiscard]] int sensible_levels(std::size_t triangles, int levels);
-
-/// `picture_levels` for a boundary of so many triangles.
-[[nodiscard]] int picture_levels(std::size_t triangles, std::optional<int> most);
 
 }  // namespace subvol::detail

@@ -14,9 +14,10 @@
 #include "subvol/boundary_values.h"
 #include "subvol/detail/limit_of_part.h"
 #include "subvol/detail/number_text.h"
-#include "subvol/detail/sample_part.h"
+#include "subvol/detail/points_range.h"
 #include "subvol/error.h"
 #include "subvol/limit.h"
+#include "subvol/sample_pieces.h"
 #include "subvol/sample_tables.h"
 
 namespace subvol {
@@ -205,28 +206,39 @@ void check_part(const SampleOptions& options) {
 
 }  // namespace
 
-SampleResult detail::sample_part(HexMesh part, const SampleOptions& options, double diagonal) {
+// A kernel depends on the cells about its point: with the halo, a piece has them all, in the order of the whole mesh, so its
+// own points get the bits that they have there. Other pieces own the halo's points.
+PieceKernels sample_piece(const MeshSource& source, MeshPiece piece, const SampleOptions& options) {
+    check_halo(source, options);
     check_part(options);
-    SampledLevel level = control_level(control_mesh(std::move(part), options.scheme), options, false);
-    level.mesh = on_limit_of_part(std::move(level.mesh), options.scheme.kind);
+    SampledLevel level = control_level(detail::control_mesh(std::move(piece.mesh), options.scheme), options, false);
+    level.mesh = detail::on_limit_of_part(std::move(level.mesh), options.scheme.kind);
     level.mesh.cells = std::vector<std::array<Index, 8>>();
-    SampleResult result =
-        sample_at_points(std::move(level.mesh), level.lines, options.scheme.kind != Scheme::Linear, options, diagonal);
-    result.report.at_vertices = result.report.points;
+    SampleResult sampled = sample_at_points(std::move(level.mesh), level.lines, options.scheme.kind != Scheme::Linear, options,
+                                            source.bounds().diagonal());
+    PieceKernels result{std::move(sampled.volume), {}, sampled.report.flat_frames};
     result.volume.bounds = bounds_of(result.volume);
+    std::vector<std::size_t> places;
+    for (std::size_t p = 0; p < piece.owned_points.size(); ++p) {
+        if (!piece.owned_points[p]) continue;
+        places.push_back(p);
+        result.numbers.push_back(piece.point_numbers[p]);
+    }
+    detail::keep_kernels(result.volume, places);
     return result;
 }
 
-Surface detail::sample_hull(HexMesh hull, const std::vector<std::uint8_t>& on_hull, const SampleOptions& options) {
+Surface sample_boundary(const MeshHull& hull, const SampleOptions& options) {
     check_part(options);
-    return boundary_of(control_mesh(std::move(hull), options.scheme), on_hull, options.per_edge, options);
+    return boundary_of(detail::control_mesh(hull.mesh, options.scheme), hull.on_hull, options.per_edge, options);
 }
 
-int detail::layers_of_samples(const SampleOptions& options) {
+void check_halo(const MeshSource& source, const SampleOptions& options) {
     // A derivative at a point takes up to three points ahead on a line: the line through the second of them is known from all
     // its cells. A Hessian takes the gradients of the neighbours too.
     // The limit of a vertex depends on the cells about it: where the scheme does not interpolate, one layer more.
-    return (options.correction == Correction::Full ? 4 : 3) + (interpolates(options.scheme.kind) ? 0 : 1);
+    const int layers = (options.correction == Correction::Full ? 4 : 3) + (interpolates(options.scheme.kind) ? 0 : 1);
+    source.check_halo(layers, "these kernels");
 }
 
 struct SampleTables::State {

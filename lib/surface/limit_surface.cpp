@@ -239,15 +239,16 @@ LimitSurface limit_surface(const MeshSource& source, std::string_view field, con
                 "split with a larger --halo");
 }
 
-std::string detail::share_of_surface(const MeshSource& source, std::string_view field, const SurfaceOptions& options,
-                                     const Share& share) {
+SurfaceShareBytes detail::share_of_surface(const MeshSource& source, std::string_view field, const SurfaceOptions& options,
+                                           const Share& share) {
     check_surface_options(options);
     NearCells cells(source, field, options);
     const std::optional<NearSurface> near = cells.find(layers_of_shares(options));
-    if (!near) return empty_surface_share();
+    if (!near) return {empty_surface_share()};
     const Tagged tagged(near->mesh, cells.options());
     const SurfaceMaker maker(tagged.mesh(), near->owned, cells.whole(), field, tagged.options);
     SurfaceShare made{.improve = options.improve, .slack_world = tolerance_world(options, cells.whole())};
+    ShareRange range;
     std::vector<LimitQuery> places;
     for (const Cut& cut : cuts_of(options)) {
         std::optional<SettledCut> one = maker.make(cut, share);
@@ -255,12 +256,13 @@ std::string detail::share_of_surface(const MeshSource& source, std::string_view 
             throw Error(ErrorCode::InvalidInput, "an isosurface leads farther than its shares look",
                         source.mesh() != nullptr ? "surface" : source.stored().name, "one process: without --part and mpirun");
         }
+        range = {range.begin + one->range.begin, range.end + one->range.end, range.count + one->range.count};
         places.insert(places.end(), one->settled.places.begin(), one->settled.places.end());
         for (LimitQuery& place : one->settled.places) near->rename(place);
         made.cuts.push_back(std::move(*one));
     }
     made.fields = maker.fields_at(places);
-    return bytes_of(made);
+    return {bytes_of(made), range};
 }
 
 std::vector<Option> options_of(SurfaceOptions& options) {

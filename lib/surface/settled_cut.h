@@ -3,16 +3,19 @@
 
 #include "point_settler.h"
 #include "subvol/limit_surface.h"
+#include "subvol/share.h"
 
 namespace subvol::detail {
 
 /// What has been cut out of cells at one level, its points moved to the limit.
 ///
 /// deviation_world: of the whole surface, as far as the cells that were looked at show it
+/// range: of the cells that the whole surface passes
 struct SettledCut {
     int level = 0;
     double deviation_world = 0;
     bool converged = false;
+    ShareRange range{};
     SurfaceSoup soup;
     SettledPoints settled;
 };

@@ -101,12 +101,13 @@ std::optional<SettledCut> SurfaceMaker::make(const Cut& cut, const Share& share)
         if (made.soup.leads_out) return {};
     }
     made.converged = made.deviation_world <= 1.1 * tolerance_world_;
+    const std::vector<Index> all = few ? made.soup.cells : active;
+    const auto [begin, end] = share.range(all.size());
+    made.range = {begin, end, all.size()};
     if (few && share.whole()) return made;
     if (!few && share.whole() && made.level == first_level) {
         made.soup = std::move(first);
     } else {
-        const std::vector<Index> all = few ? made.soup.cells : active;
-        const auto [begin, end] = share.range(all.size());
         made.soup = cutter_.cut(cut, made.level, {all.begin() + std::ptrdiff_t(begin), all.begin() + std::ptrdiff_t(end)},
                                 {.not_into = all});
         if (made.soup.leads_out) return {};

@@ -2,6 +2,8 @@
 #include "mesh_pieces.h"
 
 #include <algorithm>
+#include <limits>
+#include <numeric>
 #include <set>
 
 #include "subvol/cell.h"
@@ -175,6 +177,30 @@ MeshSource MeshSource::changed(std::function<HexMesh(HexMesh)> change, std::vect
     return MeshSource(std::move(stored));
 }
 
+MeshSource::Stored MeshSource::in_pieces() const {
+    if (mesh_ == nullptr) return stored_;
+    constexpr int kNoEnd = 16;  // layers of cells: the most that anyone asks for
+    const std::size_t points = mesh_->points.size(), cells = mesh_->cells.size();
+    const auto read = [mesh = mesh_, points, cells](std::size_t) {
+        MeshPiece piece{*mesh, std::vector<std::uint64_t>(points), std::vector<std::uint64_t>(cells), {}, {}};
+        std::iota(piece.point_numbers.begin(), piece.point_numbers.end(), std::uint64_t{0});
+        std::iota(piece.cell_numbers.begin(), piece.cell_numbers.end(), std::uint64_t{0});
+        piece.owned_points.assign(points, 1);
+        piece.owned_cells.assign(cells, 1);
+        return piece;
+    };
+    const Box box = bounds();
+    const Vec3 everywhere(std::numeric_limits<double>::infinity());
+    return {.name = {},
+            .cells = cells,
+            .points = points,
+            .bounds = box,
+            .halo_layers = kNoEnd,
+            .fields = {},
+            .pieces = {{cells, points, box, {-everywhere, everywhere}}},
+            .read = read};
+}
+
 void MeshSource::check_halo(int layers, const std::string& what) const {
     if (mesh_ != nullptr || stored_.halo_layers >= layers) return;
     throw Error(ErrorCode::InvalidInput,
@@ -195,6 +221,29 @@ MeshPiece gather(const MeshSource& source, const Box& box) {
     return *detail::gather_cells(stored, {.reads = [&](std::size_t p) { return touch(stored.pieces[p].reach, box); },
                                           .chooses = chooses,
                                           .layers = stored.halo_layers});
+}
+
+MeshHull gather_hull(const MeshSource& source, Progress* progress) {
+    using namespace detail;
+    std::vector<MeshPiece> parts;
+    for_each_piece(source.in_pieces(), "hull", progress, [&](std::size_t, MeshPiece piece) {
+        const std::vector<std::uint8_t> on_hull = hull_points_of_owned(piece);
+        piece.owned_points = on_hull;  // so that merging puts the flags together
+        std::vector<std::uint8_t> kept(piece.owned_cells.size());
+        for (std::size_t c = 0; c < kept.size(); ++c) {
+            kept[c] =
+                piece.owned_cells[c] && std::ranges::any_of(piece.mesh.cells[c], [&](Index p) { return on_hull[p] != 0; });
+        }
+        // The cells at the hull are few in a large mesh, so they fit into memory although the mesh does not.
+        if (std::ranges::find(kept, 1) != kept.end()) parts.push_back(subset(piece, kept));
+    });
+    MeshPiece all = merged(std::move(parts));
+    const auto at_hull = [&](const auto& tag) {
+        return std::ranges::any_of(tag, [&](Index p) { return all.owned_points[p] != 0; });
+    };
+    std::erase_if(all.mesh.creases, [&](const auto& crease) { return !at_hull(crease); });
+    std::erase_if(all.mesh.sharp_faces, [&](const auto& face) { return !at_hull(face); });
+    return {std::move(all.mesh), std::move(all.owned_points)};
 }
 
 }  // namespace subvol

@@ -211,7 +211,9 @@ detail::MeshShare share_of_mesh(const HexMesh& mesh, const Share& share, std::si
         count_edges(some, counts);
         count_faces(some, counts);
     });
-    const auto [begin, end] = share.range(summed_parts(mesh));
+    const std::size_t parts = summed_parts(mesh);
+    const auto [begin, end] = share.range(parts);
+    made.range = {begin, end, parts};
     for (const ShapeReport& shape : shapes_of_parts(mesh, begin, end)) {
         made.volumes.push_back(shape.volume);
         counts.inverted_cells += shape.inverted_cells;
@@ -264,8 +266,11 @@ detail::MeshShare detail::inspect_share(const MeshSource& source, const Share& s
                                         Progress* progress) {
     if (source.mesh() != nullptr) return share_of_mesh(*source.mesh(), share, inverted_at_most);
     validate(share);
-    const auto [begin, end] = share.range(source.stored().pieces.size());
-    return share_of_pieces(source.stored(), begin, end, inverted_at_most, progress);
+    const std::size_t pieces = source.stored().pieces.size();
+    const auto [begin, end] = share.range(pieces);
+    MeshShare made = share_of_pieces(source.stored(), begin, end, inverted_at_most, progress);
+    made.range = {begin, end, pieces};
+    return made;
 }
 
 detail::MeshShare detail::join_shares(std::span<const MeshShare> shares, std::size_t inverted_at_most) {
@@ -275,7 +280,7 @@ detail::MeshShare detail::join_shares(std::span<const MeshShare> shares, std::si
     all.cells = shares.front().counts.cells;
     all.bounds = shares.front().counts.bounds;
     all.min_scaled_jacobian = 1;
-    for (const auto& [counts, volumes, inverted] : shares) {
+    for (const auto& [counts, range, volumes, inverted] : shares) {
         all.points_used += counts.points_used;
         all.edges += counts.edges;
         all.faces += counts.faces;

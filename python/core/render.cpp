@@ -104,14 +104,15 @@ Picture render(const DrawnBody& drawn, const std::string& method_name, const Vie
                const py::dict& given, const py::object& progress) {
     const auto method = named<Method>(method_name, "method");
     HexMesh two_fields;
-    PictureBody body{.mesh = drawn.mesh, .kernels = drawn.points, .voxels = drawn.voxels, .channels = drawn.channels};
+    PictureBody body{.kernels = drawn.points, .voxels = drawn.voxels, .channels = drawn.channels};
+    if (drawn.mesh != nullptr) body.mesh = *drawn.mesh;
     check_method(method, body.kind(), OptionNames::Keywords);
     check_options(
         bit(method), body.kind(), [&](std::string_view name) { return text_of(given, name); }, OptionNames::Keywords);
     if (drawn.colors != nullptr) {
         two_fields = *drawn.mesh;
         two_fields.attributes.push_back(drawn.colors->attributes.front());
-        body.mesh = &two_fields;
+        body.mesh = two_fields;
     }
     PictureMaker maker(std::move(body), method_options(method, light, given));
     subvol::Picture picture = result_of(progress, [&](Progress* listener) { return maker.draw(view, light.optics, listener); });

@@ -36,7 +36,7 @@ SplatMethod splat_method(Method method, SplatMethod otherwise) {
 }  // namespace
 
 BodyKind PictureBody::kind() const {
-    if (bricks != nullptr) return BodyKind::Bricks;
+    if (mesh && mesh->mesh() == nullptr) return BodyKind::Bricks;
     if (voxels != nullptr) return BodyKind::Voxels;
     if (file != nullptr) return BodyKind::KernelFile;
     if (kernels != nullptr) return BodyKind::Kernels;
@@ -55,9 +55,9 @@ struct PictureMaker::State {
     std::optional<detail::KernelLevels> levels{};
     std::optional<TetsRenderer> tets{};
     std::optional<ProjectedRenderer> projected{};
-    std::optional<BrickHull> hull{};
-    std::optional<Surface> brick_boundary{};
-    std::optional<BrickTets> brick_tets{};
+    std::optional<MeshHull> hull{};  // of a mesh in pieces, like the next two
+    std::optional<Surface> piece_boundary{};
+    std::optional<BrickTets> piece_tets{};
 
     /// A splatter for each way of drawing: method, samples, light, and the kernels that it was made for.
     using SplatterKey = std::tuple<Method, int, bool, const RbfVolume*>;
@@ -81,9 +81,13 @@ struct PictureMaker::State {
         tets.reset();
         projected.reset();
         hull.reset();
-        brick_boundary.reset();
-        brick_tets.reset();
+        piece_boundary.reset();
+        piece_tets.reset();
     }
+
+    /// The mesh, if the body is one in memory; else null.
+    [[nodiscard]] const HexMesh* mesh() const { return body.mesh ? body.mesh->mesh() : nullptr; }
+    [[nodiscard]] bool is_in_pieces() const { return body.mesh && mesh() == nullptr; }
 
     [[nodiscard]] const SchemeOptions& scheme() const { return options.kernels.sample.scheme; }
     [[nodiscard]] Method method() const { return options.style.method; }
@@ -96,8 +100,7 @@ struct PictureMaker::State {
 
     [[nodiscard]] bool paints_boundary() const {
         const LookOptions& look = options.style.look;
-        const bool has_boundary = body.mesh != nullptr || body.bricks != nullptr;
-        return has_boundary && look.look == Look::Solid && look.opacity.empty() && !look.opacity_unit_world &&
+        return body.mesh && look.look == Look::Solid && look.opacity.empty() && !look.opacity_unit_world &&
                options.kernels.are_plain() && !options.drop_invisible && options.splat.sheets == 0 && options.splat.normalized;
     }
     /// Shadows and occlusion are those of the kernels: the boundary's own colours have none.
@@ -105,8 +108,8 @@ struct PictureMaker::State {
         return paints_boundary() && !options.splat.shadows && options.splat.ambient_occlusion == 0;
     }
 
-    /// Bricks get the colours of their boundary when all rows are there.
-    [[nodiscard]] bool paints_bricks() const { return draws_kernels(method()) && paints_splats() && is_finished(); }
+    /// A mesh in pieces gets the colours of its boundary when all rows are there.
+    [[nodiscard]] bool paints_finished() const { return draws_kernels(method()) && paints_splats() && is_finished(); }
 
     [[nodiscard]] RefineOptions refinement(int level, Progress* progress) const {
         return {.scheme = scheme(), .levels = level, .progress = progress};
@@ -115,14 +118,19 @@ struct PictureMaker::State {
     /// As boundary_values has it, up to rounding where the body has been moved.
     const BoundaryValues& skin_of_mesh(Progress* progress, Facts& facts) {
         if (skin) return *skin;
-        const HexMesh& mesh = *body.mesh;
-        const auto refine = [&] {
-            return refinement(picture_levels(mesh, body.tets ? std::optional(0) : options.kernels.levels), progress);
+        const auto refine = [&](const auto& hull_or_mesh) {
+            const std::optional<int> most = body.tets ? std::optional(0) : options.kernels.levels;
+            return refinement(picture_levels(hull_or_mesh, most), progress);
         };
+        if (is_in_pieces()) {
+            const MeshHull& all = hull_of_pieces(progress, facts);
+            skin = facts.timed(progress, "boundary", [&] { return boundary_values(all, refine(all)); });
+            return *skin;
+        }
         skin = facts.timed(progress, "boundary", [&] {
-            if (!body.moved) return boundary_values(mesh, refine());
-            if (!tables) tables.emplace(mesh, refine());
-            return tables->apply(mesh);
+            if (!body.moved) return boundary_values(*mesh(), refine(*mesh()));
+            if (!tables) tables.emplace(*mesh(), refine(*mesh()));
+            return tables->apply(*mesh());
         });
         return *skin;
     }
@@ -139,25 +147,25 @@ struct PictureMaker::State {
         if (body.moved && !choices.tets && !choices.levels && !choices.visible && choices.reduce_rmse == 0 &&
             SampleTables::are_for(sample)) {
             volume = facts.timed(progress, "sample", [&] {
-                if (!kernel_tables) kernel_tables.emplace(*body.mesh, sample);
-                return kernel_tables->apply(*body.mesh).volume;
+                if (!kernel_tables) kernel_tables.emplace(*mesh(), sample);
+                return kernel_tables->apply(*mesh()).volume;
             });
             return *volume;
         }
-        volume = facts.unpack(make_mesh_kernels(*body.mesh, choices));
+        volume = facts.unpack(make_mesh_kernels(*mesh(), choices));
         return *volume;
     }
 
-    const BrickHull& hull_of_bricks(Progress* progress, Facts& facts) {
-        if (!hull) hull = facts.timed(progress, "hull", [&] { return gather_hull(*body.bricks, body.fields, progress); });
+    const MeshHull& hull_of_pieces(Progress* progress, Facts& facts) {
+        if (!hull) hull = facts.timed(progress, "hull", [&] { return gather_hull(*body.mesh, progress); });
         return *hull;
     }
 
     Facts prepare(const Optics& optics, Progress* progress) {
         check_method(method(), body.kind(), options.names);
         Facts facts;
-        if (body.bricks != nullptr) {
-            prepare_bricks(progress, facts);
+        if (is_in_pieces()) {
+            prepare_pieces(progress, facts);
         } else if (draws_kernels(method())) {
             if (options.seconds) return facts;
             if (paints_splats()) (void)skin_of_mesh(progress, facts);
@@ -184,40 +192,35 @@ struct PictureMaker::State {
         };
         const bool missing = (method() == Method::Tets && !tets) || (method() == Method::Projected && !projected);
         if (missing && body.tets) {
-            make_tets(join_split_cells(*body.mesh));
+            make_tets(join_split_cells(*mesh()));
         } else if (missing) {
             const RefineOptions refine = refinement(options.kernels.levels.value_or(kTetsLevel), progress);
-            make_tets(facts.unpack(refined_on_limit(*body.mesh, refine, options.kernels.levels_option)));
+            make_tets(facts.unpack(refined_on_limit(*mesh(), refine, options.kernels.levels_option)));
         }
         if (lights_boundary()) (void)skin_of_mesh(progress, facts);
     }
 
-    void prepare_bricks(Progress* progress, Facts& facts) {
+    void prepare_pieces(Progress* progress, Facts& facts) {
         const bool by_kernels = draws_kernels(method());
-        if (!skin && (by_kernels ? paints_bricks() : lights_boundary())) {
-            const BrickHull& all = hull_of_bricks(progress, facts);
-            skin = facts.timed(progress, "boundary", [&] {
-                return boundary_values(all, scheme(), by_kernels ? std::nullopt : options.kernels.levels);
-            });
-        }
-        if (by_kernels && !brick_boundary) {
+        if (by_kernels ? paints_finished() : lights_boundary()) (void)skin_of_mesh(progress, facts);
+        if (by_kernels && !piece_boundary) {
             SampleOptions sample = options.kernels.sample;
             sample.progress = progress;
-            const BrickHull& all = hull_of_bricks(progress, facts);
-            brick_boundary = facts.timed(progress, "boundary", [&] { return sample_bricks_boundary(all, sample); });
+            const MeshHull& all = hull_of_pieces(progress, facts);
+            piece_boundary = facts.timed(progress, "boundary", [&] { return sample_boundary(all, sample); });
         }
         hull.reset();
-        if (by_kernels || brick_tets) return;
-        const BrickTetsOptions tet_options = brick_tets_options(progress);
-        brick_tets = facts.timed(progress, "measure", [&] {
-            return team != nullptr ? team->measure(*body.bricks, tet_options)
-                                   : measure_tets(*body.bricks, tet_options, 0, body.bricks->bricks.size());
+        if (by_kernels || piece_tets) return;
+        const BrickTetsOptions tet_options = piece_tets_options(progress);
+        piece_tets = facts.timed(progress, "measure", [&] {
+            return team != nullptr ? team->measure(*body.mesh, tet_options)
+                                   : measure_tets(*body.mesh, tet_options, 0, body.mesh->stored().pieces.size());
         });
         facts["levels"] = tet_options.refine.levels;
-        facts["cells"] = brick_tets->tets / 6;
+        facts["cells"] = piece_tets->tets / 6;
     }
 
-    [[nodiscard]] BrickTetsOptions brick_tets_options(Progress* progress) const {
+    [[nodiscard]] BrickTetsOptions piece_tets_options(Progress* progress) const {
         return {.refine = refinement(options.kernels.levels.value_or(kTetsLevel), progress),
                 .tets = {.progress = progress},
                 .memory_bytes = options.memory_bytes};
@@ -226,7 +229,7 @@ struct PictureMaker::State {
     /// The channels of the kernels that are drawn: the shown one, and the one of the colours if that is another.
     [[nodiscard]] std::vector<std::size_t> shown_channels() const {
         if (body.kernels != nullptr && !body.channels.empty()) return body.channels;
-        const std::size_t count = body.mesh != nullptr      ? body.mesh->attributes.size()
+        const std::size_t count = mesh() != nullptr         ? mesh()->attributes.size()
                                   : body.file != nullptr    ? body.channels.size()
                                   : body.kernels != nullptr ? body.kernels->channels.size()
                                                             : 1;
@@ -292,7 +295,7 @@ struct PictureMaker::State {
 
     Picture draw_splats_in_time(const View& view, const Optics& optics, Progress* progress) const {
         ProgressiveResult drawn = render_progressively(
-            *body.mesh, view, optics,
+            *mesh(), view, optics,
             {.seconds = *options.seconds, .sample = options.kernels.sample, .splat = splat_options(), .progress = progress});
         Picture picture{std::move(drawn.splat.image), std::move(drawn.splat.depth)};
         detail::add_facts(drawn.splat.report, method(), picture.facts);
@@ -303,16 +306,15 @@ struct PictureMaker::State {
         return picture;
     }
 
-    Picture draw_brick_splats(const View& view, const Optics& optics, Progress* progress) const {
+    Picture draw_piece_splats(const View& view, const Optics& optics, Progress* progress) const {
         Picture picture;
-        BrickSplatOptions brick{
+        BrickSplatOptions pieces{
             .sample = options.kernels.sample, .splat = splat_options(), .memory_bytes = options.memory_bytes, .scratch = {}};
-        brick.sample.progress = brick.splat.progress = progress;
-        if (team != nullptr) brick.rows = team->rows(view.height());
+        pieces.sample.progress = pieces.splat.progress = progress;
+        if (team != nullptr) pieces.rows = team->rows(view.height());
         SplatResult drawn = picture.facts.timed(progress, "draw", [&] {
-            if (team != nullptr)
-                return team->splat(*body.bricks, body.fields, *brick_boundary, brick, view, optics, picture.facts);
-            return render_bricks(*body.bricks, body.fields, *brick_boundary, view, optics, brick);
+            if (team != nullptr) return team->splat(*body.mesh, *piece_boundary, pieces, view, optics, picture.facts);
+            return render_bricks(*body.mesh, *piece_boundary, view, optics, pieces);
         });
         detail::add_facts(drawn.report, method(), picture.facts);
         picture.facts["points"] = drawn.report.points;
@@ -328,10 +330,10 @@ struct PictureMaker::State {
                                        .progress = progress};
         Picture picture;
         TetsResult drawn;
-        if (body.bricks != nullptr) {
-            BrickTetsOptions brick = brick_tets_options(progress);
-            brick.tets = tets_options;
-            drawn = render_tets(*body.bricks, body.fields, *brick_tets, view, optics, brick);
+        if (is_in_pieces()) {
+            BrickTetsOptions pieces = piece_tets_options(progress);
+            pieces.tets = tets_options;
+            drawn = render_tets(*body.mesh, *piece_tets, view, optics, pieces);
             picture.facts.add_seconds("prepare", drawn.report.seconds_build);
         } else {
             drawn = tets->draw(view, optics, tets_options);
@@ -371,7 +373,7 @@ struct PictureMaker::State {
 
     Picture draw_dense(const View& view, const Optics& optics, Progress* progress) const {
         const std::optional<int> level = options.kernels.levels;
-        DenseResult drawn = render_dense(*body.mesh, {}, view, optics,
+        DenseResult drawn = render_dense(*mesh(), {}, view, optics,
                                          {.refine = refinement(0, progress),
                                           .levels = level,
                                           .max_levels = options.max_levels,
@@ -398,7 +400,7 @@ struct PictureMaker::State {
             case Method::Splat:
             case Method::Sheets:
             case Method::Footprints:
-                if (body.bricks != nullptr) return draw_brick_splats(view, optics, progress);
+                if (is_in_pieces()) return draw_piece_splats(view, optics, progress);
                 return options.seconds ? draw_splats_in_time(view, optics, progress)
                                        : draw_splats(view, optics, progress, stand_in);
             case Method::Tets:
@@ -413,13 +415,13 @@ struct PictureMaker::State {
         return draw_grid(view, optics, progress);
     }
 
-    /// Adds what the boundary gives to a finished picture: light, or for bricks its colours.
+    /// Adds what the boundary gives to a finished picture: light, or for a mesh in pieces its colours.
     void finish(Picture& picture, const View& view, const Optics& optics) const {
         const int samples = options.style.sample_count();
         const Clip& clip = options.style.clip;
         if (lights_boundary()) {
             light_boundary(picture.image, skin->surface, view, Shading{}, samples, clip);
-        } else if (body.bricks != nullptr && paints_bricks() && !skin->values.empty()) {
+        } else if (is_in_pieces() && paints_finished() && !skin->values.empty()) {
             color_boundary(picture.image, skin->surface, skin->values.back(), view, optics, Shading{}, samples, clip);
         }
     }
@@ -462,9 +464,9 @@ Picture PictureMaker::draw(const View& view, const Optics& optics, Progress* pro
 
 std::vector<Vec3> PictureMaker::framed_points(const Optics& optics, Progress* progress, Facts& facts) {
     const Look look = state_->options.style.look.look;
-    if (state_->body.mesh != nullptr) return subvol::framed_points(*state_->body.mesh, look, optics);
-    if (state_->body.bricks == nullptr || look != Look::Solid) return {};
-    return state_->hull_of_bricks(progress, facts).mesh.points;
+    if (const HexMesh* mesh = state_->mesh()) return subvol::framed_points(*mesh, look, optics);
+    if (!state_->is_in_pieces() || look != Look::Solid) return {};
+    return state_->hull_of_pieces(progress, facts).mesh.points;
 }
 
 bool PictureMaker::paints_boundary() const {

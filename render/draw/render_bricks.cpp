@@ -150,19 +150,16 @@ SplatResult BrickPicture::draw(const SumCounts& sum) {
     return result;
 }
 
-SplatResult render_bricks(const Bricks& bricks, const BrickFields& fields, Surface boundary, const View& view,
-                          const Optics& optics, const BrickSplatOptions& options) {
+SplatResult render_bricks(const MeshSource& source, Surface boundary, const View& view, const Optics& optics,
+                          const BrickSplatOptions& options) {
     BrickPicture picture(std::move(boundary), view, optics, options);
-    for (std::size_t b = 0; b < bricks.bricks.size(); ++b) {
-        report_progress(options.splat.progress, "sample", static_cast<double>(b) / static_cast<double>(bricks.bricks.size()));
-        MeshPiece brick = read_brick(bricks, b);
-        brick.mesh = fields(std::move(brick.mesh));
-        SampleOptions quiet = options.sample;
-        quiet.progress = nullptr;
-        const BrickPoints sampled = sample_brick(bricks, std::move(brick), quiet);
-        picture.add(sampled.volume, sampled.numbers);
-        picture.count(sampled.volume);
-    }
+    SampleOptions quiet = options.sample;
+    quiet.progress = nullptr;
+    for_each_piece(source.in_pieces(), "sample", options.splat.progress, [&](std::size_t, MeshPiece piece) {
+        const PieceKernels kernels = sample_piece(source, std::move(piece), quiet);
+        picture.add(kernels.volume, kernels.numbers);
+        picture.count(kernels.volume);
+    });
     return picture.draw();
 }
 

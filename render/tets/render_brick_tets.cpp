@@ -54,8 +54,8 @@ std::size_t cells_at_once(const BrickTetsOptions& options) {
     return cells_in(0.75 * static_cast<double>(options.memory_bytes), children(options.refine) * kBytesOfTets);
 }
 
-void check(const Bricks& bricks, const BrickTetsOptions& options) {
-    source_of(bricks).check_halo(kHaloOfLimit, "values of the limit");
+void check(const MeshSource& source, const BrickTetsOptions& options) {
+    source.check_halo(kHaloOfLimit, "values of the limit");
     if (options.refine.levels < 0 || options.refine.levels > 10) {
         throw Error(ErrorCode::InvalidInput, "the number of levels is " + std::to_string(options.refine.levels), {}, "0 to 10");
     }
@@ -259,15 +259,16 @@ void BrickTets::add(const BrickTets& other) {
     inverted_tets += other.inverted_tets;
 }
 
-BrickTets measure_tets(const Bricks& bricks, const BrickTetsOptions& options, std::size_t begin, std::size_t end) {
-    check(bricks, options);
+BrickTets measure_tets(const MeshSource& source, const BrickTetsOptions& options, std::size_t begin, std::size_t end) {
+    check(source, options);
+    const MeshSource::Stored stored = source.in_pieces();
     RefineOptions refine = options.refine;
     refine.progress = nullptr;
     const double memory = static_cast<double>(options.memory_bytes);
     const std::size_t most = cells_in(memory, children(refine) * kBytesOfRefined);
     BrickTets all;
     for (std::size_t b = begin; b < end; ++b) {
-        MeshPiece brick = read_brick(bricks, b);
+        MeshPiece brick = stored.read(b);
         brick.mesh.attributes.clear();
         BrickTets gathered;
         const std::vector<Index> cells = owned_cells(brick);
@@ -289,19 +290,19 @@ BrickTets measure_tets(const Bricks& bricks, const BrickTetsOptions& options, st
     return all;
 }
 
-TetsResult render_tets(const Bricks& bricks, const BrickFields& fields, const BrickTets& all, const View& view,
-                       const Optics& optics, const BrickTetsOptions& options) {
+TetsResult render_tets(const MeshSource& source, const BrickTets& all, const View& view, const Optics& optics,
+                       const BrickTetsOptions& options) {
     check_samples(options.tets.samples);
-    check(bricks, options);
+    check(source, options);
+    const MeshSource::Stored stored = source.in_pieces();
     const PixelRect picture = rect_of(options.tets.rows, view.width(), view.height());
     BrickTetsDrawer drawer(all, view, optics, options, picture);
     // Control cells take little of the memory, so each brick is read for few large parts; these are then drawn in smaller ones.
     const std::size_t most_control = cells_in(0.25 * static_cast<double>(options.memory_bytes), kBytesOfControl);
     const std::size_t most_tets = cells_at_once(options);
     PictureParts outer, inner;
-    const MeshSource source = source_of(bricks, fields);
     outer.each(picture, [&](const PixelRect& gathered) {
-        const auto control = drawer.gather(source.stored(), gathered, most_control);
+        const auto control = drawer.gather(stored, gathered, most_control);
         if (!control) return false;
         inner.each(gathered, [&](const PixelRect& part) { return drawer.draw(part, *control, most_tets); });
         return true;

@@ -2,6 +2,7 @@
 """Shares of work: --part, join, and processes of MPI. The result is that of one process, bit by bit."""
 
 import json
+import re
 import unittest
 
 from shares import COUNTS, HEIGHT, PICTURE, SURFACES, WIDTH, Shared, WithRanks, without_times, picture
@@ -144,6 +145,26 @@ class Parts(Shared):
             others = (two, three) if b"was" in wrong else ()
             self.assertIn(message, self.refused("join", "changed.ply", *others, "-o", "j.ply"))
         self.assertFalse((self.folder / "j.ply").exists())
+
+    def test_parts_of_builds_that_divide_the_work_differently_are_refused(self):
+        one, two, three = self.parts("points", "model:ball:4", ".ply", 3)
+        note = re.search(rb'"range":\[(\d+),(\d+),(\d+)\]', self.bytes_of(two))
+        begin, end, count = (int(number) for number in note.groups())
+        kernels = self.run_ok("info", two, "--json").json()["points"]
+        self.assertEqual(end - begin, kernels)
+        for numbers in ((begin + 1, end, count), (begin, end + 1, count), (begin, end, count + 1)):
+            other = f'"range":[{",".join(map(str, numbers))}]'.encode()
+            (self.folder / "other.ply").write_bytes(self.bytes_of(two).replace(note.group(), other))
+            self.assertIn("another build has divided the work differently", self.refused("join", one, "other.ply", three, "-o", "j.ply"))
+        (self.folder / "other.ply").write_bytes(self.bytes_of(two).replace(note.group() + b",", b""))
+        self.assertIn("another build", self.refused("join", one, "other.ply", three, "-o", "j.ply"))
+        self.assertFalse((self.folder / "j.ply").exists())
+
+    def test_missing_parts_are_noticed_before_the_others_are_read(self):
+        one, two, three = self.parts("points", "model:ball:4", ".ply", 3)
+        (self.folder / "cut.ply").write_bytes(self.bytes_of(two)[:-9])
+        self.assertIn("part 3/3 of this work is missing", self.refused("join", one, "cut.ply", "-o", "j.ply"))
+        self.assertNotIn("missing", self.refused("join", one, "cut.ply", three, "-o", "j.ply"))
 
     def test_wrong_figures_are_refused(self):
         sound = self.run_ok("info", "model:ball:4", "--json", "--part", "1/1").json()

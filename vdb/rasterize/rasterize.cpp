@@ -204,13 +204,17 @@ std::vector<double> bytes_of_layers(const CellRequest& request, std::size_t byte
     return bytes;
 }
 
-/// The slab of whole bricks across x that is a share; the outermost two extend to the largest voxel index. Nothing if there are
-/// more shares than layers of bricks.
-std::optional<VoxelBox> slab_of_share(const CellRequest& request, std::size_t bytes_per_voxel, const Share& share) {
+/// The slab of whole bricks across x that is a share; the outermost two extend to the largest voxel index. No voxels if there
+/// are more shares than layers of bricks.
+///
+/// layers: becomes the range of layers
+VoxelBox slab_of_share(const CellRequest& request, std::size_t bytes_per_voxel, const Share& share, ShareRange& layers) {
+    constexpr VoxelBox kNowhere{{kBrickSide, kBrickSide, kBrickSide}, {kBrickSide - 1, kBrickSide - 1, kBrickSide - 1}};
     int first = 0;
     const std::vector<double> bytes = bytes_of_layers(request, bytes_per_voxel, first);
     const auto [begin, end] = share.range_by_weight(bytes);
-    if (begin >= end) return {};
+    layers = {begin, end, bytes.size()};
+    if (begin >= end) return kNowhere;
     const auto layer = [&](std::size_t number) { return (first + static_cast<int>(number)) * kBrickSide; };
     return VoxelBox{{begin == 0 ? -kFar : layer(begin), -kFar, -kFar},
                     {end == bytes.size() ? kFar - 1 : layer(end) - 1, kFar - 1, kFar - 1}};
@@ -294,8 +298,9 @@ GridShare rasterize_share(const MeshSource& source, std::span<const std::string>
     if (source.mesh() == nullptr) return rasterize_share_of_pieces(source, fields, options, share);
     const CellRequest request = make_request(*source.mesh(), fields, options);
     MeshRasterizer rasterizer(request, options);
-    constexpr VoxelBox kNowhere{{kBrickSide, kBrickSide, kBrickSide}, {kBrickSide - 1, kBrickSide - 1, kBrickSide - 1}};
-    return {rasterizer.run(slab_of_share(request, bytes_per_voxel(request, options), share).value_or(kNowhere)), {}};
+    GridShare made;
+    made.grids = rasterizer.run(slab_of_share(request, bytes_per_voxel(request, options), share, made.layers));
+    return made;
 }
 
 }  // namespace subvol

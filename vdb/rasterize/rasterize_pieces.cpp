@@ -62,11 +62,14 @@ public:
             fail_too_fine(voxel_, "the mesh would be made in more than a million blocks of voxels",
                           1.01 * voxel_ * std::cbrt(blocks / kMostBlocks));
         }
+        layers_.end = layers_.count = static_cast<std::uint64_t>(all.upper[0] - all.lower[0]);
         if (!share.whole()) all = slab_of(all, share);
         if (all.lower[0] < all.upper[0]) cut(all);
     }
 
     [[nodiscard]] const std::vector<VoxelCubes>& blocks() const { return blocks_; }
+    /// The layers across x of the share.
+    [[nodiscard]] const ShareRange& layers() const { return layers_; }
 
     /// The box of a block and a voxel more. whole_columns: all that is above and below it too
     [[nodiscard]] Box box_of(const VoxelCubes& block, bool whole_columns = false) const {
@@ -85,7 +88,7 @@ public:
 
 private:
     /// The layers across x of a share.
-    [[nodiscard]] VoxelCubes slab_of(const VoxelCubes& all, const Share& share) const {
+    [[nodiscard]] VoxelCubes slab_of(const VoxelCubes& all, const Share& share) {
         std::vector<double> bytes;
         for (int layer = all.lower[0]; layer < all.upper[0]; ++layer) {
             VoxelCubes one = all;
@@ -94,6 +97,7 @@ private:
             bytes.push_back(bytes_of(one));
         }
         const auto [begin, end] = share.range_by_weight(bytes);
+        layers_ = {begin, end, bytes.size()};
         VoxelCubes slab = all;
         slab.lower[0] = all.lower[0] + static_cast<int>(begin);
         slab.upper[0] = all.lower[0] + static_cast<int>(end);
@@ -147,6 +151,7 @@ private:
     const MeshSource::Stored& stored_;
     double memory_, voxel_, channels_ = 0;
     std::vector<VoxelCubes> blocks_;
+    ShareRange layers_{};
 };
 
 /// What a block of voxels is made of.
@@ -238,7 +243,7 @@ GridShare rasterize_share_of_pieces(const MeshSource& source, std::span<const st
     const BlockPlan plan(source.stored(), options.voxel_size_world, static_cast<double>(options.block_bytes), share);
     std::vector<std::vector<VdbGrid>> blocks;  // of each grid
     for (VdbGrid& grid : empty_grids(source, fields, options)) blocks.emplace_back().push_back(std::move(grid));
-    GridShare made;
+    GridShare made{.grids = {}, .layers = plan.layers()};
     made.report = make_blocks(plan, {source, fields, options}, options.progress, [&](std::vector<VdbGrid> block) {
         for (std::size_t g = 0; g < block.size(); ++g) blocks.at(g).push_back(std::move(block[g]));
     });

@@ -23,7 +23,7 @@ PictureBody picture_body(const ViewBody& body) {
         shown.voxels = body.points.voxels.get();
         shown.channels = {body.channel};
     } else {
-        shown.mesh = &body.mesh;
+        shown.mesh = body.mesh;
     }
     return shown;
 }

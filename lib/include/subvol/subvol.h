@@ -68,6 +68,7 @@
 #include "subvol/refine_shells.h"
 #include "subvol/sample.h"
 #include "subvol/sample_mixed.h"
+#include "subvol/sample_pieces.h"
 #include "subvol/sample_tables.h"
 #include "subvol/scheme.h"
 #include "subvol/share.h"

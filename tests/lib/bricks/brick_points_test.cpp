@@ -27,13 +27,14 @@ TEST_F(BrickPointsTest, PointsHaveTheSameBytes) {
             const SampleOptions options{.correction = correction};
             write_points(path("whole.ply"), sample_rbf_points(mesh, options).volume);
             const std::string whole = read_bytes(path("whole.ply"));
+            (void)write_points_of_bricks(path("memory.ply"), mesh, options);
+            EXPECT_TRUE(read_bytes(path("memory.ply")) == whole) << "in memory";
             for (const BrickShape shape : kShapes) {
                 for (const std::size_t count : kCounts) {
                     const SplitOptions split{
                         .bricks = count, .shape = shape, .halo_layers = correction == Correction::Full ? 4 : 3};
                     const Bricks bricks = split_mesh(path("m.bricks"), mesh, split).bricks;
-                    const auto report =
-                        write_points_of_bricks(path("bricks.ply"), bricks, options, [](HexMesh same) { return same; });
+                    const auto report = write_points_of_bricks(path("bricks.ply"), bricks, options);
                     EXPECT_EQ(report.points, mesh.points.size());
                     EXPECT_TRUE(read_bytes(path("bricks.ply")) == whole) << count << " bricks of shape " << int(shape);
                 }
@@ -51,7 +52,7 @@ TEST_F(BrickPointsTest, FilesWithLevelsOfDetailHaveTheSameBytes) {
             for (const BrickShape shape : kShapes) {
                 const Bricks bricks = split_mesh(path("m.bricks"), mesh, {.bricks = 5, .shape = shape}).bricks;
                 const std::size_t files = file_count();
-                (void)write_points_of_bricks(path("bricks.svk"), bricks, options, [](HexMesh same) { return same; });
+                (void)write_points_of_bricks(path("bricks.svk"), bricks, options);
                 EXPECT_TRUE(read_bytes(path("bricks.svk")) == whole) << "shape " << int(shape);
                 std::filesystem::remove(path("bricks.svk"));
                 EXPECT_EQ(file_count(), files);
@@ -73,7 +74,7 @@ TEST_F(BrickPointsTest, PointsOnTheLimitHaveTheSameBytes) {
                     const SplitOptions split{
                         .bricks = 5, .shape = shape, .halo_layers = correction == Correction::Full ? 5 : 4};
                     const Bricks bricks = split_mesh(path("m.bricks"), mesh, split).bricks;
-                    (void)write_points_of_bricks(path("bricks.ply"), bricks, options, [](HexMesh same) { return same; });
+                    (void)write_points_of_bricks(path("bricks.ply"), bricks, options);
                     EXPECT_TRUE(read_bytes(path("bricks.ply")) == whole) << int(scheme) << " shape " << int(shape);
                 }
             }
@@ -87,7 +88,7 @@ TEST_F(BrickPointsTest, PointsOnTheLimitNeedOneLayerMore) {
         for (const auto& [correction, said] :
              {std::pair{Correction::Second, "split with --halo 4"}, {Correction::Full, "split with --halo 5"}}) {
             const SampleOptions options{.scheme = {scheme}, .correction = correction};
-            EXPECT_NE(error_of([&] { (void)sample_brick(bricks, read_brick(bricks, 0), options); }).find(said),
+            EXPECT_NE(error_of([&] { (void)sample_piece(bricks, read_brick(bricks, 0), options); }).find(said),
                       std::string::npos);
         }
     }
@@ -101,8 +102,7 @@ std::vector<std::filesystem::path> write_shares(const std::filesystem::path& fol
     for (std::size_t k = 0; k < count; ++k) {
         const BrickShare share{all * k / count, all * (k + 1) / count, "part " + std::to_string(k)};
         parts.push_back(folder / ("part" + std::to_string(k) + ".ply"));
-        (void)write_points_of_bricks(
-            parts.back(), bricks, options, [](HexMesh same) { return same; }, &share);
+        (void)write_points_of_bricks(parts.back(), bricks, options, &share);
         EXPECT_EQ(read_points_note(parts.back()), share.note);
     }
     return parts;

@@ -89,7 +89,7 @@ TEST_F(BricksTest, CreasesByAngleAndRefinedBoundariesToo) {
     for (const Scheme scheme : {Scheme::Mcq, Scheme::CatmullClark, Scheme::Bsxw}) {
         const SampleOptions options{.scheme = {.kind = scheme, .crease_angle_deg = 20}, .boundary_levels = 2};
         write_points(path("whole.ply"), sample_rbf_points(mesh, options).volume);
-        (void)write_points_of_bricks(path("bricks.ply"), bricks, options, [](HexMesh same) { return same; });
+        (void)write_points_of_bricks(path("bricks.ply"), bricks, options);
         EXPECT_TRUE(read_bytes(path("bricks.ply")) == read_bytes(path("whole.ply"))) << int(scheme);
     }
 }
@@ -104,7 +104,7 @@ TEST_F(BricksTest, RealMeshes) {
     write_points(path("whole.ply"), sample_rbf_points(with_field).volume);
     for (const BrickShape shape : kShapes) {
         const Bricks bricks = split_mesh(path("m.bricks"), with_field, {.bricks = 7, .shape = shape}).bricks;
-        (void)write_points_of_bricks(path("bricks.ply"), bricks, {}, [](HexMesh same) { return same; });
+        (void)write_points_of_bricks(path("bricks.ply"), bricks, {});
         EXPECT_TRUE(read_bytes(path("bricks.ply")) == read_bytes(path("whole.ply")));
     }
 }
@@ -162,7 +162,7 @@ TEST_F(BricksTest, TheTwistIsWrittenWithoutTheWhole) {
         const Bricks bricks = split_twist(path("t.bricks"), 12, {.bricks = count}).bricks;
         EXPECT_EQ(bricks.bricks.size(), count);
         EXPECT_EQ(bricks.cells, mesh.cells.size());
-        (void)write_points_of_bricks(path("bricks.ply"), bricks, {}, [](HexMesh same) { return same; });
+        (void)write_points_of_bricks(path("bricks.ply"), bricks, {});
         EXPECT_TRUE(read_bytes(path("bricks.ply")) == read_bytes(path("whole.ply"))) << count;
     }
 }
@@ -320,7 +320,7 @@ TEST_F(BricksTest, NothingElseIsOverwritten) {
     EXPECT_NE(error_of([&] { (void)split_mesh(path("m"), mesh, {.bricks = 2, .halo_layers = 0}); }).find("layers of halo"),
               std::string::npos);
     const Bricks thin = split_mesh(path("thin"), mesh, {.bricks = 2, .halo_layers = 1}).bricks;
-    EXPECT_NE(error_of([&] { (void)sample_brick(thin, read_brick(thin, 0)); }).find("split with --halo 3"), std::string::npos);
+    EXPECT_NE(error_of([&] { (void)sample_piece(thin, read_brick(thin, 0)); }).find("split with --halo 3"), std::string::npos);
 }
 
 }  // namespace bricks_test

@@ -20,7 +20,7 @@ using testing::HasSubstr;
 std::vector<std::string> shares_of(const HexMesh& mesh, const SurfaceOptions& options, int count) {
     std::vector<std::string> shares;
     for (int number = 1; number <= count; ++number) {
-        shares.push_back(detail::share_of_surface(mesh, "f", options, {number, count}));
+        shares.push_back(detail::share_of_surface(mesh, "f", options, {number, count}).bytes);
     }
     return shares;
 }
@@ -133,7 +133,7 @@ TEST(SurfaceShare, RefusesBytesThatAreNoShares) {
 class SurfaceShareFiles : public test::TempFolder {};
 
 TEST_F(SurfaceShareFiles, AreReadAsTheyWereWritten) {
-    const std::string bytes = detail::share_of_surface(ball(2), "f", {.boundary = true}, {1, 2});
+    const std::string bytes = detail::share_of_surface(ball(2), "f", {.boundary = true}, {1, 2}).bytes;
     detail::write_surface_share(path("a.svshare"), {"a note", bytes});
     const detail::SurfaceShareFile read = detail::read_surface_share(path("a.svshare"));
     EXPECT_EQ(read.note, "a note");

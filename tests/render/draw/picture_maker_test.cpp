@@ -89,7 +89,7 @@ TEST(PictureMaker, ASolidByTetrahedraIsTheirPictureWithTheLightOfTheBoundary) {
         TetsRenderer(on_limit(refine(ball(), {.levels = 1}), Scheme::Mcq)).draw(view, optics, {.samples = 2}).image;
     const BoundaryValues skin = boundary_values(ball(), {.levels = picture_levels(ball())});
     light_boundary(expected, skin.surface, view, Shading{}, 2);
-    Picture picture = PictureMaker({.mesh = &ball()}, solid_by(Method::Tets)).draw(view, optics);
+    Picture picture = PictureMaker({.mesh = ball()}, solid_by(Method::Tets)).draw(view, optics);
     EXPECT_EQ(picture.image.rgba, expected.rgba);
     ASSERT_NE(picture.facts.find("tets"), nullptr);
     EXPECT_EQ(std::get<std::uint64_t>(picture.facts.find("tets")->value), ball().cells.size() * 8 * 6);
@@ -97,15 +97,15 @@ TEST(PictureMaker, ASolidByTetrahedraIsTheirPictureWithTheLightOfTheBoundary) {
 
 TEST(PictureMaker, StylesAndBodiesChangeBetweenPictures) {
     const View view = view_of(bounds(ball()));
-    PictureMaker maker({.mesh = &ball()}, solid_by(Method::Splat));
+    PictureMaker maker({.mesh = ball()}, solid_by(Method::Splat));
     const Picture first = maker.draw(view, optics_of(Look::Solid));
     maker.set_style({.method = Method::Splat, .look = {.look = Look::Volume}});
     const Picture volume = maker.draw(view, optics_of(Look::Volume));
     EXPECT_NE(volume.image.rgba, first.image.rgba);
     const HexMesh twist = make_model("twist", 3);
-    maker.set_body({.mesh = &twist});
+    maker.set_body({.mesh = twist});
     EXPECT_NE(maker.draw(view, optics_of(Look::Volume)).image.rgba, volume.image.rgba);
-    maker.set_body({.mesh = &ball()});
+    maker.set_body({.mesh = ball()});
     maker.set_style(solid_by(Method::Splat).style);
     EXPECT_EQ(maker.draw(view, optics_of(Look::Solid)).image.rgba, first.image.rgba);
 }
@@ -115,7 +115,7 @@ class PictureMakerOfBricks : public test::TempFolder {};
 TEST_F(PictureMakerOfBricks, StylesChangeBetweenPictures) {
     const Bricks bricks = split_mesh(path("ball.bricks"), ball(), {.bricks = 3}).bricks;
     const View view = view_of(bounds(ball()));
-    const PictureBody body{.bricks = &bricks, .fields = [](HexMesh brick) { return brick; }};
+    const PictureBody body{.mesh = source_of(bricks)};
     for (const Method method : {Method::Splat, Method::Tets}) {
         const auto alone = [&](Look look) {
             MethodOptions options = solid_by(method);
@@ -153,9 +153,7 @@ TEST(PictureMaker, OptionsOutOfRangeAreRefusedByTheirNames) {
 }
 
 TEST(PictureMaker, WhatAnOptionIsDecidesWhetherTheBoundaryIsPainted) {
-    const auto painted = [](const MethodOptions& options) {
-        return PictureMaker({.mesh = &ball()}, options).paints_boundary();
-    };
+    const auto painted = [](const MethodOptions& options) { return PictureMaker({.mesh = ball()}, options).paints_boundary(); };
     MethodOptions options = solid_by(Method::Splat);
     EXPECT_TRUE(painted(options));
     options.kernels.sample.per_edge = 1;
@@ -171,13 +169,13 @@ TEST(PictureMaker, WhatAnOptionIsDecidesWhetherTheBoundaryIsPainted) {
 }
 
 TEST(PictureMaker, WhatAMethodCannotDrawIsRefusedBeforeAnyWork) {
-    EXPECT_THROW(PictureMaker({.mesh = &ball()}, solid_by(Method::Grid)), Error);
+    EXPECT_THROW(PictureMaker({.mesh = ball()}, solid_by(Method::Grid)), Error);
     MethodOptions lit = solid_by(Method::Dense);
     lit.style.look.look = Look::Isosurface;
-    EXPECT_THROW(PictureMaker({.mesh = &ball()}, lit), Error);
+    EXPECT_THROW(PictureMaker({.mesh = ball()}, lit), Error);
     MethodOptions lod = solid_by(Method::Projected);
     lod.lod = 0.5;
-    EXPECT_THROW(PictureMaker({.mesh = &ball()}, lod), Error);
+    EXPECT_THROW(PictureMaker({.mesh = ball()}, lod), Error);
 }
 
 }  // namespace picture_maker_test

@@ -46,25 +46,26 @@ std::vector<View> views() {
             {{.eye = {3, 0.5, 0.5}, .target = {0.5, 0.5, 0.5}, .up = {0, 0, 1}, .ortho_height = 1.2}, 40, 32}};
 }
 
-HexMesh as_it_is(HexMesh brick) {
-    return brick;
-}
-
 class RenderBrickTets : public test::TempFolder {
 protected:
     void expect_same(const HexMesh& mesh, const SplitOptions& split, const BrickTetsOptions& options) const {
         const TetsRenderer renderer(on_limit(refine(mesh, options.refine), options.refine.scheme.kind));
         const Bricks bricks = split_mesh(path("m.bricks"), mesh, split).bricks;
-        const std::size_t count = bricks.bricks.size();
-        BrickTets all = measure_tets(bricks, options, 0, count / 2);
-        all.add(measure_tets(bricks, options, count / 2, count));
+        expect_same(renderer, bricks, bricks.bricks.size(), options);
+        expect_same(renderer, mesh, 1, options);  // in memory: one piece
+    }
+
+    static void expect_same(const TetsRenderer& renderer, const MeshSource& source, std::size_t count,
+                            const BrickTetsOptions& options) {
+        BrickTets all = measure_tets(source, options, 0, count / 2);
+        all.add(measure_tets(source, options, count / 2, count));
         EXPECT_LT(all.overhang, 0.5);  // of cells that are nearly cubes
         if (interpolates(options.refine.scheme.kind)) {
             EXPECT_EQ(all.overhang > 0, options.refine.levels > 0 && options.refine.scheme.kind == Scheme::Mcq);
         }
         for (const View& view : views()) {
             const TetsResult whole = renderer.draw(view, optics(), options.tets);
-            const TetsResult found = render_tets(bricks, as_it_is, all, view, optics(), options);
+            const TetsResult found = render_tets(source, all, view, optics(), options);
             EXPECT_EQ(found.image.rgba, whole.image.rgba);
             EXPECT_GT(whole.report.rays, 100u);
             EXPECT_EQ(found.report.rays, whole.report.rays);
@@ -131,7 +132,7 @@ TEST_F(RenderBrickTets, HasWhatLeavesTheControlCells) {
     const Image whole = render_tets(refine(mesh, options.refine), "f", view, optics()).image;
     for (int y = 10; y < 20; ++y) {  // about the crests
         options.tets.rows = {y, y + 1};
-        const Image row = render_tets(bricks, as_it_is, all, view, optics(), options).image;
+        const Image row = render_tets(bricks, all, view, optics(), options).image;
         for (int x = 0; x < 64; ++x) EXPECT_TRUE(std::ranges::equal(row.pixel(x, y), whole.pixel(x, y))) << x << ' ' << y;
     }
 }
@@ -143,7 +144,7 @@ TEST_F(RenderBrickTets, SaysWhatItCannotDo) {
     test::expect_error(ErrorCode::InvalidInput, "a larger --memory", [&] { (void)measured({.refine = {.levels = 10}}); });
     const BrickTets all = measured({});
     const auto draw = [&](const BrickTetsOptions& options) {
-        return render_tets(bricks, as_it_is, all, views().front(), optics(), options);
+        return render_tets(bricks, all, views().front(), optics(), options);
     };
     test::expect_error(ErrorCode::InvalidInput, "a larger --memory", [&] { (void)draw({.memory_bytes = 1 << 14}); });
     test::expect_error(ErrorCode::InvalidInput, "samples is 0", [&] { (void)draw({.tets = {.samples = 0}}); });
@@ -164,8 +165,7 @@ TEST_F(RenderBrickTets, CanBeCancelled) {
     const Bricks bricks = split_mesh(path("b"), body(), {.bricks = 5}).bricks;
     const BrickTets all = measure_tets(bricks, {}, 0, 5);
     const BrickTetsOptions options{.tets = {.progress = &stop}, .memory_bytes = 4 << 20};
-    test::expect_error(ErrorCode::Cancelled, "",
-                       [&] { (void)render_tets(bricks, as_it_is, all, views().front(), optics(), options); });
+    test::expect_error(ErrorCode::Cancelled, "", [&] { (void)render_tets(bricks, all, views().front(), optics(), options); });
 }
 
 // Every line through a pixel of the part is in the wedge, before and behind the eye; far from the part nothing is.

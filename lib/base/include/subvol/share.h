@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <string>
 #include <utility>
@@ -28,6 +29,11 @@ struct Share {
 
     /// "2/4"
     [[nodiscard]] std::string name() const;
+};
+
+/// What a share has of a work: the things from `begin` to before `end`, of so many.
+struct ShareRange {
+    std::uint64_t begin = 0, end = 0, count = 0;
 };
 
 /// throws: Error(InvalidInput) unless the number is from 1 to the count

@@ -4,11 +4,9 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
-#include <optional>
 #include <string>
 #include <vector>
 
-#include "subvol/boundary_values.h"
 #include "subvol/hex_mesh.h"
 #include "subvol/mesh_source.h"
 #include "subvol/progress.h"
@@ -89,26 +87,5 @@ using BrickFields = std::function<HexMesh(HexMesh)>;
 /// bricks: is referred to
 /// fields: changes the attributes of each brick when it is read; none: they stay
 [[nodiscard]] MeshSource source_of(const Bricks& bricks, const BrickFields& fields = {});
-
-/// The cells with a point on the hull of the whole mesh: all that the boundary of the limit depends on.
-///
-/// on_hull: a flag for each point
-struct BrickHull {
-    HexMesh mesh;
-    std::vector<std::uint8_t> on_hull;
-};
-
-/// Reads all bricks once.
-///
-/// fields: changes the attributes of each brick; none: there are no attributes
-/// throws: as `read_brick`; Error(Cancelled)
-[[nodiscard]] BrickHull gather_hull(const Bricks& bricks, const BrickFields& fields = {}, Progress* progress = nullptr);
-
-/// Values on the boundary of the limit, as `boundary_values` of the whole mesh.
-///
-/// levels: of the boundary's refinement; none: as many as `picture_levels` says
-/// throws: as `boundary_values`
-[[nodiscard]] BoundaryValues boundary_values(const BrickHull& hull, const SchemeOptions& scheme,
-                                             std::optional<int> levels = {});
 
 }  // namespace subvol

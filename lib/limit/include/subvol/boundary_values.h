@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "subvol/mesh_source.h"
 #include "subvol/refine.h"
 #include "subvol/surface.h"
 
@@ -24,6 +25,8 @@ struct BoundaryValues {
 /// throws: Error(InvalidInput) as `refine`, or if an attribute has more than one channel
 /// cost:   about 20 points for each point of the boundary of the last level
 [[nodiscard]] BoundaryValues boundary_values(HexMesh mesh, const RefineOptions& options);
+/// The same from the cells at the hull.
+[[nodiscard]] BoundaryValues boundary_values(MeshHull hull, const RefineOptions& options);
 
 /// `boundary_values` for a mesh that moves, or whose values change: what depends on its cells alone is computed once.
 class BoundaryTables {
@@ -51,5 +54,6 @@ private:
 ///
 /// most: no more than these, if given
 [[nodiscard]] int picture_levels(const HexMesh& mesh, std::optional<int> most = {});
+[[nodiscard]] int picture_levels(const MeshHull& hull, std::optional<int> most = {});
 
 }  // namespace subvol

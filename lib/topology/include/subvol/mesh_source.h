@@ -24,10 +24,10 @@ struct MeshPiece {
 
 /// What is known about a piece before it is read.
 ///
-/// cells:  that it owns
+/// cells, points: that it owns
 /// bounds: of the owned cells; reach: of their limit and more: no value of the limit in an owned cell lies outside
 struct PieceExtent {
-    std::uint64_t cells = 0;
+    std::uint64_t cells = 0, points = 0;
     Box bounds{}, reach{};
 };
 
@@ -78,6 +78,8 @@ public:
 
     /// The pieces that are read one at a time; none if the mesh is in memory.
     [[nodiscard]] const Stored& stored() const { return stored_; }
+    /// The same, where a mesh in memory is one piece, which is copied when it is read. Refers to the mesh.
+    [[nodiscard]] Stored in_pieces() const;
 
     /// The same mesh in pieces with other attributes: `change` gets each piece's mesh when it is read.
     ///
@@ -112,5 +114,19 @@ void for_each_piece(const MeshSource::Stored& stored, const char* stage, Progres
 /// source: in pieces
 /// cost:   memory: the result twice, and one piece at a time
 [[nodiscard]] MeshPiece gather(const MeshSource& source, const Box& box);
+
+/// The cells with a point on the hull of a mesh: all that the boundary of the limit depends on.
+///
+/// on_hull: a flag for each point
+struct MeshHull {
+    HexMesh mesh;
+    std::vector<std::uint8_t> on_hull;
+};
+
+/// Reads all pieces once.
+///
+/// throws: what reading throws; Error(Cancelled)
+/// cost:   memory: the result twice, and one piece
+[[nodiscard]] MeshHull gather_hull(const MeshSource& source, Progress* progress = nullptr);
 
 }  // namespace subvol

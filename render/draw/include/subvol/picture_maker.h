@@ -77,23 +77,20 @@ void validate(const MethodOptions& options);
 
 /// What is drawn; one of the pointers is set. All is referred to, not copied.
 ///
-/// mesh:     its first attribute is shown, its last one gives the colours
+/// mesh:     its first attribute is shown, its last one gives the colours; of pieces there is one attribute
 /// tets:     the mesh is a level of a scheme of tetrahedra on its limit, in hexahedra
 /// kernels:  with `voxels` those that were made of them, for the methods that draw kernels
 /// file:     each view reads what it needs
 /// channels: of kernels or of the file: the first is shown, the last gives the colours; empty: all
-/// bricks:   with the fields that are taken from each
 /// shape:    meshes with the same number have the same cells; 0: no other has them
 /// moved:    the mesh is being moved, so that tables for its cells are worth while
 struct PictureBody {
-    const HexMesh* mesh = nullptr;
+    std::optional<MeshSource> mesh{};
     bool tets = false;
     const RbfVolume* kernels = nullptr;
     const Voxels* voxels = nullptr;
     KernelFile* file = nullptr;
     std::vector<std::size_t> channels{};
-    const Bricks* bricks = nullptr;
-    BrickFields fields{};
     std::uint64_t shape = 0;
     bool moved = false;
 
@@ -120,10 +117,11 @@ public:
     /// skin: gives the boundary its colours; without values: the kernels do
     [[nodiscard]] virtual SplatResult splat(const RbfVolume& volume, const SplatOptions& options, const BoundaryValues& skin,
                                             const View& view, const Optics& optics, Progress* progress, Facts& facts) = 0;
-    [[nodiscard]] virtual SplatResult splat(const Bricks& bricks, const BrickFields& fields, Surface boundary,
-                                            const BrickSplatOptions& options, const View& view, const Optics& optics,
-                                            Facts& facts) = 0;
-    [[nodiscard]] virtual BrickTets measure(const Bricks& bricks, const BrickTetsOptions& options) = 0;
+    /// Draws the rows of a mesh in pieces, of which every process samples some.
+    [[nodiscard]] virtual SplatResult splat(const MeshSource& source, Surface boundary, const BrickSplatOptions& options,
+                                            const View& view, const Optics& optics, Facts& facts) = 0;
+    /// `measure_tets` of all pieces.
+    [[nodiscard]] virtual BrickTets measure(const MeshSource& source, const BrickTetsOptions& options) = 0;
     /// Adds up what all have counted.
     virtual void add_up(std::span<std::size_t> counts) = 0;
     /// Puts the rows of all together, where the picture is finished.

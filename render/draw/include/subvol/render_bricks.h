@@ -7,9 +7,9 @@
 #include <span>
 #include <vector>
 
-#include "subvol/brick_points.h"
 #include "subvol/detail/number_in_place.h"
 #include "subvol/pixel_rows.h"
+#include "subvol/sample_pieces.h"
 #include "subvol/splat.h"
 
 namespace subvol {
@@ -27,15 +27,15 @@ struct BrickSplatOptions {
     std::filesystem::path scratch{};
 };
 
-/// Draws a mesh in bricks as kernels at its points: the picture has the bits of `render_splats` of the whole mesh. Each brick
+/// Draws a mesh in pieces as kernels at its points: the picture has the bits of `render_splats` of the whole mesh. Each piece
 /// is sampled once; its kernels wait in files, one for each region of the picture that they touch, and are drawn region by
 /// region in the order of the whole mesh.
 ///
-/// fields:   leaves one field of one channel in a brick
-/// boundary: as `sample_bricks_boundary` makes it
-/// throws:   as `sample_brick` and `BrickPicture`
-[[nodiscard]] SplatResult render_bricks(const Bricks& bricks, const BrickFields& fields, Surface boundary, const View& view,
-                                        const Optics& optics, const BrickSplatOptions& options = {});
+/// source:   with one field of one channel
+/// boundary: as `sample_boundary` makes it
+/// throws:   as `sample_piece` and `BrickPicture`
+[[nodiscard]] SplatResult render_bricks(const MeshSource& source, Surface boundary, const View& view, const Optics& optics,
+                                        const BrickSplatOptions& options = {});
 
 /// The picture that `render_bricks` draws, while its kernels come from elsewhere: from other processes, for example. They wait
 /// in files until they are drawn.

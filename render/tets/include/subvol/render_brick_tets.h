@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "subvol/bricks.h"
+#include "subvol/mesh_source.h"
 #include "subvol/refine.h"
 #include "subvol/render_tets.h"
 
@@ -35,22 +35,23 @@ struct BrickTets {
     void add(const BrickTets& other);
 };
 
-/// Measures the tetrahedra of some bricks, from `begin` to before `end`. Each brick is read and refined once.
+/// Measures the tetrahedra of some pieces, from `begin` to before `end`. Each piece is read and refined once.
 ///
-/// throws: as `read_brick` and `refine`; Error(InvalidInput) if the bricks have fewer than three layers of halo;
+/// throws: what reading throws, and `refine`; Error(InvalidInput) if the pieces have fewer than three layers of halo;
 ///         Error(Cancelled)
-[[nodiscard]] BrickTets measure_tets(const Bricks& bricks, const BrickTetsOptions& options, std::size_t begin, std::size_t end);
+[[nodiscard]] BrickTets measure_tets(const MeshSource& source, const BrickTetsOptions& options, std::size_t begin,
+                                     std::size_t end);
 
-/// Draws a mesh in bricks: the picture has the bits of `render_tets` of the whole mesh, refined and moved to the limit. For
+/// Draws a mesh in pieces: the picture has the bits of `render_tets` of the whole mesh, refined and moved to the limit. For
 /// each part of the picture the cells that its rays may cross are gathered and refined; parts are halved until these cells fit
 /// into the memory.
 ///
-/// fields:  leaves one field of one channel in a brick
-/// all:     `measure_tets` of all bricks in their order
+/// source:  with one field of one channel
+/// all:     `measure_tets` of all pieces in their order
 /// returns: without the bytes of tetrahedra; the seconds of all parts
 /// throws:  as `measure_tets` and `render_tets`; Error(InvalidInput) if the cells of one pixel do not fit into the memory
-/// cost:    each brick is read once for each part of the picture that it may be seen in
-[[nodiscard]] TetsResult render_tets(const Bricks& bricks, const BrickFields& fields, const BrickTets& all, const View& view,
-                                     const Optics& optics, const BrickTetsOptions& options = {});
+/// cost:    each piece is read once for each part of the picture that it may be seen in
+[[nodiscard]] TetsResult render_tets(const MeshSource& source, const BrickTets& all, const View& view, const Optics& optics,
+                                     const BrickTetsOptions& options = {});
 
 }  // namespace subvol

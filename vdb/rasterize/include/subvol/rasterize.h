@@ -139,8 +139,10 @@ struct PartsReport {
 PartsReport rasterize_parts(const MeshSource& source, std::span<const std::string> fields, const RasterizeOptions& options,
                             std::size_t memory_bytes, const std::function<void(GridPart)>& take);
 
+/// layers: the range of the layers of 32 voxels across x, of the mesh's
 struct GridShare {
     std::vector<VdbGrid> grids;
+    ShareRange layers{};
     PartsReport report{};
 };
 

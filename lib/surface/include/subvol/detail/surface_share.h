@@ -12,13 +12,19 @@
 
 namespace subvol::detail {
 
-/// A share of a surface as bytes: what is cut out of a range of the cells that it passes, with points on the limit and their
-/// fields. Every share finds these cells and the level by itself.
+/// A share of a surface as bytes, and the range of cells that it was cut out of, of all isosurfaces and the boundary together.
+struct SurfaceShareBytes {
+    std::string bytes;
+    ShareRange cells{};
+};
+
+/// A share of a surface: what is cut out of a range of the cells that it passes, with points on the limit and their fields.
+/// Every share finds these cells and the level by itself.
 ///
 /// throws: as `limit_surface`; Error(InvalidInput) if an isosurface leads two cells farther than the first look finds
 /// cost:   memory: the topology of the mesh; some 300 bytes for each triangle of the share, and of the whole at level 1
-[[nodiscard]] std::string share_of_surface(const MeshSource& source, std::string_view field, const SurfaceOptions& options,
-                                           const Share& share);
+[[nodiscard]] SurfaceShareBytes share_of_surface(const MeshSource& source, std::string_view field,
+                                                 const SurfaceOptions& options, const Share& share);
 
 /// All shares of a surface as `limit_surface` returns it, bit by bit: slivers are mended, and the whole is measured.
 ///

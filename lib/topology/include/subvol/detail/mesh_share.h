@@ -14,11 +14,13 @@ namespace subvol::detail {
 ///
 /// counts:   of the share's points, of the edges and faces whose smallest point is one of them, and of the share's cells;
 ///           points, cells and bounds are those of the whole mesh, volume is not used
+/// range:    of the parts that the work is divided into
 /// volumes:  of the share's cells, 4096 at a time, or of its bricks: adding these up in the order of the shares gives the
 ///           bits of `inspect`
 /// inverted: the numbers of the first inverted cells, at most as many as were asked for
 struct MeshShare {
     MeshReport counts;
+    ShareRange range{};
     std::vector<double> volumes{};
     std::vector<std::size_t> inverted{};
 };
