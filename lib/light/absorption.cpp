@@ -24,6 +24,9 @@ constexpr double kLowDepth = 0.03;
 // A piece of this depth or more, even infinite, absorbs all light within a rounding error of its front.
 constexpr double kBlackDepth = 1e17;
 
+// Thicker pieces up to this depth take ten points, to about 1e-14, where five would need up to sixteen halves.
+constexpr double kThickDepth = 4;
+
 struct GaussPoint {
     double u, weight;
 };
@@ -38,6 +41,17 @@ constexpr std::array<GaussPoint, 5> kGauss5{{{0.04691007703066800, 0.11846344252
                                              {0.5, 0.28444444444444444},
                                              {0.76923465505284155, 0.23931433524968324},
                                              {0.95308992296933200, 0.11846344252809454}}};
+
+constexpr std::array<GaussPoint, 10> kGauss10{{{0.013046735741414128, 0.033335672154344034},
+                                               {0.067468316655507732, 0.074725674575290182},
+                                               {0.16029521585048778, 0.10954318125799101},
+                                               {0.28330230293537639, 0.13463335965499826},
+                                               {0.42556283050918442, 0.14776211235737649},
+                                               {0.57443716949081558, 0.14776211235737649},
+                                               {0.71669769706462361, 0.13463335965499826},
+                                               {0.83970478414951222, 0.10954318125799101},
+                                               {0.93253168334449232, 0.074725674575290182},
+                                               {0.98695326425858587, 0.033335672154344034}}};
 
 // 1 − e^{−x} for x ≤ 0.1. The polynomial is written out: this is the innermost loop of the ray tracers.
 double one_minus_exp_low(double x) {
@@ -121,6 +135,7 @@ Absorption absorb_piece(double alpha_front, double alpha_back, double length) {
         if (total <= kThinDepth) return {mean_absorbed<one_minus_exp_thin>(depth, kGauss3), one_minus_exp_thin(total)};
         if (total <= kLowDepth) return {mean_absorbed<one_minus_exp_low>(depth, kGauss4), one_minus_exp_low(total)};
         if (!(total > kLeafDepth)) return {mean_absorbed(depth, kGauss5), one_minus_exp(total)};
+        if (alpha_front != alpha_back && total <= kThickDepth) return {mean_absorbed(depth, kGauss10), one_minus_exp(total)};
         if (total > kBlackDepth) return {1, 1};
         if (alpha_front == alpha_back) return {1 - one_minus_exp(total) / total, one_minus_exp(total)};
     } else if (const double q_front = 1 - alpha_front, q_back = 1 - alpha_back;
@@ -128,6 +143,7 @@ Absorption absorb_piece(double alpha_front, double alpha_back, double length) {
         const LogDepth depth(alpha_front, alpha_back, length);
         const double total = depth(1);
         if (total <= kLeafDepth) return {mean_absorbed(depth, kGauss5), one_minus_exp(total)};
+        if (total <= kThickDepth) return {mean_absorbed(depth, kGauss10), one_minus_exp(total)};
     }
     return absorb_halves(alpha_front, alpha_back, length);
 }

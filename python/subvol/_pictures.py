@@ -77,7 +77,7 @@ def render(what: Drawable, *, method: str = "splat", view: str = "iso", camera: 
     per_edge:     kernels for each cell edge; None: 1
     seconds:      a time limit (splat, sheets and pt)
     order:        how pt sorts: "topological" (None), "centroid", "lists" or "havs"
-    image_tolerance: of dense without levels; None: 1e-3
+    image_tolerance: of dense without levels: draw level after level until the picture changes by less
     backend:      where to splat: "auto" (None), "gl" or "cpu"
     device:       the OpenGL device's number in gl_devices()
     clip:         planes that cut the volume open, each (px, py, pz, nx, ny, nz): what lies on the normal's side goes. One or several

@@ -153,12 +153,44 @@ void DenseGrid::descend(const RayPlane& plane, double margin, std::size_t face, 
     }
 }
 
-void DenseGrid::find_crossed(const RayPlane& plane, std::vector<TetFace>& faces) const {
+DenseGrid::SideTriangle DenseGrid::on_side(TetFace face) const {
+    const std::size_t tet = face / 4, cell = tet / 8;
+    const CellSplit& split = cell_splits_[splits_[cell]];
+    const std::size_t side = split.neighbors[tet % 8][face % 4] - 8u;
+    const auto& missing = kCellCorners[split.missing[tet % 8][face % 4]];
+    SideTriangle triangle{side, {}, {}};
+    for (std::size_t k = 0; k < 2; ++k) {
+        const std::size_t axis = (side / 2 + 1 + k) % 3;
+        triangle.quad[k] = static_cast<Index>(cell >> (axis * static_cast<std::size_t>(levels_)) & ((Index{1} << levels_) - 1));
+        triangle.missing[k] = static_cast<Index>(missing[axis]);
+    }
+    return triangle;
+}
+
+std::optional<TetFace> DenseGrid::face_of(const SideTriangle& triangle) const {
+    const std::size_t cell = cell_number(cell_at(triangle.side, triangle.quad[0], triangle.quad[1]));
+    const CellSide side = cell_side(triangle.side);
+    for (std::size_t k = 0; k < 8; ++k) {
+        const auto at = [&](int axis) { return kCellCorners[k][static_cast<std::size_t>(axis % 3)]; };
+        if (at(side.axis) != side.end || at(side.axis + 1) != static_cast<int>(triangle.missing[0]) ||
+            at(side.axis + 2) != static_cast<int>(triangle.missing[1])) {
+            continue;
+        }
+        const std::uint8_t owner = cell_splits_[splits_[cell]].owners[triangle.side][k];
+        if (owner == CellSplit::kNoOwner) return std::nullopt;
+        return static_cast<TetFace>(32 * cell + owner);
+    }
+    return std::nullopt;
+}
+
+void DenseGrid::find_crossed(const RayPlane& plane, unsigned sides, std::vector<TetFace>& faces) const {
     // For rounding: of the boxes in single precision about the origin, of the points in double precision about the eye.
     const Vec3 away = glm::abs(origin_ - plane.origin()), place = glm::abs(origin_);
     const double margin =
         1e-6 * box_.diagonal() + 1e-14 * (std::max({away.x, away.y, away.z}) + std::max({place.x, place.y, place.z}));
-    for (std::size_t face = 0; face < 6; ++face) descend(plane, margin, face, 0, 0, 0, faces);
+    for (std::size_t side = 0; side < 6; ++side) {
+        if (sides >> side & 1u) descend(plane, margin, side, 0, 0, 0, faces);
+    }
 }
 
 }  // namespace subvol::detail

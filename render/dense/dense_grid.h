@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -32,6 +34,7 @@ public:
     [[nodiscard]] Range range() const { return range_; }
     [[nodiscard]] std::size_t micro_cells() const { return splits_.size(); }
     [[nodiscard]] std::size_t bytes() const;
+    [[nodiscard]] Index quads_along() const { return Index{1} << levels_; }
 
     // What `walk` needs of a mesh.
     [[nodiscard]] std::size_t tet_count() const { return 6 * splits_.size(); }
@@ -48,8 +51,20 @@ public:
     }
     [[nodiscard]] Index neighbor(Index tet, Index k) const;
 
-    /// Appends the boundary faces that the whole line of a ray crosses, as edge signs decide: an even number.
-    void find_crossed(const RayPlane& plane, std::vector<TetFace>& faces) const;
+    /// Appends the boundary faces that the whole line of a ray crosses, as edge signs decide: an even number of all six sides.
+    ///
+    /// sides: bit k: those on side k
+    void find_crossed(const RayPlane& plane, unsigned sides, std::vector<TetFace>& faces) const;
+
+    /// A triangle on a side of the grid: the quad's place along the two axes after that of the side, and the quad's corner that
+    /// the triangle leaves out, along the same axes.
+    struct SideTriangle {
+        std::size_t side = 0;
+        std::array<Index, 2> quad{}, missing{};
+    };
+    [[nodiscard]] SideTriangle on_side(TetFace face) const;
+    /// The other way; nothing if the quad there is split along its other diagonal.
+    [[nodiscard]] std::optional<TetFace> face_of(const SideTriangle& triangle) const;
 
 private:
     /// A box in single precision, relative to the grid's first point.

@@ -1,19 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 // A ray through the dense grids of many control cells that share sides but have no common numbering.
 //
-//       cell A     cell B      Each grid finds the triangles of its own boundary that the ray crosses (|). Within a grid the
-//     +--------+--------+      ray walks from one of them to its partner, as in a single mesh. Edge signs are bitwise the
-//  ---|--------|--------|-->   same in both grids (points are ranked by position), so a ray that leaves A through a side
-//     +--------+--------+      enters B through the same triangle, and nothing is lost or counted twice between them.
-//       a1   a2 b1    b2
+//       cell A     cell B      A ray enters the volume through an open side, one without another grid behind it, and walks from
+//     +--------+--------+      triangle to triangle as in a single mesh. Edge signs are bitwise the same in both grids (points
+//  ---|--------|--------|-->   are ranked by position), so a ray that leaves A through a triangle enters B through the same
+//  one,
+//     +--------+--------+      and nothing is lost or counted twice between them. Sides meet if their four control vertices are
+//       a1   link    b2        the same; then the triangle's place in B follows from its place in A.
 //
-// All ends are sorted by depth. The first one that no walk has used yet starts a walk, which marks its own end at the other
-// side as used: a1 -> a2, then b1 -> b2. Light is composited in this order, and each depth once even where cells fold over
-// each other (RayWalker). A grid whose ends all lie behind the eye is left out. docs/adr/0012 gives the reasons.
+// All ends at open sides are sorted by depth. The first one that no walk has used yet starts a walk, which marks its own end at
+// the other side as used: a1 -> b2. Light is composited in this order, and each depth once even where cells fold over each
+// other (RayWalker). A ray whose ends all lie behind the eye meets nothing. docs/adr/0012 gives the reasons.
 #include "dense_tracer.h"
 
 #include <algorithm>
 #include <tuple>
+#include <utility>
 
 #include "embree_line.h"
 
@@ -26,13 +28,15 @@ constexpr double kMargin = 1e-5;  // around a box, for single precision
 // Embree passes a pointer to the context to the callback: what follows it in memory comes along.
 struct Query {
     RTCIntersectContext context;
+    const std::vector<std::uint32_t>& numbers;
     std::vector<std::uint32_t>* grids;
 };
 
 // Records every grid but reports no hit, so that the traversal goes on to the next.
 void record_grid(const RTCIntersectFunctionNArguments* arguments) {
     if (arguments->valid[0] == 0) return;
-    reinterpret_cast<const Query*>(arguments->context)->grids->push_back(arguments->primID);
+    const auto* query = reinterpret_cast<const Query*>(arguments->context);
+    query->grids->push_back(query->numbers[arguments->primID]);
 }
 
 }  // namespace
@@ -41,6 +45,7 @@ struct DenseScene::Embree {
     RTCDevice device = nullptr;
     RTCScene scene = nullptr;
     std::vector<RTCBounds> bounds;
+    std::vector<std::uint32_t> grids;  // of the boxes
 
     ~Embree() {
         rtcReleaseScene(scene);
@@ -48,15 +53,21 @@ struct DenseScene::Embree {
     }
 };
 
-DenseScene::DenseScene(const std::vector<DenseGrid>& grids) : embree_(std::make_unique<Embree>()), grids_(grids) {
+DenseScene::DenseScene(const std::vector<DenseGrid>& grids, const CellSides& sides)
+    : embree_(std::make_unique<Embree>()), grids_(grids), sides_(sides), next_(grids.size()) {
+    link_grids();
     Box all;
     for (const DenseGrid& grid : grids) {
         all.add(grid.box().lower);
         all.add(grid.box().upper);
+        most_doors_ += std::size_t{12} * grid.quads_along() * grid.quads_along();
     }
     center_ = all.center();
     if (all.diagonal() > 0) scale_ = 2 / all.diagonal();
-    for (const DenseGrid& grid : grids) {
+    for (std::uint32_t g = 0; g < grids.size(); ++g) {
+        if (open_sides(g) == 0) continue;
+        const DenseGrid& grid = grids[g];
+        embree_->grids.push_back(g);
         const Vec3 low = scale_ * (grid.box().lower - center_) - kMargin,
                    high = scale_ * (grid.box().upper - center_) + kMargin;
         RTCBounds bounds{};
@@ -73,7 +84,7 @@ DenseScene::DenseScene(const std::vector<DenseGrid>& grids) : embree_(std::make_
     embree_->scene = rtcNewScene(embree_->device);
     rtcSetSceneFlags(embree_->scene, RTC_SCENE_FLAG_ROBUST);
     const RTCGeometry geometry = rtcNewGeometry(embree_->device, RTC_GEOMETRY_TYPE_USER);
-    rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned>(grids.size()));
+    rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned>(embree_->grids.size()));
     rtcSetGeometryUserData(geometry, embree_.get());
     const auto bounds_of = [](const RTCBoundsFunctionArguments* arguments) {
         *arguments->bounds_o = static_cast<const Embree*>(arguments->geometryUserPtr)->bounds[arguments->primID];
@@ -89,10 +100,46 @@ DenseScene::DenseScene(const std::vector<DenseGrid>& grids) : embree_(std::make_
 
 DenseScene::~DenseScene() = default;
 
+void DenseScene::link_grids() {
+    std::vector<std::uint32_t> grid_of(sides_.size(), kNone);
+    for (std::uint32_t g = 0; g < grids_.size(); ++g) grid_of[grids_[g].cell()] = g;
+    for (std::size_t g = 0; g < grids_.size(); ++g) {
+        for (std::size_t side = 0; side < 6; ++side) {
+            const Index cell = sides_.link(grids_[g].cell(), side).cell;
+            next_[g][side] = cell == kNone ? kNone : grid_of[cell];
+        }
+    }
+}
+
+unsigned DenseScene::open_sides(std::uint32_t grid) const {
+    unsigned open = 0;
+    for (unsigned side = 0; side < 6; ++side) open |= unsigned{next_[grid][side] == kNone} << side;
+    return open;
+}
+
+std::optional<DenseScene::Door> DenseScene::behind(const Door& door) const {
+    DenseGrid::SideTriangle triangle = grids_[door.grid].on_side(door.face);
+    const std::uint32_t next = next_[door.grid][triangle.side];
+    if (next == kNone) return std::nullopt;
+    const SideLink& link = sides_.link(grids_[door.grid].cell(), triangle.side);
+    triangle.side = link.side;
+    if (link.swapped) {
+        std::swap(triangle.quad[0], triangle.quad[1]);
+        std::swap(triangle.missing[0], triangle.missing[1]);
+    }
+    for (std::size_t k = 0; k < 2; ++k) {
+        if (!link.backwards[k]) continue;
+        triangle.quad[k] = grids_[next].quads_along() - 1 - triangle.quad[k];
+        triangle.missing[k] = 1 - triangle.missing[k];
+    }
+    const auto face = grids_[next].face_of(triangle);
+    return face ? std::optional(Door{next, *face}) : std::nullopt;
+}
+
 void DenseScene::find_met(const Ray& ray, std::vector<std::uint32_t>& grids) const {
     auto query = embree_line(ray, center_, scale_);
     if (!query) return;
-    Query context{{}, &grids};
+    Query context{{}, embree_->grids, &grids};
     rtcInitIntersectContext(&context.context);
     rtcIntersect1(embree_->scene, &context.context, &*query);
 }
@@ -101,30 +148,44 @@ void DenseTracer::find_ends(const RayPlane& plane, const Ray& ray) {
     met_.clear();
     ends_.clear();
     scene_.find_met(ray, met_);
+    bool in_front = false;
     for (const std::uint32_t g : met_) {
         const DenseGrid& grid = scene_.grids()[g];
         faces_.clear();
-        grid.find_crossed(plane, faces_);
-        const std::size_t before = ends_.size();
-        bool in_front = false;
+        grid.find_crossed(plane, scene_.open_sides(g), faces_);
         for (const TetFace face : faces_) {
             const double t = cross_face(grid, plane, face)->crossing().t;
             in_front |= t > 0;
-            ends_.push_back({t, grid.cell(), g, face, false});
+            ends_.push_back({t, grid.cell(), {g, face}, false});
         }
-        if (!in_front) ends_.resize(before);
     }
+    if (!in_front) ends_.clear();
     // By cell, not by the number of the grid, which depends on which other grids are in memory.
-    std::sort(ends_.begin(), ends_.end(),
-              [](const End& a, const End& b) { return std::tie(a.t, a.cell, a.face) < std::tie(b.t, b.cell, b.face); });
+    std::sort(ends_.begin(), ends_.end(), [](const End& a, const End& b) {
+        return std::tie(a.t, a.cell, a.door.face) < std::tie(b.t, b.cell, b.door.face);
+    });
 }
 
-bool DenseTracer::mark_walked(std::uint32_t grid, TetFace face) {
+bool DenseTracer::mark_walked(const DenseScene::Door& door) {
     const auto found =
-        std::find_if(ends_.begin(), ends_.end(), [&](const End& end) { return end.grid == grid && end.face == face; });
+        std::ranges::find_if(ends_, [&](const End& end) { return end.door.grid == door.grid && end.door.face == door.face; });
     if (found == ends_.end()) return false;
     found->walked = true;
     return true;
+}
+
+/// Walks from grid to grid until an open side.
+WalkOutcome DenseTracer::walk_from(DenseScene::Door door, RayWalker& walker) {
+    const std::size_t most = scene_.most_doors();
+    for (std::size_t step = 0; step < most; ++step) {
+        const Walk walk = walker.between(scene_.grids()[door.grid], door.face);
+        if (walk.outcome == WalkOutcome::Opaque || walk.outcome == WalkOutcome::Lost) return walk.outcome;
+        door.face = walk.end;
+        const auto next = scene_.behind(door);
+        if (!next) return mark_walked(door) ? WalkOutcome::Through : WalkOutcome::Lost;
+        door = *next;
+    }
+    return WalkOutcome::Lost;
 }
 
 Segment DenseTracer::trace(const Ray& ray) {
@@ -138,9 +199,9 @@ Segment DenseTracer::trace(const Ray& ray) {
     for (End& end : ends_) {
         if (end.walked) continue;
         end.walked = true;
-        const Walk walk = walker.between(scene_.grids()[end.grid], end.face);
-        if (walk.outcome == WalkOutcome::Opaque) break;
-        if (walk.outcome == WalkOutcome::Lost || !mark_walked(end.grid, walk.end)) {
+        const WalkOutcome outcome = walk_from(end.door, walker);
+        if (outcome == WalkOutcome::Opaque) break;
+        if (outcome == WalkOutcome::Lost) {
             ++counts_.lost_rays;
             break;
         }

@@ -11,6 +11,7 @@
 #include <optional>
 #include <vector>
 
+#include "dense_level.h"
 #include "dense_tracer.h"
 #include "pixel_tiles.h"
 #include "subvol/detail/number_text.h"
@@ -107,9 +108,8 @@ void check(const DenseOptions& options) {
         throw Error(ErrorCode::InvalidInput, "the number of levels is " + std::to_string(levels), {},
                     "0 to " + std::to_string(kMostLevels));
     }
-    if (!(options.image_tolerance > 0 && std::isfinite(options.image_tolerance))) {
-        throw Error(ErrorCode::InvalidInput, "the tolerance of the image is " + number_text(options.image_tolerance), {},
-                    "more than 0");
+    if (const double tolerance = options.image_tolerance.value_or(1); !(tolerance > 0 && std::isfinite(tolerance))) {
+        throw Error(ErrorCode::InvalidInput, "the tolerance of the image is " + number_text(tolerance), {}, "more than 0");
     }
 }
 
@@ -151,8 +151,10 @@ private:
 /// Draws one level.
 class LevelPainter {
 public:
-    LevelPainter(const HexMesh& mesh, const View& view, const Optics& optics, const DenseOptions& options, int levels)
+    LevelPainter(const HexMesh& mesh, const CellSides& sides, const View& view, const Optics& optics,
+                 const DenseOptions& options, int levels)
         : mesh_(mesh),
+          sides_(sides),
           view_(view),
           optics_(optics),
           options_(options),
@@ -234,7 +236,7 @@ private:
     }
 
     void draw(const PixelRect& rect) {
-        const DenseScene scene(kept_);
+        const DenseScene scene(kept_, sides_);
         tbb::combinable<TraceCounts> sums;
         draw_in_tiles(view_, options_.samples, rect, image_, options_.progress,
                       [&] { return CountedTracer(scene, optics_, clip_, sums); });
@@ -246,6 +248,7 @@ private:
     }
 
     const HexMesh& mesh_;
+    const CellSides& sides_;
     const View& view_;
     const Optics& optics_;
     const DenseOptions& options_;
@@ -264,13 +267,26 @@ DenseResult render_dense(const HexMesh& mesh, std::string_view field, const View
                          const DenseOptions& options) {
     check(options);
     const HexMesh control = with_field_alone(mesh, field);
-    const auto draw = [&](int levels) { return LevelPainter(control, view, optics, options, levels).run(); };
+    validate(control);
+    const CellSides sides(control.cells);
+    const auto draw = [&](int levels) { return LevelPainter(control, sides, view, optics, options, levels).run(); };
     if (options.levels) return draw(*options.levels);
+    if (!options.image_tolerance) {
+        const Stopwatch watch;
+        const DenseLevel found = find_dense_level(control, sides, options.refine, view, optics, options.max_levels);
+        const double seconds = watch.seconds();
+        DenseResult result = draw(found.level);
+        result.report.error_px = found.error_px;
+        result.report.error_color = found.error_color;
+        result.report.converged = found.within;
+        result.report.seconds_build += seconds;
+        return result;
+    }
     DenseResult result = draw(std::min(1, options.max_levels));
     while (!result.report.converged && result.report.levels < options.max_levels) {
         DenseResult next = draw(result.report.levels + 1);
         next.report.image_change = rms(next.image, result.image);
-        next.report.converged = *next.report.image_change < options.image_tolerance;
+        next.report.converged = *next.report.image_change < *options.image_tolerance;
         next.report.seconds_build += result.report.seconds_build;
         next.report.seconds_draw += result.report.seconds_draw;
         result = std::move(next);

@@ -52,7 +52,7 @@ std::vector<Option> options_of(MethodOptions& options) {
                 .help("N", "n x n rays per pixel (default 1; 2 for --look solid)"),
             Option("tolerance-image", options.image_tolerance)
                 .positive()
-                .help("RMS", "dense, without --levels: raise the level until the RMS of the picture's change is less"),
+                .help("RMS", "dense, without --levels: draw level after level until the RMS of the picture's change is less"),
             Option("order", options.order)
                 .help("NAME",
                       "pt: how the tetrahedra are sorted: topological (by shared faces), centroid, lists (one per pixel) or "

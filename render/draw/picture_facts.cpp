@@ -72,6 +72,8 @@ void add_facts(const DenseReport& dense, bool chosen_level, Facts& facts) {
     facts.add_seconds("prepare", dense.seconds_build);
     facts.add_seconds("draw", dense.seconds_draw);
     facts["levels"] = dense.levels;
+    if (dense.error_px) facts["error_px"] = *dense.error_px;
+    if (dense.error_color) facts["error_color"] = *dense.error_color;
     if (dense.image_change) facts["image_change"] = *dense.image_change;
     facts["converged"] = dense.converged;
     facts["blocks"] = dense.blocks;
@@ -81,8 +83,10 @@ void add_facts(const DenseReport& dense, bool chosen_level, Facts& facts) {
     facts["bytes"] = dense.bytes;
     add_rays(dense.rays, dense.lost_rays, facts);
     if (chosen_level || dense.converged) return;
-    facts.warn("the picture still changes by " + number_text(dense.image_change.value_or(0)) + " at level " +
-               std::to_string(dense.levels) + ": --levels draws a finer one");
+    const std::string level = " at level " + std::to_string(dense.levels) + ": --levels draws a finer one";
+    facts.warn(dense.error_px ? "the boundary lies about " + number_text(*dense.error_px) + " pixels and colours about " +
+                                    number_text(dense.error_color.value_or(0)) + " from the limit" + level
+                              : "the picture still changes by " + number_text(dense.image_change.value_or(0)) + level);
 }
 
 void add_facts(const GridTraceReport& grid, Facts& facts) {

@@ -237,6 +237,45 @@ TEST(RenderDense, LevelsRiseUntilThePictureStays) {
     EXPECT_FALSE(capped.report.converged);
 }
 
+TEST(RenderDense, TheBoundaryLiesWithinAQuarterOfAPixel) {
+    const HexMesh mesh = with_field(make_model("ball", 2), [](const Vec3&) { return .5; });
+    int before = -1;
+    for (const int size : {16, 64, 256}) {  // four times the pixels for each length: the error is four times as many pixels
+        const DenseReport found = render_dense(mesh, "f", ball_view(size), ramp_optics(0.3)).report;
+        ASSERT_TRUE(found.error_px);
+        EXPECT_TRUE(found.converged) << size;
+        EXPECT_LE(*found.error_px, .25) << size;
+        EXPECT_GT(*found.error_px, .25 / 4) << size;
+        EXPECT_EQ(*found.error_color, 0) << size;
+        EXPECT_FALSE(found.image_change);
+        if (before >= 0) EXPECT_EQ(found.levels, before + 1) << size;
+        before = found.levels;
+    }
+    const DenseReport capped = render_dense(mesh, "f", ball_view(256), ramp_optics(0.3), {.max_levels = 1}).report;
+    EXPECT_EQ(capped.levels, 1);
+    EXPECT_FALSE(capped.converged);
+    EXPECT_GT(*capped.error_px, .25);
+}
+
+TEST(RenderDense, ColoursLieWithinTheErrorThatIsSaid) {
+    const HexMesh mesh = with_field(test::box(6), waves);
+    const View view = slanted_view(64);
+    const DenseResult found = render_dense(mesh, {}, view, ramp_optics(0.3));
+    EXPECT_TRUE(found.report.converged);
+    EXPECT_LE(*found.report.error_color, 1 / 256.0);
+    const int levels = found.report.levels;
+    ASSERT_GT(levels, 0);
+    const auto draw = [&](int l) { return render_dense(mesh, {}, view, ramp_optics(0.3), {.levels = l}).image; };
+    EXPECT_LT(rms(found.image, draw(levels + 2)), *found.report.error_color);
+}
+
+TEST(RenderDense, WhatIsLinearNeedsNoLevel) {
+    const HexMesh mesh = with_field(test::box(4), [](const Vec3& p) { return p.x; });
+    const DenseReport found = render_dense(mesh, {}, slanted_view(64), ramp_optics(0.3)).report;
+    EXPECT_EQ(found.levels, 0);
+    EXPECT_LT(*found.error_px, 1e-9);
+}
+
 TEST(RenderDense, ThreadsAndMemoryChangeNoBit) {
     const HexMesh mesh = with_field(test::jittered_box(5, 0.35, 3), waves);
     const auto draw = [&](std::size_t threads, std::size_t memory) {

@@ -15,8 +15,11 @@
 namespace subvol {
 
 /// refine:          scheme, tension and creases; its levels and progress are not used
-/// levels:          0 to 8; none: raised from 1 until the picture changes by less than image_tolerance, at most to max_levels
-/// image_tolerance: RMS over the RGB of all pixels
+/// levels:          0 to 8; none: the lowest level, up to max_levels, whose boundary lies within a quarter of a pixel of the
+///                  limit's and whose colours within 1/256, both in the mean over the picture (RMS), as the nodes of level 1
+///                  tell
+/// image_tolerance: without levels: one level after the other is drawn, until the RMS by which the RGB of all pixels changes is
+///                  less; the last level is as costly as all others together
 /// memory:          bytes that grids may take at once: if they need more, parts of the picture are drawn one after the other,
 ///                  and the cells of each part are refined anew. A part of 16 × 16 pixels takes what it needs
 /// samples:         n × n rays for each pixel on a regular grid, 1..16
@@ -25,18 +28,21 @@ struct DenseOptions {
     RefineOptions refine{};
     std::optional<int> levels{};
     int max_levels = 6;
-    double image_tolerance = 1e-3;
+    std::optional<double> image_tolerance{};
     std::size_t memory = std::size_t{2} << 30;
     int samples = 1;
     Clip clip{};
     Progress* progress = nullptr;
 };
 
+/// error_px:     how far the boundary lies from that of the limit (RMS, estimated), if the level was chosen by it
+/// error_color:  the same for colours and opacities
 /// image_change: RMS by which the picture changed at the last level; none if only one level was drawn
-/// converged:    whether that was below the tolerance
+/// converged:    whether these were below their tolerance, or image_change was
 /// bytes:        the most that grids took at once
 struct DenseReport {
     int levels = 0;
+    std::optional<double> error_px{}, error_color{};
     std::optional<double> image_change{};
     bool converged = false;
     std::size_t blocks = 0;          // control cells in the picture whose values are visible

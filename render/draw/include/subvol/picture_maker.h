@@ -44,7 +44,7 @@ struct PictureStyle {
 /// splat:           how kernels are drawn; method, samples and clip are those of the style, channels those of the body, and
 ///                  light is added where the look has it
 /// order, kbuffer:  of pt
-/// image_tolerance: of dense
+/// image_tolerance: of dense; none: its level is chosen by how far it lies from the limit in the picture
 /// max_levels:      of dense
 /// lod:             kernels are merged as long as they are narrower than so many pixels; of pt the fraction of inner faces
 ///                  that is drawn
@@ -58,7 +58,7 @@ struct MethodOptions {
     SplatOptions splat{};
     ProjectedOrder order = ProjectedOrder::Topological;
     int kbuffer = 6;
-    double image_tolerance = 1e-3;
+    std::optional<double> image_tolerance{};
     int max_levels = 6;
     std::optional<double> lod{};
     std::optional<double> seconds{};

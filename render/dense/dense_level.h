@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "cell_sides.h"
+#include "subvol/camera.h"
+#include "subvol/hex_mesh.h"
+#include "subvol/optics.h"
+#include "subvol/refine.h"
+
+namespace subvol::detail {
+
+/// A level of dense grids, and how far what it shows lies from the limit, in the mean over the picture (RMS): the boundary in
+/// pixels, colours and opacities as parts of 1.
+///
+/// within: the one is not more than a quarter, the other not more than 1/256
+struct DenseLevel {
+    int level = 0;
+    double error_px = 0, error_color = 0;
+    bool within = false;
+};
+
+/// The lowest level up to `most` that lies within these tolerances. The same for any number of threads.
+///
+/// cost: one level of refinement, 40 bytes a cell
+[[nodiscard]] DenseLevel find_dense_level(const HexMesh& mesh, const CellSides& sides, const RefineOptions& refine,
+                                          const View& view, const Optics& optics, int most);
+
+}  // namespace subvol::detail
