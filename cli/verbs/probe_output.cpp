@@ -140,6 +140,7 @@ Json as_json(const PartMeasure& part) {
     if (!part.name.empty()) one["name"] = part.name;
     one["cells"] = part.cells;
     one["volume"] = part.volume;
+    one["error"] = part.error;
     one["fields"] = Json::array();
     for (const FieldMeasure& field : part.fields) {
         one["fields"].push_back({{"name", field.name},
@@ -151,6 +152,7 @@ Json as_json(const PartMeasure& part) {
                                  {"max", field.max.value},
                                  {"max_at", json_of(field.max.place)},
                                  {"max_cell", field.max.cell},
+                                 {"extreme_error", field.extreme_error},
                                  {"histogram", field.histogram}});
     }
     return one;
@@ -158,7 +160,7 @@ Json as_json(const PartMeasure& part) {
 
 void say(const PartMeasure& part, const std::string& name, Report& report) {
     using detail::number_text;
-    Lines lines{{"volume", number_text(part.volume)}};
+    Lines lines{{"volume", number_text(part.volume) + "  within " + number_text(part.error, 2) + " of it"}};
     if (!name.empty()) lines.insert(lines.begin(), {"block", text(name, " (", counted(part.cells, "cell"), ")")});
     for (const FieldMeasure& field : part.fields) {
         const auto at = [](const LimitExtreme& extreme) {

@@ -33,7 +33,8 @@ public:
                "\n"
                "JSON: values, one for each place: at, inside, value and gradient of the chosen field, cell, parameters, "
                "fields with value and gradient of each. Outside there is nothing: null. stats: whole and parts, with "
-               "volume and for each field integral, mean, min, max, their places, and a histogram.") {
+               "volume, error (of the volume and of means, in parts of them and of ranges), and for each field, or for "
+               "the one that --field names, integral, mean, min, max, their places, extreme_error, and a histogram.") {
         app().add_option("FILE", input_, input_help())->required();
         app()
             .add_option("--at", at_, "a place in world units (repeatable)")
@@ -67,7 +68,9 @@ public:
         const LimitOptions limit{.scheme = scheme_.options(0, report.progress()).scheme, .progress = report.progress()};
         report["input"] = input_;
         BodyInput body = report.unpack(open_body(input_, common(), app(), report.progress()));
-        (void)report.unpack(body.select(common(), OtherFields::Keep));
+        // Places have all fields; a field that is named for statistics is measured alone.
+        const bool alone = places.empty() && (common().field || common().density);
+        (void)report.unpack(body.select(common(), alone ? OtherFields::Drop : OtherFields::Keep));
         report["cells"] = body.source().cells();
         if (tets.asked()) {
             probe_tets(tets, body.mesh_for(tets), places, report);

@@ -1,345 +1,661 @@
 // SPDX-License-Identifier: Apache-2.0
+// Every cell is refined once, by the table of its class, and integrated. What is left is estimated by what the last level
+// changed, and the cells in which that is too much for the whole are refined again:
+//
+//     level 1  all cells      S₁ is added         left: |S₁ − S₀| / 8, S₀ of the trilinear cell
+//     level 2  some of them   S₂ − S₁ is added    left: |S₂ − S₁| / 3
+//     level 3  some of those  S₃ − S₂ is added …
+//
+// The cells in which most is left are refined, until that of the others sums up to less than the tolerance. Extremes follow by
+// branch and bound: a cell is refined as well if the limit may go beyond the best value so far between its nodes. In the end
+// the best places are evaluated in the limit itself.
+//
+// Cells are worked on in blocks. What is kept of a cell beyond its block is a number, and which cells go on.
 #include "subvol/measure.h"
 
-#include <tbb/parallel_for.h>
+#include <tbb/enumerable_thread_specific.h>
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
-#include "piece_tree.h"
+#include "cell_refiner.h"
+#include "grid_measure.h"
+#include "hanging_nodes.h"
+#include "mesh_subset.h"
+#include "node_steps.h"
+#include "refine_steps.h"
+#include "space_order.h"
+#include "subvol/cell.h"
 #include "subvol/detail/limit_of_part.h"
 #include "subvol/error.h"
-#include "subvol/limit_level.h"
 
 namespace subvol {
 
 namespace {
 
-constexpr std::size_t kMostBytes = std::size_t{4} << 30;
-constexpr std::size_t kChunks = 64;  // of the pieces: fixed, so that sums do not depend on the number of threads
-constexpr std::size_t kStarts = 6;   // places from which an extreme is searched for
-constexpr int kMostRounds = 16;
-constexpr double kShrink = 0.35;
+using detail::GridMeasure;
 
-constexpr std::array<double, 3> kGaussPlaces{0.11270166537925831, 0.5, 0.88729833462074169};
-constexpr std::array<double, 3> kGaussWeights{5.0 / 18, 8.0 / 18, 5.0 / 18};
+constexpr std::size_t kBlock = 8192;  // cells: fixed, so that sums do not depend on the number of threads
+constexpr std::size_t kStarts = 4;    // cells in which an extreme is evaluated
+constexpr int kMostLevels = 6;
+constexpr std::uint8_t kForSums = 1, kForExtremes = 2;  // what a cell is refined for
+constexpr double kLeftOfTrilinear = 1.0 / 8, kLeftOfQuadratic = 1.0 / 3;
 
-/// For each node the weight of its value and those of the derivatives by u, v, w.
-using NodeWeights = std::array<std::array<double, 4>, 27>;
-
-std::array<NodeWeights, 27> gauss_weights() {
-    std::array<NodeWeights, 27> table;
-    for (std::size_t g = 0; g < 27; ++g) {
-        const detail::QuadraticWeights u(kGaussPlaces[g % 3]), v(kGaussPlaces[g / 3 % 3]), w(kGaussPlaces[g / 9]);
-        for (std::size_t n = 0; n < 27; ++n) {
-            const std::size_t i = n % 3, j = n / 3 % 3, k = n / 9;
-            table[g][n] = {u.values[i] * v.values[j] * w.values[k], u.slopes[i] * v.values[j] * w.values[k],
-                           u.values[i] * v.slopes[j] * w.values[k], u.values[i] * v.values[j] * w.slopes[k]};
-        }
-    }
-    return table;
-}
-
-/// A place with the value of one channel, from which an extreme is searched for.
-struct Start {
-    double value;
-    LimitQuery place;
-    double step;  // in parameters: how far the extreme may be
+/// One channel of an attribute. scale: 1/range of the attribute, or 0 for a constant
+struct Channel {
+    std::string name;
+    double origin, scale;
 };
 
-/// The smallest and the largest values so far, at most kStarts of each, in order.
-struct Extremes {
-    std::vector<Start> low, high;
+std::vector<Channel> channels_of(const HexMesh& mesh, const detail::LimitExtent& extent) {
+    std::vector<Channel> channels;
+    for (std::size_t a = 0; a < mesh.attributes.size(); ++a) {
+        const auto& [low, high] = extent.ranges[a];
+        for (int k = 0; k < mesh.attributes[a].channels; ++k) {
+            const std::string suffix = mesh.attributes[a].channels > 1 ? "." + std::to_string(k) : "";
+            channels.push_back({mesh.attributes[a].name + suffix, low + (high - low) / 2, detail::value_scale(low, high)});
+        }
+    }
+    return channels;
+}
+
+std::vector<double> origins_of(const std::vector<Channel>& channels) {
+    std::vector<double> origins;
+    for (const Channel& channel : channels) origins.push_back(channel.origin);
+    return origins;
+}
+
+/// A place with the value of one channel near an extreme. peak: where it may be even nearer; step: how far it may be
+struct Start {
+    double value;
+    Index cell;
+    Vec3 uvw, peak;
+    double step;
+};
+
+/// The best places of a channel, of different cells, in order. sign: 1 for the largest values, −1 for the smallest
+///
+/// best: sign × the best value that the limit is known to have; open: the same of what it may have in cells that were left
+struct Search {
+    double sign;
+    double best = -HUGE_VAL, open = -HUGE_VAL;
+    std::vector<Start> starts{};
 
     void add(const Start& start) {
-        keep(low, start, [](double a, double b) { return a < b; });
-        keep(high, start, [](double a, double b) { return a > b; });
+        best = std::max(best, sign * start.value);
+        const auto same = std::ranges::find(starts, start.cell, &Start::cell);
+        if (same != starts.end()) {
+            if (sign * start.value < sign * same->value) return;
+            starts.erase(same);
+        }
+        auto at = starts.end();
+        while (at != starts.begin() && sign * start.value > sign * (at - 1)->value) --at;
+        starts.insert(at, start);
+        if (starts.size() > kStarts) starts.pop_back();
     }
-    void add(const Extremes& more) {
-        for (const Start& start : more.low) keep(low, start, [](double a, double b) { return a < b; });
-        for (const Start& start : more.high) keep(high, start, [](double a, double b) { return a > b; });
+};
+
+/// What the cells of a part sum up to.
+///
+/// sums:     the volume, then the integrals of the channels without their origins
+/// left:     of these, as a volume: that of an integral is divided by the channel's range
+/// searches: for each channel the least and the largest value
+struct PartSums {
+    std::vector<double> sums;
+    double left = 0;
+    std::vector<std::array<Search, 2>> searches;
+};
+
+/// A cell in which the limit may have an extreme. number: in the list of the level's cells
+struct Candidate {
+    std::uint32_t number;
+    std::uint32_t part, channel, high;
+    double bound;
+};
+
+/// The notes of one cell of a block: what it adds to the sums, and by how much its own sums differ from those of the level
+/// before.
+struct CellNote {
+    std::vector<double> sums, changes;
+    std::vector<GridMeasure::Extremes> extremes;
+};
+
+/// By how much the sums of the cells of a level differ from those of the level before: of integrals divided by the range.
+///
+/// left: of each sum, the part of its change that is expected to be left
+class Changes {
+public:
+    Changes(std::size_t sums, std::size_t cells, double part) : left(sums, part), sums_(sums), changes_(sums * cells) {}
+
+    std::vector<double> left;
+
+    void note(std::size_t number, std::span<const double> changes, std::span<const Channel> channels) {
+        for (std::size_t i = 0; i < sums_; ++i) {
+            changes_[sums_ * number + i] = static_cast<float>(changes[i] * (i == 0 ? 1 : channels[i - 1].scale));
+        }
+    }
+    [[nodiscard]] std::span<const float> of_cell(std::size_t number) const {
+        return std::span(changes_).subspan(sums_ * number, sums_);
+    }
+    [[nodiscard]] double largest(std::size_t number) const {
+        double most = 0;
+        for (const float change : of_cell(number)) most = std::max(most, std::abs(static_cast<double>(change)));
+        return most;
     }
 
 private:
-    template <class Before>
-    static void keep(std::vector<Start>& list, const Start& start, const Before& before) {
-        if (list.size() == kStarts && !before(start.value, list.back().value)) return;
-        auto at = list.end();
-        while (at != list.begin() && before(start.value, (at - 1)->value)) --at;
-        list.insert(at, start);
-        if (list.size() > kStarts) list.pop_back();
-    }
+    std::size_t sums_;
+    std::vector<float> changes_;
 };
 
-/// What the pieces of a part sum up to.
-struct Sums {
-    double volume = 0;
-    std::vector<double> integrals;
-    std::vector<Extremes> extremes;
+/// What is left in the cells that are not refined further. Volumes that one cell gains are mostly lost by its neighbours, so
+/// that changes are added up with their signs, and what does not cancel as if it were random, twice.
+class Rest {
+public:
+    explicit Rest(const Changes& changes) : changes_(changes), sums_(changes.of_cell(0).size(), 0), squares_(sums_.size(), 0) {}
+
+    /// sign: 1 adds a cell, −1 takes it away
+    void add(std::size_t number, double sign) {
+        const auto of_cell = changes_.of_cell(number);
+        for (std::size_t i = 0; i < of_cell.size(); ++i) {
+            const auto change = static_cast<double>(of_cell[i]);
+            sums_[i] += sign * change;
+            squares_[i] += sign * change * change;
+        }
+    }
+    [[nodiscard]] double change(std::size_t sum) const {
+        return std::abs(sums_[sum]) + 2 * std::sqrt(std::max(0.0, squares_[sum]));
+    }
+    [[nodiscard]] double size() const {
+        double most = 0;
+        for (std::size_t i = 0; i < sums_.size(); ++i) most = std::max(most, changes_.left[i] * change(i));
+        return most;
+    }
+
+private:
+    const Changes& changes_;
+    std::vector<double> sums_, squares_;
+};
+
+/// Memory of one thread.
+struct Scratch {
+    GridMeasure measure;
+    std::vector<double> means, counts;
+    std::vector<Vec3> points;
 };
 
 class Measurer {
 public:
-    /// owned:        a flag for each cell that is measured, the others are a halo; none: all are
-    /// longest_side: of the box of the whole mesh
-    Measurer(const HexMesh& mesh, std::span<const std::uint8_t> owned, double longest_side, const MeasureOptions& options)
-        : mesh_(mesh), options_(options), owned_(owned) {
-        check();
-        const LimitCellsOptions cells{.position_world = options.tolerance * std::max(longest_side, 1e-300),
-                                      .value_of_range = options.tolerance,
-                                      .max_bytes = kMostBytes};
-        pieces_ = find_limit_cells(mesh, {.scheme = options.scheme, .levels = 0, .progress = options.progress}, cells).pieces;
-        if (!pieces_) {
-            throw Error(ErrorCode::MissingCapability, "the pieces of the limit take more than 4 GB", "measure",
-                        "a larger tolerance");
-        }
-        channels_ = pieces_->node_size - 3;
-        parts_ = 1;
-        for (const Index group : options.groups) parts_ = std::max(parts_, static_cast<std::size_t>(group) + 1);
+    /// owned:  a flag for each cell that is measured, the others are a halo; none: all are
+    /// extent: of the whole mesh
+    Measurer(const HexMesh& mesh, std::span<const std::uint8_t> owned, const detail::LimitExtent& extent,
+             const MeasureOptions& options)
+        : options_(options),
+          extent_(extent),
+          control_(detail::control_mesh(HexMesh(mesh), options.scheme)),
+          refiner_(control_, options.scheme, true),
+          channels_(channels_of(control_, extent)),
+          scratch_([this] {
+              return Scratch{GridMeasure(origins_of(channels_)), std::vector<double>(channels_.size()), {}, {}};
+          }),
+          slots_(control_.cells.size()),
+          levels_(control_.cells.size(), 1),
+          coarsest_(control_.points.size(), 1) {
+        for (const Index group : options.groups) part_count_ = std::max(part_count_, static_cast<std::size_t>(group) + 1);
+        list_cells(owned);
     }
 
-    LimitMeasure measure(bool histograms) {
-        std::vector<Sums> sums = integrate();
-        Sums whole = sums.front();
-        for (std::size_t p = 1; p < sums.size(); ++p) add(sums[p], whole);
-        std::vector<PartMeasure> found(1, summed(whole));
-        found[0].cells = owned_.empty() ? mesh_.cells.size() : static_cast<std::size_t>(std::ranges::count(owned_, 1));
-        if (!options_.groups.empty()) {
-            for (const Sums& part : sums) found.push_back(summed(part));
-            for (std::size_t p = 0; p < parts_; ++p) found[p + 1].name = p < options_.names.size() ? options_.names[p] : "";
-            for (const Index group : options_.groups) ++found[group + 1].cells;
-        }
-        std::vector<const Sums*> searched{&whole};
-        for (std::size_t p = 0; p + 1 < found.size(); ++p) searched.push_back(&sums[p]);
-        search(searched, found);
-        if (histograms) add_histograms(found);
-        LimitMeasure result{std::move(found.front()), {}, count_pieces()};
-        result.parts.assign(std::make_move_iterator(found.begin() + 1), std::make_move_iterator(found.end()));
-        return result;
+    /// The whole, then the parts of the groups.
+    std::vector<PartMeasure> measure() {
+        start();
+        std::vector<Index> cells = cells_;
+        for (int level = 1; !cells.empty(); ++level) cells = run(cells, level);
+        std::vector<PartMeasure> found = results();
+        find_extremes(found);
+        return found;
     }
+
+    [[nodiscard]] std::size_t pieces() const { return pieces_; }
 
     /// found: the whole, whose extremes are those of the histograms, and then the parts
-    void add_histograms(std::vector<PartMeasure>& found) const {
+    void add_histograms(std::vector<PartMeasure>& found) {
         const auto bins = static_cast<std::size_t>(options_.bins);
-        const std::size_t size = found.size() * channels_ * bins;
-        std::vector<std::vector<double>> chunks(kChunks);
-        tbb::parallel_for(std::size_t{0}, kChunks, [&](std::size_t chunk) {
-            auto& counts = chunks[chunk];
-            counts.assign(size, 0);
-            for (std::size_t piece = chunk_begin(chunk); piece < chunk_begin(chunk + 1); ++piece) {
-                if (!is_owned(piece)) continue;
-                const std::size_t part = part_of(pieces_->cells[piece]) + 1;
-                each_gauss_point(piece, [&](const Vec3&, double weight, std::span<const double> values) {
-                    for (std::size_t c = 0; c < channels_; ++c) {
-                        const FieldMeasure& whole = found[0].fields[c];
-                        const double width = whole.max.value - whole.min.value;
-                        const double t = width > 0 ? (values[c] - whole.min.value) / width * static_cast<double>(bins) : 0;
-                        const auto bin = static_cast<std::size_t>(std::clamp(t, 0.0, static_cast<double>(bins - 1)));
-                        counts[c * bins + bin] += weight;
-                        if (found.size() > 1) counts[(part * channels_ + c) * bins + bin] += weight;
-                    }
-                });
+        for (PartMeasure& part : found) {
+            for (FieldMeasure& field : part.fields) field.histogram.assign(bins, 0);
+        }
+        if (std::ranges::all_of(found[0].fields,
+                                [](const FieldMeasure& field) { return !(field.min.value < field.max.value); })) {
+            for (PartMeasure& part : found) {
+                for (FieldMeasure& field : part.fields) field.histogram[0] = part.volume;
             }
-        });
-        for (std::size_t p = 0; p < found.size(); ++p) {
-            for (std::size_t c = 0; c < channels_; ++c) {
-                auto& histogram = found[p].fields[c].histogram;
-                histogram.assign(bins, 0);
-                for (std::size_t b = 0; b < bins; ++b) {
-                    for (const auto& counts : chunks) histogram[b] += counts[(p * channels_ + c) * bins + b];
-                }
+            return;
+        }
+        // Few cells are refined more often, so that each interval has enough Gauss points.
+        constexpr std::size_t kEnough = 16384;  // pieces
+        int level = 1;
+        while (level < 4 && cells_.size() << 3 * level <= kEnough) ++level;
+        std::vector<std::vector<double>> notes(std::min(kBlock, cells_.size()));
+        const auto add_note = [&](const std::vector<double>& note, PartMeasure& part) {
+            for (std::size_t i = 0; i < note.size(); i += 2) {
+                const auto at = static_cast<std::size_t>(note[i]);
+                part.fields[at / bins].histogram[at % bins] += note[i + 1];
             }
+        };
+        each_block(
+            cells_, level, "histogram",
+            [&](const DenseCell& grid, std::size_t slot) { note_bins(grid, found[0], notes[slot]); },
+            [&](Index cell, std::size_t, std::size_t slot) {
+                add_note(notes[slot], found[0]);
+                if (found.size() > 1) add_note(notes[slot], found[part_of(cell) + 1]);
+            });
+    }
+
+    /// The volumes of a histogram sum up to that of the part, which is known better.
+    static void scale_histograms(PartMeasure& part) {
+        for (FieldMeasure& field : part.fields) {
+            const double sum = std::accumulate(field.histogram.begin(), field.histogram.end(), 0.0);
+            if (sum == 0) continue;
+            for (double& volume : field.histogram) volume *= part.volume / sum;
         }
     }
 
 private:
-    [[nodiscard]] bool is_owned(std::size_t piece) const { return owned_.empty() || owned_[pieces_->cells[piece]] != 0; }
-
-    [[nodiscard]] std::size_t count_pieces() const {
-        std::size_t count = 0;
-        for (std::size_t piece = 0; piece < pieces_->cells.size(); ++piece) count += is_owned(piece) ? 1 : 0;
-        return count;
-    }
-
-    void check() const {
-        const auto refuse = [](const std::string& what, const std::string& allowed) {
-            throw Error(ErrorCode::InvalidInput, what, "measure", allowed);
-        };
-        if (!(options_.tolerance > 0 && options_.tolerance <= 1))
-            refuse("the tolerance is out of range", "greater than 0, at most 1");
-        if (options_.bins < 1 || options_.bins > 100000) refuse("the number of bins is out of range", "1 to 100,000");
-        if (!options_.groups.empty() && options_.groups.size() != mesh_.cells.size()) {
-            refuse("there are " + std::to_string(options_.groups.size()) + " groups of cells", "one for each of the cells");
-        }
-    }
-
     [[nodiscard]] std::size_t part_of(Index cell) const { return options_.groups.empty() ? 0 : options_.groups[cell]; }
-    [[nodiscard]] std::size_t chunk_begin(std::size_t chunk) const { return chunk * pieces_->cells.size() / kChunks; }
 
-    /// Calls visit(uvw in the piece, weight, values) for the Gauss points of a piece. The weights sum to its volume.
-    template <class Visit>
-    void each_gauss_point(std::size_t piece, const Visit& visit) const {
-        static const std::array<NodeWeights, 27> table = gauss_weights();
-        values_of_thread().resize(channels_);
-        const std::span<double> values = values_of_thread();
-        for (std::size_t g = 0; g < 27; ++g) {
-            const std::size_t a = g % 3, b = g / 3 % 3, c = g / 9;
-            Mat3 jacobian(0.0);
-            std::ranges::fill(values, 0);
-            const float* node = pieces_->node(piece, 0);
-            for (std::size_t n = 0; n < 27; ++n, node += pieces_->node_size) {
-                const auto& [value, du, dv, dw] = table[g][n];
-                const Vec3 p(node[0], node[1], node[2]);
-                jacobian[0] += du * p;
-                jacobian[1] += dv * p;
-                jacobian[2] += dw * p;
-                for (std::size_t s = 0; s < channels_; ++s) values[s] += value * static_cast<double>(node[3 + s]);
-            }
-            const double weight = kGaussWeights[a] * kGaussWeights[b] * kGaussWeights[c] * glm::determinant(jacobian);
-            visit(Vec3(kGaussPlaces[a], kGaussPlaces[b], kGaussPlaces[c]), weight, values);
+    /// The cells in the order in which they are worked on: neighbours in space, as their refinement shares what is around them.
+    void list_cells(std::span<const std::uint8_t> owned) {
+        for (Index cell = 0; cell < control_.cells.size(); ++cell) {
+            if (owned.empty() || owned[cell] != 0) cells_.push_back(cell);
         }
+        if (cells_.size() <= kBlock) return;
+        std::vector<Vec3> middles;
+        middles.reserve(cells_.size());
+        for (const Index cell : cells_) {
+            const auto& corners = control_.cells[cell];
+            middles.push_back(0.5 * (control_.points[corners[0]] + control_.points[corners[6]]));
+        }
+        std::vector<Index> order = detail::space_order(middles);
+        for (Index& i : order) i = cells_[i];
+        cells_ = std::move(order);
     }
 
-    static std::vector<double>& values_of_thread() {
-        thread_local std::vector<double> values;
-        return values;
-    }
-
-    [[nodiscard]] LimitQuery place_of(std::size_t piece, const Vec3& t) const {
-        const auto& lowest = pieces_->lowest[piece];
-        const double size = std::ldexp(1.0, -pieces_->levels[piece]);
-        return {pieces_->cells[piece], glm::clamp(size * (Vec3(lowest[0], lowest[1], lowest[2]) + t), Vec3(0.0), Vec3(1.0))};
-    }
-
-    std::vector<Sums> integrate() const {
-        std::vector<std::vector<Sums>> chunks(kChunks);
-        tbb::parallel_for(std::size_t{0}, kChunks, [&](std::size_t chunk) {
-            auto& sums = chunks[chunk];
-            sums.resize(parts_);
-            for (Sums& part : sums) part = {0, std::vector<double>(channels_), std::vector<Extremes>(channels_)};
-            for (std::size_t piece = chunk_begin(chunk); piece < chunk_begin(chunk + 1); ++piece) {
-                if (!is_owned(piece)) continue;
-                Sums& part = sums[part_of(pieces_->cells[piece])];
-                const double step = 0.5 * std::ldexp(1.0, -pieces_->levels[piece]);
-                each_gauss_point(piece, [&](const Vec3& t, double weight, std::span<const double> values) {
-                    part.volume += weight;
-                    for (std::size_t c = 0; c < channels_; ++c) {
-                        part.integrals[c] += weight * values[c];
-                        part.extremes[c].add({values[c], place_of(piece, t), step});
-                    }
-                });
-                for (std::size_t n = 0; n < LimitPieces::kNodes; ++n) {
-                    const LimitQuery place = place_of(piece, 0.5 * Vec3(n % 3, n / 3 % 3, n / 9));
-                    for (std::size_t c = 0; c < channels_; ++c) {
-                        part.extremes[c].add({static_cast<double>(pieces_->node(piece, n)[3 + c]), place, step});
+    /// If the scheme interpolates, the limit is known to have the values of the control points.
+    void start() {
+        parts_.resize(part_count_);
+        for (PartSums& part : parts_) {
+            part.sums.assign(1 + channels_.size(), 0);
+            part.searches.assign(channels_.size(), {Search{-1}, Search{1}});
+        }
+        if (!interpolates(options_.scheme.kind)) return;
+        for (const Index cell : cells_) {
+            auto& searches = parts_[part_of(cell)].searches;
+            std::size_t c = 0;
+            for (const Attribute& attribute : control_.attributes) {
+                for (int k = 0; k < attribute.channels; ++k, ++c) {
+                    for (const Index p : control_.cells[cell]) {
+                        const std::size_t at = p * static_cast<std::size_t>(attribute.channels) + static_cast<std::size_t>(k);
+                        for (Search& search : searches[c]) {
+                            search.best = std::max(search.best, search.sign * attribute.values[at]);
+                        }
                     }
                 }
             }
-        });
-        std::vector<Sums> sums = std::move(chunks.front());
-        for (std::size_t chunk = 1; chunk < kChunks; ++chunk) {
-            for (std::size_t p = 0; p < parts_; ++p) add(chunks[chunk][p], sums[p]);
-        }
-        return sums;
-    }
-
-    static void add(const Sums& more, Sums& to) {
-        to.volume += more.volume;
-        for (std::size_t c = 0; c < to.integrals.size(); ++c) {
-            to.integrals[c] += more.integrals[c];
-            to.extremes[c].add(more.extremes[c]);
         }
     }
 
-    [[nodiscard]] PartMeasure summed(const Sums& sums) const {
-        PartMeasure part;
-        part.volume = sums.volume;
-        std::size_t c = 0;
-        for (std::size_t a = 0; a < pieces_->names.size(); ++a) {
-            for (int k = 0; k < pieces_->channels[a]; ++k, ++c) {
-                FieldMeasure field;
-                field.name = pieces_->names[a] + (pieces_->channels[a] > 1 ? "." + std::to_string(k) : "");
-                field.integral = sums.integrals[c];
-                field.mean = sums.volume != 0 ? sums.integrals[c] / sums.volume : 0;
-                part.fields.push_back(std::move(field));
+    /// Refines cells block by block.
+    ///
+    /// note:    gets the grid of each cell and its place in the block, from several threads and in any order
+    /// collect: gets each cell, its number in `cells` and its place in the block, in the order of `cells`
+    template <class Note, class Collect>
+    void each_block(std::span<const Index> cells, int level, const char* stage, const Note& note, const Collect& collect) {
+        const std::size_t most = std::max<std::size_t>(kBlock >> 3 * (level - 1), 64);
+        for (std::size_t first = 0; first < cells.size(); first += most) {
+            report_progress(options_.progress, stage, static_cast<double>(first) / static_cast<double>(cells.size()));
+            const auto block = cells.subspan(first, std::min(most, cells.size() - first));
+            for (std::size_t slot = 0; slot < block.size(); ++slot) slots_[block[slot]] = static_cast<Index>(slot);
+            refiner_.for_each(block, level, nullptr, [&](const DenseCell& grid) { note(grid, slots_[grid.cell]); });
+            for (std::size_t slot = 0; slot < block.size(); ++slot) collect(block[slot], first + slot, slot);
+        }
+    }
+
+    /// How much of the first level's changes is left depends on how well the mesh resolves its fields, by a factor of forty. A
+    /// sample of the cells tells: twice the part by which the next level changes it again.
+    void calibrate(std::span<const Index> cells, Changes& changes) {
+        constexpr std::size_t kStride = 64, kLeast = 64;
+        std::vector<std::uint32_t> order(cells.size());
+        std::iota(order.begin(), order.end(), 0U);
+        std::ranges::stable_sort(order, std::ranges::greater{}, [&](std::uint32_t i) { return changes.largest(i); });
+        const std::size_t stride = std::clamp<std::size_t>(cells.size() / kLeast, 1, kStride);
+        std::vector<Index> sample;
+        Rest before(changes);
+        for (std::size_t i = 0; i < order.size(); i += stride) {
+            sample.push_back(cells[order[i]]);
+            before.add(order[i], 1);
+        }
+        Changes next(1 + channels_.size(), sample.size(), 0);
+        each_block(
+            sample, 2, "measure",
+            [&](const DenseCell& grid, std::size_t slot) {
+                GridMeasure& measure = scratch_.local().measure;
+                std::vector<double> coarse(1 + channels_.size(), 0);
+                notes_[slot].changes.assign(coarse.size(), 0);
+                measure.add_sums(grid, 1, notes_[slot].changes);
+                measure.add_sums(grid, 2, coarse);
+                for (std::size_t i = 0; i < coarse.size(); ++i) notes_[slot].changes[i] -= coarse[i];
+                leave_out_shared(grid, notes_[slot].changes);
+            },
+            [&](Index, std::size_t number, std::size_t slot) { next.note(number, notes_[slot].changes, channels_); });
+        Rest after(next);
+        for (std::size_t i = 0; i < sample.size(); ++i) after.add(i, 1);
+        for (std::size_t i = 0; i < changes.left.size(); ++i) {
+            if (before.change(i) > 0) changes.left[i] = std::min(kLeftOfTrilinear, 2 * after.change(i) / before.change(i));
+        }
+    }
+
+    /// Measures cells at a level. Returns those that are to be refined further, in the same order.
+    std::vector<Index> run(std::span<const Index> cells, int level) {
+        notes_.resize(std::min(kBlock, cells.size()));
+        pieces_ +=
+            level == 1 ? cells.size() : 7 * static_cast<std::size_t>(std::ranges::count(levels_, level)) << 3 * (level - 2);
+        Changes changes(1 + channels_.size(), cells.size(), level == 1 ? kLeftOfTrilinear : kLeftOfQuadratic);
+        candidates_.clear();
+        kept_ = 0;
+        each_block(
+            cells, level, level == 1 ? "measure" : "refine",
+            [&](const DenseCell& grid, std::size_t slot) { note_cell(grid, level, notes_[slot]); },
+            [&](Index cell, std::size_t number, std::size_t slot) {
+                changes.note(number, notes_[slot].changes, channels_);
+                collect(cell, number, std::ldexp(0.5, -level), notes_[slot]);
+            });
+        keep_open_candidates();
+        if (level == 1) calibrate(cells, changes);
+        return choose(cells, changes, level);
+    }
+
+    void note_cell(const DenseCell& grid, int level, CellNote& note) {
+        GridMeasure& measure = scratch_.local().measure;
+        note.sums.clear();
+        note.changes.assign(1 + channels_.size(), 0);
+        if (levels_[grid.cell] == level) note_sums(grid, level, note);
+        note.extremes.clear();
+        for (std::size_t c = 0; c < channels_.size(); ++c) note.extremes.push_back(measure.extremes(grid, c));
+    }
+
+    void note_sums(DenseCell grid, int level, CellNote& note) {
+        Scratch& scratch = scratch_.local();
+        note.sums = note.changes;
+        if (level == 1) {
+            scratch.measure.add_trilinear_sums(grid, note.changes);
+        } else {
+            close_gaps(grid, level, levels_beside(grid.cell, level), scratch.points);
+            grid.points = scratch.points;
+            scratch.measure.add_sums(grid, 2, note.changes);
+        }
+        scratch.measure.add_sums(grid, 1, note.sums);
+        for (std::size_t i = 0; i < note.sums.size(); ++i) note.changes[i] = note.sums[i] - note.changes[i];
+        if (level > 1) note.sums = note.changes;
+        leave_out_shared(grid, note.changes);
+    }
+
+    /// What a side sweeps, the cell beside it loses: it changes nothing but the volume at the hull.
+    void leave_out_shared(const DenseCell& grid, std::vector<double>& changes) {
+        Scratch& scratch = scratch_.local();
+        changes[0] = 0;
+        for (std::size_t side = 0; side < 6; ++side) {
+            const double swept = GridMeasure::swept(grid, side);
+            if (refiner_.links().neighbors[grid.cell][side] == kNone) {
+                changes[0] += swept;
+                continue;
+            }
+            scratch.measure.mean_on_side(grid, side, scratch.means);
+            for (std::size_t c = 0; c < channels_.size(); ++c) changes[1 + c] -= scratch.means[c] * swept;
+        }
+    }
+
+    /// The levels of the cells beside one that is refined to a level. All cells at an edge are at both of its ends, so that the
+    /// coarsest cells at these tell which level all of them have at least.
+    [[nodiscard]] detail::LevelsBeside levels_beside(Index cell, int level) const {
+        detail::LevelsBeside beside;
+        const auto most = static_cast<std::uint8_t>(level);
+        for (std::size_t side = 0; side < 6; ++side) {
+            const Index other = refiner_.links().neighbors[cell][side];
+            beside.sides[side] = other == kNone ? most : std::min(most, levels_[other]);
+        }
+        const auto& corners = control_.cells[cell];
+        for (std::size_t e = 0; e < 12; ++e) {
+            const Index a = corners[static_cast<std::size_t>(kCellEdges[e][0])],
+                        b = corners[static_cast<std::size_t>(kCellEdges[e][1])];
+            beside.edges[e] = std::min(most, std::max(coarsest_[a], coarsest_[b]));
+        }
+        return beside;
+    }
+
+    /// Notes the level to which the sums of cells are known, and the coarsest at each point.
+    void note_levels(std::span<const Index> cells, int level) {
+        for (const Index cell : cells) levels_[cell] = static_cast<std::uint8_t>(level);
+        std::ranges::fill(coarsest_, 0xff);
+        for (std::size_t c = 0; c < levels_.size(); ++c) {
+            for (const Index p : control_.cells[c]) coarsest_[p] = std::min(coarsest_[p], levels_[c]);
+        }
+    }
+
+    void collect(Index cell, std::size_t number, double step, const CellNote& note) {
+        const std::size_t p = part_of(cell);
+        PartSums& part = parts_[p];
+        for (std::size_t i = 0; i < note.sums.size(); ++i) part.sums[i] += note.sums[i];
+        for (std::size_t c = 0; c < channels_.size(); ++c) {
+            const GridMeasure::Extremes& found = note.extremes[c];
+            auto& [low, high] = part.searches[c];
+            low.add({found.low.value, cell, found.low.uvw, found.low_peak, step});
+            high.add({found.high.value, cell, found.high.uvw, found.high_peak, step});
+            for (std::uint32_t i = 0; i < 2; ++i) {
+                const Candidate candidate{.number = static_cast<std::uint32_t>(number),
+                                          .part = static_cast<std::uint32_t>(p),
+                                          .channel = static_cast<std::uint32_t>(c),
+                                          .high = i,
+                                          .bound = i == 0 ? -found.low_bound : found.high_bound};
+                is_open(candidate) ? candidates_.push_back(candidate) : leave(candidate);
             }
         }
-        return part;
+        if (candidates_.size() > 2 * kept_ + kBlock) keep_open_candidates();
     }
 
-    /// A search about one start, with its pattern of 27 places.
-    struct Search {
-        std::size_t part, channel;
-        bool high;
-        Start best;
-        Vec3 position{0.0};
+    /// How far beyond the best value the limit may go in a cell, in parts of the range.
+    [[nodiscard]] double excess(const Candidate& candidate) const {
+        const Search& search = parts_[candidate.part].searches[candidate.channel][candidate.high];
+        return channels_[candidate.channel].scale * (candidate.bound - search.best);
+    }
+    [[nodiscard]] bool is_open(const Candidate& candidate) const { return excess(candidate) > 0.5 * options_.tolerance; }
+    void leave(const Candidate& candidate) {
+        double& open = parts_[candidate.part].searches[candidate.channel][candidate.high].open;
+        open = std::max(open, candidate.bound);
+    }
+    void keep_open_candidates() {
+        std::erase_if(candidates_, [&](const Candidate& candidate) {
+            if (!is_open(candidate)) leave(candidate);
+            return !is_open(candidate);
+        });
+        kept_ = candidates_.size();
+    }
+
+    /// The cells that go on to the next level: those with candidates for extremes, and those of whose sums most is left. At
+    /// most so many as cost about as much as the first level. What stays is added to what is left of the parts.
+    std::vector<Index> choose(std::span<const Index> cells, const Changes& changes, int level) {
+        constexpr std::size_t kLeastWork = 32768;  // pieces
+        const std::size_t work = level >= kMostLevels ? 0 : std::max(cells_.size(), kLeastWork);
+        std::vector<std::uint8_t> chosen(cells.size(), 0);
+        std::ranges::stable_sort(candidates_, std::ranges::greater{}, [&](const Candidate& one) { return excess(one); });
+        std::size_t room = work >> 3 * level;
+        for (const Candidate& one : candidates_) {
+            if (chosen[one.number] == 0 && room > 0) {
+                chosen[one.number] = kForExtremes;
+                --room;
+            }
+            if (chosen[one.number] == 0) leave(one);
+        }
+        choose_for_sums(cells, changes, level, 8 * work >> 3 * level, chosen);
+        std::vector<Index> next, summed;
+        for (std::size_t i = 0; i < cells.size(); ++i) {
+            if (chosen[i] != 0) next.push_back(cells[i]);
+            if ((chosen[i] & kForSums) != 0) summed.push_back(cells[i]);
+        }
+        note_levels(summed, level + 1);
+        return next;
+    }
+
+    void choose_for_sums(std::span<const Index> cells, const Changes& changes, int level, std::size_t room,
+                         std::vector<std::uint8_t>& chosen) {
+        std::vector<Rest> rests(parts_.size(), Rest(changes));
+        for (std::size_t i = 0; i < cells.size(); ++i) {
+            if (levels_[cells[i]] == level) rests[part_of(cells[i])].add(i, 1);
+        }
+        std::vector<std::uint32_t> order;
+        for (std::uint32_t i = 0; i < cells.size(); ++i) {
+            if (levels_[cells[i]] == level) order.push_back(i);
+        }
+        std::ranges::stable_sort(order, std::ranges::greater{}, [&](std::uint32_t i) { return changes.largest(i); });
+        for (const std::uint32_t i : order) {
+            const std::size_t p = part_of(cells[i]);
+            const double allowed = std::ldexp(options_.tolerance * std::abs(parts_[p].sums[0]), -level);
+            if (room == 0 || rests[p].size() <= allowed) continue;
+            chosen[i] |= kForSums;
+            rests[p].add(i, -1);
+            --room;
+        }
+        for (std::size_t p = 0; p < parts_.size(); ++p) parts_[p].left += rests[p].size();
+    }
+
+    /// The whole and the parts, without their extremes.
+    [[nodiscard]] std::vector<PartMeasure> results() const {
+        PartSums whole = parts_.front();
+        for (std::size_t p = 1; p < parts_.size(); ++p) {
+            for (std::size_t i = 0; i < whole.sums.size(); ++i) whole.sums[i] += parts_[p].sums[i];
+            whole.left += parts_[p].left;
+        }
+        std::vector<PartMeasure> found(1, result(whole));
+        found[0].cells = cells_.size();
+        if (options_.groups.empty()) return found;
+        for (const PartSums& part : parts_) found.push_back(result(part));
+        for (std::size_t p = 0; p < parts_.size(); ++p) found[p + 1].name = p < options_.names.size() ? options_.names[p] : "";
+        for (const Index group : options_.groups) ++found[group + 1].cells;
+        return found;
+    }
+
+    [[nodiscard]] PartMeasure result(const PartSums& part) const {
+        PartMeasure measure;
+        const double volume = part.sums[0];
+        measure.volume = volume;
+        measure.error = volume != 0 ? part.left / std::abs(volume) : 0;
+        for (std::size_t c = 0; c < channels_.size(); ++c) {
+            FieldMeasure field;
+            const double sum = part.sums[1 + c], origin = channels_[c].origin;
+            field.name = channels_[c].name;
+            field.integral = sum + origin * volume;
+            field.mean = volume != 0 ? origin + sum / volume : 0;
+            measure.fields.push_back(std::move(field));
+        }
+        return measure;
+    }
+
+    /// A search of the limit for an extreme, from one of the best places. step: in parameters, how far it may be
+    struct Climb {
+        std::size_t part, channel, high;
+        Index cell;  // of the mesh around the places
+        double step;
+        LimitExtreme best{};
     };
 
-    /// Fields are searched some at a time: all of those in question are evaluated at the places of each.
-    void search(std::span<const Sums* const> of, std::vector<PartMeasure>& found) const {
-        constexpr std::size_t kTogether = 16;
-        const std::size_t count = mesh_.attributes.size();
-        std::size_t first = 0;
-        for (std::size_t a = 0; a < count; a += kTogether) {
-            const auto begin = mesh_.attributes.begin() + static_cast<std::ptrdiff_t>(a);
-            const auto end = mesh_.attributes.begin() + static_cast<std::ptrdiff_t>(std::min(a + kTogether, count));
-            std::size_t channels = 0;
-            for (auto field = begin; field != end; ++field) channels += static_cast<std::size_t>(field->channels);
-            if (count <= kTogether) return search(mesh_, 0, channels, of, found);
-            const HexMesh some{mesh_.points, mesh_.cells, {begin, end}, mesh_.creases, mesh_.sharp_faces};
-            search(some, first, channels, of, found);
-            first += channels;
+    /// Goes from the best places on in the limit itself, in a mesh of the cells around them.
+    void find_extremes(std::vector<PartMeasure>& found) {
+        constexpr int kRounds = 16;
+        constexpr double kNear = 2e-4;  // in parameters
+        std::vector<Climb> climbs;
+        std::vector<LimitQuery> queries;  // of the first round: a place and its peak
+        std::vector<std::uint8_t> about(control_.cells.size(), 0);
+        for (std::size_t p = 0; p < parts_.size(); ++p) {
+            for (std::size_t c = 0; c < channels_.size(); ++c) {
+                for (std::size_t high = 0; high < 2; ++high) {
+                    for (const Start& start : parts_[p].searches[c][high].starts) {
+                        about[start.cell] = 1;
+                        climbs.push_back({p, c, high, start.cell, channels_[c].scale > 0 ? start.step : 0});
+                        queries.push_back({start.cell, start.uvw});
+                        queries.push_back({start.cell, start.peak});
+                    }
+                }
+            }
+        }
+        if (climbs.empty()) return;
+        detail::grow(control_, about, detail::kHaloOfLimit);
+        const detail::MeshSubset around = detail::subset(control_, about);
+        const auto number = [&](Index cell) {
+            return static_cast<Index>(std::ranges::lower_bound(around.cells, cell) - around.cells.begin());
+        };
+        for (LimitQuery& query : queries) query.cell = number(query.cell);
+        SchemeOptions scheme = options_.scheme;
+        scheme.crease_angle_deg.reset();  // the creases are tagged already
+        const LimitEvaluator limit(around.mesh, {.scheme = scheme}, extent_);
+        climb(limit.at(queries), queries, climbs);
+        for (int round = 0; round < kRounds; ++round) {
+            report_progress(options_.progress, "extremes", static_cast<double>(round) / kRounds);
+            queries.clear();
+            std::ranges::stable_partition(climbs, [&](const Climb& one) { return one.step > kNear; });
+            for (const Climb& one : climbs) {
+                if (one.step <= kNear) break;
+                for (std::size_t n = 0; n < 27; ++n) {
+                    const Vec3 offset = one.step * (Vec3(n % 3, n / 3 % 3, n / 9) - Vec3(1.0));
+                    queries.push_back({number(one.cell), glm::clamp(one.best.uvw + offset, Vec3(0.0), Vec3(1.0))});
+                }
+            }
+            if (queries.empty()) break;
+            climb(limit.at(queries), queries, std::span(climbs).first(queries.size() / 27));
+        }
+        for (const Climb& one : climbs) {
+            take(one, found[0]);
+            if (found.size() > 1) take(one, found[one.part + 1]);
+        }
+        note_errors(found);
+    }
+
+    /// Takes the best of the places that were looked at for each climb, as many for all. Where that is the one before, the next
+    /// ones are nearer.
+    static void climb(const LimitSamples& samples, std::span<const LimitQuery> queries, std::span<Climb> climbs) {
+        constexpr double kShrink = 0.35;
+        const std::size_t each = queries.size() / climbs.size();
+        for (std::size_t i = 0; i < climbs.size(); ++i) {
+            Climb& one = climbs[i];
+            bool moved = false;
+            for (std::size_t q = i * each; q < (i + 1) * each; ++q) {
+                const double value = value_of(samples, q, one.channel);
+                if (one.best.cell != kNone && (one.high != 0 ? value <= one.best.value : value >= one.best.value)) continue;
+                one.best = {value, samples.positions[q], one.cell, queries[q].uvw};
+                moved = true;
+            }
+            if (!moved) one.step *= kShrink;
         }
     }
 
-    /// Goes from each start to the best of the places around it, which are nearer each time that it is the best itself.
-    ///
-    /// fields: have so many channels, which are those from the first one on
-    void search(const HexMesh& fields, std::size_t first, std::size_t channels, std::span<const Sums* const> of,
-                std::vector<PartMeasure>& found) const {
-        std::vector<Search> searches;
-        for (std::size_t p = 0; p < of.size(); ++p) {
-            for (std::size_t c = first; c < first + channels; ++c) {
-                for (const Start& start : of[p]->extremes[c].low) searches.push_back({p, c, false, start});
-                for (const Start& start : of[p]->extremes[c].high) searches.push_back({p, c, true, start});
-            }
-        }
-        for (Search& one : searches) one.best.value = one.high ? -INFINITY : INFINITY;
-        std::vector<LimitQuery> queries(27 * searches.size());
-        const LimitEvaluator limit(fields, {.scheme = options_.scheme});
-        for (int round = 0; round < kMostRounds && !searches.empty(); ++round) {
-            report_progress(options_.progress, "extremes", static_cast<double>(round) / kMostRounds);
-            for (std::size_t q = 0; q < queries.size(); ++q) {
-                const Start& from = searches[q / 27].best;
-                const std::size_t n = q % 27;
-                const Vec3 offset = from.step * (Vec3(n % 3, n / 3 % 3, n / 9) - Vec3(1.0));
-                queries[q] = {from.place.cell, glm::clamp(from.place.uvw + offset, Vec3(0.0), Vec3(1.0))};
-            }
-            const LimitSamples samples = limit.at(queries);
-            for (std::size_t s = 0; s < searches.size(); ++s) step(searches[s], first, 27 * s, queries, samples);
-        }
-        for (const Search& one : searches) {
-            FieldMeasure& field = found[one.part].fields[one.channel];
-            LimitExtreme& to = one.high ? field.max : field.min;
-            if (to.cell == kNone || (one.high ? one.best.value > to.value : one.best.value < to.value)) {
-                to = {one.best.value, one.position, one.best.place.cell, one.best.place.uvw};
-            }
-        }
+    static void take(const Climb& from, PartMeasure& part) {
+        FieldMeasure& field = part.fields[from.channel];
+        LimitExtreme& to = from.high != 0 ? field.max : field.min;
+        const bool better = from.high != 0 ? from.best.value > to.value : from.best.value < to.value;
+        if (to.cell == kNone || better) to = from.best;
     }
 
-    void step(Search& one, std::size_t channel, std::size_t first, std::span<const LimitQuery> queries,
-              const LimitSamples& samples) const {
-        std::size_t best = 27;
-        for (std::size_t n = 0; n < 27; ++n) {
-            const double value = value_of(samples, first + n, one.channel - channel);
-            if (one.high ? value <= one.best.value : value >= one.best.value) continue;
-            one.best.value = value;
-            best = n;
+    /// How far the limit may go beyond the extremes, where nobody looked.
+    void note_errors(std::vector<PartMeasure>& found) const {
+        for (std::size_t p = 0; p < parts_.size(); ++p) {
+            for (std::size_t c = 0; c < channels_.size(); ++c) {
+                const auto& [low, high] = parts_[p].searches[c];
+                for (PartMeasure* part : {&found[0], found.size() > 1 ? &found[p + 1] : nullptr}) {
+                    if (part == nullptr) continue;
+                    FieldMeasure& field = part->fields[c];
+                    field.extreme_error =
+                        std::max({field.extreme_error, low.open + field.min.value, high.open - field.max.value});
+                }
+            }
         }
-        if (best == 27 || best == 13) one.best.step *= kShrink;  // 13: where it is
-        if (best == 27) return;
-        one.best.place = queries[first + best];
-        one.position = samples.positions[first + best];
     }
 
     static double value_of(const LimitSamples& samples, std::size_t query, std::size_t channel) {
@@ -350,12 +666,64 @@ private:
         return 0;
     }
 
-    const HexMesh& mesh_;
+    /// The volumes of a cell by channel and interval: channel, interval, volume, one after the other.
+    void note_bins(const DenseCell& grid, const PartMeasure& whole, std::vector<double>& note) {
+        GridMeasure& measure = scratch_.local().measure;
+        std::vector<double>& counts = scratch_.local().counts;
+        const auto bins = static_cast<std::size_t>(options_.bins);
+        note.clear();
+        counts.assign(channels_.size() * bins, 0);
+        measure.each_gauss_point(grid, [&](double weight, std::span<const double> values) {
+            for (std::size_t c = 0; c < values.size(); ++c) {
+                const double low = whole.fields[c].min.value - channels_[c].origin;
+                const double width = whole.fields[c].max.value - whole.fields[c].min.value;
+                const double t = width > 0 ? (values[c] - low) / width * static_cast<double>(bins) : 0;
+                counts[c * bins + static_cast<std::size_t>(std::clamp(t, 0.0, static_cast<double>(bins - 1)))] += weight;
+            }
+        });
+        for (std::size_t i = 0; i < counts.size(); ++i) {
+            if (counts[i] != 0) note.insert(note.end(), {static_cast<double>(i), counts[i]});
+        }
+    }
+
     const MeasureOptions& options_;
-    std::span<const std::uint8_t> owned_;
-    std::shared_ptr<const LimitPieces> pieces_;
-    std::size_t channels_ = 0, parts_ = 1;
+    const detail::LimitExtent& extent_;
+    HexMesh control_;
+    detail::CellRefiner refiner_;
+    std::vector<Channel> channels_;
+    tbb::enumerable_thread_specific<Scratch> scratch_;
+    std::size_t part_count_ = 1;
+    std::vector<Index> cells_, slots_;             // that are measured; the place of each in its block
+    std::vector<std::uint8_t> levels_, coarsest_;  // of the cells; the least at each point
+    std::vector<PartSums> parts_;
+    std::vector<CellNote> notes_;
+    std::vector<Candidate> candidates_;
+    std::size_t kept_ = 0, pieces_ = 0;
 };
+
+void check(const MeasureOptions& options) {
+    const auto refuse = [](const std::string& what, const std::string& allowed) {
+        throw Error(ErrorCode::InvalidInput, what, "measure", allowed);
+    };
+    if (!(options.tolerance > 0 && options.tolerance <= 1))
+        refuse("the tolerance is out of range", "greater than 0, at most 1");
+    if (options.bins < 1 || options.bins > 100000) refuse("the number of bins is out of range", "1 to 100,000");
+}
+
+LimitMeasure measure(const HexMesh& mesh, const MeasureOptions& options) {
+    if (!options.groups.empty() && options.groups.size() != mesh.cells.size()) {
+        throw Error(ErrorCode::InvalidInput, "there are " + std::to_string(options.groups.size()) + " groups of cells",
+                    "measure", "one for each of the cells");
+    }
+    const detail::LimitExtent extent = detail::limit_extent(mesh);
+    Measurer measurer(mesh, {}, extent, options);
+    std::vector<PartMeasure> found = measurer.measure();
+    measurer.add_histograms(found);
+    for (PartMeasure& part : found) Measurer::scale_histograms(part);
+    LimitMeasure result{std::move(found.front()), {}, measurer.pieces()};
+    result.parts.assign(std::make_move_iterator(found.begin() + 1), std::make_move_iterator(found.end()));
+    return result;
+}
 
 LimitExtreme in_whole(LimitExtreme extreme, const MeshPiece& piece) {
     const std::uint64_t number = extreme.cell == kNone ? kNone : piece.cell_numbers[extreme.cell];
@@ -364,23 +732,24 @@ LimitExtreme in_whole(LimitExtreme extreme, const MeshPiece& piece) {
 }
 
 /// Adds the measure of a piece to those before it. first: there are none
-void add(const LimitMeasure& measured, const MeshPiece& piece, bool first, LimitMeasure& all) {
-    all.pieces += measured.pieces;
-    all.whole.cells += measured.whole.cells;
-    all.whole.volume += measured.whole.volume;
-    all.whole.fields.resize(measured.whole.fields.size());
-    for (std::size_t f = 0; f < measured.whole.fields.size(); ++f) {
-        const FieldMeasure& from = measured.whole.fields[f];
-        FieldMeasure& to = all.whole.fields[f];
+void add(const PartMeasure& measured, const MeshPiece& piece, bool first, PartMeasure& all) {
+    all.cells += measured.cells;
+    all.volume += measured.volume;
+    all.error += measured.error * std::abs(measured.volume);  // divided by the volume of all when that is known
+    all.fields.resize(measured.fields.size());
+    for (std::size_t f = 0; f < measured.fields.size(); ++f) {
+        const FieldMeasure& from = measured.fields[f];
+        FieldMeasure& to = all.fields[f];
         to.name = from.name;
         to.integral += from.integral;
+        to.extreme_error = std::max(to.extreme_error, from.extreme_error);
         if (first || from.min.value < to.min.value) to.min = in_whole(from.min, piece);
         if (first || from.max.value > to.max.value) to.max = in_whole(from.max, piece);
     }
 }
 
 /// Adds the volumes of a piece to the histograms of the whole.
-void add_to_histograms(const Measurer& measurer, PartMeasure& whole) {
+void add_to_histograms(Measurer& measurer, PartMeasure& whole) {
     std::vector<PartMeasure> piece(1, whole);
     measurer.add_histograms(piece);
     for (std::size_t f = 0; f < whole.fields.size(); ++f) {
@@ -390,30 +759,47 @@ void add_to_histograms(const Measurer& measurer, PartMeasure& whole) {
     }
 }
 
-}  // namespace
+/// The extent of a mesh in pieces, whose fields may not be known.
+detail::LimitExtent extent_of(const MeshSource::Stored& stored, const HexMesh& piece) {
+    detail::LimitExtent extent = detail::limit_extent(piece);
+    extent.box = stored.bounds;
+    if (stored.fields.size() != extent.ranges.size()) return extent;
+    for (std::size_t f = 0; f < stored.fields.size(); ++f) extent.ranges[f] = {stored.fields[f].min, stored.fields[f].max};
+    return extent;
+}
 
-LimitMeasure measure_limit(const MeshSource& source, const MeasureOptions& options) {
-    const HexMesh* const mesh = source.mesh();
-    if (mesh != nullptr) validate(*mesh);
-    const Vec3 size = source.bounds().size();
-    const double longest_side = std::max({size.x, size.y, size.z});
-    if (mesh != nullptr) return Measurer(*mesh, {}, longest_side, options).measure(true);
+LimitMeasure measure_pieces(const MeshSource& source, const MeasureOptions& options) {
     source.check_halo(detail::kHaloOfLimit, "values of the limit");
     if (!options.groups.empty()) throw Error(ErrorCode::InvalidInput, "bricks have no groups of cells", "measure");
     MeasureOptions quiet = options;
     quiet.progress = nullptr;
     LimitMeasure all;
-    for_each_piece(source.stored(), "measure", options.progress, [&](std::size_t number, const MeshPiece& piece) {
-        add(Measurer(piece.mesh, piece.owned_cells, longest_side, quiet).measure(false), piece, number == 0, all);
+    const auto each_piece = [&](const char* stage, const auto& visit) {
+        for_each_piece(source.stored(), stage, options.progress, [&](std::size_t number, const MeshPiece& piece) {
+            const detail::LimitExtent extent = extent_of(source.stored(), piece.mesh);
+            Measurer measurer(piece.mesh, piece.owned_cells, extent, quiet);
+            visit(number, piece, measurer);
+        });
+    };
+    each_piece("measure", [&](std::size_t number, const MeshPiece& piece, Measurer& measurer) {
+        add(measurer.measure().front(), piece, number == 0, all.whole);
+        all.pieces += measurer.pieces();
     });
+    if (all.whole.volume != 0) all.whole.error /= std::abs(all.whole.volume);
     for (FieldMeasure& field : all.whole.fields) {
         field.mean = all.whole.volume != 0 ? field.integral / all.whole.volume : 0;
         field.histogram.assign(static_cast<std::size_t>(options.bins), 0);
     }
-    for_each_piece(source.stored(), "histogram", options.progress, [&](std::size_t, const MeshPiece& piece) {
-        add_to_histograms(Measurer(piece.mesh, piece.owned_cells, longest_side, quiet), all.whole);
-    });
+    each_piece("histogram", [&](std::size_t, const MeshPiece&, Measurer& measurer) { add_to_histograms(measurer, all.whole); });
+    Measurer::scale_histograms(all.whole);
     return all;
+}
+
+}  // namespace
+
+LimitMeasure measure_limit(const MeshSource& source, const MeasureOptions& options) {
+    check(options);
+    return source.mesh() != nullptr ? measure(*source.mesh(), options) : measure_pieces(source, options);
 }
 
 }  // namespace subvol

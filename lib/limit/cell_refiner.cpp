@@ -354,6 +354,10 @@ void CellRefiner::for_each(std::span<const Index> cells, int levels, Progress* p
     report_progress(progress, "dense cells", 1);
 }
 
+const CellLinks& CellRefiner::links() const {
+    return state_->top.links;
+}
+
 void CellRefiner::descend(int most_levels, Progress* progress, const Descent& visitor) const {
     report_progress(progress, "limit", 0);
     state_->descend(most_levels, progress, visitor);

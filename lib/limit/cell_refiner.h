@@ -6,6 +6,7 @@
 #include <memory>
 #include <span>
 
+#include "cell_links.h"
 #include "subvol/dense_cells.h"
 
 namespace subvol::detail {
@@ -43,6 +44,9 @@ public:
     /// the list of cells, and so do the last bits of the results; not on the number of threads.
     void for_each(std::span<const Index> cells, int levels, Progress* progress,
                   const std::function<void(const DenseCell&)>& visit) const;
+
+    /// What lies across the sides of the cells.
+    [[nodiscard]] const CellLinks& links() const;
 
     /// Refines all cells to level 1, and further as far as the visitor asks for it, up to level most_levels.
     void descend(int most_levels, Progress* progress, const Descent& visitor) const;

@@ -66,6 +66,18 @@ class Probe(Refusing):
         self.assertAlmostEqual(sum(field["histogram"]), whole["volume"], delta=1e-6)
         self.assertEqual(found["parts"], [])
 
+    def test_stats_of_a_named_field_are_its_alone(self):
+        self.run_ok("model", "twist", "--resolution", 3, "-o", "a.vtu")
+        every, alone, places = (self.run_ok("probe", "a.vtu", "--stats", *more, "--json").json()["stats"]["whole"] for more in
+                                ([], ["--density", "x"], ["--density", "x", "--at", "0,0,0"]))
+        names = [[field["name"] for field in found["fields"]] for found in (every, alone, places)]
+        self.assertEqual(names[1], ["density"])
+        self.assertEqual(names[2][0], "density")
+        self.assertEqual(len(names[2]), len(names[0]) + ("density" not in names[0]))
+        for found in (every, alone):
+            self.assertLessEqual(found["error"], 1e-4)
+            self.assertTrue(all(field["extreme_error"] >= 0 for field in found["fields"]))
+
     def test_what_makes_no_sense_is_refused(self):
         (self.folder / "bad.csv").write_text("0,0,0\n1,two,3\n")
         (self.folder / "empty.csv").write_text("# nothing\n")

@@ -134,6 +134,56 @@ TEST(Measure, EachOfManyFieldsHasItsOwnExtremes) {
     EXPECT_NEAR(found.whole.fields[kVector + 2].max.value, 7, 1e-5);
 }
 
+// The volume is what is inside the hull, which is flat: whatever the cells inside are, and to whichever levels they are
+// refined.
+TEST(Measure, CellsOfDifferentLevelsHaveNoGapsBetweenThem) {
+    HexMesh mesh = test::make_box(5, 5, 5);
+    for (Vec3& p : mesh.points) {
+        const Vec3 t = p / 5.0;
+        const double inside = t.x * (1 - t.x) * t.y * (1 - t.y) * t.z * (1 - t.z);
+        p += inside * Vec3(9 * std::sin(5 * t.y), -7 * t.x, 8 * std::cos(7 * t.x));
+    }
+    // A spike, around which alone cells are refined.
+    test::add_field(mesh, "f", [](const Vec3& p) { return 1 / (0.05 + glm::dot(p - Vec3(1.5), p - Vec3(1.5))); });
+    const LimitMeasure found = measure_limit(mesh, {.tolerance = 1e-6});
+    EXPECT_GT(found.pieces, mesh.cells.size());
+    EXPECT_NEAR(found.whole.volume, 125, 125e-12);
+}
+
+// The estimate holds, and so does what it promises; the finer run shows by how much.
+TEST(Measure, ErrorsAreThoseThatAreSaid) {
+    HexMesh mesh = test::irregular();
+    test::add_field(mesh, "f", [](const Vec3& p) { return std::sin(3 * p.x) * std::cos(2 * p.y) + p.z; });
+    const PartMeasure coarse = measure_limit(mesh, {.tolerance = 1e-2}).whole,
+                      fine = measure_limit(mesh, {.tolerance = 1e-6}).whole;
+    const FieldMeasure &a = coarse.fields[0], &b = fine.fields[0];
+    const double range = b.max.value - b.min.value;
+    EXPECT_GT(coarse.error, 0);
+    EXPECT_LE(fine.error, coarse.error);
+    EXPECT_LE(std::abs(coarse.volume - fine.volume), (coarse.error + fine.error) * fine.volume);
+    EXPECT_LE(std::abs(a.mean - b.mean), (coarse.error + fine.error) * range);
+    EXPECT_LE(std::abs(a.min.value - b.min.value), a.extreme_error + b.extreme_error + 1e-6 * range);
+    EXPECT_LE(std::abs(a.max.value - b.max.value), a.extreme_error + b.extreme_error + 1e-6 * range);
+}
+
+// A smooth field of a fine mesh needs no more than one piece a cell, but for a few.
+TEST(Measure, RefinesWhereTheEstimateAsksForIt) {
+    const HexMesh mesh = make_model("twist", 24);
+    const std::size_t cells = mesh.cells.size();
+    EXPECT_LT(measure_limit(mesh).pieces, 2 * cells);
+    EXPECT_GT(measure_limit(mesh, {.tolerance = 1e-7}).pieces, 2 * cells);
+}
+
+TEST(Measure, ASmallRangeFarFromZeroKeepsItsDigits) {
+    HexMesh mesh = test::make_box(4, 4, 4);
+    test::add_field(mesh, "pressure", [](const Vec3& p) { return 101325 + 0.01 * p.x; });
+    const FieldMeasure field = measure_limit(mesh).whole.fields[0];
+    constexpr double kRange = 0.04;
+    EXPECT_NEAR(field.min.value, 101325, 1e-6 * kRange);
+    EXPECT_NEAR(field.max.value, 101325 + kRange, 1e-6 * kRange);
+    EXPECT_NEAR(field.mean, 101325 + kRange / 2, 1e-6 * kRange);
+}
+
 TEST(Measure, RefusesOptionsOutOfRange) {
     const HexMesh mesh = test::make_box(1, 1, 1);
     test::expect_error(ErrorCode::InvalidInput, "tolerance", [&] { (void)measure_limit(mesh, {.tolerance = 0}); });

@@ -11,7 +11,7 @@
 
 namespace subvol {
 
-/// tolerance: of the pieces that the limit is cut into, as a part of the longest side of the box and of each field's range
+/// tolerance: of the volume as a part of it, of means and extremes as parts of each field's range
 /// bins:      of the histograms, 1 to 100,000
 /// groups:    the number of the part to which each cell belongs, e.g. its block; empty: all cells are of part 0
 /// names:     of the parts
@@ -35,25 +35,29 @@ struct LimitExtreme {
 /// One channel of an attribute over a volume.
 ///
 /// integral:  over the volume (value × world³); mean: divided by the volume
+/// extreme_error: how far beyond min and max the limit may go, an estimate
 /// histogram: the volume (world³) where the value is in each of equal intervals from the limit's minimum to its maximum
 struct FieldMeasure {
     std::string name;
     double integral = 0;
     double mean = 0;
     LimitExtreme min, max;
+    double extreme_error = 0;
     std::vector<double> histogram;
 };
 
 /// cells: control cells; fields: one for each channel, with ".k" after the name where an attribute has several
+/// error: an estimate of how far off the volume is, as a part of it, and each mean, as a part of its attribute's range
 struct PartMeasure {
     std::string name;
     std::size_t cells = 0;
     double volume = 0;
+    double error = 0;
     std::vector<FieldMeasure> fields;
 };
 
 /// parts:  of the groups, in their order; empty without groups
-/// pieces: that the limit was cut into
+/// pieces: that were integrated
 struct LimitMeasure {
     PartMeasure whole;
     std::vector<PartMeasure> parts;
@@ -62,17 +66,20 @@ struct LimitMeasure {
 
 /// Integrals, means, extremes and histograms of the limit.
 ///
-/// The limit is cut into triquadratic pieces within the tolerance, and these are integrated by 27 Gauss points each (exact for
-/// volumes). The extremes are then searched for on the limit itself, to its own tolerance, from the largest and the smallest
-/// values at the nodes and Gauss points of the pieces.
+/// Every cell is refined once and integrated as a triquadratic piece, by 27 Gauss points (exact for volumes). Each cell has an
+/// estimate of what is left; those in which most is left are refined further, until the rest is within the tolerance. So are
+/// cells whose nodes lie so near the best value that the limit may go beyond it. Both end at level 6, or when they have taken
+/// several times as long as the first level: `error` and `extreme_error` say how far the figures may be off.
 ///
-/// A mesh that is stored in pieces is measured piece by piece: each is read and cut twice, the second time for the histograms,
-/// whose bins lie between the extremes of the whole. Sums are those of the pieces in their order. The cells of extremes have
-/// their numbers in the whole mesh; kNone if an Index cannot hold them.
+/// A mesh that is stored in pieces is measured piece by piece: each is read and refined twice, the second time for the
+/// histograms, whose bins lie between the extremes of the whole. Sums are those of the pieces in their order. The cells of
+/// extremes have their numbers in the whole mesh; kNone if an Index cannot hold them.
 ///
 /// throws: Error(InvalidInput) as `evaluate_limit`, if an option is out of range, if there are groups of a mesh in pieces, or
-///         if these have fewer than three layers of halo; Error(MissingCapability) if the limit's pieces take more than 4 GB
-/// cost:   parallel; the same bits for any number of threads. Memory: that of one piece
+///         if these have fewer than three layers of halo
+/// cost:   parallel; the same bits for any number of threads. Memory: a copy of the mesh, what refines it, and a block of
+/// cells; of a
+///         mesh in pieces for one of them
 [[nodiscard]] LimitMeasure measure_limit(const MeshSource& source, const MeasureOptions& options = {});
 
 }  // namespace subvol
