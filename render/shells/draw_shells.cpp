@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
+#include <span>
 #include <string>
 #include <utility>
 
@@ -15,19 +15,122 @@
 #include "clip_intervals.h"
 #include "clip_triangle.h"
 #include "subvol/detail/bucket_sort.h"
+#include "subvol/detail/parallel_each.h"
+#include "subvol/detail/triangle_raster.h"
 #include "subvol/error.h"
 #include "subvol/raster.h"
 
 namespace subvol {
 
+// Triangles into pixels. A triangle before the eye is a convex polygon of the picture, of 3 corners, or 4 where it is cut off
+// before the eye. In a row it covers what lies between the polygon's outermost edges; the depth z follows from its plane:
+//
+//      n·x = n·a        x = z (s, 1), s the ray's slopes:   z = n·a / n·(s, 1)
+//
+// Bands of rows are filled in parallel, each from the triangles that reach it, in their order.
+namespace detail {
+
+namespace {
+
+constexpr int kRows = 16;  // of the picture, which one task fills
+
+struct Outline {
+    std::array<Vec2, 4> corners{};
+    std::size_t count = 0;
+    int top = 0, bottom = -1;
+};
+
+Outline outline_of(const std::array<Vec3, 3>& triangle, const View& view) {
+    const auto [a, b, c] = triangle;
+    const double far = std::max({std::abs(a.z), std::abs(b.z), std::abs(c.z)}), near = 1e-6 * far;
+    Outline outline;
+    const auto add = [&](const Vec3& corner) { outline.corners[outline.count++] = view.to_pixels(corner); };
+    if (view.perspective() && std::min({a.z, b.z, c.z}) < near) {
+        std::vector<Vec3> polygon{a, b, c}, scratch;
+        clip_polygon(polygon, {Vec3(0, 0, 1), -near}, scratch);
+        if (polygon.size() < 3) return {};
+        for (const Vec3& corner : polygon) add(corner);
+    } else {
+        for (const Vec3& corner : triangle) add(corner);
+    }
+    const auto corners = std::span(outline.corners).first(outline.count);
+    const auto [top, bottom] = std::ranges::minmax(corners, {}, &Vec2::y);
+    outline.top = static_cast<int>(std::ceil(std::clamp(top.y - 0.5, -1.0, 1e6)));
+    outline.bottom = static_cast<int>(std::floor(std::clamp(bottom.y - 0.5, -1.0, 1e6)));
+    return outline;
+}
+
+/// The columns of a row whose centres lie within the polygon; the second is before the first if there are none.
+std::array<int, 2> columns_of(const Outline& outline, int row, int width) {
+    double left = TriangleRaster::kFar, right = -left;
+    for (std::size_t k = 0; k < outline.count; ++k) {
+        const Vec2 &p = outline.corners[k], &q = outline.corners[(k + 1) % outline.count];
+        const double t = (row + 0.5 - p.y) / (q.y - p.y);
+        if (!(t >= 0 && t <= 1)) continue;
+        const double x = p.x + t * (q.x - p.x);
+        left = std::min(left, x);
+        right = std::max(right, x);
+    }
+    if (!(left <= right)) return {0, -1};
+    const int begin = static_cast<int>(std::ceil(std::clamp(left - 0.5, -1.0, 1e6)));
+    const int end = static_cast<int>(std::floor(std::clamp(right - 0.5, -1.0, 1e6)));
+    return {std::max(0, begin), std::min(width - 1, end)};
+}
+
+}  // namespace
+
+TriangleRaster::TriangleRaster(const Surface& surface, const View& view, const Clip& clip)
+    : eye(surface.points.size()), depth(view.width(), view.height(), kFar), triangle(view.width(), view.height(), kNothing) {
+    const std::size_t triangles = surface.triangles.size(), bands = (depth.height + kRows - 1) / kRows;
+    parallel_each(eye.size(), [&](std::size_t p) { eye[p] = view.to_eye(surface.points[p]); });
+    const auto corners_of = [&](std::size_t t) {
+        const auto& [a, b, c] = surface.triangles[t];
+        return std::array{eye[a], eye[b], eye[c]};
+    };
+    std::vector<Outline> outlines(triangles);
+    parallel_each(triangles, [&](std::size_t t) { outlines[t] = outline_of(corners_of(t), view); });
+    std::vector<std::vector<std::uint32_t>> of_band(bands);
+    for (std::uint32_t t = 0; t < triangles; ++t) {
+        const int first = std::max(0, outlines[t].top), last = std::min(view.height() - 1, outlines[t].bottom);
+        for (int band = first / kRows; first <= last && band <= last / kRows; ++band) {
+            of_band[static_cast<std::size_t>(band)].push_back(t);
+        }
+    }
+    const bool cuts = !clip.planes.empty() || clip.box;
+    const auto fill = [&](std::uint32_t t, int first, int last) {
+        const auto [a, b, c] = corners_of(t);
+        const Vec3 flat = glm::cross(b - a, c - a);
+        const double offset = glm::dot(flat, a);
+        for (int y = std::max({0, first, outlines[t].top}); y <= std::min(last, outlines[t].bottom); ++y) {
+            const auto [begin, end] = columns_of(outlines[t], y, view.width());
+            for (int x = begin; x <= end; ++x) {
+                const Vec2 slopes = view.slopes(x + 0.5, y + 0.5);
+                const double z = view.perspective() ? offset / glm::dot(flat, Vec3(slopes, 1))
+                                                    : (offset - glm::dot(flat, Vec3(slopes, 0))) / flat.z;
+                if (!(z < double{depth.at(x, y)}) || z <= 0) continue;
+                if (cuts) {
+                    const Ray ray = view.ray(x + 0.5, y + 0.5);
+                    if (clip.removes(ray.origin + z * ray.direction)) continue;
+                }
+                depth.at(x, y) = static_cast<float>(z);
+                triangle.at(x, y) = t;
+            }
+        }
+    };
+    tbb::parallel_for(std::size_t{0}, bands, [&](std::size_t band) {
+        const int first = static_cast<int>(band) * kRows, last = std::min(view.height(), first + kRows) - 1;
+        for (const std::uint32_t t : of_band[band]) fill(t, first, last);
+    });
+}
+
+}  // namespace detail
+
 using namespace detail;
 
 namespace {
 
-constexpr float kFar = std::numeric_limits<float>::infinity();
-constexpr std::uint32_t kNothing = 0xffffffff;
+constexpr float kFar = TriangleRaster::kFar;
 constexpr double kSmoothCosine = 0.766;  // of 40 degrees, as of boundaries
-constexpr int kRows = 16;                // of the picture, which one task fills
 
 using Corners = std::array<Vec3, 3>;
 
@@ -63,92 +166,6 @@ std::vector<Corners> two_sided_normals(const Surface& surface) {
     return normals;
 }
 
-/// A triangle before the eye, as a polygon of the picture.
-struct Drawn {
-    std::vector<Vec2> outline;
-    int top = 0, bottom = -1;
-};
-
-/// The first triangle that each ray meets.
-class ShellRaster {
-public:
-    ShellRaster(const Surface& surface, const View& fine, const Clip& clip)
-        : depth(fine.width(), fine.height(), kFar), triangle(fine.width(), fine.height(), kNothing), fine_(fine), clip_(clip) {
-        for (const Vec3& p : surface.points) eye.push_back(fine.to_eye(p));
-        std::vector<Drawn> drawn(surface.triangles.size());
-        tbb::parallel_for(std::size_t{0}, drawn.size(), [&](std::size_t i) { drawn[i] = outline_of(surface.triangles[i]); });
-        tbb::parallel_for(0, (fine.height() + kRows - 1) / kRows, [&](int band) {
-            const int first = band * kRows, last = std::min(fine.height(), first + kRows) - 1;
-            for (std::size_t i = 0; i < drawn.size(); ++i) {
-                if (drawn[i].top <= last && drawn[i].bottom >= first) fill(surface, drawn[i], i, first, last);
-            }
-        });
-    }
-
-    std::vector<Vec3> eye;  // the points of the surface
-    Raster<float> depth;
-    Raster<std::uint32_t> triangle;
-
-private:
-    [[nodiscard]] Drawn outline_of(const std::array<Index, 3>& corners) const {
-        std::vector<Vec3> polygon, scratch;
-        double far = 0;
-        for (const Index p : corners) {
-            polygon.push_back(eye[p]);
-            far = std::max(far, std::abs(eye[p].z));
-        }
-        if (fine_.perspective()) clip_polygon(polygon, {Vec3(0, 0, 1), -1e-6 * far}, scratch);
-        Drawn drawn;
-        if (polygon.size() < 3) return drawn;
-        double top = kFar, bottom = -kFar;
-        for (const Vec3& corner : polygon) {
-            drawn.outline.push_back(fine_.to_pixels(corner));
-            top = std::min(top, drawn.outline.back().y);
-            bottom = std::max(bottom, drawn.outline.back().y);
-        }
-        drawn.top = static_cast<int>(std::ceil(std::clamp(top - 0.5, -1.0, 1e6)));
-        drawn.bottom = static_cast<int>(std::floor(std::clamp(bottom - 0.5, -1.0, 1e6)));
-        return drawn;
-    }
-
-    void fill(const Surface& surface, const Drawn& drawn, std::size_t number, int first, int last) {
-        const auto& [a, b, c] = surface.triangles[number];
-        const Vec3 flat = glm::cross(eye[b] - eye[a], eye[c] - eye[a]);
-        const double offset = glm::dot(flat, eye[a]);
-        const std::size_t corners = drawn.outline.size();
-        for (int y = std::max({0, first, drawn.top}); y <= std::min(last, drawn.bottom); ++y) {
-            // The row's part within the polygon.
-            double left = kFar, right = -kFar;
-            for (std::size_t k = 0; k < corners; ++k) {
-                const Vec2 &p = drawn.outline[k], &q = drawn.outline[(k + 1) % corners];
-                const double t = (y + 0.5 - p.y) / (q.y - p.y);
-                if (!(t >= 0 && t <= 1)) continue;
-                const double x = p.x + t * (q.x - p.x);
-                left = std::min(left, x);
-                right = std::max(right, x);
-            }
-            if (!(left <= right)) continue;
-            const int begin = static_cast<int>(std::ceil(std::clamp(left - 0.5, -1.0, 1e6)));
-            const int end = static_cast<int>(std::floor(std::clamp(right - 0.5, -1.0, 1e6)));
-            for (int x = std::max(0, begin); x <= std::min(fine_.width() - 1, end); ++x) {
-                const Vec2 slopes = fine_.slopes(x + 0.5, y + 0.5);
-                const double z = fine_.perspective() ? offset / glm::dot(flat, Vec3(slopes, 1))
-                                                     : (offset - glm::dot(flat, Vec3(slopes, 0))) / flat.z;
-                if (!(z < double{depth.at(x, y)}) || z <= 0) continue;
-                if (!clip_.planes.empty() || clip_.box) {
-                    const Ray ray = fine_.ray(x + 0.5, y + 0.5);
-                    if (clip_.removes(ray.origin + z * ray.direction)) continue;
-                }
-                depth.at(x, y) = static_cast<float>(z);
-                triangle.at(x, y) = static_cast<std::uint32_t>(number);
-            }
-        }
-    }
-
-    const View& fine_;
-    const Clip& clip_;
-};
-
 /// The depths at which rays enter the volume first; infinite where they miss it.
 Raster<float> entries(const Surface& boundary, const View& fine, const Clip& clip) {
     Raster<float> depths(fine.width(), fine.height(), kFar);
@@ -172,7 +189,7 @@ Raster<float> entries(const Surface& boundary, const View& fine, const Clip& cli
 class ShellLight {
 public:
     /// Keeps references to all of them.
-    ShellLight(const ColoredSurface& shells, const ShellRaster& hits, const View& fine, const Optics& optics,
+    ShellLight(const ColoredSurface& shells, const TriangleRaster& hits, const View& fine, const Optics& optics,
                const Shading& shading)
         : shells_(shells),
           hits_(hits),
@@ -210,7 +227,7 @@ public:
 
 private:
     const ColoredSurface& shells_;
-    const ShellRaster& hits_;
+    const TriangleRaster& hits_;
     const View& fine_;
     const Optics& optics_;
     const Shading& shading_;
@@ -261,7 +278,7 @@ void draw_shells(Image& image, std::span<float> depth, const ColoredSurface& she
     if (shells.surface.triangles.empty()) return;
     const int samples = options.samples;
     const View fine(view.camera(), samples * view.width(), samples * view.height());
-    const ShellRaster hits(shells.surface, fine, options.clip);
+    const TriangleRaster hits(shells.surface, fine, options.clip);
     const Raster<float> enters = entries(boundary, fine, options.clip);
     const ShellLight light(shells, hits, fine, optics, options.shading);
     tbb::parallel_for(0, view.height(), [&](int y) {
@@ -271,7 +288,7 @@ void draw_shells(Image& image, std::span<float> depth, const ColoredSurface& she
                 const int row = y * samples + k / samples, column = x * samples + k % samples;
                 const bool volume = enters.at(column, row) < kFar;
                 rays.of_volume += volume;
-                if (hits.triangle.at(column, row) == kNothing) continue;
+                if (hits.triangle.at(column, row) == TriangleRaster::kNothing) continue;
                 const bool first = hits.depth.at(column, row) <= enters.at(column, row);
                 (first ? rays.before : rays.behind) += light.color_at(column, row);
                 ++(!first ? rays.under_volume : volume ? rays.over_volume : rays.alone);

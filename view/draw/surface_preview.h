@@ -18,8 +18,7 @@ struct Preview {
 };
 
 /// A quick picture of an opaque body: its boundary's triangles, each in one colour and flatly lit, one place for each pixel.
-/// For while something moves; triangles that reach behind the eye are left out, and
-/// through a cut one looks into the hollow body.
+/// For while something moves; through a cut one looks into the hollow body.
 [[nodiscard]] Preview surface_preview(const BoundaryValues& boundary, const View& view, const Optics& optics, const Clip& clip);
 
 }  // namespace subvol::detail

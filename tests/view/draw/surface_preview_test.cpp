@@ -29,5 +29,17 @@ TEST(SurfacePreview, ShowsNothingBehindTheEye) {
     }
 }
 
+// Of triangles that reach behind the eye the part before it is seen: here the walls, nearest at the edge of the picture.
+TEST(SurfacePreview, ShowsWhatReachesBehindTheEye) {
+    BoundaryValues boundary;
+    boundary.surface = boundary_surface(test::make_box(1, 1, 1));
+    boundary.values.assign(1, std::vector<double>(boundary.surface.points.size(), 0.5));
+    const Optics optics({.color = {{0, {1, 1, 1}}}, .opacity = {{0, 1}}}, 1e-6);
+    const View view({.eye = {0.5, 0.5, 0.75}, .target = {0.5, 0.5, -9}, .up = {0, 1, 0}, .fovy_deg = 90}, 20, 20);
+    const detail::Preview preview = detail::surface_preview(boundary, view, optics, {});
+    EXPECT_NEAR(std::ranges::min(preview.depth), 0.5 / 0.95, 1e-6);  // the centre of the last pixel, whose slope is 0.95
+    EXPECT_LT(std::ranges::max(preview.depth), 0.75 + 1e-6);         // no gap
+}
+
 }  // namespace surface_preview_test
 }  // namespace subvol
