@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // Sort, scan and ranges on a GL device. Arguments: millions of keys, bits, device.
-#include "gl_sort.h"
 
 #include <cstdio>
 #include <cstdlib>
@@ -8,7 +7,7 @@
 #include <vector>
 
 #include "gl_context.h"
-#include "gl_ranges.h"
+#include "gl_scan.h"
 #include "measure.h"
 
 int main(int argc, char** argv) {

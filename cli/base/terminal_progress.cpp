@@ -34,7 +34,7 @@ std::string progress_line(const std::string& stage, double fraction, double left
     // Not known: a mark that walks, two steps a second.
     std::string bar(kBarWidth, '.');
     const auto at = static_cast<std::size_t>(2 * spent) % (kBarWidth - 2);
-    std::fill_n(bar.begin() + static_cast<std::ptrdiff_t>(at), 3, '#');
+    std::fill_n(bar.data() + at, 3, '#');
     return line + bar + "]" + (spent >= 1 ? " " + seconds_text(spent) : "");
 }
 

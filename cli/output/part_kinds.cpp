@@ -6,7 +6,6 @@
 #include <memory>
 
 #include "subvol/detail/byte_lists.h"
-#include "subvol/detail/kernel_bytes.h"
 #include "subvol/detail/points_range.h"
 #include "subvol/detail/surface_io.h"
 #include "subvol/detail/surface_share.h"

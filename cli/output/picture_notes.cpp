@@ -20,11 +20,9 @@ Picture widened(const Picture& from, int width) {
     const auto columns = static_cast<std::size_t>(from.image.width);
     for (int y = 0; y < from.image.height; ++y) {
         const auto row = static_cast<std::size_t>(y), to_row = row * static_cast<std::size_t>(width);
-        std::copy_n(from.image.rgba.begin() + static_cast<std::ptrdiff_t>(4 * row * columns), 4 * columns,
-                    to.image.rgba.begin() + static_cast<std::ptrdiff_t>(4 * to_row));
+        std::copy_n(from.image.rgba.data() + 4 * row * columns, 4 * columns, to.image.rgba.data() + 4 * to_row);
         if (from.depth.empty()) continue;
-        std::copy_n(from.depth.begin() + static_cast<std::ptrdiff_t>(row * columns), columns,
-                    to.depth.begin() + static_cast<std::ptrdiff_t>(to_row));
+        std::copy_n(from.depth.data() + row * columns, columns, to.depth.data() + to_row);
     }
     return to;
 }

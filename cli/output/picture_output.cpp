@@ -12,6 +12,7 @@
 #include "subvol/detail/stopwatch.h"
 #include "subvol/error.h"
 #include "subvol/image_io.h"
+#include "subvol/raster.h"
 #include "text.h"
 
 namespace subvol::cli {
@@ -109,9 +110,7 @@ Facts PictureOutput::write_sheet(const std::vector<View>& views, const DrawPictu
             for (int x = 0; x < width; ++x) {
                 std::ranges::copy(part.image.pixel(x, y), sheet.image.pixel(left + x, top + y).begin());
                 if (part.depth.empty()) continue;
-                sheet.depth[static_cast<std::size_t>(top + y) * static_cast<std::size_t>(2 * width) +
-                            static_cast<std::size_t>(left + x)] =
-                    part.depth[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)];
+                sheet.depth[pixel_index(2 * width, left + x, top + y)] = part.depth[pixel_index(width, x, y)];
             }
         }
     }

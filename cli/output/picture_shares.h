@@ -2,12 +2,15 @@
 #pragma once
 
 #include <cstddef>
+#include <filesystem>
 #include <optional>
 #include <span>
 
 #include "ranks.h"
 #include "share.h"
+#include "subvol/brick_points.h"
 #include "subvol/picture_maker.h"
+#include "subvol/render_brick_tets.h"
 #include "subvol/render_bricks.h"
 #include "subvol/splat.h"
 #include "subvol/splat_shares.h"
@@ -54,5 +57,10 @@ public:
 private:
     OwnRows rows_;
 };
+
+/// `write_points_of_bricks` by all ranks: each samples a range of the pieces, one after the other, and sends the kernels of
+/// each to rank 0, which writes. Elsewhere nothing is returned.
+BrickPointsReport write_points_ranked(const std::filesystem::path& path, const MeshSource& source, const SampleOptions& options,
+                                      Ranks& ranks);
 
 }  // namespace subvol::cli

@@ -6,9 +6,16 @@
 #include <mutex>
 #include <string>
 
+#include "subvol/study_report.h"
 #include "subvol/study_run.h"
 
 namespace subvol::cli {
+
+/// The machine: processor, cores, memory, system.
+[[nodiscard]] ReportFacts study_host();
+
+/// The versions of this program and of what it was built with.
+[[nodiscard]] ReportFacts study_versions();
 
 /// Runs each case in a separate process, so that its peak memory can be measured and a crash does not end other cases.
 ///

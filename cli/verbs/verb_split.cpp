@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <CLI/CLI.hpp>
 #include <charconv>
+#include <tuple>
 
 #include "choices.h"
 #include "input.h"
@@ -48,7 +49,7 @@ public:
         app()
             .add_option("--by", by_, "blocks (compact, the default), slabs (slices of the longest side), random (for tests)")
             ->type_name("SHAPE")
-            ->check(offered(names_of<BrickShape>()));
+            ->check(offered(subvol::names_of<BrickShape>()));
     }
 
     int run(Report& report) override {
@@ -85,7 +86,7 @@ private:
         }
         if (!is_model(input_)) {
             report["input"] = input_;  // for errors
-            if (common().density) static_cast<void>(evaluate_expression(*common().density, {}));
+            if (common().density) std::ignore = evaluate_expression(*common().density, {});
             const ReadOptions read = read_options(input_, common());
             PiecesOptions pieces{.read = read, .change = {}, .about_change = common().density.value_or("")};
             if (common().density) pieces.change = [&](HexMesh mesh) { return used_mesh(std::move(mesh), common()); };

@@ -1,23 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <tbb/global_control.h>
-
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <iomanip>
 #include <iostream>
 #include <set>
+#include <string>
+#include <vector>
 
 #include "child_process.h"
 #include "input.h"
-#include "kept_studies.h"
 #include "options.h"
 #include "outputs.h"
 #include "quantities.h"
-#include "study_host.h"
+#include "report.h"
 #include "study_input.h"
 #include "study_runner.h"
 #include "subvol/detail/atomic_file.h"
+#include "subvol/detail/json_depth.h"
+#include "subvol/detail/read_file.h"
 #include "subvol/error.h"
 #include "subvol/mesh_io.h"
 #include "subvol/study.h"
@@ -29,6 +32,62 @@
 
 namespace subvol::cli {
 namespace {
+
+/// A study as it was read: its JSON, the file that its paths start from, and the command that runs it.
+struct StudySource {
+    std::string json;
+    std::filesystem::path file;
+    std::string command;
+};
+
+/// A study in a folder, and what has been finished of it.
+struct KeptStudy {
+    StudyResults results;
+    std::string command;
+};
+
+namespace fs = std::filesystem;
+
+constexpr const char* kFile = "study.json";
+
+KeptStudy read_kept(const fs::path& folder) {
+    const std::string file = (folder / kFile).string();
+    const Json json = Json::parse(detail::of_limited_depth(detail::read_regular(file), file));
+    const Study study = parse_study(json.at("study").dump(), json.at("file").get<std::string>());
+    return {finished_results(study, folder), json.at("command").get<std::string>()};
+}
+
+/// Writes FOLDER/study.json, so that reports of later runs in the same folder contain the study, too.
+void keep_study(const StudySource& source, const fs::path& folder) {
+    const Json json{{"command", source.command}, {"file", source.file.string()}, {"study", Json::parse(source.json)}};
+    detail::write_text_file(folder / kFile, json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+}
+
+/// The studies that earlier runs left in a folder, by name, without those of `but`. One that cannot be read any more, because
+/// its meshes are gone, is left out with a warning.
+std::vector<KeptStudy> kept_studies(const fs::path& folder, const std::set<std::string>& but, Report& report) {
+    std::vector<fs::path> folders;
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+        if (but.contains(entry.path().filename().string())) continue;
+        std::error_code ignored;
+        if (fs::is_regular_file(entry.path() / kFile, ignored)) folders.push_back(entry.path());
+    }
+    std::ranges::sort(folders);
+    std::vector<KeptStudy> all;
+    for (const fs::path& one : folders) {
+        std::string why;
+        try {
+            KeptStudy kept = read_kept(one);
+            if (!kept.results.results.empty()) all.push_back(std::move(kept));
+        } catch (const Error& error) {
+            why = error.what();
+        } catch (const nlohmann::json::exception& error) {
+            why = error.what();
+        }
+        if (!why.empty()) report.warn(text("the report leaves out the study in ", one.string(), ": ", why));
+    }
+    return all;
+}
 
 namespace fs = std::filesystem;
 

@@ -39,7 +39,7 @@ std::vector<CellPart> parts_of(const HexMesh& mesh, PlaceKind kind) {
             parts.push_back({c});
             for (std::size_t a = 0; a < 3; ++a) {
                 if (a == k / 4) continue;
-                const bool high = kCornerParameters[static_cast<std::size_t>(kCellEdges[k][0])][a] == 1;
+                const bool high = kCornerParameters[kCellEdges[k][0]][a] == 1;
                 parts.back().extents[a] = high ? CellPart::NearHigh : CellPart::NearLow;
             }
         }

@@ -5,6 +5,7 @@
 #include <cctype>
 #include <fstream>
 #include <sstream>
+#include <tuple>
 #include <utility>
 
 #include "subvol/camera.h"
@@ -131,7 +132,7 @@ public:
     /// Cases fit their cameras to their meshes; whether the text is a camera can be seen with any box.
     static void check_camera(const std::string& camera, const std::string& path) {
         try {
-            static_cast<void>(parse_camera(camera, {{0, 0, 0}, {1, 1, 1}}));
+            std::ignore = parse_camera(camera, {{0, 0, 0}, {1, 1, 1}});
         } catch (const Error& error) {
             refuse(path, error.what());
         }

@@ -11,4 +11,8 @@ void report_progress(Progress* progress, std::string_view stage, double fraction
     progress->report(stage, fraction);
 }
 
+void report_progress(Progress* progress, std::string_view stage, std::size_t done, std::size_t all) {
+    report_progress(progress, stage, static_cast<double>(done) / static_cast<double>(all));
+}
+
 }  // namespace subvol

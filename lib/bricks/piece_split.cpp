@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "piece_split.h"
+#include "piece_tables.h"
 
 #include <tbb/parallel_sort.h>
 
@@ -335,9 +335,9 @@ private:
         std::size_t place = 0;
         for (std::size_t c = 0; c < parents.size(); ++c) {
             if (different[place] != parents[c]) ++place;
-            const auto first = values.begin() + static_cast<std::ptrdiff_t>(place * components);
+            const auto first = values.data() + place * components;
             for (std::size_t k = 0; k < child_counts[c]; ++k) {
-                of_children.insert(of_children.end(), first, first + static_cast<std::ptrdiff_t>(components));
+                of_children.insert(of_children.end(), first, first + components);
             }
         }
         split_->cell_values->write(split_->cells, records_of(of_children));

@@ -9,7 +9,6 @@
 #include <optional>
 
 #include "assemble.h"
-#include "piece_split.h"
 #include "piece_survey.h"
 #include "subvol/detail/byte_hash.h"
 #include "subvol/error.h"
@@ -143,8 +142,8 @@ private:
             tables_->used.resize(points_);
         }
         std::vector<Index> order;
-        for (std::size_t i = 0; i < ranks_.size(); ++i) {
-            if (is_first[i]) order.push_back(static_cast<Index>(i));
+        for (Index i = 0; i < ranks_.size(); ++i) {
+            if (is_first[i]) order.push_back(i);
         }
         joined_ += ranks_.size() - order.size();
         sort_by_rank(order);
@@ -171,8 +170,8 @@ private:
         std::ranges::sort(sorted);
         if (std::ranges::adjacent_find(sorted) != sorted.end()) return false;
         std::vector<Index> again, numbers;
-        for (std::size_t i = 0; i < ranks_.size(); ++i) {
-            if (!is_first[i]) again.push_back(static_cast<Index>(i));
+        for (Index i = 0; i < ranks_.size(); ++i) {
+            if (!is_first[i]) again.push_back(i);
         }
         sort_by_rank(again);
         for (const Index i : again) numbers.push_back(ranks_[i]);
@@ -195,8 +194,7 @@ private:
             const auto components = static_cast<std::size_t>(like.components);
             const FileArray* array = find_array(piece, like.name, at_cells, like.components);
             for (std::size_t i = 0; i < which.size(); ++i) {
-                std::copy_n(array->values.begin() + static_cast<std::ptrdiff_t>(which[i] * components), components,
-                            records.begin() + static_cast<std::ptrdiff_t>(i * length + column));
+                std::copy_n(array->values.data() + which[i] * components, components, records.data() + (i * length + column));
             }
             column += components;
         }

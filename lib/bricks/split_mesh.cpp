@@ -56,12 +56,12 @@ public:
         for (std::size_t p = 0; p < mesh.points.size(); ++p) first_[p + 1] += first_[p];
         cells_at_.resize(8 * mesh.cells.size());
         std::vector<std::size_t> next(first_.begin(), first_.end() - 1);
-        for (std::size_t c = 0; c < mesh.cells.size(); ++c) {
+        for (Index c = 0; c < mesh.cells.size(); ++c) {
             for (const Index p : mesh.cells[c]) {
-                cells_at_[next[p]++] = static_cast<Index>(c);
+                cells_at_[next[p]++] = c;
                 if (owners_[p] == ~0U) owners_[p] = brick_of_cell[c];
             }
-            of_brick_[brick_of_cell[c]].push_back(static_cast<Index>(c));
+            of_brick_[brick_of_cell[c]].push_back(c);
         }
     }
 
@@ -107,9 +107,9 @@ private:
         std::ranges::sort(points);
         HexMesh& mesh = part.mesh;
         for (const Attribute& field : mesh_.attributes) mesh.attributes.push_back({field.name, field.channels, {}});
-        for (std::size_t i = 0; i < points.size(); ++i) {
+        for (Index i = 0; i < points.size(); ++i) {
             const Index p = points[i];
-            places_[p] = static_cast<Index>(i);
+            places_[p] = i;
             mesh.points.push_back(mesh_.points[p]);
             part.point_numbers.push_back(p);
             part.owned_points.push_back(owners_[p] == brick);
@@ -165,7 +165,7 @@ SplitResult split_mesh(const std::filesystem::path& folder, HexMesh mesh, std::s
     BricksWriter writer(folder, hash_of(mesh, brick_of_cell), options.halo_layers);
     BrickTaker taker(mesh, brick_of_cell, count);
     for (std::size_t k = 0; k < count; ++k) {
-        report_progress(options.progress, "split", static_cast<double>(k) / static_cast<double>(count));
+        report_progress(options.progress, "split", k, count);
         if (!taker.empty(k) && !writer.keeps(k)) writer.write(k, taker.take(k, options.halo_layers));
     }
     report_progress(options.progress, "split", 1);

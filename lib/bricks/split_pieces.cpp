@@ -60,7 +60,7 @@ std::unique_ptr<CellCenters> centers_of(PieceTables& tables, const std::filesyst
     std::vector<Vec3> points;
     std::array<std::vector<double>, 3> coordinates;
     for (std::uint64_t begin = 0; begin < tables.cells; begin += kCellsOfChunk) {
-        report_progress(progress, "measure", static_cast<double>(begin) / static_cast<double>(tables.cells));
+        report_progress(progress, "measure", begin, tables.cells);
         cells.resize(std::min<std::uint64_t>(kCellsOfChunk, tables.cells - begin));
         tables.corners.read(begin, records_of(cells));
         const CornersOfCells corners(cells);
@@ -145,7 +145,7 @@ private:
         }
         // The values at cells were taken in the order of the stored cells, so these are their numbers in the arrays.
         if (tables_.cell_values) {
-            for (std::size_t c = 0; c < stored.size(); ++c) part.hexes.numbers.push_back(static_cast<Index>(c));
+            for (Index c = 0; c < stored.size(); ++c) part.hexes.numbers.push_back(c);
         }
         HexMesh mesh = assemble(std::move(part), list_, names_in_parts(), {.cell_values = CellValues::Mean}).mesh;
         std::erase_if(mesh.attributes,
@@ -168,7 +168,7 @@ private:
             for (FileArray& array : part.arrays) {
                 if (array.at_cells != at_cells) continue;
                 for (std::size_t i = 0; i < some.size(); ++i) {
-                    const auto first = records.begin() + static_cast<std::ptrdiff_t>(i * length + column);
+                    const auto first = records.data() + (i * length + column);
                     array.values.insert(array.values.end(), first, first + array.components);
                 }
                 column += static_cast<std::size_t>(array.components);
@@ -216,7 +216,7 @@ PiecesSplit split_pieces(const std::filesystem::path& folder, const std::filesys
     const std::size_t count = cells.first.size() - 1;
     const BrickMaker maker(*tables, cells, list, pieces, options.halo_layers);
     for (std::size_t b = 0; b < count; ++b) {
-        report_progress(options.progress, "split", static_cast<double>(b) / static_cast<double>(count));
+        report_progress(options.progress, "split", b, count);
         // Random bricks may be empty: they are not written. Bricks of an earlier run that are whole are not made again.
         if (!cells.owned_by(b).empty() && !writer.keeps(b)) writer.write(b, maker.make(b));
     }

@@ -82,7 +82,7 @@ SplitResult split_twist(const std::filesystem::path& folder, int resolution, con
     BricksWriter writer(folder, id.value(), options.halo_layers);
     const auto halo = static_cast<std::uint64_t>(options.halo_layers);
     for (std::size_t k = 0; k < count; ++k) {
-        report_progress(options.progress, "split", static_cast<double>(k) / static_cast<double>(count));
+        report_progress(options.progress, "split", k, count);
         if (writer.keeps(k)) continue;
         const Three place{k % along[0], k / along[0] % along[1], k / along[0] / along[1]};
         CellRange owned, stored;

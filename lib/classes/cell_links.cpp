@@ -134,9 +134,9 @@ std::vector<std::array<Index, N>> sorted_tags(std::vector<std::array<Index, N>> 
 
 template <std::size_t N>
 bool is_tagged(const std::vector<std::array<Index, N>>& tags, const std::array<Index, 8>& cell,
-               const std::array<int, N>& corners) {
+               const std::array<std::size_t, N>& corners) {
     std::array<Index, N> points;
-    for (std::size_t i = 0; i < N; ++i) points[i] = cell[static_cast<std::size_t>(corners[i])];
+    for (std::size_t i = 0; i < N; ++i) points[i] = cell[corners[i]];
     return std::binary_search(tags.begin(), tags.end(), sorted(points));
 }
 

@@ -150,10 +150,10 @@ void NeighborhoodWalk::add_tags(Neighborhood& found) const {
         for (std::size_t k = 0; k < 12 && !links_.creases.empty(); ++k) {
             const auto [a, b] = kCellEdges[k];
             // The walk's edge k is the cell's edge between the corners at which its ends lie.
-            const std::size_t own_a = kCornerOctants[turn.octants[kCornerOctants[static_cast<std::size_t>(a)]]];
-            const std::size_t own_b = kCornerOctants[turn.octants[kCornerOctants[static_cast<std::size_t>(b)]]];
+            const std::size_t own_a = kCornerOctants[turn.octants[kCornerOctants[a]]];
+            const std::size_t own_b = kCornerOctants[turn.octants[kCornerOctants[b]]];
             for (std::size_t e = 0; e < 12; ++e) {
-                const auto c = static_cast<std::size_t>(kCellEdges[e][0]), d = static_cast<std::size_t>(kCellEdges[e][1]);
+                const std::size_t c = kCellEdges[e][0], d = kCellEdges[e][1];
                 const bool same = (c == own_a && d == own_b) || (c == own_b && d == own_a);
                 if (same && (links_.creases[visited_[i].cell] >> e & 1) != 0) edges |= static_cast<std::uint16_t>(1U << k);
             }
@@ -230,14 +230,13 @@ Patch patch_of(const Neighborhood& neighborhood) {
         const auto& cell = patch.mesh.cells[i];
         for (std::size_t k = 0; k < 12; ++k) {
             if ((code[tags + 1 + 2 * i] >> k & 1) == 0) continue;
-            const Index a = cell[static_cast<std::size_t>(kCellEdges[k][0])],
-                        b = cell[static_cast<std::size_t>(kCellEdges[k][1])];
+            const Index a = cell[kCellEdges[k][0]], b = cell[kCellEdges[k][1]];
             patch.mesh.creases.push_back({std::min(a, b), std::max(a, b)});
         }
         for (std::size_t side = 0; side < 6; ++side) {
             if ((code[tags + 2 + 2 * i] >> side & 1) == 0) continue;
             auto& face = patch.mesh.sharp_faces.emplace_back();
-            for (std::size_t k = 0; k < 4; ++k) face[k] = cell[static_cast<std::size_t>(kCellFaces[side][k])];
+            for (std::size_t k = 0; k < 4; ++k) face[k] = cell[kCellFaces[side][k]];
         }
     }
     // Cells share edges, so a crease is met once for each of its cells. A sharp face is met twice; the refinement takes both

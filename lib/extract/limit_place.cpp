@@ -82,10 +82,10 @@ void CellSteps::cross(LimitPlace& place, std::size_t axis, bool side) const {
     const Index other = pair[0] == place.cell ? pair[1] : pair[0];
     const auto& from = mesh_.cells[place.cell];
     const auto& to = mesh_.cells[other];
-    const auto image = [&](std::size_t k) { return parameters_of(corner_of(to, from[static_cast<std::size_t>(corners[k])])); };
-    const auto origin = parameters_of(static_cast<std::size_t>(corners[0]));
-    const Vec3 along = parameters_of(static_cast<std::size_t>(corners[1])) - origin;
-    const Vec3 across = parameters_of(static_cast<std::size_t>(corners[3])) - origin;
+    const auto image = [&](std::size_t k) { return parameters_of(corner_of(to, from[corners[k]])); };
+    const auto origin = parameters_of(corners[0]);
+    const Vec3 along = parameters_of(corners[1]) - origin;
+    const Vec3 across = parameters_of(corners[3]) - origin;
     const Vec3 offset = place.uvw - origin;
     const Vec3 start = image(0), first = image(1) - start, second = image(3) - start;
     const double t = place.uvw[static_cast<int>(axis)];

@@ -49,7 +49,7 @@ PointsError points_error(const RbfVolume& points, const HexMesh& mesh, std::stri
     double squares = 0;
     std::vector<Vec3> places;
     for (std::size_t first = 0; first < points.size(); first += kKernelsAtOnce) {
-        report_progress(options.progress, "error", static_cast<double>(first) / static_cast<double>(points.size()));
+        report_progress(options.progress, "error", first, points.size());
         const std::size_t end = std::min(first + kKernelsAtOnce, points.size());
         places.clear();
         for (std::size_t p = first; p < end; ++p) {

@@ -142,7 +142,7 @@ void LimitProbe::State::run(std::span<const Vec3> places, std::span<const std::s
     std::vector<LimitQuery> queries;
     std::vector<Vec3> positions;
     for (int round = 0; round < kMostProbeRounds && !open.empty(); ++round) {
-        report_progress(progress, "probe", static_cast<double>(done) / static_cast<double>(result.cells.size()));
+        report_progress(progress, "probe", done, result.cells.size());
         queries.clear();
         positions.clear();
         for (const Open& one : open) {
@@ -291,7 +291,7 @@ ProbeResult probe_pieces(const MeshSource::Stored& stored, std::span<const Vec3>
     result.parameters.resize(places.size());
     result.distances.assign(places.size(), 0);
     for (std::size_t b = 0; b < stored.pieces.size(); ++b) {
-        report_progress(progress, "probe", static_cast<double>(b) / static_cast<double>(stored.pieces.size()));
+        report_progress(progress, "probe", b, stored.pieces.size());
         std::vector<std::size_t> numbers;
         std::vector<Vec3> near;
         for (std::size_t p = 0; p < places.size(); ++p) {

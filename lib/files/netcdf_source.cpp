@@ -62,8 +62,8 @@ public:
         std::string bytes(in.bytes(count * size, {"values"}));
         if (std::endian::native == kOrder) return bytes;
         for (std::size_t v = 0; v < bytes.size(); v += size) {
-            const auto value = bytes.begin() + static_cast<std::ptrdiff_t>(v);
-            std::reverse(value, value + static_cast<std::ptrdiff_t>(size));
+            const auto value = bytes.data() + v;
+            std::reverse(value, value + size);
         }
         return bytes;
     }

@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <memory>
 #include <system_error>
+#include <tuple>
 
 #include "subvol/detail/number_text.h"
 #include "subvol/detail/printable.h"
@@ -59,7 +60,7 @@ std::string read_text(const std::filesystem::path& path) {
     if (has_size(about)) {
         const auto size = static_cast<std::size_t>(about.st_size);
         expect_memory(path, size);
-        static_cast<void>(read_to(size));
+        std::ignore = read_to(size);
         return text;
     }
     constexpr std::size_t kChunk = 1 << 20;

@@ -62,8 +62,8 @@ struct HullCells {
 /// Calls visit(face) for the faces of the whole mesh's hull.
 template <class Visit>
 void each_hull_face(const Topology& topology, std::span<const std::uint8_t> on_hull, const Visit& visit) {
-    for (std::size_t f = 0; f < topology.faces.size(); ++f) {
-        const auto face = static_cast<Index>(f);
+    for (Index f = 0; f < topology.faces.size(); ++f) {
+        const auto face = f;
         if (topology.face_on_hull(face) && on_hull[topology.faces[f][0]]) visit(face);
     }
 }

@@ -119,7 +119,7 @@ struct CellRefiner::State {
         RefinedLevel level(patch.mesh);
         const Cut cut_patch = [&](std::span<const Index> wanted, int layers) { return sub_patch(patch, wanted, layers); };
         std::vector<Index> children(8 * cells.size());
-        for (std::size_t i = 0; i < children.size(); ++i) children[i] = static_cast<Index>(i);
+        for (Index i = 0; i < children.size(); ++i) children[i] = i;
         const Classified classified = classes_of(level, children, levels - 1, 0);
 
         const std::size_t half = std::size_t{1} << (levels - 1), nodes = (2 * half + 1) * (2 * half + 1) * (2 * half + 1);
@@ -190,7 +190,7 @@ struct CellRefiner::State {
             for (Index k = 0; k < 8; ++k) children.push_back(8 * cell + k);
         }
         if (open.size() < cells.size()) patch = sub_patch(patch, children, 2);
-        for (std::size_t i = 0; i < children.size(); ++i) children[i] = static_cast<Index>(i);
+        for (Index i = 0; i < children.size(); ++i) children[i] = i;
         RefinedLevel level(patch.mesh);
         const Cut cut_patch = [&](std::span<const Index> wanted, int layers) { return sub_patch(patch, wanted, layers); };
         const auto parent = [&](Index child) { return cells[open[child / 8]]; };
@@ -258,8 +258,8 @@ struct CellRefiner::State {
             }
         });
         std::vector<Index> open;
-        for (std::size_t i = 0; i < cells.size(); ++i) {
-            if (wanted[i] != 0) open.push_back(static_cast<Index>(i));
+        for (Index i = 0; i < cells.size(); ++i) {
+            if (wanted[i] != 0) open.push_back(i);
         }
         return open;
     }
@@ -290,7 +290,7 @@ struct CellRefiner::State {
         const std::size_t batches = (cells.size() + kMost - 1) / kMost;
         std::atomic<std::size_t> done{0};
         tbb::parallel_for(std::size_t{0}, batches, [&](std::size_t b) {
-            report_progress(progress, "limit", static_cast<double>(done) / static_cast<double>(batches));
+            report_progress(progress, "limit", done, batches);
             const std::size_t first = b * cells.size() / batches, last = (b + 1) * cells.size() / batches;
             run_nested([&] { descend_batch(cut, std::span(cells).subspan(first, last - first), seen, most_levels, visitor); });
             ++done;
@@ -346,7 +346,7 @@ void CellRefiner::for_each(std::span<const Index> cells, int levels, Progress* p
         cells = ordered;
     }
     for (std::size_t first = 0; first < cells.size(); first += kClassified) {
-        report_progress(progress, "dense cells", static_cast<double>(first) / static_cast<double>(cells.size()));
+        report_progress(progress, "dense cells", first, cells.size());
         const auto batch = cells.subspan(first, std::min(kClassified, cells.size() - first));
         const Classified classified = state.classes_of(state.top, batch, levels);
         state.evaluate(state.top, cut, classified.members, levels, sink);

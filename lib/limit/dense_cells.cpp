@@ -124,7 +124,7 @@ void DenseCells::for_each(std::span<const Index> cells, int levels, const std::f
     const std::size_t batches = batch == 0 ? 0 : (cells.size() + batch - 1) / batch;
     constexpr std::size_t kTurn = 64;  // batches between two reports of progress
     for (std::size_t turn = 0; turn < batches; turn += kTurn) {
-        report_progress(state_->options.progress, "dense cells", static_cast<double>(turn) / static_cast<double>(batches));
+        report_progress(state_->options.progress, "dense cells", turn, batches);
         tbb::parallel_for(turn, std::min(batches, turn + kTurn), [&](std::size_t b) {
             detail::run_nested([&] {
                 state_->refine_batch(cells.subspan(b * batch, std::min(batch, cells.size() - b * batch)), block, levels, visit);

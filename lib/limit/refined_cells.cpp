@@ -112,10 +112,10 @@ std::vector<Index> RefinedCells::find_octants(const Patch& first, const Topology
     std::vector<Index> refined;
     // Maps a cell of level 1 to its place among the cells that are refined again.
     slots_.assign(wanted.size(), kNone);
-    for (std::size_t c = 0; c < wanted.size(); ++c) {
+    for (Index c = 0; c < wanted.size(); ++c) {
         if (wanted[c] == 0) continue;
         slots_[c] = static_cast<Index>(refined.size());
-        refined.push_back(static_cast<Index>(c));
+        refined.push_back(c);
     }
     return refined;
 }

@@ -33,8 +33,8 @@ public:
             for (const Index kernel : part.kernels) kept[kernel] = 1;
             whole.error = std::max(whole.error, part.error);
         }
-        for (std::size_t i = 0; i < kept.size(); ++i) {
-            if (kept[i] != 0) whole.kernels.push_back(static_cast<Index>(i));
+        for (Index i = 0; i < kept.size(); ++i) {
+            if (kept[i] != 0) whole.kernels.push_back(i);
         }
         return whole;
     }

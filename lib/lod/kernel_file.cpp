@@ -2,20 +2,90 @@
 #include "subvol/kernel_file.h"
 
 #include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <bit>
+#include <cstdint>
 #include <numeric>
 #include <optional>
 #include <span>
+#include <string>
 #include <utility>
+#include <vector>
 
-#include "kernel_cache.h"
-#include "kernel_file_contents.h"
+#include "kernel_source.h"
 #include "node_test.h"
 #include "subvol/error.h"
 #include "svk_file.h"
+
+namespace subvol::detail {
+
+namespace {
+
+/// The parts of a file's blocks that were read for this view and the ones before it, up to some bytes.
+class KernelCache {
+public:
+    /// file: referred to
+    KernelCache(const SvkFile& file, std::uint64_t most_bytes);
+
+    void begin_view() { ++view_; }
+
+    /// The bytes of a part, until the next `trim`. Several threads may ask for parts of different blocks.
+    [[nodiscard]] const std::string& part(std::size_t block, std::size_t part);
+
+    /// Drops parts if there are too many bytes: those that this view has not used, the longest unused first; then the last that
+    /// it has read, so that the next view finds the others.
+    void trim();
+
+private:
+    struct Slot {
+        std::string bytes{};
+        std::uint64_t view = 0, turn = 0;  // when it was last used, and read
+    };
+
+    const SvkFile& file_;
+    std::uint64_t most_bytes_, view_ = 0, turn_ = 0;
+    std::atomic<std::uint64_t> bytes_ = 0;
+    std::vector<Slot> slots_;
+};
+
+KernelCache::KernelCache(const SvkFile& file, std::uint64_t most_bytes)
+    : file_(file), most_bytes_(most_bytes), slots_(file.layout().blocks() * file.layout().parts()) {
+}
+
+const std::string& KernelCache::part(std::size_t block, std::size_t part) {
+    Slot& slot = slots_[block * file_.layout().parts() + part];
+    if (slot.bytes.empty()) {  // no part is without bytes, but for numbers of no kernels
+        slot.bytes = file_.part(block, part);
+        slot.turn = turn_;
+        bytes_ += slot.bytes.size();
+    }
+    slot.view = view_;
+    return slot.bytes;
+}
+
+void KernelCache::trim() {
+    ++turn_;
+    if (bytes_ <= most_bytes_) return;
+    std::vector<Slot*> held;
+    for (Slot& slot : slots_) {
+        if (!slot.bytes.empty()) held.push_back(&slot);
+    }
+    std::ranges::stable_sort(held, [&](const Slot* a, const Slot* b) {
+        if (a->view != b->view) return a->view < b->view;
+        return a->view == view_ && a->turn > b->turn;
+    });
+    for (Slot* const slot : held) {
+        if (bytes_ <= most_bytes_) return;
+        bytes_ -= slot->bytes.size();
+        slot->bytes = {};
+    }
+}
+
+}  // namespace
+
+}  // namespace subvol::detail
 
 namespace subvol {
 
@@ -189,7 +259,7 @@ struct KernelFile::State {
     template <class Body>
     void in_turns(std::size_t count, Progress* progress, const char* stage, const Body& body) {
         for (std::size_t first = 0; first < count; first += kBlocksOfTurn) {
-            report_progress(progress, stage, static_cast<double>(first) / static_cast<double>(count));
+            report_progress(progress, stage, first, count);
             tbb::parallel_for(first, std::min(first + kBlocksOfTurn, count), body);
             cache.trim();
         }
@@ -250,9 +320,7 @@ struct KernelFile::State {
 
     /// Copies all kernels of a volume to the places from `first` on.
     static void put(const RbfVolume& from, RbfVolume& to, std::size_t first) {
-        const auto place = [&](const auto& source, auto& target) {
-            std::ranges::copy(source, target.begin() + static_cast<std::ptrdiff_t>(first));
-        };
+        const auto place = [&](const auto& source, auto& target) { std::ranges::copy(source, target.data() + first); };
         place(from.centers, to.centers);
         place(from.frames, to.frames);
         for (std::size_t c = 0; c < from.channels.size(); ++c) {

@@ -10,6 +10,10 @@
 
 namespace subvol::detail {
 
+/// What the head of a file says, for users.
+[[nodiscard]] KernelFileContents kernel_file_contents(const SvkContents& contents, const SvkLayout& layout,
+                                                      std::uint64_t bytes);
+
 /// The kernels of a volume, in memory or in files, for `write_kernel_file`.
 class KernelSource {
 public:

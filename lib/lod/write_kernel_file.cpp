@@ -6,7 +6,6 @@
 #include <span>
 #include <string>
 
-#include "kernel_file_contents.h"
 #include "kernel_source.h"
 #include "node_merger.h"
 #include "subvol/detail/median_tree.h"
@@ -58,7 +57,7 @@ public:
         KernelHierarchy top;
         constexpr std::size_t kWrittenInTurn = 128;  // blocks that are in memory together
         for (std::size_t first = 0; first < layout.blocks(); first += kWrittenInTurn) {
-            report_progress(progress_, "merge kernels", static_cast<double>(first) / static_cast<double>(layout.blocks()));
+            report_progress(progress_, "merge kernels", first, layout.blocks());
             std::vector<Block> blocks(std::min(kWrittenInTurn, layout.blocks() - first));
             const std::uint64_t first_slot = layout.first_slot(first), end = layout.first_slot(first + blocks.size());
             const RbfVolume kernels = source_.kernels(slots(first_slot, end));

@@ -253,9 +253,9 @@ private:
     }
     [[nodiscard]] Index whole(Index cell) const { return static_cast<Index>(stencils_.wholes.of_cell[cell]); }
 
-    /// A face of the boundary with the cells c1, c2, c3 behind it, at distances t1 < t2 < t3, adds (4/3) t1 t2 m[t1, t2, t3] with
-    /// the divided difference. Two such faces at an edge add (m − ma − mb + md) / 4, with the cells a and b behind them and d
-    /// beside both.
+    /// A face of the boundary with the cells c1, c2, c3 behind it, at distances t1 < t2 < t3, adds (4/3) t1 t2 m[t1, t2, t3]
+    /// with the divided difference. Two such faces at an edge add (m − ma − mb + md) / 4, with the cells a and b behind them
+    /// and d beside both.
     template <class Sink>
     void add_ends(Index p, Index c, double weight, const Sink& sink) const {
         if (!is_alone(c)) return;
@@ -282,7 +282,7 @@ private:
     template <class Sink>
     void add_face(Index first, std::size_t side, Index second, Index third, double weight, const Sink& sink) const {
         Vec3 middle(0.0);
-        for (const int k : kCellFaces[side]) middle += mesh_.points[mesh_.cells[first][static_cast<std::size_t>(k)]] / 4.0;
+        for (const std::size_t k : kCellFaces[side]) middle += mesh_.points[mesh_.cells[first][k]] / 4.0;
         const auto centre = [&](Index cell) { return stencils_.centres[whole(cell)]; };
         const double t1 = glm::length(centre(first) - middle), t2 = t1 + glm::length(centre(second) - centre(first)),
                      t3 = t2 + glm::length(centre(third) - centre(second));

@@ -40,16 +40,7 @@ struct Shape {
     }
 };
 
-template <std::size_t Rows, std::size_t Columns>
-constexpr std::array<std::array<std::size_t, Columns>, Rows> as_sizes(const std::array<std::array<int, Columns>, Rows>& table) {
-    std::array<std::array<std::size_t, Columns>, Rows> sizes{};
-    for (std::size_t r = 0; r < Rows; ++r) {
-        for (std::size_t c = 0; c < Columns; ++c) sizes[r][c] = static_cast<std::size_t>(table[r][c]);
-    }
-    return sizes;
-}
-
-inline constexpr Shape<8, 12, 6> kHexShape{as_sizes(kCellEdges), as_sizes(kCellFaces), kCornerNeighbors};
+inline constexpr Shape<8, 12, 6> kHexShape{kCellEdges, kCellFaces, kCornerNeighbors};
 
 inline constexpr Shape<4, 6, 4> kTetShape{{{{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}}},
                                           {{{0, 2, 1, 1}, {0, 1, 3, 3}, {1, 2, 3, 3}, {0, 3, 2, 2}}},

@@ -13,7 +13,7 @@ std::array<std::array<Index, 4>, 6> split_cell(const std::array<Index, 8>& cell)
     std::size_t count = 0;
     for (const auto& face : kCellFaces) {
         std::array<Index, 4> quad;
-        for (std::size_t k = 0; k < 4; ++k) quad[k] = cell[static_cast<std::size_t>(face[k])];
+        for (std::size_t k = 0; k < 4; ++k) quad[k] = cell[face[k]];
         if (std::find(quad.begin(), quad.end(), apex) != quad.end()) continue;
         std::rotate(quad.begin(), std::min_element(quad.begin(), quad.end()), quad.end());
         // The quad is counter-clockwise seen from outside and the apex lies behind it: the order (0,2,1) turns the base

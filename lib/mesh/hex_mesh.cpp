@@ -193,9 +193,8 @@ HexMesh without_unused_points(HexMesh mesh) {
         result.points.push_back(mesh.points[p]);
         for (std::size_t a = 0; a < mesh.attributes.size(); ++a) {
             const auto channels = static_cast<std::size_t>(mesh.attributes[a].channels);
-            const auto first = mesh.attributes[a].values.begin() + static_cast<std::ptrdiff_t>(p * channels);
-            result.attributes[a].values.insert(result.attributes[a].values.end(), first,
-                                               first + static_cast<std::ptrdiff_t>(channels));
+            const auto first = mesh.attributes[a].values.data() + p * channels;
+            result.attributes[a].values.insert(result.attributes[a].values.end(), first, first + channels);
         }
     }
     result.cells = std::move(mesh.cells);

@@ -77,8 +77,7 @@ void keep_own_tags(HexMesh& mesh) {
         for (const auto& crease : mesh.creases) wanted.insert(in_order(crease));
         for (const auto& cell : mesh.cells) {
             for (const auto& edge : kCellEdges) {
-                const auto key =
-                    in_order(std::array{cell[static_cast<std::size_t>(edge[0])], cell[static_cast<std::size_t>(edge[1])]});
+                const auto key = in_order(std::array{cell[edge[0]], cell[edge[1]]});
                 if (wanted.contains(key)) found.insert(key);
             }
         }
@@ -90,7 +89,7 @@ void keep_own_tags(HexMesh& mesh) {
     for (const auto& cell : mesh.cells) {
         for (const auto& side : kCellFaces) {
             std::array<Index, 4> key;
-            for (std::size_t k = 0; k < 4; ++k) key[k] = cell[static_cast<std::size_t>(side[k])];
+            for (std::size_t k = 0; k < 4; ++k) key[k] = cell[side[k]];
             if (wanted.contains(in_order(key))) found.insert(in_order(key));
         }
     }

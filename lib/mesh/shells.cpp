@@ -90,10 +90,10 @@ Shells make_shells(const HexMesh& mesh, std::span<const std::array<Index, 4>> qu
         for (Index& p : line) p = number[p];
     }
     shells.solid.resize(next);
-    for (std::size_t c = 0; c < mesh.cells.size() && next > 0; ++c) {
+    for (Index c = 0; c < mesh.cells.size() && next > 0; ++c) {
         for (std::uint8_t k = 0; k < 8; ++k) {
             const Index p = number[mesh.cells[c][k]];
-            if (p != kNone && shells.solid[p].cell == kNone) shells.solid[p] = {static_cast<Index>(c), k};
+            if (p != kNone && shells.solid[p].cell == kNone) shells.solid[p] = {c, k};
         }
     }
     return shells;

@@ -38,8 +38,7 @@ Hex as_hex(const std::array<Index, 5>& c) {
 Index torn_point(const Hex& hex) {
     std::array<std::size_t, 8> root{0, 1, 2, 3, 4, 5, 6, 7};
     for (int round = 0; round < 3; ++round) {  // a chain of collapsed edges has at most three
-        for (const auto& [a, b] : kCellEdges) {
-            const auto i = static_cast<std::size_t>(a), j = static_cast<std::size_t>(b);
+        for (const auto& [i, j] : kCellEdges) {
             if (hex[i] == hex[j]) root[i] = root[j] = std::min(root[i], root[j]);
         }
     }
@@ -143,9 +142,7 @@ private:
     // A face is collapsed to a point: the apex over the opposite face.
     bool take_pyramid(const Hex& hex) {
         for (std::size_t f = 0; f < 6; ++f) {
-            const auto corner = [&](std::size_t face, std::size_t k) {
-                return hex[static_cast<std::size_t>(kCellFaces[face][k])];
-            };
+            const auto corner = [&](std::size_t face, std::size_t k) { return hex[kCellFaces[face][k]]; };
             const Index apex = corner(f, 0);
             if (corner(f, 1) != apex || corner(f, 2) != apex || corner(f, 3) != apex) continue;
             const std::size_t base = f ^ 1u;

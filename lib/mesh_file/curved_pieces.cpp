@@ -12,7 +12,7 @@ namespace subvol::detail {
 namespace {
 
 std::array<Index, 2> key(const std::array<Index, 8>& cell, std::size_t e) {
-    const Index a = cell[static_cast<std::size_t>(kCellEdges[e][0])], b = cell[static_cast<std::size_t>(kCellEdges[e][1])];
+    const Index a = cell[kCellEdges[e][0]], b = cell[kCellEdges[e][1]];
     return {std::min(a, b), std::max(a, b)};
 }
 
@@ -184,7 +184,7 @@ std::vector<Index> SplitGrids::grid_of(std::size_t c) const {
         grid[at(place)] = corners_[cell[k]];
     }
     for (std::size_t e = 0; e < 12; ++e) {
-        const auto from = static_cast<std::size_t>(kCellEdges[e][0]), to = static_cast<std::size_t>(kCellEdges[e][1]);
+        const std::size_t from = kCellEdges[e][0], to = kCellEdges[e][1];
         const std::size_t axis = e / 4, start = edge_starts_[edges_.edge(cell, e)];
         Sizes place{};
         for (std::size_t a = 0; a < 3; ++a) place[a] = kCornerParameters[from][a] == 0 ? 0 : n[a];

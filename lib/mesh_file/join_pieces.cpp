@@ -311,8 +311,7 @@ private:
         array.values.resize(cells_ * components);
         for (std::size_t k = 0; k < parts.size(); ++k) {
             if (parts[k] == nullptr) continue;
-            std::ranges::copy(parts[k]->values,
-                              array.values.begin() + static_cast<std::ptrdiff_t>(first_cells_[k] * components));
+            std::ranges::copy(parts[k]->values, array.values.data() + first_cells_[k] * components);
         }
         return array;
     }

@@ -20,7 +20,7 @@ namespace {
 
 template <std::size_t N, std::size_t Parts>
 std::vector<std::uint8_t> are_parts(std::span<const std::array<Index, N>> items, std::span<const std::array<Index, 8>> hexes,
-                                    std::size_t points, const std::array<std::array<int, N>, Parts>& parts) {
+                                    std::size_t points, const std::array<std::array<std::size_t, N>, Parts>& parts) {
     using Item = std::pair<std::array<Index, N>, std::size_t>;
     std::vector<Item> sorted;
     std::vector<std::uint8_t> used(points, 0), found(items.size(), 0);
@@ -36,7 +36,7 @@ std::vector<std::uint8_t> are_parts(std::span<const std::array<Index, N>> items,
             std::array<Index, N> key;
             bool all = true;
             for (std::size_t k = 0; k < N; ++k) {
-                key[k] = hex[static_cast<std::size_t>(part[k])];
+                key[k] = hex[part[k]];
                 all = all && used[key[k]] != 0;
             }
             if (!all) continue;

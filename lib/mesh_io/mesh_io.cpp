@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <tuple>
 
 #include "formats.h"
 #include "subvol/cell_means.h"
@@ -203,7 +204,7 @@ ReadResult read_mesh(const std::filesystem::path& path, const ReadOptions& optio
     const MeshFormat& format = readable_format(path);
     check_options(format, path, options);
     std::vector<std::string> none;
-    if (!format.times) static_cast<void>(chosen_step(options, 1, path.string(), none));
+    if (!format.times) std::ignore = chosen_step(options, 1, path.string(), none);
     ReadOptions resolved = options;
     if (options.cell_values == CellValues::Auto) {
         resolved.cell_values = format.finite_volumes ? CellValues::Fit : CellValues::Mean;

@@ -79,11 +79,11 @@ struct BoundaryEdge {
 
 std::vector<BoundaryEdge> boundary_edges(const std::vector<std::array<Index, 4>>& faces) {
     std::vector<BoundaryEdge> edges;
-    for (std::size_t f = 0; f < faces.size(); ++f) {
+    for (Index f = 0; f < faces.size(); ++f) {
         const std::size_t count = faces[f][3] == kNone ? 3 : 4;
         for (std::size_t k = 0; k < count; ++k) {
             const Index a = faces[f][k], b = faces[f][(k + 1) % count];
-            edges.push_back({{std::min(a, b), std::max(a, b)}, a, static_cast<Index>(f)});
+            edges.push_back({{std::min(a, b), std::max(a, b)}, a, f});
         }
     }
     tbb::parallel_sort(edges.begin(), edges.end());
@@ -124,14 +124,14 @@ std::vector<std::uint8_t> count_fans(std::size_t points, const std::vector<std::
         auto operator<=>(const Corner&) const = default;
     };
     std::vector<Corner> corners;
-    for (std::size_t f = 0; f < faces.size(); ++f) {
+    for (Index f = 0; f < faces.size(); ++f) {
         for (const Index p : faces[f]) {
-            if (p != kNone) corners.push_back({p, static_cast<Index>(f)});
+            if (p != kNone) corners.push_back({p, f});
         }
     }
     tbb::parallel_sort(corners.begin(), corners.end());
     std::vector<Index> root(corners.size());
-    for (std::size_t i = 0; i < root.size(); ++i) root[i] = static_cast<Index>(i);
+    for (Index i = 0; i < root.size(); ++i) root[i] = i;
     // Halving the paths on the way keeps the trees flat.
     const auto find = [&](Index i) {
         while (root[i] != i) i = root[i] = root[root[i]];

@@ -104,18 +104,18 @@ SplitNumbers::SplitNumbers(const MixedMesh& parent, std::size_t points) : parent
 
 bool SplitNumbers::has_edge(Index a, Index b) const {
     if (a > b) std::swap(a, b);
-    const auto begin = edges_.begin() + static_cast<std::ptrdiff_t>(edge_offsets_[a]);
-    const auto end = edges_.begin() + static_cast<std::ptrdiff_t>(edge_offsets_[a + 1]);
+    const auto begin = edges_.data() + edge_offsets_[a];
+    const auto end = edges_.data() + edge_offsets_[a + 1];
     return std::binary_search(begin, end, std::array<Index, 2>{a, b});
 }
 
 Index SplitNumbers::edge(Index a, Index b) const {
     if (a > b) std::swap(a, b);
-    const auto begin = edges_.begin() + static_cast<std::ptrdiff_t>(edge_offsets_[a]);
-    const auto end = edges_.begin() + static_cast<std::ptrdiff_t>(edge_offsets_[a + 1]);
+    const auto begin = edges_.data() + edge_offsets_[a];
+    const auto end = edges_.data() + edge_offsets_[a + 1];
     const auto found = std::lower_bound(begin, end, std::array<Index, 2>{a, b});
     assert(found != end && (*found)[1] == b);
-    return static_cast<Index>(parent_points_ + static_cast<std::size_t>(found - edges_.begin()));
+    return static_cast<Index>(parent_points_ + static_cast<std::size_t>(found - edges_.data()));
 }
 
 Index SplitNumbers::quad(std::array<Index, 4> corners) const {

@@ -5,7 +5,6 @@
 #include "subvol/detail/surface_io.h"
 #include "subvol/error.h"
 #include "vtk_xml.h"
-#include "vtp_names.h"
 
 namespace subvol::detail {
 

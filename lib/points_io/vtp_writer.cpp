@@ -11,7 +11,6 @@
 #include "subvol/error.h"
 #include "text_scanner.h"
 #include "vtk_xml_writer.h"
-#include "vtp_names.h"
 
 namespace subvol::detail {
 

@@ -9,10 +9,10 @@ namespace subvol::detail {
 namespace {
 
 template <std::size_t N>
-constexpr std::size_t lattice_offset(const std::array<int, N>& corners) {
+constexpr std::size_t lattice_offset(const std::array<std::size_t, N>& corners) {
     std::array<int, 3> sum{};
-    for (const int c : corners) {
-        for (std::size_t a = 0; a < 3; ++a) sum[a] += 2 * kCornerParameters[static_cast<std::size_t>(c)][a];
+    for (const std::size_t c : corners) {
+        for (std::size_t a = 0; a < 3; ++a) sum[a] += 2 * kCornerParameters[c][a];
     }
     const int n = static_cast<int>(N);
     return static_cast<std::size_t>(sum[0] / n + 3 * (sum[1] / n) + 9 * (sum[2] / n));
@@ -20,7 +20,7 @@ constexpr std::size_t lattice_offset(const std::array<int, N>& corners) {
 
 constexpr std::array<LatticePlace, 27> make_lattice() {
     std::array<LatticePlace, 27> lattice{};
-    for (std::uint8_t k = 0; k < 8; ++k) lattice[lattice_offset(std::array{static_cast<int>(k)})] = {LatticePlace::Corner, k};
+    for (std::uint8_t k = 0; k < 8; ++k) lattice[lattice_offset(std::array<std::size_t, 1>{k})] = {LatticePlace::Corner, k};
     for (std::uint8_t k = 0; k < 12; ++k) lattice[lattice_offset(kCellEdges[k])] = {LatticePlace::Edge, k};
     for (std::uint8_t k = 0; k < 6; ++k) lattice[lattice_offset(kCellFaces[k])] = {LatticePlace::Face, k};
     return lattice;

@@ -6,11 +6,6 @@
 
 namespace subvol::detail {
 
-/// The number of a corner as an index of an array.
-constexpr std::size_t of_corner(int corner) {
-    return static_cast<std::size_t>(corner);
-}
-
 // The numbers of a child's edges and faces, counted instead of sorted.
 //
 //    ●─ a ─○─ a ─●      A face of the parent after one refinement: old points ●, edge points ○ and the face point □.
@@ -34,7 +29,7 @@ constexpr std::array<std::array<std::uint8_t, 2>, 12> make_edge_sides() {
         std::size_t count = 0;
         for (std::size_t s = 0; s < 6; ++s) {
             int corners = 0;
-            for (const int c : kCellFaces[s]) corners += c == kCellEdges[k][0] || c == kCellEdges[k][1];
+            for (const std::size_t c : kCellFaces[s]) corners += c == kCellEdges[k][0] || c == kCellEdges[k][1];
             if (corners == 2) sides[k][count++] = static_cast<std::uint8_t>(s);
         }
     }

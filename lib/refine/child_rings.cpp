@@ -14,7 +14,7 @@ namespace subvol::detail {
 namespace {
 
 /// The number of the edge of a cell between two of its corners.
-constexpr std::size_t edge_between(int a, int b) {
+constexpr std::size_t edge_between(std::size_t a, std::size_t b) {
     for (std::size_t k = 0; k < 12; ++k) {
         if ((kCellEdges[k][0] == a && kCellEdges[k][1] == b) || (kCellEdges[k][0] == b && kCellEdges[k][1] == a)) return k;
     }
@@ -65,20 +65,19 @@ private:
         const std::size_t m = faces.size();
         const auto start = static_cast<std::size_t>(std::min_element(faces.begin(), faces.end()) - faces.begin());
         const bool forward = faces[(start + 1) % m] <= faces[(start + m - 1) % m];
-        const auto to_faces = t_.edge_faces.values.begin() + static_cast<std::ptrdiff_t>(t_.edge_faces.offsets[edge]);
-        const auto to_cells = t_.edge_cells.values.begin() + static_cast<std::ptrdiff_t>(t_.edge_cells.offsets[edge]);
+        const auto to_faces = t_.edge_faces.values.data() + t_.edge_faces.offsets[edge];
+        const auto to_cells = t_.edge_cells.values.data() + t_.edge_cells.offsets[edge];
         for (std::size_t j = 0; j < m; ++j) {
-            const auto i = static_cast<std::ptrdiff_t>(j);
-            to_faces[i] = faces[forward ? (start + j) % m : (start + m - j) % m];
-            to_cells[i] = cells[forward ? (start + j) % m : (start + 2 * m - j - 1) % m];
+            to_faces[j] = faces[forward ? (start + j) % m : (start + m - j) % m];
+            to_cells[j] = cells[forward ? (start + j) % m : (start + 2 * m - j - 1) % m];
         }
     }
 
     /// Writes an open ring, from its smaller end on.
     template <class Faces, class Cells>
     void put_fan(Index edge, const Faces& faces, const Cells& cells) {
-        const auto to_faces = t_.edge_faces.values.begin() + static_cast<std::ptrdiff_t>(t_.edge_faces.offsets[edge]);
-        const auto to_cells = t_.edge_cells.values.begin() + static_cast<std::ptrdiff_t>(t_.edge_cells.offsets[edge]);
+        const auto to_faces = t_.edge_faces.values.data() + t_.edge_faces.offsets[edge];
+        const auto to_cells = t_.edge_cells.values.data() + t_.edge_cells.offsets[edge];
         if (faces.front() < faces.back()) {
             std::copy(faces.begin(), faces.end(), to_faces);
             std::copy(cells.begin(), cells.end(), to_cells);
@@ -99,9 +98,9 @@ private:
             for (std::size_t s = 0; s < 6; ++s) {
                 std::array<Index, 4> faces, cells;
                 for (std::size_t i = 0; i < 4; ++i) {
-                    const int a = kCellFaces[s][i], b = kCellFaces[s][(i + 1) % 4];
+                    const std::size_t a = kCellFaces[s][i], b = kCellFaces[s][(i + 1) % 4];
                     faces[i] = n_.inner[c][edge_between(a, b)];
-                    cells[i] = child_cell(static_cast<Index>(c), of_corner(b));
+                    cells[i] = child_cell(static_cast<Index>(c), b);
                 }
                 put_ring(n_.to_cell[c][s], faces, cells);
             }
@@ -124,10 +123,8 @@ private:
             std::sort(faces.begin(), faces.end());
             thread_local std::vector<Index> ring_faces, ring_cells;
             walk_edge_ring(t_, faces, ring_faces, ring_cells);
-            std::copy(ring_faces.begin(), ring_faces.end(),
-                      t_.edge_faces.values.begin() + static_cast<std::ptrdiff_t>(t_.edge_faces.offsets[half]));
-            std::copy(ring_cells.begin(), ring_cells.end(),
-                      t_.edge_cells.values.begin() + static_cast<std::ptrdiff_t>(t_.edge_cells.offsets[half]));
+            std::copy(ring_faces.begin(), ring_faces.end(), t_.edge_faces.values.data() + t_.edge_faces.offsets[half]);
+            std::copy(ring_cells.begin(), ring_cells.end(), t_.edge_cells.values.data() + t_.edge_cells.offsets[half]);
         }
     }
 

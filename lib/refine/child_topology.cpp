@@ -113,7 +113,7 @@ private:
             t_.faces[face] = {edge_point(e), face_point(f0), cell_point(c), face_point(f1)};
             t_.face_edges[face] = {n_.to_face[f0][slot_of(p_.face_edges[f0], e)], n_.to_cell[c][side[0]],
                                    n_.to_cell[c][side[1]], n_.to_face[f1][slot_of(p_.face_edges[f1], e)]};
-            const Index c0 = child_cell(c, of_corner(kCellEdges[k][0])), c1 = child_cell(c, of_corner(kCellEdges[k][1]));
+            const Index c0 = child_cell(c, kCellEdges[k][0]), c1 = child_cell(c, kCellEdges[k][1]);
             t_.face_cells[face] = {std::min(c0, c1), std::max(c0, c1)};
         }
     }
@@ -131,8 +131,7 @@ private:
     void fill_cell(Index c, std::size_t child) {
         const auto& faces = p_.cell_faces[c];
         for (std::size_t k = 0; k < 12; ++k) {
-            auto low = lattice_place(child, of_corner(kCellEdges[k][0])),
-                 high = lattice_place(child, of_corner(kCellEdges[k][1]));
+            auto low = lattice_place(child, kCellEdges[k][0]), high = lattice_place(child, kCellEdges[k][1]);
             if (high.kind < low.kind) std::swap(low, high);
             Index& edge = t_.cell_edges[child_cell(c, child)][k];
             if (low.kind == LatticePlace::Corner) {
@@ -149,11 +148,11 @@ private:
             // Sides at the child's corner of the parent are quarters of the parent's faces; the other three lie inside it.
             const auto& corners = kCellFaces[s];
             Index& face = t_.cell_faces[child_cell(c, child)][s];
-            if (std::find(corners.begin(), corners.end(), static_cast<int>(child)) != corners.end()) {
+            if (std::find(corners.begin(), corners.end(), child) != corners.end()) {
                 face = n_.quarters[faces[s]][slot_of(p_.faces[faces[s]], p_.cells[c][child])];
             } else {
-                for (const int corner : corners) {
-                    const auto place = lattice_place(child, of_corner(corner));
+                for (const std::size_t corner : corners) {
+                    const auto place = lattice_place(child, corner);
                     if (place.kind == LatticePlace::Edge) face = n_.inner[c][place.number];
                 }
             }

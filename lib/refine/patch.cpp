@@ -31,13 +31,13 @@ std::array<Index, N> sorted(std::array<Index, N> points) {
 template <std::size_t N, std::size_t M>
 std::vector<std::array<Index, N>> tags_of(const std::vector<std::array<Index, N>>& tags,
                                           std::span<const std::array<Index, 8>> cells,
-                                          const std::array<std::array<int, N>, M>& parts) {
+                                          const std::array<std::array<std::size_t, N>, M>& parts) {
     std::vector<std::array<Index, N>> found;
     if (tags.empty()) return found;
     for (const auto& cell : cells) {
         for (const auto& part : parts) {
             std::array<Index, N> points;
-            for (std::size_t i = 0; i < N; ++i) points[i] = cell[static_cast<std::size_t>(part[i])];
+            for (std::size_t i = 0; i < N; ++i) points[i] = cell[part[i]];
             if (std::binary_search(tags.begin(), tags.end(), sorted(points))) found.push_back(points);
         }
     }
@@ -86,8 +86,8 @@ public:
             auto& values = to.attributes.emplace_back(Attribute{attribute.name, attribute.channels, {}}).values;
             values.reserve(points_.size() * channels);
             for (const Index p : points_) {
-                const auto first = attribute.values.begin() + static_cast<std::ptrdiff_t>(p * channels);
-                values.insert(values.end(), first, first + static_cast<std::ptrdiff_t>(channels));
+                const auto first = attribute.values.data() + p * channels;
+                values.insert(values.end(), first, first + channels);
             }
         }
     }
@@ -213,8 +213,8 @@ std::vector<Index> PatchSource::cells_about(std::span<const Index> cells) const 
     }
     std::vector<std::uint8_t> marks(mesh_.cells.size(), 0);
     for_each_found([&](Index c) { marks[c] = 1; });
-    for (std::size_t c = 0; c < marks.size(); ++c) {
-        if (marks[c] != 0) found.push_back(static_cast<Index>(c));
+    for (Index c = 0; c < marks.size(); ++c) {
+        if (marks[c] != 0) found.push_back(c);
     }
     return found;
 }

@@ -51,7 +51,7 @@ void SchemeRows::for_each_block(Progress* progress, const std::string& stage, co
     tbb::enumerable_thread_specific<Scratch> scratch;
     constexpr std::size_t kTurn = 256;  // blocks between two reports of progress
     for (std::size_t turn = 0; turn < block_count(); turn += kTurn) {
-        report_progress(progress, stage, static_cast<double>(turn) / static_cast<double>(block_count()));
+        report_progress(progress, stage, turn, block_count());
         tbb::parallel_for(turn, std::min(block_count(), turn + kTurn), [&](std::size_t b) {
             auto& [row, block] = scratch.local();
             const std::size_t begin = kept_ + b * kBlockRows, end = std::min(rows(), begin + kBlockRows);

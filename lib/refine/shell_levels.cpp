@@ -64,8 +64,8 @@ void take_faces(Topology& t, const std::vector<std::array<Index, 4>>& quads) {
     for (std::size_t e = 0; e < t.edges.size(); ++e) t.edge_faces.offsets[e + 1] += t.edge_faces.offsets[e];
     t.edge_faces.values.resize(4 * quads.size());
     std::vector<std::size_t> next(t.edge_faces.offsets.begin(), t.edge_faces.offsets.end() - 1);
-    for (std::size_t f = 0; f < quads.size(); ++f) {
-        for (const Index e : t.face_edges[f]) t.edge_faces.values[next[e]++] = static_cast<Index>(f);
+    for (Index f = 0; f < quads.size(); ++f) {
+        for (const Index e : t.face_edges[f]) t.edge_faces.values[next[e]++] = f;
     }
 }
 
@@ -185,10 +185,10 @@ SolidParts parts_of(const ShellLevel& level, std::span<const Index> chosen) {
     }
     for (std::size_t s = 0; s < chosen.size(); ++s) {
         const auto& cell = level.solid.cells[chosen[s]];
-        const auto child = [&](int i, int corner) {
-            return CellCorner{static_cast<Index>(8 * s + static_cast<std::size_t>(i)), static_cast<std::uint8_t>(corner)};
+        const auto child = [&](std::size_t i, std::size_t corner) {
+            return CellCorner{static_cast<Index>(8 * s + i), static_cast<std::uint8_t>(corner)};
         };
-        const auto point = [&](int corner) { return cell[static_cast<std::size_t>(corner)]; };
+        const auto point = [&](std::size_t corner) { return cell[corner]; };
         for (const auto& [i, j] : kCellEdges) {
             if (attached[point(i)] && attached[point(j)]) {
                 parts.edges.try_emplace({std::min(point(i), point(j)), std::max(point(i), point(j))}, child(i, j));
@@ -218,9 +218,9 @@ std::vector<Index> cells_about(const ShellLevel& level) {
     std::vector<Index> cells;
     for (int layer = 0; layer < 2; ++layer) {
         cells.clear();
-        for (std::size_t c = 0; c < level.solid.cells.size(); ++c) {
+        for (Index c = 0; c < level.solid.cells.size(); ++c) {
             const auto& cell = level.solid.cells[c];
-            if (std::ranges::any_of(cell, [&](Index p) { return marked[p] != 0; })) cells.push_back(static_cast<Index>(c));
+            if (std::ranges::any_of(cell, [&](Index p) { return marked[p] != 0; })) cells.push_back(c);
         }
         for (const Index c : cells) {
             for (const Index p : level.solid.cells[c]) marked[p] = 1;
@@ -268,8 +268,8 @@ struct LevelData {
         at[to.points.size() - 1] = p;
         for (std::size_t a = 0; a < to.attributes.size(); ++a) {
             const auto channels = static_cast<std::size_t>(to.attributes[a].channels);
-            const auto first = solid.attributes[a].values.begin() + static_cast<std::ptrdiff_t>(p * channels);
-            to.attributes[a].values.insert(to.attributes[a].values.end(), first, first + static_cast<std::ptrdiff_t>(channels));
+            const auto first = solid.attributes[a].values.data() + p * channels;
+            to.attributes[a].values.insert(to.attributes[a].values.end(), first, first + channels);
         }
     }
 };
@@ -404,7 +404,7 @@ private:
 
 ShellComplex complex_of(const ShellLevel& level) {
     std::vector<Index> all(level.solid.cells.size());
-    for (std::size_t c = 0; c < all.size(); ++c) all[c] = static_cast<Index>(c);
+    for (Index c = 0; c < all.size(); ++c) all[c] = c;
     const SolidParts parts = parts_of(level, all);
     const auto on_solid = [&](Index p, Index q) {
         const Index a = level.at[p], b = level.at[q];

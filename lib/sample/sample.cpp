@@ -9,7 +9,6 @@
 #include "boundary_level.h"
 #include "child_topology.h"
 #include "refine_steps.h"
-#include "sample_counts.h"
 #include "sample_ways.h"
 #include "subvol/boundary_values.h"
 #include "subvol/detail/limit_of_part.h"
@@ -62,7 +61,7 @@ std::optional<int> level_of_samples(const SampleOptions& options) {
 
 std::size_t hull_triangles(const Topology& topology) {
     std::size_t quads = 0;
-    for (std::size_t f = 0; f < topology.faces.size(); ++f) quads += topology.face_on_hull(static_cast<Index>(f)) ? 1 : 0;
+    for (Index f = 0; f < topology.faces.size(); ++f) quads += topology.face_on_hull(f) ? 1 : 0;
     return 2 * quads;
 }
 
@@ -105,8 +104,8 @@ struct SampledLevel {
 
 void mark_hull(const detail::MeshPart& part, std::vector<std::uint8_t>& on_hull) {
     const Topology& topology = part.topology;
-    for (std::size_t f = 0; f < topology.faces.size(); ++f) {
-        if (!topology.face_on_hull(static_cast<Index>(f))) continue;
+    for (Index f = 0; f < topology.faces.size(); ++f) {
+        if (!topology.face_on_hull(f)) continue;
         for (const Index p : topology.faces[f]) on_hull[part.points[p]] |= part.own[p];
     }
 }
@@ -162,8 +161,8 @@ SampleResult sample_level(HexMesh control, int number, const SampleOptions& opti
 /// most of any edge would make millions of triangles for a few long cells among many.
 int intervals_of_hull(const Topology& topology, const std::vector<int>& intervals) {
     double squares = 0, edges = 0;
-    for (std::size_t f = 0; f < topology.faces.size(); ++f) {
-        if (!topology.face_on_hull(static_cast<Index>(f))) continue;
+    for (Index f = 0; f < topology.faces.size(); ++f) {
+        if (!topology.face_on_hull(f)) continue;
         for (const Index e : topology.face_edges[f]) {
             squares += double(intervals[e]) * double(intervals[e]);
             ++edges;

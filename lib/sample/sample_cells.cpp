@@ -29,7 +29,6 @@
 #include "boundary_rings.h"
 #include "cell_block.h"
 #include "direction_sums.h"
-#include "sample_counts.h"
 #include "sample_ways.h"
 #include "subvol/cell.h"
 #include "subvol/detail/bucket_sort.h"

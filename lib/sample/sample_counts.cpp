@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sample_counts.h"
+#include "sample_ways.h"
 
 #include <algorithm>
 #include <cmath>
@@ -108,7 +108,7 @@ std::array<int, 3> SampleCounts::cell(std::size_t c) const {
 int SampleCounts::near(std::size_t c, std::size_t axis, const std::array<double, 3>& uvw) const {
     int most = 1;
     for (std::size_t k = 4 * axis; k < 4 * axis + 4; ++k) {
-        const auto& corner = kCornerParameters[static_cast<std::size_t>(kCellEdges[k][0])];
+        const auto& corner = kCornerParameters[kCellEdges[k][0]];
         bool bounds_entity = true;
         for (const std::size_t other : {(axis + 1) % 3, (axis + 2) % 3}) {
             const bool on_side = uvw[other] == 0 || uvw[other] == 1;

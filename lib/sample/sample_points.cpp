@@ -129,7 +129,7 @@ SampleResult sample_at_points(HexMesh on_limit, const PointLines& lines, bool ac
     const double size = diagonal.value_or(box.diagonal());
     std::atomic<std::size_t> flat{0};
     for (std::size_t turn = 0; turn < lines.size(); turn += kTurn) {
-        report_progress(options.progress, "sample", static_cast<double>(turn) / static_cast<double>(lines.size()));
+        report_progress(options.progress, "sample", turn, lines.size());
         const tbb::blocked_range<std::size_t> points(turn, std::min(lines.size(), turn + kTurn), 256);
         tbb::parallel_for(points, [&](const auto& range) {
             PointSampler sampler(on_limit, size, lines, across_points, options, result.volume);

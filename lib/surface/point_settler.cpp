@@ -59,7 +59,7 @@ SettledPoints PointSettler::settle(const SurfaceSoup& soup, const Cut& cut, int 
     settled.positions.resize(soup.points.size());
     settled.normals.resize(soup.points.size());
     for (std::size_t begin = 0; begin < soup.points.size(); begin += kSettledAtOnce) {
-        report_progress(progress_, "to the limit", static_cast<double>(begin) / static_cast<double>(soup.points.size()));
+        report_progress(progress_, "to the limit", begin, soup.points.size());
         std::vector<Moving> moving;
         for (std::size_t p = begin; p < std::min(soup.points.size(), begin + kSettledAtOnce); ++p) {
             const SurfacePoint& point = soup.points[p];

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "point_settler.h"
+#include "subvol/detail/surface_share.h"
 #include "subvol/limit_surface.h"
 #include "subvol/share.h"
 
@@ -36,5 +37,21 @@ struct PointOrigin {
 /// improve: slivers are mended; slack_world: how far new edges may bend away from the limit
 /// returns: the points of the cut that are used, ascending
 std::vector<Index> add_cut(const SettledCut& cut, bool improve, double slack_world, LimitSurface& all);
+
+/// What is known of a surface in some of its cells.
+///
+/// improve, slack_world: as of `add_cut`
+/// fields: at the points of all cuts, one after the other
+struct SurfaceShare {
+    bool improve = true;
+    double slack_world = 0;
+    std::vector<SettledCut> cuts{};
+    std::vector<ProbedField> fields{};
+};
+
+[[nodiscard]] std::string bytes_of(const SurfaceShare& share);
+
+/// A share of a surface that passes no cell.
+[[nodiscard]] std::string empty_surface_share();
 
 }  // namespace subvol::detail

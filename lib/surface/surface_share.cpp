@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "surface_share.h"
+#include "settled_cut.h"
 
 #include <algorithm>
 #include <cstring>
@@ -161,7 +161,7 @@ std::string empty_surface_share() {
 LimitSurface join_surface(std::vector<std::string> shares, std::span<const std::string> names, Progress* progress) {
     std::vector<SurfaceShare> read;
     for (std::size_t s = 0; s < shares.size(); ++s) {
-        report_progress(progress, "read", static_cast<double>(s) / static_cast<double>(shares.size()));
+        report_progress(progress, "read", s, shares.size());
         try {
             read.push_back(share_from(shares[s]));
         } catch (const Error& error) {
@@ -184,7 +184,7 @@ LimitSurface join_surface(std::vector<std::string> shares, std::span<const std::
         }
         std::vector<PointOrigin> origins;
         const SettledCut cut = joined(std::move(parts), origins);
-        report_progress(progress, "improve", static_cast<double>(c) / static_cast<double>(read[0].cuts.size()));
+        report_progress(progress, "improve", c, read[0].cuts.size());
         for (const Index p : add_cut(cut, read[0].improve, read[0].slack_world, all)) {
             const auto& [part, at] = origins[p];
             for (std::size_t f = 0; f < all.fields.size(); ++f) {

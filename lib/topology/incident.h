@@ -13,7 +13,7 @@ namespace subvol::detail {
 inline constexpr std::array<std::array<std::size_t, 3>, 8> kCornerEdges = [] {
     std::array<std::array<std::size_t, 3>, 8> edges{};
     for (std::size_t k = 0; k < 12; ++k) {
-        for (const int corner : kCellEdges[k]) edges[static_cast<std::size_t>(corner)][k / 4] = k;
+        for (const std::size_t corner : kCellEdges[k]) edges[corner][k / 4] = k;
     }
     return edges;
 }();

@@ -2,6 +2,7 @@
 #include "mesh_parts.h"
 
 #include <algorithm>
+#include <tuple>
 
 #include "subvol/detail/bucket_sort.h"
 #include "subvol/error.h"
@@ -59,10 +60,10 @@ public:
     [[nodiscard]] MeshPart part(std::size_t slab) {
         HexMesh cut = cells_about(slab);
         MeshPart part;
-        for (std::size_t p = 0; p < numbers_.size(); ++p) {
+        for (Index p = 0; p < numbers_.size(); ++p) {
             if (numbers_[p] == kNone) continue;
             numbers_[p] = static_cast<Index>(part.points.size());
-            part.points.push_back(static_cast<Index>(p));
+            part.points.push_back(p);
             part.own.push_back(slabs_[p] == slab);
         }
         renumber(cut.cells);
@@ -102,7 +103,7 @@ private:
         try {
             return build_topology(cut);
         } catch (const Error&) {
-            static_cast<void>(build_topology(mesh_));  // throws with the numbers of the whole mesh
+            std::ignore = build_topology(mesh_);  // throws with the numbers of the whole mesh
             throw;
         }
     }

@@ -146,7 +146,7 @@ std::optional<MeshPiece> gather_cells(const MeshSource::Stored& stored, const Ga
     std::vector<MeshPiece> parts;
     std::uint64_t cells = 0;
     for (std::size_t p = 0; p < stored.pieces.size(); ++p) {
-        report_progress(options.progress, "gather", static_cast<double>(p) / static_cast<double>(stored.pieces.size()));
+        report_progress(options.progress, "gather", p, stored.pieces.size());
         if (!options.reads(p)) continue;
         const MeshPiece piece = stored.read(p);
         MeshPiece part = chosen_cells(piece, options.chooses(piece), options.layers);

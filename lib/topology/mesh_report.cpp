@@ -56,11 +56,11 @@ void add(ShapeReport& report, const CellQuality& cell) {
 /// Counts the edges whose smaller point is the part's own.
 void count_edges(const detail::MeshPart& part, MeshReport& report) {
     const Topology& topology = part.topology;
-    for (std::size_t e = 0; e < topology.edges.size(); ++e) {
+    for (Index e = 0; e < topology.edges.size(); ++e) {
         if (!part.own[topology.edges[e][0]]) continue;
         ++report.edges;
         if (topology.edge_on_boundary[e]) {
-            report.nonmanifold_edges += topology.boundary_faces_at(static_cast<Index>(e)) != 2;
+            report.nonmanifold_edges += topology.boundary_faces_at(e) != 2;
         } else {
             ++report.interior_edges;
             ++report.interior_edge_valence[static_cast<int>(topology.edge_cells[e].size())];
@@ -71,10 +71,10 @@ void count_edges(const detail::MeshPart& part, MeshReport& report) {
 /// Counts the faces whose smallest point is the part's own.
 void count_faces(const detail::MeshPart& part, MeshReport& report) {
     const Topology& topology = part.topology;
-    for (std::size_t f = 0; f < topology.faces.size(); ++f) {
+    for (Index f = 0; f < topology.faces.size(); ++f) {
         if (!part.own[topology.faces[f][0]]) continue;
         ++report.faces;
-        report.boundary_faces += topology.face_on_hull(static_cast<Index>(f));
+        report.boundary_faces += topology.face_on_hull(f);
     }
 }
 
@@ -233,7 +233,7 @@ detail::MeshShare share_of_pieces(const MeshSource::Stored& stored, std::size_t 
     detail::MeshShare share;
     MeshReport& counts = share.counts;
     for (std::size_t p = begin; p < end; ++p) {
-        report_progress(progress, "inspect", static_cast<double>(p - begin) / static_cast<double>(end - begin));
+        report_progress(progress, "inspect", p - begin, end - begin);
         const MeshPiece piece = stored.read(p);
         counts.volume = 0;
         const std::size_t inverted_before = counts.inverted_cells;

@@ -66,8 +66,8 @@ void build_cell_edges(Topology& topology) {
     topology.cell_edges.resize(topology.cells.size());
     parallel_each(topology.cells.size(), [&](std::size_t c) {
         for (std::size_t k = 0; k < 12; ++k) {
-            const Index a = topology.cells[c][static_cast<std::size_t>(kCellEdges[k][0])];
-            const Index b = topology.cells[c][static_cast<std::size_t>(kCellEdges[k][1])];
+            const Index a = topology.cells[c][kCellEdges[k][0]];
+            const Index b = topology.cells[c][kCellEdges[k][1]];
             topology.cell_edges[c][k] = *topology.find_edge(a, b);
         }
     });
@@ -92,8 +92,8 @@ void build_point_edges(Topology& topology) {
 void mark_boundary(Topology& topology) {
     topology.edge_on_boundary.assign(topology.edges.size(), 0);
     topology.point_on_boundary.assign(topology.point_count, 0);
-    for (std::size_t f = 0; f < topology.faces.size(); ++f) {
-        if (!topology.face_on_boundary(static_cast<Index>(f))) continue;
+    for (Index f = 0; f < topology.faces.size(); ++f) {
+        if (!topology.face_on_boundary(f)) continue;
         for (const Index e : topology.face_edges[f]) topology.edge_on_boundary[e] = 1;
         for (const Index p : topology.faces[f]) topology.point_on_boundary[p] = 1;
     }
@@ -128,9 +128,9 @@ bool has_single_cell(const Topology& topology, Index edge) {
 /// Marks creases by the default rule and by the tags of the mesh.
 void mark_creases(Topology& topology, detail::InteriorCreases interior) {
     topology.edge_is_crease.assign(topology.edges.size(), 0);
-    for (std::size_t e = 0; e < topology.edges.size(); ++e) {
+    for (Index e = 0; e < topology.edges.size(); ++e) {
         if (!topology.edge_on_boundary[e]) continue;
-        const auto edge = static_cast<Index>(e);
+        const auto edge = e;
         const bool manifold = topology.boundary_faces_at(edge) == 2;
         topology.nonmanifold_edges += !manifold;
         topology.edge_is_crease[e] = !manifold || has_single_cell(topology, edge);
@@ -230,8 +230,8 @@ void tag_creases(HexMesh& mesh, double angle_deg) {
     }
     const Topology topology = build_topology(mesh);
     const double limit = std::cos(angle_deg * std::numbers::pi / 180);
-    for (std::size_t e = 0; e < topology.edges.size(); ++e) {
-        const auto edge = static_cast<Index>(e);
+    for (Index e = 0; e < topology.edges.size(); ++e) {
+        const auto edge = e;
         if (!topology.edge_on_boundary[e] || topology.edge_is_crease[e]) continue;
         const auto [f0, f1] = detail::boundary_faces_of(topology, edge);
         const auto [a, b] = topology.edges[e];

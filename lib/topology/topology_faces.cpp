@@ -126,7 +126,7 @@ std::vector<Quad> hull_quads(const HexMesh& mesh, const std::function<bool(const
 
 std::array<Index, 4> outward_quad(const std::array<Index, 8>& cell, std::size_t side) {
     Quad quad;
-    for (std::size_t k = 0; k < 4; ++k) quad[k] = cell[static_cast<std::size_t>(kCellFaces[side][k])];
+    for (std::size_t k = 0; k < 4; ++k) quad[k] = cell[kCellFaces[side][k]];
     std::rotate(quad.begin(), std::min_element(quad.begin(), quad.end()), quad.end());
     return quad;
 }

@@ -4,8 +4,8 @@
 #include <string>
 #include <utility>
 
-#include "coordinates.h"
 #include "subvol/error.h"
+#include "wavelet_format.h"
 
 namespace subvol {
 

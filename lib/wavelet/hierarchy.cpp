@@ -5,7 +5,6 @@
 
 #include "child_topology.h"
 #include "coarsen.h"
-#include "structured_cells.h"
 #include "subvol/error.h"
 #include "subvol/refine.h"
 
@@ -44,7 +43,7 @@ MeshHierarchy hierarchy_of(const HexMesh& mesh, int most, std::string& why) {
     result.levels = static_cast<int>(steps.size());
     if (steps.empty()) return result;
     std::vector<Placed> placed(current->cells.size());
-    for (std::size_t c = 0; c < placed.size(); ++c) placed[c] = {static_cast<Index>(c), {0, 1, 2, 3, 4, 5, 6, 7}};
+    for (Index c = 0; c < placed.size(); ++c) placed[c] = {c, {0, 1, 2, 3, 4, 5, 6, 7}};
     for (std::size_t l = steps.size(); l-- > 0;) {
         std::vector<Placed> finer(8 * placed.size());
         for (std::size_t c = 0; c < placed.size(); ++c) {

@@ -131,7 +131,7 @@ DroppedDetails drop_details(const WaveletBasis& basis, WaveletField& field, doub
                     square += less.details[l][k] * less.details[l][k];
                 }
                 if (std::sqrt(square) * weight_of(measure, n) >= threshold) return;
-                std::fill_n(less.details[l].begin() + static_cast<std::ptrdiff_t>(n * field.channels), field.channels, 0.0);
+                std::fill_n(less.details[l].data() + n * field.channels, field.channels, 0.0);
             });
         }
         return less;

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <limits>
 
-#include "coordinates.h"
 #include "output_file.h"
 #include "subvol/error.h"
 #include "subvol/hierarchy.h"

@@ -5,10 +5,19 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "subvol/hex_mesh.h"
 
 namespace subvol::detail {
+
+/// x, y, z of each point, point-major.
+[[nodiscard]] inline std::vector<double> coordinates(const std::vector<Vec3>& points) {
+    std::vector<double> values;
+    values.reserve(3 * points.size());
+    for (const Vec3& p : points) values.insert(values.end(), {p.x, p.y, p.z});
+    return values;
+}
 
 // A .svw file: kWaveletMagic, the length of the contents (8 bytes, lowest first), and the contents compressed. The contents are
 // whole numbers of one or more bytes, seven bits in each, lowest first; signed ones as 0, -1, 1, -2, …; reals as 8 bytes:

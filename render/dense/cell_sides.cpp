@@ -6,7 +6,7 @@
 
 #include <algorithm>
 
-#include "cell_split.h"
+#include "dense_grid.h"
 
 namespace subvol::detail {
 

@@ -18,7 +18,7 @@
 #include <optional>
 #include <vector>
 
-#include "cell_split.h"
+#include "dense_grid.h"
 #include "subvol/dense_cells.h"
 #include "subvol/detail/all_cells.h"
 

@@ -8,9 +8,9 @@
 //                                               function gives the light between x on the last sheet and on this one, which
 //                                               is blended under the light before (sheet_composite.comp)
 //
-// The CPU lists the kernels of some sheets at a time (sheet_lists.cpp), so that memory does not grow with the number of sheets.
-// Only the rectangle that the kernels of this sheet and of the last one touch is drawn and composited. This is slower than
-// splat_gl/, which keeps the sums in registers, and serves for comparison (docs/adr/0011).
+// The CPU lists the kernels of some sheets at a time (sheet_target.cpp), so that memory does not grow with the number of
+// sheets. Only the rectangle that the kernels of this sheet and of the last one touch is drawn and composited. This is slower
+// than splat_gl/, which keeps the sums in registers, and serves for comparison (docs/adr/0011).
 #include "gl_sheets.h"
 
 #include <cmath>

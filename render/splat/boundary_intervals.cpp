@@ -209,11 +209,10 @@ void sort_hits(std::vector<Hit>& hits, std::size_t pixels, std::vector<std::uint
     for (const Hit& hit : hits) sorted[ends[hit.pixel]++] = hit;
     for (std::size_t i = 0, begin = 0; i < pixels; begin = ends[i++]) {
         if (ends[i] < begin + 2) continue;
-        std::sort(sorted.begin() + static_cast<std::ptrdiff_t>(begin), sorted.begin() + static_cast<std::ptrdiff_t>(ends[i]),
-                  [](const Hit& l, const Hit& r) {
-                      // Where two shells touch, the entry into one comes before the exit from the other: no gap opens.
-                      return l.depth != r.depth ? l.depth < r.depth : l.sign > r.sign;
-                  });
+        std::sort(sorted.data() + begin, sorted.data() + ends[i], [](const Hit& l, const Hit& r) {
+            // Where two shells touch, the entry into one comes before the exit from the other: no gap opens.
+            return l.depth != r.depth ? l.depth < r.depth : l.sign > r.sign;
+        });
     }
 }
 

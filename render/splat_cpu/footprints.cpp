@@ -110,7 +110,7 @@ Drawn Footprints::draw(SplatFrame& frame, const View& view, const Classification
         draw_tile(frame, kernels, tile, drawn);
         if (!progress) return;
         const std::lock_guard lock(reporting);
-        report_progress(progress, "splat", static_cast<double>(++done) / static_cast<double>(tiles));
+        report_progress(progress, "splat", ++done, tiles);
     });
     return drawn;
 }

@@ -64,8 +64,8 @@ void check(const MeshSource& source, const BrickTetsOptions& options) {
 
 std::vector<Index> owned_cells(const MeshPiece& part) {
     std::vector<Index> cells;
-    for (std::size_t c = 0; c < part.owned_cells.size(); ++c) {
-        if (part.owned_cells[c]) cells.push_back(static_cast<Index>(c));
+    for (Index c = 0; c < part.owned_cells.size(); ++c) {
+        if (part.owned_cells[c]) cells.push_back(c);
     }
     return cells;
 }

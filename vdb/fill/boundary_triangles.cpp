@@ -20,7 +20,7 @@ using Quad = std::array<Vec3, 4>;
 /// The corners of a side of a cell, in the order of `kCellFaces`.
 std::array<Index, 4> corners_of_side(const Topology& topology, Index cell, std::size_t side) {
     std::array<Index, 4> quad;
-    for (std::size_t k = 0; k < 4; ++k) quad[k] = topology.cells[cell][static_cast<std::size_t>(kCellFaces[side][k])];
+    for (std::size_t k = 0; k < 4; ++k) quad[k] = topology.cells[cell][kCellFaces[side][k]];
     return quad;
 }
 
@@ -34,10 +34,10 @@ bool same_direction(const std::array<Index, 4>& a, const std::array<Index, 4>& b
 std::vector<std::uint8_t> turned_cells(const Topology& topology) {
     std::vector<std::uint8_t> turned(topology.cells.size()), seen(topology.cells.size());
     std::vector<Index> open;
-    for (std::size_t start = 0; start < topology.cells.size(); ++start) {
+    for (Index start = 0; start < topology.cells.size(); ++start) {
         if (seen[start]) continue;
         seen[start] = 1;
-        open.push_back(static_cast<Index>(start));
+        open.push_back(start);
         while (!open.empty()) {
             const Index cell = open.back();
             open.pop_back();
@@ -69,9 +69,9 @@ struct BoundaryCell {
 std::vector<BoundaryCell> boundary_cells(const Topology& topology, const std::function<bool(Index cell)>& wanted) {
     std::vector<BoundaryCell> cells;
     std::size_t first = 0;
-    for (std::size_t c = 0; c < topology.cells.size(); ++c) {
-        if (wanted && !wanted(static_cast<Index>(c))) continue;
-        BoundaryCell cell{static_cast<Index>(c), first, {}};
+    for (Index c = 0; c < topology.cells.size(); ++c) {
+        if (wanted && !wanted(c)) continue;
+        BoundaryCell cell{c, first, {}};
         for (std::size_t side = 0; side < 6; ++side) {
             if (topology.face_on_hull(topology.cell_faces[c][side])) cell.sides.push_back(side);
         }
@@ -104,7 +104,7 @@ void put_quads(std::size_t side, int steps, bool turned, const PointAt& point, V
     using Place = std::array<int, 3>;
     const auto corner = [&](std::size_t k) {
         Place at;
-        for (std::size_t d = 0; d < 3; ++d) at[d] = steps * kCornerParameters[static_cast<std::size_t>(kCellFaces[side][k])][d];
+        for (std::size_t d = 0; d < 3; ++d) at[d] = steps * kCornerParameters[kCellFaces[side][k]][d];
         return at;
     };
     const Place start = corner(0), next = corner(1), last = corner(3);
@@ -137,13 +137,13 @@ public:
         : request_(request), topology_(topology), levels_(levels) {
         const std::vector<Index>& cells = request.pieces->cells;
         first_.resize(topology.cells.size() + 1);
-        for (std::size_t c = 0; c < first_.size(); ++c) {
-            first_[c] = static_cast<std::size_t>(std::ranges::lower_bound(cells, static_cast<Index>(c)) - cells.begin());
+        for (Index c = 0; c < first_.size(); ++c) {
+            first_[c] = static_cast<std::size_t>(std::ranges::lower_bound(cells, c) - cells.begin());
         }
         points_.assign(topology.point_count, kNone);
         edges_.assign(topology.edges.size(), kNone);
-        for (std::size_t f = 0; f < topology.faces.size(); ++f) {
-            if (!topology.face_on_hull(static_cast<Index>(f))) continue;
+        for (Index f = 0; f < topology.faces.size(); ++f) {
+            if (!topology.face_on_hull(f)) continue;
             const Index cell = topology.face_cells[f][0];
             for (const Index p : topology.faces[f]) points_[p] = std::min(points_[p], cell);
             for (const Index e : topology.face_edges[f]) edges_[e] = std::min(edges_[e], cell);

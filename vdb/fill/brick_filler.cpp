@@ -92,7 +92,7 @@ VoxelBricks BrickFiller::run(const std::optional<VoxelBox>& part) {
     std::vector<VoxelBox> boxes;
     Batch batch;
     for (std::size_t first = 0; first < blocks.size(); first += batch.numbers.size()) {
-        report_progress(request_.progress, "rasterize", static_cast<double>(first) / static_cast<double>(blocks.size()));
+        report_progress(request_.progress, "rasterize", first, blocks.size());
         load(std::span(blocks).subspan(first), batch);
         fill(batch, part, bricks);
         if (first_run) boxes.insert(boxes.end(), batch.boxes.begin(), batch.boxes.end());
@@ -105,8 +105,8 @@ VoxelBricks BrickFiller::run(const std::optional<VoxelBox>& part) {
 
 std::vector<Index> BrickFiller::blocks_in(const std::optional<VoxelBox>& part) const {
     std::vector<Index> blocks;
-    for (std::size_t b = 0; b < request_.block_count(); ++b) {
-        if (!part || boxes_.empty() || touch(boxes_[b], *part)) blocks.push_back(static_cast<Index>(b));
+    for (Index b = 0; b < request_.block_count(); ++b) {
+        if (!part || boxes_.empty() || touch(boxes_[b], *part)) blocks.push_back(b);
     }
     return blocks;
 }
@@ -188,7 +188,7 @@ void BrickFiller::load_cells(Batch& batch) const {
             double* value = batch.values.data() + node * channels_;
             for (const Attribute* field : request_.fields) {
                 const auto channels = static_cast<std::size_t>(field->channels);
-                value = std::copy_n(field->values.begin() + static_cast<std::ptrdiff_t>(id * channels), channels, value);
+                value = std::copy_n(field->values.data() + id * channels, channels, value);
             }
         }
     });
@@ -221,7 +221,7 @@ void BrickFiller::load_refined(Batch& batch) const {
                 double* value = batch.values.data() + (first + n) * channels_;
                 for (std::size_t a = 0; a < cell.values.size(); ++a) {
                     const std::size_t channels = cell.values[a].size() / nodes;
-                    value = std::copy_n(cell.values[a].begin() + static_cast<std::ptrdiff_t>(n * channels), channels, value);
+                    value = std::copy_n(cell.values[a].data() + n * channels, channels, value);
                 }
             }
         });
@@ -229,8 +229,8 @@ void BrickFiller::load_refined(Batch& batch) const {
 }
 
 void BrickFiller::fill(const Batch& batch, const std::optional<VoxelBox>& part, VoxelBricks& bricks) {
-    for (std::size_t i = 0; i < batch.numbers.size(); ++i) {
-        bricks.enter(static_cast<Index>(i), part ? common(batch.boxes[i], *part) : batch.boxes[i]);
+    for (Index i = 0; i < batch.numbers.size(); ++i) {
+        bricks.enter(i, part ? common(batch.boxes[i], *part) : batch.boxes[i]);
     }
     const std::vector<VoxelBrick*> entered = bricks.take_entered();
     tbb::parallel_for(std::size_t{0}, entered.size(), [&](std::size_t b) {
@@ -261,8 +261,8 @@ SurfaceColumns BrickFiller::columns_through(std::span<VoxelBrick* const> bricks)
         for (const VoxelBox& box : brick->doubtful) each_tile(box, [&](const auto& tile) { return tiles.insert(tile), false; });
     }
     std::vector<std::uint8_t> wanted(request_.mesh->cells.size(), 0);
-    for (std::size_t b = 0; b < boxes_.size(); ++b) {
-        auto& of_cell = wanted[request_.cell_of(static_cast<Index>(b))];
+    for (Index b = 0; b < boxes_.size(); ++b) {
+        auto& of_cell = wanted[request_.cell_of(b)];
         if (of_cell == 0 && each_tile(boxes_[b], [&](const auto& tile) { return tiles.contains(tile); })) of_cell = 1;
     }
     return SurfaceColumns(boundary_triangles(request_, [&](Index cell) { return wanted[cell] != 0; }));

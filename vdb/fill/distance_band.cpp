@@ -54,14 +54,14 @@ bool is_near(const VoxelTriangle& triangle, const VoxelCoord& origin, int side, 
 void enter(std::span<const VoxelTriangle> triangles, double half_width, const std::optional<VoxelBox>& part,
            VoxelBricks& bricks) {
     constexpr int kInBrick = ~(kBrickSide - 1);
-    for (std::size_t t = 0; t < triangles.size(); ++t) {
+    for (Index t = 0; t < triangles.size(); ++t) {
         const VoxelBox whole = box_about(triangles[t], half_width), box = part ? common(whole, *part) : whole;
         if (box.empty()) continue;
         for (int x = box.lower[0] & kInBrick; x <= box.upper[0]; x += kBrickSide) {
             for (int y = box.lower[1] & kInBrick; y <= box.upper[1]; y += kBrickSide) {
                 for (int z = box.lower[2] & kInBrick; z <= box.upper[2]; z += kBrickSide) {
                     if (!is_near(triangles[t], {x, y, z}, kBrickSide, half_width)) continue;
-                    bricks.enter(static_cast<Index>(t), {{x, y, z}, {x, y, z}});
+                    bricks.enter(t, {{x, y, z}, {x, y, z}});
                 }
             }
         }

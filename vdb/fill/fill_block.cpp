@@ -117,6 +117,52 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace subvol::detail {
 
+namespace {
+
+using AwayFaces = std::array<std::array<std::array<std::size_t, 4>, 3>, 8>;
+
+AwayFaces make_away_faces() {
+    AwayFaces away;
+    for (std::size_t corner = 0; corner < 8; ++corner) {
+        std::size_t count = 0;
+        for (const auto& face : kCellFaces) {
+            if (std::ranges::find(face, corner) == face.end()) away[corner][count++] = face;
+        }
+    }
+    return away;
+}
+
+CornerSplit make_split(std::size_t apex, std::size_t diagonals) {
+    CornerSplit split;
+    for (std::size_t t = 0; t < 8; ++t) {
+        const std::size_t f = std::min(t, std::size_t{5}) / 2, half = std::min(t, std::size_t{5}) % 2;
+        auto quad = faces_away_from(apex)[f];
+        std::rotate(quad.begin(), quad.begin() + static_cast<int>(diagonals >> f & 1), quad.end());
+        // As in `split_cell`: the quad is counter-clockwise from outside and the apex lies behind it.
+        const std::array corners{quad[0], half == 0 ? quad[2] : quad[3], half == 0 ? quad[1] : quad[2], apex};
+        for (std::size_t k = 0; k < 4; ++k) split.corners[k][t] = static_cast<std::int64_t>(corners[k]);
+    }
+    return split;
+}
+
+std::array<CornerSplit, 64> make_splits() {
+    std::array<CornerSplit, 64> splits;
+    for (std::size_t i = 0; i < splits.size(); ++i) splits[i] = make_split(i / 8, i % 8);
+    return splits;
+}
+
+}  // namespace
+
+const std::array<std::array<std::size_t, 4>, 3>& faces_away_from(std::size_t corner) {
+    static const AwayFaces kAway = make_away_faces();
+    return kAway[corner];
+}
+
+const CornerSplit& corner_split(std::size_t apex, std::size_t diagonals) {
+    static const std::array<CornerSplit, 64> kSplits = make_splits();
+    return kSplits[8 * apex + diagonals];
+}
+
 HWY_EXPORT(fill_cell);
 HWY_EXPORT(fill_piece);
 HWY_EXPORT(fill_rest_of_piece);

@@ -3,15 +3,16 @@
 
 #include <openvdb/io/Archive.h>
 #include <openvdb/io/GridDescriptor.h>
-#include "openvdb_grids.h"
-
 #include <algorithm>
 #include <fstream>
 #include <span>
 
+#include "openvdb_grids.h"
 #include "subvol/detail/printable.h"
+#include "subvol/detail/vdb_file.h"
 #include "subvol/error.h"
 #include "vdb_check.h"
+#include "vdb_data.h"
 
 namespace subvol::detail {
 
@@ -126,3 +127,29 @@ void write_grids(const AtomicFile& file, const std::filesystem::path& path, cons
 }
 
 }  // namespace subvol::detail
+
+namespace subvol {
+
+using namespace detail;
+
+void detail::write_vdb(const AtomicFile& file, const std::filesystem::path& path, std::span<const VdbGrid> grids,
+                       VdbCompression compression) {
+    openvdb::GridCPtrVec written;
+    for (const auto& grid : grids) written.push_back(VdbData::of(grid).grid);
+    write_grids(file, path, written, compression);
+}
+
+void write_vdb(const std::filesystem::path& path, std::span<const VdbGrid> grids, VdbCompression compression) {
+    AtomicFile file(path);
+    detail::write_vdb(file, path, grids, compression);
+    file.commit();
+}
+
+std::vector<VdbGrid> read_vdb(const std::filesystem::path& path) {
+    std::vector<VdbGrid> result;
+    for (const auto& grid : read_grids(path, openvdb::FloatGrid::gridType(), "float grid"))
+        result.push_back(make_vdb_grid(grid));
+    return result;
+}
+
+}  // namespace subvol

@@ -49,7 +49,7 @@ GridError grid_error(const VdbGrid& grid, const HexMesh& mesh, std::string_view 
     std::size_t count = 0, outside = 0;
     std::vector<Vec3> places;
     for (std::size_t first = 0; first < leaves.leafCount(); first += kLeavesCompared) {
-        report_progress(options.progress, "error", static_cast<double>(first) / static_cast<double>(leaves.leafCount()));
+        report_progress(options.progress, "error", first, leaves.leafCount());
         const std::size_t end = std::min(first + kLeavesCompared, leaves.leafCount());
         places.clear();
         for (std::size_t l = first; l < end; ++l) {

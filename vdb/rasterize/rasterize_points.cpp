@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <tuple>
 
 #include "brick_grids.h"
 #include "distance_band.h"
@@ -131,7 +132,7 @@ VoxelBricks evaluated(VoxelBricks bricks, std::span<const RbfField> fields, cons
     auto all = bricks.release();
     constexpr std::size_t kBatch = 64;
     for (std::size_t first = 0; first < all.size(); first += kBatch) {
-        report_progress(progress, "kernel sums", static_cast<double>(first) / static_cast<double>(all.size()));
+        report_progress(progress, "kernel sums", first, all.size());
         const auto batch = std::span(all).subspan(first, std::min(kBatch, all.size() - first));
         tbb::parallel_for(std::size_t{0}, batch.size() * batch[0]->leaves.size(), [&](std::size_t i) {
             auto& brick = *batch[i / batch[0]->leaves.size()];
@@ -156,7 +157,7 @@ std::vector<VdbGrid> rasterize_points(const RbfVolume& volume, std::span<const s
     if (channels.empty()) throw Error(ErrorCode::InvalidInput, "no field is named to be rasterized");
     const ToVoxels to_voxels = to_voxels_of(box_of(volume), options);
     check_representable(to_voxels.voxel_size);
-    static_cast<void>(in_voxels(box_of(volume), to_voxels));
+    std::ignore = in_voxels(box_of(volume), to_voxels);
     const bool bounded = !volume.boundary.triangles.empty();
     if (options.level_set) {
         check_level_set(options);

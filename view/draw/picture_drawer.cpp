@@ -2,13 +2,68 @@
 #include "subvol/picture_drawer.h"
 
 #include <algorithm>
+#include <atomic>
+#include <exception>
+#include <optional>
+#include <thread>
 #include <utility>
 #include <variant>
 
-#include "few_kernels.h"
+#include "cancel_flag.h"
 #include "picture_overlays.h"
 #include "subvol/detail/stopwatch.h"
+#include "subvol/kernel_hierarchy.h"
+#include "subvol/rbf_volume.h"
 #include "surface_preview.h"
+
+namespace subvol::detail {
+
+namespace {
+
+/// Few kernels that stand for very many in coarse pictures, merged on a thread of its own while all of them are drawn.
+class FewKernels {
+public:
+    /// Begins to merge, if the kernels are many.
+    ///
+    /// all: stays as it is until this object's end
+    explicit FewKernels(const RbfVolume& all);
+    ~FewKernels();
+    FewKernels(const FewKernels&) = delete;
+    FewKernels& operator=(const FewKernels&) = delete;
+
+    /// The few; null while they are being made, and where there are not many.
+    [[nodiscard]] const RbfVolume* ready() const { return ready_ ? &*few_ : nullptr; }
+
+private:
+    std::optional<RbfVolume> few_{};
+    std::atomic<bool> ready_ = false, quit_ = false;
+    std::thread thread_{};
+};
+
+constexpr std::size_t kFew = 1 << 14;
+
+FewKernels::FewKernels(const RbfVolume& all) {
+    if (all.size() < 2 * kFew) return;
+    thread_ = std::thread([this, &all] {
+        try {
+            CancelFlag quit(quit_);
+            const KernelHierarchy hierarchy = build_kernel_hierarchy(all, &quit);
+            few_ = kernels_of_cut(hierarchy, all, level_cut(hierarchy, kFew));
+            ready_ = true;
+        } catch (const std::exception&) {  // given up, or no memory: coarse pictures go on to show all kernels
+            few_.reset();
+        }
+    });
+}
+
+FewKernels::~FewKernels() {
+    quit_ = true;
+    if (thread_.joinable()) thread_.join();
+}
+
+}  // namespace
+
+}  // namespace subvol::detail
 
 namespace subvol {
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 
-#include "edit_actions.h"
 #include "subvol/detail/near_name.h"
 #include "subvol/detail/printable.h"
 #include "subvol/error.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "edit_actions.h"
+#include "view_actions.h"
 
 #include <cmath>
 #include <limits>
@@ -11,6 +11,7 @@
 #include "subvol/edit_mesh.h"
 #include "subvol/error.h"
 #include "subvol/mesh_io.h"
+#include "subvol/raster.h"
 
 namespace subvol::detail {
 
@@ -64,10 +65,7 @@ Selection under_brush(const Session& session, const Vec2& pixel, double radius_p
     const int x = static_cast<int>(pixel.x) / picture->scale, y = static_cast<int>(pixel.y) / picture->scale;
     const bool inside = x >= 0 && y >= 0 && x < picture->image.width && y < picture->image.height;
     const double depth =
-        inside
-            ? static_cast<double>(picture->depth[static_cast<std::size_t>(y) * static_cast<std::size_t>(picture->image.width) +
-                                                 static_cast<std::size_t>(x)])
-            : std::numeric_limits<double>::infinity();
+        inside ? double{picture->depth[pixel_index(picture->image.width, x, y)]} : std::numeric_limits<double>::infinity();
     if (!std::isfinite(depth)) throw Error(ErrorCode::InvalidInput, "nothing is under the brush");
     const Ray ray = view.ray(pixel.x, pixel.y);
     const double radius = radius_px * view.pixel() * (view.perspective() ? depth : 1);

@@ -1,15 +1,62 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <exception>
 #include <utility>
 
-#include "compare_pictures.h"
 #include "cut_handles.h"
 #include "picture_overlays.h"
 #include "session_state.h"
 #include "subvol/detail/json_depth.h"
 #include "subvol/detail/printable.h"
 #include "subvol/error.h"
+#include "subvol/image.h"
+#include "subvol/vec.h"
+
+namespace subvol::detail {
+
+namespace {
+
+/// Left of `slider` (0 to 1 of the width) one picture, right of it the other, with a line between them.
+///
+/// right: of the same size
+Image side_by_side(const Image& left, const Image& right, double slider, const Vec3& line) {
+    Image both = left;
+    const int border = static_cast<int>(std::lround(slider * left.width));
+    for (int y = 0; y < left.height; ++y) {
+        for (int x = border; x < left.width; ++x) std::ranges::copy(right.pixel(x, y), both.pixel(x, y).begin());
+        if (border <= 0 || border >= left.width) continue;
+        const auto pixel = both.pixel(border, y);
+        for (std::size_t c = 0; c < 3; ++c) pixel[c] = static_cast<float>(line[static_cast<int>(c)]);
+        pixel[3] = 1;
+    }
+    return both;
+}
+
+/// The largest difference of a pixel's colours, over a background, as grey: white is a difference of 1/8 or more.
+Image difference_of(const Image& left, const Image& right, const Vec3& background) {
+    constexpr float kGain = 8;
+    Image difference(left.width, left.height);
+    for (int y = 0; y < left.height; ++y) {
+        for (int x = 0; x < left.width; ++x) {
+            const auto a = left.pixel(x, y), b = right.pixel(x, y);
+            float most = 0;
+            for (std::size_t c = 0; c < 3; ++c) {
+                const auto behind = static_cast<float>(background[static_cast<int>(c)]);
+                most = std::max(most, std::abs(a[c] - b[c] - (a[3] - b[3]) * behind));
+            }
+            const auto pixel = difference.pixel(x, y);
+            for (std::size_t c = 0; c < 3; ++c) pixel[c] = std::min(1.0F, kGain * most);
+            pixel[3] = 1;
+        }
+    }
+    return difference;
+}
+
+}  // namespace
+
+}  // namespace subvol::detail
 
 namespace subvol {
 
@@ -255,7 +302,7 @@ void ViewSession::run_numbered(std::string_view action, std::size_t number, cons
 void ViewSession::run_script(std::string_view script, const std::string& file, Progress* progress) {
     const std::vector<std::string> actions = split_script(script, file);
     for (std::size_t k = 0; k < actions.size(); ++k) {
-        report_progress(progress, "play", static_cast<double>(k) / static_cast<double>(actions.size()));
+        report_progress(progress, "play", k, actions.size());
         run_numbered(actions[k], k + 1, file);
     }
 }

@@ -2,6 +2,7 @@
 // The module subvol_window.so: the window, by GLFW and Dear ImGui. The picture fills it up to the panel at the right, one pixel
 // of the screen for each of its own; a worker draws it, so the window itself never waits.
 #include <epoxy/gl.h>
+
 // epoxy before GLFW, which otherwise brings its own OpenGL
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
@@ -11,15 +12,25 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <memory>
 
-#include "imgui_version.h"
 #include "panel.h"
+#include "subvol/raster.h"
 #include "subvol/version.h"
 
 namespace subvol::detail {
 
 namespace {
+
+/// A texture of OpenGL for ImDrawList::AddImage: a pointer until 1.91.3, a number from 1.91.4 on.
+[[nodiscard]] inline ImTextureID texture_id(unsigned texture) {
+#if IMGUI_VERSION_NUM >= 19140
+    return static_cast<ImTextureID>(texture);
+#else
+    return reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(texture));
+#endif
+}
 
 constexpr float kPanel = 340;                     // width, in units of the screen
 constexpr float kOrbit_deg = 0.35F;               // for each pixel of a drag
@@ -183,8 +194,7 @@ void save(Window& self) {
     glPixelStorei(GL_PACK_ALIGNMENT, 1);
     glReadPixels(0, 0, width, height, GL_RGB, GL_UNSIGNED_BYTE, upwards.data());
     for (int y = 0; y < height; ++y)
-        std::copy_n(upwards.begin() + static_cast<std::ptrdiff_t>(row) * (height - 1 - y), row,
-                    pixels.begin() + static_cast<std::ptrdiff_t>(row) * y);
+        std::copy_n(upwards.data() + pixel_index(row, 0, height - 1 - y), row, pixels.data() + pixel_index(row, 0, y));
     self.host.save_window(width, height, pixels);
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <tuple>
 #include <unordered_map>
 #include <unordered_set>
 #include <utility>
@@ -119,7 +120,7 @@ private:
 
     // Counts the faces and edges of cells among the shells by their types.
     void drop_parts() {
-        static_cast<void>(drop_parts_of_cells(found_, options_.shells_alone));
+        std::ignore = drop_parts_of_cells(found_, options_.shells_alone);
         std::unordered_set<Index> kept(found_.quads.numbers.begin(), found_.quads.numbers.end());
         kept.insert(found_.lines.numbers.begin(), found_.lines.numbers.end());
         for (const auto& [number, type] : shells_) {

@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -71,7 +72,7 @@ EnsightData::EnsightData(const std::filesystem::path& path, bool binary)
     const bool says_so = begin.starts_with("C Binary");
     binary_ = says_so || binary;
     if (binary_) in_.name_bytes();
-    if (says_so) static_cast<void>(in_.bytes(std::min(kOfLine, text_.size()), {"line"}));
+    if (says_so) std::ignore = in_.bytes(std::min(kOfLine, text_.size()), {"line"});
 }
 
 bool EnsightData::at_end() {
@@ -209,14 +210,14 @@ private:
     void read_geometry() {
         EnsightData data(checked(case_.geometry()));
         binary_ = data.binary();
-        static_cast<void>(data.line());
-        static_cast<void>(data.line());
+        std::ignore = data.line();
+        std::ignore = data.line();
         const bool node_ids = has_ids(data, "node"), element_ids = has_ids(data, "element");
         std::optional<int> open;
         while (!data.at_end()) {
             const std::string line = data.line();
             if (line == "extents") {
-                static_cast<void>(data.reals(6, "extents"));
+                std::ignore = data.reals(6, "extents");
             } else if (line == "part") {
                 const std::int64_t number = data.integer("the number of a part");
                 open = static_cast<int>(number);
@@ -256,7 +257,7 @@ private:
     static void read_points(EnsightData& data, Part& part, bool ids) {
         if (!part.found.points.empty()) data.fail("part " + in_quotes(part.name) + " has coordinates already");
         const std::size_t count = data.count("nodes");
-        if (ids) static_cast<void>(data.integers(count, "numbers of nodes"));
+        if (ids) std::ignore = data.integers(count, "numbers of nodes");
         add_axes(data, part, count);
     }
 
@@ -317,7 +318,7 @@ private:
         if (known == kNodes.end() && type != "nsided" && type != "nfaced")
             data.fail("elements of type " + in_quotes(line) + " are not known");
         const std::size_t count = data.count("elements");
-        if (ids) static_cast<void>(data.integers(count, "numbers of elements"));
+        if (ids) std::ignore = data.integers(count, "numbers of elements");
         const std::size_t first = part.elements;
         part.first_groups.try_emplace(line, part.groups.size());
         part.groups.push_back({line, first, count});
@@ -326,7 +327,7 @@ private:
         if (known == kNodes.end()) {
             std::size_t nodes = total(data, data.integers(count, "counts"));
             if (type == "nfaced") nodes = total(data, data.integers(nodes, "counts"));
-            static_cast<void>(data.integers(nodes, "nodes"));
+            std::ignore = data.integers(nodes, "nodes");
             left_out_[line] += count;
             return;
         }
@@ -389,7 +390,7 @@ private:
     // A part that a variable lacks has not got it: the parts are joined without.
     void read_variable(const EnsightVariable& variable) {
         EnsightData data(checked(variable.files), binary_);
-        static_cast<void>(data.line());
+        std::ignore = data.line();
         Part* part = nullptr;
         while (!data.at_end()) {
             const std::string line = data.line();
@@ -411,7 +412,7 @@ private:
     void read_values(EnsightData& data, const EnsightVariable& variable, Part& part, const std::string& line) {
         const std::string place = line.substr(0, line.find(' '));
         if (line.find("partial") != std::string::npos) data.fail("values at some places only (\"partial\") are not supported");
-        if (line.find("undef") != std::string::npos) static_cast<void>(data.reals(1, "the mark of undefined values"));
+        if (line.find("undef") != std::string::npos) std::ignore = data.reals(1, "the mark of undefined values");
         std::size_t first = 0, count = part.found.points.size();
         if (variable.at_cells && place == "block") {
             count = part.elements;

@@ -6,6 +6,7 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <tuple>
 #include <vector>
 
 #include "assemble.h"
@@ -128,7 +129,7 @@ std::vector<std::string> ExodusFile::names(const std::string& variable, std::siz
     if (length == 0 || found->second.lengths[0] != count)
         fail("there are no " + std::to_string(count) + " names in " + variable);
     expect_room(count, length, variable);
-    static_cast<void>(checked(variable, {}, count * length));
+    std::ignore = checked(variable, {}, count * length);
     const std::string text = source_->values(variable, {});
     std::vector<std::string> names;
     for (std::size_t i = 0; i < count; ++i) names.push_back(netcdf_text(std::string_view(text).substr(i * length, length)));

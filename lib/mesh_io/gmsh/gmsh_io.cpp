@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <limits>
+#include <tuple>
 #include <utility>
 
 #include "assemble.h"
@@ -259,7 +260,7 @@ private:
         } else {
             read_blocks("$Elements", elements_, [&](std::size_t count) { read_element_block(count); });
         }
-        static_cast<void>(elements_.sort());  // numbers that occur twice matter only to data
+        std::ignore = elements_.sort();  // numbers that occur twice matter only to data
     }
 
     /// Reads the nodes of an element.

@@ -8,6 +8,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "assemble.h"
@@ -92,7 +93,7 @@ fs::path FoamCase::mesh_file(std::size_t part, std::size_t step, const std::stri
 // throws: Error(InvalidInput) if there is no mesh
 FoamCase find_foam_case(const fs::path& path) {
     std::error_code none;
-    if (!fs::exists(path, none)) static_cast<void>(read_text(path));  // says what is wrong; the file's contents mean nothing
+    if (!fs::exists(path, none)) std::ignore = read_text(path);  // says what is wrong; the file's contents mean nothing
     FoamCase found;
     found.root = fs::is_directory(path, none) ? path : path.has_parent_path() ? path.parent_path() : fs::path(".");
     for (const auto& [number, name] : numbered(found.root, "processor")) {

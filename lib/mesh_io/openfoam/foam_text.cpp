@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <charconv>
 #include <limits>
+#include <tuple>
 
 #include "gzip.h"
 
@@ -236,7 +237,7 @@ std::vector<double> FoamText::internal_field(std::size_t components, std::size_t
     }
     if (kind != "nonuniform") fail("the internalField is " + in_quotes(std::string(kind)), "uniform or nonuniform");
     skip_space();
-    if (next_ < text_.size() && (text_[next_] < '0' || text_[next_] > '9')) static_cast<void>(token());  // List<vector>
+    if (next_ < text_.size() && (text_[next_] < '0' || text_[next_] > '9')) std::ignore = token();  // List<vector>
     values = reals(components, cells);
     if (values.size() != cells * components) {
         fail("the internalField has " + counted(values.size() / components, "value", "values"),

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <optional>
+#include <tuple>
 
 #include "assemble.h"
 #include "formats.h"
@@ -167,7 +168,7 @@ void read_flow(std::string_view text, std::string_view file, const Plot3dLayout&
         return;
     }
     Numbers numbers(in, layout->encoding);
-    static_cast<void>(read_sizes(numbers, layout->several));
+    std::ignore = read_sizes(numbers, layout->several);
     std::vector<FileArray> arrays{{"Density", 1, false, {}}, {"Momentum", 3, false, {}}, {"StagnationEnergy", 1, false, {}}};
     std::size_t first = 0;
     for (FileArray& array : arrays) array.values.resize(found.points.size() * static_cast<std::size_t>(array.components));
@@ -204,7 +205,7 @@ ReadResult read_plot3d(std::string_view text, std::string_view file, const ReadO
     }
     if (!layout->encoding.text) in.name_bytes();
     Numbers numbers(in, layout->encoding);
-    static_cast<void>(read_sizes(numbers, layout->several));
+    std::ignore = read_sizes(numbers, layout->several);
     MeshFile found;
     FileArray ghosts{std::string(kGhostArray), 1, false, {}};
     for (const StructuredGrid& grid : layout->blocks) read_block(numbers, *layout, grid, found, ghosts);

@@ -7,6 +7,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <numeric>
+#include <tuple>
 
 #include "assemble.h"
 #include "formats.h"
@@ -334,7 +335,7 @@ std::optional<PartFiles> part_files(const std::filesystem::path& path, const Rea
     if (format.files == nullptr) return {};
     check_options(format, path, options);
     std::vector<std::string> none;
-    if (!format.times) static_cast<void>(chosen_step(options, 1, path.string(), none));
+    if (!format.times) std::ignore = chosen_step(options, 1, path.string(), none);
     NamedFiles named;
     StepFiles step = files_of_step(path, options, named);
     if (step.is_single()) return {};

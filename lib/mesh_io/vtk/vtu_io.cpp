@@ -452,9 +452,8 @@ std::vector<std::string> write_vtu(const std::filesystem::path& path, const HexM
         with.points.push_back(shells.points[p]);
         for (std::size_t a = 0; a < with.attributes.size(); ++a) {
             const auto channels = static_cast<std::size_t>(with.attributes[a].channels);
-            const auto first = shells.attributes[a].values.begin() + static_cast<std::ptrdiff_t>(p * channels);
-            with.attributes[a].values.insert(with.attributes[a].values.end(), first,
-                                             first + static_cast<std::ptrdiff_t>(channels));
+            const auto first = shells.attributes[a].values.data() + p * channels;
+            with.attributes[a].values.insert(with.attributes[a].values.end(), first, first + channels);
         }
     }
     auto quads = shells.quads;

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <tuple>
 #include <vector>
 
 #include "assemble.h"
@@ -336,7 +337,7 @@ private:
     template <class Next>
     static void skip_polyhedron(const Next& next) {
         for (std::int64_t faces = next(); faces > 0; --faces) {
-            for (std::int64_t corners = next(); corners > 0; --corners) static_cast<void>(next());
+            for (std::int64_t corners = next(); corners > 0; --corners) std::ignore = next();
         }
     }
 

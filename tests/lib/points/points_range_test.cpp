@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include "subvol/detail/kernel_bytes.h"
 #include "subvol/error.h"
 #include "subvol/model.h"
 #include "subvol/sample.h"

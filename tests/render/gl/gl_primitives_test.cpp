@@ -10,9 +10,7 @@
 #include <vector>
 
 #include "gl_context.h"
-#include "gl_ranges.h"
 #include "gl_scan.h"
-#include "gl_sort.h"
 #include "subvol/error.h"
 
 namespace subvol {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <string_view>
 
 namespace subvol {
@@ -28,5 +29,7 @@ public:
 ///
 /// throws: Error(Cancelled) if `progress` is cancelled
 void report_progress(Progress* progress, std::string_view stage, double fraction);
+/// The fraction is that of the things that are done, of so many.
+void report_progress(Progress* progress, std::string_view stage, std::size_t done, std::size_t all);
 
 }  // namespace subvol

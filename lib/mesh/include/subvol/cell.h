@@ -9,11 +9,11 @@
 namespace subvol {
 
 /// Corner numbers of a cell's 12 edges: 4 along u, 4 along v, 4 along w; each from its lower to its upper parameter.
-inline constexpr std::array<std::array<int, 2>, 12> kCellEdges{
+inline constexpr std::array<std::array<std::size_t, 2>, 12> kCellEdges{
     {{0, 1}, {3, 2}, {4, 5}, {7, 6}, {0, 3}, {1, 2}, {4, 7}, {5, 6}, {0, 4}, {1, 5}, {3, 7}, {2, 6}}};
 
 /// Corner numbers of a cell's 6 faces (u=0, u=1, v=0, v=1, w=0, w=1), cyclic, seen counter-clockwise from outside.
-inline constexpr std::array<std::array<int, 4>, 6> kCellFaces{
+inline constexpr std::array<std::array<std::size_t, 4>, 6> kCellFaces{
     {{0, 4, 7, 3}, {1, 2, 6, 5}, {0, 1, 5, 4}, {3, 7, 6, 2}, {0, 3, 2, 1}, {4, 5, 6, 7}}};
 
 /// Parameters (u, v, w) of a cell's 8 corners.

@@ -104,7 +104,7 @@ template <class Visit>
 void for_each_piece(const MeshSource::Stored& stored, const char* stage, Progress* progress, const Visit& visit) {
     const std::size_t count = stored.pieces.size();
     for (std::size_t piece = 0; piece < count; ++piece) {
-        report_progress(progress, stage, static_cast<double>(piece) / static_cast<double>(count));
+        report_progress(progress, stage, piece, count);
         visit(piece, stored.read(piece));
     }
 }

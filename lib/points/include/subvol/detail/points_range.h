@@ -3,11 +3,22 @@
 
 #include <cstddef>
 #include <span>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "subvol/rbf_volume.h"
 
 namespace subvol::detail {
+
+/// Kernels as bytes, to be sent to another process of this program on a computer of the same kind: 48 bytes a kernel, 20 more
+/// for each channel, and 24 more for its Hessians. Exact.
+///
+/// with_boundary: the boundary too
+[[nodiscard]] std::string bytes_of_kernels(const RbfVolume& volume, bool with_boundary);
+
+/// throws: Error(InvalidInput) if they are not what `bytes_of_kernels` returned
+[[nodiscard]] RbfVolume kernels_from_bytes(std::string_view bytes);
 
 /// The kernels from `begin` to before `end`, in their order. A share of a volume: the first one, which begins at 0, has the
 /// boundary of the whole, because its triangles share points; the others have none. The bounds are those of the whole.
