@@ -2,7 +2,8 @@
 // Values at points from cell means, by fit, exact and mean: errors, waves along rows of cells, CPU seconds.
 //
 //     cell_values                   twisted block and ball: a known field by its means, at three sizes
-//     cell_values FILE…             a file with values at cells: how the limit varies along rows of cells
+//     cell_values FILE…             a file with values at cells: how the limit varies along rows of cells; one with values at
+//                                   points alone: their limit by its means
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -17,6 +18,7 @@
 #include "subvol/limit.h"
 #include "subvol/mesh_io.h"
 #include "subvol/model.h"
+#include "subvol/refine.h"
 #include "subvol/topology.h"
 
 namespace {
@@ -209,8 +211,66 @@ void add_row(const LimitEvaluator& limit, const Row& row, const std::vector<Attr
     }
 }
 
+// The means over the cells of the limit, of a mesh with one field.
+std::vector<double> limit_means(const HexMesh& mesh) {
+    constexpr std::array<double, 3> kAt{.1127016653792583, .5, .8872983346207417}, kWeight{5. / 18, 8. / 18, 5. / 18};
+    std::vector<LimitQuery> queries;
+    for (Index c = 0; c < mesh.cells.size(); ++c) {
+        for (std::size_t g = 0; g < 27; ++g) queries.push_back({c, {kAt[g % 3], kAt[g / 3 % 3], kAt[g / 9]}});
+    }
+    const LimitSamples samples = evaluate_limit(mesh, queries, {.tolerance = 1e-4, .max_levels = 3});
+    std::vector<double> means;
+    for (std::size_t c = 0; c < mesh.cells.size(); ++c) {
+        double sum = 0, volume = 0;
+        for (std::size_t g = 0; g < 27; ++g) {
+            const double weight =
+                kWeight[g % 3] * kWeight[g / 3 % 3] * kWeight[g / 9] * glm::determinant(samples.jacobians[27 * c + g]);
+            sum += weight * samples.attributes[0].values[27 * c + g];
+            volume += weight;
+        }
+        means.push_back(sum / volume);
+    }
+    return means;
+}
+
+// A field at the points of a file, whose limit is taken for the truth, by its means over the cells of the mesh and of the next
+// level, which has the same limit.
+void limit_field(const HexMesh& whole, const char* path) {
+    HexMesh mesh = whole;
+    mesh.attributes = {select_field(whole, {}).scalar};
+    std::array<double, 3> last{};
+    for (int level = 0; level < 2; ++level) {
+        if (level > 0) mesh = refine(mesh, {.levels = 1});
+        const auto [low, high] = std::ranges::minmax(mesh.attributes[0].values);
+        std::vector<LimitQuery> queries;
+        for (Index c = 0; c < mesh.cells.size(); ++c) {
+            for (const Vec3& at : {Vec3(.5, .5, .5), Vec3(.1, .3, .8), Vec3(0, .9, .4)}) queries.push_back({c, at});
+        }
+        const LimitOptions options{.tolerance = 1e-4, .max_levels = 3};
+        const std::vector<double> truth = evaluate_limit(mesh, queries, options).attributes[0].values;
+        const std::vector<Attribute> of_cells{{"f", 1, limit_means(mesh)}};
+        for (std::size_t m = 0; m < kMethods.size(); ++m) {
+            double seconds = 0, squares = 0;
+            HexMesh bare = mesh;
+            bare.attributes.clear();
+            const HexMesh found = with_values(std::move(bare), kMethods[m], of_cells, {}, seconds);
+            const std::vector<double> values = evaluate_limit(found, queries, options).attributes[0].values;
+            for (std::size_t q = 0; q < values.size(); ++q) squares += std::pow(values[q] - truth[q], 2);
+            const double off = std::sqrt(squares / static_cast<double>(values.size())) / (high - low);
+            std::printf("%s, %s: %zu cells, %-6s off by %.2e of the range (rms), order %.1f\n", path,
+                        whole.attributes.empty() ? "" : mesh.attributes[0].name.c_str(), mesh.cells.size(), kMethods[m], off,
+                        last[m] > 0 ? std::log2(last[m] / off) : 0);
+            last[m] = off;
+        }
+    }
+}
+
 void file_fields(const char* path) {
     const ReadResult read = read_mesh(path, {.cell_values = CellValues::Fit});
+    if (read.cell_means.empty()) {
+        limit_field(read.mesh, path);
+        return;
+    }
     const Topology topology = build_topology(read.mesh);
     HexMesh bare = read.mesh;
     bare.attributes.clear();

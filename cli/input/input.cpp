@@ -233,7 +233,7 @@ WithFacts<HexMesh> with_selected_field(HexMesh mesh, const CommonOptions& option
 
 Range field_range(const HexMesh& mesh, std::size_t attribute) {
     const auto [min, max] = std::ranges::minmax(mesh.attributes[attribute].values);
-    return {min, max};
+    return {min, max, !mesh.attributes[attribute].bounds.empty()};
 }
 
 }  // namespace subvol::cli

@@ -8,6 +8,7 @@
 #include "input.h"
 #include "quantities.h"
 #include "subvol/error.h"
+#include "subvol/field_range.h"
 #include "subvol/grid_error.h"
 #include "subvol/mesh_motion.h"
 #include "subvol/mesh_report.h"
@@ -33,7 +34,12 @@ WithFacts<LimitCells> reported_limit(const HexMesh& mesh, const RefineOptions& r
     facts["cells"] = limit.piece_count;
     Facts& deviation = facts.group("limit_deviation");
     deviation["voxels"] = limit.position_world / voxel_size;
-    deviation["of_range"] = limit.value_of_range;
+    double rounding = 0;  // where floats lose more than the origin of their values keeps
+    for (const Attribute& field : mesh.attributes) {
+        const auto [low, high] = std::ranges::minmax(field.values);
+        if (value_origin(low, high) != 0) rounding = std::max(rounding, float_rounding(field));
+    }
+    deviation["of_range"] = limit.value_of_range + rounding;
     if (!limit.converged) {
         facts.warn(text("level ", levels, " was the finest within limits; the last step still moved points by ",
                         limit.position_world / voxel_size, " voxels and values by ", limit.value_of_range, " of their range"));
@@ -104,6 +110,7 @@ WithFacts<RasterizeOptions> MeshGrids::set_up(const HexMesh& mesh, Progress* pro
     }
     options.metadata.emplace_back("subvol_scheme", tets_.asked() ? tets_.name() : refine_.scheme);
     options.metadata.emplace_back("subvol_level", std::to_string(levels));
+    for (const Attribute& field : mesh.attributes) facts.warn(rounding_warning(field, options.half));
     return {std::move(options), std::move(facts)};
 }
 

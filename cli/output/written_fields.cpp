@@ -37,6 +37,13 @@ WithFacts<HexMesh> WrittenFields::chosen(HexMesh mesh, const CommonOptions& opti
         mesh.attributes = std::move(chosen);
     }
     for (const Remap& remap : remaps_) apply(remap, mesh);
+    if (clamp_) {
+        for (Attribute& field : mesh.attributes) {
+            const FieldRange range = range_of(field);
+            field.bounds.clear();
+            for (std::size_t c = 0; c < range.min.size(); ++c) field.bounds.push_back({range.min[c], range.max[c]});
+        }
+    }
     return {std::move(mesh), std::move(facts)};
 }
 

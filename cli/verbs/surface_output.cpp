@@ -2,6 +2,7 @@
 #include "surface_output.h"
 
 #include "part_note.h"
+#include "quantities.h"
 #include "subvol/error.h"
 #include "text.h"
 
@@ -9,6 +10,8 @@ namespace subvol::cli {
 
 Json json_of(const SurfaceOutput& output) {
     Json json{{"field", output.field}, {"min", output.range.min}, {"max", output.range.max}, {"isos", output.isos}};
+    const Vec3& origin = output.file.origin;
+    if (origin != Vec3(0.0)) json["origin"] = {origin.x, origin.y, origin.z};
     if (!output.file.color) return json;
     json["color"] = *output.file.color;
     json["colors"] = Json::array();
@@ -20,6 +23,8 @@ SurfaceOutput surface_output_from(const Json& json, const std::string& file) {
     SurfaceOutput output{.field = how_of(json, "field", std::string(), file),
                          .range = {how_of(json, "min", 0.0, file), how_of(json, "max", 0.0, file)},
                          .isos = how_of(json, "isos", std::size_t{0}, file)};
+    const auto origin = how_of(json, "origin", std::array<double, 3>{}, file);
+    output.file.origin = {origin[0], origin[1], origin[2]};
     if (!json.contains("color")) return output;
     output.file.color = how_of(json, "color", std::size_t{0}, file);
     for (const auto& [value, r, g, b] : how_of(json, "colors", std::vector<std::array<double, 4>>(), file)) {
@@ -59,6 +64,12 @@ Facts write_reported(const std::string& path, const LimitSurface& surface, const
     facts["deviation"] = found.deviation_world;
     facts["level"] = found.level;
     facts["cells"] = found.cells;
+    const std::size_t collapsed = path.ends_with(".stl") ? collapsed_by_floats(surface.surface, output.file.origin) : 0;
+    if (collapsed > 0) {
+        facts.warn(text(collapsed, " of ", counted(surface.surface.triangles.size(), "triangle"),
+                        " lose a side, as .stl rounds coordinates to 32-bit floats: --origin X,Y,Z near the body writes them "
+                        "relative to it, .ply keeps all digits"));
+    }
     if (found.converged) return facts;
     facts.warn(text("the triangles may be ", found.deviation_world, " from the limit, more than the tolerance (level ",
                     found.level, "; --max-level, or a larger --tolerance)"));

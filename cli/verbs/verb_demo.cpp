@@ -51,8 +51,8 @@ Optics twist_optics() {
 }
 
 Optics preset_optics(const std::string& preset, const HexMesh& mesh) {
-    const auto [min, max] = field_range(mesh);
-    return {transfer_function_preset(preset, min, max), bounds(mesh).diagonal() / 100};
+    const Range range = field_range(mesh);
+    return {transfer_function_preset(preset, range.min, range.max), bounds(mesh).diagonal() / 100};
 }
 
 std::vector<std::string> demo_names() {

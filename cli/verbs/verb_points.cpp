@@ -291,7 +291,7 @@ private:
             report.unpack(tets_.asked() ? sample_tets_reported(mesh, sample_, seen(given), report.progress())
                                         : sample_reported(std::move(mesh), sample_, refine_, seen(given), report.progress()));
         merge(volume, report);
-        if (clamp_) {
+        if (clamp_ || given.bounded) {
             report["clamped"] = clamp_channel(volume.channels.front(), given.min, given.max);
         } else {
             report.note(beyond(volume.channels.front().name, given, channel_range(volume, 0)));

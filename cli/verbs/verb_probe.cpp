@@ -2,6 +2,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <map>
 #include <string>
 #include <vector>
@@ -239,6 +240,14 @@ void say(const PartMeasure& part, const std::string& name, Report& report) {
     report.say(aligned(lines));
 }
 
+/// Numbers that are no numbers are null in JSON, so they are said.
+void warn_of_overflow(const PartMeasure& part, Report& report) {
+    for (const FieldMeasure& field : part.fields) {
+        if (std::isfinite(field.integral) && std::isfinite(field.mean)) continue;
+        report.warn(text("the integral of ", field.name, " is larger than a number can be"));
+    }
+}
+
 /// Places that were probed: into the report, and into a table (.csv) or a plot of the first field over the distance (.svg).
 ///
 /// file: empty: none
@@ -267,6 +276,7 @@ void show_probed(const ProbeResult& found, const std::vector<Vec3>& places, cons
 void show_measured(const LimitMeasure& found, Report& report) {
     report["stats"] = {{"whole", as_json(found.whole)}, {"parts", Json::array()}, {"pieces", found.pieces}};
     for (const PartMeasure& part : found.parts) report["stats"]["parts"].push_back(as_json(part));
+    warn_of_overflow(found.whole, report);
     say(found.whole, "", report);
     for (const PartMeasure& part : found.parts) say(part, part.name, report);
     report.all_said();

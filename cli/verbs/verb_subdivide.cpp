@@ -101,6 +101,8 @@ private:
             const FieldRange given = range_of(control.attributes[f]);
             if (clamp_) {
                 clamp_to(fine.attributes[f], given);
+            } else if (const auto bounds = bounds_of(control.attributes[f])) {
+                clamp_to(fine.attributes[f], *bounds);
             } else {
                 const FieldRange found = range_of(fine.attributes[f]);
                 for (std::size_t c = 0; c < given.min.size(); ++c) {

@@ -55,6 +55,9 @@ public:
         add_option(app(), Option("tf", function_)
                               .help("FILE|NAME", "the colours: a preset, or a colour map of ParaView")
                               .only_with("color-field"));
+        add_option(app(),
+                   Option("origin", origin_)
+                       .help("X,Y,Z", "write points relative to this place: .stl rounds to 32-bit floats (default 0,0,0)"));
         scheme_.add_scheme_to(app());
         share_.add_to(app(), "a range of the cells that the surface passes");
         set_essentials({"--output", "--iso", "--boundary", "--cap", "--tolerance", "--color-field", "--field", "--json"});
@@ -89,9 +92,11 @@ public:
                         "one process, or mpirun");
         }
         SurfaceOutput output{.field = field, .range = body.range(field), .isos = options_.isos.size()};
+        if (!origin_.empty()) output.file.origin = parse_vector("--origin", origin_);
         if (!color_field_.empty()) {
             const std::size_t number = body.add_scalar(color_field_);
-            output.file = {number, find_transfer_function(function_, body.range(color_field_))};
+            output.file.color = number;
+            output.file.function = find_transfer_function(function_, body.range(color_field_));
         }
         const MeshSource source = body.source();
         std::optional<LimitSurface> surface =
@@ -127,7 +132,7 @@ private:
         return report.unpack(deliver(SurfaceParts{output_, report.progress()}, std::move(own.bytes), to));
     }
 
-    std::string input_, output_, color_field_, function_ = "viridis";
+    std::string input_, output_, color_field_, origin_, function_ = "viridis";
     SurfaceOptions options_;
     bool keep_slivers_ = false;
     RefineArguments scheme_;

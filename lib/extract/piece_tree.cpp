@@ -6,6 +6,7 @@
 
 #include <glm/vector_relational.hpp>
 
+#include "subvol/detail/limit_of_part.h"
 #include "subvol/detail/parallel_each.h"
 #include "subvol/error.h"
 
@@ -13,7 +14,7 @@ namespace subvol::detail {
 
 namespace {
 
-constexpr double kStartTolerance = 1e-3;  // of the diagonal: Newton's method needs two or three steps from there
+constexpr double kStartTolerance = 1e-3;  // of `tolerance_length`: Newton's method needs two or three steps from there
 constexpr int kStartLevels = 4;
 constexpr std::size_t kMostBytes = std::size_t{2} << 30;
 constexpr std::size_t kLeafSize = 4;
@@ -32,9 +33,9 @@ HexMesh bare(const HexMesh& mesh) {
 
 PieceTree::PieceTree(const HexMesh& mesh, const SchemeOptions& scheme, double reach, Progress* progress) {
     const HexMesh geometry = bare(mesh);
-    LimitCellsOptions options{.position_world = kStartTolerance * std::max(bounds(mesh).diagonal(), 1e-300),
-                              .max_levels = kStartLevels,
-                              .max_bytes = kMostBytes};
+    const double length = tolerance_length(mesh);
+    LimitCellsOptions options{
+        .position_world = kStartTolerance * std::max(length, 1e-300), .max_levels = kStartLevels, .max_bytes = kMostBytes};
     LimitCells limit;
     for (int again = 0; again < 4; ++again) {
         limit = find_limit_cells(geometry, {.scheme = scheme, .levels = 0, .progress = progress}, options);
@@ -45,7 +46,7 @@ PieceTree::PieceTree(const HexMesh& mesh, const SchemeOptions& scheme, double re
         throw Error(ErrorCode::MissingCapability, "the pieces of the limit take more than 2 GB", "probe", "a smaller mesh");
     }
     pieces_ = limit.pieces;
-    distance_ = 2 * limit.position_world + 1e-6 * bounds(mesh).diagonal();
+    distance_ = 2 * limit.position_world + 1e-6 * length;
     reach_ = reach + distance_;
     std::vector<Vec3> centers(pieces_->cells.size());
     parallel_each(centers.size(), [&](std::size_t p) { centers[p] = pieces_->position(p, LimitPieces::kNodes / 2); });

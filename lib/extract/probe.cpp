@@ -13,6 +13,7 @@
 #include "mesh_pieces.h"
 #include "piece_tree.h"
 #include "space_order.h"
+#include "subvol/detail/limit_of_part.h"
 #include "subvol/detail/median_tree.h"
 #include "subvol/detail/number_text.h"
 #include "subvol/detail/parallel_each.h"
@@ -57,8 +58,7 @@ struct LimitProbe::State {
     State(HexMesh given, const ProbeOptions& wanted)
         : mesh(std::move(given)), options(wanted), topology((check_options(), build_topology(mesh))), steps(mesh, topology) {
         tree.emplace(mesh, options.limit.scheme, options.reach_world, options.limit.progress);
-        const double diagonal = bounds(mesh).diagonal();
-        on_boundary = std::max(options.limit.tolerance, 1e-9) * diagonal;
+        on_boundary = std::max(options.limit.tolerance, 1e-9) * detail::tolerance_length(mesh);
         LimitOptions quiet = options.limit;
         quiet.progress = nullptr;
         limit.emplace(mesh, quiet);

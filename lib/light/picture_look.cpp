@@ -67,9 +67,10 @@ Optics picture_optics(const LookOptions& options, const Box& box, const ValueRan
     function.color = find_transfer_function(map, options.range.value_or(colors), options.stretch).color;
     if (options.look == Look::Solid) make_solid(function, !(colors.min < colors.max) && options.colors.empty());
     if (!options.opacity.empty()) function.opacity = options.opacity;
-    if (options.clamp) {
-        TransferFunction kept = clamped(function, field.min, field.max);
-        kept.color = clamped(function, colors.min, colors.max).color;
+    if (options.clamp || field.bounded || colors.bounded) {
+        TransferFunction kept = function;
+        if (options.clamp || field.bounded) kept.opacity = clamped(function, field.min, field.max).opacity;
+        if (options.clamp || colors.bounded) kept.color = clamped(function, colors.min, colors.max).color;
         function = std::move(kept);
     }
     return {std::move(function), options.opacity_unit_world.value_or(opacity_unit_of(options.look, box))};

@@ -162,7 +162,7 @@ void check(const HexMesh& mesh, std::span<const LimitQuery> queries) {
 /// The scale of each channel that tolerances are relative to. It is not 0 for a constant field, whose values differ by
 /// rounding.
 std::vector<double> channel_scales(const HexMesh& mesh, const LimitExtent& extent) {
-    std::vector<double> scales(3, std::max(extent.box.diagonal(), 1e-6 * glm::length(extent.box.center())));
+    std::vector<double> scales(3, std::max(extent.length(), 1e-6 * glm::length(extent.box.center())));
     for (std::size_t a = 0; a < mesh.attributes.size(); ++a) {
         const auto& [low, high] = extent.ranges[a];
         const double scale = std::max(high - low, 1e-6 * std::max(std::abs(low), std::abs(high)));
@@ -181,6 +181,17 @@ LimitSamples make_samples(const HexMesh& mesh, std::size_t count) {
             {attribute.name, channels, std::vector<double>(count * channels), std::vector<Vec3>(count * channels)});
     }
     return samples;
+}
+
+/// Moves values beyond their bounds to these; there the field is constant.
+void keep_within(std::span<const std::array<double, 2>> bounds, LimitAttribute& samples) {
+    if (bounds.empty()) return;
+    for (std::size_t i = 0; i < samples.values.size(); ++i) {
+        const auto& [low, high] = bounds[i % bounds.size()];
+        const double within = std::min(std::max(samples.values[i], low), high);
+        if (within != samples.values[i]) samples.derivatives[i] = Vec3(0.0);
+        samples.values[i] = within;
+    }
 }
 
 /// The numbers of the queries, sorted by cells. A counting sort: it keeps the order of the queries in a cell, so that results
@@ -240,6 +251,8 @@ struct Evaluation {
         const auto cells = places_of_cells(queries, order);
         const auto rest = descents.run({control, queries, order, options, scales, samples, targets, moved}, cells, keep);
         if (!rest.empty()) refine_rest(control, queries, rest, options, scales, samples);
+        for (std::size_t a = 0; a < samples.attributes.size(); ++a)
+            keep_within(control.attributes[a].bounds, samples.attributes[a]);
         return samples;
     }
 
@@ -251,12 +264,36 @@ struct Evaluation {
 
 }  // namespace
 
+double detail::LimitExtent::length() const {
+    constexpr double kCells = 1024;
+    return cell > 0 ? std::min(box.diagonal(), kCells * cell) : box.diagonal();
+}
+
 void detail::LimitExtent::add(const LimitExtent& more) {
     box.add(more.box);
+    cell = std::max(cell, more.cell);
     if (ranges.empty()) ranges = more.ranges;
     for (std::size_t a = 0; a < more.ranges.size(); ++a) {
         ranges[a] = {std::min(ranges[a][0], more.ranges[a][0]), std::max(ranges[a][1], more.ranges[a][1])};
     }
+}
+
+namespace {
+
+double largest_cell(const HexMesh& mesh) {
+    double largest = 0;
+    for (const auto& cell : mesh.cells) {
+        Box box;
+        for (const Index p : cell) box.add(mesh.points[p]);
+        largest = std::max(largest, box.diagonal());
+    }
+    return largest;
+}
+
+}  // namespace
+
+double detail::tolerance_length(const HexMesh& mesh) {
+    return LimitExtent{.box = bounds(mesh), .cell = largest_cell(mesh)}.length();
 }
 
 LimitExtent detail::limit_extent(const HexMesh& mesh) {
@@ -264,7 +301,7 @@ LimitExtent detail::limit_extent(const HexMesh& mesh) {
     for (const auto& cell : mesh.cells) {
         for (const Index p : cell) used[p] = 1;
     }
-    LimitExtent extent{.box = bounds(mesh)};
+    LimitExtent extent{.box = bounds(mesh), .cell = largest_cell(mesh)};
     for (const Attribute& attribute : mesh.attributes) {
         const auto channels = static_cast<std::size_t>(attribute.channels);
         auto& [low, high] = extent.ranges.emplace_back(std::array{HUGE_VAL, -HUGE_VAL});

@@ -26,6 +26,7 @@
 #include "subvol/detail/flat_array.h"
 #include "subvol/detail/limit_of_part.h"
 #include "subvol/detail/parallel_each.h"
+#include "subvol/field_range.h"
 #include "subvol/limit_level.h"
 
 namespace subvol {
@@ -259,16 +260,47 @@ struct Found {
 
 using FoundByThreads = tbb::enumerable_thread_specific<Found>;
 
+/// How values become floats: less an origin, in a unit, for each channel; and 1/range of what results, or 0 for a constant.
+struct FloatValues {
+    std::vector<double> origins, units, scales;
+
+    FloatValues(const HexMesh& mesh, std::span<const std::array<double, 2>> ranges) {
+        constexpr int kPlain = 100;  // exponents of floats, with room for differences of their small parts
+        for (std::size_t a = 0; a < mesh.attributes.size(); ++a) {
+            const auto& [min, max] = ranges[a];
+            const double origin = value_origin(min, max), most = std::max(std::abs(min - origin), std::abs(max - origin));
+            const int exponent = most > 0 && std::isfinite(most) ? std::ilogb(most) : 0;
+            const double unit = std::abs(exponent) > kPlain ? std::ldexp(1.0, exponent) : 1;
+            const auto channels = static_cast<std::size_t>(mesh.attributes[a].channels);
+            origins.insert(origins.end(), channels, origin);
+            units.insert(units.end(), channels, unit);
+            const double scale = value_scale(min, max);
+            scales.insert(scales.end(), channels, unit == 1 ? scale : scale * unit);
+        }
+    }
+
+    [[nodiscard]] HexMesh stored(HexMesh mesh) const {
+        std::size_t first = 0;
+        for (Attribute& attribute : mesh.attributes) {
+            const double origin = origins[first], unit = units[first];
+            first += static_cast<std::size_t>(attribute.channels);
+            if (origin == 0 && unit == 1) continue;
+            for (double& value : attribute.values) value = (value - origin) / unit;
+        }
+        return mesh;
+    }
+};
+
 class Search {
 public:
-    Search(const HexMesh& mesh, const RefineOptions& refinement, const LimitCellsOptions& options,
-           const std::vector<double>& value_scales)
-        : control_(control_mesh(mesh, refinement.scheme, 1)),
+    Search(const HexMesh& mesh, const RefineOptions& refinement, const LimitCellsOptions& options, FloatValues floats)
+        : floats_(std::move(floats)),
+          control_(floats_.stored(control_mesh(mesh, refinement.scheme, 1))),
           refiner_(control_, refinement.scheme, true),
           options_(options),
           progress_(refinement.progress),
-          found_([this, value_scales] {
-              return Found{PieceCutter(value_scales, options_), {}, 0};
+          found_([this] {
+              return Found{PieceCutter(floats_.scales, options_), {}, 0};
           }) {
         for (const Attribute& attribute : control_.attributes) node_size_ += static_cast<std::size_t>(attribute.channels);
     }
@@ -379,6 +411,8 @@ private:
             pieces->origins[i] = from.origins[place.number];
             std::copy_n(&from.nodes[numbers * place.number], numbers, &pieces->nodes[numbers * i]);
         });
+        pieces->value_origins = floats_.origins;
+        pieces->value_units = floats_.units;
         pieces->mesh_hash = hash_of(mesh);
         for (const Attribute& attribute : mesh.attributes) {
             pieces->names.push_back(attribute.name);
@@ -388,6 +422,7 @@ private:
         return pieces;
     }
 
+    FloatValues floats_;
     HexMesh control_;
     CellRefiner refiner_;
     const LimitCellsOptions& options_;
@@ -397,19 +432,17 @@ private:
     FoundByThreads found_;
 };
 
-}  // namespace
-
-namespace {
-
+/// ranges: null: those of the mesh
 LimitCells search(const HexMesh& mesh, RefineOptions refinement, const LimitCellsOptions& options,
-                  const std::function<std::vector<double>()>& scales) {
+                  const std::span<const std::array<double, 2>>* ranges = nullptr) {
     const std::size_t count = mesh.cells.size();
     if (count == 0 || options.max_levels < 1) {
         return {.cell_levels = {}, .converged = count == 0};
     }
     validate(mesh);
     refinement.levels = 1;
-    Search search(mesh, refinement, options, scales());
+    const FloatValues floats = ranges != nullptr ? FloatValues(mesh, *ranges) : FloatValues(mesh, limit_extent(mesh).ranges);
+    Search search(mesh, refinement, options, floats);
     search.run();
     return search.result(mesh);
 }
@@ -417,19 +450,12 @@ LimitCells search(const HexMesh& mesh, RefineOptions refinement, const LimitCell
 }  // namespace
 
 LimitCells find_limit_cells(const HexMesh& mesh, RefineOptions refinement, const LimitCellsOptions& options) {
-    return search(mesh, refinement, options, [&] { return value_scales(mesh); });
+    return search(mesh, refinement, options);
 }
 
 LimitCells detail::find_limit_cells(const HexMesh& part, RefineOptions refinement, const LimitCellsOptions& options,
                                     std::span<const std::array<double, 2>> ranges) {
-    return search(part, refinement, options, [&] {
-        std::vector<double> scales;
-        for (std::size_t a = 0; a < part.attributes.size(); ++a) {
-            scales.insert(scales.end(), static_cast<std::size_t>(part.attributes[a].channels),
-                          value_scale(ranges[a][0], ranges[a][1]));
-        }
-        return scales;
-    });
+    return search(part, refinement, options, &ranges);
 }
 
 bool are_pieces_of(const LimitPieces& pieces, const HexMesh& mesh) {

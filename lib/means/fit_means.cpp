@@ -289,6 +289,9 @@ CellMeansFit fit_cell_means(const HexMesh& mesh, std::span<const Attribute> fiel
         for (std::size_t p = 0; p < channel.values.size(); ++p) {
             field.values[p * width + channel.channel.number] = channel.value(p);
         }
+        const auto bounds = channel.bounds();
+        if (width == 1 && std::ranges::any_of(bounds, [](double bound) { return std::isfinite(bound); }))
+            field.bounds = {bounds};
     }
     result.report.seconds = watch.seconds();
     return result;

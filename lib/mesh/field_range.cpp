@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "subvol/detail/number_text.h"
 #include "subvol/error.h"
 
 namespace subvol {
@@ -32,6 +33,38 @@ std::size_t clamp_to(Attribute& field, const FieldRange& range) {
         field.values[i] = value;
     }
     return moved;
+}
+
+std::optional<FieldRange> bounds_of(const Attribute& field) {
+    if (field.bounds.empty()) return {};
+    FieldRange range;
+    for (const auto& [low, high] : field.bounds) {
+        range.min.push_back(low);
+        range.max.push_back(high);
+    }
+    return range;
+}
+
+double value_origin(double min, double max) {
+    constexpr double kLarge = 16;
+    return max - min < std::max(std::abs(min), std::abs(max)) / kLarge ? min + (max - min) / 2 : 0;
+}
+
+double float_rounding(const Attribute& field, bool half) {
+    if (field.values.empty()) return 0;
+    const auto [min, max] = std::ranges::minmax(field.values);
+    const double ulp = half ? 0x1p-12 : 0x1p-25;  // half a unit of the last digit
+    return max > min ? std::max(std::abs(min), std::abs(max)) / (max - min) * ulp : 0;
+}
+
+std::string rounding_warning(const Attribute& field, bool half) {
+    constexpr double kMuch = 1e-3;
+    const double rounding = float_rounding(field, half);
+    if (!(rounding > kMuch)) return {};
+    const auto [min, max] = std::ranges::minmax(field.values);
+    const std::string relative = field.name + "-(" + detail::number_text(min + (max - min) / 2) + ")";
+    return std::string(half ? "16" : "32") + "-bit floats round \"" + field.name + "\" by up to " +
+           detail::number_text(100 * rounding, 2) + " % of its range; they keep the digits of the expression " + relative;
 }
 
 void turn_y_up(HexMesh& mesh) {

@@ -60,12 +60,6 @@ bool is_physical(std::string_view name) {
     return std::ranges::any_of(kQuantities, [&](std::string_view part) { return text.find(part) != std::string::npos; });
 }
 
-std::array<Vec3, 8> corners_of(const HexMesh& mesh, const std::array<Index, 8>& cell) {
-    std::array<Vec3, 8> corners;
-    for (std::size_t k = 0; k < 8; ++k) corners[k] = mesh.points[cell[k]];
-    return corners;
-}
-
 std::vector<std::uint8_t> used_points(const HexMesh& mesh) {
     std::vector<std::uint8_t> used(mesh.points.size());
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, mesh.cells.size()), [&](const auto& range) {
@@ -187,7 +181,8 @@ HexMesh without_unused_points(HexMesh mesh) {
 
     HexMesh result;
     result.points.reserve(count);
-    for (const auto& attribute : mesh.attributes) result.attributes.push_back({attribute.name, attribute.channels, {}});
+    for (const auto& attribute : mesh.attributes)
+        result.attributes.push_back({attribute.name, attribute.channels, {}, attribute.bounds});
     for (std::size_t p = 0; p < used.size(); ++p) {
         if (!used[p]) continue;
         result.points.push_back(mesh.points[p]);
@@ -226,16 +221,6 @@ double cell_volume(const std::array<Vec3, 8>& c) {
     return volume;
 }
 
-std::size_t orient_cells(HexMesh& mesh) {
-    std::size_t turned = 0;
-    for (auto& cell : mesh.cells) {
-        if (cell_volume(corners_of(mesh, cell)) >= 0) continue;
-        std::swap_ranges(cell.begin(), cell.begin() + 4, cell.begin() + 4);
-        ++turned;
-    }
-    return turned;
-}
-
 Box bounds(const HexMesh& mesh) {
     const auto used = used_points(mesh);
     Box box;
@@ -271,6 +256,7 @@ std::optional<Attribute> channel_of(const HexMesh& mesh, const std::string& name
     for (std::size_t p = 0; p < result.values.size(); ++p) {
         result.values[p] = vector->values[p * channels + static_cast<std::size_t>(channel)];
     }
+    if (!vector->bounds.empty()) result.bounds = {vector->bounds[static_cast<std::size_t>(channel)]};
     return result;
 }
 

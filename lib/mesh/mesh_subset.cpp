@@ -41,7 +41,8 @@ MeshSubset subset(const HexMesh& mesh, std::span<const std::uint8_t> cells) {
         result.cells.push_back(c);
         for (const Index p : mesh.cells[c]) places[p] = 0;
     }
-    for (const Attribute& field : mesh.attributes) result.mesh.attributes.push_back({field.name, field.channels, {}});
+    for (const Attribute& field : mesh.attributes)
+        result.mesh.attributes.push_back({field.name, field.channels, {}, field.bounds});
     for (Index p = 0; p < places.size(); ++p) {
         if (places[p] == kNone) continue;
         places[p] = static_cast<Index>(result.mesh.points.size());

@@ -86,6 +86,7 @@ struct Plot3dFlow {
 
 /// Reads Gmsh, versions 2, 4.0 and 4.1, ASCII and binary.
 [[nodiscard]] ReadResult read_gmsh(std::string_view text, std::string_view file, const ReadOptions& options);
+[[nodiscard]] std::vector<double> gmsh_times(const std::filesystem::path& path);
 
 /// Reads a step of Exodus II.
 ///

@@ -74,7 +74,7 @@ constexpr std::array<MeshFormat, 22> kFormats{{
      .times = series_list_times,
      .files = read_series_list,
      .blocks = true},
-    {.extensions = {".msh"}, .name = "Gmsh", .read = read_file<read_gmsh>, .groups = true},
+    {.extensions = {".msh"}, .name = "Gmsh", .read = read_file<read_gmsh>, .times = gmsh_times, .groups = true},
     {.extensions = {".xyz", ".p3d"}, .name = "Plot3D", .read = read_grid_and_flow},
     {.extensions = {".e", ".exo", ".ex2", ".g"},
      .name = "Exodus II",

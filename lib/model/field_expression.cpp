@@ -118,7 +118,7 @@ bool is_channel(const std::string& source) {
 }  // namespace
 
 Attribute field_of(const HexMesh& mesh, const std::string& name, const std::string& source) {
-    if (const Attribute* found = mesh.find_attribute(source)) return {name, found->channels, found->values};
+    if (const Attribute* found = mesh.find_attribute(source)) return {name, found->channels, found->values, found->bounds};
     std::string whole = source;
     if (is_channel(source) && !mesh.find_attribute(source.substr(0, source.rfind('.'))))
         whole = source.substr(0, source.rfind('.'));

@@ -30,7 +30,8 @@ HexMesh child_data(const HexMesh& parent, const SchemeRows& rows, Progress* prog
     std::copy_n(parent.points.begin(), rows.kept(), child.points.begin());
     for (const auto& attribute : parent.attributes) {
         const auto channels = static_cast<std::size_t>(attribute.channels);
-        auto& values = child.attributes.emplace_back(Attribute{attribute.name, attribute.channels, {}}).values;
+        auto& values =
+            child.attributes.emplace_back(Attribute{attribute.name, attribute.channels, {}, attribute.bounds}).values;
         values.resize(rows.rows() * channels);
         std::copy_n(attribute.values.begin(), rows.kept() * channels, values.begin());
     }

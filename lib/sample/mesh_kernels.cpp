@@ -7,6 +7,7 @@
 
 #include "subvol/detail/refined_memory.h"
 #include "subvol/error.h"
+#include "subvol/field_range.h"
 #include "subvol/limit.h"
 #include "subvol/reduce.h"
 #include "subvol/sample_mixed.h"
@@ -112,6 +113,7 @@ WithFacts<HexMesh> refined_on_limit(const HexMesh& mesh, const RefineOptions& op
 
 WithFacts<RbfVolume> make_mesh_kernels(HexMesh mesh, const KernelOptions& options) {
     Facts facts;
+    for (const Attribute& field : mesh.attributes) facts.warn(rounding_warning(field));
     RbfVolume volume;
     SampleOptions sample = options.sample;
     sample.progress = options.progress;

@@ -117,7 +117,7 @@ SurfaceMaker::SurfaceMaker(const HexMesh& mesh, std::span<const std::uint8_t> ow
 }
 
 LimitExtent SurfaceMaker::extent_of_field() const {
-    LimitExtent extent{.box = whole_.box};
+    LimitExtent extent{.box = whole_.box, .cell = whole_.cell};
     if (field_) extent.ranges.push_back(whole_.ranges[*field_]);
     return extent;
 }

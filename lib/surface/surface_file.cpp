@@ -236,7 +236,23 @@ void write_glb(OutputFile& out, const LimitSurface& surface, const std::vector<B
 
 }  // namespace
 
+std::size_t collapsed_by_floats(const Surface& surface, const Vec3& origin) {
+    return static_cast<std::size_t>(std::ranges::count_if(surface.triangles, [&](const auto& t) {
+        std::array<glm::vec3, 3> x;
+        for (std::size_t k = 0; k < 3; ++k) x[k] = glm::vec3(surface.points[t[k]] - origin);
+        const bool lost = x[0] == x[1] || x[1] == x[2] || x[2] == x[0];
+        return lost && surface.points[t[0]] != surface.points[t[1]] && surface.points[t[1]] != surface.points[t[2]] &&
+               surface.points[t[2]] != surface.points[t[0]];
+    }));
+}
+
 void write_limit_surface(const std::filesystem::path& path, const LimitSurface& surface, const SurfaceFileOptions& options) {
+    if (options.origin != Vec3(0.0)) {
+        LimitSurface moved = surface;
+        for (Vec3& p : moved.surface.points) p -= options.origin;
+        write_limit_surface(path, moved, {options.color, options.function, Vec3(0.0)});
+        return;
+    }
     const std::string extension = path.extension().string();
     if (extension != ".ply" && extension != ".stl" && extension != ".vtp" && extension != ".obj" && extension != ".glb") {
         throw Error(ErrorCode::InvalidInput, "'" + detail::printable(extension) + "' is not a format of surfaces",

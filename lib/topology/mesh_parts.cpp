@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "mesh_parts.h"
 
+#include <tbb/parallel_sort.h>
+
 #include <algorithm>
+#include <cmath>
 #include <tuple>
 
 #include "subvol/detail/bucket_sort.h"
@@ -19,6 +22,23 @@ std::size_t part_count(std::size_t points) {
     return std::clamp<std::size_t>(points / size, 1, kMostParts);
 }
 
+/// Slabs between equal numbers of points, where bins of equal width would put too many into one: a far cell makes them wide.
+std::vector<std::uint8_t> slabs_by_rank(const HexMesh& mesh, std::size_t count, int axis) {
+    std::vector<double> places(mesh.points.size());
+    parallel_each(places.size(), [&](std::size_t p) {
+        const double x = mesh.points[p][axis];
+        places[p] = std::isfinite(x) ? x : 0;  // of an unused point
+    });
+    std::vector<double> ends, sorted = places;
+    tbb::parallel_sort(sorted.begin(), sorted.end());
+    for (std::size_t k = 1; k < count; ++k) ends.push_back(sorted[k * sorted.size() / count]);
+    std::vector<std::uint8_t> slabs(places.size());
+    parallel_each(slabs.size(), [&](std::size_t p) {
+        slabs[p] = static_cast<std::uint8_t>(std::ranges::upper_bound(ends, places[p]) - ends.begin());
+    });
+    return slabs;
+}
+
 /// The slab of each point. The slabs divide the longest side of the box so that each has about as many points. Neighbouring
 /// points are near each other in space, even if their numbers are not.
 std::vector<std::uint8_t> slabs_of(const HexMesh& mesh, std::size_t count) {
@@ -32,6 +52,8 @@ std::vector<std::uint8_t> slabs_of(const HexMesh& mesh, std::size_t count) {
     };
     std::vector<std::size_t> first(kBins + 1, 0);
     for (const Vec3& x : mesh.points) ++first[bin_of(x) + 1];
+    const bool crowded = *std::ranges::max_element(first) * count > mesh.points.size();
+    if (crowded && count > 1) return slabs_by_rank(mesh, count, axis);
     for (std::size_t b = 0; b < kBins; ++b) first[b + 1] += first[b];
     std::vector<std::uint8_t> slabs(mesh.points.size());
     parallel_each(slabs.size(), [&](std::size_t p) {

@@ -202,7 +202,10 @@ void BrickFiller::load_pieces(Batch& batch) const {
             batch.points[first + n] = request_.to_voxels(pieces.position(piece, n));
             double* value = batch.values.data() + (first + n) * channels_;
             for (std::size_t f = 0; f < request_.fields.size(); ++f) {
-                value = std::copy_n(pieces.node(piece, n) + request_.places_in_pieces[f], request_.fields[f]->channels, value);
+                const std::size_t channel = request_.places_in_pieces[f] - 3;
+                for (std::size_t c = 0; c < static_cast<std::size_t>(request_.fields[f]->channels); ++c) {
+                    *value++ = pieces.value(piece, n, channel + c);
+                }
             }
         }
     });

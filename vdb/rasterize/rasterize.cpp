@@ -14,9 +14,12 @@
 #include "distance_band.h"
 #include "grid_setup.h"
 #include "level_set.h"
+#include "subvol/detail/number_text.h"
 #include "subvol/error.h"
+#include "subvol/field_range.h"
 #include "subvol/mesh_report.h"
 #include "subvol/rasterize.h"
+#include "subvol/vdb_contents.h"
 #include "vdb_data.h"
 #include "voxel_blocks.h"
 
@@ -26,7 +29,9 @@ using namespace detail;
 
 namespace {
 
-constexpr double kMaxHalf = 65504;
+double largest_float(bool half) {
+    return half ? 65504 : static_cast<double>(std::numeric_limits<float>::max());
+}
 
 const Attribute& field_of(const HexMesh& mesh, const std::string& name, bool half) {
     const std::string where = "field \"" + name + "\"";
@@ -35,7 +40,7 @@ const Attribute& field_of(const HexMesh& mesh, const std::string& name, bool hal
     if (field->channels != 1 && field->channels != 3) {
         throw Error(ErrorCode::InvalidInput, "has " + std::to_string(field->channels) + " channels", where, "one or three");
     }
-    const double largest = half ? kMaxHalf : static_cast<double>(std::numeric_limits<float>::max());
+    const double largest = largest_float(half);
     if (std::any_of(field->values.begin(), field->values.end(), [=](double v) { return std::abs(v) > largest; })) {
         throw Error(ErrorCode::InvalidInput,
                     "has a value that does not fit into a " + std::string(half ? "16" : "32") + "-bit float", where);
@@ -137,9 +142,10 @@ public:
         if (samples_) grids.push_back(coverage(part));
         if (options_.level_set) grids.push_back(distances(*mask, part));
         std::vector<VdbGrid> result;
-        for (const auto& grid : grids) {
-            describe(*grid, request_.to_voxels, options_);
-            result.push_back(make_vdb_grid(grid));
+        for (std::size_t g = 0; g < grids.size(); ++g) {
+            describe(*grids[g], request_.to_voxels, options_);
+            result.push_back(make_vdb_grid(grids[g]));
+            if (g < request_.fields.size()) finish(*request_.fields[g], result.back());
         }
         return result;
     }
@@ -147,6 +153,18 @@ public:
     [[nodiscard]] bool folded() const { return filler_.folded(); }
 
 private:
+    /// Keeps values within the field's bounds, and refuses those that its floats cannot hold: schemes overshoot between points.
+    void finish(const Attribute& field, VdbGrid& grid) const {
+        if (const auto bounds = bounds_of(field)) clamp_voxels(grid, *bounds);
+        const double low = grid.report().min, high = grid.report().max;  // of a vector its length
+        const double allowed = (field.channels == 3 ? std::sqrt(3.) : 1) * largest_float(options_.half);
+        if (std::max(std::abs(low), std::abs(high)) <= allowed) return;
+        throw Error(ErrorCode::InvalidInput,
+                    "reaches " + number_text(std::abs(low) > std::abs(high) ? low : high) +
+                        " between points, which does not fit into a " + (options_.half ? "16" : "32") + "-bit float",
+                    "field \"" + field.name + "\"", "values clamped to the field's range, or larger floats");
+    }
+
     [[nodiscard]] openvdb::GridBase::Ptr distances(const openvdb::MaskGrid& inside, const std::optional<VoxelBox>& part) const {
         report_progress(options_.progress, "level set", 0);
         const auto& [name, half_width] = *options_.level_set;

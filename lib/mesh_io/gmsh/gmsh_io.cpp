@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
 #include <limits>
+#include <map>
+#include <set>
 #include <tuple>
 #include <utility>
 
@@ -7,6 +11,7 @@
 #include "formats.h"
 #include "gmsh_elements.h"
 #include "mesh_file.h"
+#include "subvol/error.h"
 
 namespace subvol::detail {
 
@@ -25,6 +30,8 @@ struct GmshEntities {
 
 struct DataHeader {
     std::string name = "unnamed";
+    double time = 0;
+    std::int64_t step = 0;
     std::size_t components = 0;
     std::size_t lines = 0;
 };
@@ -41,10 +48,13 @@ DataHeader read_header(TextScanner& in, const std::string& section) {
     }
     const std::string reals_of = "real numbers of " + section, integers_of = "integers of " + section;
     const std::size_t reals = in.count({reals_of});
-    for (std::size_t r = 0; r < reals; ++r) in.real({reals_of});
+    for (std::size_t r = 0; r < reals; ++r) {
+        const double real = in.real({reals_of});
+        if (r == 0) header.time = real;
+    }
     const std::size_t integers = in.count({integers_of});
     if (integers < 3) in.fail(section + " needs at least 3 integers");
-    in.integer({integers_of});
+    header.step = in.integer({integers_of});
     header.components = in.count({integers_of});
     if (header.components < 1 || header.components > 9) {
         in.fail(section + " has " + std::to_string(header.components) + " components", "1, 3 or 9");
@@ -52,6 +62,61 @@ DataHeader read_header(TextScanner& in, const std::string& section) {
     header.lines = in.count({integers_of});
     for (std::size_t i = 3; i < integers; ++i) in.integer({integers_of});
     return header;
+}
+
+// The steps of a file, in the order of their times: those of the arrays that it has several times. Arrays that it has once
+// belong to all of them.
+//
+// sections: for each section of data, in the order of the file, its step; -1: all
+struct GmshSteps {
+    std::vector<double> times;
+    std::vector<int> sections;
+};
+
+// A keyword of data at the beginning of a line, from an offset on.
+std::size_t next_data(std::string_view text, std::size_t from) {
+    while (true) {
+        const std::size_t at = text.find("Data", from);
+        if (at == std::string_view::npos) return at;
+        for (const std::string_view keyword : {"$NodeData", "$ElementData"}) {
+            const std::size_t before = keyword.size() - 4;
+            if (at < before || text.substr(at - before, keyword.size()) != keyword) continue;
+            const std::size_t begin = at - before;
+            const char next = at + 4 < text.size() ? text[at + 4] : ' ';
+            if ((begin == 0 || text[begin - 1] == '\n') && (next == '\n' || next == '\r' || next == ' ')) return begin;
+        }
+        from = at + 4;
+    }
+}
+
+// Headers that cannot be read have no steps: who reads the sections reports them.
+GmshSteps steps_of_data(std::string_view text) {
+    using Moment = std::pair<double, std::int64_t>;
+    std::vector<std::pair<std::string, Moment>> sections;
+    std::map<std::string, std::set<Moment>> of_arrays;
+    std::string keyword;
+    try {
+        for (std::size_t at = next_data(text, 0); at != std::string_view::npos; at = next_data(text, at + keyword.size())) {
+            TextScanner in(text.substr(at), {}, TextScanner::Comments::None);
+            keyword = in.word();
+            const DataHeader header = read_header(in, keyword);
+            sections.emplace_back(keyword + header.name, Moment{std::isfinite(header.time) ? header.time : 0, header.step});
+            of_arrays[sections.back().first].insert(sections.back().second);
+        }
+    } catch (const Error&) {
+        return {};
+    }
+    std::set<Moment> moments;
+    for (const auto& [array, found] : of_arrays) {
+        if (found.size() > 1) moments.insert(found.begin(), found.end());
+    }
+    GmshSteps steps;
+    for (const Moment& moment : moments) steps.times.push_back(moment.first);
+    for (const auto& [array, moment] : sections) {
+        const bool once = of_arrays[array].size() == 1;
+        steps.sections.push_back(once ? -1 : static_cast<int>(std::distance(moments.begin(), moments.find(moment))));
+    }
+    return steps;
 }
 
 // Reads the section $NodeData or $ElementData, whose keyword was the last word, and appends it as an array.
@@ -96,7 +161,11 @@ public:
           options_(options),
           values_(in_),
           groups_(options.sharp),
-          cells_(in_, values_, nodes_, options_, found_) {}
+          steps_(steps_of_data(text)),
+          cells_(in_, values_, nodes_, options_, found_) {
+        const std::size_t count = std::max<std::size_t>(1, steps_.times.size());
+        step_ = static_cast<int>(chosen_step(options, count, file, found_.warnings));
+    }
 
     ReadResult read() {
         read_format();
@@ -152,6 +221,11 @@ private:
     }
 
     void read_section(std::string_view keyword) {
+        const bool data = keyword == "$NodeData" || keyword == "$ElementData";
+        if (data && is_of_other_step()) {
+            skip_section(keyword, false);
+            return;
+        }
         if (keyword == "$Nodes") {
             read_nodes();
         } else if (keyword == "$Elements") {
@@ -168,18 +242,25 @@ private:
         } else if (keyword == "$Entities" && groups_.any() && layout_ != Layout::V2) {
             groups_.read_entities(values_, layout_ == Layout::V41);
         } else {
-            skip_section(keyword);
+            skip_section(keyword, keyword.ends_with("Data"));
             return;
         }
         read_end(keyword);
     }
 
+    // Whether the next section of data belongs to a step that is not read.
+    [[nodiscard]] bool is_of_other_step() {
+        const std::size_t section = sections_++;
+        const int step = section < steps_.sections.size() ? steps_.sections[section] : -1;
+        return step >= 0 && step != step_;
+    }
+
     // Only data give a warning: names of physical groups, entities of the geometry and comments are not needed.
-    void skip_section(std::string_view keyword) {
+    void skip_section(std::string_view keyword, bool warn) {
         const std::string end = "$End" + std::string(keyword.substr(1));
         while (!in_.at_end()) {
             if (in_.word() != end) continue;
-            if (keyword.ends_with("Data")) found_.warnings.push_back("section " + shortened(keyword) + " ignored");
+            if (warn) found_.warnings.push_back("section " + shortened(keyword) + " ignored");
             return;
         }
         in_.fail_word({shortened(keyword)}, shortened(end), "");
@@ -335,6 +416,9 @@ private:
     ReadOptions options_;
     GmshValues values_;
     GmshGroups groups_;
+    GmshSteps steps_;
+    int step_ = 0;                 // that is read
+    std::size_t sections_ = 0;     // of data so far
     bool in_sharp_group_ = false;  // the element that is being read
     Layout layout_ = Layout::V2;
     MeshFile found_;
@@ -350,6 +434,10 @@ private:
 
 ReadResult read_gmsh(std::string_view text, std::string_view file, const ReadOptions& options) {
     return GmshReader(text, file, options).read();
+}
+
+std::vector<double> gmsh_times(const std::filesystem::path& path) {
+    return steps_of_data(read_text(path)).times;
 }
 
 }  // namespace subvol::detail

@@ -30,6 +30,30 @@ LimitCells pieces_of(const HexMesh& mesh, Scheme scheme = Scheme::Mcq) {
                             {.position_world = 5e-4 * std::max({size.x, size.y, size.z}), .max_levels = 4});
 }
 
+// Values beside a large constant, and ones that floats do not hold.
+TEST(LimitPieces, KeepValuesRelativeToAnOrigin) {
+    HexMesh mesh = irregular();
+    mesh.attributes.clear();
+    test::add_field(mesh, "plain", [](const Vec3& p) { return p.x + p.y * p.z; });
+    test::add_field(mesh, "shifted", [](const Vec3& p) { return 1e8 + p.x + p.y * p.z; });
+    test::add_field(mesh, "huge", [](const Vec3& p) { return 1e200 * (p.x + p.y * p.z); });
+    test::add_field(mesh, "tiny", [](const Vec3& p) { return 1e-200 * (p.x + p.y * p.z); });
+    const LimitCells limit = pieces_of(mesh);
+    ASSERT_TRUE(limit.pieces);
+    const LimitPieces& pieces = *limit.pieces;
+    EXPECT_EQ(pieces.value_origins[0], 0);
+    EXPECT_EQ(pieces.value_units[0], 1);
+    for (std::size_t p = 0; p < pieces.cells.size(); ++p) {
+        for (std::size_t n = 0; n < LimitPieces::kNodes; ++n) {
+            const double plain = pieces.value(p, n, 0);
+            EXPECT_EQ(plain, static_cast<double>(pieces.node(p, n)[3])) << "bits of floats as they were";
+            EXPECT_NEAR(pieces.value(p, n, 1) - 1e8, plain, 1e-6);
+            EXPECT_NEAR(pieces.value(p, n, 2) / 1e200, plain, 1e-6);
+            EXPECT_NEAR(pieces.value(p, n, 3) / 1e-200, plain, 1e-6);
+        }
+    }
+}
+
 TEST(LimitPieces, FillEachCellOnce) {
     const HexMesh mesh = irregular();
     const LimitCells limit = pieces_of(mesh);

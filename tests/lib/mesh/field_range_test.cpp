@@ -26,6 +26,22 @@ TEST(FieldRange, ClampsToItsNearerEnd) {
     test::expect_error(ErrorCode::InvalidInput, "components", [&] { clamp_to(field, {{0}, {1}}); });
 }
 
+TEST(FieldRange, ValuesHaveAnOriginWhereFloatsWouldLoseDigits) {
+    EXPECT_EQ(value_origin(0, 1), 0);
+    EXPECT_EQ(value_origin(15, 16), 0) << "the range is no less than a 16th of the values";
+    EXPECT_EQ(value_origin(16, 16.5), 16.25);
+    EXPECT_EQ(value_origin(-101325, -101324), -101324.5);
+    EXPECT_EQ(value_origin(.1, .1), .1);
+    EXPECT_EQ(value_origin(0, 0), 0);
+    EXPECT_EQ(value_origin(-1e308, 1e308), 0);
+    Attribute field{"p", 1, {101325, 101325.01}};
+    EXPECT_NEAR(float_rounding(field), 101325 / .01 / (1 << 25), 1e-3);
+    EXPECT_NE(rounding_warning(field).find("p-(101325)"), std::string::npos);
+    EXPECT_EQ(rounding_warning({"x", 1, {0, 1}}), "");
+    EXPECT_EQ(rounding_warning({"x", 1, {5, 5}}), "") << "a constant has no digits to lose";
+    EXPECT_NE(rounding_warning({"x", 1, {100, 101}}, true), "") << "16 bits";
+}
+
 TEST(FieldRange, MeshesAreTurnedAndScaled) {
     HexMesh mesh = test::make_box(1, 1, 1);
     mesh.attributes.push_back({"v", 3, {}});

@@ -12,9 +12,10 @@
 
 namespace subvol {
 
-/// The range of a field's values.
+/// The range of a field's values. bounded: values of the limit beyond it are shown as its ends (`Attribute::bounds`)
 struct ValueRange {
     double min = 0, max = 0;
+    bool bounded = false;
 };
 
 /// The kinds of pictures. Solid: opaque and lit. Volume: transparent as the colour map says, black behind. Xray: dark where

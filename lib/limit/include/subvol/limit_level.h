@@ -62,7 +62,10 @@ struct LimitCellsOptions {
 /// lowest: its lowest corner in the cell, in steps of 1/2^level along u, v, w
 /// origins: the first node of each piece
 /// nodes:  27 for each piece, u fastest, then v, then w: the position relative to the origin, then the channels of all
-/// attributes names, channels: of the attributes
+///         attributes, each relative to its origin in its unit (`value`)
+/// names, channels: of the attributes
+/// value_origins: of each channel, `value_origin` of its attribute's range: usually 0
+/// value_units:   of each channel, a power of two: 1 unless values would leave the range of floats
 struct LimitPieces {
     std::vector<Index> cells;
     std::vector<std::uint8_t> levels;
@@ -71,6 +74,7 @@ struct LimitPieces {
     FlatArray<float> nodes;
     std::vector<std::string> names;
     std::vector<int> channels;
+    std::vector<double> value_origins, value_units;
     std::size_t node_size = 3;    // numbers per node
     std::uint64_t mesh_hash = 0;  // of the mesh without attributes
     std::vector<std::uint64_t> attribute_hashes;
@@ -78,6 +82,12 @@ struct LimitPieces {
     static constexpr std::size_t kNodes = 27;
     /// The numbers of a node.
     [[nodiscard]] const float* node(std::size_t piece, std::size_t n) const { return &nodes[(kNodes * piece + n) * node_size]; }
+    /// The value of a channel at a node.
+    [[nodiscard]] double value(std::size_t piece, std::size_t n, std::size_t channel) const {
+        const auto stored = static_cast<double>(node(piece, n)[3 + channel]);
+        const double origin = value_origins[channel], unit = value_units[channel];
+        return origin == 0 && unit == 1 ? stored : origin + unit * stored;
+    }
     [[nodiscard]] Vec3 position(std::size_t piece, std::size_t n) const {
         const float* x = node(piece, n);
         return origins[piece] + Vec3(x[0], x[1], x[2]);

@@ -28,8 +28,8 @@ struct CellMeansFit {
 /// second order and exact for linear functions in others, of third order on the boundary of even grids. Waves from cell to cell
 /// are not amplified (by no more than a quarter, at any length), so means of rough fields are met only nearly, which the report
 /// says. Values stay near the range of the means around them. If 2 % of the cells have a field's least mean and so do all their
-/// neighbours, as where a fraction is 0, values are not less; and so for the greatest. The mean over the whole volume is that
-/// of the means, by a change that is least where values are near these bounds.
+/// neighbours, as where a fraction is 0, values are not less; and so for the greatest. These are the `bounds` of a field of one
+/// channel. The mean over the whole volume is that of the means, by a change that is least where values are near these bounds.
 ///
 /// means: per cell of the mesh, by field
 /// parts: for each cell the number of the whole that it is a part of, whose mean is given at all its parts; none: each its own

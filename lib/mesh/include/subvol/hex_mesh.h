@@ -16,10 +16,13 @@ namespace subvol {
 /// A named array at the points of a mesh.
 ///
 /// values: `channels` numbers for each point: channel c of point p is values[p * channels + c]
+/// bounds: the least and the greatest value of each channel, as 0 and 1 of a fraction: where the limit of the values is
+///         evaluated it is kept within them, as interpolating schemes overshoot between points. Empty: none; infinite: no bound
 struct Attribute {
     std::string name;
     int channels = 1;
     std::vector<double> values;
+    std::vector<std::array<double, 2>> bounds = {};
 };
 
 /// A hexahedral control mesh with attributes at its points.
@@ -53,7 +56,9 @@ void validate(const HexMesh& mesh);
 /// The mesh without the points that no cell uses; the others keep their order.
 [[nodiscard]] HexMesh without_unused_points(HexMesh mesh);
 
-/// Turns every left-handed cell (negative volume) into a right-handed one by exchanging its bottom and top.
+/// Turns left-handed cells into right-handed ones by exchanging their bottom and top. Cells that share faces are of one hand if
+/// they see these from two sides; which hand, their whole volume decides. So a cell through which a point was moved is folded,
+/// but not turned.
 ///
 /// returns: how many were turned
 std::size_t orient_cells(HexMesh& mesh);

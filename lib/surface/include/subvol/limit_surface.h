@@ -98,10 +98,15 @@ struct LimitSurface {
 ///
 /// color:    an index into fields: points get colours by the function (.ply, .glb, .obj), or its values first (.vtp)
 /// function: of the colours
+/// origin:   points are written relative to it: the 32-bit floats of .stl keep 7 digits, too few for map coordinates
 struct SurfaceFileOptions {
     std::optional<std::size_t> color{};
     TransferFunction function{};
+    Vec3 origin{0.0};
 };
+
+/// How many triangles lose a side or more if their corners, relative to an origin, are rounded to 32-bit floats.
+[[nodiscard]] std::size_t collapsed_by_floats(const Surface& surface, const Vec3& origin);
 
 /// Writes a surface; the extension decides: .ply (binary, with normals, fields and colours), .stl (binary), .vtp (normals and
 /// fields), .obj (normals, colours), .glb (normals, colours; the unit is taken to be that of glTF, and z stays up by a

@@ -17,15 +17,23 @@ inline constexpr int kHaloOfLimit = 3;
 ///
 /// box:    of the points that cells use
 /// ranges: least and largest value of each attribute at these points, of all channels together
+/// cell:   the diagonal of the largest cell's box; 0: not known
 struct LimitExtent {
     Box box{};
     std::vector<std::array<double, 2>> ranges{};
+    double cell = 0;
+
+    /// The length that tolerances of positions are parts of: the box's diagonal, but no more than that of 1024 of the largest
+    /// cells, so that two bodies that are far from each other are as exact as each alone.
+    [[nodiscard]] double length() const;
 
     /// Adds the extent of another part of the mesh, which has the same attributes; an empty extent has none.
     void add(const LimitExtent& more);
 };
 
 [[nodiscard]] LimitExtent limit_extent(const HexMesh& mesh);
+/// The length of its extent.
+[[nodiscard]] double tolerance_length(const HexMesh& mesh);
 
 /// `find_limit_cells` for a part of a mesh: its cells are cut as in the whole mesh, as values are compared with their ranges
 /// there.
