@@ -9,9 +9,11 @@
 
 #include "choices.h"
 #include "numbers.h"
+#include "options.h"
 #include "outputs.h"
 #include "subvol/camera_fit.h"
 #include "subvol/detail/near_name.h"
+#include "subvol/detail/picture_size.h"
 #include "subvol/detail/printable.h"
 #include "subvol/error.h"
 #include "subvol/legend.h"
@@ -21,8 +23,7 @@
 namespace subvol::cli {
 
 PictureSize parse_size(const std::string& option, const std::string& text) {
-    constexpr int kMostSide = 65536;  // as `View` allows
-    constexpr std::int64_t kMostPixels = std::int64_t{1} << 28;
+    using detail::kMostPixels, detail::kMostSide;
     const std::size_t cross = text.find('x');
     const auto side = [&](std::string_view digits) -> std::int64_t {
         std::int64_t number = 0;
@@ -38,7 +39,7 @@ PictureSize parse_size(const std::string& option, const std::string& text) {
     const std::int64_t height = cross == std::string::npos ? width : side(std::string_view(text).substr(cross + 1));
     if (width > kMostSide || height > kMostSide || width * height > kMostPixels) {
         throw Error(ErrorCode::InvalidInput, "'" + detail::shortened(text) + "' is too large a picture", option,
-                    "1 to 65536 pixels a side, 268435456 in all");
+                    subvol::cli::text("1 to ", kMostSide, " pixels a side, ", kMostPixels, " in all"));
     }
     return {static_cast<int>(width), static_cast<int>(height)};
 }
@@ -129,19 +130,13 @@ void PictureArguments::add_camera_to(CLI::App& app) {
 }
 
 void PictureArguments::add_light_to(CLI::App& app) {
-    app.add_option("--look", look_name,
-                   "solid (opaque and lit; the default for meshes without --tf, --opacity and --opacity-unit), volume "
-                   "(opacity 0 to .5 over the range, black behind; otherwise the default), xray (on white) or isosurface (five "
-                   "lit surfaces)")
-        ->type_name("NAME")
-        ->check(offered(names_of<Look>()));
-    app.add_option(
-           "--tf", transfer_function,
-           "colour map: viridis (default), plasma, inferno, cividis, turbo, coolwarm, grey, bone, xray, isosurface, surface "
-           "or constant over the field's range, or a ParaView colour-map JSON file (FILE.json:NAME for one of several in it)")
-        ->type_name("FILE|NAME")
-        ->check(offered({"viridis", "plasma", "inferno", "cividis", "turbo", "coolwarm", "grey", "bone", "xray", "isosurface",
-                         "surface", "constant"}));
+    LookOptions any;
+    std::vector<Option> described = options_of(any);  // of which it counts whether they were given
+    described[0].value = &look_name;
+    described[1].value = &transfer_function;
+    described[2].value = &opacity_unit_world;
+    described[3].value = &clamp;
+    add_options(app, described);
     app.add_option(
            "--tf-range", transfer_range,
            "the range that the colour map and the percentages of --opacity cover: MIN,MAX or field (default: the field's "
@@ -152,11 +147,6 @@ void PictureArguments::add_light_to(CLI::App& app) {
            "opacities instead of those of --tf, linear in between: at values of the field or per cent of its range, such "
            "as 0%:0,50%:.2,100%:.9")
         ->type_name("V:A,V:A,…");
-    app.add_flag("--clamp", clamp, "show values beyond the field's range, where interpolating schemes overshoot, as its ends");
-    app.add_option("--opacity-unit", opacity_unit_world,
-                   "the world distance over which an opacity acts (default: 1/100 of the bounding box's diagonal)")
-        ->type_name("D")
-        ->transform(positive_number());
     app.add_option("--legend", legend,
                    "a colour bar with the opacities and the field's name, at the right of the picture, or in a file of its own")
         ->type_name("[FILE.svg]")

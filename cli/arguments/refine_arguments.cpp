@@ -36,24 +36,29 @@ Scheme scheme_named(const std::string& name) {
     return named<Scheme>(name, "--scheme");
 }
 
-void RefineArguments::add_scheme_to(CLI::App& app) {
+std::vector<Option> RefineArguments::described() {
     std::vector<std::string> schemes = names_of<Scheme>();
     std::ranges::copy(tet_schemes(), std::back_inserter(schemes));
-    std::vector<Option> described = options_of(rules);
-    described.front() = Option("scheme", scheme)  // those of tetrahedra, too
-                            .offer(std::move(schemes))
-                            .help("NAME",
-                                  "mcq (smooth, through the control points), cc (Catmull-Clark), bsxw "
-                                  "(Bajaj-Schaefer-Warren-Xu), linear; of tetrahedra as tetrahedra: tetoct, boxspline");
-    add_options(app, described);
+    RefineOptions any;
+    std::vector<Option> all = options_of(rules);
+    const std::string sentence = all.front().sentence;
+    all.front() = Option("scheme", scheme)  // those of tetrahedra, too
+                      .offer(std::move(schemes))
+                      .help("NAME", sentence + "; of tetrahedra as tetrahedra: tetoct, boxspline");
+    all.push_back(options_of(any).back());
+    all.back().value = &levels;  // which may be left out
+    return all;
+}
+
+void RefineArguments::add_scheme_to(CLI::App& app) {
+    std::vector<Option> scheme_only = described();
+    scheme_only.pop_back();
+    add_options(app, scheme_only);
 }
 
 void RefineArguments::add_to(CLI::App& app, const std::string& levels_help) {
     add_scheme_to(app);
-    RefineOptions any;
-    Option described = options_of(any).back();
-    described.value = &levels;  // which may be left out
-    add_option(app, described.help("L", levels_help));
+    add_option(app, described().back().help("L", levels_help));
 }
 
 RefineOptions RefineArguments::options(int default_levels, Progress* progress) const {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "subvol/facts.h"
+#include "subvol/option.h"
 #include "subvol/refine.h"
 
 namespace CLI {
@@ -27,6 +28,7 @@ struct RefineArguments {
     SchemeOptions rules{};  // all but its kind, which may be one of tetrahedra
     std::optional<int> levels;
 
+    [[nodiscard]] std::vector<Option> described();
     /// All but --levels, for verbs that evaluate the limit.
     void add_scheme_to(CLI::App& app);
     /// levels_help: what --levels means for the verb

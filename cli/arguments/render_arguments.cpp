@@ -2,20 +2,14 @@
 #include "render_arguments.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <iterator>
 
 #include "choices.h"
 #include "options.h"
 #include "text.h"
 
 namespace subvol::cli {
-
-GivenOptions given_options(const CLI::App& app) {
-    return [&app](std::string_view name) -> std::optional<std::string> {
-        const CLI::Option* option = app.get_option_no_throw("--" + std::string(name));
-        if (option == nullptr || option->count() == 0) return std::nullopt;
-        return join(option->results());
-    };
-}
 
 void RenderArguments::add_to(CLI::App& app) {
     app.add_option("--method", method_name_,
@@ -26,11 +20,20 @@ void RenderArguments::add_to(CLI::App& app) {
         ->type_name("NAME")
         ->check(offered(names_of<Method>()));
     picture.add_to(app);
-    clip.add_to(app);
+    add_options(app, options_of(clip));
     sample.add_to(app);
-    refine.add_to(app, "draw the refined mesh of this level (default for tets and pt: 1; for the others: the limit)");
+    PictureSettings any;
+    const std::vector<Option> all = options_of(any);
+    refine.add_to(app, std::ranges::find(all, "levels", &Option::name)->sentence);
     splat.add_to(app);
     add_options(app, options_of(chosen));
+}
+
+std::vector<Option> RenderArguments::described() {
+    std::vector<Option> all = sample.described();
+    for (auto more : {refine.described(), splat.described(), options_of(clip), options_of(chosen)})
+        std::ranges::move(more, std::back_inserter(all));
+    return all;
 }
 
 void RenderArguments::settle(BodyKind input, const CLI::App& app) {
@@ -50,7 +53,7 @@ MethodOptions RenderArguments::method_options(const Box& box, const Range& field
     MethodOptions options = chosen;
     options.style.method = method;
     options.style.look = picture.look_options(field);
-    options.style.clip = clip.clip();
+    options.style.clip = clip;
     options.kernels = sample.kernel_options(box, refine.options(0, progress), refine.levels);
     options.drop_invisible = sample.drops_invisible();
     options.splat = splat.options();

@@ -4,7 +4,6 @@
 #include <optional>
 #include <string>
 
-#include "clip_arguments.h"
 #include "picture_arguments.h"
 #include "refine_arguments.h"
 #include "sample_arguments.h"
@@ -18,9 +17,6 @@ class App;
 
 namespace subvol::cli {
 
-/// The options that were given to a command.
-[[nodiscard]] GivenOptions given_options(const CLI::App& app);
-
 /// What `subvol render` is told about a picture: all options but the files and the shares.
 ///
 /// method, body: as settled
@@ -30,13 +26,15 @@ struct RenderArguments {
     BodyKind body = BodyKind::Mesh;
     PictureArguments picture{};
     SampleArguments sample{};
-    ClipArguments clip{};
+    Clip clip{};
     SplatArguments splat{};
     RefineArguments refine{};
     TetRefinement tets{};
     MethodOptions chosen{};
 
     void add_to(CLI::App& app);
+    /// What the library and the command describe of them.
+    [[nodiscard]] std::vector<Option> described();
 
     /// Decides what the options leave open, and refuses those that do not go together or have no effect.
     ///

@@ -17,35 +17,40 @@ double world_of_voxels(double voxels, const Box& box) {
     return voxels * (std::max({size.x, size.y, size.z}) / kPaperBox);
 }
 
-void SampleArguments::add_to(CLI::App& app) {
+std::vector<Option> SampleArguments::described() {
     std::vector<Option> all = options_of(sampling);
     // The levels of the boundary follow from the samples here.
     std::erase_if(all, [](const Option& option) { return option.name == "boundary-levels"; });
-    add_options(app, all);
-    add_option(app, Option("spacing-voxels", spacing_voxels)
-                        .positive()
-                        .or_none()
-                        .help("S", "the same as --spacing in units of 1/200 of the longest side of the bounding box")
-                        .instead_of({"per-edge", "spacing"}));
-    add_option(app, Option("footprint", footprint)
-                        .help("CAMERA",
-                              "instead: samples at most 1.5 pixels apart as this camera sees them (numbers, a JSON file, or a "
-                              "side)")
-                        .instead_of({"per-edge", "spacing"}));
-    add_option(
-        app, Option("footprint-size", footprint_size).help("WxH", "the size of that camera's picture").only_with("footprint"));
+    all.push_back(Option("spacing-voxels", spacing_voxels)
+                      .positive()
+                      .or_none()
+                      .help("S", "the same as --spacing in units of 1/200 of the longest side of the bounding box")
+                      .instead_of({"per-edge", "spacing"}));
+    all.push_back(Option("footprint", footprint)
+                      .help("CAMERA",
+                            "instead: samples at most 1.5 pixels apart as this camera sees them (numbers, a JSON file, or a "
+                            "side)")
+                      .instead_of({"per-edge", "spacing"}));
+    all.push_back(
+        Option("footprint-size", footprint_size).help("WxH", "the size of that camera's picture").only_with("footprint"));
+    all.push_back(Option("reduce", reduction.rmse)
+                      .positive()
+                      .help("RMSE", "instead: as few kernels as a root mean square error of RMSE needs, in the field's unit")
+                      .instead_of({"per-edge", "spacing", "spacing-voxels", "tolerance", "footprint", "centers", "values",
+                                   "correction"}));
+    all.push_back(Option("refine", reduction.move)
+                      .help("with --reduce: also move and resize the kernels: about half as many, ten times as slow")
+                      .only_with("reduce"));
+    return all;
+}
+
+void SampleArguments::add_to(CLI::App& app) {
+    add_options(app, described());
     threshold_option_ = app.add_option("--threshold", threshold,
                                        "drop points that cannot be seen: where the field is at most V; without V, where the "
                                        "transfer function is transparent")
                             ->type_name("[V]")
                             ->expected(0, 1);
-    add_option(app, Option("reduce", reduction.rmse)
-                        .positive()
-                        .help("RMSE", "instead: as few kernels as a root mean square error of RMSE needs, in the field's unit")
-                        .instead_of({"per-edge", "spacing", "spacing-voxels", "tolerance", "footprint", "centers"}));
-    add_option(app, Option("refine", reduction.move)
-                        .help("with --reduce: also move and resize the kernels: about half as many, ten times as slow")
-                        .only_with("reduce"));
 }
 
 SampleOptions SampleArguments::options(const Box& box, const RefineOptions& refinement) const {

@@ -24,6 +24,7 @@ struct SampleArguments {
     std::string threshold;  // a number; empty: the transfer function decides
 
     void add_to(CLI::App& app);
+    [[nodiscard]] std::vector<Option> described();
 
     [[nodiscard]] SampleOptions options(const Box& box, const RefineOptions& refinement) const;
 

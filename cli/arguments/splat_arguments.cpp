@@ -2,20 +2,22 @@
 #include "splat_arguments.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <iterator>
 
 #include "options.h"
 #include "subvol/error.h"
 
 namespace subvol::cli {
 
+std::vector<Option> SplatArguments::described() {
+    std::vector<Option> all = options_of(chosen);
+    std::ranges::move(options_of(static_cast<PictureChoices&>(*this)), std::back_inserter(all));
+    return all;
+}
+
 void SplatArguments::add_to(CLI::App& app) {
-    add_options(app, options_of(chosen));
-    add_option(app,
-               Option("shade", shade).help("splat: light on surfaces of equal value, from the eye and from the upper left"));
-    add_option(app, Option("color-field", color_field)
-                        .help("NAME", "splat: take the colours from this field; opacities stay those of --field"));
-    add_option(app,
-               Option("plain-sums", plain_sums).help("splat: add kernels up without dividing by the sum of their weights"));
+    add_options(app, described());
     const auto refuse_sums = [](const std::string&) {
         throw Error(ErrorCode::InvalidInput, "sheets are always summed in floats; parts, ranks and bricks have the same bits",
                     "--sheet-sums", "leave it out; --backend cpu where a GPU would draw otherwise");

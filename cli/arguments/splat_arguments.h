@@ -3,8 +3,9 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
-#include "subvol/splat_options.h"
+#include "subvol/picture_maker.h"
 
 namespace CLI {
 class App;
@@ -15,13 +16,11 @@ namespace subvol::cli {
 /// The options of splatting.
 ///
 /// chosen: those that the library describes
-struct SplatArguments {
+struct SplatArguments : PictureChoices {
     SplatOptions chosen{};
-    bool shade = false;
-    bool plain_sums = false;
-    std::optional<std::string> color_field{};
 
     void add_to(CLI::App& app);
+    [[nodiscard]] std::vector<Option> described();
 
     [[nodiscard]] SplatOptions options() const;
 };

@@ -2,12 +2,12 @@
 #include "common_options.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 
 #include "choices.h"
 #include "numbers.h"
 #include "options.h"
 #include "subvol/error.h"
-#include "subvol/read_options.h"
 
 namespace subvol::cli {
 
@@ -15,16 +15,14 @@ namespace {
 
 void add_mesh_options(CLI::App& app, CommonOptions& options) {
     const std::string group = "Reading meshes";
-    app.add_option("--other-cells", options.other_cells,
-                   "what to do with tetrahedra, prisms and pyramids: split (all cells, into hexahedra), ignore, refuse")
-        ->group(group)
-        ->type_name("WHAT")
-        ->check(one_of(names_of<OtherCells>()));
+    const std::vector<Option> described = options_of(options.read);
+    const auto add = [&](const char* name) {
+        CLI::Option* const added = add_option(app, *std::ranges::find(described, name, &Option::name));
+        return added->group(group);
+    };
+    add("other-cells");
     app.add_flag("--weld", options.weld, "join points of a file that are at the same place")->group(group);
-    add_option(app, Option("weld-distance", options.weld_distance_world)
-                        .positive()
-                        .help("D", "join points of a file whose distance is at most D"))
-        ->group(group);
+    add("weld-distance");
     app.add_option(
            "--curved,--curved-tolerance", options.curved,
            "split curved hexahedra into smaller ones, to within this part T of the mesh's size from their true shape, and "
@@ -32,14 +30,7 @@ void add_mesh_options(CLI::App& app, CommonOptions& options) {
         ->group(group)
         ->type_name("T|corners")
         ->transform(number_or("corners", positive_number()));
-    app.add_option(
-           "--cell-values", options.cell_values,
-           "values at cells become values at points: fit (the volume follows the cells' means without waves; the default "
-           "for OpenFOAM), mean (of the cells around each point; the default for all others), exact (the volume has the "
-           "cells' means), auto")
-        ->group(group)
-        ->type_name("HOW")
-        ->check(one_of(names_of<CellValues>()));
+    add("cell-values");
     auto* step =
         app.add_option("--step", options.step,
                        "a step of a series, from 0, or last (the default); of verbs that write a file a step also all or A-B");
@@ -49,16 +40,8 @@ void add_mesh_options(CLI::App& app, CommonOptions& options) {
         ->type_name("T")
         ->transform(any_number())
         ->excludes(step);
-    app.add_option("--blocks", options.blocks, "the named parts of the mesh to read (info lists them; default: all)")
-        ->group(group)
-        ->type_name("A,B")
-        ->delimiter(',');
-    app.add_option("--sharp", options.sharp,
-                   "a group of the file whose faces inside the mesh and edges are kept sharp: a physical group of Gmsh by its "
-                   "name or number, a reference of MEDIT, or Ridges (repeatable)")
-        ->group(group)
-        ->type_name("NAME")
-        ->allow_extra_args(false);
+    add("blocks")->delimiter(',');
+    add("sharp")->allow_extra_args(false);
 }
 
 }  // namespace

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "subvol/read_options.h"
+
 namespace CLI {
 class App;
 }
@@ -20,16 +22,12 @@ enum class Reads { Meshes, NoMesh };
 struct CommonOptions {
     std::optional<std::string> field;
     std::optional<std::string> density;  // an expression in x, y, z
-    std::string other_cells = "split";   // "ignore", "refuse"
+    ReadOptions read{};                  // what the library describes of them
     bool weld = false;                   // join points at the same place
-    std::optional<double> weld_distance_world;
-    std::string curved = "5e-6";       // of the mesh's size, or "corners"
-    std::string cell_values = "auto";  // a name of CellValues
-    std::vector<std::string> sharp;    // groups of faces and edges
-    std::optional<std::string> step;   // a number from 0, "last", "all" or a range
-    std::optional<double> time;        // the step nearest to it
-    std::vector<std::string> blocks;   // empty: all
-    int threads = 0;                   // 0: all
+    std::string curved = "5e-6";         // of the mesh's size, or "corners"
+    std::optional<std::string> step;     // a number from 0, "last", "all" or a range
+    std::optional<double> time;          // the step nearest to it
+    int threads = 0;                     // 0: all
     bool json = false;
     bool quiet = false;
     std::string progress = "auto";

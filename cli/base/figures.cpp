@@ -5,6 +5,7 @@
 
 #include "numbers.h"
 #include "subvol/error.h"
+#include "subvol/picture_metrics.h"
 #include "text.h"
 
 namespace subvol::cli {
@@ -28,7 +29,8 @@ void Figures::into(Report& report) const {
 
 bool Demand::met_by(const Figures& figures) const {
     const double measured = figures.at(metric);
-    const bool more_is_better = metric.ends_with("psnr") || metric.ends_with("ssim");
+    const PictureMetric* const known = find_metric(metric);
+    const bool more_is_better = known != nullptr && known->more_is_better;
     return more_is_better ? measured >= value : measured <= value;
 }
 

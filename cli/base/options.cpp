@@ -32,14 +32,49 @@ CLI::Validator described(const std::string& description) {
     return {[](const std::string&) { return std::string(); }, description, "described"};
 }
 
-/// "--values paper", "--scheme mcq or cc"
-std::string words_of(const OptionNeed& need) {
-    std::string all = need.option;
-    for (const std::string& word : need.words) all += (&word == &need.words.front() ? " " : " or ") + word;
-    return all;
+/// Rows of numbers, each in a word of its own.
+CLI::Option* add_numbers(CLI::App& app, const std::string& name, const NumbersValue& rows, const Option& option) {
+    const auto read = [rows, name](const std::vector<std::string>& given) {
+        for (const std::string& row : given) rows.add(parse_numbers(name, row, rows.count, rows.example), name);
+    };
+    CLI::Option* const added = app.add_option_function<std::vector<std::string>>(name, read, option.sentence);
+    added->type_name(option.about)->transform(number_list(rows.count, rows.example));
+    return rows.repeatable ? added->allow_extra_args(false) : added->expected(1);
+}
+
+/// Text of an option that was given.
+std::optional<std::string> given_to(const CLI::App& app, std::string_view name) {
+    const CLI::Option* const option = app.get_option_no_throw("--" + std::string(name));
+    return option == nullptr || option->count() == 0 ? std::nullopt : std::optional(join(option->results()));
+}
+
+/// Says the condition in the help, and checks it when the option is given.
+void check_need(CLI::App& app, CLI::Option& added, Option option, const OptionNeed& need) {
+    CLI::Option* const other = app.get_option_no_throw("--" + need.option);
+    option.needs = {need};
+    option.excludes.clear();
+    const auto check = [&app, option](const std::string&) -> std::string {
+        const auto usual = [&app](std::string_view name) {
+            return app.get_option("--" + std::string(name))->get_default_str();
+        };
+        check_needs(
+            option, [&app](std::string_view name) { return given_to(app, name); }, usual, OptionNames::Flags);
+        return {};
+    };
+    const bool says = need.words.empty() && !need.excluded && need.instead.empty();
+    if (says) {
+        added.needs(other);  // which the help says
+    } else {
+        added.description(added.get_description() + "; " + need_text(need, OptionNames::Flags));
+    }
+    added.check(CLI::Validator(check, "", "only with"));
 }
 
 }  // namespace
+
+GivenOptions given_options(const CLI::App& app) {
+    return [&app](std::string_view name) { return given_to(app, name); };
+}
 
 CLI::Option* add_option(CLI::App& app, const Option& option) {
     const std::string name = "--" + option.name;
@@ -48,6 +83,8 @@ CLI::Option* add_option(CLI::App& app, const Option& option) {
         added = app.add_flag(name, **on, option.sentence);
     } else if (auto* const* list = std::get_if<std::vector<std::string>*>(&option.value)) {
         added = app.add_option(name, **list, option.sentence)->type_name(option.about);
+    } else if (const auto* const rows = std::get_if<NumbersValue>(&option.value)) {
+        added = add_numbers(app, name, *rows, option);
     } else {
         const bool said = option.sentence.find("(default") != std::string::npos;
         const bool has_default = !said && !option.is_optional() && !option.text().empty() && option.text() != "0";
@@ -57,7 +94,7 @@ CLI::Option* add_option(CLI::App& app, const Option& option) {
     }
     if (const std::string description = description_of(option); !description.empty()) added->check(described(description));
     for (const OptionNeed& need : option.needs) {
-        if (app.get_option_no_throw("--" + need.option) != nullptr) only_with(app, name, {"--" + need.option, need.words});
+        if (app.get_option_no_throw("--" + need.option) != nullptr) check_need(app, *added, option, need);
     }
     for (const std::string& other : option.excludes) {
         if (CLI::Option* const second = app.get_option_no_throw("--" + other); second != nullptr) added->excludes(second);
@@ -70,21 +107,8 @@ void add_options(CLI::App& app, const std::vector<Option>& options) {
 }
 
 void only_with(CLI::App& app, const std::string& name, const OptionNeed& need) {
-    CLI::Option* const other = app.get_option(need.option);
-    const std::string words = words_of(need);
-    const auto check = [=](const std::string&) -> std::string {
-        const std::string value = other->count() > 0 ? other->results().back() : other->get_default_str();
-        const bool met = need.words.empty() ? other->count() > 0 : std::ranges::find(need.words, value) != need.words.end();
-        if (!met) throw Error(ErrorCode::InvalidInput, "has no effect without " + words, name);
-        return {};
-    };
-    CLI::Option* const option = app.get_option(name);
-    if (need.words.empty()) {
-        option->needs(other);  // which the help says
-    } else {
-        option->description(option->get_description() + "; with " + words);
-    }
-    option->check(CLI::Validator(check, "", "only with"));
+    std::string none;
+    check_need(app, *app.get_option("--" + name), Option(name, none), need);
 }
 
 }  // namespace subvol::cli

@@ -20,9 +20,12 @@ namespace subvol::cli {
 CLI::Option* add_option(CLI::App& app, const Option& option);
 void add_options(CLI::App& app, const std::vector<Option>& options);
 
+/// The options that were given to a command.
+[[nodiscard]] GivenOptions given_options(const CLI::App& app);
+
 /// Refuses an option where another one is not given, or has none of these words: it would have no effect.
 ///
-/// name, need.option: with dashes before them; the other one exists already
+/// The other one exists already.
 void only_with(CLI::App& app, const std::string& name, const OptionNeed& need);
 
 }  // namespace subvol::cli

@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "common_options.h"
-#include "subvol/detail/stopwatch.h"
 #include "subvol/facts.h"
 #include "terminal_progress.h"
 
@@ -58,15 +57,12 @@ public:
     /// seconds.
     void if_long(const std::string& quicker);
 
-    /// Adds to a stage's seconds, which go under "seconds".
-    void add_seconds(const std::string& stage, double seconds);
-
-    /// Runs a stage of the work and adds its seconds. Throws Error(Cancelled) before it if the user has asked to stop.
+    /// Runs a stage of the work and adds its seconds, which go under "seconds". Throws Error(Cancelled) before it if the user has
+    /// asked to stop.
     template <class Work>
     auto timed(const char* stage, Work&& work) {
-        report_progress(&progress_, stage, 0);
-        const StageTimer timer{*this, stage};
-        return std::forward<Work>(work)();
+        Timed timed{*this};
+        return timed.facts.timed(&progress_, stage, std::forward<Work>(work));
     }
 
     /// `say` has printed everything: no table at the end.
@@ -78,13 +74,14 @@ public:
     void finish();
 
 private:
-    /// Adds to the stage's seconds when the stage ends, whatever it returns.
-    struct StageTimer {
+    /// Takes the seconds of a stage when it ends, whatever it returns.
+    struct Timed {
         Report& report;
-        const char* stage;
-        detail::Stopwatch watch{};
-        ~StageTimer() { report.add_seconds(stage, watch.seconds()); }
+        Facts facts{};
+        ~Timed() { report.merge(facts); }
     };
+
+    void add_seconds(const std::string& stage, double seconds);
 
     bool print_json_;
     bool quiet_;

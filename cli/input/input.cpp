@@ -46,11 +46,6 @@ ReadResult generate(const std::string& description) {
     return result;
 }
 
-std::optional<double> weld_distance(const CommonOptions& options) {
-    if (options.weld_distance_world) return options.weld_distance_world;
-    return options.weld ? std::optional<double>(0) : std::nullopt;
-}
-
 std::optional<double> curved_tolerance(const CommonOptions& options) {
     if (options.curved == "corners") return std::nullopt;
     double tolerance = 0;
@@ -86,13 +81,11 @@ bool is_model(const std::string& input) {
 }
 
 ReadOptions read_options(const std::string& input, const CommonOptions& options) {
-    return {.other_cells = named<OtherCells>(options.other_cells, "--other-cells"),
-            .weld = weld_distance(options),
-            .sharp = options.sharp,
-            .curved_tolerance = curved_tolerance(options),
-            .step = one_step(input, options),
-            .blocks = options.blocks,
-            .cell_values = named<CellValues>(options.cell_values, "--cell-values")};
+    ReadOptions read = options.read;
+    if (options.weld && !read.weld) read.weld = 0;
+    read.curved_tolerance = curved_tolerance(options);
+    read.step = one_step(input, options);
+    return read;
 }
 
 WithFacts<ReadResult> read_input(const std::string& input, const CommonOptions& options, Progress* progress,
@@ -106,9 +99,9 @@ WithFacts<ReadResult> read_input(const std::string& input, const CommonOptions& 
     }
     const bool model = is_model(input);
     if (model) refuse_file_options(options.app, "says how a file is read; this is a model");
-    if (model && !options.sharp.empty()) throw Error(ErrorCode::InvalidInput, "a model has no groups", "--sharp");
+    if (model && !options.read.sharp.empty()) throw Error(ErrorCode::InvalidInput, "a model has no groups", "--sharp");
     if (model && (options.step || options.time)) throw Error(ErrorCode::InvalidInput, "a model has no steps", "--step, --time");
-    if (model && !options.blocks.empty()) throw Error(ErrorCode::InvalidInput, "a model has no blocks", "--blocks");
+    if (model && !options.read.blocks.empty()) throw Error(ErrorCode::InvalidInput, "a model has no blocks", "--blocks");
     ReadResult read = facts.timed(progress, "read", [&] {
         if (model) return generate(input.substr(kModelPrefix.size()));
         ReadOptions file_options = read_options(input, options);

@@ -11,6 +11,7 @@
 #include <ostream>
 #include <sstream>
 
+#include "render_arguments.h"
 #include "subvol/method.h"
 #include "subvol/version.h"
 
@@ -338,7 +339,7 @@ void write_manual(std::ostream& out, const std::string& kind, const CLI::App& pr
     if (kind == "man") return write_man_page(out, program);
     if (kind == "bash") return write_bash_completion(out, program);
     if (kind == "methods") {
-        out << option_table();
+        out << option_table(RenderArguments().described());
         return;
     }
     write_zsh_completion(out, program);

@@ -14,71 +14,30 @@
 #include "study_work.h"
 #include "subvol/detail/stopwatch.h"
 #include "subvol/error.h"
-#include "subvol/flip.h"
 #include "subvol/image.h"
 #include "subvol/image_io.h"
 #include "subvol/image_metrics.h"
-#include "subvol/image_regions.h"
 #include "subvol/picture_maker.h"
+#include "subvol/picture_metrics.h"
 #include "subvol/placed_image.h"
-#include "subvol/ssim.h"
 #include "text.h"
 
 namespace subvol::cli {
 namespace {
-
-bool any(const PixelMask& mask) {
-    return std::ranges::any_of(mask, [](auto pixel) { return pixel != 0; });
-}
-
-/// Metrics of a picture compared with its reference, by name.
-///
-/// names: separated by commas, as in a study
-std::map<std::string, double> picture_metrics(const Image& image, const Image& reference, const std::string& names) {
-    const ImageMetrics all = compare_images(image, reference);
-    const ImageRegions regions = silhouette_regions(reference);
-    std::optional<FlipResult> seen;
-    const auto flip_of = [&]() -> const FlipResult& {
-        if (!seen) seen = flip(image, reference);
-        return *seen;
-    };
-    std::map<std::string, double> metrics;
-    const auto in_region = [&](const std::string& name, const PixelMask& mask) {
-        if (!any(mask)) return;  // the picture has no interior or no edge
-        metrics[name] = name.starts_with("psnr") ? compare_images(image, reference, mask).psnr : mean_of(flip_of().map, mask);
-    };
-    std::istringstream in(names);
-    for (std::string name; std::getline(in, name, ',');) {
-        if (name == "mse") metrics[name] = all.mse;
-        if (name == "rmse") metrics[name] = all.rmse;
-        if (name == "mae") metrics[name] = all.mae;
-        if (name == "max") metrics[name] = all.max;
-        if (name == "psnr") metrics[name] = all.psnr;
-        if (name == "ssim") metrics[name] = ssim(srgb8_image(image), srgb8_image(reference)).mean;
-        if (name == "flip") metrics[name] = flip_of().mean;
-        if (name == "flip_hdr") metrics[name] = hdr_flip(image, reference).mean;
-        if (name == "optical_depth") metrics[name] = optical_depth_error(image, reference);
-        if (name.ends_with("_interior")) in_region(name, regions.interior);
-        if (name.ends_with("_edge")) in_region(name, regions.edge);
-    }
-    return metrics;
-}
 
 namespace fs = std::filesystem;
 
 /// The options of a case as those of pictures: a volume without light.
 MethodOptions picture_options(const StudyCase& item, const HexMesh& mesh) {
     const Method method = named<Method>(item.text("method"), "study");
-    MethodOptions options{.style = {.method = method, .samples = std::max(item.whole("samples"), 1)}};
+    PictureSettings settings;
+    set_options(item, options_of(settings, method));
+    MethodOptions options = settings.chosen();
+    options.style.method = method;
     if (draws_kernels(method)) {
-        options.kernels.sample = study_sampling(item, mesh);
+        options.kernels.sample = study_sampling(item, mesh, options.kernels.sample);
         options.drop_invisible = item.flag("visible_only");
-        options.splat.sheets = item.whole("sheets");
-        if (method == Method::Splat) options.splat.method = named<SplatMethod>(item.text("backend"), "study");
-    } else if (item.has("levels")) {
-        options.kernels.levels = item.whole("levels");
     }
-    if (method == Method::Projected) options.order = named<ProjectedOrder>(item.text("order"), "study");
     if (method == Method::Dense) {
         options.max_levels = item.whole("max_levels");
         options.image_tolerance = item.number("tolerance");
@@ -171,7 +130,7 @@ CaseResult run_picture_case(const StudyCase& item, const CasePlace& place) {
     // If the reference is a part of another picture, only that part is left, and its size is refused below.
     const Image reference =
         common_pixels(whole_image(image), read_placed_image(place.references / (reference_case->id + ".exr"))).b;
-    for (const auto& [name, value] : picture_metrics(image, reference, item.text("metrics"))) result.metrics[name] = value;
+    for (const auto& [name, value] : measure_pictures(image, reference, item.text("metrics"))) result.metrics[name] = value;
 
     if (const auto made =
             read_finished_case(place.references / (reference_case->id + ".json"), *reference_case, place.references)) {

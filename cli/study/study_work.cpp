@@ -8,6 +8,7 @@
 #include "report.h"
 #include "sample_arguments.h"
 #include "subvol/detail/stopwatch.h"
+#include "subvol/picture_maker.h"
 
 namespace subvol::cli {
 
@@ -26,16 +27,31 @@ Kernel study_kernel(const std::string& text) {
     return text.starts_with("{") ? kernel_from_json(text) : named_kernel(text);
 }
 
-SampleOptions study_sampling(const StudyCase& item, const HexMesh& mesh) {
-    SampleOptions options{.per_edge = std::max(item.whole("per_edge"), 1),
-                          .spacing_world = world_of_voxels(item.number("spacing_voxels"), bounds(mesh)),
-                          .centers = item.flag("centers")};
-    for (const Option& option : options_of(options)) {
-        if ((option.name == "correction" || option.name == "kernel") && item.has(option.key()))
-            option.read(item.text(option.key()), option.key());
+void set_options(const StudyCase& item, const std::vector<Option>& options) {
+    for (const Option& option : options) {
+        const auto found = item.values.find(option.key());
+        if (found == item.values.end()) continue;
+        if (const auto* on = std::get_if<bool>(&found->second)) {
+            *std::get<bool*>(option.value) = *on;
+        } else if (const auto* number = std::get_if<double>(&found->second)) {
+            option.set(*number, option.key());
+        } else {
+            option.read(std::get<std::string>(found->second), option.key());
+        }
     }
-    if (item.has("boundary_levels")) options.boundary_levels = item.whole("boundary_levels");
+}
+
+SampleOptions study_sampling(const StudyCase& item, const HexMesh& mesh, SampleOptions options) {
+    set_options(item, options_of(options));
+    if (item.has("spacing_voxels")) options.spacing_world = world_of_voxels(item.number("spacing_voxels"), bounds(mesh));
     return options;
+}
+
+std::vector<PictureMethod> study_picture_methods() {
+    static PictureSettings any;  // reading a study changes it
+    std::vector<PictureMethod> methods;
+    for (const auto& row : NameTable<Method>::rows) methods.push_back({std::string(row.name), options_of(any, row.value)});
+    return methods;
 }
 
 CaseResult run_case(const StudyCase& item, const CasePlace& place) {

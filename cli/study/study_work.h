@@ -28,8 +28,14 @@ struct CasePlace {
 [[nodiscard]] CaseResult run_field_case(const StudyCase& item);
 [[nodiscard]] CaseResult run_kernel_case(const StudyCase& item, const CasePlace& place);
 
-/// The options for sampling a case's mesh into kernels.
-[[nodiscard]] SampleOptions study_sampling(const StudyCase& item, const HexMesh& mesh);
+/// Sets the options of the library that a case has under their keys.
+void set_options(const StudyCase& item, const std::vector<Option>& options);
+
+/// The options for sampling a case's mesh into kernels. options: what the case may leave
+[[nodiscard]] SampleOptions study_sampling(const StudyCase& item, const HexMesh& mesh, SampleOptions options = {});
+
+/// The methods of pictures, with the options that each reads; for `parse_study`.
+[[nodiscard]] std::vector<PictureMethod> study_picture_methods();
 
 /// A kernel by its name or JSON.
 [[nodiscard]] Kernel study_kernel(const std::string& text);

@@ -3,7 +3,6 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <array>
 
 #include "input.h"
 #include "numbers.h"
@@ -11,23 +10,16 @@
 #include "outputs.h"
 #include "subvol/error.h"
 #include "subvol/image_io.h"
-#include "subvol/image_metrics.h"
 #include "subvol/image_regions.h"
 #include "subvol/oiio_compare.h"
 #include "subvol/placed_image.h"
-#include "subvol/ssim.h"
 #include "text.h"
 
 namespace subvol::cli {
 namespace {
 
 const std::vector<std::string> kHeatmaps{"abs", "flip", "ssim"};
-const std::vector<std::string> kDifferences{"mse", "rmse", "mae", "max", "psnr"};
-
-void put_differences(const ImageMetrics& m, const std::string& prefix, Figures& figures) {
-    const std::array values{m.mse, m.rmse, m.mae, m.max, m.psnr};
-    for (std::size_t k = 0; k < values.size(); ++k) figures.put(prefix + kDifferences[k], values[k]);
-}
+constexpr const char* kEncoded = "srgb8.";
 
 void check_finite(const Image& image, const std::string& path) {
     const std::size_t bad = count_not_finite(image);
@@ -72,13 +64,14 @@ void PictureComparison::add_to(CLI::App& app) {
                         .between(1, 1000)
                         .help("N", "flip: pixels per degree of the viewer's sight (default 67.02)"))
         ->group(group);
-    app.add_flag("--hdr", hdr, "also HDR-FLIP (hdr_flip), over all exposures that the second picture needs")->group(group);
+    for (const PictureMetric& metric : picture_metrics()) {
+        if (metric.flag.empty()) continue;
+        const std::string flag(metric.flag);
+        app.add_flag_callback(
+               "--" + flag, [this, flag] { asked.insert(flag); }, std::string(metric.help))
+            ->group(group);
+    }
     app.add_flag("--oiio", oiio, "also the figures of OpenImageIO's idiff: warnings, failures, Yee's perceptual failures")
-        ->group(group);
-    app.add_flag(
-           "--optical-depth", optical_depth,
-           "also the relative error of the summed optical depth -ln(1-alpha), which with --ortho is the volume's integral "
-           "(optical_depth_error)")
         ->group(group);
     add_option(app, Option("edge-band", edge_band_px)
                         .between(1, 1000)
@@ -89,7 +82,7 @@ void PictureComparison::add_to(CLI::App& app) {
         ->group(group)
         ->type_name("R,G,B")
         ->transform(number_list(3, "0,0,0"));
-    only_with(app, "--background", {"--edge-band"});
+    only_with(app, "background", {"edge-band"});
 }
 
 void PictureComparison::check() const {
@@ -98,46 +91,47 @@ void PictureComparison::check() const {
     if (!heatmap.empty()) check_output(heatmap, {".png", ".exr"});
 }
 
+bool PictureComparison::takes(const PictureMetric& metric) const {
+    return metric.flag.empty() || asked.contains(std::string(metric.flag));
+}
+
 std::vector<std::string> PictureComparison::names() const {
-    std::vector<std::string> all = kDifferences;
-    const auto add = [&](const std::string& prefix, const std::vector<std::string>& names) {
-        for (const std::string& name : names) all.push_back(prefix + name);
+    std::vector<std::string> all;
+    const auto add = [&](const std::string& prefix, const auto& chosen) {
+        for (const PictureMetric& metric : picture_metrics()) {
+            if (takes(metric) && chosen(metric)) all.push_back(prefix + std::string(metric.name));
+        }
     };
-    add("", {"ssim", "flip"});
-    if (hdr) add("", {"hdr_flip"});
-    add("srgb8.", kDifferences);
-    add("srgb8.", {"ssim"});
+    add("", [](const PictureMetric&) { return true; });
+    add(kEncoded, [](const PictureMetric& metric) { return metric.encoded; });
     for (const char* region : {"interior.", "edge."}) {
-        if (!edge_band_px) break;
-        add(region, kDifferences);
-        add(region, {"flip"});
+        if (edge_band_px) add(region, [](const PictureMetric& metric) { return metric.masked; });
     }
-    if (optical_depth) add("", {"optical_depth_error"});
-    if (oiio) add("oiio.", {"warnings", "failures", "yee_failures"});
+    if (oiio) all.insert(all.end(), {"oiio.warnings", "oiio.failures", "oiio.yee_failures"});
     return all;
 }
 
 Figures PictureComparison::measure(const std::string& test, const std::string& reference, Report& report) const {
     const CommonPixels common = report.timed("read", [&] { return read_common(test, reference, report); });
     const Image &a = common.a, &b = common.b;
+    const PicturePair pair(a, b, pixels_per_degree);
     Figures figures;
-    put_differences(report.timed("differences", [&] { return compare_images(a, b); }), "", figures);
-    const SsimResult similarity = report.timed("ssim", [&] { return ssim(a, b); });
-    const FlipResult flips = report.timed("flip", [&] { return flip(a, b, pixels_per_degree); });
-    figures.put("ssim", similarity.mean);
-    figures.put("flip", flips.mean);
-    if (hdr) {
-        const auto found = report.timed("hdr_flip", [&] { return hdr_flip(a, b, {.pixels_per_degree = pixels_per_degree}); });
-        figures.put("hdr_flip", found.mean);
+    for (const PictureMetric& metric : picture_metrics()) {
+        if (!takes(metric)) continue;
+        const std::string stage(metric.stage);
+        figures.put(std::string(metric.name), report.timed(stage.c_str(), [&] { return metric.of(pair, {}); }));
+    }
+    if (asked.contains("hdr")) {
+        const HdrFlipResult& found = pair.hdr_flip();
         report["exposures"] = {{"start", found.start}, {"stop", found.stop}, {"count", found.exposures}};
     }
     report.timed("srgb8", [&] {
-        const Image a8 = srgb8_image(a), b8 = srgb8_image(b);
-        put_differences(compare_images(a8, b8), "srgb8.", figures);
-        figures.put("srgb8.ssim", ssim(a8, b8).mean);
+        for (const PictureMetric& metric : picture_metrics()) {
+            if (metric.encoded) figures.put(kEncoded + std::string(metric.name), metric.of(pair.on_screen(), {}));
+        }
     });
-    if (edge_band_px) measure_regions(a, b, flips.map, figures);
-    if (optical_depth) measure_optical_depth(a, b, figures, report);
+    if (edge_band_px) measure_regions(pair, figures);
+    if (asked.contains("optical-depth")) warn_of_opaque(pair, report);
     if (oiio) {
         report.timed("oiio", [&] {
             const OiioMetrics metrics = compare_oiio(a, b);
@@ -146,38 +140,38 @@ Figures PictureComparison::measure(const std::string& test, const std::string& r
             figures.put("oiio.yee_failures", static_cast<double>(compare_yee(a, b)));
         });
     }
-    if (!heatmap.empty()) draw(a, b, flips.map, similarity.map, report);
+    if (!heatmap.empty()) draw(pair, report);
     return figures;
 }
 
-void PictureComparison::measure_optical_depth(const Image& a, const Image& b, Figures& figures, Report& report) {
-    figures.put("optical_depth_error", optical_depth_error(a, b));
-    const std::size_t saturated = std::max(subvol::optical_depth(a).saturated, subvol::optical_depth(b).saturated);
+void PictureComparison::warn_of_opaque(const PicturePair& pair, Report& report) {
+    const std::size_t saturated =
+        std::max(subvol::optical_depth(pair.test()).saturated, subvol::optical_depth(pair.reference()).saturated);
     if (saturated == 0) return;
     report.warn(text(saturated,
                      " pixels are nearly opaque, so their optical depth is inaccurate; render with a larger "
                      "--opacity-unit"));
 }
 
-void PictureComparison::measure_regions(const Image& a, const Image& b, const MetricMap& flips, Figures& figures) const {
-    const ImageRegions regions = silhouette_regions(b, *edge_band_px, parse_vector("--background", background));
+void PictureComparison::measure_regions(const PicturePair& pair, Figures& figures) const {
+    const ImageRegions regions = silhouette_regions(pair.reference(), *edge_band_px, parse_vector("--background", background));
     const auto put = [&](const std::string& name, const PixelMask& mask) {
         if (std::ranges::find(mask, 1) == mask.end()) {
             throw Error(ErrorCode::InvalidInput, "the second picture's object has no " + name, "--edge-band",
                         "a narrower band, or another --background");
         }
-        put_differences(compare_images(a, b, mask), name + ".", figures);
-        figures.put(name + ".flip", mean_of(flips, mask));
+        for (const PictureMetric& metric : picture_metrics()) {
+            if (metric.masked) figures.put(name + "." + std::string(metric.name), metric.of(pair, mask));
+        }
     };
     put("interior", regions.interior);
     put("edge", regions.edge);
 }
 
-void PictureComparison::draw(const Image& a, const Image& b, const MetricMap& flips, const MetricMap& similarities,
-                             Report& report) const {
-    const MetricMap map = heatmap_of == "abs"    ? difference_map(a, b)
-                          : heatmap_of == "flip" ? flips
-                                                 : dissimilarity(similarities);
+void PictureComparison::draw(const PicturePair& pair, Report& report) const {
+    const MetricMap map = heatmap_of == "abs"    ? difference_map(pair.test(), pair.reference())
+                          : heatmap_of == "flip" ? pair.flip().map
+                                                 : dissimilarity(pair.ssim().map);
     report.timed("write", [&] { write_image(heatmap, subvol::heatmap(map, heatmap_scale.value_or(0))); });
     report["heatmap"] = heatmap;
 }

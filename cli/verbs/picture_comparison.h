@@ -2,12 +2,12 @@
 #pragma once
 
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
 #include "figures.h"
-#include "subvol/flip.h"
-#include "subvol/image.h"
+#include "subvol/picture_metrics.h"
 
 namespace CLI {
 class App;
@@ -21,9 +21,8 @@ struct PictureComparison {
     std::string heatmap_of = "abs";
     std::optional<double> heatmap_scale;
     double pixels_per_degree = kFlipPixelsPerDegree;
-    bool hdr = false;
+    std::set<std::string> asked;  // flags of metrics that are not always taken
     bool oiio = false;
-    bool optical_depth = false;
     std::optional<int> edge_band_px;
     std::string background = "0,0,0";
 
@@ -43,9 +42,10 @@ struct PictureComparison {
     [[nodiscard]] Figures measure(const std::string& test, const std::string& reference, Report& report) const;
 
 private:
-    static void measure_optical_depth(const Image& a, const Image& b, Figures& figures, Report& report);
-    void measure_regions(const Image& a, const Image& b, const MetricMap& flips, Figures& figures) const;
-    void draw(const Image& a, const Image& b, const MetricMap& flips, const MetricMap& similarities, Report& report) const;
+    [[nodiscard]] bool takes(const PictureMetric& metric) const;
+    static void warn_of_opaque(const PicturePair& pair, Report& report);
+    void measure_regions(const PicturePair& pair, Figures& figures) const;
+    void draw(const PicturePair& pair, Report& report) const;
 };
 
 }  // namespace subvol::cli

@@ -200,9 +200,15 @@ private:
     /// For people: the figure that is asked for most first, then the others, then the demands.
     void say(const Figures& figures, bool pictures, const std::vector<std::string>& faults, Report& report) {
         const std::string first = pictures ? "psnr" : "l2";
-        Lines lines{{first, text(std::setprecision(6), figures.at(first), pictures ? " dB" : "")}};
+        Lines lines;
+        const auto add = [&](const std::string& name, double value) {
+            const PictureMetric* const metric = pictures ? find_metric(name) : nullptr;
+            const bool plain = metric == nullptr || metric->unit.empty();
+            lines.emplace_back(name, text(std::setprecision(6), value, plain ? "" : " ", plain ? "" : metric->unit));
+        };
+        add(first, figures.at(first));
         for (const auto& [name, value] : figures.all()) {
-            if (name != first) lines.emplace_back(name, text(std::setprecision(6), value, name.ends_with("psnr") ? " dB" : ""));
+            if (name != first) add(name, value);
         }
         const Json& json = report.json();
         if (!pictures) {

@@ -66,7 +66,7 @@ WithFacts<BlockCells> cells_of_blocks(const std::string& input, const std::vecto
     for (Index b = 0; b < blocks.size(); ++b) {
         found.names.push_back(blocks[b].name);
         CommonOptions one = options;
-        one.blocks = {blocks[b].name};
+        one.read.blocks = {blocks[b].name};
         const HexMesh part = read_input(input, one, nullptr).value.mesh;
         for (const auto& cell : part.cells) {
             const auto at = cells.find(key_of(part, cell));
@@ -309,7 +309,7 @@ public:
                    Option("count", count_).between(2, 10000000).help("N", "how many places on the line").only_with("line"));
         app().add_option("--points", points_, "a table of places: three numbers a line, or columns x, y, z")->type_name("FILE");
         app().add_flag("--stats", stats_, "integral, mean, extremes with their places, histogram; by block too");
-        add_option(app(), Option("bins", bins_).between(1, 100000).help("N", "intervals of the histogram").only_with("stats"));
+        add_option(app(), options_of(measured_).back().only_with("stats"));
         app()
             .add_option("-o,--output", output_, "a table of all fields (.csv), or a plot along the line (.svg)")
             ->type_name("FILE");
@@ -393,7 +393,8 @@ private:
         }
         if (!stats_) return;
         show_measured(
-            report.timed("measure", [&] { return measure_limit(fine, cells, {.bins = bins_, .progress = report.progress()}); }),
+            report.timed("measure",
+                         [&] { return measure_limit(fine, cells, {.bins = measured_.bins, .progress = report.progress()}); }),
             report);
     }
 
@@ -405,9 +406,11 @@ private:
                 report.timed("blocks", [&] { return cells_of_blocks(input_, body.blocks, *source.mesh(), common()); }));
         }
         const LimitMeasure found = report.timed("measure", [&] {
-            return measure_limit(
-                source,
-                {.scheme = scheme, .bins = bins_, .groups = parts.groups, .names = parts.names, .progress = report.progress()});
+            return measure_limit(source, {.scheme = scheme,
+                                          .bins = measured_.bins,
+                                          .groups = parts.groups,
+                                          .names = parts.names,
+                                          .progress = report.progress()});
         });
         show_measured(found, report);
     }
@@ -415,7 +418,7 @@ private:
     std::string input_, line_, points_, output_;
     std::vector<std::string> at_;
     std::size_t count_ = 200;
-    int bins_ = 32;
+    MeasureOptions measured_;
     bool stats_ = false;
     RefineArguments scheme_;
 };

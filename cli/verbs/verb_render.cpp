@@ -85,7 +85,7 @@ PictureNotes make_notes(const ShownBody& shown, const ShownColors& colors, Rende
         const int samples =
             PictureStyle{.look = {.look = arguments.picture.look}, .samples = arguments.chosen.style.samples}.sample_count();
         notes.shells = make_shell_scene(*source.mesh(), shown.body.shells, arguments.refine.options(0, progress),
-                                        arguments.refine.levels, colors.optics, samples, arguments.clip.clip(), facts);
+                                        arguments.refine.levels, colors.optics, samples, arguments.clip, facts);
     }
     return notes;
 }

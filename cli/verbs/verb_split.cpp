@@ -3,9 +3,8 @@
 #include <charconv>
 #include <tuple>
 
-#include "choices.h"
 #include "input.h"
-#include "numbers.h"
+#include "options.h"
 #include "quantities.h"
 #include "subvol/error.h"
 #include "subvol/expression.h"
@@ -32,28 +31,10 @@ public:
                "interrupted goes on where it ended when the same command runs again.") {
         app().add_option("FILE", input_, input_help())->required();
         app().add_option("-o,--output", output_, "the folder to write, for example big.bricks")->type_name("DIR")->required();
-        auto* bricks = app().add_option("--bricks", options_.bricks, "how many bricks");
-        bricks->type_name("N")->transform(whole_number(1, 1000000));
-        app()
-            .add_option("--memory", options_.memory_bytes,
-                        "instead: bricks so small that a command takes about this much for one (default 1G)")
-            ->type_name("BYTES")
-            ->transform(byte_count())
-            ->excludes(bricks);
-        app()
-            .add_option(
-                "--halo", options_.halo_layers,
-                "layers of cells about each brick (default 3; kernels of cc and bsxw need 4, and --correction full one more)")
-            ->type_name("N")
-            ->transform(whole_number(1, 16));
-        app()
-            .add_option("--by", by_, "blocks (compact, the default), slabs (slices of the longest side), random (for tests)")
-            ->type_name("SHAPE")
-            ->check(offered(subvol::names_of<BrickShape>()));
+        add_options(app(), options_of(options_));
     }
 
     int run(Report& report) override {
-        options_.shape = named<BrickShape>(by_, "--by");
         options_.seed = common().seed;
         options_.progress = report.progress();
         const SplitResult result = cut(report);
@@ -104,7 +85,7 @@ private:
         return report.timed("split", [&] { return split_mesh(output_, std::move(mesh), options_); });
     }
 
-    std::string input_, output_, by_ = "blocks";
+    std::string input_, output_;
     SplitOptions options_;
 };
 

@@ -18,6 +18,7 @@
 #include "report.h"
 #include "study_input.h"
 #include "study_runner.h"
+#include "study_work.h"
 #include "subvol/detail/atomic_file.h"
 #include "subvol/detail/json_depth.h"
 #include "subvol/detail/read_file.h"
@@ -53,7 +54,7 @@ constexpr const char* kFile = "study.json";
 KeptStudy read_kept(const fs::path& folder) {
     const std::string file = (folder / kFile).string();
     const Json json = Json::parse(detail::of_limited_depth(detail::read_regular(file), file));
-    const Study study = parse_study(json.at("study").dump(), json.at("file").get<std::string>());
+    const Study study = parse_study(json.at("study").dump(), json.at("file").get<std::string>(), study_picture_methods());
     return {finished_results(study, folder), json.at("command").get<std::string>()};
 }
 
@@ -176,7 +177,7 @@ private:
         if (fs::path(name).extension() == ".json") {
             if (!meshes_.empty())
                 throw Error(ErrorCode::InvalidInput, "is for studies by name: a file lists its own inputs", "--mesh");
-            (void)read_study(name);  // says what is wrong with the file
+            (void)read_study(name, study_picture_methods());  // says what is wrong with the file
             std::ifstream in(name);
             source.json.assign(std::istreambuf_iterator<char>(in), {});
             source.file = fs::absolute(name);
@@ -210,7 +211,7 @@ private:
         std::vector<Study> studies;
         for (const std::string& name : names_) {
             sources.push_back(load(name));
-            studies.push_back(parse_study(sources.back().json, name));
+            studies.push_back(parse_study(sources.back().json, name, study_picture_methods()));
         }
         check_names(studies);
         make_folder(output_);

@@ -6,7 +6,6 @@
 
 #include "bricks_input.h"
 #include "choices.h"
-#include "clip_arguments.h"
 #include "grid_input.h"
 #include "input.h"
 #include "numbers.h"
@@ -64,14 +63,14 @@ public:
         app().add_flag("--window", window_, "play the --script in the window; --screenshot is then of the whole window");
         app().add_option("--state", saved_, "begin with a state that a session has saved")->type_name("FILE.json");
         app()
-            .add_option("--method", method_, "splat (the default), sheets, tets, pt, dense or grid, as of render")
+            .add_option("--method", method_name_, text(subvol::names_of(kViewMethods), ", as of render (default splat)"))
             ->type_name("NAME")
-            ->check(offered({"splat", "sheets", "tets", "pt", "dense", "grid"}));
+            ->check(offered(view_methods()));
         picture_.add_to(app());
         const auto described = options_of(settings_);
         add_option(app(), *std::ranges::find(described, "samples", &Option::name));
         sample_.add_to(app());
-        clip_.add_to(app());
+        add_options(app(), options_of(clip_));
         refine_.add_to(app(), "show the refined mesh of this level (default for tets: 1; for the others: the limit)");
         splat_.add_to(app());
         for (const char* option : kNotHere) app().remove_option(app().get_option(option));
@@ -87,7 +86,7 @@ public:
     }
 
     int run(Report& report) override {
-        (void)named<Method>(method_, "--method");
+        method_ = named<Method>(method_name_, "--method");
         const bool voxels = !holds_points(input_) && is_vdb_file(input_);
         const bool points = voxels || holds_points(input_);
         picture_.settle_look(!points);
@@ -107,7 +106,7 @@ public:
                               : tets_.asked() ? BodyKind::Tets
                                               : BodyKind::Mesh;
         const bool method_may_change = !headless || !script_.empty();
-        const Methods methods = method_may_change ? methods_of(kind) : bit(named<Method>(method_, "--method"));
+        const Methods methods = method_may_change ? methods_of(kind) : bit(method_);
         check_options(methods, kind, given_options(app()));
         if (points) from.points = voxels ? voxels_of_file(report) : points_of_file(report);
         play(std::move(from), script, splat, headless, report);
@@ -143,12 +142,12 @@ private:
         ViewBody body = points ? view_body(mesh, from.points, field) : view_body(mesh, field);
         if (from.tets) {
             const std::string name = body.field();
-            body = view_body(from.tets(std::move(body.mesh), default_tet_level(named<Method>(method_, "--method"))), name);
+            body = view_body(from.tets(std::move(body.mesh), default_tet_level(method_)), name);
         }
         const auto methods = methods_of(body);
-        if (std::ranges::find(methods, method_) == methods.end()) {
+        if (std::ranges::find(methods, method_name_) == methods.end()) {
             throw Error(ErrorCode::InvalidInput, points ? "points and voxels have no cells" : "a mesh has no voxels",
-                        "--method " + method_, join(methods));
+                        "--method " + method_name_, join(methods));
         }
         report["field"] = body.field();
         MethodOptions settings = settings_;
@@ -164,12 +163,12 @@ private:
         report.timed("play", [&] { session.run_script(script, script_, report.progress()); });
         const auto picture = report.timed("draw", [&] { return session.wait(); });
         if (!screenshot_.empty()) {
-            const bool alone = session.state().compare.empty();
+            const bool alone = !session.state().compare;
             write_image(screenshot_, session.composed(*picture), background_of(session.state()),
                         alone ? picture->depth : std::vector<float>{});
             report["output"] = screenshot_;
         }
-        report["method"] = session.state().method;
+        report["method"] = name_of(session.state().method);
         report["backend"] = picture->backend;
         report["points"] = picture->points;
         report["render"] = session.render_command();
@@ -212,7 +211,7 @@ private:
         state.look = picture_.look_options(body.range);
         if (picture_.background) state.background = picture_.background_color();
         state.axes = picture_.axes;
-        state.clip = clip_.clip();
+        state.clip = clip_;
         state.edges = picture_.edges;
         return state;
     }
@@ -249,11 +248,12 @@ private:
     }
 
     std::string input_, script_, screenshot_, saved_;
-    std::string method_ = "splat";
+    std::string method_name_ = "splat";
+    Method method_ = Method::Splat;
     MethodOptions settings_;  // what options choose of them
     bool window_ = false;
     PictureArguments picture_;
-    ClipArguments clip_;
+    Clip clip_;
     SampleArguments sample_;
     SplatArguments splat_;
     RefineArguments refine_;

@@ -8,14 +8,13 @@
 #include <cstdint>
 
 #include "picture_modules.h"
+#include "subvol/detail/picture_size.h"
 #include "subvol/raster.h"
 #include "subvol/version.h"
 
 namespace subvol::detail {
 
 namespace {
-
-constexpr std::int64_t kMaxPixels = std::int64_t{1} << 28;  // 4 GB as float RGBA
 
 constexpr const char* kNote = "subvolPart";
 
@@ -29,9 +28,9 @@ Outcome read(const std::string& path, DecodedPicture& picture) {
     if (!input) return PictureFault{ErrorCode::InvalidInput, "is not an image: " + OIIO::geterror()};
     const OIIO::ImageSpec& spec = input->spec();
     const bool proper = spec.width > 0 && spec.height > 0 && spec.depth <= 1 && spec.nchannels > 0 && !spec.deep &&
-                        static_cast<std::int64_t>(spec.width) * spec.height <= kMaxPixels;
+                        static_cast<std::int64_t>(spec.width) * spec.height <= kMostPixels;
     if (!proper) return PictureFault{ErrorCode::InvalidInput, "is not a flat picture of at most 2^28 pixels"};
-    const bool small = static_cast<std::int64_t>(std::max(spec.width, spec.full_width)) * spec.full_height <= kMaxPixels;
+    const bool small = static_cast<std::int64_t>(std::max(spec.width, spec.full_width)) * spec.full_height <= kMostPixels;
     if (!small) return PictureFault{ErrorCode::InvalidInput, "is part of a picture of more than 2^28 pixels"};
     picture.channels = std::min(spec.nchannels, 4);
     picture.alpha = spec.alpha_channel < picture.channels ? spec.alpha_channel : -1;

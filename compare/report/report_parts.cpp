@@ -15,6 +15,7 @@
 #include "canvas.h"
 #include "subvol/detail/text_codes.h"
 #include "subvol/error.h"
+#include "subvol/picture_metrics.h"
 #include "subvol/plot.h"
 #include "subvol/study_run.h"
 
@@ -198,7 +199,8 @@ std::string figures(const CaseResult& result) {
          {std::pair{"psnr", "PSNR"}, {"psnr_interior", "interior"}, {"flip", "FLIP"}, {"rmse", "RMSE"}}) {
         const auto found = result.metrics.find(key);
         if (found == result.metrics.end()) continue;
-        const std::string unit = std::string_view(key).starts_with("psnr") ? " dB" : "";
+        const PictureMetric* const metric = find_metric(key);
+        const std::string unit = metric == nullptr || metric->unit.empty() ? "" : " " + std::string(metric->unit);
         const auto mark = mark_of(result, key);
         words += (words.empty() ? "" : ", ") + std::string(name) + " " + (mark ? *mark : readable(found->second)) + unit;
     }

@@ -95,6 +95,10 @@ StudyValue read_value(const Json& json, const Key& key, const std::string& path)
         case KeyKind::Whole:
         case KeyKind::Number:
             return read_number(json, key, path);
+        case KeyKind::Described:
+            if (!json.is_number()) refuse(path, must_be("a number", json), key.option->range_text());
+            key.option->set(json.get<double>(), printable(path));
+            return json.get<double>();
         case KeyKind::KernelShape:
             return read_kernel(json, path);
         case KeyKind::Text:
@@ -105,6 +109,45 @@ StudyValue read_value(const Json& json, const Key& key, const std::string& path)
         refuse(path, "'" + shortened(text) + "' is unknown" + did_you_mean(text, key.choices), joined(key.choices));
     }
     return text;
+}
+
+Key key_of(const Option& option, std::optional<StudyValue> fallback) {
+    using enum KeyKind;
+    const bool kernel = std::holds_alternative<WordValue>(option.value) && option.words.empty();
+    const KeyKind kind = std::holds_alternative<bool*>(option.value) ? Switch
+                         : option.is_number()                        ? Described
+                         : kernel                                    ? KernelShape
+                                                                     : Text;
+    return {option.key(), kind, 0, 0, std::move(fallback), option.words, option};
+}
+
+void check_needs(const StudyMethod& method, const StudyValues& values, const Json& given, const std::string& path) {
+    const auto key_named = [&](std::string_view option) {
+        return std::ranges::find_if(method.keys, [&](const Key& key) { return key.option && key.option->name == option; });
+    };
+    const auto value_of = [&](std::string_view option) -> std::optional<std::string> {
+        const auto key = key_named(option);
+        if (key == method.keys.end() || !values.contains(key->name)) return std::nullopt;
+        const StudyValue& value = values.at(key->name);
+        return value == StudyValue(false) ? std::nullopt : std::optional(as_text(value));
+    };
+    const auto given_text = [&](std::string_view option) {
+        const auto key = key_named(option);
+        return key != method.keys.end() && given.contains(key->name) ? value_of(option) : std::nullopt;
+    };
+    const auto usual = [&](std::string_view option) {
+        const auto value = value_of(option);
+        const auto key = key_named(option);
+        return value || key == method.keys.end() ? value : std::optional(key->option->text());
+    };
+    for (const Key& key : method.keys) {
+        if (!key.option || !given_text(key.option->name)) continue;
+        try {
+            subvol::check_needs(*key.option, given_text, usual, OptionNames::Keywords);
+        } catch (const Error& error) {
+            refuse(in(path, error.where() == key.option->key() ? key.name : error.where()), error.message(), error.allowed());
+        }
+    }
 }
 
 std::vector<StudyValues> read_values(const Json& json, std::span<const Key> keys, std::span<const std::string> besides,

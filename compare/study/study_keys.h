@@ -14,22 +14,27 @@ namespace subvol::detail {
 using Json = nlohmann::ordered_json;
 
 /// The type of a key's value. Whole: a whole number in [least, most]. Number: in (least, most]. KernelShape: a kernel's name or
-/// JSON.
-enum class KeyKind { Switch, Whole, Number, Text, KernelShape };
+/// JSON. Described: a number that the option's description allows
+enum class KeyKind { Switch, Whole, Number, Text, KernelShape, Described };
 
 /// fallback: the value where the key is missing; none: the key stays absent
 /// choices:  of a text; empty: any text
+/// option:   the description from which the key was made; it refers to a value that reading changes
 struct Key {
-    const char* name;
+    std::string name;
     KeyKind kind = KeyKind::Text;
     double least = 0, most = 0;
     std::optional<StudyValue> fallback{};
     std::vector<std::string> choices{};
+    std::optional<Option> option{};
 };
+
+/// The key of an option. fallback: as of Key
+[[nodiscard]] Key key_of(const Option& option, std::optional<StudyValue> fallback = {});
 
 /// A method of a case and its options.
 struct StudyMethod {
-    const char* name;
+    std::string name;
     StudyKind kind;
     std::vector<Key> keys;
 
@@ -37,8 +42,11 @@ struct StudyMethod {
     [[nodiscard]] bool needs_view() const { return kind == StudyKind::Pictures; }
 };
 
-[[nodiscard]] const std::vector<StudyMethod>& study_methods();
-[[nodiscard]] const StudyMethod& find_method(const std::string& name, const std::string& path);
+[[nodiscard]] StudyMethod find_method(const std::string& name, const std::string& path,
+                                      std::span<const PictureMethod> pictures);
+
+/// Refuses keys of a case that have no effect with its others. given: the object from which the case was read
+void check_needs(const StudyMethod& method, const StudyValues& values, const Json& given, const std::string& path);
 
 /// throws: Error(InvalidInput) "PATH: MESSAGE"
 [[noreturn]] void refuse(const std::string& path, const std::string& message, const std::string& allowed = {});

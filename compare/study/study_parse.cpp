@@ -12,6 +12,7 @@
 #include "subvol/detail/near_name.h"
 #include "subvol/detail/printable.h"
 #include "subvol/error.h"
+#include "subvol/picture_metrics.h"
 
 namespace subvol {
 
@@ -26,10 +27,6 @@ const std::vector<std::string> kStudyKeys{
     "name",      "title", "about",    "inputs", "methods", "cameras", "transfer_functions", "size",   "metrics",
     "reference", "timed", "pictures", "tables", "plots",   "demands", "headings",           "seconds"};
 
-const std::vector<std::string> kMetrics{"mse",           "rmse",      "mae",          "max",           "psnr",
-                                        "ssim",          "flip",      "flip_hdr",     "psnr_interior", "psnr_edge",
-                                        "flip_interior", "flip_edge", "optical_depth"};
-
 const std::vector<Key>& reference_keys() {
     static const std::vector<Key> kKeys{{"method", KeyKind::Text, 0, 0, std::string("dense"), {"dense"}},
                                         {"tolerance", KeyKind::Number, 0, 1, 1e-3},
@@ -40,7 +37,8 @@ const std::vector<Key>& reference_keys() {
 
 class Parser {
 public:
-    Parser(const Json& json, const fs::path& file) : json_(json), file_(file), root_(file.string() + ": ") {}
+    Parser(const Json& json, const fs::path& file, std::span<const PictureMethod> methods)
+        : json_(json), file_(file), root_(file.string() + ": "), methods_(methods) {}
 
     Study study() {
         check_object(json_, root_, kStudyKeys);
@@ -81,7 +79,7 @@ private:
         std::string metrics;
         const Json& names = list_of(json_, root_, "metrics");
         for (std::size_t i = 0; i < names.size(); ++i) {
-            const Key metric{"metric", KeyKind::Text, 0, 0, {}, kMetrics};
+            const Key metric{"metric", KeyKind::Text, 0, 0, {}, study_metrics()};
             metrics += (metrics.empty() ? "" : ",") + as_text(read_value(names[i], metric, at(in(root_, "metrics"), i)));
         }
         values["metrics"] = metrics.empty() ? "rmse,psnr" : metrics;
@@ -102,7 +100,8 @@ private:
         for (std::size_t m = 0; m < items.size(); ++m) {
             const std::string path = at(in(root_, "methods"), m);
             if (!items[m].is_object() || !items[m].contains("method")) refuse(path, "the method is missing");
-            const StudyMethod& method = find_method(read_text(items[m]["method"], in(path, "method")), in(path, "method"));
+            const StudyMethod method =
+                find_method(read_text(items[m]["method"], in(path, "method")), in(path, "method"), methods_);
             if (method.needs_mesh() && scenes.inputs.empty()) refuse(in(root_, "inputs"), "the list is missing");
             const auto swept = swept_keys(items[m]);
             for (StudyValues& values : combinations(items[m], method, scenes, study.cases.size(), path)) {
@@ -123,6 +122,7 @@ private:
         if (item.contains("label")) head["label"] = read_text(item["label"], in(path, "label"));
         read_given(item, path, head);
         const std::vector<StudyValues> nothing(1), options = read_values(item, method.keys, besides, path);
+        for (const StudyValues& values : options) check_needs(method, values, item, path);
         std::vector<StudyValues> all{head};
         for (const auto* factor :
              {method.needs_mesh() ? &scenes.inputs : &nothing, method.needs_view() ? &scenes.cameras : &nothing,
@@ -192,22 +192,23 @@ private:
     const Json& json_;
     fs::path file_;
     std::string root_;
+    std::span<const PictureMethod> methods_;
 };
 
 }  // namespace
 }  // namespace detail
 
-Study parse_study(std::string_view text, const fs::path& file) {
+Study parse_study(std::string_view text, const fs::path& file, std::span<const PictureMethod> methods) {
     detail::Json json;
     try {
         json = detail::Json::parse(detail::of_limited_depth(text, file.string()));
     } catch (const nlohmann::json::exception& error) {
         throw Error(ErrorCode::InvalidInput, "is not JSON: " + detail::parser_message(error.what()), file.string());
     }
-    return detail::Parser(json, file).study();
+    return detail::Parser(json, file, methods).study();
 }
 
-Study read_study(const fs::path& file) {
+Study read_study(const fs::path& file, std::span<const PictureMethod> methods) {
     std::error_code error;
     const auto bytes = fs::file_size(file, error);
     if (error) throw Error(ErrorCode::Io, "cannot be read: " + error.message(), file.string());
@@ -217,7 +218,7 @@ Study read_study(const fs::path& file) {
     std::ostringstream text;
     text << in.rdbuf();
     if (!in) throw Error(ErrorCode::Io, "cannot be read", file.string());
-    return parse_study(text.str(), file);
+    return parse_study(text.str(), file, methods);
 }
 
 std::vector<StudyInfo> list_studies() {
@@ -241,8 +242,8 @@ std::string_view built_in_study_json(const std::string& name) {
                 "there is no study '" + detail::shortened(name) + "'" + detail::did_you_mean(name, names), {}, known);
 }
 
-Study built_in_study(const std::string& name) {
-    return parse_study(built_in_study_json(name), name);
+Study built_in_study(const std::string& name, std::span<const PictureMethod> methods) {
+    return parse_study(built_in_study_json(name), name, methods);
 }
 
 }  // namespace subvol

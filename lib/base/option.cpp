@@ -103,7 +103,19 @@ struct Text {
         return all;
     }
     std::string operator()(const WordValue& word) const { return word.get(); }
+    std::string operator()(const NumbersValue&) const { return {}; }
 };
+
+/// "--order havs", "order='havs' or 'lists'"
+std::string shown(const OptionNeed& need, const std::vector<std::string>& words, OptionNames names) {
+    std::string all = option_name(need.option, names);
+    const bool flags = names == OptionNames::Flags;
+    for (const std::string& word : words) {
+        all += &word == &words.front() ? (flags ? " " : "=") : " or ";
+        all += flags ? word : "'" + word + "'";
+    }
+    return all;
+}
 
 }  // namespace
 
@@ -169,15 +181,63 @@ Option& Option::only_with(std::string option, std::vector<std::string> values) {
     return *this;
 }
 
+Option& Option::called(std::string other) {
+    keyword = std::move(other);
+    return *this;
+}
+
+Option& Option::or_with(std::string option) {
+    needs.back().instead = std::move(option);
+    return *this;
+}
+
+Option& Option::not_with(std::string option, std::vector<std::string> values) {
+    needs.push_back({std::move(option), std::move(values), true});
+    return *this;
+}
+
 Option& Option::instead_of(std::vector<std::string> others) {
     excludes.insert(excludes.end(), others.begin(), others.end());
     return *this;
 }
 
-std::string Option::key() const {
-    std::string key = name;
+std::string option_name(std::string_view option, OptionNames names) {
+    if (names == OptionNames::Flags) return "--" + std::string(option);
+    std::string key(option);
     std::ranges::replace(key, '-', '_');
     return key;
+}
+
+std::string Option::key() const {
+    return keyword.empty() ? option_name(name, OptionNames::Keywords) : keyword;
+}
+
+std::string Option::meaning(OptionNames names) const {
+    if (names == OptionNames::Flags) return sentence;
+    std::string words;
+    bool quoted = false;  // `subvol fit --kernels` is of the command for all
+    for (std::size_t at = 0; at < sentence.size();) {
+        quoted = quoted != (sentence[at] == '`');
+        const bool is_option = !quoted && sentence.compare(at, 2, "--") == 0;
+        const std::size_t end = std::min(sentence.find_first_not_of("-abcdefghijklmnopqrstuvwxyz", at), sentence.size());
+        if (is_option) {
+            words += option_name(std::string_view(sentence).substr(at + 2, end - at - 2), names);
+            at = end;
+        } else {
+            words += sentence[at++];
+        }
+    }
+    return words;
+}
+
+std::string Option::range_text() const {
+    constexpr double kMostShown = 1e9;  // a larger bound says nothing
+    if (!is_number() || in_bytes) return {};
+    if (range.or_zero) return "0 or more";
+    if (range.least == kLeastPositive && range.most == kMostPositive) return "more than 0";
+    if (range.least > 0 && range.least < kTiny) return "more than 0, at most " + bound_text(range.most);
+    if (range.least < -kMostShown || range.most > kMostShown) return {};
+    return allowed(1);
 }
 
 bool Option::is_whole() const {
@@ -281,6 +341,41 @@ void Option::check() const {
         },
         value);
     if (!(zero_is_none_ && number == 0)) check_number(number, text(), key());
+}
+
+void check_needs(const Option& option, const GivenOptions& given, const GivenOptions& usual, OptionNames names) {
+    const std::string where = names == OptionNames::Flags ? option_name(option.name, names) : option.key();
+    for (const OptionNeed& need : option.needs) {
+        if (!need.instead.empty() && given(need.instead)) continue;
+        std::optional<std::string> other = given(need.option);
+        if (!other && !need.words.empty()) other = usual(need.option);
+        const bool matches = other && (need.words.empty() || std::ranges::find(need.words, *other) != need.words.end());
+        if (matches && need.excluded) {
+            const std::vector<std::string> word = need.words.empty() ? need.words : std::vector{*other};
+            throw Error(ErrorCode::InvalidInput, "has no effect with " + shown(need, word, names), where,
+                        "leave one of them out");
+        }
+        if (!matches && !need.excluded)
+            throw Error(ErrorCode::InvalidInput, "has no effect without " + shown(need, need.words, names), where);
+    }
+    for (const std::string& other : option.excludes) {
+        if (given(other))
+            throw Error(ErrorCode::InvalidInput, "cannot be given together with " + where, option_name(other, names));
+    }
+}
+
+void check_needs(const std::vector<Option>& options, const GivenOptions& given, OptionNames names) {
+    const GivenOptions usual = [&](std::string_view name) -> std::optional<std::string> {
+        const auto option = std::ranges::find(options, name, &Option::name);
+        return option == options.end() ? std::nullopt : std::optional(option->text());
+    };
+    for (const Option& option : options) {
+        if (given(option.name)) check_needs(option, given, usual, names);
+    }
+}
+
+std::string need_text(const OptionNeed& need, OptionNames names) {
+    return (need.excluded ? "not with " : "with ") + shown(need, need.words, names);
 }
 
 namespace detail {

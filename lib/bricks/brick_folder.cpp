@@ -267,12 +267,7 @@ SplitResult BricksWriter::finish() {
 }
 
 void check_options(const SplitOptions& options) {
-    if (options.halo_layers < 1 || options.halo_layers > kMostHaloLayers) {
-        throw Error(ErrorCode::InvalidInput, "layers of halo: " + std::to_string(options.halo_layers), {}, "1 to 16");
-    }
-    if (options.bricks > kMostBricks) {
-        throw Error(ErrorCode::InvalidInput, std::to_string(options.bricks) + " bricks are too many", {}, "at most a million");
-    }
+    subvol::check_options(options);
     if (options.bricks == 0 && options.memory_bytes < 1000 * kBytesOfCell) {
         throw Error(ErrorCode::InvalidInput, std::to_string(options.memory_bytes) + " bytes are too few for a brick", {},
                     "1M or more");
@@ -287,3 +282,20 @@ std::size_t brick_count(std::uint64_t cells, const SplitOptions& options) {
 }
 
 }  // namespace subvol::detail
+
+namespace subvol {
+
+std::vector<Option> options_of(SplitOptions& options) {
+    return {
+        Option("bricks", options.bricks).between(1, detail::kMostBricks).or_none().help("N", "how many bricks"),
+        Option("memory", options.memory_bytes)
+            .bytes()
+            .help("BYTES", "instead: bricks so small that a command takes about this much for one (default 1G)")
+            .instead_of({"bricks"}),
+        Option("halo", options.halo_layers)
+            .between(1, detail::kMostHaloLayers)
+            .help("N", "layers of cells about each brick; kernels of cc and bsxw need 4, and --correction full one more"),
+        Option("by", options.shape).help("SHAPE", "blocks (compact), slabs (slices of the longest side), random (for tests)")};
+}
+
+}  // namespace subvol

@@ -701,15 +701,6 @@ private:
     std::size_t kept_ = 0, pieces_ = 0;
 };
 
-void check(const MeasureOptions& options) {
-    const auto refuse = [](const std::string& what, const std::string& allowed) {
-        throw Error(ErrorCode::InvalidInput, what, "measure", allowed);
-    };
-    if (!(options.tolerance > 0 && options.tolerance <= 1))
-        refuse("the tolerance is out of range", "greater than 0, at most 1");
-    if (options.bins < 1 || options.bins > 100000) refuse("the number of bins is out of range", "1 to 100,000");
-}
-
 LimitMeasure measure(const HexMesh& mesh, const MeasureOptions& options) {
     if (!options.groups.empty() && options.groups.size() != mesh.cells.size()) {
         throw Error(ErrorCode::InvalidInput, "there are " + std::to_string(options.groups.size()) + " groups of cells",
@@ -798,8 +789,16 @@ LimitMeasure measure_pieces(const MeshSource& source, const MeasureOptions& opti
 }  // namespace
 
 LimitMeasure measure_limit(const MeshSource& source, const MeasureOptions& options) {
-    check(options);
+    check_options(options);
     return source.mesh() != nullptr ? measure(*source.mesh(), options) : measure_pieces(source, options);
+}
+
+std::vector<Option> options_of(MeasureOptions& options) {
+    constexpr double kLeast = 1e-100;
+    return {Option("tolerance", options.tolerance)
+                .between(kLeast, 1)
+                .help("E", "of the volume as a part of it, of means and extremes as parts of each field's range"),
+            Option("bins", options.bins).between(1, 100000).help("N", "intervals of the histogram")};
 }
 
 }  // namespace subvol

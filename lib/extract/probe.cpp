@@ -66,10 +66,7 @@ struct LimitProbe::State {
 
     void check_options() const {
         validate(mesh);
-        if (!(options.reach_world >= 0 && std::isfinite(options.reach_world))) {
-            throw Error(ErrorCode::InvalidInput, "the reach is " + detail::number_text(options.reach_world), "probe",
-                        "a length of 0 or more");
-        }
+        subvol::check_options(options);
     }
 
     void run(std::span<const Vec3> places, std::span<const std::size_t> to, Progress* progress, ProbeResult& result) const;
@@ -336,6 +333,13 @@ std::vector<Vec3> places_on_line(const Vec3& from, const Vec3& to, std::size_t c
         places[i] = (1 - t) * from + t * to;
     }
     return places;
+}
+
+std::vector<Option> options_of(ProbeOptions& options) {
+    return {
+        Option("reach", options.reach_world)
+            .not_negative()
+            .help("D", "places outside that are no farther than this from the boundary get the values of its nearest point")};
 }
 
 }  // namespace subvol

@@ -12,6 +12,7 @@
 #include "camera_axes.h"
 #include "subvol/detail/json_depth.h"
 #include "subvol/detail/number_text.h"
+#include "subvol/detail/picture_size.h"
 #include "subvol/detail/printable.h"
 #include "subvol/detail/read_file.h"
 #include "subvol/error.h"
@@ -20,9 +21,6 @@ namespace subvol {
 
 using namespace detail;
 namespace {
-
-constexpr int kMaxSize = 65536;
-constexpr std::int64_t kMaxPixels = std::int64_t{1} << 28;  // 4 GB as float RGBA
 
 std::optional<Vec3> view_direction(std::string_view name) {
     if (name == "+x") return Vec3(-1, 0, 0);
@@ -123,9 +121,9 @@ View::View(const Camera& camera, int width, int height)
       pixel_(0),
       eye_(camera.eye),
       axes_() {
-    require(width >= 1 && width <= kMaxSize && height >= 1 && height <= kMaxSize, "the picture's size is out of range",
+    require(width >= 1 && width <= kMostSide && height >= 1 && height <= kMostSide, "the picture's size is out of range",
             "1..65536 pixels a side");
-    require(std::int64_t{width} * height <= kMaxPixels, "the picture has too many pixels", "at most 2^28");
+    require(std::int64_t{width} * height <= kMostPixels, "the picture has too many pixels", "at most 2^28");
     validate(camera);
     pixel_ = (perspective_ ? 2 * half_fov_tangent(camera.fovy_deg) : camera.ortho_height) / height;
     axes_ = camera_axes(camera.target - camera.eye, camera.up);

@@ -53,7 +53,47 @@ bool keeps(const CutPlane& plane, const Box& box) {
     return true;
 }
 
+/// Planes as users write them.
+NumbersValue planes_value(std::vector<CutPlane>& planes) {
+    const auto add = [&planes](std::span<const double> row, const std::string& where) {
+        const CutPlane plane{{row[0], row[1], row[2]}, {row[3], row[4], row[5]}};
+        if (plane.normal == Vec3(0.0)) {
+            throw Error(ErrorCode::InvalidInput, "the normal of the plane has no length", where,
+                        "the last three numbers are a direction such as 0,0,1");
+        }
+        planes.push_back(plane);
+    };
+    return {.count = 6, .example = "0,0,0,0,0,1: a point of the plane and its normal", .repeatable = true, .add = add};
+}
+
+NumbersValue box_value(std::optional<Box>& box) {
+    const auto set = [&box](std::span<const double> row, const std::string& where) {
+        box = Box{{row[0], row[1], row[2]}, {row[3], row[4], row[5]}};
+        for (int axis = 0; axis < 3; ++axis) {
+            if (box->lower[axis] < box->upper[axis]) continue;
+            throw Error(ErrorCode::InvalidInput, std::string("the box is empty along ") + "xyz"[axis], where,
+                        "the lower corner first, then the upper one");
+        }
+    };
+    return {.count = 6, .example = "0,0,0,1,1,1: the lower corner, then the upper one", .add = set};
+}
+
 }  // namespace
+
+std::vector<Option> options_of(Clip& clip) {
+    return {
+        Option("clip", planes_value(clip.planes))
+            .help("PX,PY,PZ,NX,NY,NZ",
+                  "cut away what lies on the side of this plane to which its normal points: a point and the normal "
+                  "(repeatable)"),
+        Option("clip-box", box_value(clip.box))
+            .help("X0,Y0,Z0,X1,Y1,Z1", "cut away what lies outside this box: its lower and its upper corner"),
+        Option("slice", planes_value(clip.slices))
+            .help("PX,PY,PZ,NX,NY,NZ",
+                  "draw the volume on this plane alone, opaque and in the colours of its values: a point and the normal "
+                  "(repeatable)"),
+        Option("around", clip.around_slices).help("draw the volume around the slices too, as --look says").only_with("slice")};
+}
 
 bool Clip::removes(const Vec3& place) const {
     for (const CutPlane& plane : planes) {

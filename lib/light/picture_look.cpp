@@ -56,6 +56,26 @@ TransferFunction find_transfer_function(const std::string& name, const ValueRang
     return stretch ? stretched(function, range.min, range.max) : function;
 }
 
+std::vector<Option> options_of(LookOptions& options) {
+    return {Option("look", options.look)
+                .help("NAME",
+                      "solid (opaque and lit; the default for meshes without --tf, --opacity and --opacity-unit), volume "
+                      "(opacity 0 to .5 over the range, black behind; otherwise the default), xray (on white) or isosurface "
+                      "(five lit surfaces)"),
+            Option("tf", options.colors)
+                .offer({"viridis", "plasma", "inferno", "cividis", "turbo", "coolwarm", "grey", "bone", "xray", "isosurface",
+                        "surface", "constant"})
+                .help("FILE|NAME",
+                      "colour map: viridis (default), plasma, inferno, cividis, turbo, coolwarm, grey, bone, xray, isosurface, "
+                      "surface or constant over the field's range, or a ParaView colour-map JSON file (FILE.json:NAME for one "
+                      "of several in it)"),
+            Option("opacity-unit", options.opacity_unit_world)
+                .positive()
+                .help("D", "the world distance over which an opacity acts (default: 1/100 of the bounding box's diagonal)"),
+            Option("clamp", options.clamp)
+                .help("show values beyond the field's range, where interpolating schemes overshoot, as its ends")};
+}
+
 std::string colors_of(const LookOptions& options) {
     if (!options.colors.empty()) return options.colors;
     return options.look == Look::Xray ? "xray" : options.look == Look::Isosurface ? "isosurface" : "viridis";

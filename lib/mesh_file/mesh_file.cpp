@@ -205,3 +205,29 @@ std::size_t chosen_step(const ReadOptions& options, std::size_t steps, std::stri
 }
 
 }  // namespace subvol::detail
+
+namespace subvol {
+
+std::vector<Option> options_of(ReadOptions& options) {
+    constexpr double kMostSteps = 1e9;
+    return {
+        Option("other-cells", options.other_cells)
+            .help("WHAT", "what to do with tetrahedra, prisms and pyramids: split (all cells, into hexahedra), ignore, refuse"),
+        Option("weld-distance", options.weld)
+            .called("weld")
+            .not_negative()
+            .help("D", "join points of a file whose distance is at most D; 0: those at the same place"),
+        Option("cell-values", options.cell_values)
+            .help("HOW",
+                  "values at cells become values at points: fit (the volume follows the cells' means without waves; the "
+                  "default for OpenFOAM), mean (of the cells around each point; the default for all others), exact (the "
+                  "volume has the cells' means), auto"),
+        Option("step", options.step).between(0, kMostSteps).help("N", "a step of a series, from 0 (default: the last one)"),
+        Option("blocks", options.blocks).help("A,B", "the named parts of the mesh to read (info lists them; default: all)"),
+        Option("sharp", options.sharp)
+            .help("NAME",
+                  "a group of the file whose faces inside the mesh and edges are kept sharp: a physical group of Gmsh by "
+                  "its name or number, a reference of MEDIT, or Ridges (repeatable)")};
+}
+
+}  // namespace subvol

@@ -311,7 +311,7 @@ std::vector<Option> options_of(SampleOptions& options) {
                   "the error"),
         Option("values", options.values)
             .help("NAME", "values between control points: scheme (exact), cubic (Catmull-Rom), paper (weighted mean)"),
-        kernel_option("kernel", options.kernel).help("NAME|JSON", "the kernel of the points; see subvol fit --kernels"),
+        kernel_option("kernel", options.kernel).help("NAME|JSON", "the kernel of the points; see `subvol fit --kernels`"),
         kernel_option("value-kernel", options.value_kernel)
             .help("NAME|JSON", "the kernel that weighs the values of control points")
             .only_with("values", {"paper"}),

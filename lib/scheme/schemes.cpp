@@ -36,7 +36,9 @@ std::unique_ptr<SchemeRules> make_rules(const Topology& topology, const SchemeOp
 }  // namespace detail
 
 std::vector<Option> options_of(SchemeOptions& options) {
-    return {Option("scheme", options.kind).help("NAME", "the rule of subdivision"),
+    return {Option("scheme", options.kind)
+                .help("NAME",
+                      "mcq (smooth, through the control points), cc (Catmull-Clark), bsxw (Bajaj-Schaefer-Warren-Xu), linear"),
             Option("tension", options.tension)
                 .between(0, 0.125)
                 .help("W", "of mcq: 0 is linear; 1/16 reproduces cubics")

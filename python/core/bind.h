@@ -95,21 +95,34 @@ template <class Work>
 /// Facts under their names; groups are dictionaries, too.
 [[nodiscard]] py::dict dict_of(const Facts& facts);
 
-/// A value sets the member of an option by its description; None leaves the default. key: as errors call it
+/// Keywords set the members that their descriptions refer to; None leaves the default.
 ///
-/// throws: TypeError for a value of another type; Error(InvalidInput) for one that is not allowed
-void set_option(const Option& option, const py::handle& value, const std::string& key);
-/// The same for all keywords of a call.
+/// throws:  TypeError for another keyword or type; Error(InvalidInput) for a value that the description does not allow, and for
+///          one that has no effect with the others
+/// besides: options that were given in another way
+void set_options(const std::vector<Option>& options, const py::dict& given, const std::vector<std::string>& besides = {});
+/// Puts the keywords of a call into `module.keywords`, from which signatures, docstrings and stubs are made.
 ///
-/// throws: TypeError for another keyword or type; Error(InvalidInput) for a value that the description does not allow
-void set_options(const std::vector<Option>& options, const py::kwargs& given);
+/// besides: options that are no keywords of this kind
+void describe(py::module_& module, const char* call, const std::vector<Option>& options,
+              const std::vector<std::string>& besides = {});
 /// The options of a scheme and others; the error for a scheme of tetrahedra says what to do.
-[[nodiscard]] std::vector<Option> scheme_and(SchemeOptions& scheme, std::vector<Option> others);
+[[nodiscard]] std::vector<Option> scheme_and(SchemeOptions& scheme, std::vector<Option> others = {});
+
+/// A scheme of hexahedra, or of tetrahedra. rules: all but its kind
+struct GivenScheme {
+    std::string name = "mcq";
+    SchemeOptions rules{};
+
+    [[nodiscard]] std::optional<TetScheme> tets() const;
+    /// throws: Error(InvalidInput) for another scheme
+    [[nodiscard]] SchemeOptions hexes() const;
+};
+
+[[nodiscard]] std::vector<Option> options_of(GivenScheme& scheme);
 
 /// Words of the command for the library's enumerators. throws: Error(InvalidInput) that lists the words
 [[nodiscard]] Scheme scheme_named(const std::string& name);
-/// The schemes of tetrahedra; none: another name
-[[nodiscard]] std::optional<TetScheme> tet_scheme_named(const std::string& name);
 /// The volume of a scheme of tetrahedra, as the command makes it.
 ///
 /// crease_angle: none: 60 degrees

@@ -5,6 +5,7 @@
 #include "bind.h"
 #include "picture.h"
 #include "subvol/camera_fit.h"
+#include "subvol/detail/picture_size.h"
 #include "subvol/image_io.h"
 #include "subvol/legend.h"
 #include "subvol/picture_look.h"
@@ -67,7 +68,7 @@ Picture picture_from(const py::object& given) {
                            "real numbers of linear light, (height, width, 3 or 4)");
     const py::array array = array_from(given, no_picture);
     const bool right = array.ndim() == 3 && (array.shape(2) == 3 || array.shape(2) == 4) && array.dtype().kind() == 'f';
-    if (!right || array.shape(0) > 65536 || array.shape(1) > 65536 || array.size() == 0) {
+    if (!right || array.shape(0) > detail::kMostSide || array.shape(1) > detail::kMostSide || array.size() == 0) {
         throw no_picture;
     }
     const py::array_t<float, py::array::c_style | py::array::forcecast> floats(array);
@@ -290,6 +291,7 @@ void bind_look(py::module_& module) {
                 return py::make_tuple(as_tuple(c.eye), as_tuple(c.target), as_tuple(c.up), c.fovy_deg, c.ortho_height);
             },
             [](const py::tuple& s) { return camera_of(s[0], s[1], s[2], s[3].cast<double>(), s[4].cast<double>()); }));
+    module.attr("largest_side") = detail::kMostSide;
     bind_default_looks(module);
     bind_image(module);
 }

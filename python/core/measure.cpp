@@ -12,8 +12,37 @@
 namespace subvol::python {
 namespace {
 
-SchemeOptions scheme_of(const std::string& scheme, double tension, const std::optional<double>& crease_angle) {
-    return {.kind = scheme_named(scheme), .tension = tension, .crease_angle_deg = crease_angle};
+struct GivenProbe {
+    GivenScheme scheme{};
+    ProbeOptions probe{};
+};
+
+std::vector<Option> options_of(GivenProbe& given) {
+    std::vector<Option> all = options_of(given.scheme);
+    all.push_back(subvol::options_of(given.probe).front());
+    return all;
+}
+
+std::vector<Option> keywords_of(PointsErrorOptions& options) {
+    return scheme_and(options.scheme);
+}
+
+std::vector<Option> keywords_of(MeasureOptions& options) {
+    return scheme_and(options.scheme, options_of(options));
+}
+
+std::vector<Option> keywords_of(SliceOptions& options) {
+    return scheme_and(options.limit.scheme, options_of(options));
+}
+
+std::vector<Option> keywords_of(SurfaceOptions& options) {
+    return scheme_and(options.scheme, options_of(options));
+}
+
+template <class Options>
+void describe_call(py::module_& module, const char* call, const std::vector<std::string>& besides = {}) {
+    Options options;
+    describe(module, call, keywords_of(options), besides);
 }
 
 /// Cells as numbers, −1 outside.
@@ -44,17 +73,19 @@ void put_fields(std::vector<ProbedField> fields, const std::vector<Index>* cells
     result["gradients"] = gradients;
 }
 
-py::dict probe(const HexMesh& mesh, const py::object& given, const std::string& scheme, double tension,
-               const std::optional<double>& crease_angle, double reach, int levels, const py::object& progress) {
-    const std::vector<Vec3> places = vectors(given, "places");
-    const auto tets = tet_scheme_named(scheme);
-    ProbeOptions options{.reach_world = reach};
-    if (!tets) options.limit.scheme = scheme_of(scheme, tension, crease_angle);
+py::dict probe(const HexMesh& mesh, const py::object& at, int levels, const py::object& progress, const py::kwargs& keywords) {
+    const std::vector<Vec3> places = vectors(at, "places");
+    GivenProbe given;
+    set_options(options_of(given), keywords);
+    const auto tets = given.scheme.tets();
+    ProbeOptions options = given.probe;
+    if (!tets) options.limit.scheme = given.scheme.hexes();
     ProbeResult found = result_of(progress, [&](Progress* listener) {
         if (tets) {
             std::vector<Index> cells;
-            const MixedMesh fine = refined_tets(mesh, *tets, levels, crease_angle, true, listener, &cells);
-            return MixedProbe(fine, std::move(cells), reach, listener).at(places, listener);
+            const MixedMesh fine =
+                refined_tets(mesh, *tets, levels, given.scheme.rules.crease_angle_deg, true, listener, &cells);
+            return MixedProbe(fine, std::move(cells), options.reach_world, listener).at(places, listener);
         }
         options.limit.progress = listener;
         return LimitProbe(mesh, options).at(places, listener);
@@ -67,10 +98,10 @@ py::dict probe(const HexMesh& mesh, const py::object& given, const std::string& 
     return result;
 }
 
-py::tuple error_of_points(const RbfVolume& volume, const HexMesh& mesh, const std::string& field, const std::string& scheme,
-                          double tension, const std::optional<double>& crease_angle, std::size_t channel,
-                          const py::object& progress) {
-    PointsErrorOptions options{.scheme = scheme_of(scheme, tension, crease_angle), .channel = channel};
+py::tuple error_of_points(const RbfVolume& volume, const HexMesh& mesh, const std::string& field, std::size_t channel,
+                          const py::object& progress, const py::kwargs& keywords) {
+    PointsErrorOptions options{.channel = channel};
+    set_options(keywords_of(options), keywords);
     PointsError error = result_of(progress, [&](Progress* listener) {
         options.progress = listener;
         return points_error(volume, mesh, field, options);
@@ -99,9 +130,9 @@ py::dict as_dict(PartMeasure part) {
     return result;
 }
 
-py::dict measure(const HexMesh& mesh, const std::string& scheme, double tension, const std::optional<double>& crease_angle,
-                 double tolerance, int bins, const py::object& progress) {
-    MeasureOptions options{.scheme = scheme_of(scheme, tension, crease_angle), .tolerance = tolerance, .bins = bins};
+py::dict measure(const HexMesh& mesh, const py::object& progress, const py::kwargs& keywords) {
+    MeasureOptions options;
+    set_options(keywords_of(options), keywords);
     LimitMeasure found = result_of(progress, [&](Progress* listener) {
         options.progress = listener;
         return measure_limit(mesh, options);
@@ -112,7 +143,7 @@ py::dict measure(const HexMesh& mesh, const std::string& scheme, double tension,
 py::dict slice(const HexMesh& mesh, const std::string& field, const std::array<double, 3>& point,
                const std::array<double, 3>& normal, const py::object& progress, const py::kwargs& given) {
     SliceOptions options;
-    set_options(scheme_and(options.limit.scheme, options_of(options)), given);
+    set_options(keywords_of(options), given);
     LimitSlice found = result_of(progress, [&](Progress* listener) {
         options.progress = options.limit.progress = listener;
         return slice_limit(mesh, field, {point[0], point[1], point[2]}, {normal[0], normal[1], normal[2]}, options);
@@ -132,7 +163,8 @@ py::dict slice(const HexMesh& mesh, const std::string& field, const std::array<d
 py::dict surface(const HexMesh& mesh, const std::string& field, std::vector<double> isos,
                  const std::optional<std::string>& path, const py::object& progress, const py::kwargs& given) {
     SurfaceOptions options{.isos = std::move(isos)};
-    set_options(scheme_and(options.scheme, options_of(options)), given);
+    const std::vector<std::string> besides(options.isos.empty() ? 0 : 1, "iso");
+    set_options(keywords_of(options), given, besides);
     LimitSurface found = result_of(progress, [&](Progress* listener) {
         options.progress = listener;
         LimitSurface made = limit_surface(mesh, field, options);
@@ -164,14 +196,18 @@ py::dict surface(const HexMesh& mesh, const std::string& field, std::vector<doub
 }  // namespace
 
 void bind_measure(py::module_& module) {
-    module.def("probe", &probe, py::arg("mesh"), py::arg("places"), py::arg("scheme"), py::arg("tension"),
-               py::arg("crease_angle"), py::arg("reach"), py::arg("levels"), py::arg("progress"));
-    module.def("points_error", &error_of_points, py::arg("volume"), py::arg("mesh"), py::arg("field"), py::arg("scheme"),
-               py::arg("tension"), py::arg("crease_angle"), py::arg("channel"), py::arg("progress"));
-    module.def("measure", &measure, py::arg("mesh"), py::arg("scheme"), py::arg("tension"), py::arg("crease_angle"),
-               py::arg("tolerance"), py::arg("bins"), py::arg("progress"));
+    module.def("probe", &probe, py::arg("mesh"), py::arg("places"), py::arg("levels"), py::arg("progress"));
+    module.def("points_error", &error_of_points, py::arg("volume"), py::arg("mesh"), py::arg("field"), py::arg("channel"),
+               py::arg("progress"));
+    module.def("measure", &measure, py::arg("mesh"), py::arg("progress"));
     module.def("slice", &slice, py::arg("mesh"), py::arg("field"), py::arg("point"), py::arg("normal"), py::arg("progress"));
     module.def("surface", &surface, py::arg("mesh"), py::arg("field"), py::arg("isos"), py::arg("path"), py::arg("progress"));
+    GivenProbe given;
+    describe(module, "probe", options_of(given));
+    describe_call<PointsErrorOptions>(module, "points_error");
+    describe_call<MeasureOptions>(module, "measure");
+    describe_call<SliceOptions>(module, "slice");
+    describe_call<SurfaceOptions>(module, "surface", {"iso"});
 }
 
 }  // namespace subvol::python

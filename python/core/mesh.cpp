@@ -84,15 +84,12 @@ py::dict figures_of(const HexMesh& mesh) {
     return figures;
 }
 
-py::tuple read(const std::string& path, const std::string& other_cells, const std::optional<double>& weld,
-               const std::vector<std::string>& sharp, const std::optional<std::size_t>& step,
-               const std::vector<std::string>& blocks, const std::optional<std::string>& cell_values) {
-    const CellValues means = named<CellValues>(cell_values.value_or("auto"), "cell_values");
-    const OtherCells rule = named<OtherCells>(other_cells, "other_cells");
+py::tuple read(const std::string& path, const py::kwargs& given) {
+    ReadOptions options;
+    set_options(options_of(options), given);
     ReadResult result = [&] {
         const py::gil_scoped_release without_gil;
-        return read_mesh(
-            path, {.other_cells = rule, .weld = weld, .sharp = sharp, .step = step, .blocks = blocks, .cell_values = means});
+        return read_mesh(path, options);
     }();
     if (!result.shells.empty()) result.warnings.emplace_back("quads and lines of shells and beams left out");
     return py::make_tuple(std::move(result.mesh), result.warnings);
@@ -191,9 +188,9 @@ void bind_mesh(py::module_& module) {
                 return mesh_of(state[0], state[1], state[2], state[3], state[4]);
             }));
 
-    module.def("read_mesh", &read, py::arg("path"), py::arg("other_cells") = "split", py::arg("weld") = py::none(),
-               py::arg("sharp") = std::vector<std::string>{}, py::arg("step") = py::none(),
-               py::arg("blocks") = std::vector<std::string>{}, py::arg("cell_values") = py::none());
+    module.def("read_mesh", &read, py::arg("path"));
+    ReadOptions reading;
+    describe(module, "read_mesh", options_of(reading));
     module.def(
         "series_times",
         [](const std::string& path) {

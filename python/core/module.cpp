@@ -59,15 +59,11 @@ void set_threads(int threads) {
 }  // namespace
 
 Scheme scheme_named(const std::string& name) {
-    if (tet_scheme_named(name)) {
+    if (!find_named<Scheme>(name) && find_named<TetScheme>(name)) {
         throw Error(ErrorCode::InvalidInput, "'" + name + "' refines tetrahedra, and this call has hexahedra only", "scheme",
                     "scheme='linear' of subdivide(mesh, 2, '" + name + "', on_limit=True)");
     }
     return named<Scheme>(name, "scheme");
-}
-
-std::optional<TetScheme> tet_scheme_named(const std::string& name) {
-    return find_named<Scheme>(name) ? std::nullopt : find_named<TetScheme>(name);
 }
 
 RefineOptions refine_options(const std::string& scheme, int levels, double tension, const std::optional<double>& crease_angle) {

@@ -85,10 +85,21 @@ py::tuple boundary_arrays(const py::object& self) {
     return py::make_tuple(view_of_points(boundary.points, self), view(corners, {length(boundary.triangles.size()), 3}, self));
 }
 
+std::vector<Option> keywords_of(SampleOptions& options) {
+    return scheme_and(options.scheme, options_of(options));
+}
+
+/// The scheme without its rules, which are those of `reduce`.
+std::vector<Option> keywords_of(ReduceOptions& options) {
+    std::vector<Option> all = options_of(options);
+    all.push_back(scheme_and(options.limit.scheme).front());
+    return all;
+}
+
 py::tuple sample(const HexMesh& mesh, const std::optional<Camera>& footprint, const std::pair<int, int>& footprint_size,
                  const py::object& progress, const py::kwargs& given) {
     SampleOptions options;
-    set_options(scheme_and(options.scheme, options_of(options)), given);
+    set_options(keywords_of(options), given);
     if (footprint) {
         options.footprint =
             Footprint{.camera = *footprint, .width_px = footprint_size.first, .height_px = footprint_size.second};
@@ -100,9 +111,11 @@ py::tuple sample(const HexMesh& mesh, const std::optional<Camera>& footprint, co
     return py::make_tuple(std::move(result.volume), result.report.flat_frames, result.report.largest_error);
 }
 
-py::tuple sample_tets(const HexMesh& mesh, const std::string& correction, const std::string& kernel,
-                      const py::object& progress) {
-    MixedSampleOptions options{.correction = named<Correction>(correction, "correction"), .kernel = kernel_from_json(kernel)};
+/// given: the correction and the kernel
+py::tuple sample_tets(const HexMesh& mesh, const py::object& progress, const py::kwargs& given) {
+    SampleOptions chosen;
+    set_options(keywords_of(chosen), given);
+    MixedSampleOptions options{.correction = chosen.correction, .kernel = chosen.kernel};
     SampleResult result = result_of(progress, [&](Progress* listener) {
         options.progress = listener;
         return sample_rbf_points(join_split_cells(mesh), options);
@@ -118,11 +131,9 @@ py::dict as_dict(const ErrorAtSamples& error) {
     return figures;
 }
 
-py::tuple reduce(const HexMesh& mesh, const std::string& field, const std::string& scheme, const py::object& progress,
-                 const py::kwargs& given) {
+py::tuple reduce(const HexMesh& mesh, const std::string& field, const py::object& progress, const py::kwargs& given) {
     ReduceOptions options;
-    set_options(options_of(options), given);
-    options.limit.scheme.kind = scheme_named(scheme);
+    set_options(keywords_of(options), given);
     ReduceResult result = result_of(progress, [&](Progress* listener) {
         options.progress = listener;
         return reduce_rbf(mesh, field, options);
@@ -199,8 +210,8 @@ void bind_points(py::module_& module) {
                 return volume;
             }));
     module.def("sample", &sample, py::arg("mesh"), py::arg("footprint"), py::arg("footprint_size"), py::arg("progress"));
-    module.def("sample_tets", &sample_tets, py::arg("mesh"), py::arg("correction"), py::arg("kernel"), py::arg("progress"));
-    module.def("reduce", &reduce, py::arg("mesh"), py::arg("field"), py::arg("scheme"), py::arg("progress"));
+    module.def("sample_tets", &sample_tets, py::arg("mesh"), py::arg("progress"));
+    module.def("reduce", &reduce, py::arg("mesh"), py::arg("field"), py::arg("progress"));
     module.def(
         "drop_invisible",
         [](const RbfVolume& volume, const TransferFunction& knots) {
@@ -244,6 +255,14 @@ void bind_points(py::module_& module) {
             return owned(std::move(values), {count});
         },
         py::arg("kernel"), py::arg("offsets"));
+    SampleOptions sampling;
+    describe(module, "sample", keywords_of(sampling));
+    ReduceOptions reduction{.rmse = 0.01};
+    describe(module, "reduce", keywords_of(reduction));
+    FitOptions fitting;
+    describe(module, "fit", options_of(fitting));
+    PointsWriteOptions writing;
+    describe(module, "write_points", options_of(writing));
 }
 
 }  // namespace subvol::python

@@ -12,14 +12,28 @@ HexMesh moved(HexMesh mesh, bool to_limit, Scheme scheme) {
     return to_limit ? on_limit(std::move(mesh), scheme) : mesh;
 }
 
-HexMesh subdivide(const HexMesh& mesh, int levels, const std::string& scheme, double tension,
-                  const std::optional<double>& crease_angle, bool to_limit, const py::object& progress) {
-    if (const auto tets = tet_scheme_named(scheme)) {
+/// A level of a scheme. levels: of it, and its description
+struct GivenLevel {
+    GivenScheme scheme{};
+    RefineOptions levels{.levels = 1};
+};
+
+std::vector<Option> options_of(GivenLevel& given) {
+    std::vector<Option> all = options_of(given.scheme);
+    all.push_back(subvol::options_of(given.levels).back());
+    return all;
+}
+
+HexMesh subdivide(const HexMesh& mesh, bool to_limit, const py::object& progress, const py::kwargs& keywords) {
+    GivenLevel given;
+    set_options(options_of(given), keywords);
+    const int levels = given.levels.levels;
+    if (const auto tets = given.scheme.tets()) {
         return result_of(progress, [&](Progress* listener) {
-            return in_hexahedra(refined_tets(mesh, *tets, levels, crease_angle, to_limit, listener));
+            return in_hexahedra(refined_tets(mesh, *tets, levels, given.scheme.rules.crease_angle_deg, to_limit, listener));
         });
     }
-    RefineOptions options = refine_options(scheme, levels, tension, crease_angle);
+    RefineOptions options{.scheme = given.scheme.hexes(), .levels = levels};
     return result_of(progress, [&](Progress* listener) {
         options.progress = listener;
         return moved(refine(mesh, options), to_limit, options.scheme.kind);
@@ -205,8 +219,9 @@ MixedMesh refined_tets(const HexMesh& mesh, TetScheme scheme, int levels, const 
 }
 
 void bind_refine(py::module_& module) {
-    module.def("subdivide", &subdivide, py::arg("mesh"), py::arg("levels"), py::arg("scheme"), py::arg("tension"),
-               py::arg("crease_angle"), py::arg("on_limit"), py::arg("progress"));
+    module.def("subdivide", &subdivide, py::arg("mesh"), py::arg("on_limit"), py::arg("progress"));
+    GivenLevel given;
+    describe(module, "subdivide", options_of(given));
     py::class_<Refinement>(module, "Refinement", "A refinement that is computed once and applied any number of times.")
         .def(py::init<const HexMesh&, int, const std::string&, double, const py::object&>(), py::arg("mesh"),
              py::arg("levels") = 1, py::arg("scheme") = "mcq", py::arg("tension") = 1.0 / 16.0,
@@ -231,17 +246,16 @@ void bind_refine(py::module_& module) {
                py::arg("tolerance"), py::arg("max_levels"), py::arg("progress"));
     module.def(
         "limit_level",
-        [](const HexMesh& mesh, const std::string& scheme, double tension, const std::optional<double>& crease_angle,
-           double position_world, double max_cells, const py::object& progress) {
-            RefineOptions options = refine_options(scheme, 0, tension, crease_angle);
+        [](const HexMesh& mesh, const std::string& scheme, double position_world, double max_cells,
+           const py::object& progress) {
+            RefineOptions options{.scheme = {.kind = scheme_named(scheme)}, .levels = 0};
             const LimitLevel level = result_of(progress, [&](Progress* listener) {
                 options.progress = listener;
                 return find_limit_level(mesh, options, {.position_world = position_world, .max_cells = max_cells});
             });
             return py::make_tuple(level.level, level.converged, level.value_of_range);
         },
-        py::arg("mesh"), py::arg("scheme"), py::arg("tension"), py::arg("crease_angle"), py::arg("position_world"),
-        py::arg("max_cells"), py::arg("progress"));
+        py::arg("mesh"), py::arg("scheme"), py::arg("position_world"), py::arg("max_cells"), py::arg("progress"));
 }
 
 }  // namespace subvol::python

@@ -12,22 +12,6 @@
 namespace subvol::python {
 namespace {
 
-using SixNumbers = std::array<double, 6>;
-
-CutPlane plane_of(const SixNumbers& n) {
-    return {{n[0], n[1], n[2]}, {n[3], n[4], n[5]}};
-}
-
-Clip clip_of(const std::vector<SixNumbers>& planes, const std::optional<SixNumbers>& box, const std::vector<SixNumbers>& slices,
-             bool around_slices) {
-    Clip clip{.around_slices = around_slices};
-    for (const SixNumbers& plane : planes) clip.planes.push_back(plane_of(plane));
-    for (const SixNumbers& plane : slices) clip.slices.push_back(plane_of(plane));
-    if (box) clip.box = Box{{(*box)[0], (*box)[1], (*box)[2]}, {(*box)[3], (*box)[4], (*box)[5]}};
-    validate(clip);
-    return clip;
-}
-
 /// The look of a picture, its colours, and whether the opacities are those that the look has by itself.
 struct PictureLight {
     Look look;
@@ -35,44 +19,40 @@ struct PictureLight {
     bool own_opacity;
 };
 
-/// The value of a keyword of render(). throws: TypeError for another type
-template <class Value>
-Value value_of(const py::dict& given, const char* keyword, Value otherwise) {
-    if (!given.contains(keyword)) return otherwise;
-    try {
-        return given[keyword].cast<Value>();
-    } catch (const py::cast_error&) {
-        throw py::type_error(std::string(keyword) + ": a value of type " +
-                             std::string(py::str(py::type::of(given[keyword]).attr("__name__"))) + " is not accepted");
+/// What the keywords of render() choose. look: as Python has settled it; here for what has no effect with it
+struct GivenPicture : PictureSettings {
+    LookOptions look{};
+};
+
+std::vector<Option> options_of(GivenPicture& given) {
+    std::vector<Option> all = options_of(static_cast<PictureSettings&>(given));
+    all.front() = scheme_and(given.refinement.scheme).front();
+    const auto uses = option_uses();
+    std::erase_if(all, [&](const Option& option) {
+        const auto use = std::ranges::find(uses, option.name, &OptionUse::name);
+        return use == uses.end() || use->keyword.empty();
+    });
+    for (const Option& option : options_of(given.look)) {
+        if (option.name == "look" || option.name == "opacity-unit") all.push_back(option);
     }
+    return all;
 }
 
-MethodOptions method_options(Method method, const PictureLight& light, const py::dict& given) {
-    MethodOptions options{.style = {.method = method, .look = {.look = light.look}}, .names = OptionNames::Keywords};
-    RefineOptions refinement;
-    std::vector<Option> described = scheme_and(refinement.scheme, options_of(options.kernels.sample));
-    described.push_back(options_of(refinement).back());
-    std::ranges::move(options_of(options.splat), std::back_inserter(described));
-    std::ranges::move(options_of(options), std::back_inserter(described));
-    for (const OptionUse& use : option_uses()) {
-        const std::string keyword(use.keyword);
-        const auto option = std::ranges::find(described, use.name, &Option::name);
-        if (!keyword.empty() && option != described.end() && given.contains(keyword.c_str()))
-            set_option(*option, given[keyword.c_str()], keyword);
-    }
-    options.kernels.sample.scheme = refinement.scheme;
-    if (given.contains("levels")) options.kernels.levels = refinement.levels;
-    options.style.clip = clip_of(value_of<std::vector<SixNumbers>>(given, "clip", {}),
-                                 value_of<std::optional<SixNumbers>>(given, "clip_box", {}),
-                                 value_of<std::vector<SixNumbers>>(given, "slice", {}), value_of(given, "around", false));
+MethodOptions method_options(Method method, const PictureLight& light, const py::dict& keywords) {
+    GivenPicture given;
+    set_options(options_of(given), keywords);
+    MethodOptions options = given.chosen();
+    options.style.method = method;
+    options.style.look.look = light.look;
     if (light.own_opacity) options.style.look.opacity = light.optics.function().opacity;
-    if (value_of(given, "shade", false)) options.splat.shading = Shading{};
     return options;
 }
 
 /// What was given for an option of the command, by its keyword.
 std::optional<std::string> text_of(const py::dict& given, std::string_view name) {
-    const std::string keyword = option_name(name, OptionNames::Keywords);
+    const auto uses = option_uses();
+    const auto use = std::ranges::find(uses, name, &OptionUse::name);
+    const std::string keyword(use->keyword);
     if (keyword.empty() || !given.contains(keyword.c_str())) return std::nullopt;
     return std::string(py::str(given[keyword.c_str()]));
 }
@@ -175,6 +155,8 @@ void bind_render(py::module_& module) {
         "draws_kernels", [](const std::string& method) { return draws_kernels(named<Method>(method, "method")); },
         py::arg("method"));
     module.def("gl_devices", &devices);
+    GivenPicture given;
+    describe(module, "render", options_of(given));
 }
 
 }  // namespace subvol::python

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bind.h"
+#include "subvol/picture_maker.h"
 #include "subvol/study.h"
 #include "subvol/study_run.h"
 #include "subvol/study_table.h"
@@ -60,6 +61,14 @@ std::unique_ptr<StudyResults> run_here(const Study& study, const py::object& wor
     return results;
 }
 
+/// The methods of pictures, with the options that each reads.
+std::vector<PictureMethod> picture_methods() {
+    static PictureSettings any;  // reading a study changes it
+    std::vector<PictureMethod> methods;
+    for (const auto& row : NameTable<Method>::rows) methods.push_back({std::string(row.name), options_of(any, row.value)});
+    return methods;
+}
+
 py::list tables_of(const StudyResults& results) {
     py::list tables;
     for (const StudyTable& table : make_tables(results)) {
@@ -108,11 +117,12 @@ void bind_studies(py::module_& module) {
         for (const StudyInfo& info : list_studies()) studies[py::str(info.name)] = info.title;
         return studies;
     });
-    module.def("built_in_study", &built_in_study, py::arg("name"));
     module.def(
-        "read_study", [](const std::string& path) { return read_study(path); }, py::arg("path"));
+        "built_in_study", [](const std::string& name) { return built_in_study(name, picture_methods()); }, py::arg("name"));
     module.def(
-        "parse_study", [](const std::string& json) { return parse_study(json, "study"); }, py::arg("json"));
+        "read_study", [](const std::string& path) { return read_study(path, picture_methods()); }, py::arg("path"));
+    module.def(
+        "parse_study", [](const std::string& json) { return parse_study(json, "study", picture_methods()); }, py::arg("json"));
     module.def("run_study", &run_here, py::arg("study"), py::arg("work"), py::arg("folder"), py::arg("fresh"));
 }
 

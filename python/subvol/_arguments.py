@@ -2,8 +2,6 @@
 """What several calls do with their arguments."""
 from __future__ import annotations
 
-import json
-import math
 import os
 import warnings
 from collections.abc import Mapping
@@ -25,14 +23,6 @@ def path_bytes(path: Path) -> bytes:
     return name
 
 
-def check_numbers(least: float = -math.inf, **numbers: Optional[float]) -> None:
-    """Refuses what is not finite or below `least`, also where a call would not look at it. None is an argument that is not given."""
-    for name, number in numbers.items():
-        if number is not None and not (math.isfinite(number) and number >= least):
-            allowed = "a finite number" if least == -math.inf else f"{least:g} or more"
-            raise InvalidInput(f"{name}: {number} is out of range ({allowed})", name, allowed)
-
-
 def extension(path: Path) -> str:
     return os.path.splitext(os.fsdecode(path))[1].lower()
 
@@ -41,12 +31,3 @@ def warn(text: str, level: int = 3) -> None:
     """Warns on behalf of the function that called ours."""
     if text:
         warnings.warn(text, SubvolWarning, stacklevel=level)
-
-
-def kernel_json(kernel: Kernel) -> str:
-    """A kernel by its name or as a dictionary, as the library reads it."""
-    from . import _core
-
-    if isinstance(kernel, str):
-        return _core.named_kernel(kernel)
-    return json.dumps(dict(kernel))

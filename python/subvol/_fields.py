@@ -40,10 +40,10 @@ def as_field(what: Union[HexMesh, RbfVolume, Field], field: Optional[str] = None
         if levels is None:
             low, high = mesh.bounds
             voxel = float(np.max(high - low)) / _VOXELS
-            levels, converged, change = _core.limit_level(mesh, scheme, 1 / 16, None, _TOLERANCE_VOXELS * voxel, _MOST_CELLS, listener)
+            levels, converged, change = _core.limit_level(mesh, scheme, _TOLERANCE_VOXELS * voxel, _MOST_CELLS, listener)
             if not converged:
                 warn(f"level {levels} was the finest within limits; the last step still changed values by {change:.2g} of their range")
-        fine = _core.subdivide(mesh, levels, scheme, 1 / 16, None, True, listener)
+        fine = _core.subdivide(mesh, True, listener, levels=levels, scheme=scheme)
     return Field.of_mesh(fine, next(iter(fine.fields)))
 
 

@@ -11,9 +11,10 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core
-from ._arguments import TET_SCHEMES
+from ._arguments import TET_SCHEMES, Path
 from ._core import HexMesh, RbfVolume
 from ._errors import InvalidInput
+from ._options import described
 from ._points import _selected
 from ._progress import Progress, listening
 
@@ -45,47 +46,50 @@ class PointsError:
     gaps: int
 
 
-def points_error(volume: RbfVolume, mesh: HexMesh, field: Optional[str] = None, *, channel: int = 0, scheme: str = "mcq",
-                 tension: float = 1 / 16, crease_angle: Optional[float] = None, progress: Progress = None) -> PointsError:
+@described
+def points_error(volume: RbfVolume, mesh: HexMesh, field: Optional[str] = None, *, channel: int = 0, progress: Progress = None,
+                 **options: Any) -> PointsError:
     """How far the sum of kernels is from the limit of a mesh near each kernel: an estimate, from nine places each.
 
-    field:   of the mesh, as for `sample`
-    channel: of the kernels, which is compared with it
+    field:       of the mesh, as for `sample`
+    channel:     of the kernels, which is compared with it
+    {keywords}
     """
     mesh = _selected(mesh, field)
     with listening(progress) as listener:
-        return PointsError(*_core.points_error(volume, mesh, next(iter(mesh.fields)), scheme, tension, crease_angle, channel, listener))
+        return PointsError(*_core.points_error(volume, mesh, next(iter(mesh.fields)), channel, listener, **options))
 
 
-def probe(mesh: HexMesh, places: npt.ArrayLike, *, scheme: str = "mcq", tension: float = 1 / 16, crease_angle: Optional[float] = None,
-          reach: float = 0, levels: Optional[int] = None, progress: Progress = None) -> ProbeSamples:
+@described
+def probe(mesh: HexMesh, places: npt.ArrayLike, *, levels: Optional[int] = None, progress: Progress = None, **options: Any) -> ProbeSamples:
     """All fields of the limit, with their gradients, at places in the world, (n,3): exact, not interpolated in cells.
 
-    scheme: also "tetoct", "boxspline": of tetrahedra, whose volume is linear between the vertices of a level (docs/schemes.md); cells are
-            those tetrahedra, and there are no parameters (nan)
-    reach:  places outside that are no farther than this from the boundary get the values of its nearest point
-    levels: of "tetoct" and "boxspline", 0 to 8; None: 2
+    The volume of the schemes "tetoct" and "boxspline" is linear between the vertices of a level of tetrahedra (docs/schemes.md); cells
+    are those tetrahedra, and there are no parameters (nan).
+
+    levels:      of "tetoct" and "boxspline", 0 to 8; None: 2
+    {keywords}
     """
     places = np.asarray(places)
-    if levels is not None and scheme not in TET_SCHEMES:
+    if levels is not None and options.get("scheme") not in TET_SCHEMES:
         raise InvalidInput("levels: the limit is probed, not a level", "levels", "None, or the scheme tetoct or boxspline")
     with listening(progress) as listener:
-        found: dict[str, Any] = _core.probe(mesh, np.empty((0, 3)) if places.size == 0 else places, scheme, tension, crease_angle, reach,
-                                            2 if levels is None else levels, listener)
+        found: dict[str, Any] = _core.probe(mesh, np.empty((0, 3)) if places.size == 0 else places, 2 if levels is None else levels,
+                                            listener, **options)
     return ProbeSamples(**found)
 
 
-def measure(mesh: HexMesh, *, scheme: str = "mcq", tension: float = 1 / 16, crease_angle: Optional[float] = None, tolerance: float = 1e-4,
-            bins: int = 32, progress: Progress = None) -> dict[str, Any]:
+@described
+def measure(mesh: HexMesh, *, progress: Progress = None, **options: Any) -> dict[str, Any]:
     """The volume of the limit, and of each field its integral, mean, extremes with their places, and histogram.
 
     Returns cells, volume, and fields: a dictionary by name of integral, mean, min, min_at, max, max_at, histogram (the volume in each
     of `bins` equal intervals from min to max).
 
-    tolerance: of the pieces that are integrated, as a part of the longest side and of each field's range
+    {keywords}
     """
     with listening(progress) as listener:
-        found: dict[str, Any] = _core.measure(mesh, scheme, tension, crease_angle, tolerance, bins, listener)
+        found: dict[str, Any] = _core.measure(mesh, listener, **options)
     return found
 
 
@@ -103,16 +107,17 @@ class Slice:
     down: npt.NDArray[np.float64]
 
 
-def slice(mesh: HexMesh, point: Sequence[float], normal: Sequence[float], field: Optional[str] = None, *, resolution: int = 512,
-          scheme: str = "mcq", tension: float = 1 / 16, crease_angle: Optional[float] = None, progress: Progress = None) -> Slice:
+@described
+def slice(mesh: HexMesh, point: Sequence[float], normal: Sequence[float], field: Optional[str] = None, *, progress: Progress = None,
+          **options: Any) -> Slice:
     """A field of the limit where a plane cuts it, seen from where the normal points.
 
-    resolution: places along the longer side
+    {keywords}
     """
     chosen = _selected(mesh, field)
     with listening(progress) as listener:
         found: dict[str, Any] = _core.slice(chosen, next(iter(chosen.fields)), [float(x) for x in point], [float(x) for x in normal], listener,
-                                            resolution=resolution, scheme=scheme, tension=tension, crease_angle=crease_angle)
+                                            **options)
     return Slice(**found)
 
 
@@ -129,21 +134,18 @@ class SurfaceMesh:
     report: dict[str, Any]
 
 
+@described
 def surface(mesh: HexMesh, iso: Union[float, Sequence[float], None] = None, field: Optional[str] = None, *, boundary: Optional[bool] = None,
-            cap: bool = False, tolerance: float = 1e-3, max_level: int = 6, scheme: str = "mcq", tension: float = 1 / 16,
-            crease_angle: Optional[float] = None, path: Union[str, os.PathLike[str], None] = None, progress: Progress = None) -> SurfaceMesh:
+            path: Optional[Path] = None, progress: Progress = None, **options: Any) -> SurfaceMesh:
     """Isosurfaces of a field of the limit, and its boundary, as triangles.
 
-    iso:       a value, or several; None: the boundary alone
-    boundary:  also the boundary; None: only without `iso`
-    cap:       close each isosurface with the part of the boundary where the field is at least its value
-    tolerance: how far triangles may lie from the limit, as a part of the longest side
-    path:      also write it: .ply, .stl, .vtp, .obj, .glb
+    iso:         a value, or several; None: the boundary alone
+    path:        also write it: .ply, .stl, .vtp, .obj, .glb
+    {keywords}
     """
     isos = [] if iso is None else [float(value) for value in np.atleast_1d(np.asarray(iso, dtype=float))]
     chosen = _selected(mesh, field)
     with listening(progress) as listener:
-        found: dict[str, Any] = _core.surface(chosen, next(iter(chosen.fields)), isos, None if path is None else os.fspath(path), listener,
-                                              boundary=not isos if boundary is None else boundary, cap=cap, tolerance=tolerance,
-                                              max_level=max_level, scheme=scheme, tension=tension, crease_angle=crease_angle)
+        found: dict[str, Any] = _core.surface(chosen, next(iter(chosen.fields)), isos, None if path is None else os.fsdecode(path), listener,
+                                              boundary=not isos if boundary is None else boundary, **options)
     return SurfaceMesh(**found)

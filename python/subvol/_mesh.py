@@ -9,27 +9,20 @@ from . import _core
 from ._arguments import Path, path_bytes, warn
 from ._core import HexMesh
 from ._errors import InvalidInput
+from ._options import described
 from ._progress import Progress, listening
 
 
-def read_mesh(path: Path, *, other_cells: str = "split", weld: Optional[float] = None, sharp: Sequence[str] = (),
-              step: Optional[int] = None, blocks: Sequence[str] = (), cell_values: Optional[str] = None) -> HexMesh:
+@described
+def read_mesh(path: Path, **options: Any) -> HexMesh:
     """Reads a mesh. The extension of the file name decides the format; docs/formats.md has the list.
 
-    other_cells: "split" (tetrahedra, prisms and pyramids become hexahedra, with a warning), "ignore" or "refuse"
-    weld:        joins points no farther apart than this (world units; 0: at the same place)
-    sharp:       names of groups of faces and edges that stay sharp (MEDIT, Gmsh)
-    step:        of a series (`open_series`), from 0; None: the last one
-    blocks:      names of the parts that are read; none: all
-    cell_values: "fit" (the volume follows the cells' means without waves), "mean" (at each point the mean of its cells), "exact" (the volume
-                 has the cells' means); None or "auto": what suits the format, "fit" for OpenFOAM
+    {keywords}
 
     Warns (SubvolWarning) once for each thing left out, turned round or converted.
     Raises FileError if the file cannot be opened; InvalidInput, with file and line, if it is malformed.
     """
-    if step is not None and step < 0:
-        raise InvalidInput(f"step: {step} is not a step", "step", "0 or more")
-    mesh, said = _core.read_mesh(path_bytes(path), other_cells, weld, list(sharp), step, list(blocks), cell_values)
+    mesh, said = _core.read_mesh(path_bytes(path), **options)
     for text in said:
         warn(text)
     return mesh
@@ -74,22 +67,20 @@ def models() -> dict[str, str]:
     return _core.list_models()
 
 
-def subdivide(mesh: HexMesh, levels: int = 1, scheme: str = "mcq", *, tension: float = 1 / 16,
-              crease_angle: Optional[float] = None, on_limit: bool = False, progress: Progress = None) -> HexMesh:
+@described
+def subdivide(mesh: HexMesh, levels: int = 1, scheme: str = "mcq", *, on_limit: bool = False, progress: Progress = None,
+              **options: Any) -> HexMesh:
     """Refines a mesh: each level splits a cell into eight. Points and fields follow the scheme.
 
-    levels:       0 to 10
-    scheme:       "mcq" (through the control points), "cc" (Catmull-Clark), "bsxw", "linear"; of tetrahedra as tetrahedra "tetoct",
-                  "boxspline": the cells come back in hexahedra, whose linear volume is theirs
-    tension:      of mcq: 0 is linear; cubics are reproduced at 1/16
-    crease_angle: keep boundary edges sharp that bend by more than this, in degrees ("tetoct", "boxspline": None is 60)
-    on_limit:     also move the points to the limit (those of mcq and linear lie on it); of "tetoct" and "boxspline" the limit that
-                  passes through the points and values of the mesh
+    The cells of "tetoct" and "boxspline", which refine tetrahedra as tetrahedra, come back in hexahedra, whose linear volume is theirs.
+    The children of cell c are 8c to 8c+7, but of these two. The same bits for any number of threads.
 
-    The children of cell c are 8c to 8c+7, but of "tetoct" and "boxspline". The same bits for any number of threads.
+    on_limit:    also move the points to the limit (those of mcq and linear lie on it); of "tetoct" and "boxspline" the limit that
+                 passes through the points and values of the mesh
+    {keywords}
     """
     with listening(progress) as listener:
-        return _core.subdivide(mesh, levels, scheme, tension, crease_angle, on_limit, listener)
+        return _core.subdivide(mesh, on_limit, listener, levels=levels, scheme=scheme, **options)
 
 
 class Series:

@@ -10,100 +10,51 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core
-from ._arguments import Path, check_numbers, path_bytes, warn
+from ._arguments import Path, path_bytes, warn
 from ._colors import TransferFunction, _camera_of, _is_lit, _knots_of, _look_of, _range_of
 from ._core import Camera, Field, HexMesh, Image, RbfVolume
 from ._errors import InvalidInput
+from ._options import described
 from ._fields import as_field
 from ._points import _selected
 from ._progress import Progress, listening
 from ._vdb import Grid, sample_grid
 
 Drawable = Union[HexMesh, RbfVolume, Grid]
-Planes = Union[None, Sequence[float], Sequence[Sequence[float]], npt.ArrayLike]  # six numbers each: a point and the normal
 
 
-def _planes_of(planes: Planes, name: str) -> list[list[float]]:
-    """A plane or several as lists of six numbers."""
-    if planes is None:
-        return []
-    rows = np.atleast_2d(np.asarray(planes, dtype=float))
-    if rows.ndim != 2 or rows.shape[1] != 6:
-        raise InvalidInput(f"{name}: a plane is six numbers, a point and the normal", name, "(px, py, pz, nx, ny, nz)")
-    return [[float(number) for number in row] for row in rows]
-
-
-def _box_of(box: Optional[Sequence[float]]) -> Optional[list[float]]:
-    if box is None:
-        return None
-    corners = np.asarray(box, dtype=float).ravel()
-    if corners.shape != (6,):
-        raise InvalidInput("clip_box: a box is six numbers, the lower and the upper corner", "clip_box", "(x0, y0, z0, x1, y1, z1)")
-    return [float(number) for number in corners]
-
-
+@described
 def render(what: Drawable, *, method: str = "splat", view: str = "iso", camera: Union[None, str, Camera] = None, ortho: bool = False,
-           size: tuple[int, int] = (512, 512), field: Optional[str] = None, color_field: Optional[str] = None,
-           tf: Union[None, str, TransferFunction] = None, opacity_unit: Optional[float] = None, look: Optional[str] = None,
-           shade: bool = False, shadows: bool = False, ambient_occlusion: Optional[float] = None, lod: Optional[float] = None,
-           samples: Optional[int] = None, sheets: Optional[int] = None, levels: Optional[int] = None, scheme: Optional[str] = None,
-           tension: Optional[float] = None, crease_angle: Optional[float] = None, per_edge: Optional[int] = None,
-           seconds: Optional[float] = None, order: Optional[str] = None, image_tolerance: Optional[float] = None,
-           backend: Optional[str] = None, device: Optional[int] = None, clip: Planes = None,
-           clip_box: Optional[Sequence[float]] = None, slice: Planes = None, around: bool = False, progress: Progress = None) -> Image:
+           size: tuple[int, int] = (512, 512), field: Optional[str] = None, tf: Union[None, str, TransferFunction] = None,
+           look: Optional[str] = None, opacity_unit: Optional[float] = None, progress: Progress = None, **options: Any) -> Image:
     """Draws a mesh, points or a grid: the picture of `subvol render` with the same options, bit for bit.
 
-    A keyword that has no effect with the method is refused; docs/pictures.md has the table.
+    A keyword that has no effect with the method is refused; docs/pictures.md has the table. None leaves the default.
 
-    method:       "splat" (kernels), "sheets" (the same by OpenGL sheet buffers), "footprints" (kernels coloured first, as
-                  Westover did), "tets" (rays through tetrahedra), "pt" (tetrahedra projected by OpenGL), "dense" (rays through the
-                  limit's cells), "grid" (rays through voxels)
-    view:         the side to look from: +x -x +y -y +z -z iso
-    camera:       instead: a Camera, or text as of --camera
-    size:         width and height in pixels
-    color_field:  takes the colours from this field; opacities stay those of `field` (kernels only)
-    tf:           a TransferFunction or its name; None: viridis over the field's range
-    opacity_unit: the world distance that opacities are for; None: 1/100 of the bounding box's diagonal
-    look:         "solid" (opaque and lit; what a mesh without tf, opacity_unit and shade gets), "volume", "xray" or "isosurface"
-    shade:        lit surfaces of equal value (kernels only)
-    shadows:      the volume shadows itself from the light at the upper left (splat only)
-    ambient_occlusion: > 0: darkens hollows that are narrower than this part of the bounding box's diagonal, at most 1 (splat only)
-    lod:          > 0: kernels are merged as long as they are narrower than so many pixels; pt with order "havs": the fraction of
-                  the inner faces that is drawn
-    samples:      n x n rays or places for each pixel, 1 to 16; None: 2 for solids, else 1
-    sheets:       planes over the volume's depth; None: as many as the kernels need (splat and sheets)
-    levels:       draw the trilinear cells of this level; None: 1 for tets and pt, the limit for the others
-    scheme:       "mcq" (None), "cc", "bsxw" or "linear"; tension: of mcq, None: 1/16
-    per_edge:     kernels for each cell edge; None: 1
-    seconds:      a time limit (splat, sheets and pt)
-    order:        how pt sorts: "topological" (None), "centroid", "lists" or "havs"
-    image_tolerance: of dense without levels: draw level after level until the picture changes by less
-    backend:      where to splat: "auto" (None), "gl" or "cpu"
-    device:       the OpenGL device's number in gl_devices()
-    clip:         planes that cut the volume open, each (px, py, pz, nx, ny, nz): what lies on the normal's side goes. One or several
-    clip_box:     (x0, y0, z0, x1, y1, z1): what lies outside goes
-    slice:        planes that are drawn alone, opaque and coloured by value. One or several
-    around:       draw the volume around the slices too
+    method:      "splat" (kernels), "sheets" (the same by OpenGL sheet buffers), "footprints" (kernels coloured first, as
+                 Westover did), "tets" (rays through tetrahedra), "pt" (tetrahedra projected by OpenGL), "dense" (rays through the
+                 limit's cells), "grid" (rays through voxels)
+    view:        the side to look from: +x -x +y -y +z -z iso
+    camera:      instead: a Camera, or text as of --camera
+    size:        width and height in pixels
+    tf:          a TransferFunction or its name; None: viridis over the field's range
+    {keywords}
 
-    Returns an Image: `numpy.asarray(image)` is (height, width, 4) float32, linear, premultiplied, without a copy. Its `report` has
-    counts and seconds.
+    Cuts are rows of six numbers, each a list or an array. Returns an Image: `numpy.asarray(image)` is (height, width, 4) float32,
+    linear, premultiplied, without a copy. Its `report` has counts and seconds.
     """
-    check_numbers(0, opacity_unit=opacity_unit)
     if isinstance(what, Field):
         raise InvalidInput("what: a Field cannot be drawn; draw the mesh or the points that it is of", "what", "a mesh, points or a grid")
-    if len(size) != 2 or not (1 <= size[0] <= 65536 and 1 <= size[1] <= 65536):
-        raise InvalidInput(f"size: {size} is not a picture size", "size", "width and height, 1 to 65536")
+    if len(size) != 2 or not all(1 <= side <= _core.largest_side for side in size):
+        raise InvalidInput(f"size: {size} is not a picture size", "size", f"width and height, 1 to {_core.largest_side}")
     if isinstance(what, Grid) and _core.draws_kernels(method):
         what = sample_grid(what)
     if not isinstance(what, (HexMesh, RbfVolume, Grid)):
         raise TypeError(f"render() takes a HexMesh, RbfVolume or Grid, not {type(what).__name__}")
-    keywords = {"color_field": color_field, "look": look, "shade": shade, "shadows": shadows, "ambient_occlusion": ambient_occlusion,
-                "lod": lod, "samples": samples, "sheets": sheets, "levels": levels, "scheme": scheme, "tension": tension,
-                "crease_angle": crease_angle, "per_edge": per_edge, "seconds": seconds, "order": order,
-                "image_tolerance": image_tolerance, "backend": backend, "device": device, "clip": _planes_of(clip, "clip"),
-                "clip_box": _box_of(clip_box), "slice": _planes_of(slice, "slice"), "around": around}
-    given = {name: value for name, value in keywords.items() if value is not None and value is not False and value != []}
-    kind = _look_of(look, isinstance(what, HexMesh) and not shade, tf, opacity_unit)
+    keywords = {**options, "look": look, "opacity_unit": opacity_unit}
+    given = {name: value for name, value in keywords.items() if value is not None and value is not False}
+    color_field = options.get("color_field")
+    kind = _look_of(look, isinstance(what, HexMesh) and not options.get("shade"), tf, opacity_unit)
 
     mesh = _selected(what, field) if isinstance(what, HexMesh) else None
     other = _selected(what, color_field) if isinstance(what, HexMesh) and color_field is not None else None

@@ -28,31 +28,24 @@ constexpr std::string_view kNoShadows = "it does not compute the light inside th
 constexpr std::string_view kNoLimit = "it draws voxels as they are";
 constexpr std::string_view kNoCuts = "its kernels cannot be cut";
 
-constexpr OptionCondition kNotForReduced{.option = "reduce", .excluded = true};
-
-/// An option, its keyword, the methods and the bodies that read it, why others do not, what else it needs.
+/// An option, its keyword, the methods and the bodies that read it, why others do not.
 constexpr std::array kUses{
     OptionUse{"per-edge", "per_edge", kKernels, kMesh, kNoKernels},
-    OptionUse{"centers", "", kKernels, kMesh, kNoKernels},
-    OptionUse{"spacing", "", kKernels, kMesh | kVoxels, kNoKernels},
+    OptionUse{"centers", "centers", kKernels, kMesh, kNoKernels},
+    OptionUse{"spacing", "spacing", kKernels, kMesh | kVoxels, kNoKernels},
     OptionUse{"spacing-voxels", "", kKernels, kMesh | kVoxels, kNoKernels},
-    OptionUse{"tolerance", "", kKernels, kMesh, kNoKernels},
+    OptionUse{"tolerance", "tolerance", kKernels, kMesh, kNoKernels},
     OptionUse{"footprint", "", kKernels, kMesh, kNoKernels},
-    OptionUse{"footprint-size", "", kKernels, kMesh, kNoKernels, {{.option = "footprint"}}},
-    OptionUse{"values", "", kKernels, kMesh, kNoKernels, {kNotForReduced}},
-    OptionUse{"value-kernel", "", kKernels, kMesh, kNoKernels, {{.option = "values", .values = "paper"}}},
-    OptionUse{"kernel", "", kKernels, kMeshes | kBricks | kVoxels, kNoKernels},
+    OptionUse{"footprint-size", "", kKernels, kMesh, kNoKernels},
+    OptionUse{"values", "values", kKernels, kMesh, kNoKernels},
+    OptionUse{"value-kernel", "value_kernel", kKernels, kMesh, kNoKernels},
+    OptionUse{"kernel", "kernel", kKernels, kMeshes | kBricks | kVoxels, kNoKernels},
     OptionUse{"threshold", "", kKernels, kMeshes | kVoxels, kNoKernels},
-    OptionUse{"correction", "", kKernels, kMeshes | kBricks | kVoxels, kNoKernels, {kNotForReduced}},
+    OptionUse{"correction", "correction", kKernels, kMeshes | kBricks | kVoxels, kNoKernels},
     OptionUse{"reduce", "", kKernels, kMesh, kNoKernels},
-    OptionUse{"refine", "", kKernels, kMesh, kNoKernels, {{.option = "reduce"}}},
+    OptionUse{"refine", "", kKernels, kMesh, kNoKernels},
     OptionUse{"scheme", "scheme", kKernels | kCells, kMeshes | kBricks, kNoLimit},
-    OptionUse{"tension",
-              "tension",
-              kKernels | kCells,
-              kMesh | kBricks,
-              kNoLimit,
-              {{.option = "scheme", .values = "mcq", .unset = true}}},
+    OptionUse{"tension", "tension", kKernels | kCells, kMesh | kBricks, kNoLimit},
     OptionUse{"crease-angle", "crease_angle", kKernels | kCells, kMeshes | kBricks, kNoLimit},
     OptionUse{.name = "levels",
               .keyword = "levels",
@@ -61,37 +54,16 @@ constexpr std::array kUses{
               .reason = kNoLimit,
               .bricks = kTets},
     OptionUse{"samples", "samples", kEvery, kAll, ""},
-    OptionUse{"tolerance-image",
-              "image_tolerance",
-              kDense,
-              kMeshes,
-              "it draws one level only",
-              {{.option = "levels", .excluded = true}}},
-    OptionUse{"order", "order", kProjected, kMeshes, "it does not sort tetrahedra", {{.option = "seconds", .excluded = true}}},
-    OptionUse{"kbuffer",
-              "",
-              kProjected,
-              kMeshes,
-              "it has no k-buffer",
-              {{.option = "order", .values = "havs", .instead = "seconds"}}},
-    OptionUse{
-        "lod", "lod", kKernels | kProjected, kAll & ~kBricks, "it draws everything", {{.option = "seconds", .excluded = true}}},
+    OptionUse{"tolerance-image", "image_tolerance", kDense, kMeshes, "it draws one level only"},
+    OptionUse{"order", "order", kProjected, kMeshes, "it does not sort tetrahedra"},
+    OptionUse{"kbuffer", "kbuffer", kProjected, kMeshes, "it has no k-buffer"},
+    OptionUse{"lod", "lod", kKernels | kProjected, kAll & ~kBricks, "it draws everything"},
     OptionUse{"seconds", "seconds", kSplat | kSheets | kProjected, kMeshes, "it has no time limit"},
     OptionUse{"backend", "backend", kSplat, kAll, kOwnDevice},
-    OptionUse{"device",
-              "device",
-              kSplat | kSheets | kProjected,
-              kAll & ~kBricks,
-              "it runs on the CPU",
-              {{.option = "backend", .values = "cpu", .excluded = true}}},
+    OptionUse{"device", "device", kSplat | kSheets | kProjected, kAll & ~kBricks, "it runs on the CPU"},
     OptionUse{"sheets", "sheets", kSplat | kSheets, kAll, kNoSheets},
     OptionUse{"plain-sums", "", kKernels, kAll, kNoKernels},
-    OptionUse{"shade",
-              "shade",
-              kKernels,
-              kAll,
-              "it draws without light",
-              {{.option = "look", .values = "solid|isosurface", .excluded = true}}},
+    OptionUse{"shade", "shade", kKernels, kAll, "it draws without light"},
     OptionUse{"shadows", "shadows", kSplat, kAll & ~kBricks, kNoShadows},
     OptionUse{"ambient-occlusion", "ambient_occlusion", kSplat, kAll & ~kBricks, kNoShadows},
     OptionUse{"color-field", "color_field", kKernels, kMeshes | kPoints, "it draws one field"},
@@ -99,12 +71,12 @@ constexpr std::array kUses{
     OptionUse{"clip", "clip", kEvery & ~bit(Method::Footprints), kAll, kNoCuts},
     OptionUse{"clip-box", "clip_box", kEvery & ~bit(Method::Footprints), kAll, kNoCuts},
     OptionUse{"slice", "slice", kEvery & ~bit(Method::Footprints), kAll, kNoCuts},
-    OptionUse{"around", "around", kEvery & ~bit(Method::Footprints), kAll, kNoCuts, {{.option = "slice"}}},
+    OptionUse{"around", "around", kEvery & ~bit(Method::Footprints), kAll, kNoCuts},
     OptionUse{"memory", "", kKernels | kTets, kBricks | kFile, "it holds everything in memory"},
 };
 
 std::string shown(const OptionUse& use, OptionNames names) {
-    return names == OptionNames::Flags ? "--" + std::string(use.name) : std::string(use.keyword);
+    return names == OptionNames::Flags ? option_name(use.name, names) : std::string(use.keyword);
 }
 
 std::string_view noun_of(BodyKind body) {
@@ -124,59 +96,30 @@ std::string_view noun_of(BodyKind body) {
     return "";
 }
 
-std::vector<std::string_view> words_of(std::string_view values) {
-    std::vector<std::string_view> words;
-    while (!values.empty()) {
-        const std::size_t end = std::min(values.find('|'), values.size());
-        words.push_back(values.substr(0, end));
-        values.remove_prefix(std::min(end + 1, values.size()));
-    }
-    return words;
-}
-
-bool is_met(const OptionCondition& need, const GivenOptions& given) {
-    const std::optional<std::string> value = given(need.option);
-    const auto words = words_of(need.values);
-    if (!need.instead.empty() && given(need.instead)) return true;
-    const bool matches = value ? words.empty() || std::ranges::find(words, *value) != words.end() : need.unset;
-    return matches != need.excluded;
-}
-
-/// "order havs": as users write it.
-std::string shown(const OptionCondition& need, std::string_view value, OptionNames names) {
-    const std::string option = option_name(need.option, names);
-    if (value.empty()) return option;
-    return names == OptionNames::Flags ? option + " " + std::string(value) : option + "='" + std::string(value) + "'";
-}
-
 std::string joined(const std::vector<std::string>& names) {
     std::string text;
     for (std::size_t i = 0; i < names.size(); ++i) text += (i == 0 ? "" : i + 1 == names.size() ? " or " : ", ") + names[i];
     return text;
 }
 
-[[noreturn]] void refuse(const OptionUse& use, const OptionCondition& need, const GivenOptions& given, OptionNames names) {
-    if (need.excluded) {
-        const std::string value = need.values.empty() ? "" : given(need.option).value_or("");
-        throw Error(ErrorCode::InvalidInput, "has no effect with " + shown(need, value, names), shown(use, names),
-                    "leave one of them out");
+/// What an option needs, and what it is not given together with.
+std::string needs_of(const Option& option) {
+    std::string all;
+    const auto add = [&](const std::string& words) { all += (all.empty() ? "" : ", ") + words; };
+    for (const OptionNeed& need : option.needs) {
+        std::string words = need_text(need, OptionNames::Flags);
+        words.insert(words.find("--"), "`");
+        add(words + "`");
     }
-    std::vector<std::string> choices;
-    if (need.values.empty()) choices.push_back(shown(need, "", names));
-    for (const std::string_view value : words_of(need.values)) choices.push_back(shown(need, value, names));
-    throw Error(ErrorCode::InvalidInput, "has no effect without " + joined(choices), shown(use, names));
+    for (const std::string& other : option.excludes)
+        add((&other == &option.excludes.front() ? "not with `--" : "`--") + other + "`");
+    return all;
 }
 
 }  // namespace
 
 std::span<const OptionUse> option_uses() {
     return kUses;
-}
-
-std::string option_name(std::string_view name, OptionNames names) {
-    const auto* use = std::ranges::find(kUses, name, &OptionUse::name);
-    if (use != kUses.end()) return shown(*use, names);
-    return (names == OptionNames::Flags ? "--" : "") + std::string(name);
 }
 
 bool reads(Method method, BodyKind body, std::string_view option) {
@@ -186,7 +129,7 @@ bool reads(Method method, BodyKind body, std::string_view option) {
     return (able & bit(method)) != 0 && (use->bodies & bit(body)) != 0;
 }
 
-std::string option_table() {
+std::string option_table(std::span<const Option> described) {
     constexpr std::pair<BodyKind, const char*> kBodies[]{{BodyKind::Mesh, "mesh"},
                                                          {BodyKind::Tets, "tetrahedra"},
                                                          {BodyKind::Kernels, "points"},
@@ -202,17 +145,12 @@ std::string option_table() {
         table += "| `" + shown(use, OptionNames::Flags) + "` | " +
                  (use.keyword.empty() ? "" : "`" + std::string(use.keyword) + "`") + " |";
         for (const auto& row : NameTable<Method>::rows) table += (use.methods & bit(row.value)) != 0 ? " x |" : " |";
-        std::string bodies, needs;
+        std::string bodies;
         for (const auto& [body, name] : kBodies) {
             if ((use.bodies & bit(body)) != 0) bodies += (bodies.empty() ? "" : ", ") + std::string(name);
         }
-        for (const OptionCondition& need : use.needs) {
-            if (need.option.empty()) continue;
-            std::string values;
-            for (const std::string_view value : words_of(need.values))
-                values += (values.empty() ? " " : ", ") + std::string(value);
-            needs += (need.excluded ? "not with `" : "with `") + option_name(need.option, OptionNames::Flags) + values + "`";
-        }
+        const auto option = std::ranges::find(described, use.name, &Option::name);
+        const std::string needs = option == described.end() ? std::string() : needs_of(*option);
         table += " " + bodies + " | " + needs + " |\n";
     }
     return table;
@@ -262,9 +200,6 @@ void check_options(Methods methods, BodyKind body, const GivenOptions& given, Op
         const bool in_bricks = body == BodyKind::Bricks;
         if ((use.bodies & bit(body)) == 0 || (in_bricks && (use.bricks & use.methods & methods) == 0))
             throw Error(ErrorCode::InvalidInput, "has no effect on " + std::string(noun_of(body)), shown(use, names));
-        for (const OptionCondition& need : use.needs) {
-            if (!need.option.empty() && !is_met(need, given)) refuse(use, need, given, names);
-        }
     }
 }
 

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <iterator>
 #include <string>
 
 #include "subvol/detail/number_text.h"
@@ -52,12 +54,18 @@ std::vector<Option> options_of(MethodOptions& options) {
                 .help("N", "n x n rays per pixel (default 1; 2 for --look solid)"),
             Option("tolerance-image", options.image_tolerance)
                 .positive()
-                .help("RMS", "dense, without --levels: draw level after level until the RMS of the picture's change is less"),
+                .called("image_tolerance")
+                .help("RMS", "dense, without --levels: draw level after level until the RMS of the picture's change is less")
+                .not_with("levels"),
             Option("order", options.order)
                 .help("NAME",
                       "pt: how the tetrahedra are sorted: topological (by shared faces), centroid, lists (one per pixel) or "
                       "havs (faces by centroid, then a k-buffer per pixel)"),
-            Option("kbuffer", options.kbuffer).between(1, 65536).help("K", "havs: entries of the k-buffer"),
+            Option("kbuffer", options.kbuffer)
+                .between(1, 65536)
+                .help("K", "havs: entries of the k-buffer")
+                .only_with("order", {"havs"})
+                .or_with("seconds"),
             Option("lod", options.lod)
                 .not_negative()
                 .help("PIXELS|F",
@@ -69,12 +77,48 @@ std::vector<Option> options_of(MethodOptions& options) {
                       "the best picture within this time; splat: first coarse, then with the mesh sampled for the view; pt: "
                       "first the faces of the boundary, then more and more of those inside; kernels follow from the time then, "
                       "not from --levels, --reduce, --threshold or --footprint")
-                .instead_of({"turntable"}),
+                .instead_of({"turntable", "order", "lod"}),
             Option("memory", options.memory_bytes)
                 .bytes()
                 .help("BYTES",
                       "of bricks: what kernels or cells take while a part of the picture is drawn; of .svk files with --lod: "
                       "what is kept for the next frame (default 1G)")};
+}
+
+std::vector<Option> options_of(PictureChoices& choices) {
+    return {
+        Option("shade", choices.shade)
+            .help("splat: light on surfaces of equal value, from the eye and from the upper left")
+            .not_with("look", {"solid", "isosurface"}),
+        Option("color-field", choices.color_field)
+            .help("NAME", "splat: take the colours from this field; opacities stay those of --field"),
+        Option("plain-sums", choices.plain_sums).help("splat: add kernels up without dividing by the sum of their weights")};
+}
+
+MethodOptions PictureSettings::chosen() const {
+    MethodOptions made = options;
+    made.kernels.sample.scheme = refinement.scheme;
+    made.kernels.levels = levels;
+    made.splat.normalized = !choices.plain_sums;
+    if (choices.shade) made.splat.shading = Shading{};
+    return made;
+}
+
+std::vector<Option> options_of(PictureSettings& settings) {
+    std::vector<Option> all = options_of(settings.refinement);
+    all.back().value = &settings.levels;
+    all.back().help("L", "draw the refined mesh of this level (default for tets and pt: 1; for the others: the limit)");
+    for (auto more : {options_of(settings.options.kernels.sample), options_of(settings.options.splat),
+                      options_of(settings.options), options_of(settings.choices), options_of(settings.options.style.clip)})
+        std::ranges::move(more, std::back_inserter(all));
+    std::erase_if(all, [](const Option& option) { return option.name == "boundary-levels"; });  // they follow from the samples
+    return all;
+}
+
+std::vector<Option> options_of(PictureSettings& settings, Method method) {
+    std::vector<Option> all = options_of(settings);
+    std::erase_if(all, [&](const Option& option) { return !reads(method, BodyKind::Mesh, option.name); });
+    return all;
 }
 
 void validate(const PictureStyle& style, OptionNames names) {

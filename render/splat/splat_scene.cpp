@@ -331,7 +331,8 @@ std::vector<Option> options_of(SplatOptions& options) {
     return {Option("backend", options.method).help("NAME", "where to splat: auto (default: a GPU, else the CPU), gl, cpu"),
             Option("device", options.device)
                 .between(0, 1000)
-                .help("N", "the OpenGL device's number in `info --gl` (default: the first GPU)"),
+                .help("N", "the OpenGL device's number in `info --gl` (default: the first GPU)")
+                .not_with("backend", {"cpu"}),
             Option("sheets", options.sheets)
                 .between(2, 65536)
                 .or_none()

@@ -25,7 +25,7 @@ GIVEN = {
 }
 OF_SOLIDS = {"correction"}  # by the light on kernels; all others are seen in a transparent volume, too
 NEED_ANOTHER = {"refine": "reduce", "around": "slice", "footprint-size": "footprint",
-                "value-kernel": "per-edge"}  # of which one is then refused first
+                "value-kernel": "per-edge", "kbuffer": "order"}  # of which one is then refused first
 SAME_OUTPUT = {"device", "memory"}  # they choose where the work is done
 
 

@@ -11,7 +11,9 @@ PLANE = (0, 0, 0, 1, 0, 0)
 
 # For each keyword a value that matters, and what else it needs.
 GIVEN = {
-    "per_edge": (2, {}), "scheme": ("cc", {}), "tension": (.02, {}), "crease_angle": (10.0, {}), "levels": (2, {}), "samples": (3, {}),
+    "per_edge": (2, {}), "centers": (True, {}), "spacing": (.3, {}), "tolerance": (1e-3, {}), "values": ("cubic", {"per_edge": 2}),
+    "value_kernel": ("compact", {"values": "paper", "per_edge": 2}), "kernel": ("gaussian", {}), "correction": ("none", {"look": "solid"}),
+    "kbuffer": (1, {"order": "havs"}), "scheme": ("cc", {}), "tension": (.02, {}), "crease_angle": (10.0, {}), "levels": (2, {}), "samples": (3, {}),
     "image_tolerance": (.1, {}), "order": ("lists", {}), "lod": (30.0, {}), "seconds": (2.0, {}), "backend": ("gl", {}), "device": (0, {}),
     "sheets": (40, {}), "shade": (True, {}), "shadows": (True, {}), "ambient_occlusion": (.3, {}), "color_field": ("z", {}),
     "clip": (PLANE, {}), "clip_box": (0, 0, 0, 1, 1, 1), "slice": (PLANE, {}), "around": (True, {"slice": PLANE}),

@@ -171,7 +171,7 @@ PictureDrawer& PictureDrawer::operator=(PictureDrawer&&) noexcept = default;
 
 DrawnPicture PictureDrawer::draw(const ViewState& state, const std::shared_ptr<const ViewBody>& body, int scale,
                                  Progress* progress) {
-    PictureStyle style{.method = named<Method>(state.method, "method"), .look = state.look, .clip = state.clip};
+    PictureStyle style{.method = state.method, .look = state.look, .clip = state.clip};
     style.samples = scale > 1 ? std::optional(1) : state_->samples;
     state_->take(body, style);
     const Optics optics = optics_of(state, *body);

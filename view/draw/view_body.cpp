@@ -38,13 +38,16 @@ BodyKind kind_of(const ViewBody& body) {
     return body.tets ? BodyKind::Tets : BodyKind::Mesh;
 }
 
-std::vector<std::string> methods_of(const ViewBody& body) {
-    const Methods able = methods_of(kind_of(body)) & ~bit(Method::Footprints);  // these cannot be cut
+std::vector<std::string> view_methods(Methods able) {
     std::vector<std::string> names;
     for (const auto& row : NameTable<Method>::rows) {
-        if ((able & bit(row.value)) != 0) names.emplace_back(row.name);
+        if ((able & kViewMethods & bit(row.value)) != 0) names.emplace_back(row.name);
     }
     return names;
+}
+
+std::vector<std::string> methods_of(const ViewBody& body) {
+    return view_methods(methods_of(kind_of(body)));
 }
 
 Optics optics_of(const ViewState& state, const ViewBody& body) {

@@ -13,6 +13,10 @@ using Session = ViewSession::State;
 
 constexpr int kLargestSide_px = 8192;
 
+Method method_of(const Json& name, const Session& session) {
+    return named<Method>(word_of(name, methods_of(*session.body)), "method");
+}
+
 }  // namespace
 
 void field(Session& session, const Json& name) {
@@ -42,7 +46,7 @@ void size(Session& session, const Json& value) {
 }
 
 void method(Session& session, const Json& name) {
-    edit_state(session, [&](ViewState& next) { next.method = word_of(name, methods_of(*session.body)); });
+    edit_state(session, [&](ViewState& next) { next.method = method_of(name, session); });
 }
 
 void look(Session& session, const Json& name) {
@@ -111,7 +115,7 @@ void legend(Session& session, const Json& value) {
 }
 
 void compare(Session& session, const Json& name) {
-    session.state.compare = name.is_null() ? "" : word_of(name, methods_of(*session.body));
+    session.state.compare = name.is_null() ? std::nullopt : std::optional(method_of(name, session));
     session.show();
 }
 

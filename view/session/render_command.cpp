@@ -68,7 +68,7 @@ std::string render_command(const ViewState& state, const ViewBody& body, const V
     if (look.opacity_unit_world) add("--opacity-unit", exact_text(*look.opacity_unit_world));
     if (look.clamp) words.emplace_back("--clamp");
     if (state.background) add("--background", comma_separated({state.background->x, state.background->y, state.background->z}));
-    if (state.method != "splat") add("--method", state.method);
+    if (state.method != Method::Splat) add("--method", std::string(name_of(state.method)));
     const bool computed =
         body.field() == "density" && std::ranges::find(source.more_words, "--density") != source.more_words.end();
     if (!computed) add("--field", body.field());  // --density says which field, and excludes --field
@@ -85,7 +85,7 @@ std::string render_command(const ViewState& state, const ViewBody& body, const V
     for (const CutPlane& plane : state.clip.slices) add("--slice", plane_text(plane));
     if (state.clip.around_slices && !state.clip.slices.empty()) words.emplace_back("--around");
     if (state.axes) words.emplace_back("--axes");
-    const auto method = named<Method>(state.method, "method");
+    const Method method = state.method;
     if (state.edges && reads(method, kind_of(body), "edges")) words.emplace_back("--edges");
     if (state.legend) words.emplace_back("--legend");
     const std::vector<std::string> more = words_of_method(source.more_words, method, kind_of(body));

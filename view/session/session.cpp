@@ -81,14 +81,8 @@ std::pair<std::string, Json> split_action(std::string_view action) {
     return {json.begin().key(), json.begin().value()};
 }
 
-/// Kernels have enough of one level; straight cells need the second.
-int tet_level(const std::string& method) {
-    return default_tet_level(named<Method>(method, "method"));
-}
-
-std::shared_ptr<const ViewBody> tet_body(const ViewSource& source, HexMesh mesh, const std::string& field,
-                                         const std::string& method) {
-    auto made = std::make_shared<ViewBody>(view_body(source.tets(std::move(mesh), tet_level(method)), field));
+std::shared_ptr<const ViewBody> tet_body(const ViewSource& source, HexMesh mesh, const std::string& field, Method method) {
+    auto made = std::make_shared<ViewBody>(view_body(source.tets(std::move(mesh), default_tet_level(method)), field));
     made->tets = true;
     return made;
 }
@@ -122,7 +116,7 @@ void ViewSession::State::choose_body() {
     decltype(tet_levels) levels;
     if (source.tets) {
         chosen = tet_body(source, chosen->mesh, chosen->field(), state.method);
-        levels[static_cast<std::size_t>(tet_level(state.method)) - 1] = chosen;
+        levels[static_cast<std::size_t>(default_tet_level(state.method)) - 1] = chosen;
     }
     state.field = chosen->field();
     body = std::move(chosen);
@@ -137,9 +131,9 @@ void ViewSession::State::choose_body() {
     grabbed = false;
 }
 
-std::shared_ptr<const ViewBody> ViewSession::State::body_for(const std::string& method) {
+std::shared_ptr<const ViewBody> ViewSession::State::body_for(Method method) {
     if (!source.tets) return body;
-    auto& level = tet_levels[static_cast<std::size_t>(tet_level(method)) - 1];
+    auto& level = tet_levels[static_cast<std::size_t>(default_tet_level(method)) - 1];
     if (!level) level = tet_body(source, view_body(mesh, state.field).mesh, state.field, method);
     return level;
 }
@@ -187,7 +181,7 @@ void ViewSession::State::read_later(std::size_t number) {
 }
 
 std::function<void()> ViewSession::State::writer(const std::string& path) const {
-    const DrawWorker* other = state.compare.empty() ? nullptr : reference.get();
+    const DrawWorker* other = state.compare ? reference.get() : nullptr;
     return [path, other, &drawn = worker, shown = state, &write = source.write_picture] {
         const auto picture = drawn.wait();
         const Image image = other != nullptr ? composed_of(*picture, *other->wait(), shown) : picture->image;
@@ -197,22 +191,22 @@ std::function<void()> ViewSession::State::writer(const std::string& path) const 
 
 void ViewSession::State::show() {
     worker.show(state, body);
-    if (state.compare.empty()) return;
+    if (!state.compare) return;
     if (!reference) reference = std::make_unique<DrawWorker>(settings, on_picture);
     ViewState other = state;
-    other.method = state.compare;
-    reference->show(other, body_for(state.compare));
+    other.method = *state.compare;
+    reference->show(other, body_for(*state.compare));
 }
 
 Image ViewSession::State::composed(const DrawnPicture& picture) const {
-    if (state.compare.empty() || !reference) return picture.image;
+    if (!state.compare || !reference) return picture.image;
     const auto other = reference->latest();
     return other ? composed_of(picture, *other, state) : picture.image;
 }
 
 std::shared_ptr<const DrawnPicture> ViewSession::State::wait() {
     auto picture = worker.wait();
-    if (!state.compare.empty()) (void)reference->wait();
+    if (state.compare) (void)reference->wait();
     note_wait();
     return picture;
 }
@@ -309,7 +303,7 @@ void ViewSession::run_script(std::string_view script, const std::string& file, P
 
 std::shared_ptr<const DrawnPicture> ViewSession::wait() {
     auto picture = state_->worker.wait();
-    if (state_->reference && !state_->state.compare.empty()) (void)state_->reference->wait();
+    if (state_->reference && state_->state.compare) (void)state_->reference->wait();
     return picture;
 }
 
@@ -331,7 +325,7 @@ int ViewSession::edit_level() const {
 
 bool ViewSession::busy() const {
     return !state_->later.empty() || state_->worker.busy() ||
-           (state_->reference && !state_->state.compare.empty() && state_->reference->busy());
+           (state_->reference && state_->state.compare && state_->reference->busy());
 }
 
 std::uint64_t ViewSession::pictures() const {

@@ -71,7 +71,7 @@ struct ViewSession::State {
     /// Takes the field of the state from the mesh.
     void choose_body();
     /// What a method draws: of a scheme of tetrahedra one of two levels, of all else the body.
-    [[nodiscard]] std::shared_ptr<const ViewBody> body_for(const std::string& method);
+    [[nodiscard]] std::shared_ptr<const ViewBody> body_for(Method method);
     /// Lets the worker draw the state.
     void show();
     [[nodiscard]] std::shared_ptr<const detail::PickedField> field();

@@ -30,7 +30,7 @@ Json json_of(const ViewState& state) {
                       {"up", numbers(camera.up)},
                       {"fovy_deg", camera.fovy_deg},
                       {"ortho_height", camera.ortho_height}};
-    json["method"] = state.method;
+    json["method"] = name_of(state.method);
     json["look"] = name_of(state.look.look);
     json["tf"] = state.look.colors;
     if (state.look.range) {
@@ -52,7 +52,7 @@ Json json_of(const ViewState& state) {
     json["slice"] = Json::array();
     for (const CutPlane& plane : state.clip.slices) json["slice"].push_back(numbers(plane));
     json["around"] = state.clip.around_slices;
-    json["compare"] = state.compare.empty() ? Json(nullptr) : Json(state.compare);
+    json["compare"] = state.compare ? Json(name_of(*state.compare)) : Json(nullptr);
     json["slider"] = state.slider;
     json["difference"] = state.difference;
     return json;

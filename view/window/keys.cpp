@@ -143,7 +143,7 @@ void take_letter(WindowHost& host, WindowMemory& memory, unsigned letter) {
             run(host, memory, "legend", toggled(state.legend));
             break;
         case 'r':
-            run(host, memory, "compare", state.compare.empty() ? json_text(host.methods()[2 % host.methods().size()]) : "null");
+            run(host, memory, "compare", !state.compare ? json_text(host.methods()[2 % host.methods().size()]) : "null");
             break;
         case '[':
             run(host, memory, "slider", json_text(std::max(0.0, state.slider - 0.05)));

@@ -52,7 +52,7 @@ void draw_what(WindowHost& host, WindowMemory& memory) {
         run(host, memory, "field", json_text(field));
     if (const auto look = choose("look", std::string(name_of(state.look.look)), names_of<Look>()); !look.empty())
         run(host, memory, "look", json_text(look));
-    if (const auto method = choose("method", state.method, host.methods()); !method.empty())
+    if (const auto method = choose("method", std::string(name_of(state.method)), host.methods()); !method.empty())
         run(host, memory, "method", json_text(method));
     const std::vector<double>& times = host.times();
     if (times.size() < 2) return;
@@ -122,7 +122,7 @@ void draw_camera(WindowHost& host, WindowMemory& memory) {
 
 void draw_compare(WindowHost& host, WindowMemory& memory) {
     const ViewState& state = host.state();
-    const std::string now = state.compare.empty() ? "nothing" : state.compare;
+    const std::string now(state.compare ? name_of(*state.compare) : "nothing");
     std::vector<std::string> others = host.methods();
     others.insert(others.begin(), "nothing");
     const auto with = choose("beside it", now, others);

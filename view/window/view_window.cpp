@@ -123,11 +123,11 @@ public:
     [[nodiscard]] std::string figures() const override {
         const auto latest = session_.worker().latest();
         if (!latest) return "drawing ...";
-        const auto method = named<Method>(latest->state.method, "method");
+        const Method method = latest->state.method;
         const bool cells = method == Method::Dense || method == Method::Grid;
         const std::string things = draws_kernels(method) ? " kernels" : cells ? " small cells" : " tetrahedra";
         std::string text = std::to_string(latest->points) + things + "   " + fixed_text(1e3 * latest->seconds_draw, 0) +
-                           " ms   " + latest->state.method + ", " + latest->backend + "   " +
+                           " ms   " + std::string(name_of(method)) + ", " + latest->backend + "   " +
                            std::to_string(latest->image.width) + " x " + std::to_string(latest->image.height);
         if (latest->scale > 1) text += "   coarse";
         return text;
@@ -233,7 +233,7 @@ private:
         std::uint64_t pictures = 0;
         double slider = 0;
         bool difference = false;
-        std::string compare{};
+        std::optional<Method> compare{};
         bool operator==(const Seen&) const = default;
     };
 

@@ -13,6 +13,7 @@
 #include "subvol/mesh_field.h"
 #include "subvol/oiio_compare.h"
 #include "subvol/page.h"
+#include "subvol/picture_metrics.h"
 #include "subvol/placed_image.h"
 #include "subvol/plot.h"
 #include "subvol/points_field.h"

@@ -6,6 +6,7 @@
 
 #include <cmath>
 
+#include "compare/study/picture_methods.h"
 #include "lib/temp_folder.h"
 
 namespace subvol {
@@ -17,7 +18,7 @@ Study demanding() {
         "tables": [{"rows": "input", "columns": "psnr", "headings": {"psnr": "PSNR <dB>"}}],
         "plots": [{"x": "kernels", "y": "psnr", "series": "input", "title": "P", "log_y": false}],
         "demands": [{"metric": "psnr", "least": 40}]})",
-                       "s.json");
+                       "s.json", picture_methods());
 }
 
 StudyResults results() {
@@ -72,7 +73,7 @@ StudyResults known_to_a_thousandth() {
         "methods": [{"method": "splat", "per_edge": [1, 2]}], "metrics": ["rmse", "psnr"],
         "tables": [{"rows": "per_edge", "columns": ["rmse", "psnr", "seconds"], "headings": {"rmse": "RMSE & more"}}],
         "plots": [{"x": "kernels", "y": "rmse", "series": "label"}]})",
-                                          "s.json"),
+                                          "s.json", picture_methods()),
                      .results = {}};
     for (const double rmse : {1e-2, 1e-4}) {
         all.results.push_back({.metrics = {{"rmse", rmse},
@@ -137,7 +138,7 @@ TEST(Report, LinesJoinWhatIsSwept) {
     StudyResults all{.study = parse_study(R"({"name": "s", "inputs": [{"model": "ball"}, {"model": "pawn"}],
         "methods": [{"method": "field", "per_edge": [1, 2, 4], "label": "l"}],
         "plots": [{"x": "seconds", "y": "rmse", "series": "label"}]})",
-                                          "s.json"),
+                                          "s.json", picture_methods()),
                      .results = {}};
     for (const StudyCase& of : all.study.cases) {
         all.results.push_back(

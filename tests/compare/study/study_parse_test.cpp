@@ -5,6 +5,7 @@
 #include <set>
 
 #include "lib/temp_folder.h"
+#include "picture_methods.h"
 #include "subvol/study.h"
 
 namespace subvol {
@@ -23,7 +24,7 @@ std::string study_with(const std::string& part, const std::string& instead) {
 }
 
 Study parse(const std::string& text) {
-    return parse_study(text, "s.json");
+    return parse_study(text, "s.json", picture_methods());
 }
 
 const std::string kTets = R"({"method": "tets"})";
@@ -141,6 +142,15 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{R"("method": "tets")", R"("method": "tets", "level": 1)", "methods[1].level: this key is unknown"},
         Mistake{"[50, 100]", "[]", "methods[0].sheets: the list is empty"},
         Mistake{"[50, 100]", "[50, [100]]", "methods[0].sheets[1]: must be a number, not a list"},
+        Mistake{"[50, 100]", "[50, 1]", "methods[0].sheets[1]: 1 is out of range (2 to 65536)"},
+        Mistake{"[50, 100]", "50, \"levels\": 11", "methods[0].levels: 11 is out of range (0 to 10)"},
+        Mistake{"[50, 100]", "50, \"device\": 0", "methods[0].device: has no effect with backend='cpu'"},
+        Mistake{"[50, 100]", "50, \"scheme\": [\"mcq\", \"cc\"], \"tension\": 0.1",
+                "methods[0].tension: has no effect without scheme='mcq'"},
+        Mistake{"[50, 100]", "50, \"spacing\": 0.1", "methods[0].per_edge: cannot be given together with spacing"},
+        Mistake{R"("method": "tets")", R"("method": "tets", "sheets": 50)", "methods[1].sheets: this key is unknown"},
+        Mistake{R"("method": "tets")", R"("method": "pt", "kbuffer": 4)",
+                "methods[1].kbuffer: has no effect without order='havs'"},
         Mistake{"[50, 100]", "[50, 50]", "are the same"},
         Mistake{"[50, 100]", "50, \"correction\": \"third\"",
                 "methods[0].correction: 'third' is unknown (none, gradient, second, full"},
@@ -190,7 +200,7 @@ TEST_F(StudyFolder, AChangedMeshIsAnotherCase) {
     const auto id = [&] {
         const auto file =
             write("s.json", R"({"name": "s", "inputs": [{"file": "a.mesh"}], "methods": [{"method": "values"}]})");
-        return read_study(file).cases.front().id;
+        return read_study(file, picture_methods()).cases.front().id;
     };
     write("a.mesh", "one");
     const std::string one = id();
@@ -200,8 +210,8 @@ TEST_F(StudyFolder, AChangedMeshIsAnotherCase) {
 }
 
 TEST_F(StudyFolder, FilesThatAreNoneAreRefused) {
-    EXPECT_NE(error_of([&] { (void)read_study(path("no.json")); }, ErrorCode::Io).find("no.json"), std::string::npos);
-    EXPECT_NE(error_of([&] { (void)read_study(write("big.json", std::string(2 << 20, ' '))); }).find("larger"),
+    EXPECT_NE(error_of([&] { (void)read_study(path("no.json"), {}); }, ErrorCode::Io).find("no.json"), std::string::npos);
+    EXPECT_NE(error_of([&] { (void)read_study(write("big.json", std::string(2 << 20, ' ')), {}); }).find("larger"),
               std::string::npos);
 }
 

@@ -23,7 +23,7 @@ Study seeds() {
     return parse_study(R"({"name": "seeds", "inputs": [{"model": "ball"}],
         "methods": [{"method": "field", "seed": [0, 1, 2, 3, 4, 5, 6, 7]}],
         "tables": [{"rows": "seed", "columns": ["root", "done"]}]})",
-                       "seeds.json");
+                       "seeds.json", {});
 }
 
 CaseResult root_of(const StudyCase& of) {
@@ -169,7 +169,7 @@ TEST(StudyTable, GoesAcross) {
         "methods": [{"method": "field", "seed": [0, 1]}],
         "tables": [{"rows": "input", "columns": "given.known", "across": "seed", "values": "rmse", "headings": {"1": "one"}},
                    {"rows": "seed", "where": {"input": "pawn"}}]})",
-                                    "s.json");
+                                    "s.json", {});
     StudyResults results{.study = study, .results = {}};
     for (int i = 0; i < 4; ++i) results.results.push_back({.metrics = {{"rmse", i}}});
     const auto tables = make_tables(results);

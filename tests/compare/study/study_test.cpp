@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include "picture_methods.h"
 #include "subvol/error.h"
 #include "subvol/field_places.h"
 #include "subvol/model.h"
@@ -26,12 +27,12 @@ TEST(FieldPlaces, LieWhereTheyWereAskedFor) {
 TEST(BuiltInStudies, AreFilesThatParse) {
     ASSERT_GE(list_studies().size(), 8U);
     for (const StudyInfo& info : list_studies()) {
-        const Study study = built_in_study(info.name);
+        const Study study = built_in_study(info.name, picture_methods());
         EXPECT_EQ(study.name, info.name);
         EXPECT_FALSE(study.cases.empty()) << info.name;
         EXPECT_FALSE(study.tables.empty()) << info.name;
     }
-    EXPECT_THROW((void)built_in_study("table3"), Error);
+    EXPECT_THROW((void)built_in_study("table3", picture_methods()), Error);
 }
 
 }  // namespace study_test

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <set>
 
 #include "subvol/error.h"
 #include "subvol/fit_kernel.h"
@@ -44,12 +45,14 @@ struct Basket {
 std::vector<Option> options_of(Basket& basket) {
     return {Option("count", basket.count).between(1, 64).help("N", "how many"),
             Option("net-weight", basket.weight).positive().or_none().help("KG", "how heavy"),
-            Option("share", basket.share).between(0, 1).help("S", "for you"),
+            Option("share", basket.share).between(0, 1).help("S", "for you").not_with("net-weight"),
             Option("ripe", basket.ripe).help("to be eaten"),
             Option("fruit", basket.fruit).help("NAME", "which"),
-            Option("price", basket.price).not_negative().help("P", "of one").only_with("fruit", {"pear"}),
+            Option("price", basket.price).not_negative().help("P", "of one").only_with("fruit", {"pear"}).or_with("ripe"),
             Option("room", basket.room).bytes().help("BYTES", "needed"),
-            Option("seed", basket.seed).help("N", "of chance")};
+            Option("seed", basket.seed)
+                .help("N", "of chance, instead of --net-weight; see `shop --seeds`")
+                .instead_of({"net-weight"})};
 }
 
 std::string refusal(const char* name, const std::string& text) {
@@ -111,6 +114,44 @@ TEST(Option, ValuesThatCodeHasSetAreCheckedByTheSameRule) {
     EXPECT_THROW(check_options(Basket{.weight = NAN}), Error);
     EXPECT_THROW(check_options(Basket{.weight = -1}), Error);
     EXPECT_THROW(check_options(Basket{.price = INFINITY}), Error);
+}
+
+std::string need_refusal(const std::set<std::pair<std::string, std::string>>& words, OptionNames names) {
+    Basket basket;
+    const GivenOptions given = [&](std::string_view name) -> std::optional<std::string> {
+        for (const auto& [option, value] : words) {
+            if (option == name) return value;
+        }
+        return std::nullopt;
+    };
+    try {
+        check_needs(options_of(basket), given, names);
+    } catch (const Error& error) {
+        return error.what();
+    }
+    return {};
+}
+
+TEST(Option, AnOptionWithoutEffectIsRefusedBySentencesThatDifferInTheNamesAlone) {
+    using enum OptionNames;
+    EXPECT_EQ(need_refusal({{"price", "1"}, {"fruit", "pear"}}, Flags), "");
+    EXPECT_EQ(need_refusal({{"price", "1"}}, Flags), "--price: has no effect without --fruit pear");  // the default is apple
+    EXPECT_EQ(need_refusal({{"price", "1"}}, Keywords), "price: has no effect without fruit='pear'");
+    EXPECT_EQ(need_refusal({{"price", "1"}, {"ripe", "true"}}, Keywords), "");  // which makes up for it
+    EXPECT_EQ(need_refusal({{"share", ".1"}, {"net-weight", "2"}}, Keywords),
+              "share: has no effect with net_weight (leave one of them out)");
+    EXPECT_EQ(need_refusal({{"seed", "1"}, {"net-weight", "2"}}, Flags), "--net-weight: cannot be given together with --seed");
+}
+
+TEST(Option, HelpNamesOtherOptionsAsItsReadersWriteThem) {
+    Basket basket;
+    const Option seed = options_of(basket).back();
+    EXPECT_EQ(seed.meaning(OptionNames::Flags), "of chance, instead of --net-weight; see `shop --seeds`");
+    EXPECT_EQ(seed.meaning(OptionNames::Keywords), "of chance, instead of net_weight; see `shop --seeds`");
+    EXPECT_EQ(options_of(basket)[0].range_text(), "1 to 64");
+    EXPECT_EQ(options_of(basket)[1].range_text(), "more than 0");
+    EXPECT_EQ(options_of(basket)[5].range_text(), "0 or more");
+    EXPECT_EQ(seed.range_text(), "");
 }
 
 TEST(Option, ANumberIsSetByItsKey) {

@@ -69,11 +69,35 @@ TEST(OptionUses, AnOptionWithoutEffectIsRefusedByItsName) {
               "--order: has no effect with method 'tets': it does not sort tetrahedra (methods that use it: pt)");
     EXPECT_EQ(refusal(Method::Splat, BodyKind::Kernels, given({{"per-edge", "2"}}), OptionNames::Keywords),
               "per_edge: has no effect on points");
-    EXPECT_EQ(refusal(Method::Dense, BodyKind::Mesh, given({{"tolerance-image", ".1"}, {"levels", "1"}}), OptionNames::Flags),
+}
+
+TEST(PictureSettings, EachOptionIsDescribedAndSaysWithWhichOthersItHasAnEffect) {
+    PictureSettings settings;
+    const auto refusal = [&](const GivenOptions& options) -> std::string {
+        try {
+            check_needs(options_of(settings), options, OptionNames::Flags);
+        } catch (const Error& error) {
+            return error.what();
+        }
+        return "";
+    };
+    EXPECT_EQ(refusal(given({{"tolerance-image", ".1"}, {"levels", "1"}})),
               "--tolerance-image: has no effect with --levels (leave one of them out)");
-    EXPECT_EQ(refusal(Method::Projected, BodyKind::Mesh, given({{"kbuffer", "3"}}), OptionNames::Flags),
-              "--kbuffer: has no effect without --order havs");
-    EXPECT_EQ(refusal(Method::Projected, BodyKind::Mesh, given({{"kbuffer", "3"}, {"seconds", "1"}}), OptionNames::Flags), "");
+    EXPECT_EQ(refusal(given({{"kbuffer", "3"}})), "--kbuffer: has no effect without --order havs");
+    EXPECT_EQ(refusal(given({{"kbuffer", "3"}, {"seconds", "1"}})), "");
+    EXPECT_EQ(refusal(given({{"device", "0"}, {"backend", "cpu"}})),
+              "--device: has no effect with --backend cpu (leave one of them out)");
+}
+
+TEST(PictureSettings, AMethodHasTheOptionsThatItReadsFromAMesh) {
+    PictureSettings settings;
+    const auto has = [&](Method method, const char* name) {
+        return std::ranges::any_of(options_of(settings, method), [&](const Option& option) { return option.name == name; });
+    };
+    EXPECT_TRUE(has(Method::Splat, "per-edge"));
+    EXPECT_FALSE(has(Method::Tets, "per-edge"));
+    EXPECT_TRUE(has(Method::Tets, "levels"));
+    EXPECT_FALSE(has(Method::Splat, "memory"));  // of bricks
 }
 
 TEST(OptionUses, WithSeveralMethodsOneThatReadsAnOptionIsEnough) {

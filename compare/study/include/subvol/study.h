@@ -4,10 +4,13 @@
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <variant>
 #include <vector>
+
+#include "subvol/option.h"
 
 namespace subvol {
 
@@ -99,19 +102,28 @@ struct Study {
 /// without a mesh.
 enum class StudyKind { Pictures, Fields, Kernels };
 
-/// throws: Error(InvalidInput) if there is no such method; lists the known ones
+/// The kind of a method of a case that was read.
 [[nodiscard]] StudyKind method_kind(const std::string& method);
+
+/// A method of pictures, and the options that it reads from a mesh: those are its keys in a study. Whoever draws passes them
+/// in, as this component does not see the renderers. The descriptions refer to values, which must live as long and are changed.
+struct PictureMethod {
+    std::string name;
+    std::vector<Option> options;
+};
 
 inline constexpr std::size_t kMaxStudyCases = 10'000;
 
 /// Reads a study from JSON and expands it: inputs × cameras × transfer functions × methods × the product of all lists among
 /// their options; methods that make no picture need no camera. docs/studies.md has the keys.
 ///
-/// file:   for error messages, and as the folder that relative paths start from
+/// file:    for error messages, and as the folder that relative paths start from
+/// methods: of pictures, besides those of this component
 /// throws: Error(InvalidInput), with the path of the place in the JSON, for an unknown key, a wrong type, an empty list, a
 ///         value out of range, more than kMaxStudyCases cases, or two equal cases; Error(Io)
-[[nodiscard]] Study parse_study(std::string_view json, const std::filesystem::path& file);
-[[nodiscard]] Study read_study(const std::filesystem::path& file);
+[[nodiscard]] Study parse_study(std::string_view json, const std::filesystem::path& file,
+                                std::span<const PictureMethod> methods);
+[[nodiscard]] Study read_study(const std::filesystem::path& file, std::span<const PictureMethod> methods);
 
 /// seconds: as of Study
 struct StudyInfo {
@@ -124,7 +136,7 @@ struct StudyInfo {
 ///
 /// throws: Error(InvalidInput) for an unknown name; lists the known ones
 [[nodiscard]] std::vector<StudyInfo> list_studies();
-[[nodiscard]] Study built_in_study(const std::string& name);
+[[nodiscard]] Study built_in_study(const std::string& name, std::span<const PictureMethod> methods);
 [[nodiscard]] std::string_view built_in_study_json(const std::string& name);
 
 /// The case that makes the reference of a case's picture; nothing if the case has no reference.

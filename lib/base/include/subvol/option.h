@@ -5,7 +5,9 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 #include <type_traits>
 #include <variant>
 #include <vector>
@@ -32,11 +34,38 @@ struct WordValue {
     std::function<void(const std::string& word, const std::string& where)> set;
 };
 
+/// Rows of numbers, as of planes and boxes.
+///
+/// count:      in a row
+/// example:    of a row, for errors: "0,0,0,0,0,1: a point of the plane and its normal"
+/// repeatable: there may be several rows
+/// add:        takes a row; `where` is named in its error
+struct NumbersValue {
+    std::size_t count = 0;
+    std::string example{};
+    bool repeatable = false;
+    std::function<void(std::span<const double> row, const std::string& where)> add{};
+};
+
 /// A condition of an option: another one is given, or its value (the default, if it is not given) is one of these words.
+///
+/// excluded: the other way round: the option has no effect if that is so
+/// instead:  or this option is given
 struct OptionNeed {
     std::string option;
     std::vector<std::string> words{};
+    bool excluded = false;
+    std::string instead{};
 };
+
+/// How errors and help call options: as of the command, --per-edge, or as Python and studies, per_edge.
+enum class OptionNames { Flags, Keywords };
+
+/// option: without dashes before it
+[[nodiscard]] std::string option_name(std::string_view option, OptionNames names);
+
+/// What was given for an option, as text; nothing if it was not given.
+using GivenOptions = std::function<std::optional<std::string>(std::string_view option)>;
 
 /// One member of an options struct, as users know it: its name, what it may be, and a sentence about it. Each options struct
 /// has a function beside it that describes all its members that users set:
@@ -53,7 +82,7 @@ class Option {
 public:
     using Value =
         std::variant<bool*, int*, std::uint64_t*, double*, std::string*, std::optional<int>*, std::optional<std::uint64_t>*,
-                     std::optional<double>*, std::optional<std::string>*, std::vector<std::string>*, WordValue>;
+                     std::optional<double>*, std::optional<std::string>*, std::vector<std::string>*, WordValue, NumbersValue>;
 
     /// name: as the command has it, without dashes before it: "per-edge"
     Option(std::string option, Value member);
@@ -85,11 +114,21 @@ public:
     Option& offer(std::vector<std::string> proposed);
     /// The option has an effect only with another one, or only if that one has one of these values.
     Option& only_with(std::string option, std::vector<std::string> values = {});
+    /// The name in Python and studies, if it is another word.
+    Option& called(std::string keyword);
+    /// The last condition is also met if this option is given.
+    Option& or_with(std::string option);
+    /// The option has no effect with another one, or with one of these values of it.
+    Option& not_with(std::string option, std::vector<std::string> values = {});
     /// The option replaces others, so both cannot be given.
     Option& instead_of(std::vector<std::string> others);
 
     /// The name where dashes are not possible: in Python and in studies.
     [[nodiscard]] std::string key() const;
+    /// The sentence, for users who have these names.
+    [[nodiscard]] std::string meaning(OptionNames names) const;
+    /// The numbers that are allowed, in words; empty: all, or the value is no number.
+    [[nodiscard]] std::string range_text() const;
     [[nodiscard]] bool is_whole() const;
     [[nodiscard]] bool is_number() const;
     [[nodiscard]] bool is_optional() const;
@@ -108,7 +147,7 @@ public:
     /// throws: Error(InvalidInput) if the value, which code has set, is not allowed
     void check() const;
 
-    std::string name;
+    std::string name, keyword{};
     Value value;
     NumberRange range{};
     bool in_bytes = false;
@@ -132,6 +171,17 @@ template <class Options>
 void check_options(Options options) {
     for (const Option& option : options_of(options)) option.check();
 }
+
+/// Refuses an option that was given and has no effect, or cannot be given together with another one.
+///
+/// given:  what was given
+/// usual:  the defaults of options that were not given
+/// throws: Error(InvalidInput): "--kbuffer: has no effect without --order havs"
+void check_needs(const Option& option, const GivenOptions& given, const GivenOptions& usual, OptionNames names);
+/// The same for all options of a call; the defaults are their values.
+void check_needs(const std::vector<Option>& options, const GivenOptions& given, OptionNames names);
+/// The condition as users read it: "with --order havs", "not with --levels".
+[[nodiscard]] std::string need_text(const OptionNeed& need, OptionNames names);
 
 namespace detail {
 

@@ -11,6 +11,7 @@
 #include "subvol/bricks.h"
 #include "subvol/mesh_io.h"
 #include "subvol/names.h"
+#include "subvol/option.h"
 #include "subvol/progress.h"
 
 namespace subvol {
@@ -42,6 +43,9 @@ struct SplitOptions {
     std::uint64_t seed = 0;
     Progress* progress = nullptr;
 };
+
+/// bricks, memory, halo, by
+[[nodiscard]] std::vector<Option> options_of(SplitOptions& options);
 
 /// bricks:  the folder as `open_bricks` returns it; written, kept: how many were written, and kept of an interrupted run
 /// bytes:   written

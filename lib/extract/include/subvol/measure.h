@@ -8,6 +8,7 @@
 
 #include "subvol/limit.h"
 #include "subvol/mesh_source.h"
+#include "subvol/option.h"
 
 namespace subvol {
 
@@ -23,6 +24,8 @@ struct MeasureOptions {
     std::vector<std::string> names{};
     Progress* progress = nullptr;
 };
+
+[[nodiscard]] std::vector<Option> options_of(MeasureOptions& options);
 
 /// An extreme value of the limit. uvw: in the cell
 struct LimitExtreme {

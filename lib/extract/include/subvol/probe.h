@@ -8,6 +8,7 @@
 
 #include "subvol/limit.h"
 #include "subvol/mesh_source.h"
+#include "subvol/option.h"
 
 namespace subvol {
 
@@ -17,6 +18,8 @@ struct ProbeOptions {
     LimitOptions limit{};
     double reach_world = 0;
 };
+
+[[nodiscard]] std::vector<Option> options_of(ProbeOptions& options);
 
 /// Values of one attribute: channel c of place p at p × channels + c; its gradients by world position (per world unit). 0 where
 /// the place is outside.

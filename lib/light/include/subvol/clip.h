@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "subvol/option.h"
 #include "subvol/vec.h"
 
 namespace subvol {
@@ -34,6 +35,8 @@ struct Clip {
     /// Whether the planes and the box remove a place.
     [[nodiscard]] bool removes(const Vec3& place) const;
 };
+
+[[nodiscard]] std::vector<Option> options_of(Clip& clip);
 
 /// throws: Error(InvalidInput) if a number is not finite, a normal has no length or the box is empty
 void validate(const Clip& clip);

@@ -8,6 +8,7 @@
 #include "subvol/hex_mesh.h"
 #include "subvol/names.h"
 #include "subvol/optics.h"
+#include "subvol/option.h"
 #include "subvol/transfer_function.h"
 
 namespace subvol {
@@ -30,11 +31,12 @@ struct NameTable<Look> {
 
 /// Colours and opacities of a picture.
 ///
-/// colors:             a preset, or a ParaView colour-map file (FILE.json:NAME for one of several in it); empty: that of the
-/// look range:              what the colour map covers; none: the field's range stretch:            spreads the map of a file
-/// over the range; otherwise it keeps its own values opacity:            knots instead of those of the map; empty: those of the
-/// map opacity_unit_world: the distance that opacities are for; none: 1/100 of the box's diagonal, of a solid 1/1,000,000
-/// clamp:              values beyond the field's range look like its ends
+/// colors:  a preset, or a ParaView colour-map file (FILE.json:NAME for one of several in it); empty: that of the look
+/// range:   what the colour map covers; none: the field's range
+/// stretch: spreads the map of a file over the range; otherwise it keeps its own values
+/// opacity: knots instead of those of the map; empty: those of the map
+/// opacity_unit_world: the distance that opacities are for; none: 1/100 of the box's diagonal, of a solid 1/1,000,000
+/// clamp:   values beyond the field's range look like its ends
 struct LookOptions {
     Look look = Look::Volume;
     std::string colors{};
@@ -44,6 +46,9 @@ struct LookOptions {
     std::optional<double> opacity_unit_world{};
     bool clamp = false;
 };
+
+/// look, tf, opacity-unit, clamp
+[[nodiscard]] std::vector<Option> options_of(LookOptions& options);
 
 /// Whether pictures of this look are lit.
 [[nodiscard]] inline bool is_lit(Look look) {

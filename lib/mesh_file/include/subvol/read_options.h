@@ -7,6 +7,7 @@
 
 #include "subvol/hex_mesh.h"
 #include "subvol/names.h"
+#include "subvol/option.h"
 #include "subvol/shells.h"
 
 namespace subvol {
@@ -75,6 +76,9 @@ struct ReadOptions {
     CellValues cell_values = CellValues::Auto;
     bool shells_alone = false;
 };
+
+/// other-cells, weld-distance, cell-values, step, blocks, sharp
+[[nodiscard]] std::vector<Option> options_of(ReadOptions& options);
 
 /// A named part of a mesh. cells: of all kinds, as the file has them
 struct MeshBlock {

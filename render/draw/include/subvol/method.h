@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <functional>
-#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 
 #include "subvol/names.h"
+#include "subvol/option.h"
 
 namespace subvol {
 
@@ -58,26 +57,11 @@ using Bodies = unsigned;
     return 1U << static_cast<unsigned>(body);
 }
 
-/// What another option must be for an option to have an effect.
-///
-/// values:   one of these, separated by |; empty: any value that is given
-/// unset:    whether it is enough that the other option is not given
-/// excluded: the other way round: the option has no effect if the other one has such a value
-/// instead:  or this option is given
-struct OptionCondition {
-    std::string_view option{};
-    std::string_view values{};
-    bool unset = false;
-    bool excluded = false;
-    std::string_view instead{};
-};
-
 /// Which methods and bodies read an option, and why the others do not.
 ///
 /// name:    of the command, without dashes
 /// keyword: of Python; empty: Python does not have it
 /// reason:  why other methods do not read it
-/// needs:   all that have an option must be met
 /// bricks:  the methods that read it from a folder of bricks, if `bodies` contains these
 struct OptionUse {
     std::string_view name;
@@ -85,7 +69,6 @@ struct OptionUse {
     Methods methods;
     Bodies bodies;
     std::string_view reason;
-    OptionCondition needs[2]{};
     Methods bricks = ~0U;
 };
 
@@ -98,24 +81,17 @@ struct OptionUse {
 /// option: without dashes
 [[nodiscard]] bool reads(Method method, BodyKind body, std::string_view option);
 
-/// How errors call options: as of the command, --per-edge, or as Python, per_edge.
-enum class OptionNames { Flags, Keywords };
-
-/// An option as errors call it; name: without dashes
-[[nodiscard]] std::string option_name(std::string_view name, OptionNames names);
-
-/// What was given for an option, as text; nothing if it was not given.
-using GivenOptions = std::function<std::optional<std::string>(std::string_view name)>;
-
-/// Refuses every option that was given and that has no effect.
+/// Refuses every option that was given and that the method or the body does not read.
 ///
 /// methods: the one that is used, or all that may be used: then an option has an effect if one of them reads it
 /// given:   called with the `name` of each option
-/// throws:  Error(InvalidInput) that names the option and the method, the body or the other option
+/// throws:  Error(InvalidInput) that names the option and the method or the body
 void check_options(Methods methods, BodyKind body, const GivenOptions& given, OptionNames names = OptionNames::Flags);
 
 /// The table as Markdown: for each option the methods and the bodies that read it, and what else it needs.
-[[nodiscard]] std::string option_table();
+///
+/// described: all options of pictures
+[[nodiscard]] std::string option_table(std::span<const Option> described);
 
 /// The methods that can draw a body.
 [[nodiscard]] Methods methods_of(BodyKind body);

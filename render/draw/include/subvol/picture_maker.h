@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "subvol/boundary_values.h"
@@ -16,6 +17,7 @@
 #include "subvol/mesh_kernels.h"
 #include "subvol/method.h"
 #include "subvol/picture_look.h"
+#include "subvol/refine.h"
 #include "subvol/render_brick_tets.h"
 #include "subvol/render_bricks.h"
 #include "subvol/render_projected.h"
@@ -68,6 +70,32 @@ struct MethodOptions {
 
 /// What users choose beside the method, the kernels (`KernelOptions`) and how these are drawn (`SplatOptions`).
 [[nodiscard]] std::vector<Option> options_of(MethodOptions& options);
+
+/// What users choose of kernels and what is no member of an options struct: light on surfaces (`SplatOptions::shading`), the
+/// field of the colours (`PictureBody`), and sums that are not divided (`SplatOptions::normalized`).
+struct PictureChoices {
+    bool shade = false;
+    bool plain_sums = false;
+    std::optional<std::string> color_field{};
+};
+
+[[nodiscard]] std::vector<Option> options_of(PictureChoices& choices);
+
+/// All that users choose of a picture of a mesh, but its view and its colours.
+///
+/// refinement: its scheme and its level (`levels`, none: as `KernelOptions::levels`) are those of all methods
+struct PictureSettings {
+    MethodOptions options{.names = OptionNames::Keywords};
+    PictureChoices choices{};
+    RefineOptions refinement{};
+    std::optional<int> levels{};
+
+    [[nodiscard]] MethodOptions chosen() const;
+};
+
+[[nodiscard]] std::vector<Option> options_of(PictureSettings& settings);
+/// Those that a method reads from a mesh.
+[[nodiscard]] std::vector<Option> options_of(PictureSettings& settings, Method method);
 
 /// throws: Error(InvalidInput) if the method cannot draw the light of the look
 void validate(const PictureStyle& style, OptionNames names = OptionNames::Flags);

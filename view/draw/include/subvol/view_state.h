@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <iterator>
 #include <memory>
 #include <optional>
 #include <string>
@@ -23,23 +24,23 @@ namespace subvol {
 /// width, height: of the picture in pixels, with its legend
 /// field:         the field that is shown, as for `select_field`; empty: the most sensible one
 /// step:          of a series, from 0
-/// method:        splat, sheets, tets, pt, dense or grid, as of `subvol render --method`
+/// method:        one of `kViewMethods`
 /// background:    in linear light; none: that of the look
 /// axes, edges, legend: what is drawn over the picture
 /// clip:          how the volume is cut open
-/// compare:       the method of a second picture, which is shown right of `slider` (0 to 1 of the width); empty: none
+/// compare:       the method of a second picture, which is shown right of `slider` (0 to 1 of the width); none: no other
 /// difference:    shows the difference of the two instead
 struct ViewState {
     Camera camera{};
     int width = 512, height = 512;
     std::string field{};
     std::size_t step = 0;
-    std::string method = "splat";
+    Method method = Method::Splat;
     LookOptions look{};
     std::optional<Vec3> background{};
     bool axes = false, edges = false, legend = false;
     Clip clip{};
-    std::string compare{};
+    std::optional<Method> compare{};
     double slider = 0.5;
     bool difference = false;
 };
@@ -92,7 +93,12 @@ struct ViewBody {
 
 [[nodiscard]] BodyKind kind_of(const ViewBody& body);
 
-/// The methods that can draw a body.
+/// All methods but footprints, which cannot be cut.
+inline constexpr Methods kViewMethods = ((1U << std::size(NameTable<Method>::rows)) - 1) & ~bit(Method::Footprints);
+
+/// The names of those of them that are in a set.
+[[nodiscard]] std::vector<std::string> view_methods(Methods able = kViewMethods);
+/// Those that can draw a body.
 [[nodiscard]] std::vector<std::string> methods_of(const ViewBody& body);
 
 /// The optics of a state.

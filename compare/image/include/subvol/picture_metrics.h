@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <map>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "subvol/flip.h"
+#include "subvol/image_metrics.h"
+#include "subvol/ssim.h"
+
+namespace subvol {
+
+/// Two pictures of the same size, which must live as long, and what metrics of them share: each is made by the first metric
+/// that needs it. Not for several threads at once.
+class PicturePair {
+public:
+    PicturePair(const Image& test, const Image& reference, double pixels_per_degree = kFlipPixelsPerDegree);
+    ~PicturePair();
+    PicturePair(PicturePair&&) noexcept;
+    PicturePair& operator=(PicturePair&&) noexcept;
+
+    [[nodiscard]] const Image& test() const;
+    [[nodiscard]] const Image& reference() const;
+    [[nodiscard]] const ImageMetrics& differences() const;
+    [[nodiscard]] const SsimResult& ssim() const;
+    [[nodiscard]] const FlipResult& flip() const;
+    [[nodiscard]] const HdrFlipResult& hdr_flip() const;
+    /// The same pictures as `srgb8_image`s.
+    [[nodiscard]] const PicturePair& on_screen() const;
+
+private:
+    struct State;
+    std::unique_ptr<State> state_;
+};
+
+/// A number that says how far two pictures are apart.
+///
+/// name:           under which `subvol compare` has it; study: under which studies have it
+/// stage:          whose seconds it takes
+/// of:             the number. mask: the pixels that count, only if `masked`; empty: all
+/// masked:         whether it can be of a part of the pixels
+/// encoded:        whether `compare` also takes it of 8-bit sRGB
+/// seen:           whether studies take it of 8-bit sRGB instead
+/// flag, help:     the option of `compare` that asks for it; empty: it is always taken
+struct PictureMetric {
+    std::string_view name;
+    std::string_view study;
+    std::string_view stage;
+    double (*of)(const PicturePair& pair, std::span<const std::uint8_t> mask);
+    std::string_view unit{};
+    bool more_is_better = false;
+    bool masked = false;
+    bool encoded = false;
+    bool seen = false;
+    std::string_view flag{};
+    std::string_view help{};
+};
+
+/// All metrics of pictures. The figures of `compare` and what --fail-under takes for better, the metrics of studies and the
+/// units in reports are made from this table.
+[[nodiscard]] std::span<const PictureMetric> picture_metrics();
+
+/// The names of studies; those of masked metrics also with _interior and _edge.
+[[nodiscard]] std::vector<std::string> study_metrics();
+
+/// The metrics of a study by name; without those of a region that the reference does not have.
+///
+/// names: separated by commas
+[[nodiscard]] std::map<std::string, double> measure_pictures(const Image& test, const Image& reference,
+                                                             const std::string& names);
+
+/// The metric of a figure: of "psnr", "srgb8.psnr" and "psnr_edge" that of psnr. Null: the figure is another one.
+[[nodiscard]] const PictureMetric* find_metric(std::string_view figure);
+
+}  // namespace subvol

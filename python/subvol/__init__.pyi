@@ -1,0 +1,308 @@
+# SPDX-License-Identifier: Apache-2.0
+# Made by: python3 -c 'from subvol import _options; _options.print_stubs()'
+from collections.abc import Sequence
+from typing import Any, Optional, Union
+
+import numpy.typing as npt
+
+from ._colors import TransferFunction
+from ._core import Camera, Field, HexMesh, Image, RbfVolume, Refinement, Study, StudyCase, StudyResults, gl_devices, set_threads
+from ._errors import Cancelled, Error, FileError, InvalidInput, MissingCapability, SubvolWarning
+from ._exchange import from_meshio, from_pyvista, to_meshio, to_pyvista
+from ._fields import LimitSamples, as_field, evaluate, evaluate_limit
+from ._measure import PointsError, ProbeSamples, Slice, SurfaceMesh
+from ._mesh import Series, model, models, open_series, write_mesh, write_wavelets
+from ._page import Page, page
+from ._pictures import FieldComparison, ImageComparison, compare, compare_fields, compare_images, read_image, write_image
+from ._points import kernels, read_points
+from ._studies import run_study, studies, study
+from ._vdb import Grid, rasterize, read_vdb, sample_grid, write_vdb
+from ._arguments import Kernel, Path
+from ._pictures import Drawable
+from ._progress import Progress
+
+__version__: str
+
+def fit(
+    shape: str = 'gaussian', scheme: str = 'mcq', *, level: int = 5, extent: float = 2.0, terms: int = 2,
+    sign_slip: bool = False
+) -> tuple[dict[str, Any], dict[str, float]]:
+    """The kernel of a shape that is nearest to the basis function of a scheme, and its errors (mse, rmse, mae, max).
+
+    shape:       gaussian, scaled_gaussian, bc, cardinal, wendland_c2, wendland_c4, gaussians, separable_gaussian, separable_table
+    level:       the basis function is sampled at (2^level)^3 places per lattice cell, 0 to 7
+    extent:      the distance at which bc and cardinal end [0.001 to 3]
+    terms:       number of gaussians in a sum [1 to 6]
+    sign_slip:   fit bc with the sign error of the paper's fits in the inner cubic coefficient
+    """
+
+def measure(
+    mesh: HexMesh, *, scheme: str = 'mcq', tension: float = 0.0625, crease_angle: Optional[float] = None,
+    tolerance: float = 0.0001, bins: int = 32, progress: Progress = None
+) -> dict[str, Any]:
+    """The volume of the limit, and of each field its integral, mean, extremes with their places, and histogram.
+
+    Returns cells, volume, and fields: a dictionary by name of integral, mean, min, min_at, max, max_at, histogram (the volume in each
+    of `bins` equal intervals from min to max).
+
+    scheme:      mcq (smooth, through the control points), cc (Catmull-Clark), bsxw (Bajaj-Schaefer-Warren-Xu), linear [mcq,
+                 cc, bsxw, linear]
+    tension:     of mcq: 0 is linear; 1/16 reproduces cubics [0 to 0.125; with scheme='mcq']
+    crease_angle: keep boundary edges sharp that bend by more than this, in degrees (tetoct, boxspline: 60) [0 to 180]
+    tolerance:   of the volume as a part of it, of means and extremes as parts of each field's range [more than 0, at most
+                 1]
+    bins:        intervals of the histogram [1 to 100000]
+    """
+
+def points_error(
+    volume: RbfVolume, mesh: HexMesh, field: Optional[str] = None, *, channel: int = 0, scheme: str = 'mcq',
+    tension: float = 0.0625, crease_angle: Optional[float] = None, progress: Progress = None
+) -> PointsError:
+    """How far the sum of kernels is from the limit of a mesh near each kernel: an estimate, from nine places each.
+
+    field:       of the mesh, as for `sample`
+    channel:     of the kernels, which is compared with it
+    scheme:      mcq (smooth, through the control points), cc (Catmull-Clark), bsxw (Bajaj-Schaefer-Warren-Xu), linear [mcq,
+                 cc, bsxw, linear]
+    tension:     of mcq: 0 is linear; 1/16 reproduces cubics [0 to 0.125; with scheme='mcq']
+    crease_angle: keep boundary edges sharp that bend by more than this, in degrees (tetoct, boxspline: 60) [0 to 180]
+    """
+
+def probe(
+    mesh: HexMesh, places: npt.ArrayLike, *, levels: Optional[int] = None, scheme: str = 'mcq', tension: float = 0.0625,
+    crease_angle: Optional[float] = None, reach: float = 0.0, progress: Progress = None
+) -> ProbeSamples:
+    """All fields of the limit, with their gradients, at places in the world, (n,3): exact, not interpolated in cells.
+
+    The volume of the schemes "tetoct" and "boxspline" is linear between the vertices of a level of tetrahedra (docs/schemes.md); cells
+    are those tetrahedra, and there are no parameters (nan).
+
+    levels:      of "tetoct" and "boxspline", 0 to 8; None: 2
+    scheme:      mcq (smooth, through the control points), cc (Catmull-Clark), bsxw (Bajaj-Schaefer-Warren-Xu), linear; of
+                 tetrahedra as tetrahedra: tetoct, boxspline [mcq, cc, bsxw, linear, tetoct, boxspline]
+    tension:     of mcq: 0 is linear; 1/16 reproduces cubics [0 to 0.125; with scheme='mcq']
+    crease_angle: keep boundary edges sharp that bend by more than this, in degrees (tetoct, boxspline: 60) [0 to 180]
+    reach:       places outside that are no farther than this from the boundary get the values of its nearest point [0 or
+                 more]
+    """
+
+def read_mesh(
+    path: Path, *, other_cells: str = 'split', weld: Optional[float] = None, cell_values: str = 'auto',
+    step: Optional[int] = None, blocks: Sequence[str] = (), sharp: Sequence[str] = ()
+) -> HexMesh:
+    """Reads a mesh. The extension of the file name decides the format; docs/formats.md has the list.
+
+    other_cells: what to do with tetrahedra, prisms and pyramids: split (all cells, into hexahedra), ignore, refuse [split,
+                 ignore, refuse]
+    weld:        join points of a file whose distance is at most D; 0: those at the same place [0 or more]
+    cell_values: values at cells become values at points: fit (the volume follows the cells' means without waves; the
+                 default for OpenFOAM), mean (of the cells around each point; the default for all others), exact (the volume
+                 has the cells' means), auto [auto, fit, mean, exact]
+    step:        a step of a series, from 0 (default: the last one) [0 to 1000000000]
+    blocks:      the named parts of the mesh to read (info lists them; default: all)
+    sharp:       a group of the file whose faces inside the mesh and edges are kept sharp: a physical group of Gmsh by its
+                 name or number, a reference of MEDIT, or Ridges (repeatable)
+
+    Warns (SubvolWarning) once for each thing left out, turned round or converted.
+    Raises FileError if the file cannot be opened; InvalidInput, with file and line, if it is malformed.
+    """
+
+def reduce(
+    mesh: HexMesh, field: Optional[str] = None, rmse: float = 0.01, *, kernel: Kernel = 'compact', overlap: float = 1.0,
+    max_points: int = 1000000, move: bool = False, scheme: str = 'mcq', progress: Progress = None
+) -> tuple[RbfVolume, dict[str, Any]]:
+    """Approximates a field with as few kernels as a root mean square error of `rmse` needs.
+
+    rmse:        the root mean square error, in the field's unit [more than 0]
+    kernel:      the kernel of the points
+    overlap:     1 is the overlap of uniform samples [0.7 to 2]
+    max_points:  no more kernels than these
+    move:        also move and resize the kernels: about half as many, ten times as slow
+    scheme:      mcq (smooth, through the control points), cc (Catmull-Clark), bsxw (Bajaj-Schaefer-Warren-Xu), linear [mcq,
+                 cc, bsxw, linear]
+
+    Returns the volume and a report: points, samples, rounds, rmse, validation (at independent samples), reached.
+    """
+
+def render(
+    what: Drawable, *, method: str = 'splat', view: str = 'iso', camera: Union[None, str, Camera] = None,
+    ortho: bool = False, size: tuple[int, int] = (512, 512), field: Optional[str] = None,
+    tf: Union[None, str, TransferFunction] = None, look: Optional[str] = None, opacity_unit: Optional[float] = None,
+    scheme: str = 'mcq', tension: float = 0.0625, crease_angle: Optional[float] = None, levels: Optional[int] = None,
+    per_edge: int = 1, spacing: float = 0.0, tolerance: float = 0.0, centers: bool = False, values: str = 'scheme',
+    kernel: Kernel = 'compact', value_kernel: Kernel = 'paper_bc', correction: str = 'second', backend: str = 'auto',
+    device: Optional[int] = None, sheets: int = 0, shadows: bool = False, ambient_occlusion: float = 0.0,
+    samples: Optional[int] = None, image_tolerance: Optional[float] = None, order: str = 'topological',
+    kbuffer: int = 6, lod: Optional[float] = None, seconds: Optional[float] = None, shade: bool = False,
+    color_field: Optional[str] = None, clip: Optional[npt.ArrayLike] = None, clip_box: Optional[npt.ArrayLike] = None,
+    slice: Optional[npt.ArrayLike] = None, around: bool = False, progress: Progress = None
+) -> Image:
+    """Draws a mesh, points or a grid: the picture of `subvol render` with the same options, bit for bit.
+
+    A keyword that has no effect with the method is refused; docs/pictures.md has the table. None leaves the default.
+
+    method:      "splat" (kernels), "sheets" (the same by OpenGL sheet buffers), "footprints" (kernels coloured first, as
+                 Westover did), "tets" (rays through tetrahedra), "pt" (tetrahedra projected by OpenGL), "dense" (rays through the
+                 limit's cells), "grid" (rays through voxels)
+    view:        the side to look from: +x -x +y -y +z -z iso
+    camera:      instead: a Camera, or text as of --camera
+    size:        width and height in pixels
+    tf:          a TransferFunction or its name; None: viridis over the field's range
+    scheme:      mcq (smooth, through the control points), cc (Catmull-Clark), bsxw (Bajaj-Schaefer-Warren-Xu), linear [mcq,
+                 cc, bsxw, linear]
+    tension:     of mcq: 0 is linear; 1/16 reproduces cubics [0 to 0.125; with scheme='mcq']
+    crease_angle: keep boundary edges sharp that bend by more than this, in degrees (tetoct, boxspline: 60) [0 to 180]
+    levels:      draw the refined mesh of this level (default for tets and pt: 1; for the others: the limit) [0 to 10]
+    per_edge:    sample intervals per cell edge; 1 is one kernel per control point [1 to 64]
+    spacing:     distance between samples in world units, instead of per_edge; for a grid, rounded to whole voxels (default:
+                 one kernel per voxel) [more than 0; not with per_edge]
+    tolerance:   instead: as many samples as an error of the field below E needs, in the field's unit [more than 0; not with
+                 per_edge, spacing]
+    centers:     also a kernel in the middle of each small cell between the samples: twice as many kernels, about a third of
+                 the error
+    values:      values between control points: scheme (exact), cubic (Catmull-Rom), paper (weighted mean) [scheme, cubic,
+                 paper]
+    kernel:      the kernel of the points; see `subvol fit --kernels`
+    value_kernel: the kernel that weighs the values of control points [with values='paper']
+    correction:  the derivatives of the field that kernels carry: none, gradient, second, full [none, gradient, second,
+                 full]
+    backend:     where to splat: auto (default: a GPU, else the CPU), gl, cpu [auto, gl, cpu]
+    device:      the OpenGL device's number in `info --gl` (default: the first GPU) [0 to 1000; not with backend='cpu']
+    sheets:      splat: number of planes over the volume's depth (default: as many as the kernels need) [2 to 65536]
+    shadows:     splat: the volume shadows itself from the light at the upper left
+    ambient_occlusion: splat: darken hollows that are narrower than this part of the box's diagonal, such as .1 [0 to 1]
+    samples:     n x n rays per pixel (default 1; 2 for look solid) [1 to 16]
+    image_tolerance: dense, without levels: draw level after level until the RMS of the picture's change is less [more than
+                 0; not with levels]
+    order:       pt: how the tetrahedra are sorted: topological (by shared faces), centroid, lists (one per pixel) or havs
+                 (faces by centroid, then a k-buffer per pixel) [topological, centroid, lists, havs]
+    kbuffer:     havs: entries of the k-buffer [1 to 65536; with order='havs']
+    lod:         splat: merge kernels as long as they are narrower than so many pixels, such as 2 (default 0: never); havs:
+                 the fraction of the interior faces that is drawn (default 1) [0 or more]
+    seconds:     the best picture within this time; splat: first coarse, then with the mesh sampled for the view; pt: first
+                 the faces of the boundary, then more and more of those inside; kernels follow from the time then, not from
+                 levels, reduce, threshold or footprint [more than 0; not with order, lod]
+    shade:       splat: light on surfaces of equal value, from the eye and from the upper left [not with look='solid' or
+                 'isosurface']
+    color_field: splat: take the colours from this field; opacities stay those of field
+    clip:        cut away what lies on the side of this plane to which its normal points: a point and the normal
+                 (repeatable)
+    clip_box:    cut away what lies outside this box: its lower and its upper corner
+    slice:       draw the volume on this plane alone, opaque and in the colours of its values: a point and the normal
+                 (repeatable)
+    around:      draw the volume around the slices too, as look says [with slice]
+    look:        solid (opaque and lit; the default for meshes without tf, opacity and opacity_unit), volume (opacity 0 to
+                 .5 over the range, black behind; otherwise the default), xray (on white) or isosurface (five lit surfaces)
+                 [solid, volume, xray, isosurface]
+    opacity_unit: the world distance over which an opacity acts (default: 1/100 of the bounding box's diagonal) [more than
+                 0]
+
+    Cuts are rows of six numbers, each a list or an array. Returns an Image: `numpy.asarray(image)` is (height, width, 4) float32,
+    linear, premultiplied, without a copy. Its `report` has counts and seconds.
+    """
+
+def sample(
+    mesh: HexMesh, field: Optional[str] = None, per_edge: int = 1, *, footprint: Optional[Camera] = None,
+    footprint_size: tuple[int, int] = (512, 512), levels: Optional[int] = None, scheme: str = 'mcq',
+    tension: float = 0.0625, crease_angle: Optional[float] = None, spacing: float = 0.0, tolerance: float = 0.0,
+    centers: bool = False, values: str = 'scheme', kernel: Kernel = 'compact', value_kernel: Kernel = 'paper_bc',
+    correction: str = 'second', boundary_levels: Optional[int] = None, progress: Progress = None
+) -> RbfVolume:
+    """Samples the limit of a mesh into kernels: one for each control point, or more.
+
+    field:       its name; a vector's length is taken, "name.k" is channel k; None: the most sensible scalar, said in a warning
+    footprint:   instead of per_edge: at most 1.5 pixels apart as this camera sees them in a picture of `footprint_size`
+    levels:      sample the trilinear cells of this level instead of the limit; with the schemes "tetoct" and "boxspline", which
+                 have one kernel at each point of a level of tetrahedra, that level (None: 1)
+    scheme:      mcq (smooth, through the control points), cc (Catmull-Clark), bsxw (Bajaj-Schaefer-Warren-Xu), linear [mcq,
+                 cc, bsxw, linear]
+    tension:     of mcq: 0 is linear; 1/16 reproduces cubics [0 to 0.125; with scheme='mcq']
+    crease_angle: keep boundary edges sharp that bend by more than this, in degrees (tetoct, boxspline: 60) [0 to 180]
+    per_edge:    sample intervals per cell edge; 1 is one kernel per control point [1 to 64]
+    spacing:     distance between samples in world units, instead of per_edge; for a grid, rounded to whole voxels (default:
+                 one kernel per voxel) [more than 0; not with per_edge]
+    tolerance:   instead: as many samples as an error of the field below E needs, in the field's unit [more than 0; not with
+                 per_edge, spacing]
+    centers:     also a kernel in the middle of each small cell between the samples: twice as many kernels, about a third of
+                 the error
+    values:      values between control points: scheme (exact), cubic (Catmull-Rom), paper (weighted mean) [scheme, cubic,
+                 paper]
+    kernel:      the kernel of the points; see `subvol fit --kernels`
+    value_kernel: the kernel that weighs the values of control points [with values='paper']
+    correction:  the derivatives of the field that kernels carry: none, gradient, second, full [none, gradient, second,
+                 full]
+    boundary_levels: refinements of the boundary surface (default: so that its quads are half a sample interval wide) [0 to
+                 6]
+    """
+
+def slice(
+    mesh: HexMesh, point: Sequence[float], normal: Sequence[float], field: Optional[str] = None, *, scheme: str = 'mcq',
+    tension: float = 0.0625, crease_angle: Optional[float] = None, resolution: int = 512, progress: Progress = None
+) -> Slice:
+    """A field of the limit where a plane cuts it, seen from where the normal points.
+
+    scheme:      mcq (smooth, through the control points), cc (Catmull-Clark), bsxw (Bajaj-Schaefer-Warren-Xu), linear [mcq,
+                 cc, bsxw, linear]
+    tension:     of mcq: 0 is linear; 1/16 reproduces cubics [0 to 0.125; with scheme='mcq']
+    crease_angle: keep boundary edges sharp that bend by more than this, in degrees (tetoct, boxspline: 60) [0 to 180]
+    resolution:  places along the longer side [2 to 20000]
+    """
+
+def subdivide(
+    mesh: HexMesh, levels: int = 1, scheme: str = 'mcq', *, on_limit: bool = False, tension: float = 0.0625,
+    crease_angle: Optional[float] = None, progress: Progress = None
+) -> HexMesh:
+    """Refines a mesh: each level splits a cell into eight. Points and fields follow the scheme.
+
+    The cells of "tetoct" and "boxspline", which refine tetrahedra as tetrahedra, come back in hexahedra, whose linear volume is theirs.
+    The children of cell c are 8c to 8c+7, but of these two. The same bits for any number of threads.
+
+    on_limit:    also move the points to the limit (those of mcq and linear lie on it); of "tetoct" and "boxspline" the limit that
+                 passes through the points and values of the mesh
+    scheme:      mcq (smooth, through the control points), cc (Catmull-Clark), bsxw (Bajaj-Schaefer-Warren-Xu), linear; of
+                 tetrahedra as tetrahedra: tetoct, boxspline [mcq, cc, bsxw, linear, tetoct, boxspline]
+    tension:     of mcq: 0 is linear; 1/16 reproduces cubics [0 to 0.125; with scheme='mcq']
+    crease_angle: keep boundary edges sharp that bend by more than this, in degrees (tetoct, boxspline: 60) [0 to 180]
+    levels:      number of refinements [0 to 10]
+    """
+
+def surface(
+    mesh: HexMesh, iso: Union[float, Sequence[float], None] = None, field: Optional[str] = None, *,
+    boundary: Optional[bool] = None, path: Optional[Path] = None, scheme: str = 'mcq', tension: float = 0.0625,
+    crease_angle: Optional[float] = None, cap: bool = False, tolerance: float = 0.001, max_level: int = 6,
+    progress: Progress = None
+) -> SurfaceMesh:
+    """Isosurfaces of a field of the limit, and its boundary, as triangles.
+
+    iso:         a value, or several; None: the boundary alone
+    path:        also write it: .ply, .stl, .vtp, .obj, .glb
+    scheme:      mcq (smooth, through the control points), cc (Catmull-Clark), bsxw (Bajaj-Schaefer-Warren-Xu), linear [mcq,
+                 cc, bsxw, linear]
+    tension:     of mcq: 0 is linear; 1/16 reproduces cubics [0 to 0.125; with scheme='mcq']
+    crease_angle: keep boundary edges sharp that bend by more than this, in degrees (tetoct, boxspline: 60) [0 to 180]
+    boundary:    the boundary of the volume (the default without iso)
+    cap:         close each isosurface with the part of the boundary where the field is at least its value [with iso]
+    tolerance:   how far triangles may lie from the limit, as a part of the longest side of the box [more than 0, at most 1]
+    max_level:   refine no further [1 to 8]
+    """
+
+def write_points(
+    volume: RbfVolume, path: Path, *, ascii: bool = False, splats: bool = False, up: str = 'z'
+) -> None:
+    """Writes points as .ply, .vtp (ParaView), .svk (with levels of detail) or .vdb (Houdini). Numbers are exact: reading gives
+    the same bits, but of the positions in .vdb.
+
+    ascii:       .ply: write text instead of binary numbers
+    splats:      .ply: also for viewers of Gaussian splats; the boundary is then in a file beside it
+    up:          with splats: the axis that these viewers show at the top: x, y or z [x, y, z; with splats]
+    """
+
+__all__ = [
+    "Camera", "Cancelled", "Error", "Field", "FieldComparison", "FileError", "Grid", "HexMesh", "Image", "ImageComparison",
+    "InvalidInput", "LimitSamples", "MissingCapability", "Page", "PointsError", "ProbeSamples", "RbfVolume", "Refinement", "Series",
+    "Slice", "Study", "StudyCase", "StudyResults", "SubvolWarning", "SurfaceMesh", "TransferFunction", "as_field", "compare",
+    "compare_fields", "compare_images", "evaluate", "evaluate_limit", "fit", "from_meshio", "from_pyvista", "gl_devices", "kernels",
+    "measure", "model", "models", "open_series", "page", "points_error", "probe", "rasterize", "read_image", "read_mesh", "read_points",
+    "read_vdb", "reduce", "render", "run_study", "sample", "sample_grid", "set_threads", "slice", "studies", "study", "subdivide",
+    "surface", "to_meshio", "to_pyvista", "write_image", "write_mesh", "write_points", "write_vdb", "write_wavelets",
+]
