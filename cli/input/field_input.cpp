@@ -7,7 +7,7 @@
 #include "input.h"
 #include "points_input.h"
 #include "subvol/error.h"
-#include "subvol/limit_level.h"
+#include "subvol/limit_field.h"
 #include "subvol/mesh_field.h"
 #include "subvol/points_field.h"
 #include "text.h"
@@ -15,25 +15,10 @@
 namespace subvol::cli {
 namespace {
 
-constexpr double kVoxels = 200;    // along the longest side: what the limit's tolerance is relative to, as of `vdb`
-constexpr double kMaxCells = 8e6;  // the field keeps them all
-
-WithFacts<HexMesh> refined(const HexMesh& mesh, const RefineArguments& refine, Progress* progress) {
-    RefineOptions options = refine.options(0, progress);
-    if (refine.levels) return refine_reported(mesh, options, Vertices::OnTheLimit);
-    const Vec3 size = bounds(mesh).size();
-    const double voxel = std::max({size.x, size.y, size.z}) / kVoxels;
-    Facts facts;
-    const LimitLevel limit = facts.timed(progress, "limit level", [&] {
-        return find_limit_level(mesh, options, {.position_world = kLimitTolerance_voxels * voxel, .max_cells = kMaxCells});
-    });
-    options.levels = limit.level;
-    if (!limit.converged) {
-        facts.warn(text("level ", limit.level, " was the finest within limits; the last step still changed values by ",
-                        limit.value_of_range, " of their range; --levels sets the level"));
-    }
-    HexMesh fine = facts.unpack(refine_reported(mesh, options, Vertices::OnTheLimit));
-    return {std::move(fine), std::move(facts)};
+FieldView limit_view(const LimitField& field) {
+    return {.value = [&field](const Vec3& x) { return field.value(x); },
+            .gradient = [&field](const Vec3& x) { return field.gradient(x); },
+            .box = field.box()};
 }
 
 FieldInput mesh_field(const std::string& input, const CommonOptions& options, const RefineArguments& refine, Progress* progress,
@@ -44,8 +29,18 @@ FieldInput mesh_field(const std::string& input, const CommonOptions& options, co
     auto mesh =
         std::make_shared<HexMesh>(facts.unpack(with_selected_field(facts.unpack(load_mesh(input, chosen, progress)), chosen)));
     const std::string name = mesh->attributes.front().name;
-    auto field = std::make_shared<MeshField>(facts.unpack(refined(*mesh, refine, progress)), name);
-    return {field->view(), field, mesh, name};
+    const RefineOptions refinement = refine.options(0, progress);
+    if (refine.levels) {
+        auto field = std::make_shared<MeshField>(facts.unpack(refine_reported(*mesh, refinement, Vertices::OnTheLimit)), name);
+        return {field->view(), field, mesh, name};
+    }
+    auto field = facts.timed(progress, "limit", [&] { return std::make_shared<LimitField>(*mesh, name, refinement); });
+    const LimitCells& limit = field->limit();
+    facts["pieces"] = limit.piece_count;
+    Facts& deviation = facts.group("limit_deviation");
+    deviation["position_world"] = limit.position_world;
+    deviation["of_range"] = limit.value_of_range;
+    return {limit_view(*field), field, mesh, name};
 }
 
 FieldInput points_field(const std::string& input, const CommonOptions& options, Progress* progress, Facts& facts) {

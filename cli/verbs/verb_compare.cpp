@@ -23,10 +23,12 @@
 namespace subvol::cli {
 namespace {
 
+constexpr int kIsoResolution = 128;
+
 /// The metrics of two fields.
 struct FieldComparison {
     std::size_t samples = 100'000;
-    int resolution = 128;
+    std::optional<int> resolution{};
     std::optional<double> iso;
     double least_coverage = 0.99;
     RefineArguments refine;
@@ -55,9 +57,11 @@ void FieldComparison::add_to(CLI::App& app) {
     add_option(app,
                Option("iso", iso).help("V", "also the Hausdorff distance between the isosurfaces of this value (hausdorff)"))
         ->group(group);
-    add_option(
-        app,
-        Option("resolution", resolution).between(2, 2000).help("N", "cells along the longest side for mass and isosurfaces"))
+    add_option(app, Option("resolution", resolution)
+                        .between(2, 2000)
+                        .help("N",
+                              "cells along the longest side for mass (default: as many as it needs, 64 or 128) and isosurfaces "
+                              "(default 128)"))
         ->group(group);
     refine.add_to(app, "compare meshes at this level; omitted: at a level within tolerance of the limit");
     for (const char* name : {"--scheme", "--tension", "--levels", "--crease-angle"}) app.get_option(name)->group(group);
@@ -89,6 +93,7 @@ Figures FieldComparison::measure(const std::string& test, const std::string& ref
     figures.put("gradient_rmse", errors.gradient_rmse);
     const MassError mass = report.timed("mass", [&] { return mass_error(a.view, b.view, resolution, report.progress()); });
     figures.put("mass", mass.relative);
+    report["mass_resolution"] = mass.resolution;
     report["a"]["mass"] = mass.test;
     report["b"]["mass"] = mass.reference;
     if (b.mesh) {
@@ -99,8 +104,9 @@ Figures FieldComparison::measure(const std::string& test, const std::string& ref
         report["new_vertices"] = {{"samples", at_vertices.samples}, {"uncovered", at_vertices.uncovered}};
     }
     if (iso) {
-        const auto found =
-            report.timed("hausdorff", [&] { return isosurface_distance(a.view, b.view, *iso, resolution, report.progress()); });
+        const auto found = report.timed("hausdorff", [&] {
+            return isosurface_distance(a.view, b.view, *iso, resolution.value_or(kIsoResolution), report.progress());
+        });
         figures.put("hausdorff", found.distance);
         report["isosurface"] = {
             {"spacing", found.spacing}, {"triangles_a", found.test_triangles}, {"triangles_b", found.reference_triangles}};

@@ -165,11 +165,29 @@ double integrate_field(const FieldView& field, const Box& box, int resolution, P
     return sum * grid.cell.x * grid.cell.y * grid.cell.z;
 }
 
-MassError mass_error(const FieldView& test, const FieldView& reference, int resolution, Progress* progress) {
+namespace {
+
+MassError mass_error_at(const FieldView& test, const FieldView& reference, int resolution, Progress* progress) {
     const Box box = detail::box_about(test.box, reference.box);
     MassError mass{integrate_field(test, box, resolution, progress), integrate_field(reference, box, resolution, progress)};
     const double difference = std::abs(mass.test - mass.reference);
     mass.relative = difference == 0 ? 0 : difference / std::abs(mass.reference);
+    mass.resolution = resolution;
+    return mass;
+}
+
+}  // namespace
+
+MassError mass_error(const FieldView& test, const FieldView& reference, std::optional<int> resolution, Progress* progress) {
+    constexpr int kFirst = 32, kMost = 128;
+    constexpr double kSteady = 1e-4, kSteadyShare = .05;
+    if (resolution) return mass_error_at(test, reference, *resolution, progress);
+    MassError mass = mass_error_at(test, reference, kFirst, progress);
+    while (mass.resolution < kMost) {
+        const double before = mass.relative;
+        mass = mass_error_at(test, reference, 2 * mass.resolution, progress);
+        if (std::abs(mass.relative - before) <= std::max(kSteady, kSteadyShare * mass.relative)) break;
+    }
     return mass;
 }
 

@@ -29,25 +29,28 @@ HexMesh bare(const HexMesh& mesh) {
     return copy;
 }
 
+LimitCells start_pieces(const HexMesh& mesh, const SchemeOptions& scheme, Progress* progress) {
+    const HexMesh geometry = bare(mesh);
+    LimitCellsOptions options{.position_world = kStartTolerance * std::max(tolerance_length(mesh), 1e-300),
+                              .max_levels = kStartLevels,
+                              .max_bytes = kMostBytes};
+    for (int again = 0; again < 4; ++again) {
+        LimitCells limit = find_limit_cells(geometry, {.scheme = scheme, .levels = 0, .progress = progress}, options);
+        if (limit.pieces) return limit;
+        options.position_world *= 8;
+    }
+    throw Error(ErrorCode::MissingCapability, "the pieces of the limit take more than 2 GB", "probe", "a smaller mesh");
+}
+
 }  // namespace
 
 PieceTree::PieceTree(const HexMesh& mesh, const SchemeOptions& scheme, double reach, Progress* progress) {
-    const HexMesh geometry = bare(mesh);
-    const double length = tolerance_length(mesh);
-    LimitCellsOptions options{
-        .position_world = kStartTolerance * std::max(length, 1e-300), .max_levels = kStartLevels, .max_bytes = kMostBytes};
-    LimitCells limit;
-    for (int again = 0; again < 4; ++again) {
-        limit = find_limit_cells(geometry, {.scheme = scheme, .levels = 0, .progress = progress}, options);
-        if (limit.pieces) break;
-        options.position_world *= 8;
-    }
-    if (!limit.pieces) {
-        throw Error(ErrorCode::MissingCapability, "the pieces of the limit take more than 2 GB", "probe", "a smaller mesh");
-    }
-    pieces_ = limit.pieces;
-    distance_ = 2 * limit.position_world + 1e-6 * length;
-    reach_ = reach + distance_;
+    const LimitCells limit = start_pieces(mesh, scheme, progress);
+    *this = PieceTree(limit.pieces, 2 * limit.position_world + 1e-6 * tolerance_length(mesh), reach);
+}
+
+PieceTree::PieceTree(std::shared_ptr<const LimitPieces> pieces, double distance, double reach)
+    : pieces_(std::move(pieces)), distance_(distance), reach_(reach + distance) {
     std::vector<Vec3> centers(pieces_->cells.size());
     parallel_each(centers.size(), [&](std::size_t p) { centers[p] = pieces_->position(p, LimitPieces::kNodes / 2); });
     boxes_.resize(pieces_->cells.size());
@@ -112,8 +115,8 @@ std::optional<NearPlace> PieceTree::invert(std::size_t piece, const Vec3& x) con
     if (excess > kFarOutside) return std::nullopt;
     const auto& lowest = pieces_->lowest[piece];
     const double size = std::ldexp(1.0, -pieces_->levels[piece]);
-    const Vec3 uvw = size * (Vec3(lowest[0], lowest[1], lowest[2]) + glm::clamp(t, Vec3(0.0), Vec3(1.0)));
-    return NearPlace{{pieces_->cells[piece], uvw}, excess * size};
+    const Vec3 at = glm::clamp(t, Vec3(0.0), Vec3(1.0));
+    return NearPlace{{pieces_->cells[piece], size * (Vec3(lowest[0], lowest[1], lowest[2]) + at)}, excess * size, piece, at};
 }
 
 void PieceTree::find(const Vec3& x, std::vector<NearPlace>& found) const {

@@ -11,10 +11,15 @@
 
 namespace subvol::detail {
 
-/// A place of the limit near a place in the world. excess: how far outside the piece its parameters are, in sides of the cell
+/// A place of the limit near a place in the world.
+///
+/// excess: how far outside the piece its parameters are, in sides of the cell
+/// piece:  and the place's parameters in it, in [0,1]³
 struct NearPlace {
     LimitPlace place;
     double excess = 0;
+    std::size_t piece = 0;
+    Vec3 at{0.0};
 };
 
 /// The pieces of a limit in a tree of their boxes.
@@ -23,6 +28,8 @@ public:
     /// mesh:  its attributes are not used
     /// reach: boxes are larger by this (world), besides the distance of the pieces from the limit
     PieceTree(const HexMesh& mesh, const SchemeOptions& scheme, double reach, Progress* progress);
+    /// The same of pieces that are at most `distance` from the limit (world).
+    PieceTree(std::shared_ptr<const LimitPieces> pieces, double distance, double reach);
 
     /// How far the pieces may be from the limit (world).
     [[nodiscard]] double distance() const { return distance_; }

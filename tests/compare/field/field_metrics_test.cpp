@@ -188,5 +188,14 @@ TEST(MassError, IsRelative) {
                 1, 1e-12);
 }
 
+TEST(FieldMetrics, TheMassTakesAsManyCubesAsItNeeds) {
+    const auto f = [](const Vec3& x) { return 1 + x.x; };
+    const FieldView field = in_box(f);
+    EXPECT_EQ(mass_error(field, field).resolution, 64);  // the second grid says the same as the first
+    const FieldView rough = in_box([](const Vec3& x) { return 1 + std::sin(90 * x.x) * std::sin(1000 * x.y * x.z); });
+    EXPECT_EQ(mass_error(rough, field).relative, mass_error(rough, field, mass_error(rough, field).resolution).relative);
+    EXPECT_EQ(mass_error(field, field, 16).resolution, 16);
+}
+
 }  // namespace field_metrics_test
 }  // namespace subvol

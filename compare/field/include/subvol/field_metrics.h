@@ -65,12 +65,16 @@ struct FieldDifferenceOptions {
 [[nodiscard]] double integrate_field(const FieldView& field, const Box& box, int resolution = 128,
                                      Progress* progress = nullptr);
 
-/// relative: |∫ test − ∫ reference| / |∫ reference|, both on the same cubes; infinite if only the reference's integral is 0
+/// relative:   |∫ test − ∫ reference| / |∫ reference|, both on the same cubes; infinite if only the reference's integral is 0
+/// resolution: cubes along the longest side
 struct MassError {
     double test = 0, reference = 0, relative = 0;
+    int resolution = 0;
 };
 
-[[nodiscard]] MassError mass_error(const FieldView& test, const FieldView& reference, int resolution = 128,
+/// resolution: as of `integrate_field`; none: from 32 on as fine as it takes, at most 128, until `relative` changes by no more
+///             than 1e-4 or a twentieth of itself
+[[nodiscard]] MassError mass_error(const FieldView& test, const FieldView& reference, std::optional<int> resolution = {},
                                    Progress* progress = nullptr);
 
 /// The surface on which a field takes a value, by marching tetrahedra: cubes of a grid over `box`, six tetrahedra each.

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "subvol/limit_field.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "limit_place.h"
+#include "piece_tree.h"
+#include "subvol/error.h"
+
+namespace subvol {
+
+using namespace detail;
+
+namespace {
+
+constexpr double kInside = 1e-3;    // of a cell's side
+constexpr double kPosition = 3e-4;  // of the mesh's diagonal
+
+void check(const LimitFieldOptions& options) {
+    for (const double tolerance : {options.position_world, options.value_of_range}) {
+        if (!(tolerance >= 0 && std::isfinite(tolerance)))
+            throw Error(ErrorCode::InvalidInput, "the tolerance of the limit is not a number", {}, "0 or more");
+    }
+    if (options.max_levels < 1) throw Error(ErrorCode::InvalidInput, "pieces have no level", "max_levels", "1 or more");
+}
+
+LimitCells pieces_within(const HexMesh& mesh, const RefineOptions& refinement, const LimitFieldOptions& options) {
+    LimitCellsOptions cells{
+        .position_world = options.position_world > 0 ? options.position_world : kPosition * bounds(mesh).diagonal(),
+        .value_of_range = options.value_of_range,
+        .max_levels = options.max_levels,
+        .max_bytes = options.max_bytes};
+    for (;;) {
+        LimitCells limit = find_limit_cells(mesh, refinement, cells);
+        if (limit.pieces) return limit;
+        if (cells.max_levels == 1) {  // no coarser pieces exist
+            cells.max_bytes *= 2;
+            continue;
+        }
+        // About as many times fewer pieces as the tolerance is larger.
+        constexpr double kPieceBytes = LimitPieces::kNodes * 4 * sizeof(float);
+        const double too_many = static_cast<double>(limit.piece_count) * kPieceBytes / static_cast<double>(cells.max_bytes);
+        const double factor = std::max(2.0, too_many);
+        cells.position_world *= factor;
+        cells.value_of_range *= factor;
+        if (cells.value_of_range > 1) --cells.max_levels;
+    }
+}
+
+}  // namespace
+
+struct LimitField::State {
+    LimitCells limit;
+    PieceTree tree;
+
+    State(LimitCells found, double diagonal)
+        : limit(std::move(found)), tree(limit.pieces, 2 * limit.position_world + 1e-9 * diagonal, 0) {}
+
+    /// The piece that x lies in, and where.
+    [[nodiscard]] std::optional<NearPlace> find(const Vec3& x) const {
+        thread_local std::vector<NearPlace> found;
+        tree.find(x, found);
+        return !found.empty() && found.front().excess <= kInside ? std::optional(found.front()) : std::nullopt;
+    }
+
+    /// Calls add(u, v, w, n) for the 27 nodes of a piece: the indices of their weights along each axis.
+    template <class Add>
+    static void each_node(const Add& add) {
+        std::size_t n = 0;
+        for (std::size_t k = 0; k < 3; ++k) {
+            for (std::size_t j = 0; j < 3; ++j) {
+                for (std::size_t i = 0; i < 3; ++i) add(i, j, k, n++);
+            }
+        }
+    }
+    [[nodiscard]] double node_value(std::size_t piece, std::size_t n) const {
+        return limit.pieces->value(piece, n, 0);
+    }
+};
+
+LimitField::LimitField(const HexMesh& mesh, std::string_view field, const RefineOptions& refinement,
+                       const LimitFieldOptions& options) {
+    check(options);
+    const HexMesh shown = with_scalar_field(mesh, field);
+    state_ = std::make_unique<const State>(pieces_within(shown, refinement, options), bounds(shown).diagonal());
+}
+LimitField::~LimitField() = default;
+LimitField::LimitField(LimitField&&) noexcept = default;
+LimitField& LimitField::operator=(LimitField&&) noexcept = default;
+
+std::optional<double> LimitField::value(const Vec3& x) const {
+    const auto place = state_->find(x);
+    if (!place) return std::nullopt;
+    const QuadraticWeights u(place->at.x), v(place->at.y), w(place->at.z);
+    double sum = 0;
+    State::each_node([&](std::size_t i, std::size_t j, std::size_t k, std::size_t n) {
+        sum += u.values[i] * v.values[j] * w.values[k] * state_->node_value(place->piece, n);
+    });
+    return sum;
+}
+
+std::optional<Vec3> LimitField::gradient(const Vec3& x) const {
+    const auto place = state_->find(x);
+    if (!place) return std::nullopt;
+    const QuadraticWeights u(place->at.x), v(place->at.y), w(place->at.z);
+    Mat3 jacobian(0.0);
+    Vec3 slopes(0.0);
+    State::each_node([&](std::size_t i, std::size_t j, std::size_t k, std::size_t n) {
+        const Vec3 by(u.slopes[i] * v.values[j] * w.values[k], u.values[i] * v.slopes[j] * w.values[k],
+                      u.values[i] * v.values[j] * w.slopes[k]);
+        const Vec3 point = state_->limit.pieces->position(place->piece, n) - state_->limit.pieces->origins[place->piece];
+        for (int axis = 0; axis < 3; ++axis) jacobian[axis] += by[axis] * point;
+        slopes += state_->node_value(place->piece, n) * by;
+    });
+    return world_gradient(jacobian, slopes);
+}
+
+Box LimitField::box() const {
+    return state_->tree.box();
+}
+
+const LimitCells& LimitField::limit() const {
+    return state_->limit;
+}
+
+}  // namespace subvol
