@@ -172,6 +172,10 @@ LimitDescents::LimitDescents(const HexMesh& control, const SchemeOptions& scheme
 }
 LimitDescents::~LimitDescents() = default;
 
+std::shared_ptr<ClassGraph> LimitDescents::classes() const {
+    return state_->classes();
+}
+
 std::vector<std::size_t> LimitDescents::run(const DescentTask& task, std::span<const CellPlaces> cells, bool keep) const {
     State& state = *state_;
     DescentWorkers workers([&] { return DescentWorker(task); });

@@ -36,6 +36,9 @@ public:
     /// keep: what had to be refined, for the next call
     [[nodiscard]] std::vector<std::size_t> run(const DescentTask& task, std::span<const CellPlaces> cells, bool keep) const;
 
+    /// The classes so far.
+    [[nodiscard]] std::shared_ptr<ClassGraph> classes() const;
+
 private:
     struct State;
     std::unique_ptr<State> state_;

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 #include <random>
 #include <thread>
 
@@ -121,6 +122,42 @@ TEST_P(LimitPlaces, AreFineVerticesInTheCornersThatSharpFacesMake) {
     for (std::size_t q = 0; q < queries.size(); ++q) {
         EXPECT_NEAR(glm::distance(samples.positions[q], fine.points[vertices[q]]), 0, tolerance_of(GetParam())) << q;
     }
+}
+
+TEST_P(LimitPlaces, AreFineVerticesWhereCellsMeetAtAPointOnly) {
+    HexMesh mesh = test::make_box(4, 4, 4);
+    std::erase_if(mesh.cells, [&](const std::array<Index, 8>& cell) {
+        const Vec3 p = mesh.points[cell[0]];
+        return !(p.x < 2 && p.y < 2 && p.z < 2) && !(p.x >= 2 && p.y >= 2 && p.z >= 2);
+    });
+    mesh = without_unused_points(std::move(mesh));
+    test::jitter(mesh, .1, 5);
+    expect_fine_vertices(mesh, {GetParam()}, tolerance_of(GetParam()));
+}
+
+// So many cells that no neighbourhood has a class before it has left the axis.
+TEST(LimitOfMcq, HasTheVerticesAroundAnAxisOfManyCells) {
+    constexpr Index kAround = 80;
+    HexMesh mesh;
+    for (const double z : {0.0, 1.0, 2.0}) {
+        mesh.points.emplace_back(0, 0, z);
+        for (Index k = 0; k < 2 * kAround; ++k) {
+            const double angle = std::numbers::pi * k / kAround;
+            mesh.points.emplace_back(std::cos(angle), std::sin(angle), z);
+        }
+    }
+    constexpr Index kLayer = 1 + 2 * kAround;
+    for (const Index low : {Index{0}, kLayer}) {
+        for (Index k = 0; k < kAround; ++k) {
+            const std::array<Index, 4> quad{low, low + 1 + 2 * k, low + 2 + 2 * k, low + 1 + (2 * k + 2) % (2 * kAround)};
+            auto& cell = mesh.cells.emplace_back();
+            for (std::size_t i = 0; i < 4; ++i) {
+                cell[i] = quad[i];
+                cell[i + 4] = quad[i] + kLayer;
+            }
+        }
+    }
+    expect_fine_vertices(mesh, {Scheme::Mcq}, 1e-12);
 }
 
 TEST_P(LimitPlaces, AreFineVerticesWhereCellsMeetAtAnEdgeOnly) {
