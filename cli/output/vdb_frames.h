@@ -15,7 +15,7 @@ namespace subvol::cli {
 /// The frames that are to be written.
 ///
 /// all:   of all shares
-/// times: of the steps of a series, from step 0; empty: the frames are no steps
+/// times: of the steps of a series, from step 0; empty: the frames are not steps
 struct FramesToGrids {
     MeshFrames& frames;
     FrameRange all;

@@ -240,7 +240,7 @@ void say(const PartMeasure& part, const std::string& name, Report& report) {
     report.say(aligned(lines));
 }
 
-/// Numbers that are no numbers are null in JSON, so they are said.
+/// NaN is null in JSON, so it is said.
 void warn_of_overflow(const PartMeasure& part, Report& report) {
     for (const FieldMeasure& field : part.fields) {
         if (std::isfinite(field.integral) && std::isfinite(field.mean)) continue;

@@ -57,7 +57,8 @@ public:
                               .only_with("color-field"));
         add_option(app(),
                    Option("origin", origin_)
-                       .help("X,Y,Z", "write points relative to this place: .stl rounds to 32-bit floats (default 0,0,0)"));
+                       .help("X,Y,Z", "write points relative to this place: .stl rounds to 32-bit floats (default 0,0,0)"))
+            ->transform(number_list(3, "5e6,4e6,0: a place near the body"));
         scheme_.add_scheme_to(app());
         share_.add_to(app(), "a range of the cells that the surface passes");
         set_essentials({"--output", "--iso", "--boundary", "--cap", "--tolerance", "--color-field", "--field", "--json"});

@@ -61,7 +61,7 @@ Keys kernel_keys() {
 
 /// A key of pictures that has a place of its own in the order of cases.
 ///
-/// methods:  those that have the fallback; of a key that is no option, those that have it
+/// methods:  those that have the fallback; of a key that is not an option, those that have it
 /// made:     no option
 /// option:   the option's key, if studies call it otherwise
 struct PictureKey {

@@ -214,20 +214,20 @@ std::string Option::key() const {
 
 std::string Option::meaning(OptionNames names) const {
     if (names == OptionNames::Flags) return sentence;
-    std::string words;
+    std::string told;
     bool quoted = false;  // `subvol fit --kernels` is of the command for all
     for (std::size_t at = 0; at < sentence.size();) {
         quoted = quoted != (sentence[at] == '`');
         const bool is_option = !quoted && sentence.compare(at, 2, "--") == 0;
         const std::size_t end = std::min(sentence.find_first_not_of("-abcdefghijklmnopqrstuvwxyz", at), sentence.size());
         if (is_option) {
-            words += option_name(std::string_view(sentence).substr(at + 2, end - at - 2), names);
+            told += option_name(std::string_view(sentence).substr(at + 2, end - at - 2), names);
             at = end;
         } else {
-            words += sentence[at++];
+            told += sentence[at++];
         }
     }
-    return words;
+    return told;
 }
 
 std::string Option::range_text() const {

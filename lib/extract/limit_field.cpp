@@ -2,7 +2,9 @@
 #include "subvol/limit_field.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "limit_place.h"
@@ -54,9 +56,12 @@ LimitCells pieces_within(const HexMesh& mesh, const RefineOptions& refinement, c
 struct LimitField::State {
     LimitCells limit;
     PieceTree tree;
+    std::array<double, 2> bounds{-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
 
-    State(LimitCells found, double diagonal)
-        : limit(std::move(found)), tree(limit.pieces, 2 * limit.position_world + 1e-9 * diagonal, 0) {}
+    State(LimitCells found, const HexMesh& mesh)
+        : limit(std::move(found)), tree(limit.pieces, 2 * limit.position_world + 1e-9 * subvol::bounds(mesh).diagonal(), 0) {
+        if (!mesh.attributes.front().bounds.empty()) bounds = mesh.attributes.front().bounds.front();
+    }
 
     /// The piece that x lies in, and where.
     [[nodiscard]] std::optional<NearPlace> find(const Vec3& x) const {
@@ -84,7 +89,7 @@ LimitField::LimitField(const HexMesh& mesh, std::string_view field, const Refine
                        const LimitFieldOptions& options) {
     check(options);
     const HexMesh shown = with_scalar_field(mesh, field);
-    state_ = std::make_unique<const State>(pieces_within(shown, refinement, options), bounds(shown).diagonal());
+    state_ = std::make_unique<const State>(pieces_within(shown, refinement, options), shown);
 }
 LimitField::~LimitField() = default;
 LimitField::LimitField(LimitField&&) noexcept = default;
@@ -98,7 +103,7 @@ std::optional<double> LimitField::value(const Vec3& x) const {
     State::each_node([&](std::size_t i, std::size_t j, std::size_t k, std::size_t n) {
         sum += u.values[i] * v.values[j] * w.values[k] * state_->node_value(place->piece, n);
     });
-    return sum;
+    return std::clamp(sum, state_->bounds[0], state_->bounds[1]);
 }
 
 std::optional<Vec3> LimitField::gradient(const Vec3& x) const {

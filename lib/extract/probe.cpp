@@ -339,7 +339,7 @@ std::vector<Option> options_of(ProbeOptions& options) {
     return {
         Option("reach", options.reach_world)
             .not_negative()
-            .help("D", "places outside that are no farther than this from the boundary get the values of its nearest point")};
+            .help("D", "places outside, at most this far from the boundary, get the values of its nearest point")};
 }
 
 }  // namespace subvol

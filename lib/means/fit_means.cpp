@@ -169,7 +169,7 @@ private:
     }
 
     // The range of the means around a point, a quarter wider, and by twice what the gradients lead beyond the means. Parts of a
-    // whole see the neighbours of the whole, too: its own mean alone is no range.
+    // whole see the neighbours of the whole, too: its own mean alone does not make a range.
     void limit(FitBatch& batch) const {
         parallel_each(mesh_.points.size(), [&](std::size_t p) {
             constexpr double kFar = std::numeric_limits<double>::infinity();

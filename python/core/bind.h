@@ -103,7 +103,7 @@ template <class Work>
 void set_options(const std::vector<Option>& options, const py::dict& given, const std::vector<std::string>& besides = {});
 /// Puts the keywords of a call into `module.keywords`, from which signatures, docstrings and stubs are made.
 ///
-/// besides: options that are no keywords of this kind
+/// besides: options that are not keywords of this kind
 void describe(py::module_& module, const char* call, const std::vector<Option>& options,
               const std::vector<std::string>& besides = {});
 /// The options of a scheme and others; the error for a scheme of tetrahedra says what to do.

@@ -82,8 +82,7 @@ def probe(
                  tetrahedra as tetrahedra: tetoct, boxspline [mcq, cc, bsxw, linear, tetoct, boxspline]
     tension:     of mcq: 0 is linear; 1/16 reproduces cubics [0 to 0.125; with scheme='mcq']
     crease_angle: keep boundary edges sharp that bend by more than this, in degrees (tetoct, boxspline: 60) [0 to 180]
-    reach:       places outside that are no farther than this from the boundary get the values of its nearest point [0 or
-                 more]
+    reach:       places outside, at most this far from the boundary, get the values of its nearest point [0 or more]
     """
 
 def read_mesh(

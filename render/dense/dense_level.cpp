@@ -5,9 +5,9 @@
 //          ┊ step     level 0 is linear; the node ○ lies a step away from it. Where the limit is smooth, each further level
 //      ────┴────      makes the step four times shorter, so level L lies (4/3) step / 4^L from the limit.
 //
-// Of a node's step δx only that across the boundary is seen, in pixels. Inside, a step moves the point and its value together:
-// what is wrong at a fixed place is δv − ∇v·δx, and is seen as a change of colour, by the steepness of the transfer function
-// there. Means are taken over the rectangles that cells, or their open sides, have in the picture.
+// Only the part of a node's step δx across the boundary is seen, in pixels. Inside, a step moves the point and its value
+// together: what is wrong at a fixed place is δv − ∇v·δx, and is seen as a change of colour, by the steepness of the transfer
+// function there. Means are taken over the rectangles that cells, or their open sides, have in the picture.
 #include "dense_level.h"
 
 #include <tbb/parallel_for.h>

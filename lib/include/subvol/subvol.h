@@ -33,6 +33,7 @@
 #include "subvol/kernel_hierarchy.h"
 #include "subvol/legend.h"
 #include "subvol/limit.h"
+#include "subvol/limit_field.h"
 #include "subvol/limit_level.h"
 #include "subvol/limit_shells.h"
 #include "subvol/limit_slice.h"

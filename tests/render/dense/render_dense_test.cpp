@@ -248,7 +248,9 @@ TEST(RenderDense, TheBoundaryLiesWithinAQuarterOfAPixel) {
         EXPECT_GT(*found.error_px, .25 / 4) << size;
         EXPECT_EQ(*found.error_color, 0) << size;
         EXPECT_FALSE(found.image_change);
-        if (before >= 0) EXPECT_EQ(found.levels, before + 1) << size;
+        if (before >= 0) {
+            EXPECT_EQ(found.levels, before + 1) << size;
+        }
         before = found.levels;
     }
     const DenseReport capped = render_dense(mesh, "f", ball_view(256), ramp_optics(0.3), {.max_levels = 1}).report;

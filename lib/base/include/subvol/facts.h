@@ -43,7 +43,7 @@ public:
 
     /// A sentence for users. An empty one, and one that is there already, is left out.
     void warn(const std::string& sentence) { add_sentence("warnings", sentence); }
-    /// The same for a remark that is no reason to worry.
+    /// The same for a remark that does not warn.
     void note(const std::string& sentence) { add_sentence("notes", sentence); }
     /// Adds to the seconds of a stage.
     void add_seconds(std::string_view stage, double seconds);

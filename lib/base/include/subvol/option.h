@@ -127,7 +127,7 @@ public:
     [[nodiscard]] std::string key() const;
     /// The sentence, for users who have these names.
     [[nodiscard]] std::string meaning(OptionNames names) const;
-    /// The numbers that are allowed, in words; empty: all, or the value is no number.
+    /// The numbers that are allowed, in words; empty: all, or the value is not a number.
     [[nodiscard]] std::string range_text() const;
     [[nodiscard]] bool is_whole() const;
     [[nodiscard]] bool is_number() const;

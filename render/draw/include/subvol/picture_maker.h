@@ -71,7 +71,7 @@ struct MethodOptions {
 /// What users choose beside the method, the kernels (`KernelOptions`) and how these are drawn (`SplatOptions`).
 [[nodiscard]] std::vector<Option> options_of(MethodOptions& options);
 
-/// What users choose of kernels and what is no member of an options struct: light on surfaces (`SplatOptions::shading`), the
+/// What users choose of kernels and what is not a member of an options struct: light on surfaces (`SplatOptions::shading`), the
 /// field of the colours (`PictureBody`), and sums that are not divided (`SplatOptions::normalized`).
 struct PictureChoices {
     bool shade = false;
