@@ -63,8 +63,14 @@ struct Neighbours {
     }
 };
 
+double volume_of(const HexMesh& mesh, std::size_t cell) {
+    std::array<Vec3, 8> corners;
+    for (std::size_t k = 0; k < 8; ++k) corners[k] = mesh.points[mesh.cells[cell][k]];
+    return cell_volume(corners);
+}
+
 /// A flag for each left-handed cell.
-std::vector<std::uint8_t> left_handed(const HexMesh& mesh, const std::vector<double>& volumes) {
+std::vector<std::uint8_t> left_handed(const HexMesh& mesh) {
     enum Hand : std::uint8_t { Right, Left, Unknown };
     const Neighbours neighbours(mesh);
     std::vector<std::uint8_t> hands(mesh.cells.size(), Unknown);
@@ -76,7 +82,7 @@ std::vector<std::uint8_t> left_handed(const HexMesh& mesh, const std::vector<dou
         double volume = 0;
         for (std::size_t i = 0; i < part.size(); ++i) {
             const Index c = part[i];
-            volume += hands[c] == Right ? volumes[c] : -volumes[c];
+            volume += hands[c] == Right ? volume_of(mesh, c) : -volume_of(mesh, c);
             for (std::size_t k = 0; k < neighbours.counts[c]; ++k) {
                 const auto& [next, other_hand] = neighbours.of_cells[c][k];
                 if (hands[next] != Unknown) continue;
@@ -93,17 +99,11 @@ std::vector<std::uint8_t> left_handed(const HexMesh& mesh, const std::vector<dou
 }  // namespace
 
 std::size_t orient_cells(HexMesh& mesh) {
-    std::vector<double> volumes(mesh.cells.size());
     std::size_t negative = 0;
-    for (std::size_t c = 0; c < volumes.size(); ++c) {
-        std::array<Vec3, 8> corners;
-        for (std::size_t k = 0; k < 8; ++k) corners[k] = mesh.points[mesh.cells[c][k]];
-        volumes[c] = cell_volume(corners);
-        negative += volumes[c] < 0 ? 1 : 0;
-    }
+    for (std::size_t c = 0; c < mesh.cells.size(); ++c) negative += volume_of(mesh, c) < 0 ? 1 : 0;
     if (negative == 0) return 0;
-    const bool all = negative == volumes.size();
-    const std::vector<std::uint8_t> turned = all ? std::vector<std::uint8_t>(negative, 1) : left_handed(mesh, volumes);
+    const bool all = negative == mesh.cells.size();
+    const std::vector<std::uint8_t> turned = all ? std::vector<std::uint8_t>(negative, 1) : left_handed(mesh);
     std::size_t count = 0;
     for (std::size_t c = 0; c < turned.size(); ++c) {
         if (turned[c] == 0) continue;
