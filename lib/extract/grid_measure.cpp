@@ -75,7 +75,7 @@ void slopes_at_gauss_points(const Piece& nodes, std::array<Piece, 3>& to) {
 
 /// The nodes of the trilinear piece with the same corners: means along u, then v, then w.
 Piece trilinear(Piece nodes) {
-    for (const std::size_t n : {1, 7, 19, 25}) nodes[n] = (nodes[n - 1] + nodes[n + 1]) / 2;
+    for (const std::size_t n : {1u, 7u, 19u, 25u}) nodes[n] = (nodes[n - 1] + nodes[n + 1]) / 2;
     for (std::size_t first = 3; first < 27; first += 9) {
         for (std::size_t n = first; n < first + 3; ++n) nodes[n] = (nodes[n - 3] + nodes[n + 3]) / 2;
     }
@@ -222,9 +222,9 @@ double GridMeasure::swept(const DenseCell& grid, std::size_t side) {
     };
     const auto bilinear = [&] {
         std::array<Vec3, 9> piece;
-        for (const std::size_t n : {0, 2, 6, 8}) piece[n] = point(n % 3 * last / 2, n / 3 * last / 2) - middle;
-        for (const std::size_t n : {1, 7}) piece[n] = 0.5 * (piece[n - 1] + piece[n + 1]);
-        for (const std::size_t n : {3, 4, 5}) piece[n] = 0.5 * (piece[n - 3] + piece[n + 3]);
+        for (const std::size_t n : {0u, 2u, 6u, 8u}) piece[n] = point(n % 3 * last / 2, n / 3 * last / 2) - middle;
+        for (const std::size_t n : {1u, 7u}) piece[n] = 0.5 * (piece[n - 1] + piece[n + 1]);
+        for (const std::size_t n : {3u, 4u, 5u}) piece[n] = 0.5 * (piece[n - 3] + piece[n + 3]);
         return cone(piece);
     };
     const double volume = cones(1) - (last > 2 ? cones(2) : bilinear());

@@ -600,7 +600,7 @@ private:
         for (int round = 0; round < kRounds; ++round) {
             report_progress(options_.progress, "extremes", static_cast<double>(round) / kRounds);
             queries.clear();
-            std::ranges::stable_partition(climbs, [&](const Climb& one) { return one.step > kNear; });
+            std::stable_partition(climbs.begin(), climbs.end(), [&](const Climb& one) { return one.step > kNear; });
             for (const Climb& one : climbs) {
                 if (one.step <= kNear) break;
                 for (std::size_t n = 0; n < 27; ++n) {

@@ -30,7 +30,7 @@ std::vector<HandedFace> handed_faces(const HexMesh& mesh) {
         for (const auto& side : kCellFaces) {
             std::array<Index, 4> points{};
             for (std::size_t k = 0; k < 4; ++k) points[k] = mesh.cells[c][static_cast<std::size_t>(side[k])];
-            std::ranges::rotate(points, std::ranges::min_element(points));
+            std::rotate(points.begin(), std::ranges::min_element(points), points.end());
             const bool reversed = points[1] > points[3];
             if (reversed) std::swap(points[1], points[3]);
             faces.push_back({points, static_cast<Index>(c), reversed});
