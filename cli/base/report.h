@@ -57,8 +57,8 @@ public:
     /// seconds.
     void if_long(const std::string& quicker);
 
-    /// Runs a stage of the work and adds its seconds, which go under "seconds". Throws Error(Cancelled) before it if the user has
-    /// asked to stop.
+    /// Runs a stage of the work and adds its seconds, which go under "seconds". Throws Error(Cancelled) before it if the user
+    /// has asked to stop.
     template <class Work>
     auto timed(const char* stage, Work&& work) {
         Timed timed{*this};

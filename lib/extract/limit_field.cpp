@@ -80,9 +80,7 @@ struct LimitField::State {
             }
         }
     }
-    [[nodiscard]] double node_value(std::size_t piece, std::size_t n) const {
-        return limit.pieces->value(piece, n, 0);
-    }
+    [[nodiscard]] double node_value(std::size_t piece, std::size_t n) const { return limit.pieces->value(piece, n, 0); }
 };
 
 LimitField::LimitField(const HexMesh& mesh, std::string_view field, const RefineOptions& refinement,

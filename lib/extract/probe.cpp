@@ -336,10 +336,9 @@ std::vector<Vec3> places_on_line(const Vec3& from, const Vec3& to, std::size_t c
 }
 
 std::vector<Option> options_of(ProbeOptions& options) {
-    return {
-        Option("reach", options.reach_world)
-            .not_negative()
-            .help("D", "places outside, at most this far from the boundary, get the values of its nearest point")};
+    return {Option("reach", options.reach_world)
+                .not_negative()
+                .help("D", "places outside, at most this far from the boundary, get the values of its nearest point")};
 }
 
 }  // namespace subvol
