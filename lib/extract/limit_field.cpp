@@ -59,7 +59,7 @@ struct LimitField::State {
     std::array<double, 2> bounds{-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
 
     State(LimitCells found, const HexMesh& mesh)
-        : limit(std::move(found)), tree(limit.pieces, 2 * limit.position_world + 1e-9 * subvol::bounds(mesh).diagonal(), 0) {
+        : limit(std::move(found)), tree(limit.pieces, 1e-9 * subvol::bounds(mesh).diagonal(), 0) {
         if (!mesh.attributes.front().bounds.empty()) bounds = mesh.attributes.front().bounds.front();
     }
 

@@ -17,7 +17,7 @@ namespace subvol {
 struct LimitFieldOptions {
     double position_world = 0;
     double value_of_range = 5e-4;
-    int max_levels = 5;
+    int max_levels = 3;
     std::size_t max_bytes = std::size_t{256} << 20;
 };
 
@@ -35,8 +35,8 @@ public:
     LimitField(LimitField&&) noexcept;
     LimitField& operator=(LimitField&&) noexcept;
 
-    /// Nothing outside the pieces. A place within 1/1000 of a cell of a piece counts as inside, so that pieces of different
-    /// levels leave no gap. Some µs; thread-safe
+    /// Nothing outside the pieces. A place in a piece's box and within 1/1000 of a cell of the piece counts as inside, so
+    /// that pieces of different levels leave no gap. Some µs; thread-safe
     [[nodiscard]] std::optional<double> value(const Vec3& x) const;
     /// That of the piece, in world⁻¹; 0 where the piece has no volume.
     [[nodiscard]] std::optional<Vec3> gradient(const Vec3& x) const;
