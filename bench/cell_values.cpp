@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "lib/finite_volumes.h"
 #include "subvol/cell.h"
 #include "subvol/cell_means.h"
 #include "subvol/limit.h"
@@ -31,37 +32,6 @@ double cpu_seconds() {
 
 double smooth(const Vec3& x) {
     return std::sin(4 * x.x) * std::cos(3 * x.y) + .5 * std::sin(2 * x.z + x.x);
-}
-
-// The means over straight cells, by Gauss' rule of four points along each axis.
-std::vector<double> means(const HexMesh& mesh) {
-    constexpr std::array<double, 4> kAt{.06943184420297371, .33000947820757187, .6699905217924281, .9305681557970263};
-    constexpr std::array<double, 4> kWeight{.17392742256872692, .3260725774312731, .3260725774312731, .17392742256872692};
-    std::vector<double> means;
-    for (const auto& cell : mesh.cells) {
-        double sum = 0, volume = 0;
-        for (std::size_t g = 0; g < 64; ++g) {
-            const Vec3 at(kAt[g % 4], kAt[g / 4 % 4], kAt[g / 16]);
-            Vec3 x(0.0);
-            Mat3 jacobian(0.0);
-            for (std::size_t k = 0; k < 8; ++k) {
-                Vec3 f, slope(1.0);
-                for (int a = 0; a < 3; ++a) f[a] = kCornerParameters[k][static_cast<std::size_t>(a)] == 1 ? at[a] : 1 - at[a];
-                for (int a = 0; a < 3; ++a) {
-                    for (int b = 0; b < 3; ++b) {
-                        slope[a] *= a == b ? (kCornerParameters[k][static_cast<std::size_t>(a)] == 1 ? 1 : -1) : f[b];
-                    }
-                }
-                x += f.x * f.y * f.z * mesh.points[cell[k]];
-                jacobian += glm::outerProduct(mesh.points[cell[k]], slope);
-            }
-            const double weight = kWeight[g % 4] * kWeight[g / 4 % 4] * kWeight[g / 16] * glm::determinant(jacobian);
-            sum += weight * smooth(x);
-            volume += weight;
-        }
-        means.push_back(sum / volume);
-    }
-    return means;
 }
 
 std::vector<Attribute> mean_at_points(const HexMesh& mesh, const std::vector<Attribute>& of_cells) {
@@ -135,7 +105,7 @@ void known_fields() {
             for (const int size : sizes) {
                 HexMesh mesh = make_model(model, size);
                 double seconds = 0;
-                const std::vector<Attribute> of_cells{{"f", 1, means(mesh)}};
+                const std::vector<Attribute> of_cells{{"f", 1, test::straight_means(mesh, smooth)}};
                 const Errors now = errors_of(with_values(mesh, method, of_cells, {}, seconds));
                 const auto order = [](double before, double after) { return before > 0 ? std::log2(before / after) : 0; };
                 std::printf(

@@ -63,7 +63,7 @@ void FieldComparison::add_to(CLI::App& app) {
                               "cells along the longest side for mass (default: as many as it needs, 64 or 128) and isosurfaces "
                               "(default 128)"))
         ->group(group);
-    refine.add_to(app, "compare meshes at this level; omitted: at a level within tolerance of the limit");
+    refine.add_to(app, "compare meshes at this level; omitted: the limit, by curved pieces within tolerance");
     for (const char* name : {"--scheme", "--tension", "--levels", "--crease-angle"}) app.get_option(name)->group(group);
 }
 

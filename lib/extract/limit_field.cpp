@@ -17,24 +17,19 @@ using namespace detail;
 
 namespace {
 
-constexpr double kInside = 1e-3;    // of a cell's side
-constexpr double kPosition = 3e-4;  // of the mesh's diagonal
+constexpr double kInside = 1e-3;  // of a cell's side
 
-void check(const LimitFieldOptions& options) {
-    for (const double tolerance : {options.position_world, options.value_of_range}) {
-        if (!(tolerance >= 0 && std::isfinite(tolerance)))
-            throw Error(ErrorCode::InvalidInput, "the tolerance of the limit is not a number", {}, "0 or more");
-    }
-    if (options.max_levels < 1) throw Error(ErrorCode::InvalidInput, "pieces have no level", "max_levels", "1 or more");
+LimitCellsOptions default_options(const HexMesh& mesh) {
+    return {.position_world = 3e-4 * bounds(mesh).diagonal(),
+            .value_of_range = 5e-4,
+            .max_levels = 3,
+            .max_bytes = std::size_t{256} << 20};
 }
 
-LimitCells pieces_within(const HexMesh& mesh, const RefineOptions& refinement, const LimitFieldOptions& options) {
-    LimitCellsOptions cells{
-        .position_world = options.position_world > 0 ? options.position_world : kPosition * bounds(mesh).diagonal(),
-        .value_of_range = options.value_of_range,
-        .max_levels = options.max_levels,
-        .max_bytes = options.max_bytes};
-    for (;;) {
+LimitCells pieces_within(const HexMesh& mesh, const RefineOptions& refinement, LimitCellsOptions cells) {
+    constexpr int kMostRounds = 8;  // at one level; a tolerance of 0 cannot be enlarged
+    cells.max_levels = std::max(cells.max_levels, 1);
+    for (int round = 1;; ++round) {
         LimitCells limit = find_limit_cells(mesh, refinement, cells);
         if (limit.pieces) return limit;
         if (cells.max_levels == 1) {  // no coarser pieces exist
@@ -47,7 +42,7 @@ LimitCells pieces_within(const HexMesh& mesh, const RefineOptions& refinement, c
         const double factor = std::max(2.0, too_many);
         cells.position_world *= factor;
         cells.value_of_range *= factor;
-        if (cells.value_of_range > 1) --cells.max_levels;
+        if (cells.value_of_range > 1 || round % kMostRounds == 0) --cells.max_levels;
     }
 }
 
@@ -84,10 +79,9 @@ struct LimitField::State {
 };
 
 LimitField::LimitField(const HexMesh& mesh, std::string_view field, const RefineOptions& refinement,
-                       const LimitFieldOptions& options) {
-    check(options);
+                       std::optional<LimitCellsOptions> options) {
     const HexMesh shown = with_scalar_field(mesh, field);
-    state_ = std::make_unique<const State>(pieces_within(shown, refinement, options), shown);
+    state_ = std::make_unique<const State>(pieces_within(shown, refinement, options.value_or(default_options(shown))), shown);
 }
 LimitField::~LimitField() = default;
 LimitField::LimitField(LimitField&&) noexcept = default;

@@ -20,26 +20,27 @@
 #include <numeric>
 
 #include "cell_refiner.h"
+#include "extreme_search.h"
 #include "grid_measure.h"
 #include "hanging_nodes.h"
-#include "mesh_subset.h"
 #include "node_steps.h"
 #include "refine_steps.h"
 #include "space_order.h"
 #include "subvol/cell.h"
 #include "subvol/detail/limit_of_part.h"
 #include "subvol/error.h"
+#include "sum_changes.h"
 
 namespace subvol {
 
 namespace {
 
+using detail::Changes;
 using detail::GridMeasure;
+using detail::Rest;
 
 constexpr std::size_t kBlock = 8192;  // cells: fixed, so that sums do not depend on the number of threads
-constexpr std::size_t kStarts = 4;    // cells in which an extreme is evaluated
 constexpr int kMostLevels = 6;
-constexpr std::uint8_t kForSums = 1, kForExtremes = 2;  // what a cell is refined for
 constexpr double kLeftOfTrilinear = 1.0 / 8, kLeftOfQuadratic = 1.0 / 3;
 
 /// One channel of an attribute. scale: 1/range of the attribute, or 0 for a constant
@@ -66,52 +67,19 @@ std::vector<double> origins_of(const std::vector<Channel>& channels) {
     return origins;
 }
 
-/// A place with the value of one channel near an extreme. peak: where it may be even nearer; step: how far it may be
-struct Start {
-    double value;
-    Index cell;
-    Vec3 uvw, peak;
-    double step;
-};
-
-/// The best places of a channel, of different cells, in order. sign: 1 for the largest values, −1 for the smallest
-///
-/// best: sign × the best value that the limit is known to have; open: the same of what it may have in cells that were left
-struct Search {
-    double sign;
-    double best = -HUGE_VAL, open = -HUGE_VAL;
-    std::vector<Start> starts{};
-
-    void add(const Start& start) {
-        best = std::max(best, sign * start.value);
-        const auto same = std::ranges::find(starts, start.cell, &Start::cell);
-        if (same != starts.end()) {
-            if (sign * start.value < sign * same->value) return;
-            starts.erase(same);
-        }
-        auto at = starts.end();
-        while (at != starts.begin() && sign * start.value > sign * (at - 1)->value) --at;
-        starts.insert(at, start);
-        if (starts.size() > kStarts) starts.pop_back();
-    }
-};
+std::vector<double> scales_of(const std::vector<Channel>& channels) {
+    std::vector<double> scales{1};
+    for (const Channel& channel : channels) scales.push_back(channel.scale);
+    return scales;
+}
 
 /// What the cells of a part sum up to.
 ///
 /// sums:     the volume, then the integrals of the channels without their origins
 /// left:     of these, as a volume: that of an integral is divided by the channel's range
-/// searches: for each channel the least and the largest value
 struct PartSums {
     std::vector<double> sums;
     double left = 0;
-    std::vector<std::array<Search, 2>> searches;
-};
-
-/// A cell in which the limit may have an extreme. number: in the list of the level's cells
-struct Candidate {
-    std::uint32_t number;
-    std::uint32_t part, channel, high;
-    double bound;
 };
 
 /// The notes of one cell of a block: what it adds to the sums, and by how much its own sums differ from those of the level
@@ -119,63 +87,6 @@ struct Candidate {
 struct CellNote {
     std::vector<double> sums, changes;
     std::vector<GridMeasure::Extremes> extremes;
-};
-
-/// By how much the sums of the cells of a level differ from those of the level before: of integrals divided by the range.
-///
-/// left: of each sum, the part of its change that is expected to be left
-class Changes {
-public:
-    Changes(std::size_t sums, std::size_t cells, double part) : left(sums, part), sums_(sums), changes_(sums * cells) {}
-
-    std::vector<double> left;
-
-    void note(std::size_t number, std::span<const double> changes, std::span<const Channel> channels) {
-        for (std::size_t i = 0; i < sums_; ++i) {
-            changes_[sums_ * number + i] = static_cast<float>(changes[i] * (i == 0 ? 1 : channels[i - 1].scale));
-        }
-    }
-    [[nodiscard]] std::span<const float> of_cell(std::size_t number) const {
-        return std::span(changes_).subspan(sums_ * number, sums_);
-    }
-    [[nodiscard]] double largest(std::size_t number) const {
-        double most = 0;
-        for (const float change : of_cell(number)) most = std::max(most, std::abs(static_cast<double>(change)));
-        return most;
-    }
-
-private:
-    std::size_t sums_;
-    std::vector<float> changes_;
-};
-
-/// What is left in the cells that are not refined further. Volumes that one cell gains are mostly lost by its neighbours, so
-/// that changes are added up with their signs, and what does not cancel as if it were random, twice.
-class Rest {
-public:
-    explicit Rest(const Changes& changes) : changes_(changes), sums_(changes.of_cell(0).size(), 0), squares_(sums_.size(), 0) {}
-
-    /// sign: 1 adds a cell, −1 takes it away
-    void add(std::size_t number, double sign) {
-        const auto of_cell = changes_.of_cell(number);
-        for (std::size_t i = 0; i < of_cell.size(); ++i) {
-            const auto change = static_cast<double>(of_cell[i]);
-            sums_[i] += sign * change;
-            squares_[i] += sign * change * change;
-        }
-    }
-    [[nodiscard]] double change(std::size_t sum) const {
-        return std::abs(sums_[sum]) + 2 * std::sqrt(std::max(0.0, squares_[sum]));
-    }
-    [[nodiscard]] double size() const {
-        double most = 0;
-        for (std::size_t i = 0; i < sums_.size(); ++i) most = std::max(most, changes_.left[i] * change(i));
-        return most;
-    }
-
-private:
-    const Changes& changes_;
-    std::vector<double> sums_, squares_;
 };
 
 /// Memory of one thread.
@@ -196,13 +107,15 @@ public:
           control_(detail::control_mesh(HexMesh(mesh), options.scheme)),
           refiner_(control_, options.scheme, true),
           channels_(channels_of(control_, extent)),
+          scales_(scales_of(channels_)),
           scratch_([this] {
               return Scratch{GridMeasure(origins_of(channels_)), std::vector<double>(channels_.size()), {}, {}};
           }),
           slots_(control_.cells.size()),
           levels_(control_.cells.size(), 1),
-          coarsest_(control_.points.size(), 1) {
-        for (const Index group : options.groups) part_count_ = std::max(part_count_, static_cast<std::size_t>(group) + 1);
+          coarsest_(control_.points.size(), 1),
+          parts_(part_count(options), PartSums{std::vector<double>(1 + channels_.size(), 0)}),
+          extremes_(parts_.size(), {scales_.begin() + 1, scales_.end()}, options.tolerance) {
         list_cells(owned);
     }
 
@@ -212,7 +125,7 @@ public:
         std::vector<Index> cells = cells_;
         for (int level = 1; !cells.empty(); ++level) cells = run(cells, level);
         std::vector<PartMeasure> found = results();
-        find_extremes(found);
+        extremes_.find(control_, options_.scheme, extent_, options_.progress, found);
         return found;
     }
 
@@ -261,6 +174,11 @@ public:
     }
 
 private:
+    [[nodiscard]] static std::size_t part_count(const MeasureOptions& options) {
+        std::size_t count = 1;
+        for (const Index group : options.groups) count = std::max(count, static_cast<std::size_t>(group) + 1);
+        return count;
+    }
     [[nodiscard]] std::size_t part_of(Index cell) const { return options_.groups.empty() ? 0 : options_.groups[cell]; }
 
     /// The cells in the order in which they are worked on: neighbours in space, as their refinement shares what is around them.
@@ -282,22 +200,14 @@ private:
 
     /// If the scheme interpolates, the limit is known to have the values of the control points.
     void start() {
-        parts_.resize(part_count_);
-        for (PartSums& part : parts_) {
-            part.sums.assign(1 + channels_.size(), 0);
-            part.searches.assign(channels_.size(), {Search{-1}, Search{1}});
-        }
         if (!interpolates(options_.scheme.kind)) return;
         for (const Index cell : cells_) {
-            auto& searches = parts_[part_of(cell)].searches;
             std::size_t c = 0;
             for (const Attribute& attribute : control_.attributes) {
-                for (int k = 0; k < attribute.channels; ++k, ++c) {
+                const auto count = static_cast<std::size_t>(attribute.channels);
+                for (std::size_t k = 0; k < count; ++k, ++c) {
                     for (const Index p : control_.cells[cell]) {
-                        const std::size_t at = p * static_cast<std::size_t>(attribute.channels) + static_cast<std::size_t>(k);
-                        for (Search& search : searches[c]) {
-                            search.best = std::max(search.best, search.sign * attribute.values[at]);
-                        }
+                        extremes_.know(part_of(cell), c, attribute.values[p * count + k]);
                     }
                 }
             }
@@ -346,11 +256,12 @@ private:
                 for (std::size_t i = 0; i < coarse.size(); ++i) notes_[slot].changes[i] -= coarse[i];
                 leave_out_shared(grid, notes_[slot].changes);
             },
-            [&](Index, std::size_t number, std::size_t slot) { next.note(number, notes_[slot].changes, channels_); });
+            [&](Index, std::size_t number, std::size_t slot) { next.note(number, notes_[slot].changes, scales_); });
+        next.compare([](std::size_t) { return std::array<Index, 0>{}; });
         Rest after(next);
         for (std::size_t i = 0; i < sample.size(); ++i) after.add(i, 1);
         for (std::size_t i = 0; i < changes.left.size(); ++i) {
-            if (before.change(i) > 0) changes.left[i] = std::min(kLeftOfTrilinear, 2 * after.change(i) / before.change(i));
+            if (before.change(i) > 0) changes.left[i] = std::min(1.0, 2 * after.change(i) / before.change(i));
         }
     }
 
@@ -360,18 +271,29 @@ private:
         pieces_ +=
             level == 1 ? cells.size() : 7 * static_cast<std::size_t>(std::ranges::count(levels_, level)) << 3 * (level - 2);
         Changes changes(1 + channels_.size(), cells.size(), level == 1 ? kLeftOfTrilinear : kLeftOfQuadratic);
-        candidates_.clear();
-        kept_ = 0;
         each_block(
             cells, level, level == 1 ? "measure" : "refine",
             [&](const DenseCell& grid, std::size_t slot) { note_cell(grid, level, notes_[slot]); },
             [&](Index cell, std::size_t number, std::size_t slot) {
-                changes.note(number, notes_[slot].changes, channels_);
+                changes.note(number, notes_[slot].changes, scales_);
                 collect(cell, number, std::ldexp(0.5, -level), notes_[slot]);
             });
-        keep_open_candidates();
+        compare_with_neighbors(cells, changes);
         if (level == 1) calibrate(cells, changes);
         return choose(cells, changes, level);
+    }
+
+    void compare_with_neighbors(std::span<const Index> cells, Changes& changes) {
+        std::vector<Index> numbers(control_.cells.size(), kNone);
+        for (std::size_t i = 0; i < cells.size(); ++i) numbers[cells[i]] = static_cast<Index>(i);
+        changes.compare([&](std::size_t number) {
+            std::array<Index, 6> beside;
+            for (std::size_t side = 0; side < 6; ++side) {
+                const Index cell = refiner_.links().neighbors[cells[number]][side];
+                beside[side] = cell == kNone ? kNone : numbers[cell];
+            }
+            return beside;
+        });
     }
 
     void note_cell(const DenseCell& grid, int level, CellNote& note) {
@@ -443,41 +365,8 @@ private:
 
     void collect(Index cell, std::size_t number, double step, const CellNote& note) {
         const std::size_t p = part_of(cell);
-        PartSums& part = parts_[p];
-        for (std::size_t i = 0; i < note.sums.size(); ++i) part.sums[i] += note.sums[i];
-        for (std::size_t c = 0; c < channels_.size(); ++c) {
-            const GridMeasure::Extremes& found = note.extremes[c];
-            auto& [low, high] = part.searches[c];
-            low.add({found.low.value, cell, found.low.uvw, found.low_peak, step});
-            high.add({found.high.value, cell, found.high.uvw, found.high_peak, step});
-            for (std::uint32_t i = 0; i < 2; ++i) {
-                const Candidate candidate{.number = static_cast<std::uint32_t>(number),
-                                          .part = static_cast<std::uint32_t>(p),
-                                          .channel = static_cast<std::uint32_t>(c),
-                                          .high = i,
-                                          .bound = i == 0 ? -found.low_bound : found.high_bound};
-                is_open(candidate) ? candidates_.push_back(candidate) : leave(candidate);
-            }
-        }
-        if (candidates_.size() > 2 * kept_ + kBlock) keep_open_candidates();
-    }
-
-    /// How far beyond the best value the limit may go in a cell, in parts of the range.
-    [[nodiscard]] double excess(const Candidate& candidate) const {
-        const Search& search = parts_[candidate.part].searches[candidate.channel][candidate.high];
-        return channels_[candidate.channel].scale * (candidate.bound - search.best);
-    }
-    [[nodiscard]] bool is_open(const Candidate& candidate) const { return excess(candidate) > 0.5 * options_.tolerance; }
-    void leave(const Candidate& candidate) {
-        double& open = parts_[candidate.part].searches[candidate.channel][candidate.high].open;
-        open = std::max(open, candidate.bound);
-    }
-    void keep_open_candidates() {
-        std::erase_if(candidates_, [&](const Candidate& candidate) {
-            if (!is_open(candidate)) leave(candidate);
-            return !is_open(candidate);
-        });
-        kept_ = candidates_.size();
+        for (std::size_t i = 0; i < note.sums.size(); ++i) parts_[p].sums[i] += note.sums[i];
+        extremes_.look(p, cell, number, step, note.extremes);
     }
 
     /// The cells that go on to the next level: those with candidates for extremes, and those of whose sums most is left. At
@@ -485,21 +374,13 @@ private:
     std::vector<Index> choose(std::span<const Index> cells, const Changes& changes, int level) {
         constexpr std::size_t kLeastWork = 32768;  // pieces
         const std::size_t work = level >= kMostLevels ? 0 : std::max(cells_.size(), kLeastWork);
-        std::vector<std::uint8_t> chosen(cells.size(), 0);
-        std::ranges::stable_sort(candidates_, std::ranges::greater{}, [&](const Candidate& one) { return excess(one); });
-        std::size_t room = work >> 3 * level;
-        for (const Candidate& one : candidates_) {
-            if (chosen[one.number] == 0 && room > 0) {
-                chosen[one.number] = kForExtremes;
-                --room;
-            }
-            if (chosen[one.number] == 0) leave(one);
-        }
-        choose_for_sums(cells, changes, level, 8 * work >> 3 * level, chosen);
+        std::vector<std::uint8_t> for_extremes(cells.size(), 0), for_sums(cells.size(), 0);
+        extremes_.end_level(work >> 3 * level, for_extremes);
+        choose_for_sums(cells, changes, level, 8 * work >> 3 * level, for_sums);
         std::vector<Index> next, summed;
         for (std::size_t i = 0; i < cells.size(); ++i) {
-            if (chosen[i] != 0) next.push_back(cells[i]);
-            if ((chosen[i] & kForSums) != 0) summed.push_back(cells[i]);
+            if (for_extremes[i] != 0 || for_sums[i] != 0) next.push_back(cells[i]);
+            if (for_sums[i] != 0) summed.push_back(cells[i]);
         }
         note_levels(summed, level + 1);
         return next;
@@ -520,7 +401,7 @@ private:
             const std::size_t p = part_of(cells[i]);
             const double allowed = std::ldexp(options_.tolerance * std::abs(parts_[p].sums[0]), -level);
             if (room == 0 || rests[p].size() <= allowed) continue;
-            chosen[i] |= kForSums;
+            chosen[i] = 1;
             rests[p].add(i, -1);
             --room;
         }
@@ -559,113 +440,6 @@ private:
         return measure;
     }
 
-    /// A search of the limit for an extreme, from one of the best places. step: in parameters, how far it may be
-    struct Climb {
-        std::size_t part, channel, high;
-        Index cell;  // of the mesh around the places
-        double step;
-        LimitExtreme best{};
-    };
-
-    /// Goes from the best places on in the limit itself, in a mesh of the cells around them.
-    void find_extremes(std::vector<PartMeasure>& found) {
-        constexpr int kRounds = 16;
-        constexpr double kNear = 2e-4;  // in parameters
-        std::vector<Climb> climbs;
-        std::vector<LimitQuery> queries;  // of the first round: a place and its peak
-        std::vector<std::uint8_t> about(control_.cells.size(), 0);
-        for (std::size_t p = 0; p < parts_.size(); ++p) {
-            for (std::size_t c = 0; c < channels_.size(); ++c) {
-                for (std::size_t high = 0; high < 2; ++high) {
-                    for (const Start& start : parts_[p].searches[c][high].starts) {
-                        about[start.cell] = 1;
-                        climbs.push_back({p, c, high, start.cell, channels_[c].scale > 0 ? start.step : 0});
-                        queries.push_back({start.cell, start.uvw});
-                        queries.push_back({start.cell, start.peak});
-                    }
-                }
-            }
-        }
-        if (climbs.empty()) return;
-        detail::grow(control_, about, detail::kHaloOfLimit);
-        const detail::MeshSubset around = detail::subset(control_, about);
-        const auto number = [&](Index cell) {
-            return static_cast<Index>(std::ranges::lower_bound(around.cells, cell) - around.cells.begin());
-        };
-        for (LimitQuery& query : queries) query.cell = number(query.cell);
-        SchemeOptions scheme = options_.scheme;
-        scheme.crease_angle_deg.reset();  // the creases are tagged already
-        const LimitEvaluator limit(around.mesh, {.scheme = scheme}, extent_);
-        climb(limit.at(queries), queries, climbs);
-        for (int round = 0; round < kRounds; ++round) {
-            report_progress(options_.progress, "extremes", static_cast<double>(round) / kRounds);
-            queries.clear();
-            std::stable_partition(climbs.begin(), climbs.end(), [&](const Climb& one) { return one.step > kNear; });
-            for (const Climb& one : climbs) {
-                if (one.step <= kNear) break;
-                for (std::size_t n = 0; n < 27; ++n) {
-                    const Vec3 offset = one.step * (Vec3(n % 3, n / 3 % 3, n / 9) - Vec3(1.0));
-                    queries.push_back({number(one.cell), glm::clamp(one.best.uvw + offset, Vec3(0.0), Vec3(1.0))});
-                }
-            }
-            if (queries.empty()) break;
-            climb(limit.at(queries), queries, std::span(climbs).first(queries.size() / 27));
-        }
-        for (const Climb& one : climbs) {
-            take(one, found[0]);
-            if (found.size() > 1) take(one, found[one.part + 1]);
-        }
-        note_errors(found);
-    }
-
-    /// Takes the best of the places that were looked at for each climb, as many for all. Where that is the one before, the next
-    /// ones are nearer.
-    static void climb(const LimitSamples& samples, std::span<const LimitQuery> queries, std::span<Climb> climbs) {
-        constexpr double kShrink = 0.35;
-        const std::size_t each = queries.size() / climbs.size();
-        for (std::size_t i = 0; i < climbs.size(); ++i) {
-            Climb& one = climbs[i];
-            bool moved = false;
-            for (std::size_t q = i * each; q < (i + 1) * each; ++q) {
-                const double value = value_of(samples, q, one.channel);
-                if (one.best.cell != kNone && (one.high != 0 ? value <= one.best.value : value >= one.best.value)) continue;
-                one.best = {value, samples.positions[q], one.cell, queries[q].uvw};
-                moved = true;
-            }
-            if (!moved) one.step *= kShrink;
-        }
-    }
-
-    static void take(const Climb& from, PartMeasure& part) {
-        FieldMeasure& field = part.fields[from.channel];
-        LimitExtreme& to = from.high != 0 ? field.max : field.min;
-        const bool better = from.high != 0 ? from.best.value > to.value : from.best.value < to.value;
-        if (to.cell == kNone || better) to = from.best;
-    }
-
-    /// How far the limit may go beyond the extremes, where nobody looked.
-    void note_errors(std::vector<PartMeasure>& found) const {
-        for (std::size_t p = 0; p < parts_.size(); ++p) {
-            for (std::size_t c = 0; c < channels_.size(); ++c) {
-                const auto& [low, high] = parts_[p].searches[c];
-                for (PartMeasure* part : {&found[0], found.size() > 1 ? &found[p + 1] : nullptr}) {
-                    if (part == nullptr) continue;
-                    FieldMeasure& field = part->fields[c];
-                    field.extreme_error =
-                        std::max({field.extreme_error, low.open + field.min.value, high.open - field.max.value});
-                }
-            }
-        }
-    }
-
-    static double value_of(const LimitSamples& samples, std::size_t query, std::size_t channel) {
-        for (const LimitAttribute& attribute : samples.attributes) {
-            if (channel < attribute.channels) return attribute.values[query * attribute.channels + channel];
-            channel -= attribute.channels;
-        }
-        return 0;
-    }
-
     /// The volumes of a cell by channel and interval: channel, interval, volume, one after the other.
     void note_bins(const DenseCell& grid, const PartMeasure& whole, std::vector<double>& note) {
         GridMeasure& measure = scratch_.local().measure;
@@ -691,14 +465,14 @@ private:
     HexMesh control_;
     detail::CellRefiner refiner_;
     std::vector<Channel> channels_;
+    std::vector<double> scales_;  // of the volume and of the channels
     tbb::enumerable_thread_specific<Scratch> scratch_;
-    std::size_t part_count_ = 1;
     std::vector<Index> cells_, slots_;             // that are measured; the place of each in its block
     std::vector<std::uint8_t> levels_, coarsest_;  // of the cells; the least at each point
     std::vector<PartSums> parts_;
     std::vector<CellNote> notes_;
-    std::vector<Candidate> candidates_;
-    std::size_t kept_ = 0, pieces_ = 0;
+    detail::ExtremeSearch extremes_;
+    std::size_t pieces_ = 0;
 };
 
 LimitMeasure measure(const HexMesh& mesh, const MeasureOptions& options) {

@@ -120,12 +120,14 @@ py::dict as_dict(PartMeasure part) {
         one["min_at"] = as_tuple(field.min.place);
         one["max"] = field.max.value;
         one["max_at"] = as_tuple(field.max.place);
+        one["extreme_error"] = field.extreme_error;
         const py::ssize_t bins = length(field.histogram.size());
         one["histogram"] = owned(std::move(field.histogram), {bins});
         fields[py::str(field.name)] = one;
     }
     result["cells"] = part.cells;
     result["volume"] = part.volume;
+    result["error"] = part.error;
     result["fields"] = fields;
     return result;
 }

@@ -42,8 +42,9 @@ def measure(
 ) -> dict[str, Any]:
     """The volume of the limit, and of each field its integral, mean, extremes with their places, and histogram.
 
-    Returns cells, volume, and fields: a dictionary by name of integral, mean, min, min_at, max, max_at, histogram (the volume in each
-    of `bins` equal intervals from min to max).
+    Returns cells, volume, error (an estimate of how far off the volume is, as a part of it, and each mean, as a part of its field's
+    range), and fields: a dictionary by name of integral, mean, min, min_at, max, max_at, extreme_error (how far beyond these the limit
+    may go), histogram (the volume in each of `bins` equal intervals from min to max).
 
     scheme:      mcq (smooth, through the control points), cc (Catmull-Clark), bsxw (Bajaj-Schaefer-Warren-Xu), linear [mcq,
                  cc, bsxw, linear]

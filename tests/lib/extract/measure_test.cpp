@@ -7,8 +7,10 @@
 #include <cmath>
 #include <numbers>
 #include <numeric>
+#include <random>
 
 #include "lib/expect_error.h"
+#include "lib/finite_volumes.h"
 #include "lib/test_meshes.h"
 #include "subvol/model.h"
 
@@ -28,6 +30,23 @@ TEST(Measure, IntegralOfALinearFieldOverABox) {
     EXPECT_NEAR(field.max.place.x, 3, 1e-9);
     EXPECT_NEAR(field.max.place.z, 4, 1e-9);
     EXPECT_NEAR(std::accumulate(field.histogram.begin(), field.histogram.end(), 0.0), 24, 1e-9);
+}
+
+// Values that jump from point to point: what a cell changes says little about what it leaves, and its neighbours have to.
+TEST(Measure, IsOffByNoMoreThanItSays) {
+    for (const unsigned seed : {1u, 2u, 3u}) {
+        HexMesh mesh = test::distorted_box(5, .15);
+        std::mt19937 random(seed);
+        std::vector<double> values(mesh.points.size());
+        for (double& value : values) value = static_cast<double>(random() % 2);
+        mesh.attributes = {{"f", 1, values}};
+        const double exact = measure_limit(refine(mesh, {.levels = 2}), {.tolerance = 1e-6}).whole.fields[0].mean;
+        for (const double tolerance : {1e-3, 1e-4, 1e-5}) {
+            const PartMeasure found = measure_limit(mesh, {.tolerance = tolerance}).whole;
+            EXPECT_LE(std::abs(found.fields[0].mean - exact), found.error) << seed << ' ' << tolerance;
+            EXPECT_LE(found.error, tolerance) << seed;
+        }
+    }
 }
 
 TEST(Measure, VolumeOfTheBallConvergesToItsClosedForm) {

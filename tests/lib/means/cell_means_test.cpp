@@ -9,6 +9,7 @@
 #include <numeric>
 #include <random>
 
+#include "lib/finite_volumes.h"
 #include "lib/test_meshes.h"
 #include "subvol/cell.h"
 #include "subvol/cell_means.h"
@@ -82,55 +83,8 @@ double rmse(HexMesh mesh, const std::vector<double>& values, const Field& field)
     return std::sqrt(sum / static_cast<double>(queries.size()));
 }
 
-// The means over straight cells, as finite volumes have them.
-template <class Field>
-std::vector<double> straight_means(const HexMesh& mesh, const Field& field) {
-    constexpr std::array<double, 3> kAt{.1127016653792583, .5, .8872983346207417}, kWeight{5. / 18, 8. / 18, 5. / 18};
-    std::vector<double> means;
-    for (const auto& cell : mesh.cells) {
-        double sum = 0, volume = 0;
-        for (std::size_t g = 0; g < 27; ++g) {
-            const Vec3 at(kAt[g % 3], kAt[g / 3 % 3], kAt[g / 9]);
-            Vec3 x(0.0);
-            Mat3 jacobian(0.0);
-            for (std::size_t k = 0; k < 8; ++k) {
-                Vec3 f, slope(1.0);
-                for (int a = 0; a < 3; ++a) f[a] = kCornerParameters[k][static_cast<std::size_t>(a)] == 1 ? at[a] : 1 - at[a];
-                for (int a = 0; a < 3; ++a) {
-                    for (int b = 0; b < 3; ++b) {
-                        const double sign = kCornerParameters[k][static_cast<std::size_t>(a)] == 1 ? 1 : -1;
-                        slope[a] *= a == b ? sign : f[b];
-                    }
-                }
-                x += f.x * f.y * f.z * mesh.points[cell[k]];
-                jacobian += glm::outerProduct(mesh.points[cell[k]], slope);
-            }
-            const double weight = kWeight[g % 3] * kWeight[g / 3 % 3] * kWeight[g / 9] * glm::determinant(jacobian);
-            sum += weight * field(x);
-            volume += weight;
-        }
-        means.push_back(sum / volume);
-    }
-    return means;
-}
-
 double linear(const Vec3& x) {
     return 1 + 2 * x.x - x.y + .5 * x.z;
-}
-
-// The box [0,1]³ in n³ cells, whose points are moved by up to a part of a cell, those of the boundary along it.
-HexMesh distorted_box(Index n, double part) {
-    HexMesh mesh = make_box(n, n, n);
-    HexMesh moved = mesh;
-    jitter(moved, part, 5);
-    for (std::size_t p = 0; p < mesh.points.size(); ++p) {
-        for (int a = 0; a < 3; ++a) {
-            double& x = mesh.points[p][a];
-            if (x > 0 && x < static_cast<double>(n)) x = moved.points[p][a];
-        }
-        mesh.points[p] /= static_cast<double>(n);
-    }
-    return mesh;
 }
 
 double variation(const std::vector<double>& values) {

@@ -10,27 +10,18 @@
 
 namespace subvol {
 
-/// position_world: how far pieces may lie from the limit; 0: 3e-4 of the diagonal of the mesh
-/// value_of_range: the same for values, as a part of their range
-/// max_levels:     pieces are no finer
-/// max_bytes:      of the pieces: where they would take more, both tolerances are enlarged until they do not
-struct LimitFieldOptions {
-    double position_world = 0;
-    double value_of_range = 5e-4;
-    int max_levels = 3;
-    std::size_t max_bytes = std::size_t{256} << 20;
-};
-
 /// A scalar field of a mesh (`scalar_field`) on its limit, as a function of places in the world: that of curved pieces,
 /// triquadratic in place and value (`find_limit_cells`), which are finer where the limit needs it.
 class LimitField {
 public:
     /// refinement: the scheme; its levels are not used
+    /// options:    of the pieces; where they would take more than max_bytes, both tolerances are enlarged until they do not.
+    ///             None: places within 3e-4 of the mesh's diagonal, values within 5e-4 of their range, at most level 3, 256 MB
     ///
-    /// throws: Error(InvalidInput) as `find_limit_cells` and `scalar_field`, or if an option is out of range; Error(Cancelled)
+    /// throws: Error(InvalidInput) as `find_limit_cells` and `scalar_field`; Error(Cancelled)
     /// cost:   about 600 bytes a piece
     LimitField(const HexMesh& mesh, std::string_view field, const RefineOptions& refinement,
-               const LimitFieldOptions& options = {});
+               std::optional<LimitCellsOptions> options = {});
     ~LimitField();
     LimitField(LimitField&&) noexcept;
     LimitField& operator=(LimitField&&) noexcept;

@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "extreme_search.h"
+
+#include <algorithm>
+
+#include "mesh_subset.h"
+#include "subvol/limit.h"
+
+namespace subvol::detail {
+
+namespace {
+
+constexpr std::size_t kStarts = 4;     // cells in which an extreme is followed
+constexpr std::size_t kEnough = 8192;  // candidates, before those that are no longer open are looked for
+
+/// One of the best places on its way. step: in parameters, how far the extreme may be
+struct Climb {
+    std::size_t part, channel;
+    bool high;
+    Index cell;
+    double step;
+    LimitExtreme best{};
+};
+
+double value_of(const LimitSamples& samples, std::size_t query, std::size_t channel) {
+    for (const LimitAttribute& attribute : samples.attributes) {
+        if (channel < attribute.channels) return attribute.values[query * attribute.channels + channel];
+        channel -= attribute.channels;
+    }
+    return 0;
+}
+
+/// Takes the best of the places that were looked at for each climb, as many for all. Where that is the one before, the next
+/// ones are nearer.
+void take_best(const LimitSamples& samples, std::span<const LimitQuery> queries, std::span<Climb> climbs) {
+    constexpr double kShrink = 0.35;
+    const std::size_t each = queries.size() / climbs.size();
+    for (std::size_t i = 0; i < climbs.size(); ++i) {
+        Climb& one = climbs[i];
+        bool moved = false;
+        for (std::size_t q = i * each; q < (i + 1) * each; ++q) {
+            const double value = value_of(samples, q, one.channel);
+            if (one.best.cell != kNone && (one.high ? value <= one.best.value : value >= one.best.value)) continue;
+            one.best = {value, samples.positions[q], one.cell, queries[q].uvw};
+            moved = true;
+        }
+        if (!moved) one.step *= kShrink;
+    }
+}
+
+/// Looks at the 27 places around the best one of each climb, again and again.
+///
+/// queries: two for each climb, where it begins
+/// number:  of a cell of the climbs in the limit's mesh
+template <class Number>
+void climb(const LimitEvaluator& limit, std::vector<LimitQuery> queries, std::vector<Climb>& climbs, const Number& number,
+           Progress* progress) {
+    constexpr int kRounds = 16;
+    constexpr double kNear = 2e-4;  // in parameters
+    take_best(limit.at(queries), queries, climbs);
+    for (int round = 0; round < kRounds; ++round) {
+        report_progress(progress, "extremes", static_cast<double>(round) / kRounds);
+        queries.clear();
+        std::stable_partition(climbs.begin(), climbs.end(), [&](const Climb& one) { return one.step > kNear; });
+        for (const Climb& one : climbs) {
+            if (one.step <= kNear) break;
+            for (std::size_t n = 0; n < 27; ++n) {
+                const Vec3 offset = one.step * (Vec3(n % 3, n / 3 % 3, n / 9) - Vec3(1.0));
+                queries.push_back({number(one.cell), glm::clamp(one.best.uvw + offset, Vec3(0.0), Vec3(1.0))});
+            }
+        }
+        if (queries.empty()) break;
+        take_best(limit.at(queries), queries, std::span(climbs).first(queries.size() / 27));
+    }
+}
+
+void take(const Climb& from, PartMeasure& part) {
+    FieldMeasure& field = part.fields[from.channel];
+    LimitExtreme& to = from.high ? field.max : field.min;
+    const bool better = from.high ? from.best.value > to.value : from.best.value < to.value;
+    if (to.cell == kNone || better) to = from.best;
+}
+
+}  // namespace
+
+ExtremeSearch::ExtremeSearch(std::size_t parts, std::vector<double> scales, double tolerance)
+    : scales_(std::move(scales)), tolerance_(tolerance) {
+    for (std::size_t i = 0; i < parts * scales_.size(); ++i) {
+        for (const double sign : {-1.0, 1.0}) sides_.push_back({sign});
+    }
+}
+
+void ExtremeSearch::Side::add(const Start& start) {
+    best = std::max(best, sign * start.value);
+    const auto same = std::ranges::find(starts, start.cell, &Start::cell);
+    if (same != starts.end()) {
+        if (sign * start.value < sign * same->value) return;
+        starts.erase(same);
+    }
+    auto at = starts.end();
+    while (at != starts.begin() && sign * start.value > sign * (at - 1)->value) --at;
+    starts.insert(at, start);
+    if (starts.size() > kStarts) starts.pop_back();
+}
+
+void ExtremeSearch::know(std::size_t part, std::size_t channel, double value) {
+    for (const bool high : {false, true}) {
+        Side& side = sides_[side_of(part, channel, high)];
+        side.best = std::max(side.best, side.sign * value);
+    }
+}
+
+void ExtremeSearch::look(std::size_t part, Index cell, std::size_t number, double step,
+                         std::span<const GridMeasure::Extremes> channels) {
+    for (std::size_t c = 0; c < channels.size(); ++c) {
+        const GridMeasure::Extremes& found = channels[c];
+        sides_[side_of(part, c, false)].add({found.low.value, cell, found.low.uvw, found.low_peak, step});
+        sides_[side_of(part, c, true)].add({found.high.value, cell, found.high.uvw, found.high_peak, step});
+        for (const bool high : {false, true}) {
+            const Candidate candidate{static_cast<std::uint32_t>(number), static_cast<std::uint32_t>(side_of(part, c, high)),
+                                      high ? found.high_bound : -found.low_bound};
+            is_open(candidate) ? candidates_.push_back(candidate) : leave(candidate);
+        }
+    }
+    if (candidates_.size() > 2 * kept_ + kEnough) keep_open();
+}
+
+void ExtremeSearch::keep_open() {
+    std::erase_if(candidates_, [&](const Candidate& candidate) {
+        if (!is_open(candidate)) leave(candidate);
+        return !is_open(candidate);
+    });
+    kept_ = candidates_.size();
+}
+
+void ExtremeSearch::end_level(std::size_t room, std::vector<std::uint8_t>& marked) {
+    keep_open();
+    std::ranges::stable_sort(candidates_, std::ranges::greater{}, [&](const Candidate& one) { return excess(one); });
+    for (const Candidate& one : candidates_) {
+        if (marked[one.number] == 0 && room > 0) {
+            marked[one.number] = 1;
+            --room;
+        }
+        if (marked[one.number] == 0) leave(one);
+    }
+    candidates_.clear();
+    kept_ = 0;
+}
+
+void ExtremeSearch::find(const HexMesh& control, const SchemeOptions& scheme, const LimitExtent& extent, Progress* progress,
+                         std::vector<PartMeasure>& found) const {
+    std::vector<Climb> climbs;
+    std::vector<LimitQuery> queries;
+    std::vector<std::uint8_t> about(control.cells.size(), 0);
+    for (std::size_t s = 0; s < sides_.size(); ++s) {
+        const std::size_t channel = s / 2 % scales_.size();
+        for (const Start& start : sides_[s].starts) {
+            about[start.cell] = 1;
+            climbs.push_back({s / 2 / scales_.size(), channel, s % 2 == 1, start.cell, scales_[channel] > 0 ? start.step : 0});
+            queries.push_back({start.cell, start.uvw});
+            queries.push_back({start.cell, start.peak});
+        }
+    }
+    if (climbs.empty()) return;
+    grow(control, about, kHaloOfLimit);
+    const MeshSubset around = subset(control, about);
+    const auto number = [&](Index cell) {
+        return static_cast<Index>(std::ranges::lower_bound(around.cells, cell) - around.cells.begin());
+    };
+    for (LimitQuery& query : queries) query.cell = number(query.cell);
+    SchemeOptions rules = scheme;
+    rules.crease_angle_deg.reset();
+    const LimitEvaluator limit(around.mesh, {.scheme = rules}, extent);
+    climb(limit, std::move(queries), climbs, number, progress);
+    const auto each_part = [&](std::size_t part, const auto& visit) {
+        visit(found[0]);
+        if (found.size() > 1) visit(found[part + 1]);
+    };
+    for (const Climb& one : climbs) each_part(one.part, [&](PartMeasure& part) { take(one, part); });
+    for (std::size_t s = 0; s < sides_.size(); ++s) {
+        each_part(s / 2 / scales_.size(), [&](PartMeasure& part) {
+            FieldMeasure& field = part.fields[s / 2 % scales_.size()];
+            const double known = s % 2 == 1 ? field.max.value : -field.min.value;
+            field.extreme_error = std::max(field.extreme_error, sides_[s].open - known);
+        });
+    }
+}
+
+}  // namespace subvol::detail

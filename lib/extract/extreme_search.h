@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <span>
+#include <vector>
+
+#include "grid_measure.h"
+#include "subvol/detail/limit_of_part.h"
+#include "subvol/measure.h"
+
+namespace subvol::detail {
+
+/// The extremes of the limit by branch and bound, for each channel and each part of a mesh: a cell is refined further while
+/// the limit may go beyond the best value so far between its nodes. In the end the best places are followed in the limit
+/// itself.
+class ExtremeSearch {
+public:
+    /// scales:    of each channel, 1/range; 0 for a constant
+    /// tolerance: as a part of the range
+    ExtremeSearch(std::size_t parts, std::vector<double> scales, double tolerance);
+
+    /// Takes a value that the limit has somewhere.
+    void know(std::size_t part, std::size_t channel, double value);
+
+    /// Looks at the nodes of a cell.
+    ///
+    /// number:   of the cell among those of the level
+    /// step:     in parameters, how far an extreme may be from the node that is nearest to it
+    /// channels: what the nodes say of each
+    void look(std::size_t part, Index cell, std::size_t number, double step, std::span<const GridMeasure::Extremes> channels);
+
+    /// Ends a level: marks the cells that are to be refined, the most promising first.
+    ///
+    /// room:   at most so many
+    /// marked: one flag for each cell of the level
+    void end_level(std::size_t room, std::vector<std::uint8_t>& marked);
+
+    /// Puts the extremes into the whole and, if there are any, its parts.
+    ///
+    /// control: its creases are tagged
+    /// extent:  of the whole mesh
+    void find(const HexMesh& control, const SchemeOptions& scheme, const LimitExtent& extent, Progress* progress,
+              std::vector<PartMeasure>& found) const;
+
+private:
+    /// A place with a value near an extreme. peak: where it may be even nearer
+    struct Start {
+        double value;
+        Index cell;
+        Vec3 uvw, peak;
+        double step;
+    };
+    /// sign: 1 for the largest values, −1 for the least
+    /// best: sign × the best value that the limit is known to have; open: the same of what it may have in cells that were left
+    /// starts: the best places, of different cells, in order
+    struct Side {
+        double sign;
+        double best = -HUGE_VAL, open = -HUGE_VAL;
+        std::vector<Start> starts{};
+
+        void add(const Start& start);
+    };
+    /// A cell in which the limit may have an extreme.
+    struct Candidate {
+        std::uint32_t number, side;
+        double bound;
+    };
+
+    [[nodiscard]] std::size_t side_of(std::size_t part, std::size_t channel, bool high) const {
+        return 2 * (part * scales_.size() + channel) + (high ? 1 : 0);
+    }
+    /// How far beyond the best value the limit may go, in parts of the range.
+    [[nodiscard]] double excess(const Candidate& candidate) const {
+        return scales_[candidate.side / 2 % scales_.size()] * (candidate.bound - sides_[candidate.side].best);
+    }
+    [[nodiscard]] bool is_open(const Candidate& candidate) const { return excess(candidate) > 0.5 * tolerance_; }
+    void leave(const Candidate& candidate) {
+        sides_[candidate.side].open = std::max(sides_[candidate.side].open, candidate.bound);
+    }
+    void keep_open();
+
+    std::vector<double> scales_;
+    double tolerance_;
+    std::vector<Side> sides_;
+    std::vector<Candidate> candidates_;
+    std::size_t kept_ = 0;
+};
+
+}  // namespace subvol::detail
