@@ -86,13 +86,19 @@ RbfVolume empty_volume(const HexMesh& mesh, std::size_t count, const SampleOptio
             channels.emplace_back().name = attribute.channels == 1 ? attribute.name : attribute.name + "." + std::to_string(c);
         }
     }
-    tbb::task_group arrays;  // clearing new memory takes a while, so several threads do it
-    arrays.run([&] { volume.frames.resize(count); });
+    // Clearing new memory takes a while, so several threads do it. This one gets it, to reuse the memory that it has freed:
+    // each thread frees and gets memory in an arena of its own.
+    tbb::task_group arrays;
+    const auto make = [&](auto& array) {
+        array.reserve(count);
+        arrays.run([&array, count] { array.resize(count); });
+    };
+    make(volume.frames);
     for (RbfChannel& channel : channels) {
-        arrays.run([&] { channel.values.resize(count); });
-        arrays.run([&] { channel.gradients.resize(count); });
-        arrays.run([&] { channel.moments.resize(count); });
-        if (options.correction == Correction::Full) arrays.run([&] { channel.hessians.resize(count); });
+        make(channel.values);
+        make(channel.gradients);
+        make(channel.moments);
+        if (options.correction == Correction::Full) make(channel.hessians);
     }
     arrays.wait();
     return volume;

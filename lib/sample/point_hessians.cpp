@@ -85,7 +85,7 @@ void fit_hessians(const PointLines& lines, RbfVolume& volume) {
         for (RbfChannel& channel : volume.channels) {
             fit.begin(volume.frames[p], radius);
             const Eigen::Vector3d g = vector(channel.gradients[p]);
-            for (std::size_t i = lines.offsets[p]; i < lines.offsets[p + 1]; ++i) {
+            for (std::size_t i = lines.starts[p]; i < lines.end(p); ++i) {
                 const Index q = lines.neighbours[i];
                 if (q == kNone) continue;
                 const Eigen::Vector3d offset = vector(volume.centers[q] - volume.centers[p]);

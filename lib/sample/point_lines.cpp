@@ -162,61 +162,61 @@ private:
     std::vector<Index> cell_of_rank_;
 };
 
-PointLines collect(const Topology& topology, bool child) {
-    const LineFinder finder(topology, child);
-    PointLines lines;
-    lines.offsets.resize(finder.size() + 1);
-    lines.offsets[0] = 0;
-    parallel_each(finder.size(), [&](std::size_t p) { lines.offsets[p + 1] = finder.entries(p); });
-    for (std::size_t p = 0; p < finder.size(); ++p) lines.offsets[p + 1] += lines.offsets[p];
-    lines.neighbours.resize(lines.offsets.back());
-    lines.cells.resize(lines.offsets.back());
-    parallel_each(finder.size(), [&](std::size_t p) {
-        std::size_t at = lines.offsets[p];
-        finder.at(p, [&](Index a, Index b, unsigned cells_a, unsigned cells_b) {
-            lines.neighbours[at] = a;
-            lines.neighbours[at + 1] = b;
+/// Appends the lines of `count` points. point_of(i) is the point i of them for the finder, number_of(p) the number of a point p
+/// of the finder in `lines`.
+template <class PointOf, class NumberOf>
+void append(const LineFinder& finder, std::size_t count, const PointOf& point_of, const NumberOf& number_of,
+            PointLines& lines) {
+    parallel_each(
+        count, [&](std::size_t i) { lines.counts[number_of(point_of(i))] = static_cast<Index>(finder.entries(point_of(i))); });
+    std::size_t end = lines.neighbours.size();
+    for (std::size_t i = 0; i < count; ++i) {
+        const auto p = number_of(point_of(i));
+        lines.starts[p] = end;
+        end += lines.counts[p];
+    }
+    lines.neighbours.resize(end);
+    lines.cells.resize(end);
+    parallel_each(count, [&](std::size_t i) {
+        std::size_t at = lines.starts[number_of(point_of(i))];
+        finder.at(point_of(i), [&](Index a, Index b, unsigned cells_a, unsigned cells_b) {
+            lines.neighbours[at] = a == kNone ? kNone : number_of(a);
+            lines.neighbours[at + 1] = b == kNone ? kNone : number_of(b);
             lines.cells[at] = static_cast<std::uint8_t>(cells_a);
             lines.cells[at + 1] = static_cast<std::uint8_t>(cells_b);
             at += 2;
         });
     });
-    return lines;
 }
 
 }  // namespace
 
 PointLines lines_of_child(const Topology& parent) {
-    return collect(parent, true);
+    const LineFinder finder(parent, true);
+    PointLines lines;
+    lines.starts.resize(finder.size());
+    lines.counts.resize(finder.size());
+    const auto same = [](auto p) { return static_cast<Index>(p); };
+    append(finder, finder.size(), same, same, lines);
+    return lines;
+}
+
+LinesOfParts::LinesOfParts(std::size_t points) {
+    constexpr std::size_t kRegular = 6;  // entries of a point of three lines; memory that stays unused is never touched
+    all_.starts.resize(points);
+    all_.counts.resize(points);
+    all_.neighbours.reserve(kRegular * points);
+    all_.cells.reserve(kRegular * points);
 }
 
 void LinesOfParts::add(const MeshPart& part) {
-    Part& added = parts_.emplace_back(Part{collect(part.topology, false), part.points, part.own});
-    for (Index& p : added.lines.neighbours) p = p == kNone ? kNone : part.points[p];
-}
-
-PointLines LinesOfParts::finish(std::size_t points) {
-    PointLines all;
-    all.offsets.assign(points + 1, 0);
-    for (const auto& [lines, numbers, own] : parts_) {
-        for (std::size_t i = 0; i < lines.size(); ++i) {
-            if (own[i]) all.offsets[numbers[i] + 1] = lines.offsets[i + 1] - lines.offsets[i];
-        }
+    std::vector<Index> owned;
+    for (Index p = 0; p < part.points.size(); ++p) {
+        if (part.own[p]) owned.push_back(p);
     }
-    for (std::size_t p = 0; p < points; ++p) all.offsets[p + 1] += all.offsets[p];
-    all.neighbours.resize(all.offsets.back());
-    all.cells.resize(all.offsets.back());
-    for (Part& part : parts_) {
-        const Part done = std::move(part);  // frees each part after its turn
-        parallel_each(done.lines.size(), [&](std::size_t i) {
-            if (!done.own[i]) return;
-            const std::size_t from = done.lines.offsets[i], to = all.offsets[done.points[i]];
-            const std::size_t count = done.lines.offsets[i + 1] - from;
-            std::copy_n(done.lines.neighbours.data() + from, count, all.neighbours.data() + to);
-            std::copy_n(done.lines.cells.data() + from, count, all.cells.data() + to);
-        });
-    }
-    return all;
+    append(
+        LineFinder(part.topology, false), owned.size(), [&](std::size_t i) { return owned[i]; },
+        [&](Index p) { return part.points[p]; }, all_);
 }
 
 }  // namespace subvol::detail

@@ -113,14 +113,14 @@ void mark_hull(const detail::MeshPart& part, std::vector<std::uint8_t>& on_hull)
 /// The samples are the control points. The topology is built part by part, to save memory.
 SampledLevel control_level(HexMesh control, const SampleOptions& options, bool with_boundary = true) {
     const std::size_t points = control.points.size();
-    detail::LinesOfParts lines;
+    detail::LinesOfParts lines(points);
     std::vector<std::uint8_t> on_hull(points);
     detail::each_part(control, [&](const detail::MeshPart& part) {
         lines.add(part);
         mark_hull(part, on_hull);
     });
     SampledLevel level;
-    level.lines = lines.finish(points);
+    level.lines = lines.finish();
     if (with_boundary) level.boundary = boundary_of(control, on_hull, options.per_edge, options);
     level.counts.at_vertices = points;
     level.mesh = std::move(control);
@@ -256,10 +256,10 @@ SampleTables::SampleTables(const HexMesh& mesh, const SampleOptions& options) {
         throw Error(ErrorCode::InvalidInput, "there are tables for one kernel at each control point only", "per_edge", "1");
     }
     const HexMesh control = detail::control_mesh(HexMesh(mesh), options.scheme);
-    detail::LinesOfParts lines;
+    detail::LinesOfParts lines(control.points.size());
     detail::each_part(control, [&](const detail::MeshPart& part) { lines.add(part); });
     BoundaryTables boundary(control, refinement(options, options.boundary_levels.value_or(1)));
-    state_ = std::make_unique<State>(State{options, lines.finish(control.points.size()), std::move(boundary)});
+    state_ = std::make_unique<State>(State{options, lines.finish(), std::move(boundary)});
 }
 
 SampleTables::~SampleTables() = default;

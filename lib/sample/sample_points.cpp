@@ -64,7 +64,7 @@ public:
         for (std::size_t c = 0; c < sources_.size(); ++c) volume_.channels[c].values[p] = static_cast<float>(sources_[c].at(p));
         sums_.begin(p);
         double cells = 0;
-        for (std::size_t i = lines_.offsets[p]; i < lines_.offsets[p + 1]; i += 2) {
+        for (std::size_t i = lines_.starts[p]; i < lines_.end(p); i += 2) {
             const Index a = lines_.neighbours[i], b = lines_.neighbours[i + 1];
             const double cells_a = lines_.cells[i], cells_b = lines_.cells[i + 1];
             cells += (cells_a + cells_b) / 3;
