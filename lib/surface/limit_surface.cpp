@@ -44,11 +44,9 @@ public:
     /// leads into a cell that is not owned.
     [[nodiscard]] std::optional<SettledCut> make(const Cut& cut, const Share& share) const;
 
-    /// All fields of the mesh at places.
-    [[nodiscard]] std::vector<ProbedField> fields_at(std::span<const LimitQuery> places) const;
-
 private:
     [[nodiscard]] LimitExtent extent_of_field() const;
+    void add_fields(SettledPoints& settled) const;
     [[nodiscard]] int next_level(int level, double deviation, double triangles) const;
 
     const HexMesh& mesh_;
@@ -89,6 +87,13 @@ std::optional<std::size_t> number_of_field(const HexMesh& mesh, std::string_view
     return static_cast<std::size_t>(&scalar_field(mesh, name) - mesh.attributes.data());
 }
 
+/// The number of the field that points are settled with, if there is one: that of the isosurfaces, or the only one of the mesh,
+/// which then needs no evaluation of its own.
+std::optional<std::size_t> number_of_settled_field(const HexMesh& mesh, std::string_view name, const SurfaceOptions& options) {
+    const bool only = mesh.attributes.size() == 1 && mesh.attributes[0].channels == 1;
+    return options.isos.empty() && only ? std::optional<std::size_t>(0) : number_of_field(mesh, name, options);
+}
+
 /// What is to be cut out, one after the other.
 std::vector<Cut> cuts_of(const SurfaceOptions& options) {
     std::vector<Cut> cuts;
@@ -108,7 +113,7 @@ SurfaceMaker::SurfaceMaker(const HexMesh& mesh, std::span<const std::uint8_t> ow
     : mesh_(mesh),
       options_(options),
       whole_(whole),
-      field_(number_of_field(mesh, field, options)),
+      field_(number_of_settled_field(mesh, field, options)),
       topology_(build_topology(mesh)),
       scalar_(with_field_only(mesh, field_)),
       cutter_(scalar_, topology_, owned, options.scheme, options.progress),
@@ -158,7 +163,10 @@ std::optional<SettledCut> SurfaceMaker::make(const Cut& cut, const Share& share)
     const std::vector<Index> all = few ? made.soup.cells : active;
     const auto [begin, end] = share.range(all.size());
     made.range = {begin, end, all.size()};
-    if (few && share.whole()) return made;
+    if (few && share.whole()) {
+        add_fields(made.settled);
+        return made;
+    }
     if (!few && share.whole() && made.level == first_level) {
         made.soup = std::move(first);
     } else {
@@ -167,32 +175,22 @@ std::optional<SettledCut> SurfaceMaker::make(const Cut& cut, const Share& share)
         if (made.soup.leads_out) return {};
     }
     made.settled = settler_.settle(made.soup, cut, made.level);
+    add_fields(made.settled);
     return made;
 }
 
-std::vector<ProbedField> SurfaceMaker::fields_at(std::span<const LimitQuery> places) const {
-    std::vector<ProbedField> fields;
-    for (const Attribute& attribute : mesh_.attributes) {
-        const auto channels = static_cast<std::size_t>(attribute.channels);
-        fields.push_back({attribute.name, channels, std::vector<double>(places.size() * channels),
-                          std::vector<Vec3>(places.size() * channels)});
-    }
-    if (fields.empty()) return fields;
+/// Evaluates the fields at settled points, if the settler has not done so.
+void SurfaceMaker::add_fields(SettledPoints& settled) const {
+    if (mesh_.attributes.size() == scalar_.attributes.size()) return;
     report_progress(options_.progress, "fields", 0);
+    const std::vector<ProbedField> fields = fields_of(mesh_);
+    settled.resize(settled.places.size(), fields);
     const LimitEvaluator limit(mesh_, {.scheme = options_.scheme}, whole_);
-    for (std::size_t begin = 0; begin < places.size(); begin += kPointsAtOnce) {
-        const auto some = places.subspan(begin, std::min(kPointsAtOnce, places.size() - begin));
-        const LimitSamples samples = limit.at(some);
-        for (std::size_t f = 0; f < fields.size(); ++f) {
-            const std::size_t channels = fields[f].channels;
-            parallel_each(some.size() * channels, [&](std::size_t i) {
-                fields[f].values[begin * channels + i] = samples.attributes[f].values[i];
-                fields[f].gradients[begin * channels + i] =
-                    world_gradient(samples.jacobians[i / channels], samples.attributes[f].derivatives[i]);
-            });
-        }
+    for (std::size_t begin = 0; begin < settled.places.size(); begin += kPointsAtOnce) {
+        const std::size_t count = std::min(kPointsAtOnce, settled.places.size() - begin);
+        const LimitSamples samples = limit.at(std::span(settled.places).subspan(begin, count));
+        parallel_each(count, [&](std::size_t i) { take_fields(samples, i, Vec3(0.0), begin + i, settled.fields); });
     }
-    return fields;
 }
 
 }  // namespace
@@ -382,7 +380,6 @@ std::optional<LimitSurface> surface_of(const HexMesh& part, std::span<const std:
         report_progress(options.progress, "improve", 0);
         add_cut(*made, options.improve, tolerance_world(options, whole), all);
     }
-    all.fields = maker.fields_at(all.places);
     measure_surface(all.surface, all.report);
     return all;
 }
@@ -425,7 +422,6 @@ SurfaceShareBytes detail::share_of_surface(const MeshSource& source, std::string
     const SurfaceMaker maker(tagged.mesh(), near->owned, cells.whole(), field, tagged.options);
     SurfaceShare made{.improve = options.improve, .slack_world = tolerance_world(options, cells.whole())};
     ShareRange range;
-    std::vector<LimitQuery> places;
     for (const Cut& cut : cuts_of(options)) {
         std::optional<SettledCut> one = maker.make(cut, share);
         if (!one) {
@@ -433,11 +429,9 @@ SurfaceShareBytes detail::share_of_surface(const MeshSource& source, std::string
                         source.mesh() != nullptr ? "surface" : source.stored().name, "one process: without --part and mpirun");
         }
         range = {range.begin + one->range.begin, range.end + one->range.end, range.count + one->range.count};
-        places.insert(places.end(), one->settled.places.begin(), one->settled.places.end());
         for (LimitQuery& place : one->settled.places) near->rename(place);
         made.cuts.push_back(std::move(*one));
     }
-    made.fields = maker.fields_at(places);
     return {bytes_of(made), range};
 }
 

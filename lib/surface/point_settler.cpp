@@ -53,11 +53,67 @@ double distance_to_line(const Vec3& p, const Vec3& a, const Vec3& b) {
 
 }  // namespace
 
+void SettledPoints::resize(std::size_t count, std::span<const ProbedField> like) {
+    places.resize(count);
+    positions.resize(count);
+    normals.resize(count);
+    fields = without_points(like);
+    for (ProbedField& field : fields) {
+        field.values.resize(count * field.channels);
+        field.gradients.resize(count * field.channels);
+    }
+}
+
+void SettledPoints::add(const SettledPoints& from, std::size_t point) {
+    places.push_back(from.places[point]);
+    positions.push_back(from.positions[point]);
+    normals.push_back(from.normals[point]);
+    add_fields(from.fields, point, fields);
+}
+
+void take_fields(const LimitSamples& samples, std::size_t i, const Vec3& step, std::size_t point,
+                 std::span<ProbedField> fields) {
+    for (std::size_t f = 0; f < fields.size(); ++f) {
+        const LimitAttribute& from = samples.attributes[f];
+        for (std::size_t k = 0; k < from.channels; ++k) {
+            const Vec3& derivatives = from.derivatives[i * from.channels + k];
+            fields[f].values[point * from.channels + k] = from.values[i * from.channels + k] + glm::dot(derivatives, step);
+            fields[f].gradients[point * from.channels + k] = world_gradient(samples.jacobians[i], derivatives);
+        }
+    }
+}
+
+void add_fields(std::span<const ProbedField> from, std::size_t point, std::span<ProbedField> to) {
+    for (std::size_t f = 0; f < to.size(); ++f) {
+        for (std::size_t k = 0; k < to[f].channels; ++k) {
+            to[f].values.push_back(from[f].values[point * to[f].channels + k]);
+            to[f].gradients.push_back(from[f].gradients[point * to[f].channels + k]);
+        }
+    }
+}
+
+std::vector<ProbedField> fields_of(const HexMesh& mesh) {
+    std::vector<ProbedField> fields;
+    for (const Attribute& attribute : mesh.attributes) {
+        fields.push_back({attribute.name, static_cast<std::size_t>(attribute.channels), {}, {}});
+    }
+    return fields;
+}
+
+std::vector<ProbedField> without_points(std::span<const ProbedField> fields) {
+    std::vector<ProbedField> none;
+    for (const ProbedField& field : fields) none.push_back({field.name, field.channels, {}, {}});
+    return none;
+}
+
+PointSettler::PointSettler(const HexMesh& mesh, const Topology& topology, const LimitExtent& whole, const SchemeOptions& scheme,
+                           Progress* progress)
+    : fields_(fields_of(mesh)), topology_(topology), limit_(mesh, {.scheme = scheme}, whole), progress_(progress) {
+}
+
 SettledPoints PointSettler::settle(const SurfaceSoup& soup, const Cut& cut, int level) const {
     SettledPoints settled;
-    settled.places.resize(soup.points.size());
-    settled.positions.resize(soup.points.size());
-    settled.normals.resize(soup.points.size());
+    settled.resize(soup.points.size(), fields_);
     for (std::size_t begin = 0; begin < soup.points.size(); begin += kSettledAtOnce) {
         report_progress(progress_, "to the limit", begin, soup.points.size());
         std::vector<Moving> moving;
@@ -107,6 +163,7 @@ void PointSettler::move(const SurfaceSoup& soup, const Cut& cut, int level, std:
             settled.places[one.point] = {queries[i].cell, glm::clamp(queries[i].uvw + step, Vec3(0.0), Vec3(1.0))};
             settled.positions[one.point] = samples.positions[i] + samples.jacobians[i] * step;
             settled.normals[one.point] = normal_of(point, samples, i, cut);
+            take_fields(samples, i, step, one.point, settled.fields);
             one.done = std::abs(by) < kEdgeTolerance || round + 1 == kMostSettlingRounds || std::abs(by) < 1e-3;
         });
         std::erase_if(moving, [](const Moving& one) { return one.done; });

@@ -48,8 +48,7 @@ std::vector<Vec3> normals_of(const SettledCut& cut) {
 
 /// One point for all parts that have it: of the first of its cells, but where it lies on the hull of one that shows it there,
 /// as in one part. Returns the numbers of the parts' points in the result.
-std::vector<std::vector<Index>> join_points(std::span<const SettledCut> parts, SettledCut& whole,
-                                            std::vector<PointOrigin>& origins) {
+std::vector<std::vector<Index>> join_points(std::span<const SettledCut> parts, SettledCut& whole) {
     struct NamedPoint {
         VertexNumber a, b;
         bool off_hull;
@@ -69,31 +68,27 @@ std::vector<std::vector<Index>> join_points(std::span<const SettledCut> parts, S
         }
     }
     tbb::parallel_sort(named.begin(), named.end());
-    origins.clear();
+    whole.settled.fields = without_points(parts[0].settled.fields);
     for (std::size_t i = 0; i < named.size(); ++i) {
         const NamedPoint& point = named[i];
         if (i == 0 || point.a != named[i - 1].a || point.b != named[i - 1].b) {
-            const SettledPoints& from = parts[point.part].settled;
             whole.soup.points.push_back(parts[point.part].soup.points[point.at]);
-            whole.settled.places.push_back(from.places[point.at]);
-            whole.settled.positions.push_back(from.positions[point.at]);
-            whole.settled.normals.push_back(from.normals[point.at]);
-            origins.push_back({point.part, point.at});
+            whole.settled.add(parts[point.part].settled, point.at);
         }
-        numbers[point.part][point.at] = static_cast<Index>(origins.size() - 1);
+        numbers[point.part][point.at] = static_cast<Index>(whole.soup.points.size() - 1);
     }
     return numbers;
 }
 
 }  // namespace
 
-SettledCut joined(std::vector<SettledCut> parts, std::vector<PointOrigin>& origins) {
+SettledCut joined(std::vector<SettledCut> parts) {
     SettledCut whole{.level = parts[0].level,
                      .deviation_world = parts[0].deviation_world,
                      .converged = parts[0].converged,
                      .soup = {},
                      .settled = {}};
-    const std::vector<std::vector<Index>> numbers = join_points(parts, whole, origins);
+    const std::vector<std::vector<Index>> numbers = join_points(parts, whole);
     struct CutCell {
         Index cell;
         std::size_t part, at;
@@ -118,7 +113,7 @@ SettledCut joined(std::vector<SettledCut> parts, std::vector<PointOrigin>& origi
     return whole;
 }
 
-std::vector<Index> add_cut(const SettledCut& cut, bool improve, double slack_world, LimitSurface& all) {
+void add_cut(const SettledCut& cut, bool improve, double slack_world, LimitSurface& all) {
     const SettledPoints& settled = cut.settled;
     const std::vector<Vec3> normals = normals_of(cut);
     std::vector<std::array<Index, 3>> triangles = cut.soup.triangles;
@@ -126,7 +121,8 @@ std::vector<Index> add_cut(const SettledCut& cut, bool improve, double slack_wor
         all.report.mended += mend_slivers(settled.positions, normals, sharp_lines(settled.positions, triangles, cut.soup.hull),
                                           slack_world, triangles);
     }
-    std::vector<Index> numbers(settled.positions.size(), kNone), used;
+    if (all.fields.empty()) all.fields = without_points(settled.fields);
+    std::vector<Index> numbers(settled.positions.size(), kNone);
     for (const auto& t : triangles) {
         for (const Index p : t) numbers[p] = 0;
     }
@@ -136,7 +132,7 @@ std::vector<Index> add_cut(const SettledCut& cut, bool improve, double slack_wor
         all.surface.points.push_back(settled.positions[p]);
         all.normals.push_back(normals[p]);
         all.places.push_back(settled.places[p]);
-        used.push_back(p);
+        add_fields(settled.fields, p, all.fields);
     }
     for (auto t : triangles) {
         for (Index& p : t) p = numbers[p];
@@ -146,7 +142,6 @@ std::vector<Index> add_cut(const SettledCut& cut, bool improve, double slack_wor
     all.report.deviation_world = std::max(all.report.deviation_world, cut.deviation_world);
     all.report.converged = all.report.converged && cut.converged;
     all.report.cells += cut.soup.cells.size();
-    return used;
 }
 
 }  // namespace subvol::detail

@@ -21,32 +21,21 @@ struct SettledCut {
     SettledPoints settled;
 };
 
-/// A point of one of several parts of a surface.
-struct PointOrigin {
-    std::uint32_t part;
-    Index at;
-};
-
 /// Parts of one surface as one. Each has some of its cells; cells and points that several have are in the result once.
-///
-/// origins: become those of the points of the result
-[[nodiscard]] SettledCut joined(std::vector<SettledCut> parts, std::vector<PointOrigin>& origins);
+[[nodiscard]] SettledCut joined(std::vector<SettledCut> parts);
 
 /// Adds a surface to others: with normals where sides meet, fewer slivers, and no points that no triangle uses.
 ///
 /// improve: slivers are mended; slack_world: how far new edges may bend away from the limit
-/// returns: the points of the cut that are used, ascending
-std::vector<Index> add_cut(const SettledCut& cut, bool improve, double slack_world, LimitSurface& all);
+void add_cut(const SettledCut& cut, bool improve, double slack_world, LimitSurface& all);
 
 /// What is known of a surface in some of its cells.
 ///
 /// improve, slack_world: as of `add_cut`
-/// fields: at the points of all cuts, one after the other
 struct SurfaceShare {
     bool improve = true;
     double slack_world = 0;
     std::vector<SettledCut> cuts{};
-    std::vector<ProbedField> fields{};
 };
 
 [[nodiscard]] std::string bytes_of(const SurfaceShare& share);

@@ -2,15 +2,22 @@
 #include "soup_cutter.h"
 
 #include <tbb/parallel_sort.h>
+
 #include <algorithm>
+#include <cmath>
+#include <optional>
 
 #include "corner_of.h"
 #include "subvol/cell.h"
 #include "subvol/dense_cells.h"
+#include "subvol/detail/parallel_each.h"
 
 namespace subvol::detail {
 
 namespace {
+
+// Between the vertices of level 1 values go beyond theirs by less than this part of their range.
+constexpr double kSlack = 0.3;
 
 // The number in kCellEdges of the edge along `axis` at the other two axes' sides (in their order).
 constexpr std::array<std::array<std::size_t, 4>, 3> kEdgeAt{{{0, 1, 2, 3}, {4, 5, 6, 7}, {8, 9, 10, 11}}};
@@ -95,18 +102,18 @@ public:
         : grid_(grid), values_(values), cut_(cut), side_(grid.side), number_(numbers, grid.cell) {
         for (std::size_t f = 0; f < 6; ++f) on_hull_[f] = cut.hull && topology.face_on_hull(topology.cell_faces[grid.cell][f]);
         any_hull_ = std::ranges::find(on_hull_, true) != on_hull_.end();
-        numbers_.resize(side_ * side_ * side_);
-        for (std::size_t k = 0; k < side_; ++k) {
-            for (std::size_t j = 0; j < side_; ++j) {
-                for (std::size_t i = 0; i < side_; ++i) numbers_[linear(i, j, k)] = number_(i, j, k);
-            }
-        }
+        numbers_.assign(side_ * side_ * side_, kNotYet);
     }
 
     CellTriangles run() {
         for (std::size_t k = 0; k + 1 < side_; ++k) {
             for (std::size_t j = 0; j + 1 < side_; ++j) {
-                for (std::size_t i = 0; i + 1 < side_; ++i) cut_child(i, j, k);
+                if (cut_.iso || at_hull(1, j, k)) {
+                    for (std::size_t i = 0; i + 1 < side_; ++i) cut_child(i, j, k);
+                } else {  // the hull alone: the row meets it at its ends
+                    cut_child(0, j, k);
+                    if (side_ > 2) cut_child(side_ - 2, j, k);
+                }
             }
         }
         return finish();
@@ -115,6 +122,23 @@ public:
 private:
     [[nodiscard]] std::size_t linear(std::size_t i, std::size_t j, std::size_t k) const { return i + side_ * (j + side_ * k); }
     [[nodiscard]] bool inside(std::uint32_t vertex) const { return !cut_.iso || values_[vertex] >= *cut_.iso; }
+
+    /// Whether a child has a face on the hull.
+    [[nodiscard]] bool at_hull(std::size_t i, std::size_t j, std::size_t k) const {
+        const std::size_t last = side_ - 2;
+        return any_hull_ && ((on_hull_[0] && i == 0) || (on_hull_[1] && i == last) || (on_hull_[2] && j == 0) ||
+                             (on_hull_[3] && j == last) || (on_hull_[4] && k == 0) || (on_hull_[5] && k == last));
+    }
+
+    /// The number of a vertex: few vertices are asked for.
+    [[nodiscard]] VertexNumber number(std::uint32_t vertex) {
+        VertexNumber& known = numbers_[vertex];
+        if (known == kNotYet) {
+            const auto at = position(vertex);
+            known = number_(at[0], at[1], at[2]);
+        }
+        return known;
+    }
 
     void cut_child(std::size_t i, std::size_t j, std::size_t k) {
         std::array<std::uint32_t, 8> vertices;
@@ -125,21 +149,21 @@ private:
                 linear(i + static_cast<std::size_t>(u), j + static_cast<std::size_t>(v), k + static_cast<std::size_t>(w)));
             ins += inside(vertices[c]) ? 1 : 0;
         }
-        const std::size_t last = side_ - 2;
-        const bool at_hull = any_hull_ && ((on_hull_[0] && i == 0) || (on_hull_[1] && i == last) || (on_hull_[2] && j == 0) ||
-                                           (on_hull_[3] && j == last) || (on_hull_[4] && k == 0) || (on_hull_[5] && k == last));
-        if (ins == 0 || (ins == 8 && !at_hull)) return;
+        const bool with_hull = at_hull(i, j, k);
+        if (ins == 0 || (ins == 8 && !with_hull)) return;
         // Only the order of the numbers decides how a cell is split.
+        std::array<VertexNumber, 8> numbers;
+        std::ranges::transform(vertices, numbers.begin(), [&](std::uint32_t vertex) { return number(vertex); });
         std::array<Index, 8> ranks{};
         for (std::size_t a = 0; a < 8; ++a) {
-            for (std::size_t b = 0; b < 8; ++b) ranks[a] += numbers_[vertices[b]] < numbers_[vertices[a]] ? 1 : 0;
+            for (std::size_t b = 0; b < 8; ++b) ranks[a] += numbers[b] < numbers[a] ? 1 : 0;
         }
         std::array<std::uint32_t, 8> of_rank;
         for (std::size_t c = 0; c < 8; ++c) of_rank[ranks[c]] = vertices[c];
         for (const auto& tet : split_cell(ranks)) {
             const std::array<std::uint32_t, 4> corners{of_rank[tet[0]], of_rank[tet[1]], of_rank[tet[2]], of_rank[tet[3]]};
             if (cut_.iso && ins < 8) cut_tetrahedron(corners);
-            if (at_hull) clip_faces(corners);
+            if (with_hull) clip_faces(corners);
         }
     }
 
@@ -233,6 +257,8 @@ private:
         return found;
     }
 
+    static constexpr VertexNumber kNotYet = ~VertexNumber{0};
+
     const DenseCell& grid_;
     std::span<const double> values_;
     const Cut& cut_;
@@ -295,19 +321,53 @@ SurfaceSoup join(const std::vector<Index>& cells, const std::vector<CellTriangle
 
 }  // namespace
 
+/// Cells whose vertices of level 1 may have values about the isovalue: bounds from the control values around them, before any
+/// is computed. A row whose negative weights sum up to -n makes values at most n times the range of the control values beyond
+/// these. For MCQ with tension w, n is at most 8 w where all points of the rule are there, and 24 w where some are
+/// extrapolated.
+std::vector<Index> SoupCutter::near_isovalue(const Cut& cut) const {
+    struct Around {
+        double low = HUGE_VAL, high = -HUGE_VAL;
+        std::size_t cells = 0;
+    };
+    const bool bounded = interpolates(scheme_.kind);  // points of other schemes depend on two layers of cells
+    const double tension = scheme_.kind == Scheme::Mcq ? scheme_.tension : 0;
+    std::vector<Around> points(bounded ? mesh_.points.size() : 0);
+    const auto range_at = [&](Index cell, const auto& low_of, const auto& high_of) {
+        std::array<double, 2> range{HUGE_VAL, -HUGE_VAL};
+        for (const Index p : mesh_.cells[cell]) range = {std::min(range[0], low_of(p)), std::max(range[1], high_of(p))};
+        return range;
+    };
+    for (Index c = 0; bounded && c < mesh_.cells.size(); ++c) {
+        const auto value = [&](Index p) { return mesh_.attributes[0].values[p]; };
+        const auto [low, high] = range_at(c, value, value);
+        for (const Index p : mesh_.cells[c]) {
+            points[p] = {std::min(points[p].low, low), std::max(points[p].high, high), points[p].cells + 1};
+        }
+    }
+    std::vector<Index> near;
+    for (Index c = 0; c < mesh_.cells.size(); ++c) {
+        if (!may_cut(c)) continue;
+        if (bounded) {
+            const auto [low, high] = range_at(
+                c, [&](Index p) { return points[p].low; }, [&](Index p) { return points[p].high; });
+            const bool inside = std::ranges::all_of(mesh_.cells[c], [&](Index p) { return points[p].cells == 8; });
+            const double beyond = (inside ? 8 : 24) * tension, far = (beyond + kSlack * (1 + 2 * beyond)) * (high - low);
+            if (high + far < *cut.iso || (low - far > *cut.iso && !(cut.hull && has_hull(c)))) continue;
+        }
+        near.push_back(c);
+    }
+    return near;
+}
+
 std::vector<Index> SoupCutter::candidates(const Cut& cut) const {
     std::vector<std::uint8_t> wanted(mesh_.cells.size(), 0);
     if (cut.iso) {
-        std::vector<Index> all;
-        all.reserve(mesh_.cells.size());
-        for (Index c = 0; c < mesh_.cells.size(); ++c) {
-            if (may_cut(c)) all.push_back(c);
-        }
+        const std::vector<Index> near = near_isovalue(cut);
         const DenseCells cells(mesh_, {.scheme = scheme_, .levels = 1, .progress = progress_}, true, DenseBits::ToRounding);
-        cells.for_each(all, [&](const DenseCell& cell) {
+        cells.for_each(near, [&](const DenseCell& cell) {
             const auto [low, high] = std::ranges::minmax(cell.values[0]);
-            // Between the vertices of level 1 values go beyond theirs by less than this part of their range.
-            const double slack = 0.3 * (high - low);
+            const double slack = kSlack * (high - low);
             const bool crossed = low - slack < *cut.iso && high + slack >= *cut.iso;
             const bool on_hull = cut.hull && has_hull(cell.cell) && high + slack >= *cut.iso;
             wanted[cell.cell] = crossed || on_hull ? 1 : 0;
@@ -330,8 +390,8 @@ bool SoupCutter::has_hull(Index cell) const {
 SurfaceSoup SoupCutter::cut(const Cut& cut, int level, std::vector<Index> todo, const SurfaceReach& reach) const {
     const GridNumbers numbers(topology_, level);
     // Cells that share a vertex must agree on which side of the isovalue it is. On the hull only its number counts.
-    const DenseCells dense(mesh_, {.scheme = scheme_, .levels = level, .progress = progress_}, true,
-                           cut.iso ? DenseBits::OfRefine : DenseBits::ToRounding);
+    std::optional<DenseCells> dense;
+    if (cut.iso) dense.emplace(mesh_, RefineOptions{.scheme = scheme_, .levels = level, .progress = progress_}, true);
     std::vector<Index> slots(mesh_.cells.size(), kNone);
     for (const Index cell : reach.not_into) slots[cell] = 0;  // as if it had been cut
     std::vector<CellTriangles> parts;
@@ -343,11 +403,17 @@ SurfaceSoup SoupCutter::cut(const Cut& cut, int level, std::vector<Index> todo, 
             cells.push_back(cell);
         }
         parts.resize(cells.size());
-        dense.for_each(todo, [&](const DenseCell& cell) {
-            const std::span<const double> values =
-                !mesh_.attributes.empty() && cut.iso ? cell.values[0] : std::span<const double>();
-            parts[slots[cell.cell]] = cut_cell(cell, values, cut, topology_, numbers);
-        });
+        const auto cut_one = [&](const DenseCell& cell) {
+            parts[slots[cell.cell]] =
+                cut_cell(cell, cut.iso ? cell.values[0] : std::span<const double>(), cut, topology_, numbers);
+        };
+        if (dense) {
+            dense->for_each(todo, cut_one);
+        } else {
+            const std::size_t side = (std::size_t{1} << level) + 1;
+            parallel_each(todo.size(),
+                          [&](std::size_t i) { cut_one({.cell = todo[i], .side = side, .points = {}, .values = {}}); });
+        }
         if (!reach.follow) break;
         todo = reached(cells, parts, todo.size(), slots, level);
         const std::size_t before = todo.size();

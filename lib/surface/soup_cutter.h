@@ -78,7 +78,7 @@ struct Cut {
 
 /// Cuts the tetrahedra (`split_cell`) of all children of a control cell.
 ///
-/// grid: of `numbers`' level; values: one number for each of its vertices
+/// grid: of `numbers`' level; values: one number for each of its vertices. Without an isovalue nothing but its side is used
 [[nodiscard]] CellTriangles cut_cell(const DenseCell& grid, std::span<const double> values, const Cut& cut,
                                      const Topology& topology, const GridNumbers& numbers);
 
@@ -124,6 +124,7 @@ public:
 private:
     [[nodiscard]] bool may_cut(Index cell) const { return owned_.empty() || owned_[cell] != 0; }
     [[nodiscard]] bool has_hull(Index cell) const;
+    [[nodiscard]] std::vector<Index> near_isovalue(const Cut& cut) const;
     [[nodiscard]] std::vector<Index> reached(const std::vector<Index>& cells, const std::vector<CellTriangles>& parts,
                                              std::size_t last, const std::vector<Index>& slots, int level) const;
     void add_neighbors(Index cell, std::size_t side, const std::vector<Index>& slots, std::vector<Index>& found) const;

@@ -15,12 +15,44 @@ namespace subvol::detail {
 
 namespace {
 
-constexpr std::string_view kMagic = "subvol surface share 1\n";
+constexpr std::string_view kMagic = "subvol surface share 2\n";
 constexpr std::uint64_t kMostCuts = 1 << 20;
 
 /// How a share was made: what must be the same in all of them.
-std::array<std::uint64_t, 4> head_of(const SurfaceShare& share) {
-    return {sizeof(Index), share.improve ? 1U : 0U, share.cuts.size(), share.fields.size()};
+std::array<std::uint64_t, 3> head_of(const SurfaceShare& share) {
+    return {sizeof(Index), share.improve ? 1U : 0U, share.cuts.size()};
+}
+
+void put_fields(std::span<const ProbedField> fields, BytePacker& out) {
+    out.put(std::array{std::uint64_t{fields.size()}});
+    for (const ProbedField& field : fields) {
+        out.put(field.name);
+        out.put(std::array{std::uint64_t{field.channels}});
+        out.put(field.values);
+        out.put(field.gradients);
+    }
+}
+
+/// points: that each field has values at
+std::vector<ProbedField> take_fields_of(std::size_t points, ByteUnpacker& in) {
+    std::vector<std::uint64_t> count;
+    in.take(count);
+    if (count.size() != 1 || count[0] > kMostCuts) in.refuse();
+    std::vector<ProbedField> fields;
+    for (std::uint64_t f = 0; f < count[0]; ++f) {
+        ProbedField& field = fields.emplace_back();
+        std::vector<std::uint64_t> channels;
+        in.take(field.name);
+        in.take(channels);
+        in.take(field.values);
+        in.take(field.gradients);
+        if (channels.size() != 1 || channels[0] == 0 || field.values.size() / channels[0] != points ||
+            field.values.size() % channels[0] != 0 || field.gradients.size() != field.values.size()) {
+            in.refuse();
+        }
+        field.channels = channels[0];
+    }
+    return fields;
 }
 
 void put_cut(const SettledCut& cut, BytePacker& out) {
@@ -44,6 +76,7 @@ void put_cut(const SettledCut& cut, BytePacker& out) {
     out.put(parameters);
     out.put(cut.settled.positions);
     out.put(cut.settled.normals);
+    put_fields(cut.settled.fields, out);
     out.put(cut.soup.cells);
     out.put(cut.soup.ends);
     out.put(cut.soup.triangles);
@@ -66,6 +99,7 @@ SettledCut take_cut(ByteUnpacker& in) {
     in.take(parameters);
     in.take(cut.settled.positions);
     in.take(cut.settled.normals);
+    cut.settled.fields = take_fields_of(ends.size(), in);
     in.take(cut.soup.cells);
     in.take(cut.soup.ends);
     in.take(cut.soup.triangles);
@@ -103,25 +137,9 @@ SurfaceShare share_from(std::string_view bytes) {
     std::vector<double> slack;
     in.take(head);
     in.take(slack);
-    if (head.size() != 4 || head[0] != sizeof(Index) || slack.size() != 1 || head[2] > kMostCuts || head[3] > kMostCuts) {
-        in.refuse();
-    }
+    if (head.size() != 3 || head[0] != sizeof(Index) || slack.size() != 1 || head[2] > kMostCuts) in.refuse();
     SurfaceShare share{.improve = head[1] != 0, .slack_world = slack[0]};
-    std::size_t points = 0;
-    for (std::uint64_t c = 0; c < head[2]; ++c) points += share.cuts.emplace_back(take_cut(in)).soup.points.size();
-    for (std::uint64_t f = 0; f < head[3]; ++f) {
-        ProbedField& field = share.fields.emplace_back();
-        std::vector<std::uint64_t> channels;
-        in.take(field.name);
-        in.take(channels);
-        in.take(field.values);
-        in.take(field.gradients);
-        if (channels.size() != 1 || channels[0] == 0 || field.values.size() / channels[0] != points ||
-            field.values.size() % channels[0] != 0 || field.gradients.size() != field.values.size()) {
-            in.refuse();
-        }
-        field.channels = channels[0];
-    }
+    for (std::uint64_t c = 0; c < head[2]; ++c) share.cuts.push_back(take_cut(in));
     if (in.left() > 0) in.refuse();
     return share;
 }
@@ -130,10 +148,11 @@ SurfaceShare share_from(std::string_view bytes) {
 bool fit_together(const SurfaceShare& a, const SurfaceShare& b) {
     bool fit = head_of(a) == head_of(b) && a.slack_world == b.slack_world;
     for (std::size_t c = 0; fit && c < a.cuts.size(); ++c) {
-        fit = a.cuts[c].level == b.cuts[c].level && a.cuts[c].deviation_world == b.cuts[c].deviation_world;
-    }
-    for (std::size_t f = 0; fit && f < a.fields.size(); ++f) {
-        fit = a.fields[f].name == b.fields[f].name && a.fields[f].channels == b.fields[f].channels;
+        const auto same = [](const ProbedField& x, const ProbedField& y) {
+            return x.name == y.name && x.channels == y.channels;
+        };
+        fit = a.cuts[c].level == b.cuts[c].level && a.cuts[c].deviation_world == b.cuts[c].deviation_world &&
+              std::ranges::equal(a.cuts[c].settled.fields, b.cuts[c].settled.fields, same);
     }
     return fit;
 }
@@ -145,12 +164,6 @@ std::string bytes_of(const SurfaceShare& share) {
     out.put(head_of(share));
     out.put(std::array{share.slack_world});
     for (const SettledCut& cut : share.cuts) put_cut(cut, out);
-    for (const ProbedField& field : share.fields) {
-        out.put(field.name);
-        out.put(std::array{std::uint64_t{field.channels}});
-        out.put(field.values);
-        out.put(field.gradients);
-    }
     return out.take();
 }
 
@@ -173,29 +186,12 @@ LimitSurface join_surface(std::vector<std::string> shares, std::span<const std::
     }
     LimitSurface all;
     all.report.converged = true;
-    for (const ProbedField& field : read[0].fields) all.fields.push_back({field.name, field.channels, {}, {}});
-    std::vector<std::size_t> firsts(read.size(), 0);  // of each share: its points in the cuts before
     for (std::size_t c = 0; c < read[0].cuts.size(); ++c) {
         std::vector<SettledCut> parts;
-        std::vector<std::size_t> counts;
-        for (SurfaceShare& share : read) {
-            counts.push_back(share.cuts[c].soup.points.size());
-            parts.push_back(std::move(share.cuts[c]));
-        }
-        std::vector<PointOrigin> origins;
-        const SettledCut cut = joined(std::move(parts), origins);
+        for (SurfaceShare& share : read) parts.push_back(std::move(share.cuts[c]));
+        const SettledCut cut = joined(std::move(parts));
         report_progress(progress, "improve", c, read[0].cuts.size());
-        for (const Index p : add_cut(cut, read[0].improve, read[0].slack_world, all)) {
-            const auto& [part, at] = origins[p];
-            for (std::size_t f = 0; f < all.fields.size(); ++f) {
-                const ProbedField& from = read[part].fields[f];
-                for (std::size_t k = 0; k < from.channels; ++k) {
-                    all.fields[f].values.push_back(from.values[(firsts[part] + at) * from.channels + k]);
-                    all.fields[f].gradients.push_back(from.gradients[(firsts[part] + at) * from.channels + k]);
-                }
-            }
-        }
-        for (std::size_t s = 0; s < counts.size(); ++s) firsts[s] += counts[s];
+        add_cut(cut, read[0].improve, read[0].slack_world, all);
     }
     measure_surface(all.surface, all.report);
     return all;
