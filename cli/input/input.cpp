@@ -116,6 +116,16 @@ WithFacts<ReadResult> read_input(const std::string& input, const CommonOptions& 
         means["rms_of_range"] = read.cell_values->rms_of_range;
         means["max_of_range"] = read.cell_values->most_of_range;
     }
+    if (read.curved) {
+        Facts& curved = facts.group("curved");
+        curved["cells"] = read.curved->curved;
+        curved["hexahedra"] = read.curved->hexes;
+        curved["most_hexahedra"] = read.curved->most_hexes;
+        curved["tolerance"] = read.curved->tolerance;
+        curved["shape_error"] = read.curved->shape_error;
+        curved["fields_error"] = read.curved->fields_error;
+        curved["limited"] = read.curved->limited;
+    }
     return {std::move(read), std::move(facts)};
 }
 

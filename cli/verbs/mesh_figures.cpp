@@ -175,6 +175,12 @@ std::string mesh_lines(const ReadResult& read, const detail::MeshShare& joined, 
     lines.emplace_back("faces", count_text(mesh.faces) + ", " + count_text(mesh.boundary_faces) + " of them on the boundary");
     lines.emplace_back("edges",
                        count_text(mesh.edges) + ", " + count_text(mesh.interior_edges) + " of them inside" + valences(mesh));
+    if (read.curved) {
+        lines.emplace_back("curved cells", count_text(read.curved->curved) + ": shape within " +
+                                               number(read.curved->shape_error) + " of the size, fields within " +
+                                               number(read.curved->fields_error) + " of their ranges" +
+                                               (read.curved->limited ? ", above the tolerance" : ""));
+    }
     if (!read.shells.empty()) {
         lines.emplace_back("shells", counted(shells.quads, "quad") + ", " + counted(shells.lines, "beam") + "; " +
                                          count_text(shells.attached) + " of " + counted(shells.points, "point") + " on cells");

@@ -372,7 +372,9 @@ ReadResult assemble(MeshFile&& found, std::string_view file, const EntityNames& 
         if (quads + lines > 0) found.warnings.push_back(list_of_shells(quads, lines) + " ignored: parts of cells");
     }
     EntityNames names = names_in_file;
-    const bool moved = options.curved_tolerance && split_curved(found, *options.curved_tolerance, file, names);
+    std::optional<CurvedReport> curved;
+    if (options.curved_tolerance) curved = split_curved(found, *options.curved_tolerance, file, names);
+    const bool moved = curved && curved->split();
     if (moved) names.point_numbers = {};
     found.curved = {};
     const bool turned = found.turned;
@@ -383,6 +385,7 @@ ReadResult assemble(MeshFile&& found, std::string_view file, const EntityNames& 
     result.mesh.cells = std::move(found.hexes.corners);
     result.warnings = std::move(found.warnings);
     result.blocks = std::move(found.blocks);
+    result.curved = curved;
     MixedCells others = take_others(found);
     if (!others.empty() && options.other_cells == OtherCells::Refuse) {
         throw Error(ErrorCode::InvalidInput, "the mesh has " + list_of(counts_of(result.mesh.cells.size(), others)),

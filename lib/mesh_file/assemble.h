@@ -63,11 +63,12 @@ void weld_points(MeshFile& found, double tolerance, std::string_view file, const
 /// the estimated error, which is the sum of h² f''/8 over the three directions.
 ///
 /// tolerance: of the shape, in parts of the mesh's diagonal; of the fields 400 times that, in parts of their ranges
-/// returns:   whether points were replaced. Not if no cell is bent, beside other kinds of cells, cells that repeat points and
-///            sharp groups: then a warning says that only the corners are used
+/// returns:   the errors that are left; points were replaced if it says `split()`. Nothing if there are no curved cells, and
+///            beside other kinds of cells, cells that repeat points and sharp groups: then a warning says that only the corners
+///            are used
 /// throws:    Error(InvalidInput) if the degrees do not fit to the number of nodes, a rational weight is not positive, or a
 ///            value at a node is not finite
-bool split_curved(MeshFile& found, double tolerance, std::string_view file, const EntityNames& names);
+std::optional<CurvedReport> split_curved(MeshFile& found, double tolerance, std::string_view file, const EntityNames& names);
 
 /// Takes cells that repeat points as the prisms, pyramids and tetrahedra that they look like; other shapes are cut into
 /// tetrahedra. Cells without volume are left out. Adds warnings with the counts.

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <queue>
+#include <utility>
 
 #include "subvol/cell.h"
 
@@ -50,55 +52,100 @@ void EdgeClasses::join(std::size_t a, std::size_t b) {
 
 namespace {
 
-// Volumes add up the error of the shape, and nothing adds up that of the fields. The limit is nearer to the fields than the
-// straight lines whose error is measured.
+// Volumes add up the error of the shape, and nothing adds up that of the fields.
 constexpr double kFieldsPerShape = 400;
 
-// No more hexahedra than this are made, or than this for each cell where that is more.
-constexpr std::size_t kMostHexes = std::size_t{1} << 15, kMostPerCell = 4;
+// Where there are as many pieces as between the nodes of the file, the limit goes through all values that the file has, and is
+// nearer to its polynomials than the straight lines whose error is measured. Up to there fields come before more pieces for the
+// shape.
+constexpr double kNearerThroughNodes = 8;
 
-// A direction is never split more often than this.
-constexpr double kMostPieces = 1e4;
+double squared(std::size_t n) {
+    return static_cast<double>(n) * static_cast<double>(n);
+}
+
+// The cells beside the edges of each class: those of class e are at starts[e] to starts[e + 1] - 1.
+struct CellsOfClasses {
+    std::vector<std::size_t> starts, cells;
+};
+
+CellsOfClasses cells_of_classes(const std::vector<std::array<std::size_t, 3>>& class_of, std::size_t class_count) {
+    CellsOfClasses result;
+    result.starts.resize(class_count + 1);
+    const auto each = [&](auto&& take) {
+        for (std::size_t c = 0; c < class_of.size(); ++c) {
+            const auto& [a, b, d] = class_of[c];
+            take(a, c);
+            if (b != a) take(b, c);
+            if (d != a && d != b) take(d, c);
+        }
+    };
+    each([&](std::size_t e, std::size_t) { ++result.starts[e + 1]; });
+    std::partial_sum(result.starts.begin(), result.starts.end(), result.starts.begin());
+    result.cells.resize(result.starts.back());
+    auto next = result.starts;
+    each([&](std::size_t e, std::size_t c) { result.cells[next[e]++] = c; });
+    return result;
+}
 
 }  // namespace
 
-/// Three directions share the tolerance.
+double fields_error(double bend, std::size_t degree, std::size_t n) {
+    return bend / squared(n) / (n < degree ? 1 : kNearerThroughNodes);
+}
+
+/// The error of a class of edges, in parts of the tolerance, falls as 1 / n² with n pieces; three directions share the
+/// tolerance. The class of the largest error gets the next piece. The order of these steps depends neither on the tolerance nor
+/// on the most hexahedra: both only say where the steps end.
 CurvedPieces choose_pieces(std::span<const std::array<Index, 8>> cells, const EdgeClasses& edges,
-                           std::span<const CellBend> bends, double tolerance) {
-    CurvedPieces result;
+                           std::span<const CellBend> bends, double tolerance, std::size_t most_hexes) {
+    CurvedPieces result{std::vector<std::array<std::size_t, 3>>(cells.size()), std::vector<std::size_t>(edges.size(), 1),
+                        cells.size(), most_hexes};
     std::vector<double> of_shape(edges.size()), of_fields(edges.size());
-    result.class_of.resize(cells.size());
+    std::vector<std::size_t> degrees(edges.size());
     for (std::size_t c = 0; c < cells.size(); ++c) {
         for (std::size_t axis = 0; axis < 3; ++axis) {
             const std::size_t e = result.class_of[c][axis] = edges.class_of(edges.edge(cells[c], 4 * axis));
-            of_shape[e] = std::max(of_shape[e], 3. * bends[c].shape[axis] / tolerance);
-            of_fields[e] = std::max(of_fields[e], 3. * bends[c].fields[axis] / (kFieldsPerShape * tolerance));
+            of_shape[e] = std::max(of_shape[e], 3. * bends[c].shape[axis]);
+            of_fields[e] = std::max(of_fields[e], 3. * bends[c].fields[axis] / kFieldsPerShape);
+            degrees[e] = std::max<std::size_t>(degrees[e], bends[c].degrees[axis]);
         }
     }
-    result.of_class.resize(edges.size());
-    result.most_hexes = std::max(kMostHexes, kMostPerCell * cells.size());
-    const auto most = static_cast<double>(result.most_hexes);
-    const auto fits = [&](double shape_part, double fields_part) {
-        for (std::size_t e = 0; e < result.of_class.size(); ++e) {
-            const double needed = std::max(of_shape[e] * shape_part, of_fields[e] * fields_part);
-            result.of_class[e] = static_cast<std::size_t>(std::clamp(std::ceil(std::sqrt(needed) - 1e-6), 1., kMostPieces));
-        }
-        double count = 0;
-        for (std::size_t c = 0; c < cells.size(); ++c) {
-            const auto n = result.of_cell(c);
-            count += static_cast<double>(n[0]) * static_cast<double>(n[1]) * static_cast<double>(n[2]);
-        }
-        return count <= most;
+    const CellsOfClasses beside = cells_of_classes(result.class_of, edges.size());
+    const auto error_of = [&](std::size_t e) {
+        const std::size_t n = result.of_class[e];
+        return std::max(of_shape[e] / squared(n), fields_error(of_fields[e], degrees[e], n));
     };
-    constexpr double kLess = .8;
-    const bool shape_fits = fits(1, 0);
-    result.limited = !shape_fits || !fits(1, 1);
-    if (!result.limited) return result;
-    double part = 1;
-    if (shape_fits) {
-        while (!fits(1, part)) part = part < 1e-12 ? 0 : part * kLess;
-    } else {
-        while (!fits(part, part)) part = part < 1e-12 ? 0 : part * kLess;
+    using Step = std::pair<double, std::size_t>;
+    const auto later = [](const Step& a, const Step& b) {
+        return a.first != b.first ? a.first < b.first : a.second > b.second;
+    };
+    std::priority_queue<Step, std::vector<Step>, decltype(later)> steps(later);
+    for (std::size_t e = 0; e < edges.size(); ++e) {
+        if (error_of(e) > 0) steps.push({error_of(e), e});
+    }
+    constexpr double kRounding = 1 + 1e-6;
+    while (!steps.empty() && steps.top().first > tolerance * kRounding) {
+        const std::size_t e = steps.top().second;
+        steps.pop();
+        const auto count = [&] {
+            std::size_t sum = 0;
+            for (std::size_t k = beside.starts[e]; k < beside.starts[e + 1]; ++k) {
+                const auto n = result.of_cell(beside.cells[k]);
+                sum += n[0] * n[1] * n[2];
+            }
+            return sum;
+        };
+        const std::size_t before = count();
+        ++result.of_class[e];
+        const std::size_t hexes = result.hexes - before + count();
+        if (hexes > most_hexes) {
+            --result.of_class[e];
+            result.limited = true;
+            break;
+        }
+        result.hexes = hexes;
+        steps.push({error_of(e), e});
     }
     return result;
 }

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <map>
 #include <span>
 #include <vector>
@@ -32,19 +33,26 @@ private:
 
 /// How far a straight line is from the curve at most, if a direction of a cell is not split: in parts of the mesh's size, and
 /// of the fields' ranges. The distance falls with the square of the number of pieces.
+///
+/// degrees: of the polynomials along each direction
 struct CellBend {
     std::array<float, 3> shape{}, fields{};
+    std::array<std::uint8_t, 3> degrees{1, 1, 1};
 };
+
+/// The error of a field along a direction in n pieces, if it is `bend` in one piece of a polynomial of this degree.
+[[nodiscard]] double fields_error(double bend, std::size_t degree, std::size_t n);
 
 /// Into how many pieces the directions of curved cells are split.
 ///
 /// class_of:   for each cell the classes of its three directions
 /// of_class:   the pieces of each class of edges
+/// hexes:      the hexahedra that all cells become
 /// limited:    whether there would have been more than most_hexes for the tolerance
 struct CurvedPieces {
     std::vector<std::array<std::size_t, 3>> class_of;
     std::vector<std::size_t> of_class;
-    std::size_t most_hexes = 0;
+    std::size_t hexes = 0, most_hexes = 0;
     bool limited = false;
 
     [[nodiscard]] std::array<std::size_t, 3> of_cell(std::size_t c) const {
@@ -52,13 +60,15 @@ struct CurvedPieces {
     }
 };
 
-/// Splits all edges of a class alike, as the cell that needs it most. Where there would be too many pieces, the fields give way
-/// first.
+/// Chooses the pieces of each class of edges so that shape and fields are within their tolerances, all alike in a class, as the
+/// cell that needs it most. Pieces are added one by one where the error is the largest part of its tolerance, until all errors
+/// are within their tolerances or the next piece would make too many hexahedra. So a smaller tolerance only adds pieces.
 ///
-/// bends:     of the cells
-/// tolerance: in parts of the mesh's size; greater than 0
+/// bends:      of the cells
+/// tolerance:  of the shape, in parts of the mesh's size; greater than 0. That of the fields is 400 times as large
+/// most_hexes: at least the number of cells
 [[nodiscard]] CurvedPieces choose_pieces(std::span<const std::array<Index, 8>> cells, const EdgeClasses& edges,
-                                         std::span<const CellBend> bends, double tolerance);
+                                         std::span<const CellBend> bends, double tolerance, std::size_t most_hexes);
 
 /// The numbers of the points of cells that are split into grids, so that neighbours share the points where they meet: first
 /// the corners, then the points on edges, then those on the faces and inside of one cell after the other.

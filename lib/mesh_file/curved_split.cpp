@@ -25,27 +25,33 @@ using Sizes = std::array<std::size_t, 3>;
 constexpr std::string_view kDegrees = "HigherOrderDegrees";
 constexpr std::string_view kWeights = "RationalWeights";
 
+// No more hexahedra than this are made, or than this for each piece between the nodes of the file where that is more. Limits of
+// as many cells as there are pieces between nodes are about as near to smooth fields as the file's polynomials; a shape that
+// needs more in one direction takes the rest.
+constexpr std::size_t kMostHexes = std::size_t{1} << 16, kMostPerNode = 2;
+
 // Replaces every hexahedron of a mesh with curved ones by a grid of smaller ones, with points on the curved shape.
 class CurvedSplit {
 public:
     CurvedSplit(MeshFile& found, double tolerance, std::string_view file, const EntityNames& names)
         : found_(found), tolerance_(tolerance), file_(file), names_(names), cells_(found.hexes.corners), edges_(cells_) {}
 
-    /// returns: whether the cells were split; they are not if none is bent
-    bool run() {
+    CurvedReport run() {
         find_channels();
         find_layouts();
         refuse_not_finite();
         find_ranges();
         measure();
-        pieces_ = choose_pieces(cells_, edges_, bends_, tolerance_);
-        if (std::ranges::all_of(pieces_.of_class, [](std::size_t n) { return n == 1; })) {
+        pieces_ = choose_pieces(cells_, edges_, bends_, tolerance_, most_hexes());
+        const CurvedReport report = report_of_pieces();
+        if (report.split()) {
+            fill();
+            found_.warnings.push_back(text_of(report));
+            found_.hexes = std::move(new_hexes_);
+        } else {
             report_straight();
-            return false;
         }
-        fill();
-        report();
-        return true;
+        return report;
     }
 
 private:
@@ -133,6 +139,14 @@ private:
         }
     }
 
+    [[nodiscard]] std::size_t most_hexes() const {
+        std::size_t between_nodes = 0;
+        for (const CurvedLayout* layout : layout_of_) {
+            between_nodes += layout->degrees[0] * layout->degrees[1] * layout->degrees[2];
+        }
+        return std::max(kMostHexes, kMostPerNode * between_nodes);
+    }
+
     [[nodiscard]] bool is_rational(std::size_t c) const { return layout_of_[c]->bezier && !weights_.empty(); }
 
     // The size of the mesh, and for each array the length of the vector of its components' ranges; 0 for a constant, and for
@@ -191,6 +205,7 @@ private:
         for (std::size_t c = 0; c < cells_.size(); ++c) {
             const CurvedCell cell = shape_of(c);
             for (std::size_t axis = 0; axis < 3; ++axis) {
+                bends_[c].degrees[axis] = static_cast<std::uint8_t>(layout_of_[c]->degrees[axis]);
                 if (cell.is_straight(axis)) continue;
                 const auto samples = cell.samples(axis);
                 for (const Group& group : groups_) {
@@ -271,34 +286,39 @@ private:
                                   " of the mesh's size: only the corners are used");
     }
 
-    void report() {
-        double shape = 0, fields = 0;
+    [[nodiscard]] bool has_fields() const {
+        return std::any_of(groups_.begin() + 1, groups_.end(), [](const Group& group) { return group.range > 0; });
+    }
+
+    [[nodiscard]] CurvedReport report_of_pieces() const {
+        CurvedReport report{curved_count_, cells_.size(), pieces_.hexes, pieces_.most_hexes, tolerance_};
         for (std::size_t c = 0; c < cells_.size(); ++c) {
             const Sizes n = pieces_.of_cell(c);
             double of_shape = 0, of_fields = 0;
             for (std::size_t a = 0; a < 3; ++a) {
-                const auto squared = static_cast<double>(n[a] * n[a]);
-                of_shape += bends_[c].shape[a] / squared;
-                of_fields += bends_[c].fields[a] / squared;
+                of_shape += bends_[c].shape[a] / static_cast<double>(n[a] * n[a]);
+                of_fields += fields_error(bends_[c].fields[a], bends_[c].degrees[a], n[a]);
             }
-            shape = std::max(shape, of_shape);
-            fields = std::max(fields, of_fields);
+            report.shape_error = std::max(report.shape_error, of_shape);
+            report.fields_error = std::max(report.fields_error, of_fields);
         }
-        std::string warning = counted(curved_count_, "curved cell", "curved cells");
+        report.limited = pieces_.limited;
+        return report;
+    }
+
+    [[nodiscard]] std::string text_of(const CurvedReport& report) const {
+        std::string text = counted(curved_count_, "curved cell", "curved cells");
         if (curved_count_ < cells_.size()) {
-            warning += " and " + counted(cells_.size() - curved_count_, "other", "others");
+            text += " and " + counted(cells_.size() - curved_count_, "other", "others");
         }
-        warning += " split into " + counted(new_hexes_.corners.size(), "hexahedron", "hexahedra") +
-                   " with points on the curved shape, which is within " + short_text(shape) + " of the mesh's size";
-        if (std::any_of(groups_.begin() + 1, groups_.end(), [](const Group& group) { return group.range > 0; })) {
-            warning += ", its fields within " + short_text(fields) + " of their ranges";
+        text += " split into " + counted(report.hexes, "hexahedron", "hexahedra") +
+                " with points on the curved shape, which is within " + short_text(report.shape_error) + " of the mesh's size";
+        if (has_fields()) text += ", its fields within " + short_text(report.fields_error) + " of their ranges";
+        if (report.limited) {
+            text += "; for a tolerance of " + short_text(tolerance_) + " there would be more than " +
+                    std::to_string(report.most_hexes);
         }
-        if (pieces_.limited) {
-            warning += "; for a tolerance of " + short_text(tolerance_) + " there would be more than " +
-                       std::to_string(pieces_.most_hexes);
-        }
-        found_.warnings.push_back(warning);
-        found_.hexes = std::move(new_hexes_);
+        return text;
     }
 
     struct Group {
@@ -335,8 +355,8 @@ bool repeats_point(Hex hex) {
 
 }  // namespace
 
-bool split_curved(MeshFile& found, double tolerance, std::string_view file, const EntityNames& names) {
-    if (found.curved.size() == 0) return false;
+std::optional<CurvedReport> split_curved(MeshFile& found, double tolerance, std::string_view file, const EntityNames& names) {
+    if (found.curved.size() == 0) return std::nullopt;
     const bool others = !found.tets.corners.empty() || !found.prisms.corners.empty() || !found.pyramids.corners.empty();
     const char* reason = others                                                    ? "beside cells of other kinds"
                          : !found.sharp.empty()                                    ? "with sharp groups"
@@ -345,7 +365,7 @@ bool split_curved(MeshFile& found, double tolerance, std::string_view file, cons
     if (reason != nullptr) {
         found.warnings.push_back(counted(found.curved.size(), "curved cell", "curved cells") + " " + reason +
                                  ": only the corners are used");
-        return false;
+        return std::nullopt;
     }
     return CurvedSplit(found, tolerance, file, names).run();
 }

@@ -3,10 +3,13 @@
 """Numbers far from 0 and bodies far from each other: results whose correct value is known, and what is said where floats cannot hold it."""
 
 import csv
+import math
+import os
 import struct
 import unittest
+from pathlib import Path
 
-from command import InFolder, subvol
+from command import InFolder, subvol, subvol_measured
 
 
 def grid(n, place=lambda x, y, z: (x, y, z), fields=(), cell_fields=()):
@@ -204,6 +207,93 @@ class Fractions(Precision):
         self.assertLessEqual(stats["max"], 1)
         exact = self.run_ok("probe", "tank.vtk", "--stats", "--cell-values", "exact", "--json").json()["stats"]["whole"]["fields"][0]
         self.assertGreater(exact["max"], 1)
+
+
+# Files with known results lie in a folder beside that of the collection of meshes.
+DATA = Path(os.environ.get("SUBVOL_DATA", "/nowhere"))
+NUMBERS = DATA.parent / "numbers"
+
+
+@unittest.skipUnless(NUMBERS.is_dir(), "SUBVOL_DATA names no collection that has meshes with known numbers beside it")
+class KnownNumbers(Precision):
+    """The files of that folder, each with what once was wrong with it."""
+
+    def test_values_beside_large_constants(self):
+        fields = self.stats(NUMBERS / "off.vtk")
+        for name, low, range_ in (("pa", 101325, .01), ("big", 1e8, 1), ("mid", 1e6, 1), ("small", 0, 1)):
+            for key, part in (("min", 0), ("mean", .5), ("max", 1)):
+                self.assertAlmostEqual((fields[name][key] - low) / range_, part, delta=1e-4, msg=f"{name} {key}")
+        for name, lost in (("pa", .1), ("big", .5)):
+            made = self.run_ok("vdb", NUMBERS / "off.vtk", "-o", "a.vdb", "--field", name, "--resolution", 16, "--json").json()
+            self.assertGreater(made["limit_deviation"]["of_range"], lost)
+            self.assertTrue(any("floats" in warning and f"{name}-(" in warning for warning in made["warnings"]), made["warnings"])
+
+    def test_bodies_far_from_each_other(self):
+        found = self.run_ok("probe", NUMBERS / "far6.vtk", "--at", "2.5,1,1", "--at", "1.5,1,1", "--json").json()
+        self.assertEqual([place["inside"] for place in found["values"]], [False, True])
+        done = subvol("slice", NUMBERS / "far6.vtk", "--plane", "2.3,1,1,1,0,0", "-o", "a.csv", folder=self.folder)
+        self.assertEqual(done.code, 2, done.err)
+
+    def test_triangles_at_map_coordinates(self):
+        made = self.run_ok("surface", NUMBERS / "utm.vtk", "--boundary", "-o", "u.stl", "--json").json()
+        self.assertTrue(any("--origin" in warning for warning in made["warnings"]), made["warnings"])
+        made = self.run_ok("surface", NUMBERS / "utm.vtk", "--boundary", "-o", "u.stl", "--origin", "5e6,4e6,0", "--json").json()
+        self.assertEqual(made["warnings"], [])
+
+    def test_values_beyond_halves(self):
+        done = subvol("vdb", NUMBERS / "half2.vtk", "-o", "a.vdb", "--half", folder=self.folder)
+        self.assertEqual(done.code, 2, done.err)
+        self.assertIn("16-bit", done.err)
+
+    def test_folded_cells_keep_their_hand(self):
+        self.assertAlmostEqual(self.run_ok("info", NUMBERS / "fold.vtk", "--json").json()["volume"], 27, delta=1e-9)
+
+    def test_steps_of_one_name(self):
+        found = self.run_ok("info", NUMBERS / "st.msh", "--json").json()
+        self.assertEqual((found["steps"], found["step"], [field["name"] for field in found["fields"]]), (3, 2, ["T"]))
+        self.run_ok("info", NUMBERS / "st.msh", "--step", 1)
+
+    def measured(self, *arguments):
+        """Once these took half a minute or never ended, in up to 8.5 GB."""
+        done = subvol_measured(*arguments, "--json", folder=self.folder, max_seconds=90)
+        self.assertEqual(done.code, 0, done.err)
+        self.assertLess(done.json()["peak_bytes"], 300e6)
+        return done.json()
+
+    def test_many_cells_around_an_axis(self):
+        """The field is x, which the limit has exactly; the boundary is that of the integral over the cells."""
+        for name, cells in (("fan60.vtk", 60), ("axis60.vtk", 360), ("fan200.vtk", 200)):
+            with self.subTest(name):
+                whole = self.measured("probe", NUMBERS / name, "--stats")["stats"]["whole"]
+                self.assertEqual(whole["cells"], cells)
+                field = whole["fields"][0]
+                self.assertAlmostEqual(field["mean"], 0, delta=1e-4)
+                self.assertAlmostEqual(field["max"], field["max_at"][0], delta=1e-6)
+                surface = self.measured("surface", NUMBERS / name, "--boundary", "-o", "a.ply")
+                self.assertTrue(surface["watertight"])
+                # The deviation is an estimate, so twice of it.
+                self.assertAlmostEqual(surface["volume"], whole["volume"], delta=2 * surface["deviation"] * surface["area"])
+                made = self.measured("slice", NUMBERS / name, "--plane", "0,0,.5,0,0,1", "--resolution", 96, "-o", "a.csv")
+                with open(self.folder / "a.csv", newline="") as file:
+                    rows = list(csv.DictReader(file))
+                self.assertEqual(len(rows), made["inside"])
+                for row in rows:
+                    self.assertAlmostEqual(float(row["h"]), float(row["x"]), delta=1e-4)
+                # All are one thick, so the area is the volume; of the pixels at the rim, of no more than a few hundred, half are
+                # inside by chance.
+                area = len(rows) * made["step"] ** 2
+                self.assertAlmostEqual(area, whole["volume"], delta=.02 * whole["volume"])
+
+    @unittest.skipUnless((DATA / "amanzi_hexes_192.mesh").is_file(), "the collection lacks amanzi_hexes_192.mesh")
+    def test_statistics_of_few_cells(self):
+        whole = self.measured("probe", DATA / "amanzi_hexes_192.mesh", "--stats")["stats"]["whole"]
+        self.assertAlmostEqual(whole["volume"], 1, delta=1e-9)
+
+    @unittest.skipUnless((DATA / "lox_post_103k.vtu").is_file(), "the collection lacks lox_post_103k.vtu")
+    def test_statistics_of_one_field_of_many_cells(self):
+        whole = self.measured("probe", DATA / "lox_post_103k.vtu", "--stats", "--field", "StagnationEnergy")["stats"]["whole"]
+        self.assertEqual([field["name"] for field in whole["fields"]], ["StagnationEnergy"])
+        self.assertLess(whole["error"], 1e-4)
 
 
 if __name__ == "__main__":

@@ -61,8 +61,8 @@ struct NameTable<CellValues> {
 ///       pieces of a file need. The first of them is kept, with its values; a warning gives the number. Nothing: no welding
 /// curved_tolerance: curved hexahedra are split into smaller ones, with points on their true shape, so often that these lie
 ///       within this part of the mesh's diagonal from the shape, and fields within 400 times this part of their ranges; in at
-///       most 32,768 hexahedra, or 4 for each cell. Arrays of whole numbers do not count. Greater than 0. Nothing: only their
-///       corners are used
+///       most 65,536 hexahedra, or twice as many as there are between the nodes, p · q · r for a cell of degrees p, q and r.
+///       Arrays of whole numbers do not count. Greater than 0. Nothing: only their corners are used
 /// step: of a series (`open_series`), from 0. Nothing: the last one
 /// blocks: the names of the parts of the mesh that are read (`ReadResult::blocks`). None: all
 /// shells_alone: a file of shells and beams without any cell is read too. Its mesh has no cells, so most calls refuse it
@@ -94,10 +94,28 @@ struct CellValuesReport {
     double rms_of_range = 0, most_of_range = 0;
 };
 
+/// What became of curved hexahedra. Errors are estimated from second derivatives; the limit is nearer.
+///
+/// curved, cells: the curved hexahedra, and all hexahedra of the file
+/// hexes:         those that they all were split into; as many as `cells` if none is bent by more than the tolerance
+/// most_hexes:    no more would have been made
+/// tolerance:     that was asked for, in parts of the mesh's diagonal; of the fields 400 times that, in parts of their ranges
+/// shape_error, fields_error: what the smaller cells are off at most, in the same parts
+/// limited:       an error is above the tolerance, since there would have been more than most_hexes
+struct CurvedReport {
+    std::size_t curved = 0, cells = 0, hexes = 0, most_hexes = 0;
+    double tolerance = 0;
+    double shape_error = 0, fields_error = 0;
+    bool limited = false;
+
+    [[nodiscard]] bool split() const { return hexes > cells; }
+};
+
 /// blocks:     the parts that were read, of formats that have such parts
 /// cell_means: only if values at cells were fitted: the values of these fields in the file, for each cell of the mesh
 /// cell_parts: for each cell of the mesh the number of the file's cell that it is a part of; empty if there are no such fields
 /// cell_values: how well the means are met; nothing if there are no such fields
+/// curved:      nothing if there are no curved hexahedra, or only their corners are used
 /// shells:     the quads and lines of VTK and Gmsh files beside hexahedra that were not split, but for those that are faces and
 ///             edges of the hexahedra
 struct ReadResult {
@@ -108,6 +126,7 @@ struct ReadResult {
     std::vector<Attribute> cell_means = {};
     std::vector<Index> cell_parts = {};
     std::optional<CellValuesReport> cell_values = {};
+    std::optional<CurvedReport> curved = {};
     Shells shells = {};
 };
 
