@@ -109,6 +109,10 @@ WithFacts<ReadResult> read_input(const std::string& input, const CommonOptions& 
         return read_mesh(input, file_options);
     });
     for (const std::string& warning : read.warnings) facts.warn(warning);
+    for (const UnreadField& field : read.unread) {
+        if (options.field == field.name)
+            throw Error(ErrorCode::InvalidInput, field.why, text(input, ", field '", field.name, "'"));
+    }
     if (read.cell_values) {
         Facts& means = facts.group("cell_values");
         means["method"] = std::string(name_of(read.cell_values->method));
@@ -138,6 +142,11 @@ WithFacts<HexMesh> load_mesh(const std::string& input, const CommonOptions& opti
 
 WithFacts<HexMesh> mesh_of(ReadResult read, const CommonOptions& options, Shells* shells) {
     Facts facts;
+    if (read.mesh.attributes.empty() && !read.unread.empty() && !options.density && !read.mesh.cells.empty()) {
+        const UnreadField& first = read.unread.front();
+        throw Error(ErrorCode::InvalidInput, text("none of its fields can be read; '", first.name, "': ", first.why), {},
+                    "--density makes a field");
+    }
     if (shells != nullptr) {
         *shells = with_density(std::move(read.shells), options);
     } else {

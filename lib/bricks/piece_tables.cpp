@@ -36,6 +36,8 @@ std::size_t& count_of(CellCounts& counts, std::size_t corners) {
 }
 
 /// Reads the pieces, and fills the tables.
+constexpr const char* kNotFinite = "it has values that are not finite";
+
 class TableFiller {
 public:
     TableFiller(const PartFiles& files, std::string list, std::filesystem::path folder, const ReadOptions& options,
@@ -117,7 +119,7 @@ private:
                 throw Error(ErrorCode::InvalidInput, "has changed while it was being read", stream_.file().path.string());
             }
             if (!add_points(*piece, known)) return Filled::NumbersContradict;
-            if (!add_cells(*piece, k)) return Filled::HoldWhole;
+            if (!add_cells(*piece)) return Filled::HoldWhole;
             ++k;
         }
         return Filled::Done;
@@ -202,7 +204,7 @@ private:
     }
 
     // Returns false if the cells must be held whole.
-    bool add_cells(const MeshFile& piece, std::size_t k) {
+    bool add_cells(const MeshFile& piece) {
         const FileArray* numbers = survey_.order ? find_array(piece, survey_.order->name, true, 1) : nullptr;
         std::vector<Index> ranks, in_file;
         std::vector<std::array<Index, 8>> cells;
@@ -243,7 +245,10 @@ private:
         tables_->corners.write_some(sorted, records_of(corners));
         if (!tables_->cell_values) return true;
         const std::vector<double> values = values_of(piece, true, sorted_in_file);
-        check_cell_values(values, sorted_in_file, k);
+        if (!check_cell_values(values, sorted_in_file)) {
+            why_ = kNotFinite;
+            return false;
+        }
         tables_->cell_values->write_some(sorted, records_of(values));
         return true;
     }
@@ -259,26 +264,24 @@ private:
         }
     }
 
-    [[noreturn]] void refuse(const FileArray& array, const std::string& entity) const {
-        throw Error(ErrorCode::InvalidInput, "the value at " + entity + " is not finite",
-                    list_ + ", array " + in_quotes(array.name));
-    }
-
-    void check_cell_values(const std::vector<double>& records, const std::vector<Index>& in_file, std::size_t k) {
+    // The whole mesh leaves out a field with a value that is not finite, which is known only when all of it has been read.
+    bool check_cell_values(const std::vector<double>& records, const std::vector<Index>& in_file) {
+        bool finite = true;
         const std::size_t length = tables_->components(true);
         each_column(true, [&](const FileArray& array, std::size_t column, std::size_t components) {
             keep_least(array, records, column, length);
             for (std::size_t i = 0; i < in_file.size(); ++i) {
                 for (std::size_t c = column; c < column + components; ++c) {
-                    if (std::isfinite(records[i * length + c])) continue;
-                    refuse(array, names_in_parts().cell(survey_.first_cells[k] + in_file[i]));
+                    finite &= std::isfinite(records[i * length + c]);
                 }
             }
         });
+        return finite;
     }
 
-    void check_point_values() {
-        if (!tables_->point_values) return;
+    bool check_point_values() {
+        bool finite = true;
+        if (!tables_->point_values) return finite;
         const std::size_t length = tables_->components(false);
         std::vector<double> records;
         for (std::size_t begin = 0; begin < points_; begin += kPointsOfChunk) {
@@ -290,11 +293,12 @@ private:
                 for (std::size_t p = 0; p < count; ++p) {
                     if (!tables_->used[static_cast<Index>(begin + p)]) continue;
                     for (std::size_t c = column; c < column + components; ++c) {
-                        if (!std::isfinite(records[p * length + c])) refuse(array, names_in_parts().point(begin + p));
+                        finite &= std::isfinite(records[p * length + c]);
                     }
                 }
             });
         }
+        return finite;
     }
 
     // Keeps the least finite value of the first component.
@@ -328,7 +332,10 @@ private:
         if (tables.cells == 0) throw Error(ErrorCode::InvalidInput, "the mesh has no hexahedra", list_);
         tables.points = points_;
         tables.cut = survey_.cut;
-        check_point_values();
+        if (!check_point_values()) {
+            why_ = kNotFinite;
+            return {};
+        }
         tables.used.count();
         ByteHash hash;
         for (const std::uint64_t piece_hash : survey_.hashes)

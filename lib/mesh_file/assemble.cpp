@@ -102,6 +102,10 @@ public:
         // The names of all formats pass here: they appear in messages, JSON and files, and users write them to choose the
         // field.
         array.name = array.name.empty() ? "unnamed" : printable(array.name);
+        if (const std::string place = array.at_cells ? gap_at_cells(array) : gap_at_points(array); !place.empty()) {
+            unread_.push_back({array.name, "the value at " + place + " is not finite"});
+            return;
+        }
         result_.fields.push_back(describe(array));
         const FieldInfo& info = result_.fields.back();
         if (array.components == 1 && upper_case(array.name) == "DENSITY" && info.min < 0) {
@@ -118,8 +122,23 @@ public:
         result_.mesh.attributes.push_back(std::move(attribute));
     }
 
-    /// After the last array: one warning for all arrays of cells, and one for each name that several arrays have.
-    void finish() {
+    /// After the last array: refuses a mesh all of whose fields have values that are not finite. Else one warning for all
+    /// fields that are left out, one for all arrays of cells, and one for each name that several arrays have. unread: by the
+    /// reader
+    void finish(std::vector<UnreadField>&& unread) {
+        LeftOut left_out;
+        for (std::vector<UnreadField>* some : {&unread, &unread_}) {
+            for (UnreadField& field : *some) {
+                field.name = printable(field.name);
+                left_out.add(field.name, field.why);
+                result_.unread.push_back(std::move(field));
+            }
+        }
+        if (result_.mesh.attributes.empty() && !unread_.empty()) {
+            throw Error(ErrorCode::InvalidInput, result_.unread.back().why,
+                        std::string(file_) + ", array " + in_quotes(result_.unread.back().name));
+        }
+        left_out.report("field", "fields", result_.warnings);
         for (const std::string& name : repeated_) {
             const auto& others = names_taken_[name].others;
             const std::string last = others.size() > 1 ? " to " + in_quotes(others.back()) : "";
@@ -141,17 +160,30 @@ public:
     }
 
 private:
-    [[noreturn]] void refuse(const std::string& array, const std::string& entity) const {
-        throw Error(ErrorCode::InvalidInput, "the value at " + entity + " is not finite",
-                    std::string(file_) + ", array " + in_quotes(array));
+    // The first point that a cell uses, or the first cell, with a value that is not finite; empty if there is none.
+    [[nodiscard]] std::string gap_at_points(const FileArray& array) const {
+        const auto components = static_cast<std::size_t>(array.components);
+        for (std::size_t i = 0; i < array.values.size(); ++i) {
+            const std::size_t p = i / components;
+            if (!std::isfinite(array.values[i]) && origin_.used[p]) return names_.point(p);
+        }
+        return {};
+    }
+
+    [[nodiscard]] std::string gap_at_cells(const FileArray& array) const {
+        const auto components = static_cast<std::size_t>(array.components);
+        const auto& numbers = origin_.cell_numbers;
+        for (std::size_t c = 0; c < result_.mesh.cells.size(); ++c) {
+            const std::size_t number = numbers.empty() ? c : numbers[c];
+            for (std::size_t k = 0; k < components; ++k) {
+                if (!std::isfinite(array.values[number * components + k])) return names_.cell(number);
+            }
+        }
+        return {};
     }
 
     std::vector<double> from_points(FileArray&& array) const {
         const auto components = static_cast<std::size_t>(array.components);
-        for (std::size_t i = 0; i < array.values.size(); ++i) {
-            const std::size_t p = i / components;
-            if (!std::isfinite(array.values[i]) && origin_.used[p]) refuse(array.name, names_.point(p));
-        }
         return origin_.sources ? means(*origin_.sources, array.values, components) : std::move(array.values);
     }
 
@@ -164,7 +196,6 @@ private:
             const std::size_t number = numbers.empty() ? c : numbers[c];
             for (std::size_t k = 0; k < components; ++k) {
                 of_hexes.push_back(array.values[number * components + k]);
-                if (!std::isfinite(of_hexes.back())) refuse(array.name, names_.cell(number));
             }
         }
         return of_hexes;
@@ -204,6 +235,7 @@ private:
     };
     std::unordered_map<std::string, Taken> names_taken_;
     std::vector<std::string> averaged_, repeated_;
+    std::vector<UnreadField> unread_;
 };
 
 MixedCells take_others(MeshFile& found) {
@@ -398,7 +430,7 @@ ReadResult assemble(MeshFile&& found, std::string_view file, const EntityNames& 
         warn_of_folded(result);
         ArrayConversion conversion(result, origin, file, names, are_means(options.cell_values));
         for (auto& array : found.arrays) conversion.take(std::move(array));
-        conversion.finish();
+        conversion.finish(std::move(found.unread));
         if (!result.cell_means.empty()) result.cell_parts = std::move(origin.cell_numbers);
         take_shells(found, result, origin, moved);
         const bool alone = options.shells_alone && result.mesh.cells.empty() && !result.shells.empty();

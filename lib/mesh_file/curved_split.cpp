@@ -39,7 +39,7 @@ public:
     CurvedReport run() {
         find_channels();
         find_layouts();
-        refuse_not_finite();
+        refuse_weights();
         find_ranges();
         measure();
         pieces_ = choose_pieces(cells_, edges_, bends_, tolerance_, most_hexes());
@@ -122,17 +122,9 @@ private:
         return {*uniform, *uniform, *uniform};
     }
 
-    void refuse_not_finite() const {
+    void refuse_weights() const {
         for (std::size_t c = 0; c < cells_.size(); ++c) {
             for (const Index p : nodes_of(c)) {
-                for (const FileArray* array : arrays_) {
-                    const auto components = static_cast<std::size_t>(array->components);
-                    for (std::size_t k = 0; k < components; ++k) {
-                        if (std::isfinite(array->values[p * components + k])) continue;
-                        throw Error(ErrorCode::InvalidInput, "the value at " + names_.point(p) + " is not finite",
-                                    std::string(file_) + ", array " + in_quotes(array->name));
-                    }
-                }
                 if (!is_rational(c) || (weights_[p] > 0 && std::isfinite(weights_[p]))) continue;
                 fail("the rational weight of " + names_.point(p) + " is " + number_text(weights_[p]), "a positive number");
             }
@@ -348,6 +340,22 @@ private:
     FileCells<8> new_hexes_;
 };
 
+// Leaves out the arrays at points that have a value that is not finite where a cell has a node.
+void drop_unusable_fields(MeshFile& found, const EntityNames& names) {
+    std::vector<std::uint8_t> used = used_points(found);
+    for (const Index p : found.curved.nodes) used[p] = 1;
+    std::erase_if(found.arrays, [&](const FileArray& array) {
+        const auto components = static_cast<std::size_t>(array.components);
+        if (array.at_cells || array.name == kWeights) return false;  // weights are refused, as they change the shape
+        for (std::size_t i = 0; i < array.values.size(); ++i) {
+            if (std::isfinite(array.values[i]) || !used[i / components]) continue;
+            found.unread.push_back({array.name, "the value at " + names.point(i / components) + " is not finite"});
+            return true;
+        }
+        return false;
+    });
+}
+
 bool repeats_point(Hex hex) {
     std::sort(hex.begin(), hex.end());
     return std::adjacent_find(hex.begin(), hex.end()) != hex.end();
@@ -367,6 +375,7 @@ std::optional<CurvedReport> split_curved(MeshFile& found, double tolerance, std:
                                  ": only the corners are used");
         return std::nullopt;
     }
+    drop_unusable_fields(found, names);
     return CurvedSplit(found, tolerance, file, names).run();
 }
 

@@ -73,6 +73,10 @@ public:
         add_arrays();
         std::set<std::string> said;
         for (const MeshFile& piece : pieces_) {
+            for (const UnreadField& field : piece.unread) {
+                const auto same = [&](const UnreadField& other) { return other.name == field.name; };
+                if (std::ranges::none_of(all_.unread, same)) all_.unread.push_back(field);
+            }
             for (const std::string& warning : piece.warnings) {
                 if (said.insert(warning).second) all_.warnings.push_back(warning);
             }

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <iterator>
 #include <span>
 #include <utility>
 #include <vector>
@@ -180,10 +181,31 @@ void add_hexes(MeshFile& into, const StructuredGrid& grid, std::size_t first_poi
     }
 }
 
-BlockChoice::BlockChoice(std::span<const std::string> wanted, const std::vector<std::string>& there, std::string_view file)
-    : wanted_(wanted.begin(), wanted.end()) {
-    for (const std::string& name : wanted_) {
-        if (std::ranges::find(there, name) != there.end()) continue;
+void LeftOut::add(const std::string& name, const std::string& why) {
+    constexpr std::size_t kNamed = 6;
+    if (++count_ == 1) why_ = why;
+    if (count_ <= kNamed) names_ += (count_ == 1 ? "" : ", ") + in_quotes(name);
+    if (count_ == kNamed + 1) names_ += ", …";
+}
+
+void LeftOut::report(std::string_view one, std::string_view many, std::vector<std::string>& warnings) const {
+    if (count_ == 0) return;
+    warnings.push_back((count_ == 1 ? std::string(one) + " " + names_ + " left out: "
+                                    : counted(count_, one, many) + " left out (" + names_ + "): ") +
+                       why_);
+}
+
+BlockChoice::BlockChoice(std::span<const std::string> wanted, const std::vector<std::string>& there, std::string_view file) {
+    for (const std::string& name : wanted) {
+        const auto same = [&](const std::string& other) { return upper_case(other) == upper_case(name); };
+        if (std::ranges::find(there, name) != there.end()) {
+            wanted_.insert(name);
+            continue;
+        }
+        if (std::ranges::any_of(there, same)) {
+            std::ranges::copy_if(there, std::inserter(wanted_, wanted_.end()), same);
+            continue;
+        }
         constexpr std::size_t kListed = 20;
         std::string list;
         for (std::size_t b = 0; b < std::min(there.size(), kListed); ++b) list += (b == 0 ? "" : ", ") + printable(there[b]);

@@ -69,6 +69,7 @@ struct FileTags {
 /// quads, lines: of shells and beams; they need numbers
 /// cut:        the cells fit together only if all are cut into tetrahedra
 /// turned:     the hexahedra stay as they are, also where their volume is negative
+/// unread:     fields that could not be read
 /// not_finite: points with a coordinate that is not finite, and their position in the text: an error if a cell uses the point
 struct MeshFile {
     struct NotFinite {
@@ -85,6 +86,7 @@ struct MeshFile {
     CurvedHexes curved;
     FileTags sharp;
     std::vector<FileArray> arrays;
+    std::vector<UnreadField> unread;
     std::vector<NotFinite> not_finite;
     std::vector<std::string> warnings;
     std::vector<MeshBlock> blocks;
@@ -133,6 +135,20 @@ void read_point(Numbers& in, MeshFile& file, const EntityNames& names, std::size
 ///
 /// list: their kinds and counts, such as "4 lines, 2 quads"; empty if there are none
 void add_left_out_warning(MeshFile& found, const std::string& list, std::string_view file);
+
+/// What a reader leaves out because it cannot read it, and nothing else needs it: one warning tells of all.
+class LeftOut {
+public:
+    /// why: with the place in the file
+    void add(const std::string& name, const std::string& why);
+    [[nodiscard]] bool empty() const { return count_ == 0; }
+    /// Appends "3 fields left out ("a", "b", "c"): " and why the first one is. one, many: words for them
+    void report(std::string_view one, std::string_view many, std::vector<std::string>& warnings) const;
+
+private:
+    std::string names_, why_;
+    std::size_t count_ = 0;
+};
 
 /// Leaves out the quads that are faces of hexahedra and the lines that are edges of them, and all of them if there are other
 /// cells or curved ones, or no cells.
@@ -189,7 +205,8 @@ void add_hexes(MeshFile& into, const StructuredGrid& grid, std::size_t first_poi
 /// Which of a file's blocks are read.
 class BlockChoice {
 public:
-    /// wanted: their names; none: all of them. there: the names of all blocks
+    /// wanted: their names, or if there is none of this name, names that differ in the case of letters; none: all of them.
+    /// there: the names of all blocks
     ///
     /// throws: Error(InvalidInput) if a block that is wanted is not there
     BlockChoice(std::span<const std::string> wanted, const std::vector<std::string>& there, std::string_view file);

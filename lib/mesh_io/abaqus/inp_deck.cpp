@@ -11,6 +11,7 @@
 #include <span>
 #include <unordered_map>
 
+#include "local_system.h"
 #include "named_files.h"
 #include "subvol/error.h"
 #include "text_scanner.h"
@@ -25,11 +26,15 @@ namespace {
 constexpr std::size_t kFewMade = std::size_t{1} << 20, kFewMembers = std::size_t{1} << 22;
 constexpr std::size_t kMadeOfByte = 16;
 constexpr std::size_t kMostIncluded = 10000;
+// Begins the names of what instances add to their parts.
+constexpr const char* kInside = "\n";
 
+// Commas between quotation marks belong to a name.
 std::vector<std::string_view> fields_of(std::string_view line) {
     std::vector<std::string_view> fields;
     for (std::size_t begin = 0; begin <= line.size();) {
-        const std::size_t end = std::min(line.find(',', begin), line.size());
+        std::size_t end = begin;
+        for (bool quoted = false; end < line.size() && (quoted || line[end] != ','); ++end) quoted ^= line[end] == '"';
         fields.push_back(trimmed(line.substr(begin, end - begin)));
         begin = end + 1;
     }
@@ -37,30 +42,15 @@ std::vector<std::string_view> fields_of(std::string_view line) {
     return fields;
 }
 
-// Shells, membranes and surfaces of four nodes, with or without a suffix for the integration; not those of axisymmetric parts.
-constexpr std::array kQuads{"S4"sv, "DS4"sv, "M3D4"sv, "SFM3D4"sv, "R3D4"sv};
-// Beams, trusses and rigid links of two nodes, in space.
-constexpr std::array kLines{"B31"sv, "B33"sv, "T3D2"sv, "DC1D2"sv, "RB3D2"sv, "PIPE31"sv};
-
-bool is_one_of(std::string_view type, std::span<const std::string_view> kinds) {
-    return std::ranges::any_of(kinds, [&](std::string_view kind) {
-        // A digit behind it is another type: S4R5 is an S4, S43 is not.
-        return type.starts_with(kind) && (type.size() == kind.size() || type[kind.size()] < '0' || type[kind.size()] > '9');
-    });
+std::string_view name_of(std::string_view text) {
+    const bool quoted = text.size() >= 2 && text.front() == '"' && text.back() == '"';
+    return quoted ? text.substr(1, text.size() - 2) : text;
 }
 
-// The nodes of an element of a volume, a shell or a beam; 0 for any other type.
-std::size_t nodes_of(std::string_view type) {
-    if (is_one_of(type, kQuads)) return 4;
-    if (is_one_of(type, kLines)) return 2;
-    if (!type.starts_with("C3D") && !type.starts_with("DC3D")) return 0;
-    const std::size_t digits = type.find("3D") + 2;
-    std::size_t nodes = 0;
-    std::from_chars(type.data() + digits, type.data() + type.size(), nodes);
-    return nodes;
-}
+// Options that make or move nodes and elements: without them the mesh would be another one.
+constexpr std::array kChangesTheMesh{"*NMAP"sv,   "*NCOPY"sv,        "*NFILL"sv,
+                                     "*ELCOPY"sv, "*IMPERFECTION"sv, "*SYMMETRICMODELGENERATION"sv};
 
-// The number of nodes is in the names of types; of others a line is an element.
 class DeckReader {
 public:
     explicit DeckReader(InpDeck& deck) : deck_(deck) {}
@@ -79,7 +69,7 @@ public:
         std::size_t position = 0;
         for (std::size_t number = 1; position < text.size(); ++number) {
             const std::size_t end = std::min(text.find('\n', position), text.size());
-            const std::string_view line = trimmed(std::string_view(text).substr(position, end - position));
+            std::string_view line = trimmed(std::string_view(text).substr(position, end - position));
             position_ = position;
             line_ = number;
             position = end + 1;
@@ -89,9 +79,18 @@ public:
                 continue;
             }
             finish_element();
-            if (const auto included = take_keyword(line)) {
-                const NamedFiles::Place keyword = [&in, at = position_] { return in.place_of(at); };
-                read(named_file(path.parent_path(), *included, keyword), keyword);
+            // A comma at the end of the line goes on in the next one.
+            std::string keyword(line);
+            while (line.ends_with(',') && position < text.size() && text[position] != '*') {
+                const std::size_t next = std::min(text.find('\n', position), text.size());
+                line = trimmed(std::string_view(text).substr(position, next - position));
+                keyword += line;
+                position = next + 1;
+                ++number;
+            }
+            if (const auto included = take_keyword(keyword)) {
+                const NamedFiles::Place named = [&in, at = position_] { return in.place_of(at); };
+                read(named_file(path.parent_path(), *included, named), named);
             }
         }
         finish_element();
@@ -99,12 +98,65 @@ public:
         file_ = outer_file;
     }
 
+    // After the last line: the numbers of all sets, and what the instances make of them.
+    void finish() {
+        for (auto& [name, part] : deck_.parts) expand_ranges(part.sets, elements_of(name));
+        count_instances();
+    }
+
+private:
+    enum class Section { Other, Node, Element, ElementSet, Instance, System, NodesBetween, ElementsLike };
+
+    struct Places {
+        std::unordered_map<std::int64_t, std::size_t> at;
+        std::size_t known = 0;
+    };
+
+    [[noreturn]] void fail(const std::string& message, const std::string& allowed = {}) const {
+        in_->fail_at(position_, message, allowed);
+    }
+
+    // Ranges name all numbers between two: those that are elements stay.
+    void expand_ranges(std::map<std::string, InpSet>& sets, const std::vector<const InpElement*>& elements) {
+        if (std::ranges::all_of(sets, [](const auto& set) { return set.second.ranges.empty(); })) return;
+        std::vector<std::int64_t> numbers;
+        for (const InpElement* element : elements) numbers.push_back(element->number);
+        std::ranges::sort(numbers);
+        for (auto& [name, set] : sets) {
+            for (const auto& [first, last, step] : set.ranges) {
+                const auto from = std::ranges::lower_bound(numbers, first), to = std::ranges::upper_bound(numbers, last);
+                if (from < to) count_members(static_cast<std::size_t>(to - from));
+                for (auto number = from; number < to; ++number) {
+                    if ((*number - first) % step == 0) set.numbers.push_back(*number);
+                }
+            }
+            set.ranges.clear();
+        }
+    }
+
+    // The elements that the numbers in sets of a part mean: those of an instance may be in its part.
+    [[nodiscard]] std::vector<const InpElement*> elements_of(const std::string& name) const {
+        std::vector<const InpElement*> elements;
+        const auto add = [&](const std::string& part) {
+            const auto found = deck_.parts.find(part);
+            if (found == deck_.parts.end()) return;
+            for (const InpElement& element : found->second.elements) elements.push_back(&element);
+        };
+        add(name);
+        if (elements.empty() && name.starts_with(kInside)) {
+            for (const InpInstance& instance : deck_.instances) {
+                if (instance.inside == name) add(instance.part);
+            }
+        }
+        return elements;
+    }
+
     // Each instance of a part is another copy of its nodes and elements, and of the members of its sets.
     void count_instances() {
         std::set<std::string_view> met;
         std::map<std::string_view, std::size_t> members;
         for (const auto& [name, part] : deck_.parts) {
-            for (const auto& [set, numbers] : part.sets) members[name] += 1 + numbers.size();
+            for (const auto& [key, set] : part.sets) members[name] += 1 + set.numbers.size();
         }
         for (const InpInstance& instance : deck_.instances) {
             const auto part = deck_.parts.find(instance.part);
@@ -118,42 +170,37 @@ public:
         }
     }
 
-private:
-    enum class Section { Other, Node, Element, ElementSet, Instance, NodesBetween, ElementsLike };
-
-    struct Places {
-        std::unordered_map<std::int64_t, std::size_t> at;
-        std::size_t known = 0;
-    };
-
-    [[noreturn]] void fail(const std::string& message, const std::string& allowed = {}) const {
-        in_->fail_at(position_, message, allowed);
-    }
-
-    // Returns the file that *INCLUDE names.
+    // Returns the file that *INCLUDE or INPUT names.
     std::optional<std::string> take_keyword(std::string_view line) {
         const auto fields = fields_of(line);
-        const std::string keyword = upper_case(fields.front());
+        std::string keyword = upper_case(fields.front());
+        std::erase_if(keyword, [](char c) { return c == ' ' || c == '\t'; });
         values_.clear();
         for (std::size_t i = 1; i < fields.size(); ++i) {
             const std::size_t equals = fields[i].find('=');
             const auto value = equals == std::string_view::npos ? std::string_view() : trimmed(fields[i].substr(equals + 1));
-            values_[upper_case(trimmed(fields[i].substr(0, equals)))] = std::string(value);
+            values_[upper_case(trimmed(fields[i].substr(0, equals)))] = std::string(name_of(value));
         }
         section_ = Section::Other;
+        scope_ = part_;
+        lines_ = 0;
         if (keyword == "*INCLUDE") return values_["INPUT"];
-        if (keyword == "*PART") {
-            part_ = upper_case(values_["NAME"]);
-        } else if (keyword == "*END PART" || keyword == "*END INSTANCE") {
-            part_.clear();
+        if (std::ranges::find(kChangesTheMesh, keyword) != kChangesTheMesh.end()) {
+            fail(in_quotes(std::string(fields.front())) + ", which makes or moves nodes and elements, is not supported",
+                 "write the mesh as nodes and elements");
+        }
+        if (keyword == "*PART" || keyword == "*ENDPART" || keyword == "*ENDINSTANCE" || keyword == "*ASSEMBLY") {
+            system_ = {};
+            part_ = keyword == "*PART" ? upper_case(values_["NAME"]) : std::string();
+            if (keyword == "*PART") deck_.parts[part_];
         } else if (keyword == "*INSTANCE") {
-            section_ = Section::Instance;
-            InpInstance& instance = deck_.instances.emplace_back();
-            instance.part = upper_case(values_["PART"]);
-            instance.place = {file_, line_};
-            lines_ = 0;
+            start_instance();
+        } else if (keyword == "*SYSTEM") {
+            section_ = Section::System;
+            system_ = {};
         } else if (keyword == "*NODE") {
             section_ = Section::Node;
+            coordinates_ = read_coordinates();
         } else if (keyword == "*ELEMENT") {
             start_elements();
         } else if (keyword == "*NGEN") {
@@ -165,16 +212,48 @@ private:
         } else if (keyword == "*ELSET") {
             section_ = Section::ElementSet;
             if (values_["ELSET"].empty()) fail("the *ELSET has no name");
+            if (values_.contains("INSTANCE")) scope_ = kInside + upper_case(values_["INSTANCE"]);
+            set_of(values_["ELSET"]);
         }
-        return std::nullopt;
+        const bool has_data = section_ == Section::Node || section_ == Section::Element;
+        return has_data && values_.contains("INPUT") ? std::optional(values_["INPUT"]) : std::nullopt;
+    }
+
+    void start_instance() {
+        section_ = Section::Instance;
+        system_ = {};
+        if (values_.contains("LIBRARY")) fail("instances of other analyses (LIBRARY) are not supported");
+        InpInstance& instance = deck_.instances.emplace_back();
+        instance.part = upper_case(values_["PART"]);
+        instance.inside = part_ = kInside + upper_case(values_["NAME"]);
+        instance.place = {file_, line_};
+    }
+
+    // What *NODE, SYSTEM says: rectangular unless it is C or S.
+    [[nodiscard]] Coordinates read_coordinates() {
+        const std::string kind = upper_case(values_["SYSTEM"]);
+        if (kind.empty() || kind.starts_with('R')) return Coordinates::Rectangular;
+        if (kind.starts_with('C')) return Coordinates::Cylindrical;
+        if (!kind.starts_with('S')) fail("nodes in the system " + in_quotes(kind) + " are not supported", "R, C and S are");
+        return Coordinates::Spherical;
+    }
+
+    // The set of a name in the part or instance that the line is about.
+    InpSet& set_of(const std::string& name) {
+        InpSet& set = deck_.parts[scope_].sets[upper_case(name)];
+        if (set.name.empty()) set.name = name;
+        return set;
+    }
+
+    void add_to_set(const std::string& name, std::int64_t number) {
+        if (!name.empty()) set_of(name).numbers.push_back(number);
     }
 
     void start_elements() {
         section_ = Section::Element;
         const std::string type = upper_case(values_["TYPE"]);
         if (type.empty()) fail("the *ELEMENT has no TYPE");
-        type_ = deck_.types.try_emplace(type, type).first->second;
-        nodes_ = nodes_of(type_);
+        type_ = &deck_.types.try_emplace(type, inp_type(type)).first->second;
     }
 
     void take_data(std::string_view line) {
@@ -184,6 +263,7 @@ private:
         if (section_ == Section::ElementsLike) generate_elements(fields_of(line));
         if (section_ == Section::ElementSet) take_set(fields_of(line));
         if (section_ == Section::Instance) take_place(fields_of(line));
+        if (section_ == Section::System) take_system(fields_of(line));
     }
 
     [[nodiscard]] std::int64_t integer(std::string_view word) const {
@@ -213,7 +293,28 @@ private:
         part.numbers.push_back(integer(fields.empty() ? std::string_view() : fields[0]));
         Vec3 x(0.0);
         for (std::size_t a = 0; a < 3 && a + 1 < fields.size(); ++a) x[static_cast<int>(a)] = real(fields[a + 1]);
-        part.points.push_back(x);
+        constexpr double kRadians = std::numbers::pi / 180;
+        if (coordinates_ != Coordinates::Rectangular) x.y *= kRadians;
+        if (coordinates_ == Coordinates::Spherical) x.z *= kRadians;
+        part.points.push_back(system_(rectangular(coordinates_, x)));
+    }
+
+    // The origin, a point on the first axis, and in the next line one on the side of the second axis. Without the latter the
+    // axes are turned about z only.
+    void take_system(const std::vector<std::string_view>& fields) {
+        const auto at = [&](std::size_t i) { return i < fields.size() ? real(fields[i]) : 0; };
+        if (++lines_ == 1) {
+            system_.origin = {at(0), at(1), at(2)};
+            if (fields.size() <= 3) return;
+            along_ = Vec3(at(3), at(4), at(5)) - system_.origin;
+            system_.axes = axes_along({along_.x, along_.y, 0}, {-along_.y, along_.x, 0});
+        } else if (lines_ == 2) {
+            system_.axes = axes_along(along_, Vec3(at(0), at(1), at(2)) - system_.origin);
+        }
+        if (lines_ <= 2 && !std::isfinite(system_.axes[2].x + system_.axes[1].x)) {
+            if (lines_ == 1) system_.axes[2] = Vec3(0);  // the next line may say more
+            if (lines_ == 2) fail("the points of the *SYSTEM lie on one line");
+        }
     }
 
     // Where things of the part are, by their numbers; the last one if a number is repeated.
@@ -300,60 +401,132 @@ private:
                     for (std::int64_t& node : copy.nodes) node += i * along[0][1] + j * along[1][1] + k * along[2][1];
                     copy.number += i * along[0][2] + j * along[1][2] + k * along[2][2];
                     copy.place = file_;
-                    if (!values_["ELSET"].empty()) part.sets[values_["ELSET"]].push_back(copy.number);
+                    add_to_set(values_["ELSET"], copy.number);
                     part.elements.push_back(std::move(copy));
                 }
             }
         }
-        if (!values_["ELSET"].empty()) part.sets[values_["ELSET"]].push_back(master.number);
+        add_to_set(values_["ELSET"], master.number);
     }
 
-    // An element goes on in the next line until it has all its nodes.
+    // An element goes on in the next line until it has all its nodes. Of a type that is not read, a line that ends with a comma
+    // goes on.
     void take_element(std::string_view line) {
-        for (const std::string_view field : fields_of(line)) numbers_.push_back(integer(field));
-        if (numbers_.size() > nodes_) finish_element();
+        const auto fields = fields_of(line);
+        if (type_->shape == InpShape::Other) {
+            if (!open_) take_unread(fields);
+            open_ = line.ends_with(',') && fields.size() > 2;
+            return;
+        }
+        for (const std::string_view field : fields) numbers_.push_back(integer(field));
+        if (numbers_.size() > type_->nodes) finish_element();
+    }
+
+    void take_unread(const std::vector<std::string_view>& fields) {
+        std::int64_t number = 0;
+        if (!fields.empty()) std::from_chars(fields[0].data(), fields[0].data() + fields[0].size(), number);
+        add_to_set(values_["ELSET"], number);
+        deck_.parts[part_].elements.push_back({number, type_, {}, file_});
     }
 
     void finish_element() {
+        open_ = false;
         if (numbers_.empty()) return;
-        if (nodes_ > 0 && numbers_.size() != nodes_ + 1) {
-            fail("element " + std::to_string(numbers_[0]) + " of type " + std::string(type_) + " has " +
+        // C3D27 may lack the nodes in the middle of faces.
+        constexpr std::size_t kCurvedNodes = 20;
+        const std::size_t needed = type_->nodes > kCurvedNodes ? kCurvedNodes : type_->nodes;
+        if (numbers_.size() < needed + 1) {
+            fail("element " + std::to_string(numbers_[0]) + " of type " + type_->name + " has " +
                  counted(numbers_.size() - 1, "node", "nodes"));
         }
-        InpPart& part = deck_.parts[part_];
-        if (!values_["ELSET"].empty()) part.sets[values_["ELSET"]].push_back(numbers_[0]);
-        part.elements.push_back({numbers_[0], type_, {numbers_.begin() + 1, numbers_.end()}, file_});
+        if (numbers_.size() > type_->nodes + 1) {
+            ++deck_.longer;
+            numbers_.resize(type_->nodes + 1);
+        }
+        add_to_set(values_["ELSET"], numbers_[0]);
+        deck_.parts[part_].elements.push_back({numbers_[0], type_, {numbers_.begin() + 1, numbers_.end()}, file_});
         numbers_.clear();
     }
 
+    // A set that cannot be read stops nothing but itself.
     void take_set(const std::vector<std::string_view>& fields) {
-        InpPart& part = deck_.parts[part_];
-        std::vector<std::int64_t>& set = part.sets[values_["ELSET"]];
+        const std::string& name = values_["ELSET"];
+        const auto leave_out = [&](const std::string& why) {
+            deck_.sets_left_out.add(name, in_->place_of(position_) + ": " + why);
+            section_ = Section::Other;
+        };
         if (values_.contains("GENERATE")) {
-            if (fields.size() < 2) fail("GENERATE needs a first and a last number");
-            const std::int64_t first = integer(fields[0]), last = integer(fields[1]);
-            const std::int64_t step = fields.size() > 2 ? integer(fields[2]) : 1;
-            if (step < 1 || last < first || first < 0 ||
-                (last - first) / step > static_cast<std::int64_t>(part.elements.size())) {
-                fail("the numbers " + std::to_string(first) + " to " + std::to_string(last) + " are not those of elements");
+            std::array<std::int64_t, 3> range{0, 0, 1};
+            for (std::size_t i = 0; i < std::min<std::size_t>(3, fields.size()); ++i) {
+                const auto number = number_in(fields[i]);
+                if (!number && !(i == 2 && fields[i].empty())) return leave_out("it is not a range of numbers");
+                range[i] = number.value_or(1);
             }
-            count_members(static_cast<std::size_t>((last - first) / step) + 1);
-            for (std::int64_t k = 0; k <= (last - first) / step; ++k) set.push_back(first + k * step);
+            if (fields.size() == 1) range[1] = range[0];
+            constexpr std::int64_t kLargest = std::int64_t{1} << 40;
+            if (fields.empty() || range[2] < 1 || range[1] < range[0] || range[0] < 0 || range[1] > kLargest)
+                return leave_out("it is not a range of numbers");
+            count_members(1);
+            set_of(name).ranges.push_back(range);
             return;
         }
         for (const std::string_view field : fields) {
-            std::int64_t number = 0;
-            const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), number);
-            if (error == std::errc() && end == field.data() + field.size()) {
-                set.push_back(number);
-                continue;
+            if (const auto number = number_in(field)) {
+                set_of(name).numbers.push_back(*number);
+            } else if (!add_set(name, name_of(field))) {
+                leave_out("there is no set " + in_quotes(std::string(field)));
             }
-            const auto other = part.sets.find(std::string(field));
-            if (other == part.sets.end()) continue;
-            count_members(other->second.size());
-            const std::vector<std::int64_t> copy = other->second;
-            set.insert(set.end(), copy.begin(), copy.end());
         }
+    }
+
+    static std::optional<std::int64_t> number_in(std::string_view field) {
+        std::int64_t number = 0;
+        const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), number);
+        return error == std::errc() && end == field.data() + field.size() ? std::optional(number) : std::nullopt;
+    }
+
+    // Adds another set, or what "instance.set" and "instance.number" name. returns: whether there is one
+    bool add_set(const std::string& name, std::string_view member) {
+        if (!scope_.empty()) return copy_set(name, member);
+        const std::size_t dot = member.rfind('.');
+        bool found = false;
+        if (dot != std::string_view::npos) {
+            scope_ = kInside + upper_case(name_of(member.substr(0, dot)));
+            const auto number = number_in(member.substr(dot + 1));
+            if (number) set_of(name).numbers.push_back(*number);
+            found = number || copy_set(name, name_of(member.substr(dot + 1)));
+        } else {
+            found = copy_set(name, member);
+            // A set of the assembly may have members in every instance.
+            for (const InpInstance& instance : deck_.instances) {
+                count_members(1);
+                scope_ = instance.inside;
+                found |= copy_set(name, member);
+            }
+        }
+        scope_.clear();
+        return found;
+    }
+
+    bool copy_set(const std::string& name, std::string_view member) {
+        const auto in = [&](const std::string& part) -> const InpSet* {
+            const auto sets = deck_.parts.find(part);
+            if (sets == deck_.parts.end()) return nullptr;
+            const auto found = sets->second.sets.find(upper_case(member));
+            return found == sets->second.sets.end() ? nullptr : &found->second;
+        };
+        const InpSet* other = in(scope_);
+        for (const InpInstance& instance : deck_.instances) {
+            if (other != nullptr || !scope_.starts_with(kInside)) break;
+            if (instance.inside == scope_) other = in(instance.part);
+        }
+        if (other == nullptr) return false;
+        count_members(1 + other->numbers.size() + other->ranges.size());
+        const InpSet copy = *other;
+        InpSet& set = set_of(name);
+        set.numbers.insert(set.numbers.end(), copy.numbers.begin(), copy.numbers.end());
+        set.ranges.insert(set.ranges.end(), copy.ranges.begin(), copy.ranges.end());
+        return true;
     }
 
     void take_place(const std::vector<std::string_view>& fields) {
@@ -377,11 +550,14 @@ private:
     std::size_t position_ = 0, line_ = 0;  // of the line, and its number
     Section section_ = Section::Other;
     std::map<std::string, std::string> values_;  // of the keyword
-    std::string part_;
-    std::string_view type_;
-    std::size_t nodes_ = 0;
+    std::string part_, scope_;                   // that nodes and elements belong to, and those of a set
+    const InpType* type_ = nullptr;
     std::vector<std::int64_t> numbers_;  // of the element so far
-    int lines_ = 0;
+    bool open_ = false;                  // whether the next line goes on with an element that is not read
+    Coordinates coordinates_ = Coordinates::Rectangular;
+    LocalSystem system_;
+    Vec3 along_{0.0};
+    int lines_ = 0;                                         // of a keyword so far
     std::map<std::string, Places> nodes_at_, elements_at_;  // by parts
 };
 
@@ -396,16 +572,15 @@ Vec3 InpInstance::operator()(const Vec3& x) const {
     return axis[0] + c * v + s * glm::cross(u, v) + (1 - c) * glm::dot(u, v) * u;
 }
 
-bool is_shell(std::string_view type) {
-    return is_one_of(type, kQuads) || is_one_of(type, kLines);
-}
-
 InpDeck read_inp_deck(const std::filesystem::path& path) {
     InpDeck deck;
     DeckReader reader(deck);
     reader.read(path, [&] { return path.string(); });
-    reader.count_instances();
-    if (deck.instances.empty()) deck.instances.emplace_back();
+    reader.finish();
+    const auto outside = deck.parts.find("");
+    if (deck.instances.empty() || (outside != deck.parts.end() && !outside->second.elements.empty())) {
+        deck.instances.emplace_back();
+    }
     return deck;
 }
 

@@ -9,29 +9,40 @@
 #include <string_view>
 #include <vector>
 
+#include "inp_types.h"
+#include "mesh_file.h"
 #include "subvol/vec.h"
 
 namespace subvol::detail {
 
-/// An element of a deck. type: in capitals, such as C3D8R
+/// An element of a deck. nodes: none if its type is not read
 struct InpElement {
     std::int64_t number;
-    std::string_view type;
+    const InpType* type;
     std::vector<std::int64_t> nodes;
     std::string_view place;  // for messages
 };
 
-/// The nodes and elements of a part. sets: the numbers of the elements of each set, by the set's name
+/// Elements by their numbers. name: as it is written first; ranges: from, to, and the step between
+struct InpSet {
+    std::string name;
+    std::vector<std::int64_t> numbers;
+    std::vector<std::array<std::int64_t, 3>> ranges;
+};
+
+/// The nodes and elements of a part, or those that an instance adds to its part. sets: of elements, by names in capitals
 struct InpPart {
     std::vector<std::int64_t> numbers;
     std::vector<Vec3> points;
     std::vector<InpElement> elements;
-    std::map<std::string, std::vector<std::int64_t>> sets;
+    std::map<std::string, InpSet> sets;
 };
 
 /// A part where the assembly puts it: turned about an axis, after it was moved.
+///
+/// inside: the name of the part that has what the instance adds, which are nodes, elements and sets
 struct InpInstance {
-    std::string part;
+    std::string part, inside;
     Vec3 move{0.0};
     std::array<Vec3, 2> axis{Vec3(0.0), Vec3(0.0)};
     double angle_deg = 0;
@@ -47,13 +58,12 @@ struct InpInstance {
 struct InpDeck {
     std::map<std::string, InpPart> parts;  // by names in capitals
     std::vector<InpInstance> instances;
-    std::map<std::string, std::string> types;  // owns the names of types
-    std::set<std::string> files;               // owns the names of files
-    std::size_t made = 0;                      // nodes and elements that are not in the text, those of instances among them
+    std::map<std::string, InpType> types;  // owns the types, by their names
+    std::set<std::string> files;           // owns the names of files
+    std::size_t made = 0;                  // nodes and elements that are not in the text, those of instances among them
+    std::size_t longer = 0;                // elements with more numbers than their types have nodes
+    LeftOut sets_left_out;
 };
-
-/// Whether a type is one of shells and membranes with four nodes, or of beams and trusses with two.
-[[nodiscard]] bool is_shell(std::string_view type);
 
 /// throws: Error(InvalidInput) that names the file and the line
 [[nodiscard]] InpDeck read_inp_deck(const std::filesystem::path& path);

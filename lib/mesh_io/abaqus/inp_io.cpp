@@ -25,12 +25,21 @@ public:
     ReadResult run() {
         const BlockChoice choice(options_.blocks, set_names(), file_);
         for (const InpInstance& instance : deck_.instances) {
-            const auto part = deck_.parts.find(instance.part);
-            if (part == deck_.parts.end()) {
+            const auto part = deck_.parts.find(instance.part), inside = deck_.parts.find(instance.inside);
+            const bool has_mesh = inside != deck_.parts.end() && !inside->second.points.empty();
+            if (part == deck_.parts.end() && !has_mesh) {
                 fail(instance.part.empty() ? "it has no nodes" : "there is no part " + in_quotes(instance.part));
             }
-            add(part->second, instance, choice);
+            std::vector<const std::map<std::string, InpSet>*> sets;
+            if (part != deck_.parts.end()) sets.push_back(&part->second.sets);
+            if (inside != deck_.parts.end() && inside != part) sets.push_back(&inside->second.sets);
+            add(has_mesh ? inside->second : part->second, instance, sets, choice);
         }
+        if (deck_.longer > 0) {
+            found_.warnings.push_back(counted(deck_.longer, "element has", "elements have") +
+                                      " more numbers than nodes: those after the last node are ignored");
+        }
+        deck_.sets_left_out.report("set of elements", "sets of elements", found_.warnings);
         if (curved_ > 0) {
             found_.warnings.push_back(counted(curved_, "element has", "elements have") +
                                       " more nodes than corners: only the corners are used");
@@ -41,8 +50,8 @@ public:
             list += (list.empty() ? "" : ", ") + counted(count, "element", "elements") + " of type " + type;
         }
         add_left_out_warning(found_, list, file_);
-        for (const auto& [name, cells] : blocks_) {
-            if (cells > 0) found_.blocks.push_back({name, cells});
+        for (const auto& [key, block] : blocks_) {
+            if (block.cells > 0) found_.blocks.push_back(block);
         }
         EntityNames names = kAbaqusNames;
         names.point_numbers = numbers_;
@@ -52,15 +61,20 @@ public:
 private:
     [[noreturn]] void fail(const std::string& message) const { throw Error(ErrorCode::InvalidInput, message, file_); }
 
-    [[nodiscard]] std::vector<std::string> set_names() const {
-        std::vector<std::string> names;
+    // Sets of several parts whose names differ in the case of letters are one.
+    [[nodiscard]] std::vector<std::string> set_names() {
         for (const auto& [part, contents] : deck_.parts) {
-            for (const auto& [name, elements] : contents.sets) names.push_back(name);
+            for (const auto& [key, set] : contents.sets) blocks_.try_emplace(key, MeshBlock{set.name, 0});
         }
+        std::vector<std::string> names;
+        for (const auto& [key, block] : blocks_) names.push_back(block.name);
         return names;
     }
 
-    void add(const InpPart& part, const InpInstance& instance, const BlockChoice& choice) {
+    using Sets = std::map<std::string, InpSet>;
+
+    void add(const InpPart& part, const InpInstance& instance, const std::vector<const Sets*>& all_sets,
+             const BlockChoice& choice) {
         places_ = {};  // not cleared, which takes as long as the largest part did
         if (found_.points.size() + part.points.size() >= kNone) fail("there are too many nodes");
         for (std::size_t p = 0; p < part.points.size(); ++p) {
@@ -69,8 +83,10 @@ private:
             numbers_.push_back(part.numbers[p]);
         }
         std::unordered_set<std::int64_t> chosen;
-        for (const auto& [name, elements] : part.sets) {
-            if (choice.takes(name)) chosen.insert(elements.begin(), elements.end());
+        for (const Sets* sets : all_sets) {
+            for (const auto& [key, set] : *sets) {
+                if (choice.takes(blocks_.at(key).name)) chosen.insert(set.numbers.begin(), set.numbers.end());
+            }
         }
         std::unordered_set<std::int64_t> cells;
         for (const InpElement& element : part.elements) {
@@ -78,44 +94,46 @@ private:
             if (take(element)) cells.insert(element.number);
             ++next_;
         }
-        for (const auto& [name, elements] : part.sets) {
-            if (!choice.takes(name)) continue;
-            const std::unordered_set<std::int64_t> of_set(elements.begin(), elements.end());
-            blocks_[name] += static_cast<std::size_t>(
-                std::ranges::count_if(of_set, [&](std::int64_t number) { return cells.contains(number); }));
+        for (const Sets* sets : all_sets) {
+            for (const auto& [key, set] : *sets) {
+                MeshBlock& block = blocks_.at(key);
+                if (!choice.takes(block.name)) continue;
+                const std::unordered_set<std::int64_t> of_set(set.numbers.begin(), set.numbers.end());
+                block.cells += static_cast<std::size_t>(
+                    std::ranges::count_if(of_set, [&](std::int64_t number) { return cells.contains(number); }));
+            }
         }
     }
 
     // Abaqus' C3D20 has VTK's order of nodes.
     bool take(const InpElement& element) {
-        const bool volume = element.type.starts_with("C3D") || element.type.starts_with("DC3D");
+        const InpShape shape = element.type->shape;
         const bool others = options_.other_cells != OtherCells::Ignore;
-        const std::size_t nodes = volume ? element.nodes.size() : 0;
-        if (is_shell(element.type)) {
+        if (is_shell(shape)) {
             take_shell(element);
             return false;
         }
-        if (nodes == 8 || nodes == 20 || nodes == 27) {
-            const bool whole = nodes == 20 && options_.curved_tolerance.has_value();
+        if (shape == InpShape::Hex) {
+            const bool whole = element.nodes.size() == 20 && options_.curved_tolerance.has_value();
             put(found_.hexes, element, whole);
             if (whole) found_.curved.add(next_, CurvedOrder::Vtk, all_of(element));
-        } else if ((nodes == 6 || nodes == 15) && others) {
+        } else if (shape == InpShape::Prism && others) {
             put(found_.prisms, element, false);
-        } else if ((nodes == 4 || nodes == 10) && others) {
+        } else if (shape == InpShape::Tet && others) {
             put(found_.tets, element, false);
-        } else if ((nodes == 5 || nodes == 13) && others) {
+        } else if (shape == InpShape::Pyramid && others) {
             put(found_.pyramids, element, false);
         } else {
-            ++left_out_[printable(std::string(element.type))];
+            ++left_out_[printable(element.type->name)];
             return false;
         }
         return true;
     }
 
     void take_shell(const InpElement& element) {
-        if (element.nodes.size() == 4) put(found_.quads, element, false);
-        if (element.nodes.size() == 2) put(found_.lines, element, false);
-        shells_.emplace_back(static_cast<Index>(next_), element.type);
+        if (element.type->shape == InpShape::Quad) put(found_.quads, element, false);
+        if (element.type->shape == InpShape::Line) put(found_.lines, element, false);
+        shells_.emplace_back(static_cast<Index>(next_), element.type->name);
     }
 
     // Counts the faces and edges of cells among the shells by their types.
@@ -158,7 +176,8 @@ private:
     MeshFile found_;
     std::unordered_map<std::int64_t, Index> places_;
     std::vector<std::int64_t> numbers_;
-    std::map<std::string, std::size_t> blocks_, left_out_;
+    std::map<std::string, MeshBlock> blocks_;  // by names in capitals
+    std::map<std::string, std::size_t> left_out_;
     std::vector<std::pair<Index, std::string_view>> shells_;  // numbers and types
     std::size_t next_ = 0, curved_ = 0;
 };

@@ -74,27 +74,35 @@ EnsightCase::EnsightCase(std::string_view text, std::string_view file)
         if (section == "geometry") take_geometry(key, rest, position);
         if (section == "variable") take_variable(key, rest, position);
         if (section == "time") take_time(key, rest, position);
-        if (section == "file") in_.fail_at(position, "files with several steps are not supported", "a file for each step is");
+        if (section == "file") take_file(key, rest, position);
     }
     if (geometry_.name.empty()) in_.fail_at(0, "not an EnSight case, or it names no model");
     finish_times();
 }
 
 EnsightFiles EnsightCase::files_of(std::vector<std::string> words, std::size_t position) const {
-    std::erase_if(words,
-                  [](const std::string& word) { return word == "change_coords_only" || word == "changing_geometry_per_part"; });
     if (words.empty()) in_.fail_at(position, "it names no file");
-    EnsightFiles files{words.back(), 0, position};
+    EnsightFiles files{words.back(), 0, 0, position};
     if (words.size() > 1 && is_number(words[0])) files.time_set = std::stoi(words[0]);
+    if (words.size() > 2 && is_number(words[0]) && is_number(words[1])) files.file_set = std::stoi(words[1]);
     return files;
 }
 
 void EnsightCase::take_geometry(std::string_view key, std::string_view rest, std::size_t position) {
     if (key != "model") return;
-    if (rest.find("change_coords_only") != std::string_view::npos) {
-        in_.fail_at(position, "change_coords_only is not supported", "geometry files with their cells are");
+    auto words = words_of(rest);
+    const auto option = std::ranges::find_if(words, [](const std::string& word) {
+        return lower_case(word) == "change_coords_only" || lower_case(word) == "changing_geometry_per_part";
+    });
+    if (option != words.end()) {
+        if (lower_case(*option) != "change_coords_only") {
+            in_.fail_at(position, "changing_geometry_per_part is not supported", "whole geometry files are");
+        }
+        const auto step = option + 1;
+        coordinates_step_ = step != words.end() && is_number(*step) ? static_cast<std::size_t>(std::stoi(*step)) : 0;
+        words.erase(option, words.end());
     }
-    geometry_ = files_of(words_of(rest), position);
+    geometry_ = files_of(std::move(words), position);
 }
 
 void EnsightCase::take_variable(const std::string& key, std::string_view rest, std::size_t position) {
@@ -108,11 +116,27 @@ void EnsightCase::take_variable(const std::string& key, std::string_view rest, s
         warnings_.push_back("variables of the kind " + in_quotes(key) + " ignored");
         return;
     }
-    while (words.size() > 3 && is_number(words[1])) words.erase(words.begin() + 1);  // the file set
     if (words.size() < 2) in_.fail_at(position, "a name and a file are needed");
-    EnsightVariable variable{words[words.size() - 2], components, place == "element", files_of(words, position)};
-    if (words.size() == 2) variable.files.time_set = 0;
-    variables_.push_back(std::move(variable));
+    const std::string name = words[words.size() - 2];
+    words.erase(words.end() - 2);
+    variables_.push_back({name, components, place == "element", files_of(std::move(words), position)});
+}
+
+// The lines of a set: its number, then for each file its index and how many steps it has.
+void EnsightCase::take_file(std::string_view key, std::string_view rest, std::size_t position) {
+    const std::string word(rest.substr(0, rest.find_first_of(" \t")));
+    if (!is_number(word)) in_.fail_at(position, "a number is expected, not " + in_quotes(word));
+    const int number = std::stoi(word);
+    auto& files = file_sets_[file_set_];
+    if (key == "file set") {
+        file_set_ = number;
+        file_sets_.try_emplace(number);
+    } else if (key == "filename index") {
+        files.push_back({number, 0});
+    } else if (key == "number of steps") {
+        if (files.empty() || files.back().steps > 0) files.emplace_back();
+        files.back().steps = static_cast<std::size_t>(number);
+    }
 }
 
 void EnsightCase::take_time(std::string_view key, std::string_view rest, std::size_t position) {
@@ -170,6 +194,7 @@ void EnsightCase::finish_times() {
         for (const std::size_t k : order) {
             sorted.times.push_back(set.times[k]);
             sorted.numbers.push_back(set.numbers[k]);
+            sorted.places.push_back(k);
         }
         set = std::move(sorted);
         if (set.times.size() > times_.size()) times_ = set.times;
@@ -183,20 +208,34 @@ void EnsightCase::finish_times() {
     for (const EnsightVariable& variable : variables_) check(variable.files);
 }
 
-std::filesystem::path EnsightCase::file_at(const EnsightFiles& files, double time) const {
+EnsightStep EnsightCase::file_at(const EnsightFiles& files, double time) const {
     std::string name = files.name;
     const std::size_t star = name.find('*');
-    if (star != std::string::npos) {
+    const auto several = file_sets_.find(files.file_set);
+    std::optional<std::size_t> step;
+    std::int64_t number = 0;
+    if (!sets_.empty() && (star != std::string::npos || several != file_sets_.end())) {
         const auto time_set = sets_.find(files.time_set);
         const EnsightTimes& set = time_set != sets_.end() ? time_set->second : sets_.begin()->second;
         const auto after = std::ranges::upper_bound(set.times, time);
         const std::size_t k = after == set.times.begin() ? 0 : static_cast<std::size_t>(after - set.times.begin()) - 1;
-        const std::size_t end = std::min(name.find_first_not_of('*', star), name.size());
-        std::string number = std::to_string(set.numbers[k]);
-        if (number.size() < end - star) number.insert(0, end - star - number.size(), '0');
-        name.replace(star, end - star, number);
+        number = set.numbers[k];
+        if (files.file_set > 0 && several != file_sets_.end()) {
+            step = set.places[k];
+            for (const Several& file : several->second) {
+                number = file.index;
+                if (file.steps == 0 || *step < file.steps) break;
+                if (&file != &several->second.back()) *step -= file.steps;
+            }
+        }
     }
-    return named_file(folder_, name, [&] { return in_.place_of(files.position); });
+    if (star != std::string::npos) {
+        const std::size_t end = std::min(name.find_first_not_of('*', star), name.size());
+        std::string digits = std::to_string(number);
+        if (digits.size() < end - star) digits.insert(0, end - star - digits.size(), '0');
+        name.replace(star, end - star, digits);
+    }
+    return {named_file(folder_, name, [&] { return in_.place_of(files.position); }), step};
 }
 
 }  // namespace subvol::detail

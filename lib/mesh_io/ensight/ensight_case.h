@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -11,11 +12,11 @@
 
 namespace subvol::detail {
 
-/// Files of one kind in a case. name: with stars in place of the number of a step; time_set: 0 if there is one file for all
-/// times
+/// Files of one kind in a case. name: with stars in place of the number of a step or a file; time_set: 0 if there is one file
+/// for all times; file_set: of files with several steps, else 0
 struct EnsightFiles {
     std::string name;
-    int time_set = 0;
+    int time_set = 0, file_set = 0;
     std::size_t position = 0;  // in the case, for messages
 };
 
@@ -27,10 +28,17 @@ struct EnsightVariable {
     EnsightFiles files;
 };
 
-/// The steps of a time set. numbers: in the names of the files
+/// The steps of a time set. numbers: in the names of the files; places: among the steps in the order of the case
 struct EnsightTimes {
     std::vector<double> times;
     std::vector<std::int64_t> numbers;
+    std::vector<std::size_t> places;
+};
+
+/// A file, and which of its steps; nothing if the file is one step.
+struct EnsightStep {
+    std::filesystem::path path;
+    std::optional<std::size_t> step;
 };
 
 /// What an EnSight Gold case consists of: the file that names all others.
@@ -42,10 +50,12 @@ public:
     /// The times of the largest time set in increasing order; none if there are no times.
     [[nodiscard]] const std::vector<double>& times() const { return times_; }
     /// The file at a time: of files with times the last one up to then, else the first.
-    [[nodiscard]] std::filesystem::path file_at(const EnsightFiles& files, double time) const;
+    [[nodiscard]] EnsightStep file_at(const EnsightFiles& files, double time) const;
     /// Where the case names files, for messages.
     [[nodiscard]] std::string place_of(const EnsightFiles& files) const { return in_.place_of(files.position); }
 
+    /// The step whose geometry has the elements of all; nothing if each step has its own.
+    [[nodiscard]] std::optional<std::size_t> coordinates_step() const { return coordinates_step_; }
     [[nodiscard]] const EnsightFiles& geometry() const { return geometry_; }
     [[nodiscard]] const std::vector<EnsightVariable>& variables() const { return variables_; }
     [[nodiscard]] const std::vector<std::string>& warnings() const { return warnings_; }
@@ -53,6 +63,7 @@ public:
 private:
     void take_geometry(std::string_view key, std::string_view rest, std::size_t position);
     void take_variable(const std::string& key, std::string_view rest, std::size_t position);
+    void take_file(std::string_view key, std::string_view rest, std::size_t position);
     void take_time(std::string_view key, std::string_view rest, std::size_t position);
     void finish_times();
     [[nodiscard]] EnsightFiles files_of(std::vector<std::string> words, std::size_t position) const;
@@ -60,6 +71,7 @@ private:
     TextScanner in_;
     std::filesystem::path folder_;
     EnsightFiles geometry_;
+    std::optional<std::size_t> coordinates_step_;
     std::vector<EnsightVariable> variables_;
     std::map<int, EnsightTimes> sets_;
     std::vector<double> times_;
@@ -72,6 +84,13 @@ private:
         std::int64_t start = 0, increment = 1;
     };
     std::map<int, Spread> spreads_;
+    // Files with several steps, in the order of their steps. index: in place of the stars
+    struct Several {
+        std::int64_t index = 0;
+        std::size_t steps = 0;
+    };
+    int file_set_ = 0;
+    std::map<int, std::vector<Several>> file_sets_;
 };
 
 }  // namespace subvol::detail

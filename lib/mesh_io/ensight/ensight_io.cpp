@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <bit>
 #include <filesystem>
 #include <limits>
 #include <map>
@@ -12,11 +11,11 @@
 
 #include "assemble.h"
 #include "ensight_case.h"
+#include "ensight_data.h"
 #include "formats.h"
 #include "join_pieces.h"
 #include "mesh_file.h"
 #include "named_files.h"
-#include "number_type.h"
 #include "subvol/error.h"
 #include "subvol/index.h"
 #include "text_scanner.h"
@@ -24,110 +23,6 @@
 namespace subvol::detail {
 
 namespace {
-
-/// The lines and numbers of an EnSight Gold file: of text, or of C's binary files with lines of 80 bytes and 32-bit numbers.
-class EnsightData {
-public:
-    /// binary: of a variable, whether the geometry is; only geometries say what they are
-    explicit EnsightData(const std::filesystem::path& path, bool binary = false);
-    EnsightData(const EnsightData&) = delete;
-    EnsightData& operator=(const EnsightData&) = delete;
-
-    [[nodiscard]] bool binary() const { return binary_; }
-    [[nodiscard]] bool at_end();
-    /// The next line without blanks around it.
-    std::string line();
-    /// The number of a part or a count. The first one shows the byte order of the file.
-    std::int64_t integer(const std::string& what);
-    std::size_t count(const std::string& what);
-    std::vector<std::int64_t> integers(std::size_t count, const std::string& what);
-    std::vector<double> reals(std::size_t count, const std::string& what);
-
-    [[nodiscard]] const TextScanner& in() const { return in_; }
-    /// The place of the last line or number, for messages.
-    [[nodiscard]] std::string place() const { return in_.place_of(in_.position()); }
-    [[noreturn]] void fail(const std::string& message, const std::string& allowed = {}) const { in_.fail(message, allowed); }
-
-private:
-    void expect_room(std::size_t count, const std::string& what) const;
-
-    std::string name_, text_;
-    TextScanner in_;
-    bool binary_ = false, has_order_ = false;
-    std::endian order_ = std::endian::little;
-};
-
-constexpr std::size_t kOfLine = 80, kOfNumber = 4;
-
-std::string_view line_text(std::string_view text) {
-    return trimmed(text.substr(0, text.find('\0')));
-}
-
-EnsightData::EnsightData(const std::filesystem::path& path, bool binary)
-    : name_(path.string()), text_(read_text(path)), in_(text_, name_, TextScanner::Comments::None) {
-    const std::string_view begin = std::string_view(text_).substr(0, kOfLine + kOfNumber);
-    if (begin.find("Fortran Binary") != std::string_view::npos) {
-        in_.fail_at(0, "Fortran's binary files are not supported", "text and \"C Binary\" are");
-    }
-    const bool says_so = begin.starts_with("C Binary");
-    binary_ = says_so || binary;
-    if (binary_) in_.name_bytes();
-    if (says_so) std::ignore = in_.bytes(std::min(kOfLine, text_.size()), {"line"});
-}
-
-bool EnsightData::at_end() {
-    return binary_ ? in_.bytes_left() == 0 : in_.at_end();
-}
-
-std::string EnsightData::line() {
-    if (!binary_) {
-        if (in_.at_end()) fail("the file ends where a line is expected");
-        return std::string(line_text(in_.line()));
-    }
-    return std::string(line_text(in_.bytes(kOfLine, {"line"})));
-}
-
-void EnsightData::expect_room(std::size_t count, const std::string& what) const {
-    if (count <= (binary_ ? in_.bytes_left() / kOfNumber : in_.room_for(1))) return;
-    fail(what + ": " + std::to_string(count) + " numbers are needed, and the file is too short");
-}
-
-std::int64_t EnsightData::integer(const std::string& what) {
-    if (!binary_) return in_.integer({what});
-    const std::string_view bytes = in_.bytes(kOfNumber, {what});
-    if (!has_order_) {
-        has_order_ = true;
-        constexpr std::int64_t kMostParts = 65536;
-        const std::int64_t little = integer_from(bytes, NumberType::Int32, std::endian::little);
-        if (little < 0 || little > kMostParts) order_ = std::endian::big;
-    }
-    return integer_from(bytes, NumberType::Int32, order_);
-}
-
-std::size_t EnsightData::count(const std::string& what) {
-    const std::int64_t value = integer(what);
-    if (value < 0 || static_cast<std::size_t>(value) > in_.size())
-        fail(what + ": count out of range: " + std::to_string(value));
-    return static_cast<std::size_t>(value);
-}
-
-std::vector<std::int64_t> EnsightData::integers(std::size_t count, const std::string& what) {
-    expect_room(count, what);
-    if (binary_) return integers_from(in_.bytes(count * kOfNumber, {what}), NumberType::Int32, order_);
-    std::vector<std::int64_t> values;
-    values.reserve(count);
-    for (std::size_t i = 0; i < count; ++i) values.push_back(in_.integer({what, static_cast<std::int64_t>(i + 1), count}));
-    return values;
-}
-
-std::vector<double> EnsightData::reals(std::size_t count, const std::string& what) {
-    expect_room(count, what);
-    if (binary_) return reals_from(in_.bytes(count * kOfNumber, {what}), NumberType::Float32, order_);
-    std::vector<double> values;
-    values.reserve(count);
-    for (std::size_t i = 0; i < count; ++i) values.push_back(in_.real({what, static_cast<std::int64_t>(i + 1), count}));
-    return values;
-}
 
 constexpr EntityNames kEnsightNames{"node", "element", 1};
 
@@ -154,6 +49,14 @@ struct Part {
     std::map<std::pair<std::string, bool>, std::size_t> arrays;
     std::size_t elements = 0;
     bool structured = false, taken = true;
+
+    void drop(const std::pair<std::string, bool>& variable) {
+        const auto found_at = arrays.find(variable);
+        if (found_at == arrays.end()) return;
+        found.arrays.erase(found.arrays.begin() + static_cast<std::ptrdiff_t>(found_at->second));
+        for (auto& [key, place] : arrays) place -= place > found_at->second;
+        arrays.erase(found_at);
+    }
 };
 
 class EnsightReader {
@@ -165,12 +68,15 @@ public:
         std::vector<std::string> warnings = case_.warnings();
         const std::size_t step = chosen_step(options_, std::max<std::size_t>(1, case_.times().size()), file_, warnings);
         time_ = case_.times().empty() ? 0 : case_.times()[step];
-        read_geometry();
+        const bool apart = case_.coordinates_step().has_value() && !case_.times().empty();
+        const std::size_t first = std::min(case_.coordinates_step().value_or(0), case_.times().size() - 1);
+        read_geometry(apart ? case_.times()[first] : time_);
+        if (apart) read_coordinates();
         std::vector<std::string> names;
         for (const auto& [number, part] : parts_) names.push_back(part.name);
         const BlockChoice choice(options_.blocks, names, file_);
         for (auto& [number, part] : parts_) part.taken = choice.takes(part.name);
-        for (const EnsightVariable& variable : case_.variables()) read_variable(variable);
+        for (const EnsightVariable& variable : case_.variables()) read_or_leave_out(variable);
         std::vector<MeshFile> files;
         for (auto& [number, part] : parts_) {
             std::size_t cells = 0;
@@ -181,6 +87,7 @@ public:
         }
         if (files.empty()) throw Error(ErrorCode::InvalidInput, "no hexahedra in any of its parts" + left_out(), file_);
         MeshFile found = files.size() == 1 ? std::move(files.front()) : join_pieces(std::move(files), "part", file_);
+        found.unread.insert(found.unread.end(), unread_.begin(), unread_.end());
         found.warnings.insert(found.warnings.begin(), warnings.begin(), warnings.end());
         if (curved_ > 0) {
             found.warnings.push_back(counted(curved_, "element has", "elements have") +
@@ -199,23 +106,44 @@ private:
         return list.empty() ? list : list + " ignored";
     }
 
-    std::filesystem::path checked(const EnsightFiles& files) {
-        std::filesystem::path path = case_.file_at(files, time_);
+    EnsightStep checked(const EnsightFiles& files, double time) {
+        EnsightStep step = case_.file_at(files, time);
         const auto place = [&] { return case_.place_of(files); };
         named_.count(place);
-        named_.take_file(path, place);
-        return path;
+        named_.take_file(step.path, place);
+        return step;
     }
 
-    void read_geometry() {
-        EnsightData data(checked(case_.geometry()));
-        binary_ = data.binary();
-        std::ignore = data.line();
-        std::ignore = data.line();
+    // Where only the coordinates change, the elements are those of one step.
+    void read_coordinates() {
+        std::map<int, Part> parts = std::move(parts_);
+        parts_ = {};
+        read_geometry(time_);
+        for (auto& [number, part] : parts) {
+            const auto moved = parts_.find(number);
+            if (moved == parts_.end()) continue;
+            auto& points = moved->second.found.points;
+            if (points.size() != part.found.points.size()) {
+                throw Error(ErrorCode::InvalidInput,
+                            "part " + in_quotes(part.name) + " has " + counted(points.size(), "node", "nodes") +
+                                " at this step, and " + std::to_string(part.found.points.size()) + " at that of its elements",
+                            file_);
+            }
+            part.found.points = std::move(points);
+        }
+        parts_ = std::move(parts);
+    }
+
+    void read_geometry(double time) {
+        const EnsightStep step = checked(case_.geometry(), time);
+        EnsightData data(step.path, {}, step.step);
+        form_ = data.form();
+        std::ignore = data.description();
+        std::ignore = data.description();
         const bool node_ids = has_ids(data, "node"), element_ids = has_ids(data, "element");
         std::optional<int> open;
         while (!data.at_end()) {
-            const std::string line = data.line();
+            const std::string line = data.keyword();
             if (line == "extents") {
                 std::ignore = data.reals(6, "extents");
             } else if (line == "part") {
@@ -225,7 +153,7 @@ private:
                     data.fail("there cannot be another part " + std::to_string(number));
                 }
                 Part& part = parts_[*open];
-                part.name = as_utf8(data.line());
+                part.name = as_utf8(data.description());
                 if (part.name.empty()) part.name = "part " + std::to_string(number);
             } else if (!open) {
                 if (!line.empty()) data.fail("a part is expected, not " + in_quotes(line));
@@ -242,7 +170,7 @@ private:
 
     // "node id given": the numbers follow, and say nothing about who refers to what.
     static bool has_ids(EnsightData& data, const std::string& of) {
-        const std::string line = data.line();
+        const std::string line = data.keyword();
         if (!line.starts_with(of + " id")) data.fail("a line \"" + of + " id …\" is expected, not " + in_quotes(line));
         const std::string kind = line.substr(line.find_last_of(' ') + 1);
         return kind == "given" || kind == "ignore";
@@ -290,7 +218,7 @@ private:
         std::vector<std::int64_t> blanks, ghosts;
         if (line.find("iblanked") != std::string::npos) blanks = data.integers(points, "blanks");
         if (line.find("with_ghost") != std::string::npos) {
-            if (data.line() == "ghost_flags") ghosts = data.integers(cells, "ghost flags");
+            if (data.keyword() == "ghost_flags") ghosts = data.integers(cells, "ghost flags");
         }
         if (cells == 0) return;
         add_hexes(part.found, grid, 0, 0);
@@ -387,13 +315,24 @@ private:
         into.numbers.push_back(static_cast<Index>(number));
     }
 
+    // A variable that cannot be read stops nothing but itself.
+    void read_or_leave_out(const EnsightVariable& variable) {
+        try {
+            read_variable(variable);
+        } catch (const Error& error) {
+            unread_.push_back({variable.name, error.what()});
+            for (auto& [number, part] : parts_) part.drop({variable.name, variable.at_cells});
+        }
+    }
+
     // A part that a variable lacks has not got it: the parts are joined without.
     void read_variable(const EnsightVariable& variable) {
-        EnsightData data(checked(variable.files), binary_);
-        std::ignore = data.line();
+        const EnsightStep step = checked(variable.files, time_);
+        EnsightData data(step.path, form_, step.step);
+        std::ignore = data.description();
         Part* part = nullptr;
         while (!data.at_end()) {
-            const std::string line = data.line();
+            const std::string line = data.keyword();
             if (line == "part") {
                 const std::int64_t number = data.integer("the number of a part");
                 const auto found = parts_.find(static_cast<int>(number));
@@ -411,8 +350,6 @@ private:
 
     void read_values(EnsightData& data, const EnsightVariable& variable, Part& part, const std::string& line) {
         const std::string place = line.substr(0, line.find(' '));
-        if (line.find("partial") != std::string::npos) data.fail("values at some places only (\"partial\") are not supported");
-        if (line.find("undef") != std::string::npos) std::ignore = data.reals(1, "the mark of undefined values");
         std::size_t first = 0, count = part.found.points.size();
         if (variable.at_cells && place == "block") {
             count = part.elements;
@@ -425,20 +362,40 @@ private:
         } else if (place != "coordinates" && place != "block") {
             data.fail("the values of a part are expected, not " + in_quotes(line));
         }
+        // "undef" gives a mark that stands for no value, "partial" the places that have values.
+        std::optional<double> mark;
+        if (line.find("undef") != std::string::npos) mark = data.reals(1, "the mark of undefined values")[0];
+        const bool partial = line.find("partial") != std::string::npos;
+        std::vector<std::int64_t> places;
+        if (partial) places = data.integers(data.count("places with values"), "places with values");
+        for (const std::int64_t at : places) {
+            if (at < 1 || static_cast<std::size_t>(at) > count) data.fail("there is no place " + std::to_string(at));
+        }
+        const std::size_t given = partial ? places.size() : count;
         const std::size_t all = variable.at_cells ? part.elements : count, components = variable.components;
         std::vector<std::vector<double>> values;
-        for (std::size_t c = 0; c < components; ++c) values.push_back(data.reals(count, "values"));
+        for (std::size_t c = 0; c < components; ++c) values.push_back(data.reals(given, "values"));
+        FileArray& array = array_of(data, variable, part, all);
+        constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+        for (std::size_t i = 0; i < given; ++i) {
+            const std::size_t at = first + (partial ? static_cast<std::size_t>(places[i] - 1) : i);
+            for (std::size_t c = 0; c < components; ++c) {
+                array.values[at * components + c] = mark == values[c][i] ? kNone : values[c][i];
+            }
+        }
+    }
+
+    FileArray& array_of(const EnsightData& data, const EnsightVariable& variable, Part& part, std::size_t all) {
+        const std::size_t components = variable.components;
         const auto [known, is_new] = part.arrays.try_emplace({variable.name, variable.at_cells}, part.found.arrays.size());
         if (is_new) {
             named_.take({}, 0, all * components * sizeof(double), [&] { return data.place(); });
             part.found.arrays.push_back({variable.name, static_cast<int>(components), variable.at_cells, {}});
             part.found.arrays.back().values.assign(all * components, std::numeric_limits<double>::quiet_NaN());
         }
-        FileArray* const array = &part.found.arrays[known->second];
-        if (array->values.size() != all * components) data.fail("there is another variable of this name");
-        for (std::size_t i = 0; i < count; ++i) {
-            for (std::size_t c = 0; c < components; ++c) array->values[(first + i) * components + c] = values[c][i];
-        }
+        FileArray& array = part.found.arrays[known->second];
+        if (array.values.size() != all * components) data.fail("there is another variable of this name");
+        return array;
     }
 
     std::string file_, text_;
@@ -448,7 +405,8 @@ private:
     std::map<int, Part> parts_;
     std::map<std::string, std::size_t> left_out_;
     double time_ = 0;
-    bool binary_ = false;
+    EnsightForm form_ = EnsightForm::Text;
+    std::vector<UnreadField> unread_;
     std::size_t curved_ = 0;
 };
 

@@ -19,7 +19,7 @@ namespace subvol::detail {
 
 namespace {
 
-constexpr int kMostNested = 16;
+constexpr int kMostNestedGrids = 16;
 
 constexpr std::size_t kMostGrids = 100000;
 
@@ -87,7 +87,7 @@ private:
             return *value;
         }
         const pugi::xml_node first = file_.child(grid, "Grid");
-        return first && depth < kMostNested ? time_of(first, otherwise, depth + 1) : otherwise;
+        return first && depth < kMostNestedGrids ? time_of(first, otherwise, depth + 1) : otherwise;
     }
 
     XdmfFile& file_;
@@ -179,7 +179,7 @@ public:
 
 private:
     void add(const pugi::xml_node& grid, int depth, std::vector<MeshFile>& parts) {
-        if (depth > kMostNested) file_.fail_at(grid, "grids are nested too deeply");
+        if (depth > kMostNestedGrids) file_.fail_at(grid, "grids are nested too deeply");
         if (parts.size() > kMostGrids) file_.fail_at(grid, "there are too many grids");
         if (is_collection(grid)) {
             for (const auto& child : file_.children(grid, "Grid")) add(child, depth + 1, parts);

@@ -3,6 +3,8 @@
 
 #include <gmock/gmock.h>
 
+#include <cmath>
+
 #include "lib/temp_folder.h"
 #include "subvol/mesh_io.h"
 #include "subvol/mesh_report.h"
@@ -143,6 +145,92 @@ TEST_F(Abaqus, NodesAndElementsAreGenerated) {
     EXPECT_THAT(error(text + element + "*ELGEN\n1, 9000, 1, 1, 9000\n"), HasSubstr("too many nodes or elements are generated"));
 }
 
+// A cube of the eight corners of a box in some coordinates: from a1 to a2, b1 to b2, c1 to c2.
+std::string box(std::array<double, 2> a, std::array<double, 2> b, std::array<double, 2> c) {
+    std::string text;
+    for (int p = 0; p < 8; ++p) {
+        const std::array<int, 4> x{0, 1, 1, 0}, y{0, 0, 1, 1};
+        const auto i = static_cast<std::size_t>(p % 4);
+        text += std::to_string(p + 1) + "," + std::to_string(a[static_cast<std::size_t>(x[i])]) + "," +
+                std::to_string(b[static_cast<std::size_t>(y[i])]) + "," + std::to_string(c[p < 4 ? 0 : 1]) + "\n";
+    }
+    return text;
+}
+
+constexpr const char* kElement = "*ELEMENT, TYPE=C3D8, ELSET=E\n1, 1,2,3,4,5,6,7,8\n";
+
+TEST_F(Abaqus, NodesAreInTheirSystems) {
+    // Radius 1 to 2, angles of 0° to 90°, height 3: two straight sides and two chords.
+    const auto points = [&](const std::string& text) { return read_mesh(write("a.inp", text + kElement)).mesh.points; };
+    const auto near = [](const Vec3& a, const Vec3& b) { return glm::distance(a, b) < 1e-12; };
+    const auto round = points("*NODE, NSET=ALL, SYSTEM=C\n" + box({1, 2}, {0, 90}, {0, 3}));
+    EXPECT_PRED2(near, round[2], Vec3(0, 2, 0));
+    EXPECT_PRED2(near, round[7], Vec3(0, 1, 3));
+    // The second angle of a sphere is that above the plane of x and y.
+    const auto sphere = points("*NODE, SYSTEM=SPHERICAL\n" + box({1, 2}, {0, 90}, {0, 30}));
+    EXPECT_PRED2(near, sphere[6], Vec3(0, std::sqrt(3), 1));
+    // The axes of a *SYSTEM: x' along y, y' along z, so z' along x; until the next one without data.
+    const std::string system = "*SYSTEM\n10, 0, 0, 10, 5, 0\n10, 0, 5\n";
+    const auto moved = points(system + "*NODE\n" + box({0, 1}, {0, 2}, {0, 3}));
+    EXPECT_PRED2(near, moved[6], Vec3(13, 1, 2));
+    EXPECT_PRED2(near, points(system + "*SYSTEM\n*NODE\n" + box({0, 1}, {0, 2}, {0, 3}))[6], Vec3(1, 2, 3));
+    EXPECT_PRED2(near, points("*SYSTEM\n1,1,1\n*NODE\n" + box({0, 1}, {0, 2}, {0, 3}))[6], Vec3(2, 3, 4));
+    // Without the second line they turn about z: both systems at once.
+    const auto turned = points("*SYSTEM\n0,0,5, 0,1,7\n*NODE, SYSTEM=C\n" + box({1, 2}, {0, 90}, {0, 3}));
+    EXPECT_PRED2(near, turned[6], Vec3(-2, 0, 8));
+    EXPECT_PRED2(near, turned[1], Vec3(0, 2, 5));
+}
+
+TEST_F(Abaqus, ElementsAreTakenByTheirShape) {
+    const std::string nodes = "*NODE\n" + box({0, 1}, {0, 1}, {0, 1});
+    for (const char* type : {"C3D8RHT", "F3D8", "COH3D8P", "SC8R", "DCC3D8D", "AC3D8R", "CSS8", "EC3D8R", "Q3D8", "GK3D8"}) {
+        const ReadResult found = read_mesh(write("a.inp", nodes + "*ELEMENT, TYPE=" + type + "\n1, 1,2,3,4,5,6,7,8\n"));
+        EXPECT_NEAR(inspect(found.mesh).volume, 1, 1e-12) << type;
+    }
+    for (const char* type : {"S8R", "CPE8", "CAX8", "M3D8", "SFM3D8", "CIN3D8", "DS8", "F3D4", "CONN3D2"}) {
+        EXPECT_THAT(error(nodes + "*ELEMENT, TYPE=" + type + "\n1, 1,2,3,4,5,6,7,8\n"),
+                    HasSubstr("no hexahedra, but 1 element of type " + std::string(type)));
+    }
+    const ReadResult longer = read_mesh(write("a.inp", nodes + "*ELEMENT, TYPE=C3D8\n1, 1,2,3,4,5,6,7,8, 9, 93,\n"));
+    EXPECT_THAT(longer.warnings, ElementsAre("1 element has more numbers than nodes: those after the last node are ignored"));
+    // The nodes of other elements may have any form, as connectors of an assembly have.
+    const ReadResult mixed = read_mesh(write("a.inp", nodes + kElement + "*ELEMENT, TYPE=CONN3D2\n7, a.1, b.2\n"));
+    EXPECT_THAT(mixed.warnings, ElementsAre("1 element of type CONN3D2 ignored"));
+}
+
+TEST_F(Abaqus, LinesGoOnAndNamesHaveQuotes) {
+    write("some nodes, all.txt", box({0, 1}, {0, 1}, {0, 1}));
+    const std::string text =
+        "*NODE, NSET=ALL,\n SYSTEM=R, INPUT=\"some nodes, all.txt\"\n* Element, TYPE=C3D8,\n** a comment\n"
+        "*ENDPART\n*ELEMENT, TYPE=C3D8,\n ELSET=\"My, set\"\n1, 1,2,3,4,\n5,6,7,8\n";
+    const ReadResult found = read_mesh(write("a.inp", text));
+    ASSERT_EQ(found.blocks.size(), 1u);
+    EXPECT_EQ(found.blocks[0].name, "My, set");
+    EXPECT_EQ(read_mesh(path("a.inp"), {.blocks = {"my, SET"}}).mesh.cells.size(), 1u);
+}
+
+TEST_F(Abaqus, AssembliesHaveMeshesAndSetsInTheirInstances) {
+    const std::string mesh = "*Node\n" + box({0, 1}, {0, 1}, {0, 1}) + kElement;
+    // As Abaqus/CAE writes an independent mesh, and one part in two instances with sets of the assembly.
+    const std::string text = "*Part, name=A\n*End Part\n*Part, name=B\n" + mesh +
+                             "*End Part\n*Assembly, name=x\n*Instance, name=A-1, part=A\n5,0,0\n" + mesh +
+                             "*Elset, elset=Inner\n1\n*End Instance\n"
+                             "*Instance, name=B-1, part=B\n*End Instance\n*Instance, name=B-2, part=b\n0,5,0\n*End Instance\n"
+                             "*Elset, elset=_Surf, internal, instance=B-2, generate\n1, 9000000000, 1\n"
+                             "*Elset, elset=Two, instance=A-1\n1\n*ELSET, elset=two, instance=b-1\nE\n"
+                             "*Elset, elset=All\nTWO, b-2.1\n*Elset, elset=bad\nnothing\n*Elset, elset=worse, generate\n9, 1\n"
+                             "*Node\n1, 9, 9, 9\n*Element, type=MASS\n1, 1\n*End Assembly\n";
+    const ReadResult found = read_mesh(write("a.inp", text));
+    EXPECT_NEAR(inspect(found.mesh).volume, 3, 1e-12);
+    EXPECT_NEAR(inspect(found.mesh).bounds.upper.x, 6, 1e-12);
+    std::vector<std::string> blocks;
+    for (const MeshBlock& block : found.blocks) blocks.push_back(block.name + " " + std::to_string(block.cells));
+    EXPECT_THAT(blocks, ElementsAre("All 3", "E 3", "Inner 1", "Two 2", "_Surf 1"));
+    EXPECT_THAT(found.warnings, Contains(HasSubstr("2 sets of elements left out (\"bad\", \"worse\"): ")));
+    EXPECT_EQ(read_mesh(path("a.inp"), {.blocks = {"Two"}}).mesh.cells.size(), 2u);
+    EXPECT_NEAR(inspect(read_mesh(path("a.inp"), {.blocks = {"_Surf"}}).mesh).bounds.lower.y, 5, 1e-12);
+}
+
 TEST_F(Abaqus, WrongDecksGetASentenceWithTheLine) {
     const std::string nodes = kNodes;
     EXPECT_THAT(error(""), HasSubstr("a.inp: it has no nodes"));
@@ -156,7 +244,10 @@ TEST_F(Abaqus, WrongDecksGetASentenceWithTheLine) {
     EXPECT_THAT(error("*INCLUDE, INPUT=b.inp\n"), HasSubstr("a.inp, line 1: there is no file \"b.inp\""));
     EXPECT_THAT(error("*INCLUDE, INPUT=a.inp\n"), HasSubstr("a.inp, line 1: names itself, by a.inp > a.inp"));
     EXPECT_THAT(error("*INSTANCE, PART=p\n"), HasSubstr("there is no part \"P\""));
-    EXPECT_THAT(error(nodes + "*ELSET, ELSET=e, GENERATE\n1, 9000000000, 1\n"), HasSubstr("are not those of elements"));
+    EXPECT_THAT(error(nodes + "*NCOPY, CHANGE NUMBER=1, OLD SET=a, SHIFT\n1\n"), HasSubstr("makes or moves nodes"));
+    EXPECT_THAT(error("*NODE, SYSTEM=X\n1, 2\n"), HasSubstr("line 1: nodes in the system \"X\" are not supported"));
+    EXPECT_THAT(error("*SYSTEM\n0,0,0,1,0,0\n2,0,0\n"), HasSubstr("line 3: the points of the *SYSTEM lie on one line"));
+    EXPECT_THAT(error("*SYSTEM\n0,0,0,1,0\nx\n"), HasSubstr("line 3: a number is expected"));
 }
 
 }  // namespace abaqus_test

@@ -21,36 +21,50 @@ using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-enum class Form { Text, Little, Big };
+enum class Form { Text, Little, Big, Fortran };
 
 // Writes lines and numbers in one of the forms.
 class GoldText {
 public:
     explicit GoldText(Form form, bool geometry = true) : form_(form) {
-        if (form != Form::Text && geometry) line("C Binary");
+        if (form != Form::Text && geometry) line(form == Form::Fortran ? "Fortran Binary" : "c binary");
     }
     GoldText& line(std::string text) {
         if (form_ == Form::Text) {
             text_ += text + "\n";
         } else {
             text.resize(80, ' ');
+            mark(text.size());
             text_ += text;
+            mark(text.size());
         }
         return *this;
     }
     template <class Values>
     GoldText& integers(const Values& values) {
+        mark(4 * values.size());
         for (const auto value : values) put(static_cast<std::int32_t>(value), "%10d\n");
+        mark(4 * values.size());
         return *this;
     }
     template <class Values>
     GoldText& reals(const Values& values) {
+        mark(4 * values.size());
         for (const auto value : values) put(static_cast<float>(value), "%12.5e\n");
+        mark(4 * values.size());
+        return *this;
+    }
+    GoldText& add(const std::string& text) {
+        text_ += text;
         return *this;
     }
     [[nodiscard]] const std::string& text() const { return text_; }
 
 private:
+    // The length of a record.
+    void mark(std::size_t bytes) {
+        if (form_ == Form::Fortran) put(static_cast<std::int32_t>(bytes), "");
+    }
     template <class Number>
     void put(Number value, const char* format) {
         if (form_ == Form::Text) {
@@ -142,7 +156,7 @@ protected:
 };
 
 TEST_F(Ensight, PartsAndVariablesOfEachStepInEveryForm) {
-    for (const Form form : {Form::Text, Form::Little, Form::Big}) {
+    for (const Form form : {Form::Text, Form::Little, Form::Big, Form::Fortran}) {
         put(form);
         EXPECT_THAT(open_series(path("a.case")).times, ElementsAre(0, .5, 1.5));
         for (std::size_t k = 0; k < 3; ++k) {
@@ -194,7 +208,8 @@ TEST_F(Ensight, BlocksOfGrids) {
 TEST_F(Ensight, WrongFilesGetASentenceWithTheLine) {
     put(Form::Text);
     std::filesystem::remove(path("a.T10"));
-    EXPECT_THAT(error(), HasSubstr("a.case, line 8: there is no file \"a.T10\""));
+    EXPECT_THAT(read_mesh(path("a.case")).warnings, Contains(HasSubstr("field \"T\" left out: ")));
+    EXPECT_EQ(read_mesh(path("a.case")).unread[0].name, "T");
     put(Form::Text);
     std::string bad = geometry(Form::Text);
     write("a.geo10", bad.replace(bad.find("hexa8\n"), 6, "hexa9\n"));
@@ -205,14 +220,93 @@ TEST_F(Ensight, WrongFilesGetASentenceWithTheLine) {
     EXPECT_THAT(error(), HasSubstr("hexa8 1 of part \"left\": there is no node 13 (nodes are 1 to 12)"));
     write("a.geo10", geometry(Form::Little).substr(0, 900));
     EXPECT_THAT(error(), HasSubstr("a.geo10, byte "));
-    write("a.case", "FORMAT\ntype: ensight\n");
-    EXPECT_THAT(error(), HasSubstr("a.case, line 2: the format is \"ensight\" (ensight gold is supported)"));
+    std::string records = geometry(Form::Fortran);
+    write("a.geo10", records.replace(84, 1, "?"));
+    EXPECT_THAT(error(), HasSubstr("a.geo10, byte 0: a record of Fortran's binary files is expected"));
+    write("a.case", "FORMAT\ntype: ensight 5\n");
+    EXPECT_THAT(error(), HasSubstr("a.case, line 2: the format is \"ensight 5\""));
     write("a.case", "GEOMETRY\nmodel: a.geo\nTIME\ntime set: 1\nnumber of steps: 1000000000\n");
     EXPECT_THAT(error(), HasSubstr("line 5: there cannot be 1000000000 steps"));
     write("a.case", "GEOMETRY\nmodel: a.geo*\n");
     EXPECT_THAT(error(), HasSubstr("line 2: there is no time set 0"));
     write("a.case", "");
     EXPECT_THAT(error(), HasSubstr("not an EnSight case"));
+}
+
+TEST_F(Ensight, PlacesWithoutValuesHaveNone) {
+    for (const Form form : {Form::Text, Form::Little, Form::Fortran}) {
+        put(form);
+        // The first part has 12 nodes, of which one has the mark; the second one names those that have values.
+        std::vector<double> values(12, 3);
+        values[4] = -999;
+        const auto variable = [&](const std::string& of_first) {
+            GoldText out(form, false);
+            out.line("T").line("part").integers(std::vector{1}).line("Coordinates " + of_first);
+            if (of_first == "UNDEF") out.reals(std::vector<double>{-999});
+            out.reals(values).line("part").integers(std::vector{2}).line("coordinates partial");
+            out.integers(std::vector{2}).integers(std::vector{12, 1}).reals(std::vector<double>{7, 8});
+            return out.text();
+        };
+        write("a.T10", variable("UNDEF"));
+        const ReadResult all = read_mesh(path("a.case"));
+        EXPECT_EQ(all.mesh.find_attribute("T"), nullptr);
+        EXPECT_THAT(all.warnings, Contains(HasSubstr("field \"T\" left out: the value at node 5 is not finite")));
+        EXPECT_NE(all.mesh.find_attribute("U"), nullptr);
+        write("a.T10", variable(""));
+        EXPECT_EQ(read_mesh(path("a.case"), {.blocks = {"left"}}).mesh.find_attribute("T")->values[4], -999);
+        EXPECT_EQ(read_mesh(path("a.case"), {.blocks = {"right"}}).unread[0].name, "T");
+    }
+}
+
+TEST_F(Ensight, StepsInOneFileAndInSeveral) {
+    for (const Form form : {Form::Text, Form::Big, Form::Fortran}) {
+        const auto step = [&](const std::string& text) {
+            GoldText out(form, false);
+            return out.line("BEGIN TIME STEP").add(text).line("END TIME STEP").text();
+        };
+        put(form);
+        // What says how numbers are written comes once, before the first step.
+        const std::string start = GoldText(form).text();
+        const auto moving = [&](double scale) { return step(geometry(form, scale).substr(start.size())); };
+        write("a.geo", start + moving(1) + moving(2) + moving(3));
+        write("a.T001", step(at_nodes(form, 1, 1)) + step(at_nodes(form, 1, 2)));
+        write("a.T002", step(at_nodes(form, 1, 3)));
+        const std::string files =
+            "FILE\nfile set: 1\nnumber of steps: 3\nfile set: 2\nfilename index: 1\nnumber of steps: 2\n"
+            "filename index: 2\nnumber of steps: 1\n";
+        write("a.case",
+              "format\nTYPE: EnSight Gold\ngeometry\nMODEL: 1 1 a.geo\nVariable\nScalar per Node: 1 2 T a.T***\n"
+              "time\nTIME SET: 1\nNumber of Steps: 3\ntime values: 0 1 2\n" +
+                  files);
+        for (std::size_t k = 0; k < 3; ++k) {
+            const ReadResult result = read_mesh(path("a.case"), {.step = k});
+            const double scale = static_cast<double>(k + 1);
+            EXPECT_NEAR(inspect(result.mesh).volume, 4 * scale * scale * scale, 1e-4);
+            EXPECT_EQ(result.mesh.find_attribute("T")->values[5], scale);
+        }
+        write("a.T002", "");
+        EXPECT_THAT(read_mesh(path("a.case")).warnings, Contains(HasSubstr("field \"T\" left out")));
+        write("a.geo", start + moving(1));
+        EXPECT_THAT(error(), HasSubstr("there is no step 2 in the file (it has 1)"));
+    }
+}
+
+TEST_F(Ensight, CoordinatesMayChangeAlone) {
+    put(Form::Text);
+    std::string changing = kCase;
+    changing.replace(changing.find("a.geo**"), 7, "a.geo** change_coords_only 0");
+    write("a.case", changing);
+    GoldText out(Form::Text);
+    out.line("later").line("").line("node id off").line("element id off");
+    for (const int part : {1, 2}) {
+        HexMesh mesh = make_box(2, 1, 1);
+        for (Vec3& x : mesh.points) x = 2. * (x + Vec3(part == 1 ? 0 : 2, 0, 0));
+        out.line("part").integers(std::vector{part}).line("p").line("coordinates").integers(std::vector{12});
+        put_points(out, mesh.points);
+    }
+    write("a.geo10", out.text());
+    EXPECT_NEAR(inspect(read_mesh(path("a.case")).mesh).volume, 4 * 8, 1e-4);
+    EXPECT_NEAR(inspect(read_mesh(path("a.case"), {.step = 0}).mesh).volume, 4, 1e-4);
 }
 
 class EnsightFuzz : public MeshFuzz {};

@@ -267,6 +267,20 @@ TEST_F(VtkIo, NonFiniteValuesCountOnlyAtUsedPoints) {
                 HasSubstr("array \"s\": the value at cell 0 is not finite"));
 }
 
+TEST_F(VtkIo, OneFieldThatIsNotFiniteStopsNoOther) {
+    const std::string fields =
+        "POINT_DATA 8\nSCALARS bad float\nLOOKUP_TABLE default\n1 2 3 4 nan 6 7 8\n"
+        "SCALARS good float\nLOOKUP_TABLE default\n1 2 3 4 5 6 7 8\n"
+        "CELL_DATA 1\nSCALARS worse float\nLOOKUP_TABLE default\ninf\n";
+    const ReadResult result = read("a.vtk", vtk_text(make_box(1, 1, 1)) + fields);
+    ASSERT_EQ(result.fields.size(), 1u);
+    EXPECT_EQ(result.fields[0].name, "good");
+    ASSERT_EQ(result.unread.size(), 2u);
+    EXPECT_EQ(result.unread[0].name, "bad");
+    EXPECT_THAT(result.warnings,
+                testing::ElementsAre("2 fields left out (\"bad\", \"worse\"): the value at point 4 is not finite"));
+}
+
 TEST_F(VtkIo, NamesInLatin1BecomeUtf8) {
     const auto result = read("a.vtk", vtk_text(make_box(1, 1, 1)) +
                                           "POINT_DATA 8\nSCALARS d\xE9"

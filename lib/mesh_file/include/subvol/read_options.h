@@ -111,7 +111,14 @@ struct CurvedReport {
     [[nodiscard]] bool split() const { return hexes > cells; }
 };
 
+/// A field of a file that was left out. why: what could not be read, such as a value that is not finite
+struct UnreadField {
+    std::string name;
+    std::string why;
+};
+
 /// blocks:     the parts that were read, of formats that have such parts
+/// unread:     fields that could not be read; a warning names them
 /// cell_means: only if values at cells were fitted: the values of these fields in the file, for each cell of the mesh
 /// cell_parts: for each cell of the mesh the number of the file's cell that it is a part of; empty if there are no such fields
 /// cell_values: how well the means are met; nothing if there are no such fields
@@ -128,6 +135,7 @@ struct ReadResult {
     std::optional<CellValuesReport> cell_values = {};
     std::optional<CurvedReport> curved = {};
     Shells shells = {};
+    std::vector<UnreadField> unread = {};
 };
 
 }  // namespace subvol

@@ -31,7 +31,8 @@ namespace subvol {
 ///
 /// Cells of lower dimension are left out, but for ReadResult::shells; curved hexahedra are split as ReadOptions says, and of
 /// other curved cells only the corners are used. A cell that repeats points is taken as the prism, pyramid or tetrahedron that
-/// it looks like, and left out if it has no volume. All give a warning. Memory is never allocated by a number in the file that
+/// it looks like, and left out if it has no volume. A field with a value that is not finite at a point or cell of the mesh is
+/// left out, but not if no field would be left. All give a warning. Memory is never allocated by a number in the file that
 /// the file is too short for.
 ///
 /// throws: Error(Io) if the file cannot be opened;

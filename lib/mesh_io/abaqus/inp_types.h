@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+
+namespace subvol::detail {
+
+enum class InpShape { Other, Hex, Prism, Pyramid, Tet, Quad, Line };
+
+/// A type of elements of Abaqus or CalculiX. name: in capitals, such as C3D8R; nodes: of an element, its corners first; 0 for
+/// Other
+struct InpType {
+    std::string name;
+    InpShape shape = InpShape::Other;
+    std::size_t nodes = 0;
+};
+
+/// What the name of a type says of its shape, whatever its elements compute.
+[[nodiscard]] InpType inp_type(std::string_view name);
+
+[[nodiscard]] constexpr bool is_shell(InpShape shape) {
+    return shape == InpShape::Quad || shape == InpShape::Line;
+}
+
+}  // namespace subvol::detail

@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "ensight_data.h"
+
+#include <algorithm>
+#include <charconv>
+#include <tuple>
+#include <utility>
+
+#include "number_type.h"
+
+namespace subvol::detail {
+
+namespace {
+
+constexpr std::size_t kOfLine = 80, kOfNumber = 4;
+
+std::string_view line_text(std::string_view text) {
+    return trimmed(text.substr(0, text.find('\0')));
+}
+
+// Whether a file begins with a record of one line, in either byte order.
+std::optional<std::endian> order_of_records(std::string_view text) {
+    if (text.size() < kOfNumber + kOfLine) return std::nullopt;
+    for (const std::endian order : {std::endian::little, std::endian::big}) {
+        if (integer_from(text, NumberType::UInt32, order) == kOfLine) return order;
+    }
+    return std::nullopt;
+}
+
+}  // namespace
+
+EnsightData::EnsightData(const std::filesystem::path& path, std::optional<EnsightForm> form, std::optional<std::size_t> step)
+    : name_(path.string()), text_(read_text(path)), in_(text_, name_, TextScanner::Comments::None) {
+    const std::string begin = upper_case(std::string_view(text_).substr(0, kOfLine + kOfNumber));
+    const bool fortran = begin.find("FORTRAN BINARY") != std::string::npos, c = begin.starts_with("C BINARY");
+    form_ = fortran ? EnsightForm::Fortran : c ? EnsightForm::C : form.value_or(EnsightForm::Text);
+    if (form_ == EnsightForm::Fortran) take_records();
+    if (step) take_step(*step);
+    if (binary()) in_.name_bytes();
+    const bool says_so = fortran || c;
+    if (says_so && !step) std::ignore = in_.bytes(std::min(kOfLine, text_.size()), {"line"});
+}
+
+// The contents of all records are what C's files have.
+void EnsightData::take_records() {
+    const std::optional<std::endian> order = order_of_records(text_);
+    if (!order) in_.fail_at(0, "it does not begin with a record of 80 bytes, as Fortran's binary files do");
+    std::string contents;
+    contents.reserve(text_.size());
+    const std::string_view all = text_;
+    const auto length_at = [&](std::size_t at) {
+        return static_cast<std::size_t>(integer_from(all.substr(at), NumberType::UInt32, *order));
+    };
+    for (std::size_t at = 0; at < all.size();) {
+        const std::size_t room = all.size() - at;
+        const std::size_t length = room < 2 * kOfNumber ? room : length_at(at);
+        if (room < 2 * kOfNumber || length > room - 2 * kOfNumber || length_at(at + kOfNumber + length) != length) {
+            in_.name_bytes();
+            in_.fail_at(at, "a record of Fortran's binary files is expected");
+        }
+        contents += all.substr(at + kOfNumber, length);
+        at += length + 2 * kOfNumber;
+    }
+    text_ = std::move(contents);
+    in_ = TextScanner(text_, name_, TextScanner::Comments::None);
+    order_ = *order;
+    has_order_ = true;
+}
+
+// Keeps the lines between the marks of a step.
+void EnsightData::take_step(std::size_t step) {
+    constexpr std::string_view kBegin = "BEGIN TIME STEP", kEnd = "END TIME STEP";
+    std::size_t at = 0;
+    for (std::size_t k = 0; k <= step; ++k) {
+        at = text_.find(kBegin, at);
+        if (at == std::string::npos) {
+            in_.fail_at(0, "there is no step " + std::to_string(step) + " in the file", "it has " + std::to_string(k));
+        }
+        at = binary() ? at + kOfLine : std::min(text_.find('\n', at), text_.size());
+    }
+    const std::size_t end = at > text_.size() ? std::string::npos : text_.find(kEnd, at);
+    if (end == std::string::npos) in_.fail_at(0, "step " + std::to_string(step) + " does not end");
+    in_ = TextScanner(std::string_view(text_).substr(0, end), name_, TextScanner::Comments::None);
+    in_.seek(at);
+    if (!binary()) std::ignore = in_.line();
+}
+
+bool EnsightData::at_end() {
+    return binary() ? in_.bytes_left() == 0 : in_.at_end();
+}
+
+std::string EnsightData::line() {
+    if (!binary()) {
+        if (in_.at_end()) fail("the file ends where a line is expected");
+        in_line_ = false;
+        return std::string(line_text(in_.line()));
+    }
+    return std::string(line_text(in_.bytes(kOfLine, {"line"})));
+}
+
+std::string EnsightData::description() {
+    if (binary()) return line();
+    if (std::exchange(in_line_, false)) std::ignore = in_.line();
+    if (in_.bytes_left() == 0) fail("the file ends where a line is expected");
+    return std::string(line_text(in_.line()));
+}
+
+std::string EnsightData::keyword() {
+    std::string text = line();
+    std::ranges::transform(text, text.begin(),
+                           [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+    return text;
+}
+
+void EnsightData::expect_room(std::size_t count, const std::string& what) const {
+    if (count <= (binary() ? in_.bytes_left() / kOfNumber : in_.room_for(1))) return;
+    fail(what + ": " + std::to_string(count) + " numbers are needed, and the file is too short");
+}
+
+std::int64_t EnsightData::integer(const std::string& what) {
+    in_line_ = true;
+    if (!binary()) return in_.integer({what});
+    const std::string_view bytes = in_.bytes(kOfNumber, {what});
+    if (!has_order_) {
+        has_order_ = true;
+        constexpr std::int64_t kMostParts = 65536;
+        const std::int64_t little = integer_from(bytes, NumberType::Int32, std::endian::little);
+        if (little < 0 || little > kMostParts) order_ = std::endian::big;
+    }
+    return integer_from(bytes, NumberType::Int32, order_);
+}
+
+std::size_t EnsightData::count(const std::string& what) {
+    const std::int64_t value = integer(what);
+    if (value < 0 || static_cast<std::size_t>(value) > in_.size())
+        fail(what + ": count out of range: " + std::to_string(value));
+    return static_cast<std::size_t>(value);
+}
+
+std::vector<std::int64_t> EnsightData::integers(std::size_t count, const std::string& what) {
+    expect_room(count, what);
+    if (binary()) return integers_from(in_.bytes(count * kOfNumber, {what}), NumberType::Int32, order_);
+    in_line_ |= count > 0;
+    std::vector<std::int64_t> values;
+    values.reserve(count);
+    for (std::size_t i = 0; i < count; ++i) values.push_back(in_.integer({what, static_cast<std::int64_t>(i + 1), count}));
+    return values;
+}
+
+std::vector<double> EnsightData::reals(std::size_t count, const std::string& what) {
+    expect_room(count, what);
+    in_line_ |= count > 0;
+    if (binary()) return reals_from(in_.bytes(count * kOfNumber, {what}), NumberType::Float32, order_);
+    std::vector<double> values;
+    values.reserve(count);
+    for (std::size_t i = 0; i < count; ++i) values.push_back(in_.real({what, static_cast<std::int64_t>(i + 1), count}));
+    return values;
+}
+
+std::vector<double> EnsightData::columns(std::size_t count, std::size_t width, const std::string& what) {
+    if (count > in_.bytes_left()) fail(what + ": " + std::to_string(count) + " numbers are needed, and the file is too short");
+    std::vector<double> values;
+    values.reserve(count);
+    while (values.size() < count) {
+        if (in_.at_end()) fail(what + ": the file ends where a number is expected");
+        std::string_view line = in_.line();
+        if (line.ends_with('\r')) line.remove_suffix(1);
+        for (std::size_t at = 0; at < line.size() && values.size() < count; at += width) {
+            const std::string_view word = trimmed(line.substr(at, width));
+            if (word.empty()) continue;
+            double value = 0;
+            const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+            if (error == std::errc::invalid_argument || end != word.data() + word.size()) {
+                fail(what + ": a number of " + std::to_string(width) + " characters is expected, not " +
+                     in_quotes(std::string(word)));
+            }
+            values.push_back(value);
+        }
+    }
+    return values;
+}
+
+}  // namespace subvol::detail
