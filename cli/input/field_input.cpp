@@ -7,19 +7,12 @@
 #include "input.h"
 #include "points_input.h"
 #include "subvol/error.h"
-#include "subvol/limit_field.h"
 #include "subvol/mesh_field.h"
 #include "subvol/points_field.h"
 #include "text.h"
 
 namespace subvol::cli {
 namespace {
-
-FieldView limit_view(const LimitField& field) {
-    return {.value = [&field](const Vec3& x) { return field.value(x); },
-            .gradient = [&field](const Vec3& x) { return field.gradient(x); },
-            .box = field.box()};
-}
 
 FieldInput mesh_field(const std::string& input, const CommonOptions& options, const RefineArguments& refine, Progress* progress,
                       Facts& facts) {
@@ -40,7 +33,7 @@ FieldInput mesh_field(const std::string& input, const CommonOptions& options, co
     Facts& deviation = facts.group("limit_deviation");
     deviation["position_world"] = limit.position_world;
     deviation["of_range"] = limit.value_of_range;
-    return {limit_view(*field), field, mesh, name};
+    return {view_of(*field), field, mesh, name};
 }
 
 FieldInput points_field(const std::string& input, const CommonOptions& options, Progress* progress, Facts& facts) {

@@ -89,4 +89,10 @@ FieldView MeshField::view() const {
             .box = box()};
 }
 
+FieldView view_of(const LimitField& field) {
+    return {.value = [&field](const Vec3& x) { return field.value(x); },
+            .gradient = [&field](const Vec3& x) { return field.gradient(x); },
+            .box = field.box()};
+}
+
 }  // namespace subvol

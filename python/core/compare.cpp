@@ -31,6 +31,14 @@ Field field_of_mesh(const HexMesh& mesh, const std::string& name) {
     return {std::move(field), std::move(view), name};
 }
 
+Field field_of_limit(const HexMesh& mesh, const std::string& name, const py::object& progress) {
+    auto field = result_of(progress, [&](Progress* listener) {
+        return std::make_shared<const LimitField>(mesh, name, RefineOptions{.progress = listener});
+    });
+    FieldView view = view_of(*field);
+    return {std::move(field), std::move(view), name};
+}
+
 Field field_of_points(const RbfVolume& volume, std::size_t channel) {
     const py::gil_scoped_release without_gil;
     auto field = std::make_shared<const PointsField>(volume, channel);
@@ -129,6 +137,7 @@ py::tuple as_map(double mean, MetricMap map) {
 void bind_compare(py::module_& module) {
     py::class_<Field>(module, "Field", "A scalar field in world space.")
         .def_static("of_mesh", &field_of_mesh, py::arg("mesh"), py::arg("name"))
+        .def_static("of_limit", &field_of_limit, py::arg("mesh"), py::arg("name"), py::arg("progress"))
         .def_static("of_points", &field_of_points, py::arg("volume"), py::arg("channel"))
         .def_readonly("name", &Field::name)
         .def_property_readonly("bounds", [](const Field& field) { return as_array(field.view.box); })

@@ -163,14 +163,16 @@ py::dict slice(const HexMesh& mesh, const std::string& field, const std::array<d
 }
 
 py::dict surface(const HexMesh& mesh, const std::string& field, std::vector<double> isos,
-                 const std::optional<std::string>& path, const py::object& progress, const py::kwargs& given) {
+                 const std::optional<std::string>& path, const std::array<double, 3>& origin, const py::object& progress,
+                 const py::kwargs& given) {
+    const Vec3 place(origin[0], origin[1], origin[2]);
     SurfaceOptions options{.isos = std::move(isos)};
     const std::vector<std::string> besides(options.isos.empty() ? 0 : 1, "iso");
     set_options(keywords_of(options), given, besides);
     LimitSurface found = result_of(progress, [&](Progress* listener) {
         options.progress = listener;
         LimitSurface made = limit_surface(mesh, field, options);
-        if (path) write_limit_surface(*path, made);
+        if (path) write_limit_surface(*path, made, {.origin = place});
         return made;
     });
     py::dict result, report;
@@ -183,6 +185,8 @@ py::dict surface(const HexMesh& mesh, const std::string& field, std::vector<doub
     report["deviation"] = found.report.deviation_world;
     report["converged"] = found.report.converged;
     report["level"] = found.report.level;
+    const bool rounds = path && path->ends_with(".stl");
+    report["collapsed"] = rounds ? collapsed_by_floats(found.surface, place) : 0;
     result["report"] = report;
     std::vector<std::int64_t> corners;
     corners.reserve(3 * found.surface.triangles.size());
@@ -203,7 +207,8 @@ void bind_measure(py::module_& module) {
                py::arg("progress"));
     module.def("measure", &measure, py::arg("mesh"), py::arg("progress"));
     module.def("slice", &slice, py::arg("mesh"), py::arg("field"), py::arg("point"), py::arg("normal"), py::arg("progress"));
-    module.def("surface", &surface, py::arg("mesh"), py::arg("field"), py::arg("isos"), py::arg("path"), py::arg("progress"));
+    module.def("surface", &surface, py::arg("mesh"), py::arg("field"), py::arg("isos"), py::arg("path"), py::arg("origin"),
+               py::arg("progress"));
     GivenProbe given;
     describe(module, "probe", options_of(given));
     describe_call<PointsErrorOptions>(module, "points_error");

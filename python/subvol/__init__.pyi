@@ -268,14 +268,15 @@ def subdivide(
 
 def surface(
     mesh: HexMesh, iso: Union[float, Sequence[float], None] = None, field: Optional[str] = None, *,
-    boundary: Optional[bool] = None, path: Optional[Path] = None, scheme: str = 'mcq', tension: float = 0.0625,
-    crease_angle: Optional[float] = None, cap: bool = False, tolerance: float = 0.001, max_level: int = 6,
-    progress: Progress = None
+    boundary: Optional[bool] = None, path: Optional[Path] = None, origin: Optional[npt.ArrayLike] = None,
+    scheme: str = 'mcq', tension: float = 0.0625, crease_angle: Optional[float] = None, cap: bool = False,
+    tolerance: float = 0.001, max_level: int = 6, progress: Progress = None
 ) -> SurfaceMesh:
     """Isosurfaces of a field of the limit, and its boundary, as triangles.
 
     iso:         a value, or several; None: the boundary alone
     path:        also write it: .ply, .stl, .vtp, .obj, .glb
+    origin:      the file's points are relative to this place (3,): .stl rounds to 32-bit floats; None: (0, 0, 0)
     scheme:      mcq (smooth, through the control points), cc (Catmull-Clark), bsxw (Bajaj-Schaefer-Warren-Xu), linear [mcq,
                  cc, bsxw, linear]
     tension:     of mcq: 0 is linear; 1/16 reproduces cubics [0 to 0.125; with scheme='mcq']

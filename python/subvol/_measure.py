@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core
-from ._arguments import TET_SCHEMES, Path
+from ._arguments import TET_SCHEMES, Path, warn
 from ._core import HexMesh, RbfVolume
 from ._errors import InvalidInput
 from ._options import described
@@ -137,16 +137,26 @@ class SurfaceMesh:
 
 @described
 def surface(mesh: HexMesh, iso: Union[float, Sequence[float], None] = None, field: Optional[str] = None, *, boundary: Optional[bool] = None,
-            path: Optional[Path] = None, progress: Progress = None, **options: Any) -> SurfaceMesh:
+            path: Optional[Path] = None, origin: Optional[npt.ArrayLike] = None, progress: Progress = None, **options: Any) -> SurfaceMesh:
     """Isosurfaces of a field of the limit, and its boundary, as triangles.
 
     iso:         a value, or several; None: the boundary alone
     path:        also write it: .ply, .stl, .vtp, .obj, .glb
+    origin:      the file's points are relative to this place (3,): .stl rounds to 32-bit floats; None: (0, 0, 0)
     {keywords}
     """
+    place = np.zeros(3) if origin is None else np.asarray(origin, dtype=float)
+    if place.shape != (3,) or not np.isfinite(place).all():
+        raise InvalidInput("origin: a place in the world is needed", "origin", "three finite numbers")
+    if origin is not None and path is None:
+        raise InvalidInput("origin: no file is written", "origin", "with path")
     isos = [] if iso is None else [float(value) for value in np.atleast_1d(np.asarray(iso, dtype=float))]
     chosen = _selected(mesh, field)
     with listening(progress) as listener:
-        found: dict[str, Any] = _core.surface(chosen, next(iter(chosen.fields)), isos, None if path is None else os.fsdecode(path), listener,
+        found: dict[str, Any] = _core.surface(chosen, next(iter(chosen.fields)), isos, None if path is None else os.fsdecode(path), list(place), listener,
                                               boundary=not isos if boundary is None else boundary, **options)
+    collapsed = found["report"]["collapsed"]
+    if collapsed > 0:
+        warn(f"{collapsed} of {len(found['triangles'])} triangles lose a side, as .stl rounds coordinates to 32-bit floats: an origin near "
+             "the body writes them relative to it, .ply keeps all digits")
     return SurfaceMesh(**found)

@@ -198,11 +198,17 @@ def compare_images(test: Union[Image, npt.ArrayLike], reference: Union[Image, np
 
 def compare_fields(test: Union[HexMesh, RbfVolume, Field], reference: Union[HexMesh, RbfVolume, Field], field: Optional[str] = None,
                    *, samples: int = 100_000, seed: int = 0, gradients: bool = True, progress: Progress = None) -> FieldComparison:
-    """The distance between two fields: of meshes (their limit), of points, or given as Field.
+    """The distance between two fields: of meshes (their limit, by curved pieces, as the command does), of points, or given as Field.
 
     Both are compared where both have a value: see `coverage` of the result. gradients=False: gradient_rmse is nan."""
-    a, b = as_field(test, field), as_field(reference, field)
     with listening(progress) as listener:
+        def field_of(what: Union[HexMesh, RbfVolume, Field]) -> Field:
+            if not isinstance(what, HexMesh):
+                return as_field(what, field)
+            mesh = _selected(what, field)
+            return Field.of_limit(mesh, next(iter(mesh.fields)), listener)
+
+        a, b = field_of(test), field_of(reference)
         return FieldComparison(_core.compare_fields(a, b, samples, seed, gradients, listener))
 
 

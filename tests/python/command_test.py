@@ -137,3 +137,35 @@ def test_a_field_chosen_by_default_is_the_command_s(tmp_path, command):
         warnings.simplefilter("ignore")
         subvol.render(subvol.read_mesh(tmp_path / "m.vtu"), size=(32, 32), backend="cpu").write(tmp_path / "b.exr")
     same(tmp_path / "a.exr", tmp_path / "b.exr")
+
+
+def test_fields_of_meshes_are_compared_on_the_limit(tmp_path, command):
+    """By the pieces of the command, at its places; a mesh and its first refinement have one limit, up to the error of the pieces."""
+    coarse = subvol.model("ball", 2)
+    subvol.write_mesh(coarse, tmp_path / "coarse.vtu")
+    subvol.write_mesh(subvol.subdivide(coarse, 1), tmp_path / "fine.vtu")
+    made = json.loads(command("compare", tmp_path / "coarse.vtu", tmp_path / "fine.vtu", "--samples", 5000, "--json"))
+    found = subvol.compare_fields(subvol.read_mesh(tmp_path / "coarse.vtu"), subvol.read_mesh(tmp_path / "fine.vtu"), samples=5000)
+    for name in ("l1", "l2", "linf", "gradient_rmse", "samples", "uncovered"):
+        assert getattr(found, name) == made[name], name
+    low, high = coarse.fields["density"].min(), coarse.fields["density"].max()
+    assert found.l2 < 5e-4 * (high - low)
+
+
+def test_surfaces_relative_to_an_origin(tmp_path, command):
+    ball = subvol.model("ball", 2)
+    subvol.write_mesh(subvol.HexMesh(ball.points * 1e-3 + [5e6, 4e6, 0], ball.cells, ball.fields), tmp_path / "far.vtu")
+    far = subvol.read_mesh(tmp_path / "far.vtu")
+    for extension in ("stl", "ply"):
+        command("surface", tmp_path / "far.vtu", "--boundary", "--origin", "5e6,4e6,0", "-o", tmp_path / f"a.{extension}")
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            subvol.surface(far, path=tmp_path / f"b.{extension}", origin=(5e6, 4e6, 0))
+        same(tmp_path / f"a.{extension}", tmp_path / f"b.{extension}")
+    with pytest.warns(subvol.SubvolWarning, match="lose a side"):
+        subvol.surface(far, path=tmp_path / "c.stl")
+    for wrong in ((1, 2), (0, 0, np.nan)):
+        with pytest.raises(subvol.InvalidInput, match="origin"):
+            subvol.surface(far, path=tmp_path / "c.stl", origin=wrong)
+    with pytest.raises(subvol.InvalidInput, match="origin"):
+        subvol.surface(far, origin=(0, 0, 0))

@@ -183,7 +183,8 @@ def test_fields_are_compared(cube):
 def test_coverage_says_how_much_of_the_reference_was_compared(cube):
     quarter = subvol.HexMesh(cube.points * [.25, 1, 1], cube.cells, {"x": cube.points[:, 0] * .25})
     part = subvol.compare(quarter, cube, field="x", samples=2000)
-    assert part.linf < 1e-9 and part.coverage == part.samples / 2000 == pytest.approx(.25, abs=.05)
+    # The pieces of the limit are 32-bit floats, which keep 7 digits of x.
+    assert part.linf < 1e-7 and part.coverage == part.samples / 2000 == pytest.approx(.25, abs=.05)
     assert subvol.compare(cube, quarter, field="x", samples=200).coverage == 1
     assert f"{part.samples} of 2000" in repr(part)
     far = subvol.HexMesh(cube.points + 50, cube.cells, {"x": cube.fields["x"]})

@@ -7,6 +7,7 @@
 
 #include "subvol/field.h"
 #include "subvol/hex_mesh.h"
+#include "subvol/limit_field.h"
 
 namespace subvol {
 
@@ -35,5 +36,8 @@ private:
     struct Cells;
     std::unique_ptr<const Cells> cells_;
 };
+
+/// A view of a mesh's limit that refers to the object: what fields of meshes are compared by, unless a level is asked for.
+[[nodiscard]] FieldView view_of(const LimitField& field);
 
 }  // namespace subvol
