@@ -27,6 +27,7 @@ namespace subvol::cli {
 /// that it is caught.
 struct VdbFunctions {
     std::vector<VdbGrid> (*rasterize)(const HexMesh&, std::span<const std::string>, const RasterizeOptions&);
+    LimitGrids (*rasterize_limit)(const HexMesh&, std::span<const std::string>, const RasterizeOptions&);
     void (*check_voxels)(const HexMesh&, const RasterizeOptions&);
     RefinementTables (*rasterization_tables)(const HexMesh&, const RasterizeOptions&);
     PartsReport (*rasterize_parts)(const MeshSource&, std::span<const std::string>, const RasterizeOptions&, std::size_t,

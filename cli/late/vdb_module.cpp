@@ -12,6 +12,7 @@ const subvol::cli::VdbFunctions* subvol_openvdb() {
     using namespace subvol;
     static const cli::VdbFunctions functions{
         .rasterize = &rasterize,
+        .rasterize_limit = &rasterize_limit,
         .check_voxels = &check_voxels,
         .rasterization_tables = &rasterization_tables,
         .rasterize_parts = &rasterize_parts,

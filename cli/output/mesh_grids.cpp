@@ -21,14 +21,12 @@
 namespace subvol::cli {
 namespace {
 
-constexpr double kBytesOfChannel = 5.5;  // a voxel's float in leaves that are not all full, with their masks
+constexpr double kBytesOfChannel = 5.5;             // a voxel's float in leaves that are not all full, with their masks
+constexpr std::size_t kManyCells = 1 << 18;         // whose pieces of the limit are not kept: 450 bytes each
+constexpr const char* kLevelName = "subvol_level";  // of a grid's text
 
-}  // namespace
-
-WithFacts<LimitCells> reported_limit(const HexMesh& mesh, const RefineOptions& refinement, double voxel_size) {
+Facts facts_of(const LimitCells& limit, const HexMesh& mesh, double voxel_size) {
     Facts facts;
-    LimitCells limit =
-        facts.timed(refinement.progress, "limit level", [&] { return limit_for_voxels(mesh, refinement, voxel_size); });
     const int levels = finest_level(limit);
     facts["levels"] = levels;
     facts["cells"] = limit.piece_count;
@@ -44,6 +42,16 @@ WithFacts<LimitCells> reported_limit(const HexMesh& mesh, const RefineOptions& r
         facts.warn(text("level ", levels, " was the finest within limits; the last step still moved points by ",
                         limit.position_world / voxel_size, " voxels and values by ", limit.value_of_range, " of their range"));
     }
+    return facts;
+}
+
+}  // namespace
+
+WithFacts<LimitCells> reported_limit(const HexMesh& mesh, const RefineOptions& refinement, double voxel_size) {
+    Facts facts;
+    LimitCells limit =
+        facts.timed(refinement.progress, "limit level", [&] { return limit_for_voxels(mesh, refinement, voxel_size); });
+    facts.merge(facts_of(limit, mesh, voxel_size));
     return {std::move(limit), std::move(facts)};
 }
 
@@ -85,7 +93,7 @@ double MeshGrids::voxel_size_world(const HexMesh& mesh) const {
     return std::max({size.x, size.y, size.z}) / asked_.grids.resolution;
 }
 
-WithFacts<RasterizeOptions> MeshGrids::set_up(const HexMesh& mesh, Progress* progress) {
+WithFacts<RasterizeOptions> MeshGrids::set_up(const HexMesh& mesh, Progress* progress, bool once) {
     Facts facts;
     const double voxel_size = voxel_size_world(mesh);
     RasterizeOptions options = this->options(progress);
@@ -94,22 +102,24 @@ WithFacts<RasterizeOptions> MeshGrids::set_up(const HexMesh& mesh, Progress* pro
     vdb().check_voxels(mesh, options);
     RefineOptions refinement = refine_.options(0, progress);
     int levels = refinement.levels;
+    options.find_limit = !refine_.levels && once && mesh.cells.size() > kManyCells && asked_.from != "points" &&
+                         !options.coverage && !options.level_set;
     if (refine_.levels) {
         facts["levels"] = refinement.levels;
         facts["cells"] = mesh.cells.size() << (3 * refinement.levels);
-    } else {
+    } else if (!options.find_limit) {
         limit_ = facts.unpack(reported_limit(mesh, refinement, voxel_size));
         levels = finest_level(limit_);
     }
     options.refine = refinement;
     options.on_limit = !interpolates(refinement.scheme.kind);
-    options.limit = refine_.levels ? nullptr : &limit_;
+    options.limit = refine_.levels || options.find_limit ? nullptr : &limit_;
     if (options.level_set && mesh.find_attribute(options.level_set->name)) {
         throw Error(ErrorCode::InvalidInput, "the mesh has a field of this name", options.level_set->name,
                     "--sdf with another name");
     }
     options.metadata.emplace_back("subvol_scheme", tets_.asked() ? tets_.name() : refine_.scheme);
-    options.metadata.emplace_back("subvol_level", std::to_string(levels));
+    if (!options.find_limit) options.metadata.emplace_back(kLevelName, std::to_string(levels));
     for (const Attribute& field : mesh.attributes) facts.warn(rounding_warning(field, options.half));
     return {std::move(options), std::move(facts)};
 }
@@ -118,6 +128,12 @@ WithFacts<std::vector<VdbGrid>> MeshGrids::make(const HexMesh& mesh, const Raste
     WithFacts<std::vector<VdbGrid>> made;
     if (asked_.from == "points") {
         made = kernel_sums(mesh, options, asked_.per_edge);
+    } else if (options.find_limit) {
+        LimitGrids found = made.facts.timed(options.progress, "rasterize",
+                                            [&] { return vdb().rasterize_limit(mesh, names_of(mesh), options); });
+        made.facts.merge(facts_of(found.limit, mesh, options.voxel_size_world));
+        made.value = std::move(found.grids);
+        for (VdbGrid& grid : made.value) vdb().set_text_of_grid(grid, kLevelName, std::to_string(finest_level(found.limit)));
     } else {
         made.value =
             made.facts.timed(options.progress, "rasterize", [&] { return vdb().rasterize(mesh, names_of(mesh), options); });

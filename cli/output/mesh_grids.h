@@ -46,8 +46,9 @@ public:
     /// The options for a mesh, which depend on its box and its fields. They refer to the limit of the mesh, which is kept until
     /// the next call.
     ///
+    /// once:   the options are for one call of `make`, which then finds the limit of a mesh of many cells itself
     /// throws: Error(InvalidInput) if the mesh has a field with the name of the level set
-    [[nodiscard]] WithFacts<RasterizeOptions> set_up(const HexMesh& mesh, Progress* progress);
+    [[nodiscard]] WithFacts<RasterizeOptions> set_up(const HexMesh& mesh, Progress* progress, bool once = false);
 
     [[nodiscard]] WithFacts<std::vector<VdbGrid>> make(const HexMesh& mesh, const RasterizeOptions& options) const;
 

@@ -99,7 +99,8 @@ private:
         if (asked_.velocity) throw Error(ErrorCode::InvalidInput, "needs a sequence", "--velocity", "--frames A-B");
         report["input"] = input_;
         const HexMesh mesh = report.unpack(maker.load(input_, common(), report.progress()));
-        const RasterizeOptions options = report.unpack(maker.set_up(mesh, report.progress()));
+        const bool once = output_.memory_bytes == 0;
+        const RasterizeOptions options = report.unpack(maker.set_up(mesh, report.progress(), once));
         if (output_.memory_bytes > 0) {
             if (asked_.error) throw Error(ErrorCode::InvalidInput, "works with one file only, not with parts", "--error");
             refuse_with_memory();

@@ -14,6 +14,9 @@
 // depend on the order of the cells, which may be any, and neither does it depend on the threads, as unsigned sums wrap around.
 #include "cell_links.h"
 
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <atomic>
 #include <bit>
@@ -116,6 +119,89 @@ void link_cells(const Topology& faces, CellLinks& links) {
             const auto there = static_cast<std::size_t>(std::find(sides.begin(), sides.end(), face) - sides.begin());
             links.turns[c][side] = turn_across(faces.cells[c], side, faces.cells[other], there);
         }
+    });
+}
+
+/// The side of a cell, with the points by which it is compared with others that have the same smallest point: the opposite one
+/// first, then the other two in order.
+struct CellSide {
+    std::array<Index, 3> points;
+    Index cell;
+    std::size_t side;
+};
+
+/// The same without the faces of a topology. Each side enters a list of its smallest point, and the sides in a list are
+/// compared with each other; the lists take 24 bytes a cell. A cell's sides are found from both of its neighbours' sides, so it
+/// does not matter in which order they have entered.
+class SideLists {
+public:
+    explicit SideLists(const HexMesh& mesh)
+        : mesh_(mesh), first_(mesh.points.size(), kNone), next_(kSides * mesh.cells.size()) {
+        check_count(next_.size(), "sides of cells");
+        parallel_each(next_.size(), [&](std::size_t side) {
+            std::array<Index, 4> points;
+            for (std::size_t k = 0; k < 4; ++k) points[k] = mesh_.cells[side / kSides][kCellFaces[side % kSides][k]];
+            next_[side] = std::atomic_ref(first_[*std::ranges::min_element(points)])
+                              .exchange(static_cast<Index>(side), std::memory_order_relaxed);
+        });
+    }
+
+    /// Returns whether each face has at most two cells.
+    [[nodiscard]] bool link(CellLinks& links) const {
+        links.neighbors.resize(mesh_.cells.size());
+        links.turns.resize(mesh_.cells.size());
+        parallel_each(mesh_.cells.size(), [&](std::size_t c) {
+            links.neighbors[c].fill(kNone);
+            links.turns[c].fill(0);
+        });
+        std::atomic<bool> pairs{true};
+        tbb::parallel_for(tbb::blocked_range<std::size_t>(0, first_.size(), 256), [&](const auto& points) {
+            std::vector<CellSide> sides;
+            for (std::size_t p = points.begin(); p != points.end(); ++p) {
+                collect(static_cast<Index>(p), sides);
+                for (std::size_t i = 0, end = 0; i < sides.size(); i = end) {
+                    for (end = i + 1; end < sides.size() && sides[end].points == sides[i].points;) ++end;
+                    if (end - i > 2) pairs = false;
+                    if (end - i == 2) join(sides[i], sides[i + 1], links);
+                }
+            }
+        });
+        return pairs;
+    }
+
+private:
+    static constexpr std::size_t kSides = 6;
+
+    void collect(Index point, std::vector<CellSide>& sides) const {
+        sides.clear();
+        for (Index at = first_[point]; at != kNone; at = next_[at]) {
+            const auto& cell = mesh_.cells[at / kSides];
+            const auto& corners = kCellFaces[at % kSides];
+            std::size_t k = 0;
+            while (cell[corners[k]] != point) ++k;
+            const Index a = cell[corners[(k + 1) % 4]], b = cell[corners[(k + 3) % 4]];
+            sides.push_back(
+                {{cell[corners[(k + 2) % 4]], std::min(a, b), std::max(a, b)}, static_cast<Index>(at / kSides), at % kSides});
+        }
+        std::ranges::sort(sides, {}, &CellSide::points);
+    }
+
+    void join(const CellSide& a, const CellSide& b, CellLinks& links) const {
+        links.neighbors[a.cell][a.side] = b.cell;
+        links.neighbors[b.cell][b.side] = a.cell;
+        links.turns[a.cell][a.side] = turn_across(mesh_.cells[a.cell], a.side, mesh_.cells[b.cell], b.side);
+        links.turns[b.cell][b.side] = turn_across(mesh_.cells[b.cell], b.side, mesh_.cells[a.cell], a.side);
+    }
+
+    const HexMesh& mesh_;
+    std::vector<Index> first_;  // side of each point
+    FlatArray<Index> next_;     // side in the list of each side: 6 · cell + side
+};
+
+/// Whether two cells have the same corners, and no third cell between them.
+bool has_twins(const CellLinks& links) {
+    return std::ranges::any_of(links.neighbors, [](const std::array<Index, 6>& cells) {
+        return cells[0] != kNone && std::ranges::count(cells, cells[0]) == 6;
     });
 }
 
@@ -224,17 +310,10 @@ std::uint8_t composed(std::uint8_t first, std::uint8_t second) {
     return kProducts[first][second];
 }
 
-CellLinks build_links(const HexMesh& mesh) {
-    Topology faces;
-    faces.point_count = mesh.points.size();
-    faces.cells = mesh.cells;
-    build_faces(faces);
-    return build_links(mesh, faces);
-}
+namespace {
 
-CellLinks build_links(const HexMesh& mesh, const Topology& faces, int color_rounds) {
-    CellLinks links;
-    link_cells(faces, links);
+/// All but the neighbours and their turns, which are there.
+void finish_links(const HexMesh& mesh, int color_rounds, CellLinks& links) {
     links.cells_at.assign(mesh.points.size(), 0);
     parallel_each(mesh.cells.size(), [&](std::size_t c) {
         for (const Index p : mesh.cells[c]) std::atomic_ref(links.cells_at[p]).fetch_add(1, std::memory_order_relaxed);
@@ -242,6 +321,26 @@ CellLinks build_links(const HexMesh& mesh, const Topology& faces, int color_roun
     mark_tags(mesh, links);
     mark_regular(links);
     color_points(mesh, color_rounds, links);
+}
+
+}  // namespace
+
+CellLinks build_links(const HexMesh& mesh) {
+    CellLinks links;
+    if (!SideLists(mesh).link(links) || has_twins(links)) {
+        Topology faces;
+        faces.point_count = mesh.points.size();
+        faces.cells = mesh.cells;
+        build_faces(faces);  // throws, and names the cells
+    }
+    finish_links(mesh, kColorRounds, links);
+    return links;
+}
+
+CellLinks build_links(const HexMesh& mesh, const Topology& faces, int color_rounds) {
+    CellLinks links;
+    link_cells(faces, links);
+    finish_links(mesh, color_rounds, links);
     return links;
 }
 

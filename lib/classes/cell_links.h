@@ -53,13 +53,15 @@ struct CellLinks {
     [[nodiscard]] bool is_sharp(Index cell, std::size_t side) const { return (turns[cell][side] & kSharp) != 0; }
 };
 
+inline constexpr int kColorRounds = 3;
+
 /// throws: Error(InvalidInput) if more than two cells share a face, or two cells have the same corners
-/// cost:   parallel, O(n log n)
+/// cost:   parallel; 28 bytes a cell beside the result
 [[nodiscard]] CellLinks build_links(const HexMesh& mesh);
 
 /// The same from the faces of a topology that is there already.
 ///
 /// color_rounds: so many layers of cells around a point decide its colour
-[[nodiscard]] CellLinks build_links(const HexMesh& mesh, const Topology& faces, int color_rounds = 3);
+[[nodiscard]] CellLinks build_links(const HexMesh& mesh, const Topology& faces, int color_rounds = kColorRounds);
 
 }  // namespace subvol::detail

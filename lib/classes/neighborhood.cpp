@@ -178,7 +178,64 @@ bool NeighborhoodWalk::find(Index cell, int layers, Neighborhood& found) {
     return true;
 }
 
+/// The points of 27 cells, each one or two steps off along each axis, are those of the neighbourhood.
+struct GridCorner {
+    std::array<std::size_t, 3> at;  // 0, 1 or 2 along each axis; 1: the middle
+
+    explicit GridCorner(std::size_t n) : at{n % 3, n / 3 % 3, n / 9} {}
+    [[nodiscard]] std::size_t point(std::size_t octant) const {
+        return 2 * at[0] + (octant & 1) + 6 * (2 * at[1] + (octant >> 1 & 1) + 6 * (2 * at[2] + (octant >> 2)));
+    }
+};
+
+/// Cells with four cells around each edge leave open how many meet at a corner that only one of them has.
+bool NeighborhoodWalk::eight_cells_meet(std::span<const Index, 216> points) const {
+    for (std::size_t n = 0; n < 64; ++n) {
+        if (links_.cells_at[points[n % 4 + 1 + 6 * (n / 4 % 4 + 1) + 36 * (n / 16 + 1)]] != 8) return false;
+    }
+    return true;
+}
+
+/// As find_regular below, for cells whose axes lie alike, as most do: then there are no turns to be multiplied. None if they do
+/// not.
+std::optional<bool> NeighborhoodWalk::find_aligned(Index cell, std::span<Index, 216> points) const {
+    bool turned = false;
+    const auto step = [&](Index from, std::size_t axis, std::size_t at) {
+        const std::size_t side = 2 * axis + at / 2;
+        turned |= links_.turns[from][side] != kIdentityTurn;
+        return links_.neighbors[from][side];
+    };
+    if (!links_.regular[cell]) return false;
+    std::array<Index, 27> near;
+    constexpr std::array<std::size_t, 27> kOrder{13, 12, 14, 10, 9,  11, 16, 15, 17, 4,  3,  5,  1, 0,
+                                                 2,  7,  6,  8,  22, 21, 23, 19, 18, 20, 25, 24, 26};
+    for (const std::size_t n : kOrder) {
+        const GridCorner corner(n);  // reached from the cell before it along the last axis on which it is off the middle
+        near[n] = cell;
+        if (n == 13) continue;
+        const std::size_t axis = corner.at[2] != 1 ? 2 : corner.at[1] != 1 ? 1 : 0;
+        constexpr std::array<std::size_t, 3> kStrides{1, 3, 9};
+        near[n] = step(near[n - corner.at[axis] * kStrides[axis] + kStrides[axis]], axis, corner.at[axis]);
+        if (turned) return {};
+        if (!links_.regular[near[n]]) return false;
+    }
+    for (std::size_t n = 0; n < 27; ++n) {
+        const GridCorner corner(n);
+        Index far = near[n];
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            if (corner.at[axis] != 1) far = step(far, axis, corner.at[axis]);
+            if (turned) return {};
+            if (far == kNone) return false;
+        }
+        for (std::size_t octant = 0; octant < 8; ++octant) {
+            points[corner.point(octant)] = mesh_.cells[far][kCornerOctants[octant]];
+        }
+    }
+    return eight_cells_meet(points);
+}
+
 bool NeighborhoodWalk::find_regular(Index cell, std::span<Index, 216> points) const {
+    if (const auto aligned = find_aligned(cell, points)) return *aligned;
     const auto step = [&](Visited from, std::size_t side) -> Visited {
         if (from.cell == kNone) return from;
         const std::size_t own = cell_turns()[from.turn].sides[side];
@@ -197,23 +254,18 @@ bool NeighborhoodWalk::find_regular(Index cell, std::span<Index, 216> points) co
         near[n] = now;
     }
     for (std::size_t n = 0; n < 27; ++n) {
-        const std::array<std::size_t, 3> at{n % 3, n / 3 % 3, n / 9};
+        const GridCorner corner(n);
         Visited now = near[n];
         for (std::size_t axis = 0; axis < 3; ++axis) {  // two steps off
-            if (at[axis] != 1) now = step(now, 2 * axis + at[axis] / 2);
+            if (corner.at[axis] != 1) now = step(now, 2 * axis + corner.at[axis] / 2);
             if (now.cell == kNone) return false;
         }
         const auto& octants = cell_turns()[now.turn].octants;
         for (std::size_t octant = 0; octant < 8; ++octant) {
-            const std::size_t u = 2 * at[0] + (octant & 1), v = 2 * at[1] + (octant >> 1 & 1), w = 2 * at[2] + (octant >> 2);
-            points[u + 6 * (v + 6 * w)] = mesh_.cells[now.cell][kCornerOctants[octants[octant]]];
+            points[corner.point(octant)] = mesh_.cells[now.cell][kCornerOctants[octants[octant]]];
         }
     }
-    // Cells with four cells around each edge leave open how many meet at a corner that only one of them has.
-    for (std::size_t n = 0; n < 64; ++n) {
-        if (links_.cells_at[points[n % 4 + 1 + 6 * (n / 4 % 4 + 1) + 36 * (n / 16 + 1)]] != 8) return false;
-    }
-    return true;
+    return eight_cells_meet(points);
 }
 
 /// The code read back as a mesh: its cells with their corners in VTK's order, and its tags.

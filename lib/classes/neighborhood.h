@@ -49,6 +49,8 @@ public:
     [[nodiscard]] std::span<const Visited> visited() const { return visited_; }
 
 private:
+    [[nodiscard]] std::optional<bool> find_aligned(Index cell, std::span<Index, 216> points) const;
+    [[nodiscard]] bool eight_cells_meet(std::span<const Index, 216> points) const;
     void start(Neighborhood& found);
     [[nodiscard]] std::uint16_t number(Index point, Neighborhood& found);
     void add_first(Index cell, Neighborhood& found);

@@ -12,7 +12,8 @@
 // are bounded in bytes (kGroupBytes).
 //
 // descend asks a visitor how far each cell and each child needs to go. Regular cells need no patch: they are shown to the
-// visitor at levels 1 and 2 by their table. The others are shown level 1 as it is refined, level 2 as the grids of their
+// visitor at levels 1 and 2 by their table, and cells of common classes at level 1. The others, and those of the latter that go
+// on, are shown level 1 as it is refined, level 2 as the grids of their
 // children, and from there on each child goes on by itself, one level at a time, as long as the visitor asks for more.
 #include "cell_refiner.h"
 
@@ -38,7 +39,7 @@ namespace subvol::detail {
 
 namespace {
 
-constexpr std::size_t kClassified = 1U << 16;   // cells whose classes are looked for together: 1 kB each
+constexpr std::size_t kClassified = CellRefiner::kRun;  // cells whose classes are looked for together: 1 kB each
 constexpr int kMostTableLevels = 3;             // a table of one more level has 5,000 rows: children's tables serve instead
 constexpr std::size_t kGroupBytes = 32U << 20;  // of the grids that wait for the last of their parts
 
@@ -265,17 +266,27 @@ struct CellRefiner::State {
     }
 
     /// Regular cells have one table for all; the others are refined in batches of neighbours.
-    void descend(int most_levels, Progress* progress, const Descent& visitor) {
-        std::vector<Index> cells(control.cells.size());
-        std::iota(cells.begin(), cells.end(), Index{0});
-        std::vector<std::uint8_t> is_done(cells.size(), 0), seen(cells.size(), 0);
+    void descend(std::vector<Index> cells, int most_levels, Progress* progress, const Descent& visitor) {
+        std::vector<std::uint8_t> is_done(control.cells.size(), 0), seen(control.cells.size(), 0);
         for (std::size_t first = 0; first < cells.size(); first += kClassified) {
             const auto run = std::span(cells).subspan(first, std::min(kClassified, cells.size() - first));
             Classified classified = classes_of(top, run, 2);
+            std::vector<Index> rest;
+            for (const Member& member : classified.members) {
+                if (member.key == kNoClass) rest.push_back(member.cell);
+            }
             std::erase_if(classified.members, [](const Member& member) { return member.key == kNoClass; });
-            evaluate(top, {}, classified, 1, [&](Index cell, const CellGrid& grid) {
+            const Sink show_first = [&](Index cell, const CellGrid& grid) {
                 if (!visitor.cell(grid.dense_cell(cell, 1))) is_done[cell] = 1;
-            });
+            };
+            evaluate(top, {}, classified, 1, show_first);
+            // Level 1 depends on fewer cells than level 2: there cells near the boundary are of a few classes only. To find
+            // those pays where there are many.
+            if (control.cells.size() > kClassified) {
+                Classified near = classes_of(top, rest, 1, 0);
+                std::erase_if(near.members, [](const Member& member) { return member.key == kNoClass; });
+                evaluate(top, {}, near, 1, show_first);
+            }
             if (most_levels < 2) continue;
             std::erase_if(classified.members, [&](const Member& member) { return is_done[member.cell] != 0; });
             evaluate(top, {}, classified, 2, [&](Index cell, const CellGrid& grid) {
@@ -300,7 +311,9 @@ struct CellRefiner::State {
 
     [[nodiscard]] Cut cut_of_control() {
         return [this](std::span<const Index> wanted, int layers) {
-            std::call_once(patches_made, [&] { run_nested([&] { patches = std::make_unique<PatchSource>(control); }); });
+            std::call_once(patches_made, [&] {
+                run_nested([&] { patches = std::make_unique<PatchSource>(control, PatchSource::Faces::Known); });
+            });
             return patches->cut(wanted, layers);
         };
     }
@@ -358,9 +371,9 @@ const CellLinks& CellRefiner::links() const {
     return state_->top.links;
 }
 
-void CellRefiner::descend(int most_levels, Progress* progress, const Descent& visitor) const {
+void CellRefiner::descend(std::span<const Index> cells, int most_levels, Progress* progress, const Descent& visitor) const {
     report_progress(progress, "limit", 0);
-    state_->descend(most_levels, progress, visitor);
+    state_->descend({cells.begin(), cells.end()}, most_levels, progress, visitor);
 }
 
 }  // namespace subvol::detail

@@ -48,8 +48,11 @@ public:
     /// What lies across the sides of the cells.
     [[nodiscard]] const CellLinks& links() const;
 
-    /// Refines all cells to level 1, and further as far as the visitor asks for it, up to level most_levels.
-    void descend(int most_levels, Progress* progress, const Descent& visitor) const;
+    /// Refines these cells to level 1, and further as far as the visitor asks for it, up to level most_levels.
+    ///
+    /// cells: without repetition; where they are a multiple of kRun, regular cells share tables as if all cells were given
+    void descend(std::span<const Index> cells, int most_levels, Progress* progress, const Descent& visitor) const;
+    static constexpr std::size_t kRun = std::size_t{1} << 16;
 
 private:
     struct State;

@@ -30,6 +30,7 @@
 
 #include "jets.h"
 #include "limit_descents.h"
+#include "mesh_subset.h"
 #include "patch.h"
 #include "refine_steps.h"
 #include "run_nested.h"
@@ -363,10 +364,7 @@ double detail::tolerance_length(const HexMesh& mesh) {
 }
 
 LimitExtent detail::limit_extent(const HexMesh& mesh) {
-    std::vector<std::uint8_t> used(mesh.points.size(), 0);
-    for (const auto& cell : mesh.cells) {
-        for (const Index p : cell) used[p] = 1;
-    }
+    const std::vector<std::uint8_t> used = used_points(mesh);
     LimitExtent extent{.box = bounds(mesh), .cell = largest_cell(mesh)};
     for (const Attribute& attribute : mesh.attributes) {
         const auto channels = static_cast<std::size_t>(attribute.channels);

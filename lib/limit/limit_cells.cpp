@@ -16,13 +16,16 @@
 #include <bit>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <tuple>
 #include <vector>
 
 #include "cell_refiner.h"
+#include "mesh_subset.h"
 #include "node_steps.h"
 #include "refine_steps.h"
 #include "subvol/cell.h"
+#include "subvol/detail/all_cells.h"
 #include "subvol/detail/flat_array.h"
 #include "subvol/detail/limit_of_part.h"
 #include "subvol/detail/parallel_each.h"
@@ -279,6 +282,11 @@ struct FloatValues {
         }
     }
 
+    [[nodiscard]] bool as_they_are() const {
+        return std::ranges::all_of(origins, [](double x) { return x == 0; }) &&
+               std::ranges::all_of(units, [](double x) { return x == 1; });
+    }
+
     [[nodiscard]] HexMesh stored(HexMesh mesh) const {
         std::size_t first = 0;
         for (Attribute& attribute : mesh.attributes) {
@@ -291,11 +299,33 @@ struct FloatValues {
     }
 };
 
+/// A mesh as it is searched: the mesh itself where nothing differs, so that a large one is in memory once.
+class SearchedMesh {
+public:
+    /// mesh: must be valid
+    SearchedMesh(const HexMesh& mesh, const SchemeOptions& scheme, const FloatValues& floats) : mesh_(&mesh) {
+        const auto used = used_points(mesh);
+        const bool all_used = std::ranges::all_of(used, [](auto is_used) { return is_used != 0; });
+        if (all_used && !scheme.crease_angle_deg && floats.as_they_are()) return;
+        copy_ = floats.stored(control_mesh(mesh, scheme, 1));
+        mesh_ = &copy_;
+    }
+    SearchedMesh(const SearchedMesh&) = delete;
+    SearchedMesh& operator=(const SearchedMesh&) = delete;
+
+    [[nodiscard]] const HexMesh& get() const { return *mesh_; }
+
+private:
+    const HexMesh* mesh_;
+    HexMesh copy_;
+};
+
 class Search {
 public:
     Search(const HexMesh& mesh, const RefineOptions& refinement, const LimitCellsOptions& options, FloatValues floats)
         : floats_(std::move(floats)),
-          control_(floats_.stored(control_mesh(mesh, refinement.scheme, 1))),
+          searched_(mesh, refinement.scheme, floats_),
+          control_(searched_.get()),
           refiner_(control_, refinement.scheme, true),
           options_(options),
           progress_(refinement.progress),
@@ -303,12 +333,13 @@ public:
               return Found{PieceCutter(floats_.scales, options_), {}, 0};
           }) {
         for (const Attribute& attribute : control_.attributes) node_size_ += static_cast<std::size_t>(attribute.channels);
+        result_.cell_levels.assign(control_.cells.size(), 1);
     }
 
     // Each callback adds the pieces that are fine enough, and returns what needs a finer grid: the cell, some children of it
     // (one bit for each), or the child.
-    void run() {
-        refiner_.descend(options_.max_levels, progress_,
+    void run(std::span<const Index> cells) {
+        refiner_.descend(cells, options_.max_levels, progress_,
                          {.cell =
                               [&](const DenseCell& grid) {
                                   Found& found = found_.local();
@@ -338,32 +369,79 @@ public:
                                   spare(found);
                                   return more;
                               }});
+        for (const Found& found : found_) add(found.list);
     }
 
-    [[nodiscard]] LimitCells result(const HexMesh& mesh) {
-        LimitCells cells{.cell_levels = std::vector<std::uint8_t>(control_.cells.size(), 1)};
-        float trilinear = 0;
-        for (const Found& found : found_) {
-            for (std::size_t i = 0; i < found.list.size(); ++i) {
-                auto& level = cells.cell_levels[found.list.cells[i]];
-                level = std::max(level, static_cast<std::uint8_t>(found.list.levels[i] + 1));
-                cells.position_world = std::max(cells.position_world, found.list.left[i].position);
-                cells.value_of_range = std::max(cells.value_of_range, found.list.left[i].value);
-                trilinear = std::max(trilinear, found.list.trilinear[i]);
-            }
-            cells.piece_count += found.list.size();
-        }
-        cells.converged = cells.position_world <= options_.position_world && cells.value_of_range <= options_.value_of_range;
+    /// How fine the pieces are that were found so far.
+    [[nodiscard]] LimitCells result() {
+        result_.converged =
+            result_.position_world <= options_.position_world && result_.value_of_range <= options_.value_of_range;
         // The level of a mesh of trilinear cells that is as near to the limit, as far as there is room for so many cells.
-        while (trilinear > static_cast<float>(cells.level) && cells.level < options_.max_levels &&
-               std::ldexp(static_cast<double>(control_.cells.size()), 3 * (cells.level + 1)) <= kMostSurfaceCells) {
-            ++cells.level;
+        while (trilinear_ > static_cast<float>(result_.level) && result_.level < options_.max_levels &&
+               std::ldexp(static_cast<double>(control_.cells.size()), 3 * (result_.level + 1)) <= kMostSurfaceCells) {
+            ++result_.level;
         }
-        if (pieces_ * bytes_of_piece() <= options_.max_bytes) cells.pieces = pieces_of(mesh, cells.piece_count);
-        return cells;
+        return std::move(result_);
+    }
+
+    /// Whether the pieces are few enough to be kept.
+    [[nodiscard]] bool has_pieces() const { return pieces_ * bytes_of_piece() <= options_.max_bytes; }
+
+    /// Collects the pieces of the cells that were run last, in the order of the cells.
+    void collect(LimitPieces& pieces) {
+        const std::vector<Place> places = sorted_places();
+        const std::size_t count = places.size();
+        pieces.cells.resize(count);
+        pieces.levels.resize(count);
+        pieces.lowest.resize(count);
+        pieces.hull_sides.resize(count);
+        pieces.origins.resize(count);
+        pieces.node_size = node_size_;
+        const std::size_t numbers = LimitPieces::kNodes * node_size_;
+        pieces.nodes.resize(numbers * count);
+        parallel_each(count, [&](std::size_t i) {
+            const Place& place = places[i];
+            const PieceList& from = *place.list;
+            pieces.cells[i] = place.cell;
+            pieces.levels[i] = place.level;
+            pieces.lowest[i] = place.lowest;
+            pieces.hull_sides[i] = hull_sides(place);
+            pieces.origins[i] = from.origins[place.number];
+            std::copy_n(&from.nodes[numbers * place.number], numbers, &pieces.nodes[numbers * i]);
+        });
+        pieces.value_origins = floats_.origins;
+        pieces.value_units = floats_.units;
+    }
+
+    /// Makes room for so many pieces in each list. What a thread does not find takes no memory, as it is never touched.
+    void reserve(std::size_t pieces) {
+        found_ = FoundByThreads([this, pieces] {
+            Found found{PieceCutter(floats_.scales, options_), {}, 0};
+            found.list.nodes.reserve(pieces * LimitPieces::kNodes * node_size_);
+            return found;
+        });
+    }
+
+    /// Forgets the pieces of the cells that were run last, and keeps their memory for the next ones.
+    void clear() {
+        pieces_ = 0;
+        for (Found& found : found_) {
+            found.list.truncate(0);
+            found.counted = 0;
+        }
     }
 
 private:
+    /// Where a piece lies, and where its nodes are. Places are sorted and not pieces, so that the nodes are copied only once,
+    /// to where they belong.
+    struct Place {
+        Index cell;
+        std::uint8_t level;
+        std::array<std::uint8_t, 3> lowest;
+        std::uint32_t number;
+        const PieceList* list;
+    };
+
     [[nodiscard]] std::size_t bytes_of_piece() const { return sizeof(Vec3) + LimitPieces::kNodes * node_size_ * sizeof(float); }
 
     /// Drops the nodes of pieces when there are too many to be kept.
@@ -373,64 +451,68 @@ private:
         if ((pieces_ += more) * bytes_of_piece() > options_.max_bytes && found.list.has_nodes) found.list.drop_nodes();
     }
 
-    [[nodiscard]] std::shared_ptr<const LimitPieces> pieces_of(const HexMesh& mesh, std::size_t count) {
-        std::vector<const PieceList*> lists;
-        struct Place {
-            Index cell;
-            std::uint8_t level;
-            std::array<std::uint8_t, 3> lowest;
-            std::uint32_t list, number;
-        };
-        // Places are sorted and not pieces, so that the nodes are copied only once, to where they belong.
+    /// Takes how fine the pieces of a list are into account.
+    void add(const PieceList& list) {
+        for (std::size_t i = 0; i < list.size(); ++i) {
+            auto& level = result_.cell_levels[list.cells[i]];
+            level = std::max(level, static_cast<std::uint8_t>(list.levels[i] + 1));
+            result_.position_world = std::max(result_.position_world, list.left[i].position);
+            result_.value_of_range = std::max(result_.value_of_range, list.left[i].value);
+            trilinear_ = std::max(trilinear_, list.trilinear[i]);
+        }
+        result_.piece_count += list.size();
+    }
+
+    [[nodiscard]] std::vector<Place> sorted_places() const {
         std::vector<Place> places;
-        places.reserve(count);
+        places.reserve(pieces_);
         for (const Found& found : found_) {
-            for (std::size_t i = 0; i < found.list.size(); ++i) {
-                places.push_back({found.list.cells[i], found.list.levels[i], found.list.lowest[i],
-                                  static_cast<std::uint32_t>(lists.size()), static_cast<std::uint32_t>(i)});
+            const PieceList& list = found.list;
+            for (std::size_t i = 0; i < list.size(); ++i) {
+                places.push_back({list.cells[i], list.levels[i], list.lowest[i], static_cast<std::uint32_t>(i), &list});
             }
-            lists.push_back(&found.list);
         }
         tbb::parallel_sort(places.begin(), places.end(), [](const Place& a, const Place& b) {
             return std::tie(a.cell, a.level, a.lowest) < std::tie(b.cell, b.level, b.lowest);
         });
-        auto pieces = std::make_shared<LimitPieces>();
-        pieces->cells.resize(count);
-        pieces->levels.resize(count);
-        pieces->lowest.resize(count);
-        pieces->origins.resize(count);
-        pieces->node_size = node_size_;
-        const std::size_t numbers = LimitPieces::kNodes * node_size_;
-        pieces->nodes.resize(numbers * count);
-        parallel_each(count, [&](std::size_t i) {
-            const Place& place = places[i];
-            const PieceList& from = *lists[place.list];
-            pieces->cells[i] = place.cell;
-            pieces->levels[i] = place.level;
-            pieces->lowest[i] = place.lowest;
-            pieces->origins[i] = from.origins[place.number];
-            std::copy_n(&from.nodes[numbers * place.number], numbers, &pieces->nodes[numbers * i]);
-        });
-        pieces->value_origins = floats_.origins;
-        pieces->value_units = floats_.units;
-        pieces->mesh_hash = hash_of(mesh);
-        for (const Attribute& attribute : mesh.attributes) {
-            pieces->names.push_back(attribute.name);
-            pieces->channels.push_back(attribute.channels);
-            pieces->attribute_hashes.push_back(hash_of(attribute));
+        return places;
+    }
+
+    [[nodiscard]] std::uint8_t hull_sides(const Place& place) const {
+        const auto& neighbors = refiner_.links().neighbors[place.cell];
+        const int last = (1 << place.level) - 1;
+        unsigned sides = 0;
+        for (std::size_t d = 0; d < 3; ++d) {
+            if (place.lowest[d] == 0 && neighbors[2 * d] == kNone) sides |= 1U << (2 * d);
+            if (place.lowest[d] == last && neighbors[2 * d + 1] == kNone) sides |= 2U << (2 * d);
         }
-        return pieces;
+        return static_cast<std::uint8_t>(sides);
     }
 
     FloatValues floats_;
-    HexMesh control_;
+    SearchedMesh searched_;
+    const HexMesh& control_;
     CellRefiner refiner_;
     const LimitCellsOptions& options_;
     Progress* progress_;
     std::size_t node_size_ = 3;
     std::atomic<std::size_t> pieces_{0};
     FoundByThreads found_;
+    LimitCells result_;
+    float trilinear_ = 0;
 };
+
+std::shared_ptr<const LimitPieces> kept_pieces(const HexMesh& mesh, Search& search) {
+    auto pieces = std::make_shared<LimitPieces>();
+    search.collect(*pieces);
+    pieces->mesh_hash = hash_of(mesh);
+    for (const Attribute& attribute : mesh.attributes) {
+        pieces->names.push_back(attribute.name);
+        pieces->channels.push_back(attribute.channels);
+        pieces->attribute_hashes.push_back(hash_of(attribute));
+    }
+    return pieces;
+}
 
 /// ranges: null: those of the mesh
 LimitCells search(const HexMesh& mesh, RefineOptions refinement, const LimitCellsOptions& options,
@@ -443,8 +525,10 @@ LimitCells search(const HexMesh& mesh, RefineOptions refinement, const LimitCell
     refinement.levels = 1;
     const FloatValues floats = ranges != nullptr ? FloatValues(mesh, *ranges) : FloatValues(mesh, limit_extent(mesh).ranges);
     Search search(mesh, refinement, options, floats);
-    search.run();
-    return search.result(mesh);
+    search.run(all_cells(mesh));
+    LimitCells cells = search.result();
+    if (search.has_pieces()) cells.pieces = kept_pieces(mesh, search);
+    return cells;
 }
 
 }  // namespace
@@ -456,6 +540,30 @@ LimitCells find_limit_cells(const HexMesh& mesh, RefineOptions refinement, const
 LimitCells detail::find_limit_cells(const HexMesh& part, RefineOptions refinement, const LimitCellsOptions& options,
                                     std::span<const std::array<double, 2>> ranges) {
     return search(part, refinement, options, &ranges);
+}
+
+LimitCells visit_limit_pieces(const HexMesh& mesh, RefineOptions refinement, const LimitCellsOptions& options,
+                              const std::function<void(const LimitPieces&)>& take) {
+    constexpr std::size_t kParts = 16, kMost = std::size_t{1} << 19;
+    if (mesh.cells.empty() || options.max_levels < 1) return search(mesh, refinement, options);
+    validate(mesh);
+    refinement.levels = 1;
+    refinement.progress = nullptr;
+    LimitCellsOptions without_limit = options;
+    without_limit.max_bytes = std::numeric_limits<std::size_t>::max();
+    Search search(mesh, refinement, without_limit, FloatValues(mesh, limit_extent(mesh).ranges));
+    const std::vector<Index> cells = all_cells(mesh);
+    const std::size_t runs = (cells.size() / kParts + CellRefiner::kRun - 1) / CellRefiner::kRun;
+    const std::size_t size = std::clamp(runs * CellRefiner::kRun, CellRefiner::kRun, kMost);
+    search.reserve(std::min(size, cells.size()));
+    LimitPieces pieces;
+    for (std::size_t first = 0; first < cells.size(); first += size) {
+        search.run(std::span(cells).subspan(first, std::min(size, cells.size() - first)));
+        search.collect(pieces);
+        search.clear();
+        take(pieces);
+    }
+    return search.result();
 }
 
 bool are_pieces_of(const LimitPieces& pieces, const HexMesh& mesh) {

@@ -9,14 +9,6 @@
 
 namespace subvol::detail {
 
-Step larger(const Step& a, const Step& b) {
-    return {std::max(a.position, b.position), std::max(a.value, b.value)};
-}
-
-Step smaller(const Step& a, const Step& b) {
-    return {std::min(a.position, b.position), std::min(a.value, b.value)};
-}
-
 void NodeBlock::gather(const DenseCell& grid, const std::array<std::size_t, 3>& first, std::size_t step, std::size_t side) {
     side_ = side;
     channels_ = 3;
@@ -73,25 +65,36 @@ void NodeBlock::predict_along(std::size_t stride, std::size_t across, std::size_
     }
 }
 
-void NodeBlock::steps(Prediction by, const std::vector<double>& scales, std::vector<Step>& steps) {
+void NodeBlock::predict(Prediction by) {
     predicted_ = nodes_;
     predict_along(1, 2, 2, by);
     predict_along(side_, 1, 2, by);
     predict_along(side_ * side_, 1, 1, by);
+}
+
+/// The square of the distance in space, and the difference of values.
+Step NodeBlock::square_step(std::size_t n, const std::vector<double>& scales) const {
+    const double *a = &nodes_[n * channels_], *b = &predicted_[n * channels_];
+    Step step;
+    for (std::size_t d = 0; d < 3; ++d) step.position += (a[d] - b[d]) * (a[d] - b[d]);
+    for (std::size_t c = 3; c < channels_; ++c) step.value = std::max(step.value, std::abs(a[c] - b[c]) * scales[c - 3]);
+    return step;
+}
+
+void NodeBlock::steps(Prediction by, const std::vector<double>& scales, std::vector<Step>& steps) {
+    predict(by);
     steps.resize(nodes_.size() / channels_);
     for (std::size_t n = 0; n < steps.size(); ++n) {
-        const double *a = &nodes_[n * channels_], *b = &predicted_[n * channels_];
-        double square = 0, value = 0;
-        for (std::size_t d = 0; d < 3; ++d) square += (a[d] - b[d]) * (a[d] - b[d]);
-        for (std::size_t c = 3; c < channels_; ++c) value = std::max(value, std::abs(a[c] - b[c]) * scales[c - 3]);
-        steps[n] = {std::sqrt(square), value};
+        steps[n] = square_step(n, scales);
+        steps[n].position = std::sqrt(steps[n].position);
     }
 }
 
 Step NodeBlock::largest_step(Prediction by, const std::vector<double>& scales) {
-    steps(by, scales, steps_);
+    predict(by);
     Step most;
-    for (const Step& step : steps_) most = larger(most, step);
+    for (std::size_t n = 0; n < nodes_.size() / channels_; ++n) most = larger(most, square_step(n, scales));
+    most.position = std::sqrt(most.position);
     return most;
 }
 

@@ -9,6 +9,7 @@
 // from level to level shrink by a factor of 4 or more, so the last step bounds what is left: 1/4 + 1/16 + … = 1/3 of it.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <vector>
 
@@ -21,8 +22,12 @@ struct Step {
     double position = 0, value = 0;
 };
 
-[[nodiscard]] Step larger(const Step& a, const Step& b);
-[[nodiscard]] Step smaller(const Step& a, const Step& b);
+[[nodiscard]] inline Step larger(const Step& a, const Step& b) {
+    return {std::max(a.position, b.position), std::max(a.value, b.value)};
+}
+[[nodiscard]] inline Step smaller(const Step& a, const Step& b) {
+    return {std::min(a.position, b.position), std::min(a.value, b.value)};
+}
 
 /// Trilinear: by the mean of the even nodes beside the odd one. Triquadratic: by the parabola through three even nodes, the
 /// middle one at twice an odd number.
@@ -50,12 +55,13 @@ public:
     [[nodiscard]] Step largest_step(Prediction by, const std::vector<double>& scales);
 
 private:
+    void predict(Prediction by);
     void predict_along(std::size_t stride, std::size_t across, std::size_t outer, Prediction by);
+    [[nodiscard]] Step square_step(std::size_t n, const std::vector<double>& scales) const;
 
     std::size_t side_ = 0, channels_ = 0;
     Vec3 origin_{0.0};
     std::vector<double> nodes_, predicted_;
-    std::vector<Step> steps_;
 };
 
 /// How many more levels make a step short enough, if each makes it four times shorter; negative if fewer would do.

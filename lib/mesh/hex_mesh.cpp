@@ -13,6 +13,7 @@
 #include <string>
 #include <string_view>
 
+#include "mesh_subset.h"
 #include "subvol/detail/near_name.h"
 #include "subvol/error.h"
 
@@ -58,16 +59,6 @@ bool is_identifier(std::string_view name) {
 bool is_physical(std::string_view name) {
     const std::string text = lower(name);
     return std::ranges::any_of(kQuantities, [&](std::string_view part) { return text.find(part) != std::string::npos; });
-}
-
-std::vector<std::uint8_t> used_points(const HexMesh& mesh) {
-    std::vector<std::uint8_t> used(mesh.points.size());
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, mesh.cells.size()), [&](const auto& range) {
-        for (std::size_t c = range.begin(); c < range.end(); ++c) {
-            for (const Index p : mesh.cells[c]) std::atomic_ref(used[p]).store(1, std::memory_order_relaxed);
-        }
-    });
-    return used;
 }
 
 /// Whether a cell has 8 different points below the count; without branches, since nearly all cells are valid.
@@ -143,10 +134,20 @@ const Attribute& scalar_field(const HexMesh& mesh, std::string_view name) {
                 {}, known.empty() ? "an attribute of one channel" : "the mesh has: " + known);
 }
 
+std::vector<std::uint8_t> detail::used_points(const HexMesh& mesh) {
+    std::vector<std::uint8_t> used(mesh.points.size());
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, mesh.cells.size()), [&](const auto& range) {
+        for (std::size_t c = range.begin(); c < range.end(); ++c) {
+            for (const Index p : mesh.cells[c]) std::atomic_ref(used[p]).store(1, std::memory_order_relaxed);
+        }
+    });
+    return used;
+}
+
 void validate(const HexMesh& mesh) {
     if (mesh.cells.empty()) throw Error(ErrorCode::InvalidInput, "the mesh has no hexahedra");
     validate_cells(mesh);
-    const auto used = used_points(mesh);
+    const auto used = detail::used_points(mesh);
     validate_tags(mesh, used);
     for (std::size_t p = 0; p < mesh.points.size(); ++p) {
         const Vec3& x = mesh.points[p];
@@ -171,7 +172,7 @@ void validate(const HexMesh& mesh) {
 }
 
 HexMesh without_unused_points(HexMesh mesh) {
-    const auto used = used_points(mesh);
+    const auto used = detail::used_points(mesh);
     std::vector<Index> renumbered(mesh.points.size(), kNone);
     Index count = 0;
     for (std::size_t p = 0; p < used.size(); ++p) {
@@ -222,7 +223,7 @@ double cell_volume(const std::array<Vec3, 8>& c) {
 }
 
 Box bounds(const HexMesh& mesh) {
-    const auto used = used_points(mesh);
+    const auto used = detail::used_points(mesh);
     Box box;
     for (std::size_t p = 0; p < used.size(); ++p) {
         if (used[p]) box.add(mesh.points[p]);

@@ -9,6 +9,9 @@
 
 namespace subvol::detail {
 
+/// A flag for each point: whether a cell uses it.
+[[nodiscard]] std::vector<std::uint8_t> used_points(const HexMesh& mesh);
+
 /// Adds layers of cells: each has all cells that share a point with a cell before. cells: a flag for each cell of the mesh
 void grow(const HexMesh& mesh, std::vector<std::uint8_t>& cells, int layers);
 

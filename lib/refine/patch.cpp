@@ -11,10 +11,11 @@
 #include "patch.h"
 
 #include <algorithm>
+#include <atomic>
 
 #include "child_topology.h"
 #include "scheme_rows.h"
-#include "subvol/detail/bucket_sort.h"
+#include "subvol/detail/parallel_each.h"
 #include "topology_parts.h"
 
 namespace subvol::detail {
@@ -175,25 +176,29 @@ void refine_data(const HexMesh& parent, const SchemeRows& rows, std::span<const 
 
 }  // namespace
 
-PatchSource::PatchSource(const HexMesh& mesh)
+PatchSource::PatchSource(const HexMesh& mesh, Faces faces)
     : mesh_(mesh), creases_(sorted_tags(mesh.creases)), sharp_faces_(sorted_tags(mesh.sharp_faces)) {
-    Topology faces;  // validates the mesh here: a later error would name the numbers of a patch
-    faces.point_count = mesh.points.size();
-    faces.cells = mesh.cells;
-    build_faces(faces);
-    struct Corner {
-        Index point, cell;
-        auto operator<=>(const Corner&) const = default;
-    };
-    auto corners = bucket_sort<Corner>(
-        mesh.cells.size(), mesh.points.size(),
-        [&](std::size_t c, const auto& sink) {
-            for (const Index p : mesh.cells[c]) sink({p, static_cast<Index>(c)});
-        },
-        [](const Corner& corner) { return corner.point; });
-    offsets_ = std::move(corners.offsets);
-    cells_.resize(corners.records.size());
-    parallel_each(cells_.size(), [&](std::size_t i) { cells_[i] = corners.records[i].cell; });
+    if (faces == Faces::Check) {
+        Topology checked;
+        checked.point_count = mesh.points.size();
+        checked.cells = mesh.cells;
+        build_faces(checked);
+    }
+    offsets_.assign(mesh.points.size() + 1, 0);
+    parallel_each(mesh.cells.size(), [&](std::size_t c) {
+        for (const Index p : mesh.cells[c]) std::atomic_ref(offsets_[p + 1]).fetch_add(1, std::memory_order_relaxed);
+    });
+    for (std::size_t p = 0; p < mesh.points.size(); ++p) offsets_[p + 1] += offsets_[p];
+    cells_.resize(offsets_.back());
+    auto next = offsets_;
+    parallel_each(mesh.cells.size(), [&](std::size_t c) {
+        for (const Index p : mesh.cells[c]) {
+            cells_[std::atomic_ref(next[p]).fetch_add(1, std::memory_order_relaxed)] = static_cast<Index>(c);
+        }
+    });
+    // The threads have entered the cells in any order.
+    parallel_each(mesh.points.size(),
+                  [&](std::size_t p) { std::sort(cells_.data() + offsets_[p], cells_.data() + offsets_[p + 1]); });
 }
 
 std::vector<Index> PatchSource::cells_about(std::span<const Index> cells) const {

@@ -22,8 +22,14 @@ struct Patch {
 /// Cuts patches out of a mesh.
 class PatchSource {
 public:
+    /// Whether the faces of the mesh are known to have at most two cells, or are checked: a later error would name the numbers
+    /// of a patch.
+    enum class Faces { Check, Known };
+
     /// The mesh must be valid; it is kept by reference.
-    explicit PatchSource(const HexMesh& mesh);
+    ///
+    /// throws: Error(InvalidInput) if more than two cells share a face, or two cells have the same corners
+    explicit PatchSource(const HexMesh& mesh, Faces faces = Faces::Check);
 
     /// layers: 1 if the patch is refined once, else 2
     [[nodiscard]] Patch cut(std::span<const Index> cells, int layers) const;

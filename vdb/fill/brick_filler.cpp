@@ -6,11 +6,11 @@
 #include <algorithm>
 #include <bit>
 #include <map>
+#include <numeric>
 #include <set>
 
 #include "boundary_triangles.h"
 #include "check_voxels.h"
-#include "subvol/detail/flat_array.h"
 #include "subvol/topology.h"
 
 namespace subvol::detail {
@@ -19,6 +19,7 @@ namespace {
 
 constexpr int kLeafBits = std::countr_zero(unsigned{kLeafSide});
 constexpr std::size_t kBatchNodes = 1 << 17;  // of an unrefined mesh
+constexpr std::size_t kBatchPieceNodes = 1 << 19;
 constexpr std::size_t kBatchRefinedNodes =
     1 << 22;  // smaller batches refine more surrounding cells, larger ones need more memory
 
@@ -63,44 +64,54 @@ std::vector<std::uint8_t> boundary_sides(const HexMesh& mesh) {
 
 }  // namespace
 
-/// Some blocks, one after the other: cells, or pieces of cells.
-///
-/// numbers: of the blocks
-/// first: the first node of each block, then the number of all nodes; boxes: the voxels of each block
-struct BrickFiller::Batch {
-    std::span<const Index> numbers;
-    std::vector<std::size_t> first;
-    FlatArray<Vec3> points;
-    FlatArray<double> values;
-    FlatArray<Index> ids;  // of the nodes of unrefined cells
-    std::vector<VoxelBox> boxes;
-    std::vector<std::size_t> first_piece;  // of curved cells
-    std::vector<VoxelBox> piece_boxes;
-};
-
 BrickFiller::BrickFiller(CellRequest request)
     : request_(std::move(request)), refined_(request_, request_.curved ? DenseBits::ToRounding : DenseBits::OfRefine) {
     for (const Attribute* field : request_.fields) channels_ += static_cast<std::size_t>(field->channels);
     orientation_ = check_voxel_count(*request_.mesh, request_.to_voxels) < 0 ? -1 : 1;
-    if (request_.curved) boundary_ = boundary_sides(*request_.mesh);
+    if (request_.curved && !request_.pieces && !request_.search) boundary_ = boundary_sides(*request_.mesh);
 }
 
 VoxelBricks BrickFiller::run(const std::optional<VoxelBox>& part) {
     VoxelBricks bricks(channels_ + (request_.cell_numbers ? 1 : 0));
-    const std::vector<Index> blocks = blocks_in(part);
-    const bool first_run = boxes_.empty();
-    std::vector<VoxelBox> boxes;
-    Batch batch;
-    for (std::size_t first = 0; first < blocks.size(); first += batch.numbers.size()) {
-        report_progress(request_.progress, "rasterize", first, blocks.size());
-        load(std::span(blocks).subspan(first), batch);
-        fill(batch, part, bricks);
-        if (first_run) boxes.insert(boxes.end(), batch.boxes.begin(), batch.boxes.end());
+    if (request_.search) {
+        fill_found(part, bricks);
+    } else {
+        std::vector<VoxelBox> boxes = fill_blocks(blocks_in(part), part, bricks);
+        if (boxes_.empty()) boxes_ = std::move(boxes);
     }
-    if (first_run) boxes_ = std::move(boxes);
     drop_leaks(bricks.channels());
     report_progress(request_.progress, "rasterize", 1);
     return bricks;
+}
+
+/// Fills pieces as they are found. Afterwards the request is one of cells whose levels are known.
+void BrickFiller::fill_found(const std::optional<VoxelBox>& part, VoxelBricks& bricks) {
+    found_ = visit_limit_pieces(*request_.mesh, request_.refine, *request_.search, [&](const LimitPieces& pieces) {
+        request_.pieces = &pieces;
+        const std::vector<VoxelBox> boxes = fill_blocks(blocks_in({}), part, bricks);
+        for (std::size_t b = 0; b < boxes.size(); ++b) {
+            if (pieces.hull_sides[b] == 0) continue;
+            boxes_.push_back(boxes[b]);
+            cells_of_boxes_.push_back(pieces.cells[b]);
+        }
+    });
+    request_.pieces = nullptr;
+    request_.search = nullptr;
+    request_.refine.levels = found_.level;
+}
+
+/// Returns the boxes of the blocks.
+std::vector<VoxelBox> BrickFiller::fill_blocks(std::span<const Index> blocks, const std::optional<VoxelBox>& part,
+                                               VoxelBricks& bricks) {
+    std::vector<VoxelBox> boxes;
+    boxes.reserve(blocks.size());
+    for (std::size_t first = 0; first < blocks.size(); first += batch_.numbers.size()) {
+        report_progress(request_.progress, "rasterize", request_.cell_of(blocks[first]), request_.mesh->cells.size());
+        load(blocks.subspan(first), batch_);
+        fill(batch_, part, bricks);
+        boxes.insert(boxes.end(), batch_.boxes.begin(), batch_.boxes.end());
+    }
+    return boxes;
 }
 
 std::vector<Index> BrickFiller::blocks_in(const std::optional<VoxelBox>& part) const {
@@ -114,15 +125,7 @@ std::vector<Index> BrickFiller::blocks_in(const std::optional<VoxelBox>& part) c
 /// The sides of a block that lie on the boundary.
 std::uint8_t BrickFiller::boundary_of(Index block) const {
     if (!request_.curved) return 0;
-    std::uint8_t sides = boundary_[request_.cell_of(block)];
-    if (!request_.pieces || sides == 0) return sides;
-    const int last = (1 << request_.pieces->levels[block]) - 1;
-    for (std::size_t d = 0; d < 3; ++d) {
-        const int at = request_.pieces->lowest[block][d];
-        if (at > 0) sides &= static_cast<std::uint8_t>(~(1U << (2 * d)));
-        if (at < last) sides &= static_cast<std::uint8_t>(~(1U << (2 * d + 1)));
-    }
-    return sides;
+    return request_.pieces ? request_.pieces->hull_sides[block] : boundary_[block];
 }
 
 CellBlock BrickFiller::block(const Batch& batch, std::size_t i) const {
@@ -144,7 +147,7 @@ CellBlock BrickFiller::block(const Batch& batch, std::size_t i) const {
 
 /// Loads the first of the blocks, as many as make a batch.
 void BrickFiller::load(std::span<const Index> blocks, Batch& batch) {
-    const std::size_t most = refines() ? kBatchRefinedNodes : kBatchNodes;
+    const std::size_t most = request_.pieces ? kBatchPieceNodes : refines() ? kBatchRefinedNodes : kBatchNodes;
     batch.first.assign(1, 0);
     for (std::size_t i = 0; i < blocks.size() && batch.first.back() < most; ++i) {
         const std::size_t n = request_.side(blocks[i]);
@@ -161,6 +164,12 @@ void BrickFiller::load(std::span<const Index> blocks, Batch& batch) {
     } else {
         load_cells(batch);
     }
+    if (!request_.pieces) set_boxes(batch);
+    check_brick_count(batch.boxes, request_.to_voxels.voxel_size);
+}
+
+/// The voxels of blocks whose nodes are loaded.
+void BrickFiller::set_boxes(Batch& batch) const {
     batch.first_piece.assign(1, 0);
     if (request_.curved) {
         for (std::size_t i = 0; i < batch.numbers.size(); ++i) {
@@ -173,7 +182,6 @@ void BrickFiller::load(std::span<const Index> blocks, Batch& batch) {
         if (cell.curved) set_piece_boxes(cell, &batch.piece_boxes[batch.first_piece[i]]);
         batch.boxes[i] = voxels_of(cell);
     });
-    check_brick_count(batch.boxes, request_.to_voxels.voxel_size);
 }
 
 void BrickFiller::load_cells(Batch& batch) const {
@@ -194,12 +202,23 @@ void BrickFiller::load_cells(Batch& batch) const {
     });
 }
 
+/// Nodes and values of a piece are loaded only if there may be voxels in it.
 void BrickFiller::load_pieces(Batch& batch) const {
     const LimitPieces& pieces = *request_.pieces;
+    batch.first_piece.resize(batch.numbers.size());
+    std::iota(batch.first_piece.begin(), batch.first_piece.end(), std::size_t{0});
+    batch.piece_boxes.resize(batch.numbers.size());
     tbb::parallel_for(std::size_t{0}, batch.numbers.size(), [&](std::size_t i) {
         const std::size_t piece = batch.numbers[i], first = batch.first[i];
+        std::array<Vec3, kCurvedNodes> points;
+        for (std::size_t n = 0; n < kCurvedNodes; ++n) points[n] = request_.to_voxels(pieces.position(piece, n));
+        CellBlock bare = block(batch, i);
+        bare.points = points.data();
+        set_piece_boxes(bare, &batch.piece_boxes[i]);
+        batch.boxes[i] = batch.piece_boxes[i];
+        if (batch.boxes[i].empty()) return;
+        std::ranges::copy(points, batch.points.begin() + static_cast<std::ptrdiff_t>(first));
         for (std::size_t n = 0; n < kCurvedNodes; ++n) {
-            batch.points[first + n] = request_.to_voxels(pieces.position(piece, n));
             double* value = batch.values.data() + (first + n) * channels_;
             for (std::size_t f = 0; f < request_.fields.size(); ++f) {
                 const std::size_t channel = request_.places_in_pieces[f] - 3;
@@ -265,7 +284,7 @@ SurfaceColumns BrickFiller::columns_through(std::span<VoxelBrick* const> bricks)
     }
     std::vector<std::uint8_t> wanted(request_.mesh->cells.size(), 0);
     for (Index b = 0; b < boxes_.size(); ++b) {
-        auto& of_cell = wanted[request_.cell_of(b)];
+        auto& of_cell = wanted[cells_of_boxes_.empty() ? request_.cell_of(b) : cells_of_boxes_[b]];
         if (of_cell == 0 && each_tile(boxes_[b], [&](const auto& tile) { return tiles.contains(tile); })) of_cell = 1;
     }
     return SurfaceColumns(boundary_triangles(request_, [&](Index cell) { return wanted[cell] != 0; }));

@@ -8,6 +8,7 @@
 #include "cell_request.h"
 #include "fill_block.h"
 #include "refined_grids.h"
+#include "subvol/detail/flat_array.h"
 #include "surface_columns.h"
 #include "voxel_bricks.h"
 
@@ -17,7 +18,8 @@ namespace subvol::detail {
 ///
 /// Cells, or pieces of cells, are blocks. They are taken in batches, in the order of their numbers: each batch is refined in
 /// parallel, then filled in parallel with one task per brick. So the first cell that contains a voxel centre determines its
-/// value, for any number of threads. Where cells are folded, voxels outside the mesh's boundary (winding number 0) are removed
+/// value, for any number of threads. Pieces that are looked for (`CellRequest::search`) are filled as they are found, so that
+/// there are never all of them. Where cells are folded, voxels outside the mesh's boundary (winding number 0) are removed
 /// again. Memory: the voxels, and some 10 MB; where the mesh is refined, a copy of it, and some 150 MB.
 class BrickFiller {
 public:
@@ -30,16 +32,35 @@ public:
     /// part: only these voxels, whole bricks; none: all voxels
     [[nodiscard]] VoxelBricks run(const std::optional<VoxelBox>& part = {});
 
+    /// How fine the pieces were that the run has looked for; a filler that looks for pieces runs once.
+    [[nodiscard]] LimitCells& found() { return found_; }
+
     /// Whether cells of the last run fold over.
     [[nodiscard]] bool folded() const { return folded_; }
 
 private:
-    struct Batch;
+    /// Some blocks, one after the other: cells, or pieces of cells.
+    ///
+    /// numbers: of the blocks
+    /// first: the first node of each block, then the number of all nodes; boxes: the voxels of each block
+    struct Batch {
+        std::span<const Index> numbers;
+        std::vector<std::size_t> first;
+        FlatArray<Vec3> points;
+        FlatArray<double> values;
+        FlatArray<Index> ids;  // of the nodes of unrefined cells
+        std::vector<VoxelBox> boxes;
+        std::vector<std::size_t> first_piece;  // of curved cells
+        std::vector<VoxelBox> piece_boxes;
+    };
     void load(std::span<const Index> blocks, Batch& batch);
     void load_cells(Batch& batch) const;
     void load_refined(Batch& batch) const;
     void load_pieces(Batch& batch) const;
+    void set_boxes(Batch& batch) const;
     [[nodiscard]] std::uint8_t boundary_of(Index block) const;
+    void fill_found(const std::optional<VoxelBox>& part, VoxelBricks& bricks);
+    std::vector<VoxelBox> fill_blocks(std::span<const Index> blocks, const std::optional<VoxelBox>& part, VoxelBricks& bricks);
     void fill(const Batch& batch, const std::optional<VoxelBox>& part, VoxelBricks& bricks);
     void drop_leaks(std::size_t leaf_channels);
     [[nodiscard]] SurfaceColumns columns_through(std::span<VoxelBrick* const> bricks) const;
@@ -51,8 +72,11 @@ private:
     RefinedGrids refined_;
     std::size_t channels_ = 0;            // of all fields
     double orientation_ = 1;              // -1 for a mesh of left-handed cells
-    std::vector<std::uint8_t> boundary_;  // of curved cells: which sides
-    std::vector<VoxelBox> boxes_;         // of every block, after the first run
+    std::vector<std::uint8_t> boundary_;  // of curved cells without pieces: which sides
+    std::vector<VoxelBox> boxes_;         // of every block, after the first run; of found pieces, those on the hull
+    std::vector<Index> cells_of_boxes_;   // of found pieces
+    LimitCells found_;
+    Batch batch_;  // its memory serves one batch after the other
     bool folded_ = false;
     std::vector<VoxelBrick*> doubtful_;  // of this run
 };

@@ -30,6 +30,7 @@ struct ToVoxels {
 /// pieces:      null, or the curved cells' pieces, with the values of the fields: then nothing is refined, and `cell_levels`
 ///              is not used
 /// slack_voxels: of curved cells: what two neighbours' ideas of their shared side may differ by
+/// search:      null, or how fine the pieces are that are looked for while the voxels are filled; `pieces` is null then
 /// tables:      null, or tables that do to this mesh what `refine` (with one more level if curved) and `on_limit` do
 struct CellRequest {
     const HexMesh* mesh = nullptr;
@@ -42,6 +43,7 @@ struct CellRequest {
     const std::vector<std::uint8_t>* cell_levels = nullptr;
     const LimitPieces* pieces = nullptr;
     std::vector<std::size_t> places_in_pieces{};  // of each field
+    const LimitCellsOptions* search = nullptr;
     const RefinementTables* tables = nullptr;
     bool cell_numbers = false;
     Progress* progress = nullptr;

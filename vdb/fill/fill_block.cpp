@@ -263,9 +263,9 @@ Box hull_of(const CellBlock& block, std::size_t lowest) {
     for (std::size_t n = 0; n < kCurvedNodes; ++n) {
         p[n] = block.points[lowest + n % 3 + block.side * (n / 3 % 3 + block.side * (n / 9))];
     }
-    for (std::size_t stride = 1; stride < kCurvedNodes; stride *= 3) {
-        for (std::size_t n = 0; n < kCurvedNodes; ++n) {
-            if (n / stride % 3 == 1) p[n] = 2.0 * p[n] - 0.5 * (p[n - stride] + p[n + stride]);
+    for (const std::size_t stride : {1, 3, 9}) {
+        for (std::size_t outer = stride; outer < kCurvedNodes; outer += 3 * stride) {  // middle nodes along the axis
+            for (std::size_t n = outer; n < outer + stride; ++n) p[n] = 2.0 * p[n] - 0.5 * (p[n - stride] + p[n + stride]);
         }
     }
     Box box;

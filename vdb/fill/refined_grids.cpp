@@ -47,7 +47,7 @@ RefinementTables tables_of(const HexMesh& mesh, const RefineOptions& refine, boo
 
 RefinedGrids::RefinedGrids(const CellRequest& request, DenseBits bits)
     : levels_(request.levels()), tables_(request.refines() ? request.tables : nullptr) {
-    if (!request.refines() || request.pieces) return;
+    if (!request.refines() || request.pieces || request.search) return;
     const HexMesh& mesh = *request.mesh;
     for (const Attribute* field : request.fields) mesh_.attributes.push_back(*field);
     mesh_.points = mesh.points;

@@ -151,6 +151,7 @@ public:
     }
 
     [[nodiscard]] bool folded() const { return filler_.folded(); }
+    [[nodiscard]] LimitCells& found() { return filler_.found(); }
 
 private:
     /// Keeps values within the field's bounds, and refuses those that its floats cannot hold: schemes overshoot between points.
@@ -269,6 +270,29 @@ void check_voxels(const HexMesh& mesh, const RasterizeOptions& options) {
 
 std::vector<VdbGrid> rasterize(const HexMesh& mesh, std::span<const std::string> fields, const RasterizeOptions& options) {
     return MeshRasterizer(make_request(mesh, fields, options), options).run();
+}
+
+LimitGrids rasterize_limit(const HexMesh& mesh, std::span<const std::string> fields, const RasterizeOptions& options) {
+    if (options.coverage || options.level_set) {
+        throw Error(ErrorCode::InvalidInput, "the limit is found for voxels only, not for coverage and level sets");
+    }
+    CellRequest request = make_request(mesh, fields, options);
+    const double voxel = options.voxel_size_world > 0 ? options.voxel_size_world : request.to_voxels.voxel_size;
+    const LimitCellsOptions search{.position_world = kLimitTolerance_voxels * voxel};
+    request.search = &search;
+    request.curved = request.on_limit = true;
+    request.slack_voxels = kLimitTolerance_voxels;
+    request.refine.levels = 0;
+    for (const Attribute* field : request.fields) {
+        std::size_t place = 3;
+        for (const Attribute* before = mesh.attributes.data(); before != field; ++before) {
+            place += static_cast<std::size_t>(before->channels);
+        }
+        request.places_in_pieces.push_back(place);
+    }
+    MeshRasterizer rasterizer(request, options);
+    std::vector<VdbGrid> grids = rasterizer.run();
+    return {std::move(grids), std::move(rasterizer.found())};
 }
 
 RefinementTables rasterization_tables(const HexMesh& mesh, const RasterizeOptions& options) {

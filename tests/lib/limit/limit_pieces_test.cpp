@@ -3,6 +3,7 @@
 #include <tbb/global_control.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <map>
 #include <numeric>
@@ -12,6 +13,7 @@
 #include "subvol/limit_level.h"
 #include "subvol/mesh_report.h"
 #include "subvol/model.h"
+#include "subvol/topology.h"
 
 namespace subvol {
 namespace limit_pieces_test {
@@ -124,6 +126,53 @@ TEST(LimitPieces, DoNotDependOnThreads) {
     EXPECT_EQ(by_one.pieces->lowest, by_all.pieces->lowest);
     EXPECT_TRUE(by_one.pieces->nodes == by_all.pieces->nodes);
     EXPECT_EQ(by_one.pieces->mesh_hash, by_all.pieces->mesh_hash);
+}
+
+// More cells than are looked at together: their pieces come in several parts, which are those that are kept.
+TEST(LimitPieces, AreTheSameOnTheWay) {
+    const HexMesh mesh = make_model("twist", 42);
+    const LimitCellsOptions options{.position_world = 1e-3};
+    const LimitCells kept = find_limit_cells(mesh, {}, options);
+    ASSERT_TRUE(kept.pieces);
+    std::size_t first = 0, parts = 0;
+    bool same = true;
+    const LimitCells passed = visit_limit_pieces(mesh, {}, options, [&](const LimitPieces& pieces) {
+        ++parts;
+        const std::size_t numbers = LimitPieces::kNodes * pieces.node_size;
+        for (std::size_t i = 0; i < pieces.cells.size(); ++i) {
+            const std::size_t k = first + i;
+            same = same && k < kept.piece_count && pieces.cells[i] == kept.pieces->cells[k] &&
+                   pieces.levels[i] == kept.pieces->levels[k] && pieces.lowest[i] == kept.pieces->lowest[k] &&
+                   pieces.hull_sides[i] == kept.pieces->hull_sides[k] &&
+                   std::equal(pieces.node(i, 0), pieces.node(i, 0) + numbers, kept.pieces->node(k, 0));
+        }
+        first += pieces.cells.size();
+    });
+    EXPECT_TRUE(same);
+    EXPECT_GT(parts, 1u);
+    EXPECT_EQ(first, kept.piece_count);
+    EXPECT_EQ(passed.piece_count, kept.piece_count);
+    EXPECT_EQ(passed.cell_levels, kept.cell_levels);
+    EXPECT_EQ(passed.level, kept.level);
+    EXPECT_EQ(passed.position_world, kept.position_world);
+    EXPECT_EQ(passed.value_of_range, kept.value_of_range);
+    EXPECT_TRUE(passed.converged);
+    EXPECT_FALSE(passed.pieces);
+}
+
+// The sides of pieces on the hull are quarters of faces, or quarters of those: together they are the faces of the hull.
+TEST(LimitPieces, CoverTheHull) {
+    const HexMesh mesh = irregular();
+    const LimitCells limit = pieces_of(mesh);
+    ASSERT_TRUE(limit.pieces);
+    EXPECT_GT(std::ranges::max(limit.pieces->levels), 0);
+    double faces = 0;
+    for (std::size_t p = 0; p < limit.piece_count; ++p) {
+        faces += std::ldexp(std::popcount(limit.pieces->hull_sides[p]), -2 * limit.pieces->levels[p]);
+    }
+    const Topology topology = build_topology(mesh);
+    const auto on_hull = std::ranges::count_if(topology.face_cells, [](const auto& cells) { return cells[1] == kNone; });
+    EXPECT_EQ(faces, static_cast<double>(on_hull));
 }
 
 TEST(LimitPieces, DoNotDependOnTheOrderOfCells) {

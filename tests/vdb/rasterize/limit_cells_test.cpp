@@ -187,6 +187,37 @@ TEST(LimitCells, AreThoseOfTheMeshWithKeptPiecesOrWithout) {
     EXPECT_EQ(values_of(rasterized(moved, voxel, kept)), values_of(rasterized(moved, voxel, dropped)));
 }
 
+// Pieces that are filled as they are found give the voxels of those that are kept, also where cells fold over.
+TEST(LimitCells, GiveTheSameVoxelsOnTheWay) {
+    const auto field = [](const Vec3& p) { return std::sin(3 * p.x) * p.y + p.z; };
+    HexMesh many = with_field(make_model("twist", 42), "f", field), folded = with_field(make_model("ball", 4), "f", field);
+    for (std::size_t p = 0; p < folded.points.size(); p += 7) folded.points[p] *= 1.6;
+    for (const HexMesh* mesh : {&many, &folded}) {
+        const double voxel = bounds(*mesh).size().x / 50;
+        const LimitCells kept = limit_for_voxels(*mesh, {}, voxel);
+        const LimitGrids found = rasterize_limit(*mesh, kField, {.voxel_size_world = voxel});
+        const auto values = values_of(found.grids.front()), expected = values_of(rasterized(*mesh, voxel, kept));
+        EXPECT_GT(values.size(), 1000u);
+        EXPECT_EQ(found.limit.piece_count, kept.piece_count);
+        EXPECT_EQ(finest_level(found.limit), finest_level(kept));
+        if (mesh == &many) {
+            EXPECT_EQ(values, expected);
+            continue;
+        }
+        // Where cells fold over, the boundary is made of curved sides or of flat parts of them.
+        std::size_t both = 0;
+        for (const auto& [place, value] : values) {
+            const auto there = expected.find(place);
+            if (there == expected.end()) continue;
+            ++both;
+            ASSERT_EQ(value, there->second);
+        }
+        EXPECT_LE(values.size() + expected.size() - 2 * both, expected.size() / 500);
+    }
+    EXPECT_THROW((void)rasterize_limit(many, kField, {.resolution = 10, .coverage = true}), Error);
+    EXPECT_THROW((void)rasterize_limit(many, kField, {.resolution = 10, .level_set = LevelSetOptions{}}), Error);
+}
+
 TEST(LimitCells, OfNothingAreNone) {
     for (const Scheme scheme : {Scheme::Mcq, Scheme::CatmullClark}) {
         const LimitCells limit = find_limit_cells({}, {.scheme = {scheme}}, {});

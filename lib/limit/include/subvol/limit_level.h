@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -60,6 +61,7 @@ struct LimitCellsOptions {
 /// cells:  the control cell of each piece, in ascending order
 /// levels: of each piece: 0 for a whole cell; its nodes are vertices of the next level on the limit
 /// lowest: its lowest corner in the cell, in steps of 1/2^level along u, v, w
+/// hull_sides: of each piece: those on the hull of the mesh, bit i for side i of `kCellFaces`
 /// origins: the first node of each piece
 /// nodes:  27 for each piece, u fastest, then v, then w: the position relative to the origin, then the channels of all
 ///         attributes, each relative to its origin in its unit (`value`)
@@ -70,6 +72,7 @@ struct LimitPieces {
     std::vector<Index> cells;
     std::vector<std::uint8_t> levels;
     std::vector<std::array<std::uint8_t, 3>> lowest;
+    std::vector<std::uint8_t> hull_sides;
     std::vector<Vec3> origins;
     FlatArray<float> nodes;
     std::vector<std::string> names;
@@ -121,6 +124,13 @@ struct LimitCells {
 /// options.levels is not used. Positions and values have the same bits for any number of threads; they are those of `refine`
 /// and `on_limit` up to some roundings. throws: Error(InvalidInput) as `for_each_dense_cell`; Error(Cancelled)
 [[nodiscard]] LimitCells find_limit_cells(const HexMesh& mesh, RefineOptions refinement, const LimitCellsOptions& options);
+
+/// The same without pieces that are kept: `take` gets them, those of some thousand cells at a time, in the order of the cells,
+/// without hashes. They are valid during the call only. options.max_bytes is not used.
+///
+/// cost: memory: the mesh, some 90 bytes a cell, and the pieces of a sixteenth of the cells, or of 65536 if these are more
+[[nodiscard]] LimitCells visit_limit_pieces(const HexMesh& mesh, RefineOptions refinement, const LimitCellsOptions& options,
+                                            const std::function<void(const LimitPieces&)>& take);
 
 /// Whether pieces were cut from the cells of this mesh, at the same places.
 [[nodiscard]] bool are_pieces_of(const LimitPieces& pieces, const HexMesh& mesh);

@@ -99,6 +99,21 @@ struct RasterizeOptions {
 [[nodiscard]] std::vector<VdbGrid> rasterize(const HexMesh& mesh, std::span<const std::string> fields,
                                              const RasterizeOptions& options = {});
 
+/// limit: how fine its pieces were; without the pieces
+struct LimitGrids {
+    std::vector<VdbGrid> grids;
+    LimitCells limit;
+};
+
+/// Rasterizes the limit, as `rasterize` with the pieces of `limit_for_voxels`. They are filled as they are found, some thousand
+/// cells at a time, so that never all of them are in memory: for meshes of many cells, small beside their voxels.
+///
+/// options: `limit`, `tables` and `on_limit` are not used; without coverage and a level set, for which pieces are needed twice
+/// throws:  as `rasterize`; Error(InvalidInput) if coverage or a level set are asked for
+/// cost:    memory: the grids, the mesh, and some 150 bytes a cell
+[[nodiscard]] LimitGrids rasterize_limit(const HexMesh& mesh, std::span<const std::string> fields,
+                                         const RasterizeOptions& options);
+
 /// What `rasterize` checks first, of the mesh and of the voxels of the options: before a level of the limit is looked for,
 /// which small voxels make expensive.
 ///
