@@ -73,7 +73,8 @@ InputKind kind_of(const std::string& input) {
     const std::vector<std::string> meshes = readable_mesh_extensions();
     if (is_model(input) || std::ranges::find(meshes, extension_of(input)) != meshes.end()) return InputKind::Mesh;
     if (holds_points(input)) return InputKind::Points;
-    return is_vdb_file(input) ? InputKind::Grid : InputKind::Picture;
+    if (is_vdb_file(input)) return InputKind::Grid;
+    return is_mesh_file(input) ? InputKind::Mesh : InputKind::Picture;
 }
 
 bool is_model(const std::string& input) {

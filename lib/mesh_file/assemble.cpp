@@ -398,6 +398,7 @@ ReadResult assemble(MeshFile&& found, const TextScanner& in, std::string_view fi
 
 ReadResult assemble(MeshFile&& found, std::string_view file, const EntityNames& names_in_file, const ReadOptions& options) {
     drop_ghosts(found);
+    if (!options.weld) say_points_of_their_own(found);
     if (options.weld) {
         weld_points(found, *options.weld, file, names_in_file);
         const auto [quads, lines] = drop_parts_of_cells(found, options.shells_alone);

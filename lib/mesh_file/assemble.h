@@ -27,6 +27,10 @@ inline constexpr std::string_view kGhostArray = "vtkGhostType";
 inline constexpr unsigned kDuplicateCell = 1, kRefinedCell = 8, kHiddenCell = 32;
 inline constexpr unsigned kHiddenPoint = 2;
 
+/// Turns VTK's older array of ghosts at the cells, which has the distance of each from the piece's own cells, into the newer
+/// one.
+void take_ghost_levels(MeshFile& found);
+
 /// Whether a value of the array of ghosts leaves a cell out, and whether it hides a point.
 [[nodiscard]] bool leaves_out_cell(double ghost);
 [[nodiscard]] bool hides_point(double ghost);
@@ -57,6 +61,12 @@ void drop_ghosts(MeshFile& found);
 /// throws:    Error(InvalidInput) if a cell would then have the same corner twice and the tolerance is not 0
 /// cost:      O(n) if few points lie within a tolerance of each other
 void weld_points(MeshFile& found, double tolerance, std::string_view file, const EntityNames& names);
+
+/// Adds a warning if cells, or groups of a few cells, share no point with others though many of their points lie at the places
+/// of others, as programs with discontinuous fields write them.
+///
+/// cost: counts the points of most meshes; O(n) where there are many for the cells
+void say_points_of_their_own(MeshFile& found);
 
 /// Splits all hexahedra of a mesh with curved ones into smaller ones with points on the curved shape, and evaluates the arrays
 /// at the points there. Opposite edges of a cell are split alike, so that neighbours share their points. Adds a warning with

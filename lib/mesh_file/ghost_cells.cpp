@@ -84,6 +84,17 @@ std::string ghosts_left_out(std::size_t count) {
     return counted(count, "ghost cell (duplicate or hidden)", "ghost cells (duplicate or hidden)") + " left out";
 }
 
+void take_ghost_levels(MeshFile& found) {
+    const auto is_levels = [](const FileArray& array) { return array.name == "vtkGhostLevels" && array.components == 1; };
+    const bool has_new_one = std::ranges::any_of(found.arrays, [](const FileArray& a) { return is_ghosts(a) && a.at_cells; });
+    for (FileArray& array : found.arrays) {
+        if (!is_levels(array) || !array.at_cells || has_new_one) continue;
+        for (double& level : array.values) level = level > 0 ? kDuplicateCell : 0;
+        array.name = std::string(kGhostArray);
+    }
+    std::erase_if(found.arrays, is_levels);
+}
+
 void drop_ghosts(MeshFile& found) {
     for (const FileArray& array : found.arrays) {
         if (is_ghosts(array)) array.at_cells ? drop_by_cells(found, array.values) : drop_by_points(found, array.values);

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <array>
 
+#include "assemble.h"
+
 namespace subvol::detail {
 
 namespace {
@@ -119,7 +121,35 @@ void VtkCellSorter::take_no_shells() {
     found_.lines = {};
 }
 
+std::optional<CellFaces> faces_of_stream(std::span<const std::int64_t> stream, std::size_t first_point, std::size_t points) {
+    CellFaces faces;
+    std::size_t at = 0;
+    const auto count = [&]() -> std::size_t {
+        const bool fits = at < stream.size() && stream[at] > 0 && static_cast<std::size_t>(stream[at]) < stream.size() - at;
+        return fits ? static_cast<std::size_t>(stream[at++]) : 0;
+    };
+    const std::size_t of_cell = count();
+    for (std::size_t f = 0; f < of_cell; ++f) {
+        const std::size_t corners = count();
+        if (corners == 0) return std::nullopt;
+        auto& face = faces.emplace_back();
+        for (const std::int64_t p : stream.subspan(at, corners)) {
+            if (p < 0 || static_cast<std::size_t>(p) >= points) return std::nullopt;
+            face.push_back(static_cast<Index>(first_point + static_cast<std::size_t>(p)));
+        }
+        at += corners;
+    }
+    return of_cell > 0 && at == stream.size() ? std::optional(std::move(faces)) : std::nullopt;
+}
+
+void VtkCellSorter::take_polyhedron(CellFaces&& faces) {
+    polyhedra_.add(next_++, std::move(faces));
+}
+
 void VtkCellSorter::report(std::optional<std::string_view> file) {
+    take_ghost_levels(found_);
+    const std::size_t others = polyhedra_.take_into(found_, options_.other_cells == OtherCells::Ignore);
+    if (others > 0) left_out_[kVtkPolyhedron] += others;
     if (mislabelled_ > 0) {
         found_.warnings.push_back(counted(mislabelled_, "cell", "cells") +
                                   " with 8 corners but the type of a tetrahedron (10) taken as hexahedra");

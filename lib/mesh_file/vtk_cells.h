@@ -6,14 +6,26 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "mesh_file.h"
+#include "polyhedra.h"
 #include "subvol/read_options.h"
 
 namespace subvol::detail {
 
 /// VTK counts from 0.
 inline constexpr EntityNames kVtkNames{"point", "cell", 0};
+
+inline constexpr std::int64_t kVtkPolyhedron = 42;
+
+/// The faces of a polyhedron as VTK lists them: how many there are, then of each its number of points and the points.
+///
+/// first_point: is added to each; points: their number
+/// returns: nothing if the list is not such a one, or names a point that is not there
+[[nodiscard]] std::optional<CellFaces> faces_of_stream(std::span<const std::int64_t> stream, std::size_t first_point,
+                                                       std::size_t points);
 
 /// Sorts the cells of a VTK file into the kinds of cells that are read, and those that are left out.
 class VtkCellSorter {
@@ -27,10 +39,14 @@ public:
     /// position: of the cell in the text
     void take(std::int64_t type, std::span<const Index> corners, std::size_t position);
 
+    /// Adds the next cell, a polyhedron. faces: as in `take`
+    void take_polyhedron(CellFaces&& faces);
+
     /// The file is of a version in which Lagrange and Bézier hexahedra have VTK 8's order of nodes.
     void set_old_order() { old_order_ = true; }
 
-    /// To be called after the last cell: appends warnings about cells that were left out or read as another kind.
+    /// To be called after the last cell and the last array: splits polyhedra, and appends warnings about cells that were left
+    /// out or read as another kind.
     ///
     /// file: refused if it has no cells that are taken; nothing: that is allowed, and quads and lines are left out
     void report(std::optional<std::string_view> file);
@@ -52,6 +68,7 @@ private:
     bool old_order_ = false;
     std::size_t curved_ = 0;  // cells of which only the corners are used
     std::map<std::int64_t, std::size_t> left_out_;
+    Polyhedra polyhedra_;
 };
 
 }  // namespace subvol::detail

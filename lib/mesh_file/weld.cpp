@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <numeric>
 #include <unordered_map>
 #include <utility>
 
@@ -119,6 +120,45 @@ void weld_points(MeshFile& found, double tolerance, std::string_view file, const
     std::ranges::for_each(found.sharp.edges, join_tag);
     found.warnings.push_back(counted(welded, "point", "points") + " welded to others " +
                              (tolerance > 0 ? "nearby" : "at the same place") + "; the values of the first point are kept");
+}
+
+void say_points_of_their_own(MeshFile& found) {
+    std::size_t cells = 0;
+    each_kind(found, [&](const auto& of_kind) { cells += of_kind.corners.size(); });
+    // Meshes of more than a few cells have about as many points as hexahedra, and fewer than other cells.
+    constexpr std::size_t kMostOfPatch = 64, kFewCells = 8;
+    if (cells < kFewCells || 3 * cells > 2 * found.points.size()) return;
+    // Groups of cells that share points, by the least point of each.
+    std::vector<Index> group(found.points.size());
+    std::iota(group.begin(), group.end(), Index{0});
+    const auto root = [&](Index p) {
+        while (group[p] != p) p = group[p] = group[group[p]];
+        return p;
+    };
+    each_kind(found, [&](const auto& of_kind) {
+        for (const auto& cell : of_kind.corners) {
+            for (const Index p : cell) {
+                const Index a = root(cell[0]), b = root(p);
+                group[std::max(a, b)] = std::min(a, b);
+            }
+        }
+    });
+    const std::vector<std::uint8_t> used = used_points(found);
+    std::size_t groups = 0, points = 0, joined = 0;
+    Welder welder(found.points, 0);
+    for (std::size_t p = 0; p < found.points.size(); ++p) {
+        if (!used[p]) continue;
+        ++points;
+        groups += group[p] == p;
+    }
+    if (groups < 2 || cells > kMostOfPatch * groups) return;
+    for (std::size_t p = 0; p < found.points.size(); ++p) {
+        if (used[p]) joined += welder.join(static_cast<Index>(p)) != p;
+    }
+    if (4 * joined < points) return;
+    found.warnings.push_back(counted(groups, "group", "groups") + " of cells share no points, though " +
+                             std::to_string(joined) + " of " + std::to_string(points) +
+                             " points lie at the places of others: --weld joins these");
 }
 
 }  // namespace subvol::detail

@@ -39,7 +39,8 @@ struct MeshFormat {
     bool finite_volumes = false;
 };
 
-/// The format that a file name's extension names, in upper or lower case; that of a folder is OpenFOAM. Null if there is none.
+/// The format that a file name's extension names, in upper or lower case, else that of the file's first bytes; that of a folder
+/// is OpenFOAM. Null if there is none.
 [[nodiscard]] const MeshFormat* format_of(const std::filesystem::path& path);
 
 /// The same; throws: Error(InvalidInput) that lists all formats if there is none.

@@ -2,7 +2,9 @@
 #include "subvol/mesh_io.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
+#include <fstream>
 #include <limits>
 #include <map>
 #include <tuple>
@@ -151,6 +153,59 @@ void fit_fields(ReadResult& result, CellValues method) {
                               percent(report.most_off) + ")");
 }
 
+// The extension of the format that a file's first bytes are those of; empty if they are none's.
+std::string extension_of_contents(const std::filesystem::path& path) {
+    constexpr std::size_t kBegin = 4096, kOfGroups = 1 << 16;
+    if (!not_regular(path).empty()) return {};
+    std::string begin(kOfGroups, '\0');
+    std::ifstream in(path, std::ios::binary);
+    in.read(begin.data(), static_cast<std::streamsize>(begin.size()));
+    begin.resize(static_cast<std::size_t>(std::max<std::streamsize>(0, in.gcount())));
+    const std::string_view all = begin, first = trimmed(all.substr(0, kBegin));
+    const auto has = [&](std::string_view text) { return all.find(text) != std::string_view::npos; };
+    if (all.starts_with("CDF\1") || all.starts_with("CDF\2") || all.starts_with("CDF\5")) return ".exo";
+    if (all.starts_with("\x89HDF")) {
+        return has("VTKHDF") ? ".vtkhdf" : has("CGNSLibraryVersion") || has("CGNSBase_t") ? ".cgns" : ".exo";
+    }
+    if (all.substr(0, 64).find("ADF Database") != std::string_view::npos) return ".cgns";
+    const std::string upper = upper_case(first);
+    if (upper.starts_with("# VTK DATAFILE")) return ".vtk";
+    if (const std::size_t vtk = first.substr(0, 1024).find("<VTKFile"); vtk != std::string_view::npos) {
+        constexpr std::array<std::array<std::string_view, 2>, 10> kTypes{{{"\"UnstructuredGrid\"", ".vtu"},
+                                                                          {"\"StructuredGrid\"", ".vts"},
+                                                                          {"\"RectilinearGrid\"", ".vtr"},
+                                                                          {"\"ImageData\"", ".vti"},
+                                                                          {"\"PUnstructuredGrid\"", ".pvtu"},
+                                                                          {"\"PStructuredGrid\"", ".pvts"},
+                                                                          {"\"PRectilinearGrid\"", ".pvtr"},
+                                                                          {"\"PImageData\"", ".pvti"},
+                                                                          {"\"vtkMultiBlockDataSet\"", ".vtm"},
+                                                                          {"\"Collection\"", ".pvd"}}};
+        const std::string_view element = first.substr(vtk, first.find('>', vtk) - vtk);
+        for (const auto& [type, extension] : kTypes) {
+            if (element.find(type) != std::string_view::npos) return std::string(extension);
+        }
+        return {};
+    }
+    if (upper.find("<XDMF") != std::string::npos) return ".xdmf";
+    if (first.starts_with("$MeshFormat") || first.starts_with("$Comments") || first.starts_with("$PhysicalNames"))
+        return ".msh";
+    if (upper.starts_with("MESHVERSIONFORMATTED")) return ".mesh";
+    if (all.starts_with("    1C")) return ".frd";
+    if (upper.find("FORMAT") != std::string::npos && upper.find("ENSIGHT") != std::string::npos &&
+        upper.find("GEOMETRY") != std::string::npos)
+        return ".case";
+    for (const std::string_view keyword : {"*HEADING", "*NODE", "*PART", "*INCLUDE", "**"}) {
+        if (upper.starts_with(keyword) && upper.find("*NODE") != std::string::npos) return ".inp";
+    }
+    return {};
+}
+
+// Other programs' files, which meshio reads most of.
+constexpr std::array<std::string_view, 24> kForeign{".med",  ".bdf", ".nas", ".fem", ".dat",    ".op2", ".cdb", ".ans",
+                                                    ".k",    ".key", ".unv", ".su2", ".f3grid", ".neu", ".avs", ".dato",
+                                                    ".post", ".tec", ".h5m", ".off", ".ugrid",  ".wkt", ".pf3", ".mphtxt"};
+
 [[noreturn]] void refuse_format(const std::filesystem::path& path, const std::string& verb, const std::string& allowed) {
     throw Error(ErrorCode::InvalidInput, in_quotes(path.extension().string()) + " files cannot be " + verb, path.string(),
                 allowed);
@@ -167,6 +222,10 @@ const MeshFormat* detail::format_of(const std::filesystem::path& path) {
                                    [&](std::string_view e) { return !e.empty() && upper_case(e) == extension; });
     };
     auto found = std::ranges::find_if(kFormats, has_it);
+    if (!folder && found == kFormats.end()) {
+        extension = upper_case(extension_of_contents(path));
+        if (!extension.empty()) found = std::ranges::find_if(kFormats, has_it);
+    }
     if (folder && found == kFormats.end()) {
         extension = ".FOAM";
         found = std::ranges::find_if(kFormats, has_it);
@@ -176,7 +235,17 @@ const MeshFormat* detail::format_of(const std::filesystem::path& path) {
 
 const MeshFormat& detail::readable_format(const std::filesystem::path& path) {
     const MeshFormat* format = format_of(path);
-    if (!format) refuse_format(path, "read", list_formats(false));
+    if (!format) {
+        std::string extension = path.extension().string();
+        std::ranges::transform(extension, extension.begin(),
+                               [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+        const bool foreign = std::ranges::find(kForeign, extension) != kForeign.end();
+        refuse_format(
+            path, "read",
+            list_formats(false) + (foreign ? "; meshio (Debian: python3-meshio) converts many others: meshio convert " +
+                                                 path.filename().string() + " mesh.vtu"
+                                           : ""));
+    }
     return *format;
 }
 
@@ -215,8 +284,11 @@ ReadResult read_mesh(const std::filesystem::path& path, const ReadOptions& optio
 }
 
 std::vector<std::string> write_mesh(const std::filesystem::path& path, const HexMesh& mesh) {
-    const MeshFormat* format = format_of(path);
-    if (!format || !format->write) refuse_format(path, "written", list_formats(true));
+    const auto writes = [&](const MeshFormat& format) {
+        return format.write && std::ranges::find(format.extensions, path.extension().string()) != format.extensions.end();
+    };
+    const auto format = std::ranges::find_if(kFormats, writes);
+    if (path.extension().empty() || format == kFormats.end()) refuse_format(path, "written", list_formats(true));
     validate(mesh);
     return format->write(path, mesh);
 }
@@ -229,6 +301,10 @@ std::vector<std::string> write_mesh(const std::filesystem::path& path, const Hex
     validate(mesh);
     validate(shells, mesh);
     return write_vtu(path, mesh, shells);
+}
+
+bool is_mesh_file(const std::filesystem::path& path) {
+    return format_of(path) != nullptr;
 }
 
 std::vector<std::string> readable_mesh_extensions() {

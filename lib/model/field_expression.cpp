@@ -3,6 +3,7 @@
 
 #include <muParser.h>
 
+#include <algorithm>
 #include <cctype>
 #include <cmath>
 #include <list>
@@ -20,6 +21,13 @@ bool is_name(const std::string& text) {
         if (!std::isalnum(static_cast<unsigned char>(c)) && c != '_') return false;
     }
     return true;
+}
+
+/// Whether the parser takes a name as one word: alpha.water is one, "total pressure" and p-rgh are none.
+bool is_word(const std::string& text) {
+    return !text.empty() && !text.ends_with('.') && is_name(text.substr(0, 1)) && std::ranges::all_of(text, [](char c) {
+        return std::isalnum(static_cast<unsigned char>(c)) || c == '_' || c == '.';
+    });
 }
 
 /// A variable of an expression: a channel of a field, or the length of its vectors (channel -1).
@@ -54,8 +62,19 @@ public:
         parser_.DefineVar("z", &at_.z);
         parser_.DefineConst("pi", std::numbers::pi);
         parser_.DefineFun("length", &length);
-        for (const Attribute& field : mesh.attributes) define(field);
-        parser_.SetExpr(expression);
+        std::string plain = expression;
+        for (const Attribute& field : mesh.attributes) {
+            // A name in quotation marks is that of a field, whatever it consists of.
+            const std::string word = "field_" + std::to_string(variables_.size()) + "_", quoted = "'" + field.name + "'";
+            bool found = false;
+            for (std::size_t at = plain.find(quoted); at != std::string::npos; at = plain.find(quoted, at)) {
+                plain.replace(at, quoted.size(), word);
+                found = true;
+            }
+            if (found) define(word, field);
+            if (is_word(field.name) && plain.find(field.name) != std::string::npos) define(field.name, field);
+        }
+        parser_.SetExpr(plain);
     }
     FieldEvaluator(const FieldEvaluator&) = delete;
     FieldEvaluator& operator=(const FieldEvaluator&) = delete;
@@ -75,7 +94,8 @@ public:
 
     [[noreturn]] void refuse(const std::string& what, int position = -1) const {
         std::string names = "x, y, z";
-        for (const Attribute& field : mesh_.attributes) names += ", " + field.name;
+        for (const Attribute& field : mesh_.attributes)
+            names += ", " + (is_word(field.name) ? field.name : "'" + field.name + "'");
         const std::string at = position < 0 ? "" : ", position " + std::to_string(position);
         throw Error(ErrorCode::InvalidInput, what, "expression '" + expression_ + "'" + at, "numbers, functions and " + names);
     }
@@ -87,14 +107,13 @@ public:
     }
 
 private:
-    void define(const Attribute& field) {
-        if (!is_name(field.name) || field.name == "x" || field.name == "y" || field.name == "z") return;
-        if (expression_.find(field.name) == std::string::npos) return;
-        if (field.channels == 1) return bind(field.name, field, 0);
-        bind(field.name, field, -1);
+    void define(const std::string& word, const Attribute& field) {
+        if (word == "x" || word == "y" || word == "z") return;
+        if (field.channels == 1) return bind(word, field, 0);
+        bind(word, field, -1);
         for (int c = 0; c < field.channels; ++c) {
-            bind(field.name + "." + std::to_string(c), field, c);
-            if (field.channels <= 3) bind(field.name + "." + "xyz"[c], field, c);
+            bind(word + "." + std::to_string(c), field, c);
+            if (field.channels <= 3) bind(word + "." + "xyz"[c], field, c);
         }
     }
 

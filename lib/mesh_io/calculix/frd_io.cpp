@@ -176,6 +176,7 @@ public:
             if (key == "3C") read_elements();
             if (key == "100C") {
                 steps.add(step_of(lines_));
+                if (numbers_.empty()) lines_.fail("it has results, but no nodes before them");
                 if (steps.current() == step_) read_result();
             }
             if (key == "9999") break;

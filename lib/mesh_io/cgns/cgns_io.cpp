@@ -7,6 +7,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <unordered_map>
 #include <vector>
 
 #include "assemble.h"
@@ -14,6 +15,7 @@
 #include "hdf5_file.h"
 #include "join_pieces.h"
 #include "mesh_file.h"
+#include "polyhedra.h"
 #include "subvol/detail/printable.h"
 #include "subvol/error.h"
 #include "text_scanner.h"
@@ -268,11 +270,54 @@ private:
             read_sections(zone, found);
         }
         refuse_not_finite(found, in_, kCgnsNames);
-        const auto chosen = of_step(zone, "FlowSolutionPointers", "FlowSolution_t");
-        if (chosen) {
-            read_solution(zone, *chosen, found);
-        } else {
-            for (const std::string& solution : tree_.children(path, "FlowSolution_t")) read_solution(zone, solution, found);
+        for (const std::string& solution : solutions_of(zone, found)) {
+            try {
+                read_solution(zone, solution, found);
+            } catch (const Error& error) {
+                found.unread.push_back({CgnsTree::name_of(solution), error.what()});
+            }
+        }
+        const std::size_t others = polyhedra_.take_into(found, options_.other_cells == OtherCells::Ignore);
+        if (others > 0) left_out_["NFACE_n"] += others;
+        return found;
+    }
+
+    // The solutions of the step: those that FlowSolutionPointers and lists like it name, or whose names end so where there is a
+    // VertexPrefix or CellCenterPrefix. Those that the lists do not name belong to every step.
+    [[nodiscard]] std::vector<std::string> solutions_of(const Zone& zone, MeshFile& into) const {
+        const std::vector<std::string> all = tree_.children(zone.path, "FlowSolution_t");
+        const auto steps = tree_.child(zone.path, "ZoneIterativeData_t");
+        if (!steps) return all;
+        const auto texts = tree_.children(*steps, "Descriptor_t");
+        const bool prefixed =
+            std::ranges::any_of(texts, [](const std::string& text) { return CgnsTree::name_of(text).ends_with("Prefix"); });
+        const auto is_of = [&](const std::string& node, const std::string& name) {
+            const std::string of_node = CgnsTree::name_of(node);
+            return of_node == name || (prefixed && !name.empty() && of_node.ends_with(name));
+        };
+        std::set<std::string> others, chosen;
+        for (const std::string& array : tree_.children(*steps, "DataArray_t")) {
+            const std::string list = CgnsTree::name_of(array);
+            if (!list.starts_with("FlowSolution") || !list.ends_with("Pointers")) continue;
+            const auto names = tree_.texts(array);
+            const std::set<std::string> once(names.begin(), names.end());
+            const std::string mine = step_ < names.size() ? names[step_] : std::string();
+            bool known = mine.empty() || mine == "Null";
+            for (const std::string& node : all) {
+                const bool of_this = !mine.empty() && is_of(node, mine);
+                known |= of_this;
+                if (of_this) chosen.insert(node);
+                // Names are few where each node is looked for among them.
+                const bool of_any =
+                    once.contains(CgnsTree::name_of(node)) ||
+                    (prefixed && std::ranges::any_of(once, [&](const auto& name) { return is_of(node, name); }));
+                if (of_any && !of_this) others.insert(node);
+            }
+            if (!known) into.unread.push_back({mine, "zone " + in_quotes(zone.name) + " has no such node"});
+        }
+        std::vector<std::string> found;
+        for (const std::string& node : all) {
+            if (chosen.contains(node) || !others.contains(node)) found.push_back(node);
         }
         return found;
     }
@@ -335,13 +380,19 @@ private:
             if (!sections.try_emplace(range[0], section).second) tree_.file().fail("two sections have the same numbers");
         }
         std::size_t cells = 0;
+        std::unordered_map<std::int64_t, std::vector<std::int64_t>> polygons;  // by their numbers
+        std::vector<std::pair<std::size_t, std::vector<std::int64_t>>> polyhedra;
         for (const auto& [first, section] : sections) {
             const auto data = tree_.integers(section);
             const auto range = tree_.integers(section + "/ElementRange");
             const std::uint64_t count = static_cast<std::uint64_t>(range[1]) - static_cast<std::uint64_t>(range[0]) + 1;
             const std::int64_t type = data.empty() ? 0 : data[0];
             if (type == kPolygons || type == kPolyhedra) {
-                left_out_[kCgnsTypes[static_cast<std::size_t>(type)].name] += count;
+                auto lists = lists_of(section, count);
+                for (std::size_t k = 0; k < lists.size(); ++k) {
+                    if (type == kPolygons) polygons.emplace(first + static_cast<std::int64_t>(k), std::move(lists[k]));
+                    if (type == kPolyhedra) polyhedra.emplace_back(cells++, std::move(lists[k]));
+                }
                 continue;
             }
             const auto numbers = tree_.integers(section + "/ElementConnectivity");
@@ -362,6 +413,50 @@ private:
             }
         }
         cells_of_sections_ = cells;
+        if (polyhedra.empty() && !polygons.empty()) left_out_["NGON_n"] += polygons.size();
+        for (const auto& [cell, faces] : polyhedra) add_polyhedron(cell, faces, polygons, found);
+    }
+
+    using Lists = std::vector<std::vector<std::int64_t>>;
+
+    // The nodes of polygons or the faces of polyhedra: by where each begins, or before version 3.4 with its length before it.
+    [[nodiscard]] Lists lists_of(const std::string& section, std::uint64_t count) const {
+        const auto numbers = tree_.integers(section + "/ElementConnectivity");
+        const std::string starts_at = section + "/ElementStartOffset";
+        const bool has_starts = tree_.has_data(starts_at);
+        const auto starts = has_starts ? tree_.integers(starts_at) : std::vector<std::int64_t>();
+        const auto ends = [&] { tree_.file().fail("node " + in_quotes(section) + " does not have the lists of its elements"); };
+        if (count > numbers.size() || (has_starts && starts.size() != count + 1)) ends();
+        Lists lists;
+        std::size_t at = 0;
+        for (std::uint64_t e = 0; e < count; ++e) {
+            if (!has_starts && at == numbers.size()) ends();
+            const std::int64_t begin = has_starts ? starts[e] : static_cast<std::int64_t>(at) + 1;
+            const std::int64_t end = has_starts ? starts[e + 1] : begin + std::min(numbers[at], std::int64_t{1} << 40);
+            if (begin < 0 || end < begin || static_cast<std::uint64_t>(end) > numbers.size()) ends();
+            lists.emplace_back(numbers.begin() + begin, numbers.begin() + end);
+            at = static_cast<std::size_t>(end);
+        }
+        return lists;
+    }
+
+    // A face has a sign where the cell sees it from the other side.
+    void add_polyhedron(std::size_t cell, const std::vector<std::int64_t>& numbers,
+                        const std::unordered_map<std::int64_t, std::vector<std::int64_t>>& polygons, const MeshFile& found) {
+        CellFaces faces;
+        for (const std::int64_t number : numbers) {
+            const auto polygon = polygons.find(number < 0 ? -number : number);
+            if (polygon == polygons.end()) tree_.file().fail("there is no face " + std::to_string(number));
+            auto& face = faces.emplace_back();
+            for (const std::int64_t node : polygon->second) {
+                if (node < 1 || static_cast<std::uint64_t>(node) > found.points.size()) {
+                    tree_.file().fail("face " + std::to_string(polygon->first) + ": there is no vertex " + std::to_string(node),
+                                      "vertices are 1 to " + std::to_string(found.points.size()));
+                }
+                face.push_back(static_cast<Index>(node - 1));
+            }
+        }
+        polyhedra_.add(cell, std::move(faces));
     }
 
     [[nodiscard]] const CgnsType& known(std::int64_t type, const std::string& section) const {
@@ -454,6 +549,7 @@ private:
     CgnsTree tree_;
     ReadOptions options_;
     TextScanner in_;
+    Polyhedra polyhedra_;  // of the zone at hand
     std::string base_;
     std::map<std::string_view, std::size_t> left_out_;
     std::size_t step_ = 0, curved_ = 0, cells_of_sections_ = 0;

@@ -16,6 +16,7 @@
 #include "join_pieces.h"
 #include "mesh_file.h"
 #include "named_files.h"
+#include "polyhedra.h"
 #include "subvol/error.h"
 #include "subvol/index.h"
 #include "text_scanner.h"
@@ -45,6 +46,7 @@ struct Part {
     MeshFile found;
     std::string name;
     std::vector<Group> groups;
+    Polyhedra polyhedra;
     std::map<std::string, std::size_t, std::less<>> first_groups;
     std::map<std::pair<std::string, bool>, std::size_t> arrays;
     std::size_t elements = 0;
@@ -80,6 +82,9 @@ public:
         std::vector<MeshFile> files;
         for (auto& [number, part] : parts_) {
             std::size_t cells = 0;
+            if (!part.taken) continue;
+            const std::size_t others = part.polyhedra.take_into(part.found, options_.other_cells == OtherCells::Ignore);
+            if (others > 0) left_out_["nfaced"] += others;
             each_kind(part.found, [&](const auto& of_kind) { cells += of_kind.corners.size(); });
             if (!part.taken || cells == 0) continue;  // a part of surfaces
             part.found.blocks = {{printable(part.name), cells}};
@@ -253,10 +258,15 @@ private:
         part.elements += count;
         if (part.elements >= kNone) data.fail("there are too many elements");
         if (known == kNodes.end()) {
-            std::size_t nodes = total(data, data.integers(count, "counts"));
-            if (type == "nfaced") nodes = total(data, data.integers(nodes, "counts"));
-            std::ignore = data.integers(nodes, "nodes");
-            left_out_[line] += count;
+            const auto counts = data.integers(count, "counts");
+            std::vector<std::int64_t> corners;
+            if (type == "nfaced") corners = data.integers(total(data, counts), "counts");
+            const auto nodes_of = data.integers(total(data, type == "nfaced" ? corners : counts), "nodes");
+            if (type == "nfaced" && !ghost) {
+                add_polyhedra(data, part, first, counts, corners, nodes_of);
+            } else {
+                left_out_[line] += count;
+            }
             return;
         }
         const std::size_t nodes = known->second;
@@ -305,6 +315,28 @@ private:
             put(into.tets, nodes, number, false);
         } else {
             ++left_out_[type];
+        }
+    }
+
+    // counts: the faces of each cell; corners: the nodes of each face
+    static void add_polyhedra(const EnsightData& data, Part& part, std::size_t first, const std::vector<std::int64_t>& counts,
+                              const std::vector<std::int64_t>& corners, const std::vector<std::int64_t>& nodes) {
+        std::size_t face = 0, at = 0;
+        for (std::size_t e = 0; e < counts.size(); ++e) {
+            CellFaces faces;
+            for (std::int64_t f = 0; f < counts[e]; ++f) {
+                auto& of_face = faces.emplace_back();
+                for (std::int64_t k = 0; k < corners[face]; ++k) {
+                    const std::int64_t node = nodes[at++];
+                    if (node < 1 || static_cast<std::size_t>(node) > part.found.points.size()) {
+                        data.fail("nfaced " + std::to_string(e + 1) + " of part " + in_quotes(part.name) +
+                                  ": there is no node " + std::to_string(node));
+                    }
+                    of_face.push_back(static_cast<Index>(node - 1));
+                }
+                ++face;
+            }
+            part.polyhedra.add(first + e, std::move(faces));
         }
     }
 

@@ -183,7 +183,15 @@ public:
 private:
     void read_format() {
         if (in_.at_end()) in_.fail("the file is empty");
-        const std::string_view first = in_.word();
+        // Sections before it are those of other programs.
+        std::string_view first = in_.word();
+        const std::string_view start = first;
+        while (first.starts_with('$') && first != "$MeshFormat" && first != "$NOD" && skip_unknown(first) && !in_.at_end())
+            first = in_.word();
+        if (first == "$NOD" || first == "$NODE") {
+            in_.fail("version 1 of Gmsh's format is not supported", "2 and 4 are");
+        }
+        if (first != "$MeshFormat") first = start;
         if (first != "$MeshFormat") in_.fail("not a Gmsh file: it begins with " + in_quotes(first), "$MeshFormat is missing");
         const double version = in_.real({"version"});
         if (!(version >= 2 && version < 3) && !(version >= 4 && version < 5)) {
@@ -194,6 +202,15 @@ private:
         const std::int64_t data_size = in_.integer({"data size"});
         if (binary) read_order(data_size);
         read_end("$MeshFormat");
+    }
+
+    // Goes behind the end of a section. returns: whether there is one
+    bool skip_unknown(std::string_view keyword) {
+        const std::string end = "\n$End" + std::string(keyword.substr(1));
+        const std::size_t at = in_.rest().find(end);
+        if (at == std::string_view::npos) return false;
+        in_.seek(in_.size() - in_.bytes_left() + at + end.size());
+        return true;
     }
 
     // A binary file has the number 1, from which the byte order follows.

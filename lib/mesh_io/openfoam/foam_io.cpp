@@ -4,6 +4,7 @@
 #include <cmath>
 #include <filesystem>
 #include <functional>
+#include <limits>
 #include <map>
 #include <optional>
 #include <set>
@@ -18,6 +19,7 @@
 #include "join_pieces.h"
 #include "mesh_file.h"
 #include "named_files.h"
+#include "polyhedra.h"
 #include "subvol/error.h"
 #include "subvol/read_options.h"
 #include "text_scanner.h"
@@ -31,8 +33,13 @@ namespace {
 /// parts:   the folder of the case, or those of its processors
 /// numbers: of the times in increasing order; folders: their names
 struct FoamCase {
+    /// block: in the files of the folder, where they have those of several processors
+    struct Part {
+        std::filesystem::path folder;
+        std::optional<std::size_t> block = {};
+    };
     std::filesystem::path root;
-    std::vector<std::filesystem::path> parts;
+    std::vector<Part> parts;
     std::vector<double> times;
     std::vector<std::string> folders;
     bool decomposed = false;
@@ -82,10 +89,39 @@ double last_time(const fs::path& part) {
 
 fs::path FoamCase::mesh_file(std::size_t part, std::size_t step, const std::string& name) const {
     for (std::size_t k = std::min(step + 1, folders.size()); k-- > 0;) {
-        const fs::path file = parts[part] / folders[k] / "polyMesh" / name;
+        const fs::path file = parts[part].folder / folders[k] / "polyMesh" / name;
         if (is_there(file)) return file;
     }
-    return parts[part] / "constant/polyMesh" / name;
+    return parts[part].folder / "constant/polyMesh" / name;
+}
+
+// The folders of a case that have the files of several processors, by the first of these: "processors", "processors8", or
+// "processors8_4-7" for some of them.
+std::map<std::size_t, fs::path> collated_folders(const fs::path& root) {
+    constexpr std::string_view kPrefix = "processors";
+    std::map<std::size_t, fs::path> found;
+    std::error_code none;
+    for (const auto& entry : fs::directory_iterator(root, none)) {
+        const std::string name = entry.path().filename().string();
+        if (!name.starts_with(kPrefix) || !entry.is_directory(none) || !has_mesh(entry.path())) continue;
+        const std::string_view rest = std::string_view(name).substr(kPrefix.size());
+        const std::size_t ranks = rest.find('_');
+        const std::string_view first =
+            ranks == std::string_view::npos ? "0" : rest.substr(ranks + 1, rest.find('-') - ranks - 1);
+        if (const auto number = number_of<std::size_t>(first)) found.emplace(*number, entry.path());
+    }
+    return found;
+}
+
+// How many processors have their mesh in a folder: the blocks of any of its files.
+std::size_t blocks_in(const fs::path& folder) {
+    const fs::path of_constant = folder / "constant/polyMesh/owner";
+    if (is_there(of_constant)) return FoamText(of_constant).blocks();
+    for (const auto& [time, name] : numbered(folder, "")) {
+        const fs::path file = folder / name / "polyMesh/owner";
+        if (is_there(file)) return FoamText(file).blocks();
+    }
+    return 0;
 }
 
 // path: the folder, or a file in it. The case is decomposed if its processors have later times, or it has no mesh itself.
@@ -97,16 +133,27 @@ FoamCase find_foam_case(const fs::path& path) {
     FoamCase found;
     found.root = fs::is_directory(path, none) ? path : path.has_parent_path() ? path.parent_path() : fs::path(".");
     for (const auto& [number, name] : numbered(found.root, "processor")) {
-        if (has_mesh(found.root / name)) found.parts.push_back(found.root / name);
+        if (has_mesh(found.root / name)) found.parts.push_back({found.root / name});
+    }
+    const auto collated = found.parts.empty() ? collated_folders(found.root) : std::map<std::size_t, fs::path>();
+    std::size_t expected = 0;
+    for (const auto& [first, folder] : collated) {
+        if (first != expected) {
+            throw Error(ErrorCode::InvalidInput, "there is no folder with the files of processor " + std::to_string(expected),
+                        path.string());
+        }
+        const std::size_t blocks = blocks_in(folder);
+        for (std::size_t b = 0; b < blocks; ++b) found.parts.push_back({folder, b});
+        expected += blocks;
     }
     const bool whole = has_mesh(found.root);
     if (!whole && found.parts.empty()) {
         throw Error(ErrorCode::InvalidInput, "there is no mesh of OpenFOAM", path.string(),
-                    "constant/polyMesh/faces is needed, there or in processor0");
+                    "constant/polyMesh/faces is needed, there, in processor0 or in processors");
     }
-    found.decomposed = !whole || (!found.parts.empty() && last_time(found.parts.front()) > last_time(found.root));
-    if (!found.decomposed) found.parts = {found.root};
-    for (const auto& [time, name] : numbered(found.parts.front(), "")) {
+    found.decomposed = !whole || (!found.parts.empty() && last_time(found.parts.front().folder) > last_time(found.root));
+    if (!found.decomposed) found.parts = {{found.root}};
+    for (const auto& [time, name] : numbered(found.parts.front().folder, "")) {
         found.times.push_back(time);
         found.folders.push_back(name);
     }
@@ -130,19 +177,17 @@ struct Side {
 class Cells {
 public:
     Cells(const FoamMesh& mesh, bool ignore_others, MeshFile& found)
-        : mesh_(mesh), ignore_others_(ignore_others), found_(found) {}
+        : mesh_(mesh), found_(found), taker_(found, ignore_others) {}
 
     void run() {
         sort_faces();
         for (std::size_t c = 0; c < mesh_.cells; ++c) {
-            number_ = static_cast<Index>(c);
             load(c);
-            if (!take()) split();
+            taker_.add(static_cast<Index>(c), faces_);
         }
-        if (left_out_ > 0) found_.warnings.push_back(counted(left_out_, "other cell", "other cells") + " ignored");
-        if (polyhedra_ == 0) return;
-        found_.warnings.push_back(counted(polyhedra_, "polyhedron", "polyhedra") + " split from the middle into " +
-                                  counted(tets_, "tetrahedron", "tetrahedra"));
+        if (taker_.left_out() > 0)
+            found_.warnings.push_back(counted(taker_.left_out(), "other cell", "other cells") + " ignored");
+        taker_.report();
     }
 
 private:
@@ -159,126 +204,22 @@ private:
         each([&](std::int64_t cell, const Side& side) { sides_[next[static_cast<std::size_t>(cell)]++] = side; });
     }
 
-    // The faces of a cell with outward normals, and its points.
+    // The faces of a cell with outward normals.
     void load(std::size_t c) {
         faces_.clear();
-        points_.clear();
-        for (std::size_t s = starts_[c]; s < starts_[c + 1]; ++s) {
+        for (std::size_t k = starts_[c]; k < starts_[c + 1]; ++k) {
             auto& face = faces_.emplace_back();
-            for (const std::int64_t p : mesh_.faces[sides_[s].face]) face.push_back(static_cast<Index>(p));
-            if (sides_[s].reversed) std::reverse(face.begin(), face.end());
-            points_.insert(points_.end(), face.begin(), face.end());
-        }
-        std::sort(points_.begin(), points_.end());
-        points_.erase(std::unique(points_.begin(), points_.end()), points_.end());
-    }
-
-    [[nodiscard]] std::size_t faces_of(std::size_t corners) const {
-        return static_cast<std::size_t>(
-            std::ranges::count_if(faces_, [&](const auto& face) { return face.size() == corners; }));
-    }
-
-    bool take() {
-        const std::size_t triangles = faces_of(3), quads = faces_of(4);
-        if (triangles + quads != faces_.size()) return false;
-        if (quads == 6 && triangles == 0 && points_.size() == 8) return put(found_.hexes, pillar<8>());
-        if (ignore_others_) return false;
-        if (quads == 3 && triangles == 2 && points_.size() == 6) return put(found_.prisms, pillar<6>());
-        if (quads == 1 && triangles == 4 && points_.size() == 5) return put(found_.pyramids, cone<5>());
-        if (quads == 0 && triangles == 4 && points_.size() == 4) return put(found_.tets, cone<4>());
-        return false;
-    }
-
-    template <std::size_t N>
-    bool put(FileCells<N>& into, const std::optional<std::array<Index, N>>& corners) {
-        if (!corners) return false;
-        into.corners.push_back(*corners);
-        into.numbers.push_back(number_);
-        return true;
-    }
-
-    // A face of so many corners, seen from inside the cell.
-    [[nodiscard]] std::vector<Index> base(std::size_t corners) const {
-        auto face = *std::ranges::find_if(faces_, [&](const auto& f) { return f.size() == corners; });
-        std::reverse(face.begin(), face.end());
-        return face;
-    }
-
-    // Two equal faces opposite each other: the corners of one, and those that edges join them with.
-    template <std::size_t N>
-    [[nodiscard]] std::optional<std::array<Index, N>> pillar() const {
-        const std::vector<Index> bottom = base(N / 2);
-        std::array<Index, N> corners;
-        for (std::size_t k = 0; k < N / 2; ++k) {
-            Index above = kNone;
-            for (const auto& face : faces_) {
-                const auto at = std::ranges::find(face, bottom[k]);
-                if (at == face.end()) continue;
-                const auto i = static_cast<std::size_t>(at - face.begin());
-                for (const Index p : {face[(i + 1) % face.size()], face[(i + face.size() - 1) % face.size()]}) {
-                    if (std::ranges::find(bottom, p) != bottom.end()) continue;
-                    if (above != kNone && above != p) return std::nullopt;
-                    above = p;
-                }
-            }
-            if (above == kNone) return std::nullopt;
-            corners[k] = bottom[k];
-            corners[k + N / 2] = above;
-        }
-        auto all = corners;
-        std::sort(all.begin(), all.end());
-        return std::adjacent_find(all.begin(), all.end()) == all.end() ? std::optional(corners) : std::nullopt;
-    }
-
-    // A face and a point.
-    template <std::size_t N>
-    [[nodiscard]] std::optional<std::array<Index, N>> cone() const {
-        const std::vector<Index> bottom = base(N - 1);
-        std::array<Index, N> corners;
-        std::copy(bottom.begin(), bottom.end(), corners.begin());
-        corners[N - 1] = *std::ranges::find_if(points_, [&](Index p) { return std::ranges::find(bottom, p) == bottom.end(); });
-        return corners;
-    }
-
-    // Both cells of a face cut it alike: into triangles from its smallest point, as other cells' quads are cut.
-    void split() {
-        if (ignore_others_) {
-            ++left_out_;
-            return;
-        }
-        ++polyhedra_;
-        found_.cut = true;
-        Vec3 middle(0.0);
-        for (const Index p : points_) middle += found_.points[p] / static_cast<double>(points_.size());
-        const auto apex = static_cast<Index>(found_.points.size());
-        found_.points.push_back(middle);
-        std::map<std::array<Index, 3>, std::array<Index, 3>> triangles;
-        for (auto& face : faces_) {
-            std::rotate(face.begin(), std::ranges::min_element(face), face.end());
-            for (std::size_t k = 1; k + 1 < face.size(); ++k) {
-                const std::array<Index, 3> triangle{face[0], face[k + 1], face[k]};
-                auto key = triangle;
-                std::sort(key.begin(), key.end());
-                // Two faces of a cell may share three points: its part between them is flat, and the neighbours meet there.
-                const auto [same, is_new] = triangles.try_emplace(key, triangle);
-                if (!is_new) triangles.erase(same);
-            }
-        }
-        for (const auto& [key, t] : triangles) {
-            put(found_.tets, std::optional(std::array<Index, 4>{t[0], t[1], t[2], apex}));
-            ++tets_;
+            for (const std::int64_t p : mesh_.faces[sides_[k].face]) face.push_back(static_cast<Index>(p));
+            if (sides_[k].reversed) std::reverse(face.begin(), face.end());
         }
     }
 
     const FoamMesh& mesh_;
-    bool ignore_others_;
     MeshFile& found_;
+    PolyhedronTaker taker_;
     std::vector<std::size_t> starts_;
     std::vector<Side> sides_;
-    std::vector<std::vector<Index>> faces_;  // of the cell at hand
-    std::vector<Index> points_;
-    Index number_ = 0;
-    std::size_t polyhedra_ = 0, tets_ = 0, left_out_ = 0;
+    CellFaces faces_;  // of the cell at hand
 };
 
 // Checks all numbers, and counts the cells. fail: throws an Error with a sentence
@@ -353,21 +294,32 @@ public:
         add_cells(std::move(mesh));
         if (case_.decomposed) read_numbers();
         if (step_ < case_.folders.size()) {
-            const fs::path folder = case_.parts[part_] / case_.folders[step_];
-            for (const std::string& name : names_in(folder)) read_field(folder / name, name);
+            const fs::path folder = case_.parts[part_].folder / case_.folders[step_];
+            for (const std::string& name : names_in(folder)) {
+                // A field that cannot be read stops nothing but itself.
+                try {
+                    read_field(folder / name, name);
+                } catch (const Error& error) {
+                    found_.unread.push_back({name, error.what()});
+                }
+            }
         }
         return std::move(found_);
     }
 
 private:
+    static constexpr std::size_t kNoLimit = std::numeric_limits<std::size_t>::max();
+    [[nodiscard]] std::optional<std::size_t> block() const { return case_.parts[part_].block; }
+    // A file of several processors has more than one of them says.
+    [[nodiscard]] std::size_t limit(std::size_t entries) const { return block() ? kNoLimit : entries; }
     [[nodiscard]] fs::path file(const std::string& name) const { return case_.mesh_file(part_, step_, name); }
 
     // Before the points, so that no file contains more of anything than the others say.
     [[nodiscard]] FoamMesh read_faces() {
         FoamMesh mesh;
-        mesh.owner = FoamText(file("owner")).labels();
-        mesh.neighbour = FoamText(file("neighbour"), mesh.owner.size()).labels();
-        FoamText faces(file("faces"), mesh.owner.size() + 1);
+        mesh.owner = FoamText(file("owner"), kNoLimit, block()).labels();
+        mesh.neighbour = FoamText(file("neighbour"), limit(mesh.owner.size()), block()).labels();
+        FoamText faces(file("faces"), limit(mesh.owner.size() + 1), block());
         mesh.faces = faces.faces();
         take(file("faces"), faces, 0);
         return mesh;
@@ -378,7 +330,7 @@ private:
         const auto& used = mesh.faces.points;
         const std::int64_t last = used.empty() ? 0 : std::max<std::int64_t>(0, *std::ranges::max_element(used));
         const fs::path path = file("points");
-        FoamText text(path, 2 * static_cast<std::size_t>(last) + kUnused);
+        FoamText text(path, limit(2 * static_cast<std::size_t>(last) + kUnused), block());
         const auto values = text.reals(3);
         for (std::size_t i = 0; i + 2 < values.size(); i += 3) add_point(found_, {values[i], values[i + 1], values[i + 2]}, 0);
         points_ = found_.points.size();
@@ -404,7 +356,7 @@ private:
         const fs::path path = file("pointProcAddressing");
         std::error_code none;
         if (!fs::exists(path, none) && !fs::exists(path.string() + ".gz", none)) return;
-        FoamText text(path);
+        FoamText text(path, kNoLimit, block());
         const auto numbers = text.labels();
         if (numbers.size() != points_) {
             text.fail(counted(numbers.size(), "number", "numbers") + " of points", std::to_string(points_) + " are needed");
@@ -420,7 +372,7 @@ private:
     void read_field(const fs::path& path, const std::string& name) {
         constexpr std::size_t kHeader = 4096;
         if (start_of_maybe_gzipped(path, kHeader).find("FoamFile") == std::string::npos) return;
-        FoamText text(path);
+        FoamText text(path, kNoLimit, block());
         const std::size_t components = components_of_class(text.type());
         if (components == 0) return;
         take(path, text, cells_ * components * sizeof(double));  // "uniform" is one value for all cells

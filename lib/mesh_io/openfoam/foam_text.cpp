@@ -5,6 +5,7 @@
 #include <charconv>
 #include <limits>
 #include <tuple>
+#include <utility>
 
 #include "gzip.h"
 
@@ -13,6 +14,7 @@ namespace subvol::detail {
 namespace {
 
 constexpr std::string_view kMarks = "(){}[];";
+constexpr std::size_t kMostExpanded = 1 << 16;  // bytes
 
 bool is_space(char c) {
     return c == ' ' || c == '\t' || c == '\n' || c == '\r' || c == '\f' || c == '\v';
@@ -37,11 +39,48 @@ std::size_t most_bytes(std::string_view beginning, std::size_t most_entries) {
 
 }  // namespace
 
-FoamText::FoamText(const std::filesystem::path& path, std::size_t most_entries)
+FoamText::FoamText(const std::filesystem::path& path, std::size_t most_entries, std::optional<std::size_t> block)
     : file_(path.string()),
       text_(read_maybe_gzipped(path, [=](std::string_view beginning) { return most_bytes(beginning, most_entries); })),
       in_(text_, file_, TextScanner::Comments::None) {
     read_header();
+    if (block) take_block(*block);
+}
+
+// Each block is a count of bytes and these in parentheses; the first one begins with the header of all.
+void FoamText::take_block(std::size_t block) {
+    if (type_ != "decomposedBlockData") fail("it does not have the blocks of several processors");
+    std::string found;
+    for (std::size_t k = 0; k <= block; ++k) {
+        const std::size_t size = count(1);
+        expect("(");
+        const std::string_view contents = bytes(size);
+        if (k == 0 || k == block) found += k == 0 ? contents : std::string_view();
+        if (k > 0 && k == block) {
+            // Only the header of the first block counts.
+            const std::size_t begin = found.find("FoamFile"), end = found.find('}', begin);
+            if (end == std::string::npos) fail("the header of the first block does not end");
+            found = found.substr(0, end + 1) + std::string(contents);
+        }
+        expect(")");
+    }
+    text_ = std::move(found);
+    in_ = TextScanner(text_, file_, TextScanner::Comments::None);
+    next_ = 0;
+    read_header();
+}
+
+std::size_t FoamText::blocks() {
+    if (type_ != "decomposedBlockData") return 0;
+    std::size_t found = 0;
+    for (skip_space(); next_ < text_.size(); skip_space()) {
+        const std::size_t size = count(1);
+        expect("(");
+        std::ignore = bytes(size);
+        expect(")");
+        ++found;
+    }
+    return found;
 }
 
 void FoamText::fail(const std::string& message, const std::string& allowed) const {
@@ -220,18 +259,105 @@ FoamFaces FoamText::faces() {
     return faces;
 }
 
-std::vector<double> FoamText::internal_field(std::size_t components, std::size_t cells) {
-    int depth = 0;
-    for (std::string_view word = token(); word != "internalField" || depth > 0; word = token()) {
+// An entry is a word and what follows up to a semicolon, or a dictionary.
+void FoamText::find_internal_field(int depth) {
+    for (std::string_view word = token(); word != "internalField"; word = token()) {
+        if (word.empty() && depth > 0) return;
         if (word.empty()) fail("there is no internalField");
-        if (word == "{") ++depth;
-        if (word == "}") --depth;
+        if (word == "#include" || word == "#includeIfPresent") {
+            const std::string name(token());
+            const std::size_t quotes = name.size() >= 2 && name.front() == '"' ? 1 : 0;
+            include(std::filesystem::path(file_).parent_path() / name.substr(quotes, name.size() - 2 * quotes), depth);
+            continue;
+        }
+        const std::string key(word);
+        if (key.size() == 1 && kMarks.find(key[0]) != std::string_view::npos) continue;
+        skip_space();
+        const std::size_t begin = next_;
+        int open = 0;
+        for (word = token(); !word.empty(); word = token()) {
+            if (word == "{" || word == "(") ++open;
+            if (word == "}" || word == ")") --open;
+            if (open <= 0 && (word == ";" || word == "}")) break;
+        }
+        if (!word.empty()) entries_[key] = text_.substr(begin, next_ - begin - 1);
     }
-    const std::string_view kind = token();
+}
+
+void FoamText::include(const std::filesystem::path& path, int depth) {
+    constexpr int kDeepest = 16;
+    constexpr std::uintmax_t kMostBytes = 1 << 20;
+    std::error_code none;
+    if (depth == kDeepest || !std::filesystem::is_regular_file(path, none)) return;
+    if (std::filesystem::file_size(path, none) > kMostBytes) return;
+    // What is included may be any list of entries, without a header.
+    const std::string outer_text = std::exchange(text_, read_text(path)), outer_file = std::exchange(file_, path.string());
+    const std::size_t outer_next = std::exchange(next_, 0);
+    find_internal_field(depth + 1);
+    text_ = outer_text;
+    file_ = outer_file;
+    next_ = outer_next;
+}
+
+// The text with what its $names stand for.
+std::string FoamText::expanded(std::string_view text, int depth) const {
+    constexpr int kDeepest = 16;
+    std::string result;
+    while (!text.empty()) {
+        const std::size_t dollar = text.find('$');
+        result += text.substr(0, dollar);
+        if (dollar == std::string_view::npos) break;
+        text.remove_prefix(dollar + 1);
+        const bool braces = text.starts_with('{');
+        if (braces || text.starts_with(':')) text.remove_prefix(1);
+        const std::size_t end = std::min(text.find_first_of(" \t\r\n;(){}"), text.size());
+        const auto entry = entries_.find(text.substr(0, end));
+        if (entry == entries_.end() || depth == kDeepest)
+            fail("there is no entry " + in_quotes("$" + std::string(text.substr(0, end))));
+        result += expanded(entry->second, depth + 1);
+        text.remove_prefix(std::min(text.size(), end + braces));
+        if (result.size() > kMostExpanded) fail("its entries stand for too much");
+    }
+    return result;
+}
+
+std::vector<double> FoamText::uniform_value(std::size_t components) {
+    skip_space();
+    const std::size_t begin = next_;
+    const std::size_t end = std::min(text_.find(';', begin), text_.size());
+    std::string value = expanded(std::string_view(text_).substr(begin, end - begin), 0);
+    std::ranges::replace_if(
+        value, [](char c) { return c == '(' || c == ')'; }, ' ');
+    TextScanner words(value, file_, TextScanner::Comments::None);
+    std::vector<double> one;
+    while (!words.at_end()) {
+        const std::string_view word = words.word();
+        double number = 0;
+        const auto [last, error] = std::from_chars(word.data(), word.data() + word.size(), number);
+        if (last != word.data() + word.size() || error == std::errc::invalid_argument) {
+            fail("a number is expected, not " + in_quotes(word));
+        }
+        one.push_back(number);
+    }
+    if (one.size() != components)
+        fail("the uniform value has " + counted(one.size(), "number", "numbers"), std::to_string(components));
+    return one;
+}
+
+std::vector<double> FoamText::internal_field(std::size_t components, std::size_t cells) {
+    find_internal_field(0);
+    std::string_view kind = token();
+    std::string named;
+    if (kind.starts_with('$')) {
+        named =
+            expanded(std::string(kind) + text_.substr(next_, std::min(text_.find(';', next_), text_.size()) - next_), 0) + ";";
+        text_ = std::move(named);
+        next_ = 0;
+        kind = token();
+    }
     std::vector<double> values;
     if (kind == "uniform") {
-        std::vector<double> one;
-        read_tuple(components, one);
+        const std::vector<double> one = uniform_value(components);
         for (std::size_t c = 0; c < cells; ++c) values.insert(values.end(), one.begin(), one.end());
         return values;
     }

@@ -3,6 +3,8 @@
 
 #include <filesystem>
 #include <limits>
+#include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -31,7 +33,9 @@ public:
     /// Reads the file, or the one with .gz, and its header.
     ///
     /// most_entries: that a list of the file can have, as others say
-    explicit FoamText(const std::filesystem::path& path, std::size_t most_entries = std::numeric_limits<std::size_t>::max());
+    /// block:        of a file that has the blocks of several processors (class decomposedBlockData), the one that is read
+    explicit FoamText(const std::filesystem::path& path, std::size_t most_entries = std::numeric_limits<std::size_t>::max(),
+                      std::optional<std::size_t> block = {});
     FoamText(const FoamText&) = delete;
     FoamText& operator=(const FoamText&) = delete;
 
@@ -40,12 +44,16 @@ public:
     /// Returns the size of the unpacked text in bytes.
     [[nodiscard]] std::size_t size() const { return text_.size(); }
 
+    /// How many blocks a file of several processors has; 0 for any other file.
+    [[nodiscard]] std::size_t blocks();
+
     [[nodiscard]] std::vector<std::int64_t> labels();
     /// Numbers, `components` for each entry. expected: entries that may be one value repeated, however short the file
     [[nodiscard]] std::vector<double> reals(std::size_t components, std::size_t expected = 0);
     [[nodiscard]] FoamFaces faces();
 
-    /// The internalField of a field file, for so many cells.
+    /// The internalField of a field file, for so many cells. Entries before it and in files that it includes are what $names of
+    /// its value stand for; what has to be computed (#calc) is refused.
     [[nodiscard]] std::vector<double> internal_field(std::size_t components, std::size_t cells);
 
     [[noreturn]] void fail(const std::string& message, const std::string& allowed = {}) const;
@@ -61,6 +69,12 @@ private:
     std::size_t count(std::size_t width, std::size_t expected = 0);
     std::string_view bytes(std::size_t size);
     void read_header();
+    void take_block(std::size_t block);
+    /// Goes to the internalField, and keeps the entries before it.
+    void find_internal_field(int depth);
+    void include(const std::filesystem::path& path, int depth);
+    std::vector<double> uniform_value(std::size_t components);
+    [[nodiscard]] std::string expanded(std::string_view text, int depth) const;
     [[nodiscard]] NumberType label_type() const { return wide_labels_ ? NumberType::Int64 : NumberType::Int32; }
     [[nodiscard]] NumberType real_type() const { return wide_reals_ ? NumberType::Float64 : NumberType::Float32; }
     void read_tuple(std::size_t components, std::vector<double>& values);
@@ -68,6 +82,7 @@ private:
     std::string file_, text_;
     TextScanner in_;
     std::size_t next_ = 0;
+    std::map<std::string, std::string, std::less<>> entries_;
     std::string type_;
     bool binary_ = false, wide_labels_ = false, wide_reals_ = true;
     std::endian order_ = std::endian::little;

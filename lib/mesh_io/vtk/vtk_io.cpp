@@ -276,12 +276,14 @@ private:
     void read_corner(std::size_t cell, bool first) {
         const std::int64_t index = values_.integer({"cell", static_cast<std::int64_t>(cell)});
         if (first) cells_.positions.resize(cell + 1, in_.position());
-        if (index < 0 || index >= static_cast<std::int64_t>(found_.points.size())) {
-            const std::string points = std::to_string(found_.points.size());
-            in_.fail("cell " + std::to_string(cell) + ": there is no point with index " + std::to_string(index),
-                     "there are " + points + " points, counted from 0");
-        }
+        // Which numbers are points, the types say, which come later: those of a polyhedron are its faces.
+        if (index < 0 || index >= static_cast<std::int64_t>(kNone)) no_point(in_.position(), cell, index);
         cells_.connectivity.push_back(static_cast<Index>(index));
+    }
+
+    [[noreturn]] void no_point(std::size_t position, std::size_t cell, std::int64_t index) const {
+        in_.fail_at(position, "cell " + std::to_string(cell) + ": there is no point with index " + std::to_string(index),
+                    "there are " + std::to_string(found_.points.size()) + " points, counted from 0");
     }
 
     void read_cell_types() {
@@ -302,6 +304,16 @@ private:
         for (std::size_t c = 0; c < cells_.size(); ++c) {
             const auto corners = std::span(connectivity).subspan(offsets[c], offsets[c + 1] - offsets[c]);
             const std::size_t place = positions.empty() ? in_.position() : positions[std::min(c, positions.size() - 1)];
+            if (types[c] == kVtkPolyhedron) {
+                const std::vector<std::int64_t> stream(corners.begin(), corners.end());
+                auto faces = faces_of_stream(stream, 0, found_.points.size());
+                if (!faces) in_.fail_at(place, "cell " + std::to_string(c) + ": these are not the faces of a polyhedron");
+                sorter.take_polyhedron(std::move(*faces));
+                continue;
+            }
+            for (const Index p : corners) {
+                if (p >= found_.points.size()) no_point(place, c, p);
+            }
             sorter.take(types[c], corners, place);
         }
     }

@@ -12,6 +12,7 @@
 #include "mesh_file.h"
 #include "subvol/error.h"
 #include "text_scanner.h"
+#include "xdmf_function.h"
 
 namespace subvol::detail {
 
@@ -411,14 +412,25 @@ std::vector<double> XdmfFile::of_slab(const pugi::xml_node& item) {
 std::vector<double> XdmfFile::values(const pugi::xml_node& given) {
     const pugi::xml_node item = resolved(given);
     if (depth_ > kMostNestedItems) fail_at(item, "data items are nested too deeply");
-    ++depth_;
+    struct Deeper {
+        int& depth;
+        explicit Deeper(int& at) : depth(++at) {}
+        Deeper(const Deeper&) = delete;
+        Deeper& operator=(const Deeper&) = delete;
+        ~Deeper() { --depth; }
+    } const deeper(depth_);
     const std::string kind = kind_of(item, {"ItemType", "Type"}), format = kind_of(item, {"Format"});
     std::vector<double> found;
     const std::vector<std::size_t> lengths = sizes(item, "Dimensions");
     if (kind == "HYPERSLAB") {
         found = of_slab(item);
+    } else if (kind == "FUNCTION") {
+        std::vector<std::vector<double>> arguments;
+        for (const auto& argument : children(item, "DataItem")) arguments.push_back(values(argument));
+        found = value_of_xdmf_function(item.attribute("Function").as_string(), arguments,
+                                       [&](const std::string& message) { fail_at(item, message); });
     } else if (!kind.empty() && kind != "UNIFORM") {
-        fail_at(item, "data items of type " + in_quotes(kind) + " are not supported", "Uniform and HyperSlab are");
+        fail_at(item, "data items of type " + in_quotes(kind) + " are not supported", "Uniform, HyperSlab and Function are");
     } else if (format == "HDF") {
         found = of_hdf5(item, 0, std::nullopt);
     } else if (format == "BINARY") {
@@ -428,7 +440,7 @@ std::vector<double> XdmfFile::values(const pugi::xml_node& given) {
     } else {
         fail_at(item, "data items of the format " + in_quotes(format) + " are not supported", "XML, HDF and Binary are");
     }
-    if (--depth_ == 0) named_.take({}, 0, found.size() * sizeof(double), [&] { return place_of(item); });
+    if (depth_ == 1) named_.take({}, 0, found.size() * sizeof(double), [&] { return place_of(item); });
     if (!lengths.empty() && product(lengths) != found.size()) {
         fail_at(item, "it has " + counted(found.size(), "value", "values") + ", but its Dimensions say " +
                           std::to_string(product(lengths)));

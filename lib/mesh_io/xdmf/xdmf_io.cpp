@@ -206,7 +206,7 @@ private:
             read_cells(topology, kind, found);
         }
         refuse_not_finite(found, in_, kVtkNames);
-        for (const auto& attribute : file_.children(grid, "Attribute")) read_array(attribute, found);
+        read_arrays(grid, found);
         return found;
     }
 
@@ -372,6 +372,24 @@ private:
         if (top <= upright) return;
         std::swap_ranges(nodes.begin() + 12, nodes.begin() + 16, nodes.begin() + 16);
         nodes.resize(20);  // the order of the others is not certain either
+    }
+
+    // An array that cannot be read stops no other, and the file only if there is no other.
+    void read_arrays(const pugi::xml_node& grid, MeshFile& found) {
+        constexpr std::size_t kMostUnread = 1000;
+        std::optional<Error> first;
+        for (const auto& attribute : file_.children(grid, "Attribute")) {
+            const std::size_t before = found.arrays.size();
+            try {
+                read_array(attribute, found);
+            } catch (const Error& error) {
+                if (found.unread.size() > kMostUnread) throw;
+                found.arrays.resize(before);
+                found.unread.push_back({attribute.attribute("Name").as_string("unnamed"), error.what()});
+                if (!first) first = error;
+            }
+        }
+        if (first && found.arrays.empty()) throw Error(*first);
     }
 
     void read_array(const pugi::xml_node& attribute, MeshFile& found) {

@@ -291,6 +291,33 @@ TEST_F(Ensight, StepsInOneFileAndInSeveral) {
     }
 }
 
+// A cube one of whose faces is two triangles.
+TEST_F(Ensight, PolyhedraAreSplit) {
+    write("a.case", "FORMAT\ntype: ensight gold\nGEOMETRY\nmodel: a.geo\nVARIABLE\nscalar per node: T a.T\n");
+    for (const Form form : {Form::Text, Form::Little, Form::Fortran}) {
+        const HexMesh mesh = make_box(1, 1, 1);
+        const auto geometry_with = [&](int last) {
+            GoldText out(form);
+            out.line("a").line("b").line("node id off").line("element id off").line("part").integers(std::vector{1}).line("p");
+            out.line("coordinates").integers(std::vector{8});
+            put_points(out, mesh.points);
+            out.line("nfaced").integers(std::vector{1}).integers(std::vector{7}).integers(std::vector{4, 4, 4, 4, 4, 3, 3});
+            out.integers(std::vector{1, 3, 4, 2, 5, 6, 8, 7, 1, 2, 6, 5, 3, 7, 8, 4, 1, 5, 7, 3, 2, 4, 8, 2, 8, last});
+            return out.text();
+        };
+        write("a.geo", geometry_with(6));
+        std::vector<double> x;
+        for (const Vec3& point : mesh.points) x.push_back(point.x);
+        write("a.T", GoldText(form, false).line("T").line("part").integers(std::vector{1}).line("coordinates").reals(x).text());
+        const ReadResult result = read_mesh(path("a.case"));
+        EXPECT_NEAR(inspect(result.mesh).volume, 1, 1e-6);
+        const Attribute& t = *result.mesh.find_attribute("T");
+        for (std::size_t p = 0; p < t.values.size(); ++p) EXPECT_NEAR(t.values[p], result.mesh.points[p].x, 1e-6);
+        write("a.geo", geometry_with(9));
+        EXPECT_THAT(error(), HasSubstr("nfaced 1 of part \"p\": there is no node 9"));
+    }
+}
+
 TEST_F(Ensight, CoordinatesMayChangeAlone) {
     put(Form::Text);
     std::string changing = kCase;

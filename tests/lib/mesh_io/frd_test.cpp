@@ -131,6 +131,12 @@ TEST_F(Frd, WrongFilesGetASentenceWithTheLine) {
 
 using FrdFuzz = MeshFuzz;
 
+TEST_F(Frd, ResultsWithoutNodesAreSaid) {
+    write("a.frd", "    1C\n  100CL  101 5.00000E-01           8                     0    1           1\n");
+    EXPECT_THAT(error_of([&] { static_cast<void>(read_mesh(path("a.frd"))); }),
+                testing::HasSubstr("it has results, but no nodes before them"));
+}
+
 TEST_F(FrdFuzz, WithResults) {
     const HexMesh mesh = make_box(1, 1, 1);
     expect_sound_or_refused(".frd", nodes_of(mesh) + elements_of(mesh) + result_of("DISP", 8, 3, 0, 1, 1) + " 9999\n", 33);

@@ -67,6 +67,16 @@ TEST_F(GmshIo, OtherElements) {
     EXPECT_THAT(read(with("1 4 0 1 2 3 1\n", 1)).warnings, ElementsAre(HasSubstr("1 cell without volume")));
 }
 
+TEST_F(GmshIo, SectionsOfOthersMayComeFirst) {
+    const std::string text =
+        "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n8\n1 0 0 0\n2 1 0 0\n3 1 1 0\n4 0 1 0\n5 0 0 1\n"
+        "6 1 0 1\n7 1 1 1\n8 0 1 1\n$EndNodes\n$Elements\n1\n1 5 2 1 1 1 2 3 4 5 6 7 8\n$EndElements\n";
+    const std::string others = "$Comments\n$MeshFormat\nby hand\n$EndComments\n$Mine\n1 2 3\n$EndMine\n";
+    EXPECT_EQ(read(others + text + "$More\nx\n$EndMore\n").mesh.cells.size(), 1u);
+    EXPECT_EQ(read_mesh(write("a.dat", others + text)).mesh.cells.size(), 1u);
+    EXPECT_THAT(read_error("$Comments\nno end\n" + text), testing::HasSubstr("not a Gmsh file: it begins with \"$Comments\""));
+}
+
 TEST_F(GmshIo, FieldsAtNodes) {
     std::string values, vectors;
     for (int n = 12; n >= 1; --n) {
@@ -88,7 +98,7 @@ TEST_F(GmshIo, FieldsAtNodes) {
 TEST_F(GmshIo, ErrorsNameThePlace) {
     const std::string good = gmsh_text(kBox, "0");
     const std::vector<std::array<std::string, 3>> cases{
-        {"$MeshFormat", "$NOD", "line 1: not a Gmsh file: it begins with \"$NOD\""},
+        {"$MeshFormat", "$NOD", "line 1: version 1 of Gmsh's format is not supported"},
         {"2.2 0 8", "3 0 8", "line 2: version 3 of Gmsh's format is not supported (2 and 4 are"},
         {"2.2 0 8", "2.2 1 8", "line 3: the byte order is unknown"},
         {"$EndNodes", "", "$EndNodes is expected, not \"$Elements\""},

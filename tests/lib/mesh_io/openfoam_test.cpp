@@ -196,6 +196,78 @@ TEST_F(OpenFoam, HexahedraAndTheirFieldsInEveryForm) {
     }
 }
 
+TEST_F(OpenFoam, NamesStandForTheirEntriesAndOneBadFieldStopsNoOther) {
+    write("a.foam", "");
+    put_mesh("constant/polyMesh", box(2), {});
+    const std::string scalar = header("volScalarField", {}), vector = header("volVectorField", {});
+    put("0/values", "energy 0.24; // a comment\nflow (1 $speed 3);\nspeed 5;\nloop $loop;\ninner { energy 9; }\n", {});
+    put("0/k", scalar + "#include \"values\"\ninternalField uniform $energy;\nboundaryField { a { value $internalField; } }",
+        {});
+    put("0/U", vector + "#include \"values\"\ndimensions [0 1 -1 0 0 0 0];\ninternalField uniform ${flow};", {});
+    put("0/V", vector + "#include \"values\"\ninternalField uniform (0 $speed 0);", {});
+    put("0/w", scalar + "start uniform 4;\ninternalField $start;", {});
+    put("0/bad", scalar + "internalField uniform #calc \"1 + 1\";", {});
+    put("0/worse", scalar + "#include \"values\"\ninternalField uniform $loop;", {});
+    put("0/none", scalar + "#includeIfPresent \"nothing\"\ninternalField uniform $nothing;", {});
+    const ReadResult result = read_mesh(path("a.foam"));
+    const auto value = [&](const std::string& name, std::size_t c) { return result.mesh.find_attribute(name)->values[c]; };
+    EXPECT_NEAR(value("k", 0), .24, 1e-12);
+    EXPECT_NEAR(value("U", 1), 5, 1e-12);
+    EXPECT_NEAR(value("U", 2), 3, 1e-12);
+    EXPECT_NEAR(value("V", 1), 5, 1e-12);
+    EXPECT_NEAR(value("w", 0), 4, 1e-12);
+    std::vector<std::string> unread;
+    for (const UnreadField& field : result.unread) unread.push_back(field.name);
+    EXPECT_THAT(unread, ElementsAre("bad", "none", "worse"));
+    EXPECT_THAT(result.warnings, Contains(HasSubstr("3 fields left out (\"bad\", \"none\", \"worse\"): ")));
+}
+
+TEST_F(OpenFoam, FilesOfSeveralProcessorsAreTakenApart) {
+    write("a.foam", "");
+    // Two processors have a half each, which meet at two faces; ranges of processors are in folders of their own.
+    const Polyhedra half = box(2);
+    Polyhedra other = half;
+    for (Vec3& x : other.points) x.x += 2;
+    const auto block = [](const std::string& text) { return std::to_string(text.size()) + "\n(" + text + ")\n"; };
+    const auto without_header = [](const std::string& text) { return text.substr(text.find("// * * //")); };
+    for (const Form form : {Form{}, Form{.binary = true}}) {
+        const std::string all = header("decomposedBlockData", {.binary = true});
+        for (const std::vector<std::string>& folders :
+             {std::vector<std::string>{"processors"}, std::vector<std::string>{"processors2_0-0", "processors2_1-1"}}) {
+            for (const std::string folder : {"one", "two", "processors", "processors2_0-0", "processors2_1-1"}) {
+                std::filesystem::remove_all(path(folder));
+            }
+            put_mesh("one/constant/polyMesh", half, form);
+            put_mesh("two/constant/polyMesh", other, form);
+            put("one/1/p",
+                header("volScalarField", form) + "internalField nonuniform List<scalar> " + reals({1, 2, 3, 4}, 1, form) + ";",
+                form);
+            put("two/1/p", header("volScalarField", form) + "internalField uniform 7;", form);
+            for (const std::string name : {"constant/polyMesh/points", "constant/polyMesh/faces", "constant/polyMesh/owner",
+                                           "constant/polyMesh/neighbour", "1/p"}) {
+                const std::string first = read_bytes(path("one/" + name)), second = read_bytes(path("two/" + name));
+                if (folders.size() == 1) {
+                    put(folders[0] + "/" + name, all + block(first) + block(without_header(second)), {});
+                } else {
+                    put(folders[0] + "/" + name, all + block(first), {});
+                    put(folders[1] + "/" + name, all + block(second), {});
+                }
+            }
+            const ReadResult result = read_mesh(path("a.foam"));
+            EXPECT_NEAR(inspect(result.mesh).volume, 8, 1e-6);
+            ASSERT_EQ(result.fields.size(), 1u);
+            EXPECT_EQ(result.fields[0].max, 7);
+            EXPECT_THAT(open_series(path("a.foam")).times, ElementsAre(1));
+        }
+        std::filesystem::remove_all(path("processors2_0-0"));
+        EXPECT_THAT(error(), HasSubstr("there is no folder with the files of processor 0"));
+    }
+    put("processors/constant/polyMesh/faces", "", {});
+    put("processors/constant/polyMesh/owner", header("decomposedBlockData", {}) + "9999\n(", {});
+    std::filesystem::remove_all(path("processors2_1-1"));
+    EXPECT_THAT(error(), HasSubstr("owner, line"));
+}
+
 TEST_F(OpenFoam, PointsThatMoveAreThoseOfTheirTime) {
     write("a.foam", "");
     const Polyhedra mesh = box(1);
@@ -332,13 +404,17 @@ TEST_F(OpenFoam, WrongFilesGetASentence) {
     EXPECT_THAT(error(), HasSubstr("points: non-finite coordinate at point 2"));
     good();
     put("1/p", header("volScalarField", {}) + "internalField nonuniform List<scalar> 3(1 2 3);", {});
-    EXPECT_THAT(error(), HasSubstr("p, line 12: the internalField has 3 values (the mesh has 2 cells)"));
+    const auto why = [&] {
+        const ReadResult result = read_mesh(path("a.foam"));
+        return result.unread.empty() ? std::string("all fields are read") : result.unread[0].why;
+    };
+    EXPECT_THAT(why(), HasSubstr("p, line 12: the internalField has 3 values (the mesh has 2 cells)"));
     put("1/p", header("volScalarField", {}) + "dimensions [];", {});
-    EXPECT_THAT(error(), HasSubstr("there is no internalField"));
+    EXPECT_THAT(why(), HasSubstr("there is no internalField"));
     put("1/p", "notes", {});
-    EXPECT_EQ(error(), "no error");
+    EXPECT_EQ(why(), "all fields are read");
     write("1/q.gz", "no gzip");
-    EXPECT_THAT(error(), HasSubstr("q.gz: not a whole gzip file"));
+    EXPECT_THAT(why(), HasSubstr("q.gz: not a whole gzip file"));
 }
 
 // Seventy kilobytes that are seventy megabytes of blanks after a list of two points.

@@ -281,6 +281,100 @@ TEST_F(VtkIo, OneFieldThatIsNotFiniteStopsNoOther) {
                 testing::ElementsAre("2 fields left out (\"bad\", \"worse\"): the value at point 4 is not finite"));
 }
 
+// A cube and, on its right, a polyhedron: a cube whose left face is that one and whose right face is two triangles.
+const std::vector<Vec3> kTwoBoxes{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1},
+                                  {1, 1, 1}, {0, 1, 1}, {2, 0, 0}, {2, 1, 0}, {2, 0, 1}, {2, 1, 1}};
+constexpr const char* kFaces = "7 4 1 2 6 5 4 1 8 9 2 4 5 6 11 10 4 1 5 10 8 4 2 9 11 6 3 8 10 9 3 9 10 11";
+
+TEST_F(VtkIo, PolyhedraAreSplitFromTheirMiddle) {
+    std::string points, numbers;
+    for (const Vec3& x : kTwoBoxes) {
+        points += number(x.x) + " " + number(x.y) + " " + number(x.z) + "\n";
+        numbers += number(x.x) + " ";
+    }
+    const std::string text = "# vtk DataFile Version 3.0\nt\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 12 double\n" + points +
+                             "CELLS 2 44\n8 0 1 2 3 4 5 6 7\n34 " + kFaces +
+                             "\nCELL_TYPES 2\n12 42\nPOINT_DATA 12\n"
+                             "SCALARS s double\nLOOKUP_TABLE default\n" +
+                             numbers +
+                             "\nCELL_DATA 2\nSCALARS c double\n"
+                             "LOOKUP_TABLE default\n3 4\n";
+    const auto xml = [&](const std::string& faces) {
+        return "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\"><UnstructuredGrid><Piece NumberOfPoints=\"12\" "
+               "NumberOfCells=\"2\"><Points><DataArray type=\"Float64\" NumberOfComponents=\"3\" format=\"ascii\">" +
+               points +
+               "</DataArray></Points><Cells><DataArray type=\"Int64\" Name=\"connectivity\" format=\"ascii\">0 1 2 3 4 5 6 7 "
+               "1 2 5 6 8 9 10 11</DataArray><DataArray type=\"Int64\" Name=\"offsets\" format=\"ascii\">8 16</DataArray>"
+               "<DataArray type=\"UInt8\" Name=\"types\" format=\"ascii\">12 42</DataArray>" +
+               faces +
+               "</Cells><PointData>"
+               "<DataArray type=\"Float64\" Name=\"s\" format=\"ascii\">" +
+               numbers +
+               "</DataArray></PointData></Piece>"
+               "</UnstructuredGrid></VTKFile>";
+    };
+    const auto array = [](const std::string& name, const std::string& values) {
+        return "<DataArray type=\"Int64\" Name=\"" + name + "\" format=\"ascii\">" + values + "</DataArray>";
+    };
+    const std::string newer = array("face_connectivity", "1 2 6 5 1 8 9 2 5 6 11 10 1 5 10 8 2 9 11 6 8 10 9 9 10 11") +
+                              array("face_offsets", "4 8 12 16 20 23 26") + array("polyhedron_to_faces", "0 1 2 3 4 5 6") +
+                              array("polyhedron_offsets", "0 7");
+    for (const auto& [name, contents] : std::vector<std::pair<std::string, std::string>>{
+             {"a.vtk", text}, {"a.vtu", xml(array("faces", kFaces) + array("faceoffsets", "-1 34"))}, {"b.vtu", xml(newer)}}) {
+        const ReadResult result = read(name, contents);
+        EXPECT_NEAR(inspect(result.mesh).volume, 2, 1e-12) << name;
+        EXPECT_EQ(inspect(result.mesh).inverted_cells, 0u) << name;
+        EXPECT_EQ(inspect(result.mesh).nonmanifold_faces, 0u) << name;
+        EXPECT_THAT(result.warnings, Contains("1 polyhedron split from the middle into 12 tetrahedra")) << name;
+        // A linear field stays linear, also at the new points.
+        const Attribute& s = *result.mesh.find_attribute("s");
+        for (std::size_t p = 0; p < result.mesh.points.size(); ++p) EXPECT_NEAR(s.values[p], result.mesh.points[p].x, 1e-12);
+        EXPECT_EQ(read(name, contents, {.other_cells = OtherCells::Ignore}).mesh.cells.size(), 1u);
+    }
+    EXPECT_THAT(read_error("a.vtk", replaced(text, "3 9 10 11", "3 9 10 12")), HasSubstr("cell 1: these are not the faces"));
+    EXPECT_THAT(read("a.vtk", replaced(text, "3 9 10 11", "3 9 10 10")).warnings,
+                Contains("1 polyhedron whose faces do not enclose a volume left out"));
+    EXPECT_THAT(read_error("a.vtu", xml(array("faces", kFaces) + array("faceoffsets", "-1 99"))),
+                HasSubstr("cell 1: its faces are not those of a polyhedron"));
+}
+
+TEST_F(VtkIo, CellsWithPointsOfTheirOwnAreSaid) {
+    const HexMesh box = make_box(2, 2, 2);
+    HexMesh apart;
+    for (const auto& cell : box.cells) {
+        auto& own = apart.cells.emplace_back();
+        for (std::size_t k = 0; k < 8; ++k) {
+            own[k] = static_cast<Index>(apart.points.size());
+            apart.points.push_back(box.points[cell[k]]);
+        }
+    }
+    EXPECT_THAT(
+        read("a.vtk", vtk_text(apart)).warnings,
+        ElementsAre(
+            "8 groups of cells share no points, though 37 of 64 points lie at the places of others: --weld joins these"));
+    EXPECT_EQ(inspect(read("a.vtk", vtk_text(apart), {.weld = 0}).mesh).points_used, 27u);
+    EXPECT_THAT(read("a.vtk", vtk_text(box)).warnings, ElementsAre());
+}
+
+TEST_F(VtkIo, OlderGhostLevelsLeaveCellsOut) {
+    const std::string text = vtk_text(make_box(3, 1, 1)) +
+                             "CELL_DATA 3\nSCALARS vtkGhostLevels unsigned_char\n"
+                             "LOOKUP_TABLE default\n0 0 2\n";
+    const ReadResult result = read("a.vtk", text);
+    EXPECT_EQ(result.mesh.cells.size(), 2u);
+    EXPECT_TRUE(result.fields.empty());
+}
+
+TEST_F(VtkIo, FirstBytesDecideWhereTheExtensionIsUnknown) {
+    const std::string text = vtk_text(make_box(1, 1, 1));
+    EXPECT_EQ(read("a.dump", text).mesh.cells.size(), 1u);
+    EXPECT_EQ(read("without", text).mesh.cells.size(), 1u);
+    EXPECT_TRUE(is_mesh_file(path("a.dump")));
+    EXPECT_THAT(read_error("a.dump", "nothing"), HasSubstr("\".dump\" files cannot be read"));
+    EXPECT_THAT(read_error("a.med", "nothing"), HasSubstr("meshio convert a.med mesh.vtu"));
+    EXPECT_THAT(error_of([&] { write_mesh(path("a.dump"), make_box(1, 1, 1)); }), HasSubstr("files cannot be written"));
+}
+
 TEST_F(VtkIo, NamesInLatin1BecomeUtf8) {
     const auto result = read("a.vtk", vtk_text(make_box(1, 1, 1)) +
                                           "POINT_DATA 8\nSCALARS d\xE9"

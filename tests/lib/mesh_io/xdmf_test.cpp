@@ -217,6 +217,34 @@ TEST_F(Xdmf, PathsLeadToElementsOfTheFile) {
         EXPECT_THAT(error_at(path), HasSubstr("not a part of this file, or no plain path")) << path;
 }
 
+TEST_F(Xdmf, ValuesMayBeFunctionsOfOthers) {
+    const HexMesh mesh = make_box(1, 1, 1);
+    const std::vector<double> a{0, 1, 2, 3, 4, 5, 6, 7}, b{9, 9, 9, 9, 9, 9, 9, 9};
+    const auto function = [&](const std::string& text, const std::string& sizes, const std::string& type) {
+        return "<Attribute Name=\"f\" Center=\"Node\" AttributeType=\"" + type +
+               "\"><DataItem ItemType=\"Function\" Function=\"" + text + "\" Dimensions=\"" + sizes + "\">" + item(a, "8") +
+               item(b, "8") + "</DataItem></Attribute>";
+    };
+    const auto value = [&](const std::string& text) {
+        const ReadResult result = read(grid(topology(mesh) + geometry(mesh) + function(text, "8", "Scalar")));
+        return result.mesh.find_attribute("f")->values[5];
+    };
+    EXPECT_EQ(value("$0+$1"), 14);
+    EXPECT_EQ(value("2 - $0 * ($1 - 7) / 2.5e0"), -2);
+    EXPECT_EQ(value("-sqrt($1) + ABS(0-$0)"), 2);
+    const ReadResult joined = read(grid(topology(mesh) + geometry(mesh) + function("JOIN($0; $1; 2*$0)", "8 3", "Vector")));
+    EXPECT_EQ(joined.mesh.find_attribute("f")->values[3 * 5 + 2], 10);
+    EXPECT_EQ(joined.mesh.find_attribute("f")->values[3 * 5 + 1], 9);
+    for (const std::string bad : {"$2", "$0 +", "WHERE($0)", "(", "", "$0 $1", "JOIN($0; 1)"}) {
+        const ReadResult left =
+            read(grid(topology(mesh) + geometry(mesh) + function(bad, "8", "Scalar") + array("T", "Node", a)));
+        ASSERT_EQ(left.unread.size(), 1u) << bad;
+        EXPECT_EQ(left.fields.size(), 1u);
+        EXPECT_THAT(error(grid(topology(mesh) + geometry(mesh) + function(bad, "8", "Scalar"))), HasSubstr("a.xdmf, line"))
+            << bad;
+    }
+}
+
 TEST_F(Xdmf, WrongFilesGetASentenceWithTheLine) {
     const HexMesh mesh = make_box(1, 1, 1);
     EXPECT_THAT(error(""), HasSubstr("a.xdmf, line 3: it has no grids"));

@@ -45,6 +45,19 @@ TEST(FieldExpression, ANameIsTheFieldItself) {
     EXPECT_EQ(field_of(mesh, "height", "z").values, mesh.attributes[2].values) << "a coordinate";
 }
 
+TEST(FieldExpression, NamesMayHaveDotsOrBeQuoted) {
+    HexMesh mesh = mesh_with_fields();
+    mesh.attributes[0].name = "alpha.water";
+    const Attribute plain = field_of(mesh, "d", "1-alpha.water"),
+                    quoted = field_of(mesh, "d", "1-'alpha.water' + 2*'von Mises'");
+    for (std::size_t p = 0; p < mesh.points.size(); ++p) {
+        EXPECT_EQ(plain.values[p], 1 - mesh.attributes[0].values[p]);
+        EXPECT_EQ(quoted.values[p], 1 - mesh.attributes[0].values[p] + 2 * mesh.attributes[2].values[p]);
+    }
+    test::expect_error(ErrorCode::InvalidInput, "alpha.water, V, 'von Mises'",
+                       [&] { (void)field_of(mesh, "f", "1-von Mises"); });
+}
+
 TEST(FieldExpression, SaysWhatIsWrong) {
     const HexMesh mesh = mesh_with_fields();
     const auto refused = [&](const std::string& part, const std::string& source) {

@@ -11,7 +11,7 @@
 
 namespace subvol {
 
-/// Reads a mesh. The extension of the file name decides the format:
+/// Reads a mesh. The extension of the file name decides the format, or if it is none of these, the first bytes of the file:
 ///
 ///   .mesh, .meshb          MEDIT, ASCII and binary
 ///   .vtk                   legacy VTK, ASCII and BINARY: unstructured, structured and rectilinear grids, structured points
@@ -56,6 +56,9 @@ std::vector<std::string> write_mesh(const std::filesystem::path& path, const Hex
 ///
 /// throws: also Error(InvalidInput) as `validate`, or for another extension if there are shells or beams
 std::vector<std::string> write_mesh(const std::filesystem::path& path, const HexMesh& mesh, const Shells& shells);
+
+/// Whether `read_mesh` reads a file: by its extension, or if that is unknown by its first bytes.
+[[nodiscard]] bool is_mesh_file(const std::filesystem::path& path);
 
 /// The extensions of the files that `read_mesh` reads and `write_mesh` writes, such as ".vtu".
 [[nodiscard]] std::vector<std::string> readable_mesh_extensions();

@@ -1,0 +1,260 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "polyhedra.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <span>
+#include <utility>
+
+#include "join_pieces.h"
+#include "subvol/detail/byte_hash.h"
+
+namespace subvol::detail {
+
+namespace {
+
+std::size_t faces_with(const CellFaces& faces, std::size_t corners) {
+    return static_cast<std::size_t>(std::ranges::count_if(faces, [&](const auto& face) { return face.size() == corners; }));
+}
+
+// A face of so many corners, seen from inside the cell.
+std::vector<Index> base(const CellFaces& faces, std::size_t corners) {
+    auto face = *std::ranges::find_if(faces, [&](const auto& f) { return f.size() == corners; });
+    std::reverse(face.begin(), face.end());
+    return face;
+}
+
+// Two equal faces opposite each other: the corners of one, and those that edges join them with.
+template <std::size_t N>
+std::optional<std::array<Index, N>> pillar(const CellFaces& faces) {
+    const std::vector<Index> bottom = base(faces, N / 2);
+    std::array<Index, N> corners;
+    for (std::size_t k = 0; k < N / 2; ++k) {
+        Index above = kNone;
+        for (const auto& face : faces) {
+            const auto at = std::ranges::find(face, bottom[k]);
+            if (at == face.end()) continue;
+            const auto i = static_cast<std::size_t>(at - face.begin());
+            for (const Index p : {face[(i + 1) % face.size()], face[(i + face.size() - 1) % face.size()]}) {
+                if (std::ranges::find(bottom, p) != bottom.end()) continue;
+                if (above != kNone && above != p) return std::nullopt;
+                above = p;
+            }
+        }
+        if (above == kNone) return std::nullopt;
+        corners[k] = bottom[k];
+        corners[k + N / 2] = above;
+    }
+    auto all = corners;
+    std::sort(all.begin(), all.end());
+    return std::adjacent_find(all.begin(), all.end()) == all.end() ? std::optional(corners) : std::nullopt;
+}
+
+// A face and a point.
+template <std::size_t N>
+std::optional<std::array<Index, N>> cone(const CellFaces& faces, const std::vector<Index>& points) {
+    const std::vector<Index> bottom = base(faces, N - 1);
+    std::array<Index, N> corners;
+    std::copy(bottom.begin(), bottom.end(), corners.begin());
+    const auto tip = std::ranges::find_if(points, [&](Index p) { return std::ranges::find(bottom, p) == bottom.end(); });
+    if (tip == points.end()) return std::nullopt;
+    corners[N - 1] = *tip;
+    return corners;
+}
+
+// Turns a face so that triangles from its first point have areas: that is its smallest point, as of the quads of other cells,
+// but in faces of more points with some on a line the smallest one with such triangles. Both cells of a face choose alike.
+void start_fan(std::vector<Index>& face, const std::vector<Vec3>& points) {
+    std::rotate(face.begin(), std::ranges::min_element(face), face.end());
+    if (face.size() <= 4) return;
+    constexpr double kFlat = 1e-9;  // of the largest triangle
+    std::vector<Index> best = face, turned = face;
+    double most = -1;
+    for (std::size_t k = 0; k < face.size(); ++k) {
+        double least = HUGE_VAL, largest = 0;
+        for (std::size_t i = 1; i + 1 < turned.size(); ++i) {
+            const Vec3 a = points[turned[0]], normal = glm::cross(points[turned[i]] - a, points[turned[i + 1]] - a);
+            least = std::min(least, glm::length(normal));
+            largest = std::max(largest, glm::length(normal));
+        }
+        const bool sound = least > kFlat * largest;
+        if (sound ? most < 0 || turned[0] < best[0] : false) {
+            best = turned;
+            most = least;
+        }
+        std::rotate(turned.begin(), turned.begin() + 1, turned.end());
+    }
+    face = best;
+}
+
+using Edge = std::pair<Index, Index>;
+
+// Six times the volume between the faces and the first point.
+double volume_of(const CellFaces& faces, const std::vector<Vec3>& points) {
+    const Vec3 start = points[faces.front().front()];
+    double volume = 0;
+    for (const auto& face : faces) {
+        for (std::size_t k = 1; k + 1 < face.size(); ++k) {
+            const Vec3 a = points[face[0]] - start, b = points[face[k]] - start, c = points[face[k + 1]] - start;
+            volume += glm::dot(a, glm::cross(b, c));
+        }
+    }
+    return volume;
+}
+
+}  // namespace
+
+void PolyhedronTaker::add(Index number, CellFaces& faces) {
+    number_ = number;
+    points_.clear();
+    for (const auto& face : faces) points_.insert(points_.end(), face.begin(), face.end());
+    std::sort(points_.begin(), points_.end());
+    points_.erase(std::unique(points_.begin(), points_.end()), points_.end());
+    if (!take(faces)) split(faces);
+}
+
+template <std::size_t N>
+bool PolyhedronTaker::put(FileCells<N>& into, const std::array<Index, N>* corners) {
+    if (corners == nullptr) return false;
+    into.corners.push_back(*corners);
+    into.numbers.push_back(number_);
+    return true;
+}
+
+bool PolyhedronTaker::take(const CellFaces& faces) {
+    const auto put_if = [&](auto& into, const auto& corners) { return put(into, corners ? &*corners : nullptr); };
+    const std::size_t triangles = faces_with(faces, 3), quads = faces_with(faces, 4);
+    if (triangles + quads != faces.size()) return false;
+    if (quads == 6 && triangles == 0 && points_.size() == 8) return put_if(found_.hexes, pillar<8>(faces));
+    if (ignore_others_) return false;
+    if (quads == 3 && triangles == 2 && points_.size() == 6) return put_if(found_.prisms, pillar<6>(faces));
+    if (quads == 1 && triangles == 4 && points_.size() == 5) return put_if(found_.pyramids, cone<5>(faces, points_));
+    if (quads == 0 && triangles == 4 && points_.size() == 4) return put_if(found_.tets, cone<4>(faces, points_));
+    return false;
+}
+
+void PolyhedronTaker::split(CellFaces& faces) {
+    if (ignore_others_) {
+        ++left_out_;
+        return;
+    }
+    ++polyhedra_;
+    found_.cut = true;
+    Vec3 middle(0.0);
+    for (const Index p : points_) middle += found_.points[p] / static_cast<double>(points_.size());
+    const auto apex = static_cast<Index>(found_.points.size());
+    found_.points.push_back(middle);
+    std::map<std::array<Index, 3>, std::array<Index, 3>> triangles;
+    for (auto& face : faces) {
+        start_fan(face, found_.points);
+        for (std::size_t k = 1; k + 1 < face.size(); ++k) {
+            const std::array<Index, 3> triangle{face[0], face[k + 1], face[k]};
+            auto key = triangle;
+            std::sort(key.begin(), key.end());
+            // Two faces of a cell may share three points: its part between them is flat, and the neighbours meet there.
+            const auto [same, is_new] = triangles.try_emplace(key, triangle);
+            if (!is_new) triangles.erase(same);
+        }
+    }
+    for (const auto& [key, t] : triangles) {
+        const std::array<Index, 4> tet{t[0], t[1], t[2], apex};
+        put(found_.tets, &tet);
+        ++tets_;
+    }
+    // Fields at points have the mean of the cell's points there; a number that no other point has, where they are numbers.
+    constexpr double kAboveNumbers = 4503599627370496.0;
+    for (FileArray& array : found_.arrays) {
+        if (array.at_cells) continue;
+        if (std::ranges::find(kPointNumberArrays, array.name) != kPointNumberArrays.end()) {
+            ByteHash hash;
+            hash.add({reinterpret_cast<const char*>(&middle), sizeof middle});
+            array.values.push_back(kAboveNumbers + static_cast<double>(hash.value() >> 13));
+            continue;
+        }
+        const auto components = static_cast<std::size_t>(array.components);
+        for (std::size_t c = 0; c < components; ++c) {
+            double mean = 0;
+            for (const Index p : points_) mean += array.values[p * components + c] / static_cast<double>(points_.size());
+            array.values.push_back(mean);
+        }
+    }
+}
+
+void PolyhedronTaker::report() {
+    if (polyhedra_ == 0) return;
+    found_.warnings.push_back(counted(polyhedra_, "polyhedron", "polyhedra") + " split from the middle into " +
+                              counted(tets_, "tetrahedron", "tetrahedra"));
+}
+
+std::size_t Polyhedra::take_into(MeshFile& found, bool ignore_others) {
+    PolyhedronTaker taker(found, ignore_others);
+    std::size_t open = 0;
+    for (auto& [number, faces] : cells_) {
+        if (is_closed(faces)) {
+            orient_faces(faces, found.points);
+            taker.add(number, faces);
+        } else {
+            ++open;
+        }
+    }
+    cells_.clear();
+    taker.report();
+    if (open > 0) {
+        found.warnings.push_back(counted(open, "polyhedron", "polyhedra") + " whose faces do not enclose a volume left out");
+    }
+    return taker.left_out();
+}
+
+bool is_closed(const CellFaces& faces) {
+    std::map<Edge, int> count;
+    for (const auto& face : faces) {
+        if (face.size() < 3) return false;
+        for (std::size_t k = 0; k < face.size(); ++k) {
+            const Index a = face[k], b = face[(k + 1) % face.size()];
+            if (a == b) return false;
+            ++count[std::minmax(a, b)];
+        }
+    }
+    return faces.size() > 3 && std::ranges::all_of(count, [](const auto& edge) { return edge.second == 2; });
+}
+
+// From face to face over edges: two faces of one hand walk along their edge in opposite directions.
+void orient_faces(CellFaces& faces, const std::vector<Vec3>& points) {
+    if (!is_closed(faces)) return;
+    std::map<Edge, std::vector<std::size_t>> sides;
+    for (std::size_t f = 0; f < faces.size(); ++f) {
+        for (std::size_t k = 0; k < faces[f].size(); ++k) {
+            sides[std::minmax(faces[f][k], faces[f][(k + 1) % faces[f].size()])].push_back(f);
+        }
+    }
+    const auto walks = [&](std::size_t f, Index a, Index b) {
+        const auto& face = faces[f];
+        for (std::size_t k = 0; k < face.size(); ++k) {
+            if (face[k] == a && face[(k + 1) % face.size()] == b) return true;
+        }
+        return false;
+    };
+    std::vector<bool> met(faces.size(), false);
+    std::vector<std::size_t> next{0};
+    met[0] = true;
+    while (!next.empty()) {
+        const std::size_t f = next.back();
+        next.pop_back();
+        for (std::size_t k = 0; k < faces[f].size(); ++k) {
+            const Index a = faces[f][k], b = faces[f][(k + 1) % faces[f].size()];
+            for (const std::size_t other : sides[std::minmax(a, b)]) {
+                if (met[other]) continue;
+                met[other] = true;
+                if (walks(other, a, b)) std::reverse(faces[other].begin(), faces[other].end());
+                next.push_back(other);
+            }
+        }
+    }
+    if (volume_of(faces, points) >= 0) return;
+    for (auto& face : faces) std::reverse(face.begin(), face.end());
+}
+
+}  // namespace subvol::detail
