@@ -55,25 +55,69 @@ PieceTree::PieceTree(std::shared_ptr<const LimitPieces> pieces, double distance,
     parallel_each(centers.size(), [&](std::size_t p) { centers[p] = pieces_->position(p, LimitPieces::kNodes / 2); });
     boxes_.resize(pieces_->cells.size());
     parallel_each(boxes_.size(), [&](std::size_t p) { boxes_[p] = box_of(p); });
+    make_frames();
     tree_.emplace(centers, kLeafSize, [this](Index piece) { return boxes_[piece]; });
 }
 
-/// Returns the bounds of the control points of the piece, along one axis after the other.
+/// Returns the control points of the piece, relative to its origin: found along one axis after the other.
+std::array<Vec3, PieceTree::kControls> PieceTree::controls_of(std::size_t piece) const {
+    std::array<Vec3, kControls> x;
+    for (std::size_t n = 0; n < x.size(); ++n) {
+        const float* const node = pieces_->node(piece, n);
+        x[n] = Vec3(node[0], node[1], node[2]);
+    }
+    for (const std::size_t stride : {1u, 3u, 9u}) {
+        for (std::size_t n = 0; n < x.size(); ++n) {
+            if (n / stride % 3 == 1) x[n] = 2.0 * x[n] - 0.5 * (x[n - stride] + x[n + stride]);
+        }
+    }
+    return x;
+}
+
+/// Returns the bounds of the control points of the piece.
 Box PieceTree::box_of(std::size_t piece) const {
     Box box;
-    for (int c = 0; c < 3; ++c) {
-        std::array<double, LimitPieces::kNodes> x;
-        for (std::size_t n = 0; n < x.size(); ++n) x[n] = static_cast<double>(pieces_->node(piece, n)[c]);
-        for (const std::size_t stride : {1u, 3u, 9u}) {
-            for (std::size_t n = 0; n < x.size(); ++n) {
-                if (n / stride % 3 == 1) x[n] = 2 * x[n] - 0.5 * (x[n - stride] + x[n + stride]);
-            }
-        }
-        const auto [lower, upper] = std::minmax_element(x.begin(), x.end());
-        box.lower[c] = pieces_->origins[piece][c] + *lower - reach_;
-        box.upper[c] = pieces_->origins[piece][c] + *upper + reach_;
+    for (const Vec3& x : controls_of(piece)) box.add(x);
+    return {pieces_->origins[piece] + box.lower - reach_, pieces_->origins[piece] + box.upper + reach_};
+}
+
+/// Thin pieces that lie across the axes share their boxes with many others, as the wedges around an axis of many cells do: each
+/// place would be sought in hundreds of them. Those have a second bound along their own axes.
+std::optional<PieceTree::Frame> PieceTree::frame_of(std::size_t piece) const {
+    constexpr double kThin = 8;  // boxes that are larger than their piece by this
+    const auto x = controls_of(piece);
+    const Mat3 sides(x[14] - x[12], x[16] - x[10], x[22] - x[4]);  // between the middles of opposite sides
+    const double volume = std::abs(glm::determinant(sides));
+    const Vec3 size = boxes_[piece].size() - 2 * reach_;
+    if (!(volume > 0) || size.x * size.y * size.z < kThin * volume) return std::nullopt;
+    Frame frame{glm::inverse(sides), x[13], Vec3(0.0)};
+    for (const Vec3& control : x) frame.half = glm::max(frame.half, glm::abs(frame.inverse * (control - frame.center)));
+    const Mat3 rows = glm::transpose(frame.inverse);
+    for (int d = 0; d < 3; ++d) frame.half[d] += reach_ * glm::length(rows[d]);
+    frame.half *= 1 + 1e-6;
+    if (!glm::all(glm::lessThan(frame.half, Vec3(1e6)))) return std::nullopt;
+    frame.center += pieces_->origins[piece];
+    return frame;
+}
+
+void PieceTree::make_frames() {
+    frame_numbers_.assign(boxes_.size(), kNone);
+    parallel_each(boxes_.size(), [&](std::size_t p) { frame_numbers_[p] = frame_of(p) ? 0 : kNone; });
+    std::vector<Index> thin;
+    for (Index p = 0; p < frame_numbers_.size(); ++p) {
+        if (frame_numbers_[p] == kNone) continue;
+        frame_numbers_[p] = static_cast<Index>(thin.size());
+        thin.push_back(p);
     }
-    return box;
+    frames_.resize(thin.size());
+    parallel_each(thin.size(), [&](std::size_t i) { frames_[i] = *frame_of(thin[i]); });
+}
+
+bool PieceTree::may_contain(std::size_t piece, const Vec3& x) const {
+    const Index number = frame_numbers_[piece];
+    if (number == kNone) return true;
+    const Frame& frame = frames_[number];
+    return glm::all(glm::lessThanEqual(glm::abs(frame.inverse * (x - frame.center)), frame.half));
 }
 
 std::optional<NearPlace> PieceTree::invert(std::size_t piece, const Vec3& x) const {
@@ -135,7 +179,7 @@ void PieceTree::find(const Vec3& x, std::vector<NearPlace>& found) const {
         for (std::size_t slot = first; slot < last; ++slot) {
             const Index piece = tree_->item(slot);
             const Box& box = boxes_[piece];
-            if (!contains(box)) continue;
+            if (!contains(box) || !may_contain(piece, x)) continue;
             const Vec3 from = glm::abs(2.0 * x - box.lower - box.upper) / (box.upper - box.lower);
             candidates.push_back({std::max({from.x, from.y, from.z}), piece});
         }

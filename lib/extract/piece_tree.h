@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <optional>
 #include <span>
 #include <vector>
@@ -40,12 +41,24 @@ public:
     void find(const Vec3& x, std::vector<NearPlace>& found) const;
 
 private:
+    /// A parallelepiped around a piece that fills little of its box: |inverse (x - center)| is at most `half` in it.
+    struct Frame {
+        Mat3 inverse{1.0};
+        Vec3 center{0.0}, half{0.0};
+    };
+    static constexpr std::size_t kControls = LimitPieces::kNodes;
+    [[nodiscard]] std::array<Vec3, kControls> controls_of(std::size_t piece) const;
     [[nodiscard]] Box box_of(std::size_t piece) const;
+    [[nodiscard]] std::optional<Frame> frame_of(std::size_t piece) const;
+    void make_frames();
+    [[nodiscard]] bool may_contain(std::size_t piece, const Vec3& x) const;
     [[nodiscard]] std::optional<NearPlace> invert(std::size_t piece, const Vec3& x) const;
 
     std::shared_ptr<const LimitPieces> pieces_;
     double distance_ = 0, reach_ = 0;
-    std::vector<Box> boxes_;  // of the pieces
+    std::vector<Box> boxes_;            // of the pieces
+    std::vector<Index> frame_numbers_;  // of the pieces, kNone without one
+    std::vector<Frame> frames_;
     std::optional<MedianTree<Box>> tree_;
 };
 

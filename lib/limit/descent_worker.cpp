@@ -150,8 +150,8 @@ std::span<OpenPlace> DescentWorker::evaluate(std::span<OpenPlace> places, std::u
     return places.first(kept);
 }
 
-void DescentWorker::leave(std::span<const OpenPlace> places) {
-    for (const OpenPlace& at : places) left_.push_back(at.query);
+void DescentWorker::leave(std::span<const OpenPlace> places, int level) {
+    for (const OpenPlace& at : places) left_.push_back({at.query, level});
 }
 
 void DescentWorker::begin(const DescentClass& is, std::uint8_t turn, int level, std::span<OpenPlace> places,
@@ -181,7 +181,7 @@ void DescentWorker::descend(const DescentClass& is, std::uint8_t turn, int level
     const ClassChildren& of_class = classes.children(is);
     each_octant(places, [&](std::size_t octant, std::span<OpenPlace> inside) {
         const ClassChildren::Child& child = of_class.children[walk_octant(turn, octant)];
-        if (child.to == nullptr) return leave(inside);
+        if (child.to == nullptr) return leave(inside, level + 1);
         double* to = values(level + 1, child.to->point_count());
         child.near.apply(stride_, from, to);
         load(*child.to, to);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <compare>
 #include <span>
 #include <vector>
 
@@ -15,6 +16,13 @@ namespace subvol::detail {
 struct CellPlaces {
     Index cell;
     std::size_t first, last;
+};
+
+/// A query that the classes have not evaluated to the end. level: of the first descendant that has no class
+struct LeftPlace {
+    std::size_t query;
+    int level;
+    auto operator<=>(const LeftPlace&) const = default;
 };
 
 /// What is asked for, of which mesh.
@@ -66,9 +74,9 @@ public:
     /// Places in a cell of a class, the rows of whose neighbourhood are in values(level).
     void begin(const DescentClass& is, std::uint8_t turn, int level, std::span<OpenPlace> places, ClassGraph& classes);
 
-    /// Notes places whose surroundings have no class.
-    void leave(std::span<const OpenPlace> places);
-    [[nodiscard]] const std::vector<std::size_t>& left() const { return left_; }
+    /// Notes places whose surroundings have no class at a level.
+    void leave(std::span<const OpenPlace> places, int level);
+    [[nodiscard]] const std::vector<LeftPlace>& left() const { return left_; }
 
     [[nodiscard]] LimitReport& report() { return settling_.report(); }
 
@@ -87,7 +95,7 @@ private:
     std::vector<std::vector<double>> values_;  // of the neighbourhoods on the way down
     std::vector<OpenPlace> places_;
     std::vector<double> lasts_, jet_, turned_, child_;
-    std::vector<std::size_t> left_;
+    std::vector<LeftPlace> left_;
 };
 
 /// The octant of the walk that is a cell's octant `octant`.

@@ -17,11 +17,9 @@
 //
 // What has to be refined on the way is shared between places. LimitDescents answers nearly all queries by tables of the
 // neighbourhood's class. Those that are left, next to points where very many cells meet or where cells meet in an edge or a
-// point alone, are refined as patches by BatchEvaluator below, until the descendant that has the place has surroundings of a
-// class: of a cell's eight children all but those at the contact have one.
+// point alone, are refined as patches by PatchTree, until the descendant that has the place has surroundings of a class: of a
+// cell's eight children all but those at the contact have one.
 #include "subvol/limit.h"
-
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
@@ -31,10 +29,8 @@
 #include "jets.h"
 #include "limit_descents.h"
 #include "mesh_subset.h"
-#include "patch.h"
+#include "patch_tree.h"
 #include "refine_steps.h"
-#include "run_nested.h"
-#include "space_order.h"
 #include "subvol/cell.h"
 #include "subvol/detail/limit_of_part.h"
 #include "subvol/error.h"
@@ -45,141 +41,6 @@ namespace subvol {
 using namespace detail;
 
 namespace {
-
-/// Evaluates the queries of some control cells by refining the patch around them, level by level, until two levels agree or the
-/// surroundings have a class: for those that have none at first.
-class BatchEvaluator {
-public:
-    /// scales: of each channel, what tolerances are relative to. All references are kept.
-    ///
-    /// classes: to which places are given as soon as they can be; null: never
-    BatchEvaluator(const DescentTask& task, ClassGraph* classes);
-
-    void run(const PatchSource& source, std::span<const std::size_t> numbers);
-
-    [[nodiscard]] const LimitReport& report() { return settling_.report(); }
-    /// Evaluates the places that were given to a class.
-    [[nodiscard]] DescentWorker& worker() { return worker_; }
-
-private:
-    /// cell: the wanted cell of the patch in which the place lies
-    struct InPatch {
-        Index cell;
-        OpenPlace place;
-    };
-    [[nodiscard]] static std::vector<Index> number_cells(std::vector<InPatch>& open);
-    void evaluate_level(const HexMesh& mesh, int level, std::vector<InPatch>& open);
-    void give_to_classes(const HexMesh& mesh, const Topology& topology, int level, std::vector<InPatch>& open);
-
-    const DescentTask& task_;
-    ClassGraph* classes_;
-    DescentWorker worker_;
-    const LimitOptions& options_;
-    const Channels& channels_;
-    Settling settling_;
-    CellJets jets_;
-    std::vector<double> lasts_, jet_, rows_;
-};
-
-/// The cells of the queries, ascending. InPatch::cell becomes an index into that list.
-std::vector<Index> BatchEvaluator::number_cells(std::vector<InPatch>& open) {
-    std::ranges::stable_sort(open, {}, &InPatch::cell);
-    std::vector<Index> cells;
-    for (InPatch& at : open) {
-        if (cells.empty() || cells.back() != at.cell) cells.push_back(at.cell);
-        at.cell = static_cast<Index>(cells.size() - 1);
-    }
-    return cells;
-}
-
-BatchEvaluator::BatchEvaluator(const DescentTask& task, ClassGraph* classes)
-    : task_(task),
-      classes_(classes),
-      worker_(task),
-      options_(task.options),
-      channels_(task.channels),
-      settling_(options_, task.scales, channels_.stride(), task.samples),
-      jets_(options_.scheme.kind, channels_.stride()),
-      jet_(4 * channels_.stride()) {
-}
-
-void BatchEvaluator::run(const PatchSource& source, std::span<const std::size_t> numbers) {
-    lasts_.resize(numbers.size() * jet_.size());
-    std::vector<InPatch> open;
-    for (std::size_t i = 0; i < numbers.size(); ++i) {
-        const auto& [cell, uvw] = task_.queries[numbers[i]];
-        open.push_back({cell, {.query = numbers[i], .uvw = uvw, .last = &lasts_[i * jet_.size()]}});
-    }
-    // Two layers around the cells are enough for every level: a rule uses the cells around a point, and each refinement spends
-    // one layer of cells, which is two layers of children.
-    Patch patch = source.cut(number_cells(open), 2);
-    for (int level = 0;; ++level) {
-        evaluate_level(patch.mesh, level, open);
-        if (open.empty()) return;
-        patch = refine_patch(sub_patch(patch, number_cells(open), 2), options_.scheme, 2);
-        for (InPatch& at : open) {
-            at.place.step_down();
-            at.cell = 8 * at.cell + static_cast<Index>(kCornerOctants[at.place.octant]);
-        }
-    }
-}
-
-/// Writes the queries that have converged at this level and removes them from `open`.
-void BatchEvaluator::evaluate_level(const HexMesh& mesh, int level, std::vector<InPatch>& open) {
-    settling_.report().deepest_level = std::max(settling_.report().deepest_level, level);
-    const Topology topology = build_topology(mesh, InteriorCreases::Ignore);
-    const std::size_t stride = channels_.stride();
-    rows_.resize(mesh.points.size() * stride);
-    for (std::size_t p = 0; p < mesh.points.size(); ++p) Channels::read(mesh, static_cast<Index>(p), &rows_[p * stride]);
-    if (classes_ != nullptr && level > 0) give_to_classes(mesh, topology, level, open);
-    // The queries of a cell follow each other, so a cell is loaded once for all of them.
-    Index loaded = kNone;
-    bool regular = false;
-    GridPoints grid;
-    std::erase_if(open, [&](InPatch& at) {
-        if (at.cell != loaded) {
-            loaded = at.cell;
-            regular = options_.scheme.kind != Scheme::Linear && regular_grid(topology, at.cell, grid);
-            if (regular) {
-                jets_.load_grid(rows_.data(), grid);
-            } else {
-                std::array<Index, 8> corners;
-                for (std::size_t k = 0; k < 8; ++k) corners[k] = mesh.cells[at.cell][kCornerOctants[k]];
-                jets_.load_corners(rows_.data(), corners);
-            }
-        }
-        jets_.evaluate(at.place.uvw, std::ldexp(1.0, level), jet_.data());
-        const bool exact = options_.scheme.kind == Scheme::Linear || (regular && !interpolates(options_.scheme.kind));
-        return settling_.settle(at.place, jet_.data(), level, regular, exact);
-    });
-}
-
-/// The places of a cell, which follow each other, go on by the class of its surroundings, if they have one.
-void BatchEvaluator::give_to_classes(const HexMesh& mesh, const Topology& topology, int level, std::vector<InPatch>& open) {
-    // The patch ends after the second layer: a colour of one round depends on the cells at the point alone.
-    const CellLinks links = build_links(mesh, topology, 1);
-    NeighborhoodWalk walk(mesh, links);
-    Neighborhood about;
-    const std::size_t stride = channels_.stride();
-    std::vector<OpenPlace> places;
-    std::vector<InPatch> stay;
-    std::ranges::stable_sort(open, {}, &InPatch::cell);
-    for (std::size_t first = 0, last = 0; first < open.size(); first = last) {
-        const Index cell = open[first].cell;
-        while (last < open.size() && open[last].cell == cell) ++last;
-        if (!walk.find(cell, 2, about)) {
-            stay.insert(stay.end(), open.begin() + static_cast<std::ptrdiff_t>(first),
-                        open.begin() + static_cast<std::ptrdiff_t>(last));
-            continue;
-        }
-        places.clear();
-        for (std::size_t i = first; i < last; ++i) places.push_back(open[i].place);
-        double* to = worker_.values(level, about.points.size());
-        for (const Index p : about.points) to = copy_row(&rows_[p * stride], stride, to);
-        worker_.begin(classes_->class_of(about), about.turn, level, places, *classes_);
-    }
-    open = std::move(stay);
-}
 
 void check(const LimitOptions& options) {
     if (!(options.tolerance >= 0 && std::isfinite(options.tolerance)) || options.max_levels < 2 || options.max_levels > 20) {
@@ -255,44 +116,6 @@ std::vector<CellPlaces> places_of_cells(std::span<const LimitQuery> queries, std
     return cells;
 }
 
-/// The queries in the order of their cells, and these in an order in space: batches then share most of their patches.
-std::vector<std::size_t> by_neighbors(const DescentTask& task, std::span<const std::size_t> queries) {
-    std::vector<Vec3> centers;
-    for (const std::size_t q : queries) {
-        const auto& corners = task.control.cells[task.queries[q].cell];
-        centers.push_back(0.5 * (task.control.points[corners[0]] + task.control.points[corners[6]]));
-    }
-    std::vector<std::size_t> ordered;
-    for (const Index i : space_order(centers)) ordered.push_back(queries[i]);
-    return ordered;
-}
-
-/// Evaluates the queries whose surroundings have no class, in batches that share a patch.
-///
-/// classes: as in BatchEvaluator. Returns the queries that these did not evaluate to the end
-std::vector<std::size_t> refine_rest(const DescentTask& task, std::span<const std::size_t> rest, ClassGraph* classes) {
-    constexpr std::size_t kBatch = 512;  // queries
-    const PatchSource source(task.control);
-    const std::vector<std::size_t> ordered = by_neighbors(task, rest);
-    const std::size_t count = (rest.size() + kBatch - 1) / kBatch;
-    std::vector<std::array<LimitReport, 2>> reports(count);
-    std::vector<std::vector<std::size_t>> left(count);
-    tbb::parallel_for(std::size_t{0}, count, [&](std::size_t b) {
-        run_nested([&] {
-            BatchEvaluator evaluator(task, classes);
-            evaluator.run(source, std::span(ordered).subspan(b * kBatch, std::min(kBatch, rest.size() - b * kBatch)));
-            reports[b] = {evaluator.report(), evaluator.worker().report()};
-            left[b] = evaluator.worker().left();
-        });
-    });
-    std::vector<std::size_t> all;
-    for (std::size_t b = 0; b < count; ++b) {
-        for (const LimitReport& report : reports[b]) add_report(report, task.samples.report);
-        all.insert(all.end(), left[b].begin(), left[b].end());
-    }
-    return all;
-}
-
 /// What all calls for one mesh share: the control mesh with its automatic creases, the scales of the tolerances, the classes.
 struct Evaluation {
     /// whole: the extent of the mesh that this is a part of, or none
@@ -300,7 +123,8 @@ struct Evaluation {
         : options((check(with), with)),
           control(detail::control_mesh(mesh, options.scheme)),
           scales(channel_scales(control, whole != nullptr ? *whole : detail::limit_extent(control))),
-          descents(control, options.scheme, /*by_frequency=*/whole == nullptr) {}
+          descents(control, options.scheme, /*by_frequency=*/whole == nullptr),
+          patches(control, options.scheme) {}
 
     /// keep:    what had to be refined, for the next call
     /// targets: if not empty, positions that the queries approach; moved: by how much they have
@@ -311,12 +135,8 @@ struct Evaluation {
         const auto order = sorted_by_cells(queries, control.cells.size());
         const auto cells = places_of_cells(queries, order);
         auto rest = descents.run({control, queries, order, options, scales, samples, targets, moved}, cells, keep);
-        if (!rest.empty()) {
-            const DescentTask task{control, queries, order, options, scales, samples};
-            const auto classes = descents.classes();
-            rest = refine_rest(task, rest, classes.get());
-            if (!rest.empty()) (void)refine_rest(task, rest, nullptr);
-        }
+        const DescentTask task{control, queries, order, options, scales, samples};
+        while (!rest.empty()) rest = patches.run(task, rest, *descents.classes());
         for (std::size_t a = 0; a < control.attributes.size(); ++a) {
             keep_within(control.attributes[a].bounds, samples.attributes[a]);
         }
@@ -327,6 +147,7 @@ struct Evaluation {
     HexMesh control;
     std::vector<double> scales;  // of the channels
     detail::LimitDescents descents;
+    mutable detail::PatchTree patches;  // has a lock of its own
 };
 
 }  // namespace

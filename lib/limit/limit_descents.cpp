@@ -176,7 +176,7 @@ std::shared_ptr<ClassGraph> LimitDescents::classes() const {
     return state_->classes();
 }
 
-std::vector<std::size_t> LimitDescents::run(const DescentTask& task, std::span<const CellPlaces> cells, bool keep) const {
+std::vector<LeftPlace> LimitDescents::run(const DescentTask& task, std::span<const CellPlaces> cells, bool keep) const {
     State& state = *state_;
     DescentWorkers workers([&] { return DescentWorker(task); });
     Progress* progress = task.options.progress;
@@ -218,7 +218,7 @@ std::vector<std::size_t> LimitDescents::run(const DescentTask& task, std::span<c
         });
     }
     report_progress(progress, "limit", 1);
-    std::vector<std::size_t> left;
+    std::vector<LeftPlace> left;
     for (DescentWorker& worker : workers) {
         add_report(worker.report(), task.samples.report);
         left.insert(left.end(), worker.left().begin(), worker.left().end());

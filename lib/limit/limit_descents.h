@@ -30,11 +30,11 @@ public:
     LimitDescents(const LimitDescents&) = delete;
     LimitDescents& operator=(const LimitDescents&) = delete;
 
-    /// Fills the samples of the task, whose mesh and scheme are those above. Returns the queries, by their numbers, whose
-    /// surroundings have no class: those are left to the caller. Several threads may call it.
+    /// Fills the samples of the task, whose mesh and scheme are those above. Returns the queries whose surroundings have no
+    /// class: those are left to the caller. Several threads may call it.
     ///
     /// keep: what had to be refined, for the next call
-    [[nodiscard]] std::vector<std::size_t> run(const DescentTask& task, std::span<const CellPlaces> cells, bool keep) const;
+    [[nodiscard]] std::vector<LeftPlace> run(const DescentTask& task, std::span<const CellPlaces> cells, bool keep) const;
 
     /// The classes so far.
     [[nodiscard]] std::shared_ptr<ClassGraph> classes() const;

@@ -125,7 +125,7 @@ const RefinedOctant& RefinedCells::octant(std::size_t number, std::size_t octant
 }
 
 void RefinedCells::run(const RefinedOctant& in, std::span<OpenPlace> places, DescentWorker& with) const {
-    if (in.entry == nullptr) return with.leave(places);
+    if (in.entry == nullptr) return with.leave(places, 1);
     if (in.entry->on_grid) {
         GridPoints grid = in.entry->grid;
         for (Index& p : grid) p = p == kNone ? kNone : in.points[p];
@@ -156,7 +156,7 @@ void RefinedCells::enter(const RefinedOctant& parent, std::span<OpenPlace> place
     }
     each_octant(places, [&](std::size_t octant, std::span<OpenPlace> inside) {
         const ClassEntry::Child& child = parent.entry->children[walk_octant(parent.turn, octant)];
-        if (child.to == nullptr) return with.leave(inside);
+        if (child.to == nullptr) return with.leave(inside, 2);
         double* to = with.values(2, child.rows.size());
         for (const std::uint16_t row : child.rows) to = copy_row(many ? all + row * stride : row_of(points[row]), stride, to);
         with.begin(*child.to, composed(child.turn, parent.turn), 2, inside, *classes_);

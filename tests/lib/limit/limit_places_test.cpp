@@ -13,6 +13,7 @@
 #include "subvol/limit.h"
 #include "subvol/mesh_io.h"
 #include "subvol/model.h"
+#include "subvol/probe.h"
 #include "subvol/refine.h"
 
 namespace subvol {
@@ -135,29 +136,76 @@ TEST_P(LimitPlaces, AreFineVerticesWhereCellsMeetAtAPointOnly) {
     expect_fine_vertices(mesh, {GetParam()}, tolerance_of(GetParam()));
 }
 
-// So many cells that no neighbourhood has a class before it has left the axis.
-TEST(LimitOfMcq, HasTheVerticesAroundAnAxisOfManyCells) {
-    constexpr Index kAround = 80;
+/// Two layers of so many cells around an axis that no neighbourhood has a class before it has left the axis.
+HexMesh axis_of(Index around) {
     HexMesh mesh;
     for (const double z : {0.0, 1.0, 2.0}) {
         mesh.points.emplace_back(0, 0, z);
-        for (Index k = 0; k < 2 * kAround; ++k) {
-            const double angle = std::numbers::pi * k / kAround;
+        for (Index k = 0; k < 2 * around; ++k) {
+            const double angle = std::numbers::pi * k / around;
             mesh.points.emplace_back(std::cos(angle), std::sin(angle), z);
         }
     }
-    constexpr Index kLayer = 1 + 2 * kAround;
-    for (const Index low : {Index{0}, kLayer}) {
-        for (Index k = 0; k < kAround; ++k) {
-            const std::array<Index, 4> quad{low, low + 1 + 2 * k, low + 2 + 2 * k, low + 1 + (2 * k + 2) % (2 * kAround)};
+    const Index layer = 1 + 2 * around;
+    for (const Index low : {Index{0}, layer}) {
+        for (Index k = 0; k < around; ++k) {
+            const std::array<Index, 4> quad{low, low + 1 + 2 * k, low + 2 + 2 * k, low + 1 + (2 * k + 2) % (2 * around)};
             auto& cell = mesh.cells.emplace_back();
             for (std::size_t i = 0; i < 4; ++i) {
                 cell[i] = quad[i];
-                cell[i + 4] = quad[i] + kLayer;
+                cell[i + 4] = quad[i] + layer;
             }
         }
     }
-    expect_fine_vertices(mesh, {Scheme::Mcq}, 1e-12);
+    return mesh;
+}
+
+TEST(LimitOfMcq, HasTheVerticesAroundAnAxisOfManyCells) {
+    expect_fine_vertices(axis_of(80), {Scheme::Mcq}, 1e-12);
+}
+
+TEST(LimitOfMcq, IsTheSameAroundAnAxisWhateverHasBeenRefinedBefore) {
+    HexMesh mesh = axis_of(50);
+    test::add_field(mesh, "f", [](const Vec3& p) { return p.x * p.y + p.z; });
+    std::mt19937 random(8);
+    std::uniform_real_distribution<double> part(0, 1);
+    std::vector<LimitQuery> queries;
+    for (Index n = 0; n < 60; ++n) {
+        const double near = std::pow(part(random), 6);  // most of them next to the axis
+        queries.push_back({n * 7 % 100, {near, near * part(random), part(random)}});
+    }
+    const LimitSamples together = evaluate_limit(mesh, queries);
+    const LimitEvaluator limit(mesh);
+    const LimitEvaluator alone(mesh);
+    const LimitSamples all = limit.at(queries);
+    for (std::size_t q = queries.size(); q-- > 0;) {  // the last first: other patches than those of all places
+        const LimitSamples one = alone.at(std::span(queries).subspan(q, 1));
+        ASSERT_EQ(one.positions[0], all.positions[q]) << q;
+        ASSERT_EQ(one.jacobians[0], all.jacobians[q]) << q;
+        ASSERT_EQ(one.attributes[0].values[0], all.attributes[0].values[q]) << q;
+        ASSERT_EQ(together.positions[q], all.positions[q]) << q;
+    }
+    const LimitSamples again = limit.at(queries);
+    EXPECT_EQ(again.positions, all.positions);
+    EXPECT_EQ(again.attributes[0].values, all.attributes[0].values);
+}
+
+// The boxes of thin wedges overlap: a place lies in those of a quarter of all, but it is found in the one that has it.
+TEST(LimitOfMcq, IsFoundInThinWedgesAroundAnAxis) {
+    HexMesh mesh = axis_of(120);
+    test::add_field(mesh, "f", [](const Vec3& p) { return p.z + 2 * p.x; });
+    std::vector<LimitQuery> queries;
+    for (Index c = 0; c < mesh.cells.size(); c += 3) queries.push_back({c, {0.7, 0.4, 0.3}});
+    const LimitSamples samples = evaluate_limit(mesh, queries);
+    const ProbeResult found = LimitProbe(mesh).at(samples.positions);
+    for (std::size_t q = 0; q < queries.size(); ++q) {
+        EXPECT_EQ(found.cells[q], queries[q].cell) << q;
+        EXPECT_NEAR(glm::distance(found.parameters[q], queries[q].uvw), 0, 2e-3)
+            << q;  // 1e-6 of the size across a wedge of 1/20
+        EXPECT_NEAR(found.fields[0].values[q], samples.attributes[0].values[q], 1e-5) << q;
+    }
+    const ProbeResult outside = LimitProbe(mesh).at(std::vector<Vec3>{{0.75, 0.75, 1}, {0, 0, 2.1}, {-0.9, 0.5, 0.5}});
+    for (std::size_t p = 0; p < 3; ++p) EXPECT_FALSE(outside.inside(p)) << p;
 }
 
 TEST_P(LimitPlaces, AreFineVerticesWhereCellsMeetAtAnEdgeOnly) {
