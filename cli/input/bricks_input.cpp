@@ -32,7 +32,7 @@ HexMesh stand_in(const Bricks& bricks) {
     for (int k = 0; k < 8; ++k) mesh.points.emplace_back(k & 1, k >> 1 & 1, k >> 2 & 1);
     mesh.cells.push_back({0, 1, 3, 2, 4, 5, 7, 6});
     for (const BrickField& field : bricks.fields) {
-        Attribute& attribute = mesh.attributes.emplace_back(Attribute{field.name, field.channels, {}});
+        Attribute& attribute = mesh.attributes.emplace_back(Attribute{field.name, field.channels, {}, field.bounds});
         for (int k = 0; k < 8; ++k) {
             const auto& values = k % 2 == 0 ? field.min : field.max;
             attribute.values.insert(attribute.values.end(), values.begin(), values.end());

@@ -64,6 +64,7 @@ Json to_json(const std::vector<BrickField>& fields) {
                         {"min", field.min},
                         {"max", field.max},
                         {"lengths", {field.shortest, field.longest}}});
+        if (!field.bounds.empty()) list.back()["bounds"] = field.bounds;
     }
     return list;
 }
@@ -77,7 +78,12 @@ std::vector<BrickField> fields_from(const Json& json) {
                          .max = entry.at("max"),
                          .shortest = entry.at("lengths").at(0),
                          .longest = entry.at("lengths").at(1)};
+        if (entry.contains("bounds")) field.bounds = entry.at("bounds").get<std::vector<std::array<double, 2>>>();
+        for (const auto& [low, high] : field.bounds) {
+            if (!(low <= high)) throw std::invalid_argument("bounds");
+        }
         const auto channels = static_cast<std::size_t>(std::max(field.channels, 0));
+        if (!field.bounds.empty() && field.bounds.size() != channels) throw std::invalid_argument("bounds");
         if (channels == 0 || field.min.size() != channels || field.max.size() != channels) throw std::invalid_argument("field");
         fields.push_back(std::move(field));
     }
@@ -121,6 +127,10 @@ bool same_names(const std::vector<BrickField>& a, const std::vector<BrickField>&
         a, b, [](const BrickField& x, const BrickField& y) { return x.name == y.name && x.channels == y.channels; });
 }
 
+bool same_bounds(const std::vector<BrickField>& a, const std::vector<BrickField>& b) {
+    return std::ranges::equal(a, b, {}, &BrickField::bounds, &BrickField::bounds);
+}
+
 bool same_ranges(const std::vector<BrickField>& a, const std::vector<BrickField>& b) {
     return std::ranges::equal(a, b, [](const BrickField& x, const BrickField& y) { return x.min == y.min && x.max == y.max; });
 }
@@ -144,6 +154,7 @@ void check_distinct(const Bricks& bricks, const std::string& file) {
 void check_whole(const Bricks& bricks, const std::string& file) {
     for (const Brick& brick : bricks.bricks) {
         if (!same_names(brick.fields, bricks.fields)) refuse("gives " + brick.file + " other fields than the mesh", file);
+        if (!same_bounds(brick.fields, bricks.fields)) refuse("gives " + brick.file + " other bounds than the mesh", file);
     }
     // The index stores the sums although they follow from the bricks, so that a lost or an added entry is found without reading
     // any brick.
@@ -188,7 +199,8 @@ BrickField range_of_owned(const Attribute& field, const std::vector<std::uint8_t
                      .min = std::vector<double>(channels, HUGE_VAL),
                      .max = std::vector<double>(channels, -HUGE_VAL),
                      .shortest = HUGE_VAL,
-                     .longest = -HUGE_VAL};
+                     .longest = -HUGE_VAL,
+                     .bounds = field.bounds};
     for (std::size_t p = 0; p < owned.size(); ++p) {
         if (!owned[p]) continue;
         double square = 0;

@@ -38,6 +38,7 @@ MeshPiece read_brick(const Bricks& bricks, std::size_t brick) {
     // The hash shows that the file is the one that was written; the contents are compared with the index in addition, because
     // the index itself has no hash.
     check_contents(bricks, about, read, file.string());
+    for (std::size_t f = 0; f < about.fields.size(); ++f) read.mesh.attributes[f].bounds = about.fields[f].bounds;
     return read;
 }
 

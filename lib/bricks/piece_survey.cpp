@@ -47,6 +47,7 @@ public:
                 throw Error(ErrorCode::InvalidInput, "too many points or cells", list_);
             }
             for (const Vec3& x : piece->points) survey_.box.add(x);
+            survey_.largest_cell = std::max(survey_.largest_cell, largest_cell(*piece));
             const bool others =
                 !piece->tets.corners.empty() || !piece->prisms.corners.empty() || !piece->pyramids.corners.empty();
             survey_.others = survey_.others || others;

@@ -79,6 +79,7 @@ struct PieceSurvey {
     std::size_t cells = 0, with_cells = 0;
     bool others = false, cut = false;
     Box box;
+    double largest_cell = 0;
     std::vector<std::pair<FileArray, std::size_t>> arrays;
     std::vector<Numbers> point_numbers, cell_numbers;
     const Numbers* order = nullptr;  // of the cells; null: that of the files

@@ -179,7 +179,7 @@ private:
         for (const Index i : again) numbers.push_back(ranks_[i]);
         std::vector<Vec3> there(again.size());
         tables_->coordinates.read_some(numbers, records_of(there));
-        const double near = kNearOfDiagonal * survey_.box.diagonal();
+        const double near = near_of_join(survey_.box, survey_.largest_cell);
         for (std::size_t i = 0; i < again.size(); ++i) {
             if (!(glm::distance(there[i], piece.points[again[i]]) <= near)) return false;
         }

@@ -32,6 +32,7 @@ std::uint64_t hash_of(const HexMesh& mesh, std::span<const std::uint32_t> brick_
     for (const Attribute& field : mesh.attributes) {
         hash.add(field.name);
         hash.add(bytes_of(field.values));
+        hash.add(bytes_of(field.bounds));
     }
     hash.add({reinterpret_cast<const char*>(brick_of_cell.data()), brick_of_cell.size_bytes()});
     return hash.value();
@@ -106,7 +107,8 @@ private:
         }
         std::ranges::sort(points);
         HexMesh& mesh = part.mesh;
-        for (const Attribute& field : mesh_.attributes) mesh.attributes.push_back({field.name, field.channels, {}});
+        for (const Attribute& field : mesh_.attributes)
+            mesh.attributes.push_back({field.name, field.channels, {}, field.bounds});
         for (Index i = 0; i < points.size(); ++i) {
             const Index p = points[i];
             places_[p] = i;

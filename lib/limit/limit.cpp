@@ -33,6 +33,7 @@
 #include "refine_steps.h"
 #include "subvol/cell.h"
 #include "subvol/detail/limit_of_part.h"
+#include "subvol/detail/tolerance_length.h"
 #include "subvol/error.h"
 #include "topology_parts.h"
 
@@ -153,8 +154,7 @@ struct Evaluation {
 }  // namespace
 
 double detail::LimitExtent::length() const {
-    constexpr double kCells = 1024;
-    return cell > 0 ? std::min(box.diagonal(), kCells * cell) : box.diagonal();
+    return tolerance_length(box, cell);
 }
 
 void detail::LimitExtent::add(const LimitExtent& more) {

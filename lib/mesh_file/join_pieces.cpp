@@ -11,6 +11,7 @@
 #include <unordered_map>
 
 #include "assemble.h"
+#include "subvol/detail/tolerance_length.h"
 #include "subvol/error.h"
 #include "text_scanner.h"
 
@@ -25,6 +26,22 @@ std::size_t cell_count(const MeshFile& part) {
         for (const Index number : cells.numbers) count = std::max(count, std::size_t{number} + 1);
     });
     return count;
+}
+
+double near_of_join(const Box& all, double largest) {
+    return 1e-6 * tolerance_length(all, largest);
+}
+
+double largest_cell(const MeshFile& part) {
+    double largest = 0;
+    each_kind(part, [&](const auto& cells) {
+        for (const auto& corners : cells.corners) {
+            Box box;
+            for (const Index p : corners) box.add(part.points[p]);
+            largest = std::max(largest, box.diagonal());
+        }
+    });
+    return largest;
 }
 
 std::string joining_report(std::size_t parts, std::string_view word, std::size_t joined, const std::string& by,
@@ -119,10 +136,12 @@ private:
         if (pieces_.empty() || numbers.size() != pieces_.size()) return false;
         std::unordered_map<double, Index> known;
         Box box;
+        double largest = 0;
         for (const MeshFile& piece : pieces_) {
             for (const Vec3& x : piece.points) box.add(x);
+            largest = std::max(largest, largest_cell(piece));
         }
-        const double near = kNearOfDiagonal * box.diagonal();
+        const double near = near_of_join(box, largest);
         for (std::size_t k = 0; k < pieces_.size(); ++k) {
             const auto& of_piece = numbers[k]->values;
             bool sound = true;

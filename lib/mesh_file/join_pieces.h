@@ -14,8 +14,13 @@ namespace subvol::detail {
 inline constexpr std::array<std::string_view, 3> kPointNumberArrays{"GlobalNodeId", "GlobalNodeID", "GlobalPointIds"};
 inline constexpr std::array<std::string_view, 3> kCellNumberArrays{"GlobalCellId", "GlobalElementId", "GlobalCellIds"};
 
-/// The most that points of different parts with the same number may be apart, as a part of the diagonal of all points.
-inline constexpr double kNearOfDiagonal = 1e-6;
+/// The most that points of different parts with the same number may be apart.
+///
+/// all, largest: the box of all points, and the diagonal of the largest cell's box
+[[nodiscard]] double near_of_join(const Box& all, double largest);
+
+/// The diagonal of the largest box of a cell; 0 if there are no cells.
+[[nodiscard]] double largest_cell(const MeshFile& part);
 
 /// The number of cells of all kinds that the part's file has.
 [[nodiscard]] std::size_t cell_count(const MeshFile& part);

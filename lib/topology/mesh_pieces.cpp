@@ -75,7 +75,7 @@ MeshPiece merged(std::vector<MeshPiece> parts) {
     all.owned_cells.assign(cells, 0);
     for (const Attribute& field : parts.front().mesh.attributes) {
         all.mesh.attributes.push_back(
-            {field.name, field.channels, std::vector<double>(points * static_cast<std::size_t>(field.channels))});
+            {field.name, field.channels, std::vector<double>(points * static_cast<std::size_t>(field.channels)), field.bounds});
     }
     std::set<std::array<Index, 2>> creases;
     std::set<std::array<Index, 4>> faces;

@@ -205,6 +205,12 @@ class Fractions(Precision):
         stats = self.run_ok("probe", "tank.vtk", "--stats", *options).json()["stats"]["whole"]["fields"][0]
         self.assertGreaterEqual(stats["min"], 0)
         self.assertLessEqual(stats["max"], 1)
+        self.run_ok("split", "tank.vtk", "-o", "tank.bricks", "--bricks", 3, "--cell-values", "fit")
+        parts = self.run_ok("probe", "tank.bricks", "--stats", "--json").json()["stats"]["whole"]["fields"][0]
+        self.assertEqual((parts["min"], parts["max"]), (stats["min"], stats["max"]))
+        made = self.run_ok("vdb", "tank.bricks", "-o", "b.vdb", "--resolution", 60, "--json").json()
+        self.assertGreaterEqual(made["grids"][0]["min"], 0)
+        self.assertLessEqual(made["grids"][0]["max"], 1)
         exact = self.run_ok("probe", "tank.vtk", "--stats", "--cell-values", "exact", "--json").json()["stats"]["whole"]["fields"][0]
         self.assertGreater(exact["max"], 1)
 

@@ -108,6 +108,17 @@ TEST_F(Series, PiecesAreJoinedByTheNumbersOfTheirPoints) {
     EXPECT_EQ(result.warnings[0], "array \"GlobalNodeId\" does not number the points: not used");
 }
 
+// How near is near does not depend on a piece that is far away: it is a part of the cells.
+TEST_F(Series, PointsThatACellLiesBetweenAreNotJoined) {
+    write("a.vtu", row(0, 1, integers("GlobalNodeId", "0 1 2 3 4 5 6 7")));
+    write("b.vtu", row(2, 1, integers("GlobalNodeId", "4 5 6 7 8 9 10 11")));
+    write("c.vtu", row(2'000'000, 1, integers("GlobalNodeId", "12 13 14 15 16 17 18 19")));
+    const ReadResult result = read_mesh(write("all.pvtu", pieces({"a.vtu", "b.vtu", "c.vtu"})));
+    EXPECT_EQ(result.mesh.points.size(), 24u);
+    EXPECT_NEAR(inspect(result.mesh).volume, 3, 1e-9);
+    EXPECT_EQ(result.warnings[0], "array \"GlobalNodeId\" does not number the points: not used");
+}
+
 TEST_F(Series, GhostCellsOfPiecesAreDropped) {
     write("a.vtu", row(0, 3, "", integers("vtkGhostType", "0 0 1") + integers("part", "1 1 2")));
     write("b.vtu", row(2, 2, "", integers("part", "2 2")));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -17,11 +18,13 @@ namespace subvol {
 ///
 /// min, max:       of each channel
 /// shortest, longest: of vectors, their lengths; of one channel, as min and max
+/// bounds:         `Attribute::bounds`
 struct BrickField {
     std::string name;
     int channels = 1;
     std::vector<double> min, max;
     double shortest = 0, longest = 0;
+    std::vector<std::array<double, 2>> bounds{};
 };
 
 /// A brick, as the index has it.

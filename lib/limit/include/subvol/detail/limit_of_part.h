@@ -23,8 +23,7 @@ struct LimitExtent {
     std::vector<std::array<double, 2>> ranges{};
     double cell = 0;
 
-    /// The length that tolerances of positions are parts of: the box's diagonal, but no more than that of 1024 of the largest
-    /// cells, so that two bodies that are far from each other are as exact as each alone.
+    /// The length that tolerances of positions are parts of.
     [[nodiscard]] double length() const;
 
     /// Adds the extent of another part of the mesh, which has the same attributes; an empty extent has none.
