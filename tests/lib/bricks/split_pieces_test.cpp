@@ -82,6 +82,20 @@ TEST_F(SplitPieces, CutsOfOneMeshWithNumberedCellsGiveOneMesh) {
     EXPECT_NE(one.mesh.cells, unnumbered.mesh.cells);
 }
 
+// A cell that a point was moved through has a negative volume, and is no left-handed one.
+TEST_F(SplitPieces, FoldedCellsAreNotTurned) {
+    HexMesh mesh = test::make_box(3, 3, 3);
+    for (Vec3& x : mesh.points) {
+        if (x == Vec3(1, 1, 1)) x = Vec3(2.6);
+    }
+    const std::filesystem::path pieces = write_pieces(mesh, cut(mesh, false), {});
+    expect_same_bricks(pieces, {.bricks = 3}, "");
+    const PiecesSplit split = split_pieces(path("f.bricks"), pieces, {}, {.bricks = 3});
+    EXPECT_THAT(split.warnings, testing::Not(testing::Contains(HasSubstr("turned round"))));
+    EXPECT_THAT(split.warnings, testing::Contains(HasSubstr("have a negative Jacobian")));
+    EXPECT_EQ(split_pieces(path("f.bricks"), pieces, {}, {.bricks = 3}).warnings, split.warnings) << "of bricks that were kept";
+}
+
 TEST_F(SplitPieces, OtherMeshesAreHeldWhole) {
     EXPECT_TRUE(split_pieces(path("b"), write("a.mesh", "")).held_whole.empty());
     const HexMesh mesh = test::make_box(2, 2, 2);
