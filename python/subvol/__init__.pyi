@@ -168,12 +168,14 @@ def render(
                  full]
     backend:     where to splat: auto (default: a GPU, else the CPU), gl, cpu [auto, gl, cpu]
     device:      the OpenGL device's number in `info --gl` (default: the first GPU) [0 to 1000; not with backend='cpu']
-    sheets:      splat: number of planes over the volume's depth (default: as many as the kernels need) [2 to 65536]
+    sheets:      splat: number of planes over the volume's depth (default: as many as the kernels need for tolerance_image)
+                 [2 to 65536]
     shadows:     splat: the volume shadows itself from the light at the upper left
     ambient_occlusion: splat: darken hollows that are narrower than this part of the box's diagonal, such as .1 [0 to 1]
     samples:     n x n rays per pixel (default 1; 2 for look solid) [1 to 16]
-    image_tolerance: dense, without levels: draw level after level until the RMS of the picture's change is less [more than
-                 0; not with levels]
+    image_tolerance: how far colours may be off: splat and sheets take as many sheets as that needs (default .001); dense,
+                 without levels, draws level after level until the picture changes by less [more than 0; not with levels;
+                 not with sheets]
     order:       pt: how the tetrahedra are sorted: topological (by shared faces), centroid, lists (one per pixel) or havs
                  (faces by centroid, then a k-buffer per pixel) [topological, centroid, lists, havs]
     kbuffer:     havs: entries of the k-buffer [1 to 65536; with order='havs']

@@ -55,8 +55,11 @@ std::vector<Option> options_of(MethodOptions& options) {
             Option("tolerance-image", options.image_tolerance)
                 .positive()
                 .called("image_tolerance")
-                .help("RMS", "dense, without --levels: draw level after level until the RMS of the picture's change is less")
-                .not_with("levels"),
+                .help("RMS",
+                      "how far colours may be off: splat and sheets take as many sheets as that needs (default .001); dense, "
+                      "without --levels, draws level after level until the picture changes by less")
+                .not_with("levels")
+                .not_with("sheets"),
             Option("order", options.order)
                 .help("NAME",
                       "pt: how the tetrahedra are sorted: topological (by shared faces), centroid, lists (one per pixel) or "

@@ -242,6 +242,7 @@ struct PictureMaker::State {
         splat.samples = options.style.sample_count();
         splat.clip = options.style.clip;
         splat.progress = nullptr;
+        if (options.image_tolerance) splat.image_tolerance = *options.image_tolerance;
         if (is_lit(options.style.look.look)) splat.shading = Shading{};
         const std::vector<std::size_t> shown = shown_channels();
         splat.channel = shown.front();

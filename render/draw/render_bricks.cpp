@@ -67,7 +67,7 @@ struct BrickPicture::State {
     std::uint64_t memory_bytes;
     SplatScene empty;  // without kernels
     KernelRegions regions;
-    FloatCounts reaches{};  // of all kernels of this process
+    ReachCounts reaches{};  // of all kernels of this process
 };
 
 BrickPicture::BrickPicture(Surface boundary, const View& view, const Optics& optics, const BrickSplatOptions& options) {
@@ -88,7 +88,7 @@ std::vector<PixelRows> BrickPicture::rows_of(const RbfVolume& kernels) const {
 }
 
 void BrickPicture::count(const RbfVolume& kernels) {
-    for (const Symmetric3& frame : kernels.frames) state_->reaches.add(depth_reach(state_->empty, state_->view, frame));
+    for (const Symmetric3& frame : kernels.frames) count_reach(state_->empty, state_->view, frame, state_->reaches);
 }
 
 void BrickPicture::add(const RbfVolume& kernels, std::span<const std::uint64_t> numbers) {
@@ -100,14 +100,9 @@ void BrickPicture::add(const RbfVolume& kernels, std::span<const std::uint64_t> 
 
 SplatResult BrickPicture::draw(const SumCounts& sum) {
     auto& [drawn, view, optics, splat, memory_bytes, empty, regions, counted] = *state_;
-    const FloatCounts& reaches = counted;  // by a name that lambdas can take
-    std::vector<std::int64_t> kernels{static_cast<std::int64_t>(reaches.size())};
-    if (sum) sum(kernels);
-    if (splat.sheets == 0) {
-        const DepthRange depths = depth_range_of(empty, view);
-        splat.sheets = sheets_needed(static_cast<std::size_t>(kernels[0]), depths.max - depths.min,
-                                     [&](std::size_t place) { return reaches.in_place(place, sum); });
-    }
+    ReachCounts reaches = counted;
+    reaches.add_up(sum);
+    if (splat.sheets == 0) splat.sheets = sheets_needed(empty, depth_range_of(empty, view), reaches);
     SplatResult result{Image(view.width(), view.height()), {}, {}};
     result.depth.resize(result.image.rgba.size() / 4);
     const auto most = std::max<std::uint64_t>(memory_bytes / kBytesOfKernel, 1);
@@ -146,7 +141,7 @@ SplatResult BrickPicture::draw(const SumCounts& sum) {
         group.clear();
     }
     report_progress(splat.progress, "splat", 1);
-    result.report.points = static_cast<std::size_t>(kernels[0]);
+    result.report.points = static_cast<std::size_t>(reaches.kernels());
     return result;
 }
 

@@ -27,12 +27,10 @@ int sheets_of_picture(const RbfVolume& volume, const View& view, const SplatOpti
     if (options.sheets != 0) return options.sheets;
     const detail::SplatScene scene = detail::make_scene(volume, options);
     const View fine = fine_view(view, options);
-    const auto [min, max, near] = detail::depth_range_of(scene, fine);
-    const std::vector<float> reaches = detail::depth_reaches(scene, fine);
-    std::vector<std::int64_t> kernels{static_cast<std::int64_t>(reaches.size())};
-    if (sum) sum(kernels);
-    return detail::sheets_needed(static_cast<std::size_t>(kernels[0]), max - min,
-                                 [&](std::size_t place) { return detail::number_in_place(place, reaches, sum); });
+    detail::ReachCounts counts;
+    for (const Symmetric3& frame : volume.frames) detail::count_reach(scene, fine, frame, counts);
+    counts.add_up(sum);
+    return detail::sheets_needed(scene, detail::depth_range_of(scene, fine), counts);
 }
 
 std::vector<PixelRows> rows_of_kernels(const RbfVolume& volume, const View& view, const Optics& optics,

@@ -61,6 +61,7 @@ struct SplatScene {
     std::vector<float> kernel_table{};  // equally spaced over e or |ξ| / radius in [0,1]; the last is 0
     bool bent = false;                  // channels have Hessians
     bool normalized = true;
+    double image_tolerance = 1e-3;
     float half_weight = 0;  // > 0: there is no boundary; the volume ends where the sum of weights falls below it
     std::optional<Shading> shading{};
     std::vector<CornerNormals> boundary_normals{};  // of the boundary's triangles; empty without shading

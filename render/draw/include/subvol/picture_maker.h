@@ -46,7 +46,8 @@ struct PictureStyle {
 /// splat:           how kernels are drawn; method, samples and clip are those of the style, channels those of the body, and
 ///                  light is added where the look has it
 /// order, kbuffer:  of pt
-/// image_tolerance: of dense; none: its level is chosen by how far it lies from the limit in the picture
+/// image_tolerance: the RMS by which colours may be off; none: 1e-3 for sheets, and the level of dense is chosen by how far it
+///                  lies from the limit in the picture
 /// max_levels:      of dense
 /// lod:             kernels are merged as long as they are narrower than so many pixels; of pt the fraction of inner faces
 ///                  that is drawn

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "subvol/detail/number_in_place.h"
+#include "subvol/detail/reach_counts.h"
 #include "subvol/pixel_rows.h"
 #include "subvol/sample_pieces.h"
 #include "subvol/splat.h"

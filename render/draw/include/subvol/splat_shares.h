@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "subvol/camera.h"
-#include "subvol/detail/number_in_place.h"
+#include "subvol/detail/reach_counts.h"
 #include "subvol/optics.h"
 #include "subvol/pixel_rows.h"
 #include "subvol/rbf_volume.h"

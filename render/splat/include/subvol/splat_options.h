@@ -49,8 +49,10 @@ struct Shading {
 };
 
 /// samples:       the mean of n × n places on a regular grid in each pixel is taken, 1..16
-/// sheets:        planes of constant eye depth over the volume's depth range, 2..65536; 0: as many as the kernels need. Where
-///                rays enter and leave the volume it is sampled besides, so bodies thinner than a sheet are not lost
+/// sheets:        planes of constant eye depth over the volume's depth range, 2..65536; 0: as many as the kernels need for the
+///                tolerance. Where rays enter and leave the volume it is sampled besides, so bodies thinner than a sheet are
+///                not lost
+/// image_tolerance: > 0: without a number of sheets, the RMS by which colours may differ from those of very many
 /// channel:       the channel of the volume that is shown
 /// device:        the OpenGL device's number in gl_devices(); none: the first hardware, else software
 /// color_channel: a channel for the colours that is not that of the opacities; its colours are not pre-integrated
@@ -65,6 +67,7 @@ struct SplatOptions {
     std::optional<int> device{};
     int samples = 1;
     int sheets = 0;
+    double image_tolerance = 1e-3;
     std::size_t channel = 0;
     std::optional<std::size_t> color_channel{};
     bool normalized = true;
