@@ -58,6 +58,26 @@ TEST(LimitSurface, PointsLieOnTheLimitAndHaveItsGradient) {
     }
 }
 
+// A mesh's only field is found with the points, those of several in a second evaluation: both are the limit's at the places.
+TEST(LimitSurface, FieldsAreThoseOfTheLimitWhetherThereAreOneOrSeveral) {
+    HexMesh mesh = ball_with_radius(4);
+    HexMesh more = mesh;
+    test::add_field(more, "g", [](const Vec3& p) { return p.x - p.y * p.z; });
+    for (const SurfaceOptions& options : {SurfaceOptions{.boundary = true}, SurfaceOptions{.isos = {0.3}}}) {
+        const LimitSurface one = limit_surface(mesh, "r2", options), several = limit_surface(more, "r2", options);
+        ASSERT_EQ(one.fields.size(), 1u);
+        ASSERT_EQ(several.fields.size(), 2u);
+        const LimitSamples samples = evaluate_limit(more, several.places, {.tolerance = 1e-8, .max_levels = 14});
+        ASSERT_EQ(one.surface.triangles, several.surface.triangles);
+        for (std::size_t p = 0; p < several.places.size(); ++p) {
+            // The tolerance of the limit: 1e-6 of the diagonal and of the range, and what a step of 1e-3 of a cell leaves.
+            ASSERT_NEAR(glm::distance(several.surface.points[p], samples.positions[p]), 0, 3e-5) << p;
+            ASSERT_NEAR(one.fields[0].values[p], samples.attributes[0].values[p], 3e-5) << p;
+            ASSERT_NEAR(several.fields[1].values[p], samples.attributes[1].values[p], 3e-5) << p;
+        }
+    }
+}
+
 TEST(LimitSurface, SphereIsClosedAndRightToSecondOrder) {
     // Triangles with corners on a sphere are nearer to it by the square of their edges: four times for each level.
     const HexMesh mesh = ball_with_radius(4);
