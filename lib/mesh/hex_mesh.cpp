@@ -10,6 +10,7 @@
 #include <atomic>
 #include <charconv>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -61,6 +62,21 @@ bool is_physical(std::string_view name) {
     return std::ranges::any_of(kQuantities, [&](std::string_view part) { return text.find(part) != std::string::npos; });
 }
 
+/// The first of the numbers in [0, count) for which `wrong` is true; in parallel.
+template <class Wrong>
+std::optional<std::size_t> first_where(std::size_t count, const Wrong& wrong) {
+    const std::size_t found = tbb::parallel_reduce(
+        tbb::blocked_range<std::size_t>(0, count), count,
+        [&](const auto& range, std::size_t first) {
+            for (std::size_t i = range.begin(); i < std::min(range.end(), first); ++i) {
+                if (wrong(i)) return i;
+            }
+            return first;
+        },
+        [](std::size_t a, std::size_t b) { return std::min(a, b); });
+    return found == count ? std::nullopt : std::optional(found);
+}
+
 /// Whether a cell has 8 different points below the count; without branches, since nearly all cells are valid.
 bool is_valid(const std::array<Index, 8>& cell, std::size_t points) {
     bool wrong = false;
@@ -72,19 +88,11 @@ bool is_valid(const std::array<Index, 8>& cell, std::size_t points) {
 }
 
 void validate_cells(const HexMesh& mesh) {
-    const std::size_t count = mesh.cells.size(), points = mesh.points.size();
-    const std::size_t bad = tbb::parallel_reduce(
-        tbb::blocked_range<std::size_t>(0, count), count,
-        [&](const auto& range, std::size_t first) {
-            for (std::size_t c = range.begin(); c < std::min(range.end(), first); ++c) {
-                if (!is_valid(mesh.cells[c], points)) return c;
-            }
-            return first;
-        },
-        [](std::size_t a, std::size_t b) { return std::min(a, b); });
-    if (bad == count) return;
-    const std::string where = "cell " + std::to_string(bad);
-    auto corners = mesh.cells[bad];
+    const std::size_t points = mesh.points.size();
+    const auto bad = first_where(mesh.cells.size(), [&](std::size_t c) { return !is_valid(mesh.cells[c], points); });
+    if (!bad) return;
+    const std::string where = "cell " + std::to_string(*bad);
+    auto corners = mesh.cells[*bad];
     for (std::size_t k = 0; k < 8; ++k) {
         if (corners[k] < points) continue;
         throw Error(ErrorCode::InvalidInput,
@@ -149,11 +157,12 @@ void validate(const HexMesh& mesh) {
     validate_cells(mesh);
     const auto used = detail::used_points(mesh);
     validate_tags(mesh, used);
-    for (std::size_t p = 0; p < mesh.points.size(); ++p) {
+    const auto wrong_point = first_where(mesh.points.size(), [&](std::size_t p) {
         const Vec3& x = mesh.points[p];
-        if (used[p] && !(std::isfinite(x.x) && std::isfinite(x.y) && std::isfinite(x.z))) {
-            throw Error(ErrorCode::InvalidInput, "a coordinate is not finite", "point " + std::to_string(p));
-        }
+        return used[p] && !(std::isfinite(x.x) && std::isfinite(x.y) && std::isfinite(x.z));
+    });
+    if (wrong_point) {
+        throw Error(ErrorCode::InvalidInput, "a coordinate is not finite", "point " + std::to_string(*wrong_point));
     }
     for (const auto& attribute : mesh.attributes) {
         const auto channels = static_cast<std::size_t>(attribute.channels);
@@ -162,11 +171,12 @@ void validate(const HexMesh& mesh) {
                         "attribute \"" + attribute.name + "\"",
                         std::to_string(mesh.points.size()) + " points of " + std::to_string(attribute.channels) + " channels");
         }
-        for (std::size_t i = 0; i < attribute.values.size(); ++i) {
-            if (used[i / channels] && !std::isfinite(attribute.values[i])) {
-                throw Error(ErrorCode::InvalidInput, "the value at point " + std::to_string(i / channels) + " is not finite",
-                            "attribute \"" + attribute.name + "\"");
-            }
+        const auto wrong_value = first_where(
+            attribute.values.size(), [&](std::size_t i) { return !std::isfinite(attribute.values[i]) && used[i / channels]; });
+        if (wrong_value) {
+            throw Error(ErrorCode::InvalidInput,
+                        "the value at point " + std::to_string(*wrong_value / channels) + " is not finite",
+                        "attribute \"" + attribute.name + "\"");
         }
     }
 }

@@ -210,10 +210,7 @@ LinesOfParts::LinesOfParts(std::size_t points) {
 }
 
 void LinesOfParts::add(const MeshPart& part) {
-    std::vector<Index> owned;
-    for (Index p = 0; p < part.points.size(); ++p) {
-        if (part.own[p]) owned.push_back(p);
-    }
+    const auto owned = numbers_where<std::vector<Index>>(part.points.size(), [&](std::size_t p) { return part.own[p] != 0; });
     append(
         LineFinder(part.topology, false), owned.size(), [&](std::size_t i) { return owned[i]; },
         [&](Index p) { return part.points[p]; }, all_);

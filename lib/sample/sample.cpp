@@ -2,6 +2,7 @@
 #include "subvol/sample.h"
 
 #include <algorithm>
+#include <atomic>
 #include <bit>
 #include <cmath>
 #include <type_traits>
@@ -13,6 +14,7 @@
 #include "subvol/boundary_values.h"
 #include "subvol/detail/limit_of_part.h"
 #include "subvol/detail/number_text.h"
+#include "subvol/detail/parallel_each.h"
 #include "subvol/detail/points_range.h"
 #include "subvol/error.h"
 #include "subvol/limit.h"
@@ -104,10 +106,12 @@ struct SampledLevel {
 
 void mark_hull(const detail::MeshPart& part, std::vector<std::uint8_t>& on_hull) {
     const Topology& topology = part.topology;
-    for (Index f = 0; f < topology.faces.size(); ++f) {
-        if (!topology.face_on_hull(f)) continue;
-        for (const Index p : topology.faces[f]) on_hull[part.points[p]] |= part.own[p];
-    }
+    detail::parallel_each(topology.faces.size(), [&](std::size_t f) {
+        if (!topology.face_on_hull(static_cast<Index>(f))) return;
+        for (const Index p : topology.faces[f]) {
+            if (part.own[p]) std::atomic_ref(on_hull[part.points[p]]).store(1, std::memory_order_relaxed);
+        }
+    });
 }
 
 /// The samples are the control points. The topology is built part by part, to save memory.

@@ -4,6 +4,7 @@
 #include <tbb/parallel_sort.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <tuple>
 
@@ -51,7 +52,9 @@ std::vector<std::uint8_t> slabs_of(const HexMesh& mesh, std::size_t count) {
         return along > 0 ? static_cast<std::size_t>(std::min(along, 1.0) * (kBins - 1)) : 0;  // unused points may be anywhere
     };
     std::vector<std::size_t> first(kBins + 1, 0);
-    for (const Vec3& x : mesh.points) ++first[bin_of(x) + 1];
+    parallel_each(mesh.points.size(), [&](std::size_t p) {
+        std::atomic_ref(first[bin_of(mesh.points[p]) + 1]).fetch_add(1, std::memory_order_relaxed);
+    });
     const bool crowded = *std::ranges::max_element(first) * count > mesh.points.size();
     if (crowded && count > 1) return slabs_by_rank(mesh, count, axis);
     for (std::size_t b = 0; b < kBins; ++b) first[b + 1] += first[b];
@@ -82,12 +85,12 @@ public:
     [[nodiscard]] MeshPart part(std::size_t slab) {
         HexMesh cut = cells_about(slab);
         MeshPart part;
-        for (Index p = 0; p < numbers_.size(); ++p) {
-            if (numbers_[p] == kNone) continue;
-            numbers_[p] = static_cast<Index>(part.points.size());
-            part.points.push_back(p);
-            part.own.push_back(slabs_[p] == slab);
-        }
+        part.points = numbers_where<std::vector<Index>>(numbers_.size(), [&](std::size_t p) { return numbers_[p] != kNone; });
+        part.own.resize(part.points.size());
+        parallel_each(part.points.size(), [&](std::size_t i) {
+            numbers_[part.points[i]] = static_cast<Index>(i);
+            part.own[i] = slabs_[part.points[i]] == slab;
+        });
         renumber(cut.cells);
         renumber(cut.creases);
         renumber(cut.sharp_faces);
@@ -104,11 +107,14 @@ private:
             return std::ranges::any_of(entity, [&](Index p) { return slabs_[p] == slab; });
         };
         HexMesh cut;
-        for (std::size_t c = 0; c < reach_.size(); ++c) {
-            if (slab < reach_[c][0] || slab > reach_[c][1] || !about(mesh_.cells[c])) continue;
-            cut.cells.push_back(mesh_.cells[c]);
-            for (const Index p : mesh_.cells[c]) numbers_[p] = 0;
-        }
+        const auto cells = numbers_where<std::vector<Index>>(reach_.size(), [&](std::size_t c) {
+            return slab >= reach_[c][0] && slab <= reach_[c][1] && about(mesh_.cells[c]);
+        });
+        cut.cells.resize(cells.size());
+        parallel_each(cells.size(), [&](std::size_t i) {
+            cut.cells[i] = mesh_.cells[cells[i]];
+            for (const Index p : cut.cells[i]) std::atomic_ref(numbers_[p]).store(0, std::memory_order_relaxed);
+        });
         std::ranges::copy_if(mesh_.creases, std::back_inserter(cut.creases), about);
         std::ranges::copy_if(mesh_.sharp_faces, std::back_inserter(cut.sharp_faces), about);
         return cut;
@@ -116,9 +122,9 @@ private:
 
     template <class Entities>
     void renumber(Entities& entities) const {
-        for (auto& entity : entities) {
-            for (Index& p : entity) p = numbers_[p];
-        }
+        parallel_each(entities.size(), [&](std::size_t i) {
+            for (Index& p : entities[i]) p = numbers_[p];
+        });
     }
 
     [[nodiscard]] Topology topology_of(const HexMesh& cut) const {

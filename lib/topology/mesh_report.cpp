@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "subvol/mesh_report.h"
 
+#include <tbb/blocked_range.h>
+#include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -53,45 +55,68 @@ void add(ShapeReport& report, const CellQuality& cell) {
     report.min_scaled_jacobian = std::min(report.min_scaled_jacobian, cell.min_scaled_jacobian);
 }
 
+void add_counts(MeshReport& report, const MeshReport& more) {
+    report.points_used += more.points_used;
+    report.edges += more.edges;
+    report.faces += more.faces;
+    report.boundary_faces += more.boundary_faces;
+    report.interior_edges += more.interior_edges;
+    for (const auto& [valence, edges] : more.interior_edge_valence) report.interior_edge_valence[valence] += edges;
+    report.singular_nodes += more.singular_nodes;
+    report.nonmanifold_edges += more.nonmanifold_edges;
+    report.nonmanifold_points += more.nonmanifold_points;
+}
+
+/// Calls add(i, counts) for every i in [0, count), in parallel, and adds the counts to the report.
+template <class Add>
+void count_each(std::size_t count, MeshReport& report, const Add& add) {
+    tbb::enumerable_thread_specific<MeshReport> of_threads;
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 4096), [&](const auto& range) {
+        MeshReport& counts = of_threads.local();
+        for (std::size_t i = range.begin(); i != range.end(); ++i) add(static_cast<Index>(i), counts);
+    });
+    for (const MeshReport& counts : of_threads) add_counts(report, counts);
+}
+
 /// Counts the edges whose smaller point is the part's own.
 void count_edges(const detail::MeshPart& part, MeshReport& report) {
     const Topology& topology = part.topology;
-    for (Index e = 0; e < topology.edges.size(); ++e) {
-        if (!part.own[topology.edges[e][0]]) continue;
-        ++report.edges;
+    count_each(topology.edges.size(), report, [&](Index e, MeshReport& counts) {
+        if (!part.own[topology.edges[e][0]]) return;
+        ++counts.edges;
         if (topology.edge_on_boundary[e]) {
-            report.nonmanifold_edges += topology.boundary_faces_at(e) != 2;
+            counts.nonmanifold_edges += topology.boundary_faces_at(e) != 2;
         } else {
-            ++report.interior_edges;
-            ++report.interior_edge_valence[static_cast<int>(topology.edge_cells[e].size())];
+            ++counts.interior_edges;
+            ++counts.interior_edge_valence[static_cast<int>(topology.edge_cells[e].size())];
         }
-    }
+    });
 }
 
 /// Counts the faces whose smallest point is the part's own.
 void count_faces(const detail::MeshPart& part, MeshReport& report) {
     const Topology& topology = part.topology;
-    for (Index f = 0; f < topology.faces.size(); ++f) {
-        if (!part.own[topology.faces[f][0]]) continue;
-        ++report.faces;
-        report.boundary_faces += topology.face_on_hull(f);
-    }
+    count_each(topology.faces.size(), report, [&](Index f, MeshReport& counts) {
+        if (!part.own[topology.faces[f][0]]) return;
+        ++counts.faces;
+        counts.boundary_faces += topology.face_on_hull(f);
+    });
 }
 
 void count_points(const detail::MeshPart& part, MeshReport& report) {
     const Topology& topology = part.topology;
-    for (std::size_t p = 0; p < topology.point_count; ++p) {
-        if (!part.own[p]) continue;
-        ++report.points_used;
+    count_each(topology.point_count, report, [&](Index p, MeshReport& counts) {
+        if (!part.own[p]) return;
+        ++counts.points_used;
         if (topology.point_on_boundary[p]) {
-            report.nonmanifold_points += detail::is_touching_point(topology, static_cast<Index>(p));
-            continue;
+            counts.nonmanifold_points += detail::is_touching_point(topology, p);
+            return;
         }
         const auto irregular = std::ranges::count_if(topology.point_edges[p], [&](Index e) {
             return !topology.edge_on_boundary[e] && topology.edge_cells[e].size() != 4;
         });
-        report.singular_nodes += irregular != 0 && irregular != 2;
-    }
+        counts.singular_nodes += irregular != 0 && irregular != 2;
+    });
 }
 
 constexpr std::size_t kPart = 4096;  // cells that are summed together, so that rounding does not depend on the threads

@@ -2,6 +2,7 @@
 #include "subvol/topology.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <numbers>
 #include <optional>
@@ -57,9 +58,14 @@ void build_edges(Topology& topology) {
 }
 
 void build_edge_offsets(Topology& topology) {
-    topology.edge_offsets.assign(topology.point_count + 1, 0);
-    for (const auto& edge : topology.edges) ++topology.edge_offsets[edge[0] + 1];
-    for (std::size_t p = 0; p < topology.point_count; ++p) topology.edge_offsets[p + 1] += topology.edge_offsets[p];
+    // Edges are sorted by their smaller points: each edge sets the offsets from the point of the edge before it to its own.
+    const auto& edges = topology.edges;
+    topology.edge_offsets.resize(topology.point_count + 1);
+    parallel_each(edges.size() + 1, [&](std::size_t e) {
+        const std::size_t begin = e == 0 ? 0 : edges[e - 1][0] + std::size_t{1};
+        const std::size_t end = e == edges.size() ? topology.point_count : edges[e][0];
+        for (std::size_t p = begin; p <= end; ++p) topology.edge_offsets[p] = static_cast<Index>(e);
+    });
 }
 
 void build_cell_edges(Topology& topology) {
@@ -90,13 +96,16 @@ void build_point_edges(Topology& topology) {
 }
 
 void mark_boundary(Topology& topology) {
-    topology.edge_on_boundary.assign(topology.edges.size(), 0);
-    topology.point_on_boundary.assign(topology.point_count, 0);
-    for (Index f = 0; f < topology.faces.size(); ++f) {
-        if (!topology.face_on_boundary(f)) continue;
-        for (const Index e : topology.face_edges[f]) topology.edge_on_boundary[e] = 1;
-        for (const Index p : topology.faces[f]) topology.point_on_boundary[p] = 1;
-    }
+    topology.edge_on_boundary.resize(topology.edges.size());
+    topology.point_on_boundary.resize(topology.point_count);
+    parallel_each(topology.edges.size(), [&](std::size_t e) {
+        const auto faces = topology.edge_faces[e];
+        topology.edge_on_boundary[e] = std::ranges::any_of(faces, [&](Index f) { return topology.face_on_boundary(f); });
+    });
+    parallel_each(topology.point_count, [&](std::size_t p) {
+        const auto edges = topology.point_edges[p];
+        topology.point_on_boundary[p] = std::ranges::any_of(edges, [&](Index e) { return topology.edge_on_boundary[e] != 0; });
+    });
 }
 
 /// Marks the tagged faces. On the hull a tag changes nothing, since the hull is boundary in any case.
@@ -128,13 +137,15 @@ bool has_single_cell(const Topology& topology, Index edge) {
 /// Marks creases by the default rule and by the tags of the mesh.
 void mark_creases(Topology& topology, detail::InteriorCreases interior) {
     topology.edge_is_crease.assign(topology.edges.size(), 0);
-    for (Index e = 0; e < topology.edges.size(); ++e) {
-        if (!topology.edge_on_boundary[e]) continue;
-        const auto edge = e;
+    std::atomic<std::size_t> nonmanifold{0};
+    parallel_each(topology.edges.size(), [&](std::size_t e) {
+        if (!topology.edge_on_boundary[e]) return;
+        const auto edge = static_cast<Index>(e);
         const bool manifold = topology.boundary_faces_at(edge) == 2;
-        topology.nonmanifold_edges += !manifold;
+        if (!manifold) nonmanifold.fetch_add(1, std::memory_order_relaxed);
         topology.edge_is_crease[e] = !manifold || has_single_cell(topology, edge);
-    }
+    });
+    topology.nonmanifold_edges += nonmanifold;
     for (const auto& [a, b] : topology.creases) {
         const auto e = topology.find_edge(a, b);
         if (!e || !topology.edge_on_boundary[*e]) {

@@ -4,11 +4,13 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <tuple>
 
 #include "fill_block.h"
 #include "refined_grids.h"
+#include "subvol/detail/parallel_each.h"
 #include "subvol/topology.h"
 
 namespace subvol::detail {
@@ -33,6 +35,18 @@ bool same_direction(const std::array<Index, 4>& a, const std::array<Index, 4>& b
 /// One flag per cell: its corners have the opposite order to those of the first cell of its connected part.
 std::vector<std::uint8_t> turned_cells(const Topology& topology) {
     std::vector<std::uint8_t> turned(topology.cells.size()), seen(topology.cells.size());
+    std::atomic<bool> any{false};  // mostly no two neighbours differ, which all threads can find out together
+    parallel_each(topology.faces.size(), [&](std::size_t f) {
+        const auto& [low, high] = topology.face_cells[f];
+        if (high == kNone) return;
+        const auto corners = [&](Index cell) {
+            const auto& sides = topology.cell_faces[cell];
+            const auto side = std::ranges::find(sides, static_cast<Index>(f)) - sides.begin();
+            return corners_of_side(topology, cell, static_cast<std::size_t>(side));
+        };
+        if (same_direction(corners(low), corners(high))) any.store(true, std::memory_order_relaxed);
+    });
+    if (!any) return turned;
     std::vector<Index> open;
     for (Index start = 0; start < topology.cells.size(); ++start) {
         if (seen[start]) continue;

@@ -12,6 +12,7 @@
 #include "subvol/cell.h"
 #include "subvol/error.h"
 #include "subvol/mesh_report.h"
+#include "subvol/model.h"
 #include "subvol/surface.h"
 
 namespace subvol {
@@ -73,6 +74,24 @@ TEST(Topology, DoesNotDependOnThreadsOrCellOrder) {
     for (std::size_t c = 0; c < mesh.cells.size(); ++c) {
         EXPECT_EQ(many.cell_ordinal[c], reversed.cell_ordinal[mesh.cells.size() - 1 - c]);
     }
+}
+
+// Several parts, whose counts several threads find together.
+TEST(Topology, CountsPartsByAnyThreads) {
+    constexpr std::size_t n = 40;
+    const HexMesh mesh = make_model("twist", n);
+    const auto check = [](const MeshReport& report) {
+        EXPECT_EQ(report.points_used, (n + 1) * (n + 1) * (n + 1));
+        EXPECT_EQ(report.edges, 3 * n * (n + 1) * (n + 1));
+        EXPECT_EQ(report.faces, 3 * n * n * (n + 1));
+        EXPECT_EQ(report.boundary_faces, 6 * n * n);
+        EXPECT_EQ(report.interior_edges, 3 * n * (n - 1) * (n - 1));
+        EXPECT_EQ(report.interior_edge_valence, (std::map<int, std::size_t>{{4, report.interior_edges}}));
+        EXPECT_EQ(report.singular_nodes + report.nonmanifold_edges + report.nonmanifold_points, 0u);
+    };
+    check(inspect(mesh));
+    const tbb::global_control control(tbb::global_control::max_allowed_parallelism, 1);
+    check(inspect(mesh));
 }
 
 TEST(Topology, ReportsNonManifoldEdges) {

@@ -52,12 +52,8 @@ Buckets<Record> bucket_sort(std::size_t count, std::size_t bucket_count, const E
 /// The starts of the groups of equal keys in sorted records, plus the end.
 template <class Record, class Same>
 FlatArray<std::size_t> group_starts(const FlatArray<Record>& records, const Same& same) {
-    FlatArray<std::size_t> starts;
-    for (std::size_t i = 0; i < records.size(); ++i) {
-        if (i == 0 || !same(records[i - 1], records[i])) starts.push_back(i);
-    }
-    starts.push_back(records.size());
-    return starts;
+    return numbers_where<FlatArray<std::size_t>>(
+        records.size() + 1, [&](std::size_t i) { return i == 0 || i == records.size() || !same(records[i - 1], records[i]); });
 }
 
 }  // namespace subvol::detail
