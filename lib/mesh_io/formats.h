@@ -93,6 +93,8 @@ struct Plot3dFlow {
 ///
 /// throws: Error(MissingCapability) for an HDF5 file if this library is built without HDF5
 [[nodiscard]] ReadResult read_exodus(std::string_view text, std::string_view file, const ReadOptions& options);
+/// The same from a file; a name such as a.e.4.0 stands for the first of four pieces, which are joined.
+[[nodiscard]] ReadResult read_exodus_file(const std::filesystem::path& path, const ReadOptions& options);
 [[nodiscard]] std::vector<double> exodus_times(const std::filesystem::path& path);
 
 /// Reads a step of XDMF 2 or 3. file: in its folder are the files of values

@@ -80,7 +80,7 @@ constexpr std::array<MeshFormat, 22> kFormats{{
     {.extensions = {".xyz", ".p3d"}, .name = "Plot3D", .read = read_grid_and_flow},
     {.extensions = {".e", ".exo", ".ex2", ".g"},
      .name = "Exodus II",
-     .read = read_file<read_exodus>,
+     .read = read_exodus_file,
      .times = exodus_times,
      .blocks = true},
     {.extensions = {".vtkhdf", ".hdf"}, .name = "VTKHDF", .read = read_vtkhdf, .times = vtkhdf_times},

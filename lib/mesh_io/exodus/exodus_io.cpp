@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <charconv>
 #include <cstdint>
+#include <filesystem>
 #include <limits>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <tuple>
@@ -11,8 +14,10 @@
 
 #include "assemble.h"
 #include "formats.h"
+#include "join_pieces.h"
 #include "mesh_file.h"
 #include "netcdf_source.h"
+#include "subvol/detail/read_file.h"
 #include "subvol/error.h"
 #include "text_scanner.h"
 
@@ -197,6 +202,23 @@ public:
     }
 
     ReadResult read() {
+        fill();
+        return assemble(std::move(found_), in_, file_, kExodusNames, options_);
+    }
+
+    /// One of several pieces of a mesh, with the numbers of its nodes in the whole where it has them.
+    MeshFile read_piece() {
+        fill();
+        refuse_not_finite(found_, in_, kExodusNames);
+        if (exodus_.has("node_num_map")) {
+            const auto numbers = exodus_.integers("node_num_map", found_.points.size());
+            found_.arrays.push_back({std::string(kPointNumberArrays[0]), 1, false, {numbers.begin(), numbers.end()}});
+        }
+        return std::move(found_);
+    }
+
+private:
+    void fill() {
         read_points();
         find_blocks();
         name_blocks();
@@ -208,10 +230,8 @@ public:
         }
         list_left_out();
         read_variables();
-        return assemble(std::move(found_), in_, file_, kExodusNames, options_);
     }
 
-private:
     void read_points() {
         const std::size_t count = exodus_.dimension("num_nodes"), dimension = exodus_.dimension("num_dim");
         if (count == 0) exodus_.fail("not an Exodus II file, or it has no nodes");
@@ -400,6 +420,56 @@ std::vector<double> exodus_times(const std::filesystem::path& path) {
 
 ReadResult read_exodus(std::string_view text, std::string_view file, const ReadOptions& options) {
     return ExodusReader(text, file, options).read();
+}
+
+namespace {
+
+// The files of a mesh in pieces, of which one is called NAME.4.0, NAME.4.1, … or with zeros before the last number: none if the
+// name is not of this form.
+std::vector<std::filesystem::path> piece_files(const std::filesystem::path& path) {
+    const std::string last = path.extension().string(), count = path.stem().extension().string();
+    const auto number = [](const std::string& extension) -> std::optional<std::size_t> {
+        const std::string_view digits = std::string_view(extension).substr(extension.empty() ? 0 : 1);
+        std::size_t value = 0;
+        const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+        const bool whole = !digits.empty() && error == std::errc() && end == digits.data() + digits.size();
+        return whole ? std::optional(value) : std::nullopt;
+    };
+    const auto pieces = number(count), which = number(last);
+    constexpr std::size_t kMostPieces = 100000;
+    if (!pieces || !which || *pieces < 2 || *pieces > kMostPieces || *which >= *pieces) return {};
+    std::vector<std::filesystem::path> files;
+    for (std::size_t k = 0; k < *pieces; ++k) {
+        std::string digits = std::to_string(k);
+        if (digits.size() + 1 < last.size()) digits.insert(0, last.size() - 1 - digits.size(), '0');
+        files.push_back(path.parent_path() / (path.stem().string() + "." + digits));
+    }
+    return files;
+}
+
+}  // namespace
+
+ReadResult read_exodus_file(const std::filesystem::path& path, const ReadOptions& options) {
+    const std::vector<std::filesystem::path> files = piece_files(path);
+    if (files.empty()) return read_exodus(read_text(path), path.string(), options);
+    std::vector<MeshFile> pieces;
+    for (const auto& file : files) {
+        const std::string text = read_regular(file), name = file.string();
+        pieces.push_back(ExodusReader(text, name, options).read_piece());
+    }
+    MeshFile found = join_pieces(std::move(pieces), "piece", path.string());
+    std::erase_if(found.arrays, [](const FileArray& array) { return array.name == kPointNumberArrays[0]; });
+    std::vector<MeshBlock> blocks;
+    for (const MeshBlock& block : found.blocks) {
+        const auto same = std::ranges::find(blocks, block.name, &MeshBlock::name);
+        if (same == blocks.end()) {
+            blocks.push_back(block);
+        } else {
+            same->cells += block.cells;
+        }
+    }
+    found.blocks = std::move(blocks);
+    return assemble(std::move(found), path.string(), kExodusNames, options);
 }
 
 }  // namespace subvol::detail

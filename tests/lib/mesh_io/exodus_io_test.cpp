@@ -55,6 +55,26 @@ TEST_F(ExodusIo, EveryNameOfSuchAFile) {
     }
 }
 
+TEST_F(ExodusIo, PiecesAreJoined) {
+    for (const std::size_t k : {0u, 1u}) {
+        ExodusText half{.points = kBox.points, .blocks = {hex_block(kBox)}, .times = {0}};
+        for (Vec3& x : half.points) x.x += 2. * static_cast<double>(k);
+        half.of_nodes = {{"T", std::vector<double>(kPoints, static_cast<double>(k))}};
+        write("m.e.2." + std::to_string(k), exodus_text(half));
+    }
+    for (const std::string name : {"m.e.2.0", "m.e.2.1"}) {
+        const ReadResult result = read_mesh(path(name));
+        EXPECT_EQ(result.mesh.cells.size(), 2 * kBox.cells.size());
+        EXPECT_EQ(result.mesh.points.size(), 2 * kPoints - 6);
+        ASSERT_EQ(result.blocks.size(), 1u);
+        EXPECT_EQ(result.blocks[0].cells, 2 * kBox.cells.size());
+        EXPECT_EQ(result.fields.at(0).max, 1);
+    }
+    std::filesystem::remove(path("m.e.2.1"));
+    EXPECT_THAT(error_of([&] { static_cast<void>(read_mesh(path("m.e.2.0"))); }, ErrorCode::Io),
+                HasSubstr("m.e.2.1: cannot be read"));
+}
+
 TEST_F(ExodusIo, CurvedCellsGiveTheirCorners) {
     const HexMesh cube = make_box(1, 1, 1);
     for (const std::size_t nodes : {20u, 27u}) {
