@@ -7,7 +7,7 @@
 #include <string>
 
 #include "subvol/camera.h"
-#include "subvol/field_expression.h"
+#include "subvol/quantity.h"
 #include "subvol/mesh_io.h"
 #include "subvol/model.h"
 #include "subvol/optics.h"

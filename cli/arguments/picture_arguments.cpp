@@ -44,6 +44,22 @@ PictureSize parse_size(const std::string& option, const std::string& text) {
     return {static_cast<int>(width), static_cast<int>(height)};
 }
 
+double parse_value(const std::string& option, const std::string& text, const Range& range) {
+    if (!text.ends_with('%')) return parse_number(option, text);
+    return range.min + parse_number(option, text.substr(0, text.size() - 1)) / 100 * (range.max - range.min);
+}
+
+Range parse_range(const std::string& option, const std::string& text, const Range& whole) {
+    const char* const allowed = "MIN,MAX, or per cents such as 10%,90%";
+    const std::size_t comma = text.find(',');
+    if (comma == std::string::npos) throw Error(ErrorCode::InvalidInput, "'" + text + "' is not a range", option, allowed);
+    const Range range{parse_value(option, text.substr(0, comma), whole), parse_value(option, text.substr(comma + 1), whole)};
+    if (!(range.min < range.max)) {
+        throw Error(ErrorCode::InvalidInput, "'" + text + "' is not ascending", option, allowed);
+    }
+    return range;
+}
+
 Vec3 parse_background(const std::string& text) {
     struct Named {
         const char* name;
@@ -138,8 +154,8 @@ void PictureArguments::add_light_to(CLI::App& app) {
     described[3].value = &clamp;
     add_options(app, described);
     app.add_option(
-           "--tf-range", transfer_range,
-           "the range that the colour map and the percentages of --opacity cover: MIN,MAX or field (default: the field's "
+           "--range,--tf-range", transfer_range,
+           "the range that the colour map and the percentages of --opacity cover: MIN,MAX, per cents of the field's range such as 10%,90%, or field (default: the field's "
            "range; a map from a file keeps its own values)")
         ->type_name("MIN,MAX|field");
     app.add_option(
@@ -214,16 +230,7 @@ std::vector<View> PictureArguments::make_sheet(const Box& box, std::span<const V
 
 Range PictureArguments::shown_range(const Range& field) const {
     if (!transfer_range || *transfer_range == "field") return field;
-    const std::size_t comma = transfer_range->find(',');
-    if (comma == std::string::npos) {
-        throw Error(ErrorCode::InvalidInput, "'" + *transfer_range + "' is not a range", "--tf-range", "MIN,MAX or field");
-    }
-    const Range range{parse_number("--tf-range", transfer_range->substr(0, comma)),
-                      parse_number("--tf-range", transfer_range->substr(comma + 1))};
-    if (!(range.min < range.max)) {
-        throw Error(ErrorCode::InvalidInput, "'" + *transfer_range + "' is not ascending", "--tf-range", "MIN,MAX or field");
-    }
-    return range;
+    return parse_range("--range", *transfer_range, field);
 }
 
 LookOptions PictureArguments::look_options(const Range& field) const {

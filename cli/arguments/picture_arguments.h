@@ -41,6 +41,13 @@ struct PictureSize {
 /// As `parse_camera`; what is wrong names the option.
 [[nodiscard]] Camera camera_of_option(const std::string& option, const std::string& text, const Box& box, double aspect);
 
+/// A value of a field, or a part of its range: "293", "20%".
+///
+/// throws: Error(InvalidInput) if it is neither
+[[nodiscard]] double parse_value(const std::string& option, const std::string& text, const Range& range);
+/// "293,913" or "10%,90%". throws: Error(InvalidInput) if it is not two ascending values
+[[nodiscard]] Range parse_range(const std::string& option, const std::string& text, const Range& whole);
+
 /// The box of the points that are not transparent; the pawn, for example, fills only a small part of its block.
 [[nodiscard]] Box visible_bounds(const HexMesh& mesh, const Optics& optics);
 

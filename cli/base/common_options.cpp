@@ -51,14 +51,26 @@ void add_common_options(CLI::App& app, CommonOptions& options, Reads reads) {
     const std::string of_meshes = reads == Reads::Meshes ? "Reading meshes" : "";
     auto* field =
         app.add_option("--field", options.field,
-                       "the field to use; of a vector its length, with NAME.k its component k (default: a physical scalar, "
-                       "else the length of the first vector, else density 1)");
-    field->group(of_meshes)->type_name("NAME");
+                       "the field to use, or a quantity: U.x, mises(S), grad(T).x, (T-293)/620; of a vector its length, of a stress "
+                       "the von Mises stress (default: a physical scalar, else a stress or a vector, else density 1)");
+    field->group(of_meshes)->type_name("EXPR");
     app.add_option("--density", options.density, "an expression in x, y, z to use as the field, e.g. \"sin(3*x)+z\"")
         ->group(of_meshes)
         ->type_name("EXPR")
         ->excludes(field);
-    if (reads == Reads::Meshes) add_mesh_options(app, options);
+    if (reads == Reads::Meshes) {
+        app.add_option("--warp", options.warp,
+                       "move the points by this vector field, times a factor; auto: the longest becomes a tenth of the box's diagonal")
+            ->group(of_meshes)
+            ->type_name("FIELD[*S|*auto]");
+        app.add_option("--only", options.only,
+                       "only the cells in a region: block:A,B, box:x0,y0,z0,x1,y1,z1, sphere:x,y,z,r, half:px,py,pz,nx,ny,nz or "
+                       "where:EXPR (repeatable: in all of them)")
+            ->group(of_meshes)
+            ->type_name("REGION")
+            ->allow_extra_args(false);
+        add_mesh_options(app, options);
+    }
     options.app = &app;
     add_option(app, Option("threads", options.threads)
                         .between(0, 4096)
@@ -81,7 +93,7 @@ void refuse_options(const CLI::App& app, std::initializer_list<const char*> name
 }
 
 void refuse_mesh_options(const CLI::App& app, const std::string& reason) {
-    refuse_options(app, {"--density"}, reason);
+    refuse_options(app, {"--density", "--warp", "--only"}, reason);
     refuse_file_options(&app, reason);
 }
 

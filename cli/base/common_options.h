@@ -22,6 +22,8 @@ enum class Reads { Meshes, NoMesh };
 struct CommonOptions {
     std::optional<std::string> field;
     std::optional<std::string> density;  // an expression in x, y, z
+    std::optional<std::string> warp;     // "DISPL*20"
+    std::vector<std::string> only;       // regions
     ReadOptions read{};                  // what the library describes of them
     bool weld = false;                   // join points at the same place
     std::string curved = "5e-6";         // of the mesh's size, or "corners"

@@ -167,7 +167,11 @@ void Report::if_long(const std::string& quicker) {
 }
 
 void Report::say(const std::string& line) {
-    if (print_json_ || quiet_) return;
+    if (!quiet_) answer(line);
+}
+
+void Report::answer(const std::string& line) {
+    if (print_json_) return;
     progress_.clear();
     std::cout << line << std::endl;
 }

@@ -50,6 +50,9 @@ public:
     /// A line for people; not printed with --json or --quiet.
     void say(const std::string& line);
 
+    /// A line that the command was asked for, such as a value; not printed with --json.
+    void answer(const std::string& line);
+
     /// Stages are from now on those of "frame 3 of 8"; an empty name: no longer.
     void begin_part(const std::string& name, std::size_t index, std::size_t count) { progress_.begin_part(name, index, count); }
 

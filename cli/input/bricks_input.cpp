@@ -2,10 +2,11 @@
 #include "bricks_input.h"
 
 #include <algorithm>
-#include <charconv>
+#include <limits>
 
 #include "subvol/detail/near_name.h"
 #include "subvol/error.h"
+#include "subvol/quantity.h"
 #include "text.h"
 
 namespace subvol::cli {
@@ -47,24 +48,42 @@ StreamedField named_brick_field(const Bricks& bricks, const std::string& name, b
         if (field->channels == 3 && vector_allowed) {
             return {name, true, std::ranges::min(field->min), std::ranges::max(field->max)};
         }
-        (void)select_field(mesh, name);  // refuses what has no length
-        return {name, false, field->shortest, field->longest};
+        if (field->channels <= 3) return {name, false, field->shortest, field->longest};
     }
-    (void)select_field(mesh, name);  // refuses what does not exist
-    const std::size_t dot = name.rfind('.');
-    std::size_t channel = 0;
-    std::from_chars(name.data() + dot + 1, name.data() + name.size(), channel);
-    const BrickField* field = find(bricks, name.substr(0, dot));
-    return {name, false, field->min.at(channel), field->max.at(channel)};
+    if (const std::size_t dot = name.rfind('.'); dot != std::string::npos && find(bricks, name.substr(0, dot)) != nullptr) {
+        const SelectedField component = select_field(mesh, name);  // its least and its largest value are there
+        const auto [min, max] = std::ranges::minmax(component.scalar.values);
+        return {name, false, min, max};
+    }
+    if (has_derivatives(name)) {
+        throw Error(ErrorCode::InvalidInput, "derivatives are not made brick by brick", name, "the file that was split");
+    }
+    StreamedField chosen{name, false};
+    chosen.min = std::numeric_limits<double>::infinity();
+    chosen.max = -chosen.min;
+    for_each_piece(source_of(bricks).stored(), "range", nullptr, [&](std::size_t, const MeshPiece& piece) {
+        const auto [min, max] = std::ranges::minmax(select_field(piece.mesh, name).scalar.values);
+        chosen.min = std::min(chosen.min, min);
+        chosen.max = std::max(chosen.max, max);
+    });
+    return chosen;
 }
 
 WithFacts<StreamedField> select_brick_field(const Bricks& bricks, const CommonOptions& options) {
-    const SelectedField selected = select_field(stand_in(bricks), options.field);
     WithFacts<StreamedField> chosen{{{}, false, 1, 1}};  // density 1 everywhere
+    if (options.field && find(bricks, *options.field) == nullptr) {
+        chosen.value = named_brick_field(bricks, *options.field, false);
+        chosen.facts["field"] = chosen.value.name;
+        return chosen;
+    }
+    const SelectedField selected = select_field(stand_in(bricks), options.field);
     chosen.facts.warn(selected.warning);
     chosen.facts["field"] = selected.scalar.name;
-    const bool everywhere = !options.field && find(bricks, selected.scalar.name) == nullptr;
-    if (!everywhere) chosen.value = named_brick_field(bricks, options.field.value_or(selected.scalar.name), false);
+    if (!bricks.fields.empty() && selected.scalar.name != "density") {
+        chosen.value = named_brick_field(bricks, selected.scalar.name, false);
+    } else if (find(bricks, "density") != nullptr) {
+        chosen.value = named_brick_field(bricks, "density", false);
+    }
     return chosen;
 }
 

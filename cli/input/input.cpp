@@ -12,6 +12,8 @@
 #include "subvol/error.h"
 #include "subvol/expression.h"
 #include "subvol/model.h"
+#include "subvol/quantity.h"
+#include "subvol/warp.h"
 #include "text.h"
 
 namespace subvol::cli {
@@ -62,7 +64,66 @@ HexMesh mesh_of_bricks(const std::string& input, const CommonOptions& options, P
     return facts.timed(progress, "read", [&] { return whole_mesh(bricks, progress); });
 }
 
+constexpr std::string_view kBlockPrefix = "block:";
+
+/// The names of --only block:A,B.
+std::vector<std::string> blocks_of(const CommonOptions& options) {
+    std::vector<std::string> names;
+    for (const std::string& region : options.only) {
+        if (!region.starts_with(kBlockPrefix)) continue;
+        if (!names.empty() || !options.read.blocks.empty()) {
+            throw Error(ErrorCode::InvalidInput, "no cell is in two blocks", "--only " + region, "--only block:A,B for both");
+        }
+        for (std::size_t at = kBlockPrefix.size(); at <= region.size();) {
+            const std::size_t comma = std::min(region.find(',', at), region.size());
+            names.push_back(region.substr(at, comma - at));
+            at = comma + 1;
+        }
+    }
+    return names;
+}
+
+/// What --only and --warp make of a mesh. Quantities are computed before, in the whole mesh at rest.
+void reshape(ReadResult& read, const CommonOptions& options, Facts& facts) {
+    const std::vector<Region> regions = regions_of(options);
+    if (regions.empty() && !options.warp) return;
+    HexMesh mesh = used_mesh(std::move(read.mesh), options);
+    if (options.field && mesh.find_attribute(*options.field) == nullptr) {
+        mesh.attributes.push_back(select_field(mesh, options.field).scalar);
+        mesh.attributes.back().name = *options.field;
+    }
+    if (!read.shells.empty()) {
+        facts.warn("shells and beams are left out with --only and --warp");
+        read.shells = {};
+    }
+    if (!regions.empty()) {
+        const std::size_t before = mesh.cells.size();
+        mesh = only_in(mesh, regions);
+        facts["only_cells"] = mesh.cells.size();
+        facts.note(text(count_text(mesh.cells.size()), " of ", counted(before, "cell"), " lie in the region"));
+        read.cell_means.clear();
+        read.cell_parts.clear();
+    }
+    if (options.warp) {
+        const Warp warp = parse_warp(*options.warp);
+        const double factor = move_points(mesh, warp);
+        Facts& said = facts.group("warp");
+        said["field"] = warp.field;
+        said["factor"] = factor;
+        facts.note(text("moved by ", factor, " × ", warp.field));
+    }
+    read.mesh = std::move(mesh);
+}
+
 }  // namespace
+
+std::vector<Region> regions_of(const CommonOptions& options) {
+    std::vector<Region> regions;
+    for (const std::string& region : options.only) {
+        if (!region.starts_with(kBlockPrefix)) regions.emplace_back(region);
+    }
+    return regions;
+}
 
 std::string input_help() {
     return "a mesh (" + join(readable_mesh_extensions()) + "), or model:NAME or model:NAME:RESOLUTION";
@@ -83,6 +144,8 @@ bool is_model(const std::string& input) {
 
 ReadOptions read_options(const std::string& input, const CommonOptions& options) {
     ReadOptions read = options.read;
+    const std::vector<std::string> blocks = blocks_of(options);
+    read.blocks.insert(read.blocks.end(), blocks.begin(), blocks.end());
     if (options.weld && !read.weld) read.weld = 0;
     read.curved_tolerance = curved_tolerance(options);
     read.step = one_step(input, options);
@@ -102,7 +165,7 @@ WithFacts<ReadResult> read_input(const std::string& input, const CommonOptions& 
     if (model) refuse_file_options(options.app, "says how a file is read; this is a model");
     if (model && !options.read.sharp.empty()) throw Error(ErrorCode::InvalidInput, "a model has no groups", "--sharp");
     if (model && (options.step || options.time)) throw Error(ErrorCode::InvalidInput, "a model has no steps", "--step, --time");
-    if (model && !options.read.blocks.empty()) throw Error(ErrorCode::InvalidInput, "a model has no blocks", "--blocks");
+    if (model && !(options.read.blocks.empty() && blocks_of(options).empty())) throw Error(ErrorCode::InvalidInput, "a model has no blocks", "--blocks");
     ReadResult read = facts.timed(progress, "read", [&] {
         if (model) return generate(input.substr(kModelPrefix.size()));
         ReadOptions file_options = read_options(input, options);
@@ -114,6 +177,7 @@ WithFacts<ReadResult> read_input(const std::string& input, const CommonOptions& 
         if (options.field == field.name)
             throw Error(ErrorCode::InvalidInput, field.why, text(input, ", field '", field.name, "'"));
     }
+    if (!model) say_step(input, options, facts);
     if (read.cell_values) {
         Facts& means = facts.group("cell_values");
         means["method"] = std::string(name_of(read.cell_values->method));
@@ -131,6 +195,7 @@ WithFacts<ReadResult> read_input(const std::string& input, const CommonOptions& 
         curved["fields_error"] = read.curved->fields_error;
         curved["limited"] = read.curved->limited;
     }
+    reshape(read, options, facts);
     return {std::move(read), std::move(facts)};
 }
 
@@ -218,7 +283,8 @@ Shells with_fields_of(Shells shells, const HexMesh& mesh) {
 
 HexMesh used_mesh(HexMesh read, const CommonOptions& options) {
     HexMesh mesh = without_unused_points(std::move(read));
-    if (options.density) put_density_first(mesh, *options.density);
+    const bool done = options.warp && mesh.find_attribute("density") != nullptr;  // at rest, by the first call
+    if (options.density && !done) put_density_first(mesh, *options.density);
     return mesh;
 }
 
@@ -236,7 +302,7 @@ WithFacts<HexMesh> with_selected_field(HexMesh mesh, const CommonOptions& option
     facts.warn(selected.warning);
     facts["field"] = selected.scalar.name;
     if (!options.density && !options.field && mesh.attributes.size() > 1 && selected.warning.empty()) {
-        facts.note(text("drawing ", selected.scalar.name, " (of ", mesh.attributes.size(), " fields; --field chooses)"));
+        facts.note(text("the field is ", selected.scalar.name, " (of ", mesh.attributes.size(), "; --field chooses)"));
     }
     std::vector<Attribute> chosen{std::move(selected.scalar)};
     if (second && *second != chosen.front().name) chosen.push_back(select_field(mesh, second).scalar);

@@ -10,6 +10,7 @@
 #include "subvol/facts.h"
 #include "subvol/hex_mesh.h"
 #include "subvol/mesh_io.h"
+#include "subvol/region.h"
 
 namespace subvol::cli {
 
@@ -28,6 +29,9 @@ enum class InputKind { Picture, Mesh, Bricks, Points, Grid };
 
 /// How a mesh file is to be read.
 [[nodiscard]] ReadOptions read_options(const std::string& input, const CommonOptions& options);
+
+/// The regions of --only but for blocks, which are read alone.
+[[nodiscard]] std::vector<Region> regions_of(const CommonOptions& options);
 
 /// Whether a file of shells and beams without cells is an error.
 enum class ShellsAlone { Refuse, Take };

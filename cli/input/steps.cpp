@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "steps.h"
 
+#include <algorithm>
 #include <charconv>
 
 #include "input.h"
 #include "subvol/error.h"
+#include "subvol/option.h"
 #include "text.h"
 
 namespace subvol::cli {
@@ -18,7 +20,9 @@ std::optional<std::size_t> step_number(std::string_view text) {
 }
 
 [[noreturn]] void refuse(const std::string& text) {
-    throw Error(ErrorCode::InvalidInput, "'" + text + "' is not a step", "--step", "a number from 0, last, all, or A-B");
+    const bool time = detail::plain_number(text).has_value();
+    throw Error(ErrorCode::InvalidInput, "'" + text + "' is not a step", "--step",
+                "a number from 0, last, all, or A-B" + (time ? "; --time " + text + " takes the step of a time" : ""));
 }
 
 std::size_t existing(std::size_t step, const MeshSeries& series) {
@@ -49,6 +53,22 @@ std::optional<std::size_t> one_step(const std::string& input, const CommonOption
     const auto step = step_number(*options.step);
     if (!step) refuse(*options.step);
     return step;
+}
+
+void say_step(const std::string& input, const CommonOptions& options, Facts& facts) {
+    const MeshSeries series = open_series(input);
+    if (series.size() < 2) return;
+    const std::size_t step = one_step(input, options).value_or(series.size() - 1);
+    const double time = series.times[step];
+    facts["step"] = step;
+    facts["time"] = time;
+    const std::string taken = text("step ", step, " of 0 to ", series.size() - 1, ", time ", time);
+    const auto [first, last] = std::ranges::minmax(series.times);
+    if (options.time && (*options.time < first || *options.time > last)) {
+        facts.warn(text("time ", *options.time, " is not between ", first, " and ", last, ": it is ", taken));
+    } else {
+        facts.note(taken);
+    }
 }
 
 FrameRange chosen_steps(const MeshSeries& series, const CommonOptions& options) {

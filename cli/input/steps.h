@@ -6,6 +6,7 @@
 
 #include "common_options.h"
 #include "mesh_frames.h"
+#include "subvol/facts.h"
 #include "subvol/mesh_series.h"
 
 namespace subvol::cli {
@@ -20,6 +21,9 @@ namespace subvol::cli {
 ///
 /// throws: Error(InvalidInput) if there is no such step, or more than one is asked for
 [[nodiscard]] std::optional<std::size_t> one_step(const std::string& input, const CommonOptions& options);
+
+/// The step that was read, and its time, if there are several.
+void say_step(const std::string& input, const CommonOptions& options, Facts& facts);
 
 /// The first and the last step that --step asks for.
 ///

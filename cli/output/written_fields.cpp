@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "input.h"
-#include "subvol/field_expression.h"
+#include "subvol/quantity.h"
 #include "subvol/field_range.h"
 #include "subvol/vdb_contents.h"
 #include "vdb_functions.h"

@@ -11,6 +11,7 @@
 #include "subvol/detail/printable.h"
 #include "subvol/error.h"
 #include "subvol/plot.h"
+#include "subvol/quantity.h"
 #include "text.h"
 
 namespace subvol::cli {
@@ -68,7 +69,7 @@ void say(const ProbeResult& found, const std::vector<Vec3>& places, Report& repo
         const Vec3& x = places[p];
         lines.emplace_back(number_text(x.x) + "," + number_text(x.y) + "," + number_text(x.z), words);
     }
-    report.say(aligned(lines));
+    report.answer(aligned(lines));
     if (places.size() > kMostLines) {
         report.say(text("and ", count_text(places.size() - kMostLines), " more (--json or -o FILE.csv has all)"));
     }
@@ -87,7 +88,8 @@ void write_csv(const ProbeResult& found, const std::vector<Vec3>& places, const 
     std::string table = "x,y,z,inside,cell,u,v,w";
     for (const ProbedField& field : found.fields) {
         for (std::size_t c = 0; c < field.channels; ++c) {
-            const std::string name = field.name + (field.channels > 1 ? text(".", c) : "");
+            const std::string name =
+                field.name + (field.channels > 1 ? "." + component_names(static_cast<int>(field.channels))[c] : "");
             for (const char* end : {"", "_dx", "_dy", "_dz"}) table += "," + quoted(detail::printable(name + end));
         }
     }
@@ -172,7 +174,7 @@ void say(const PartMeasure& part, const std::string& name, Report& report) {
         lines.emplace_back(field.name, "mean " + number_text(field.mean) + "  integral " + number_text(field.integral));
         lines.emplace_back("", "min " + at(field.min) + "  max " + at(field.max));
     }
-    report.say(aligned(lines));
+    report.answer(aligned(lines));
 }
 
 /// NaN is null in JSON, so it is said.
@@ -185,18 +187,18 @@ void warn_of_overflow(const PartMeasure& part, Report& report) {
 
 }  // namespace
 
-void show_probed(const ProbeResult& found, const std::vector<Vec3>& places, const std::string& file, bool json,
+void show_probed(const ProbeResult& found, const std::vector<Vec3>& places, const std::string& file, const CommonOptions& options,
                  Report& report) {
     std::size_t inside = 0;
     for (std::size_t p = 0; p < places.size(); ++p) inside += found.inside(p) ? 1 : 0;
     report["places"] = places.size();
     report["inside"] = inside;
     Json values = Json::array();
-    if (json) {
+    if (options.json) {
         for (std::size_t p = 0; p < places.size(); ++p) values.push_back(as_json(found, p, places[p]));
         report["values"] = std::move(values);
     }
-    say(found, places, report);
+    if (!options.quiet || file.empty()) say(found, places, report);
     if (inside < places.size()) {
         report.note(
             text(count_text(places.size() - inside), " of ", counted(places.size(), "place"), " lie outside the volume"));

@@ -13,8 +13,8 @@ namespace subvol::cli {
 /// Places that were probed: into the report, and into a table (.csv) or a plot of the first field over the distance (.svg).
 ///
 /// file: empty: none
-/// json: whether the report gets the values of all places
-void show_probed(const ProbeResult& found, const std::vector<Vec3>& places, const std::string& file, bool json, Report& report);
+/// options: with --json the report gets the values of all places; with --quiet they are not said if a file has them
+void show_probed(const ProbeResult& found, const std::vector<Vec3>& places, const std::string& file, const CommonOptions& options, Report& report);
 
 /// Integrals and extremes, into the report.
 void show_measured(const LimitMeasure& found, Report& report);

@@ -128,7 +128,7 @@ private:
         const auto list = [&](const std::string& name) {
             if (!shows(name)) return;
             report["fields"].push_back({{"name", name}});
-            report.say(name);
+            report.answer(name);
         };
         if (kind_ == InputKind::Bricks) {
             for (const BrickField& field : report.unpack(open_bricks_input(input_, app())).fields) list(field.name);

@@ -102,7 +102,7 @@ private:
             .add_option("--tf", picture_.transfer_function, "the colour map, as for `render` (default viridis)")
             ->type_name("FILE|NAME");
         app()
-            .add_option("--tf-range", picture_.transfer_range, "the range that it covers, as for `render`")
+            .add_option("--range,--tf-range", picture_.transfer_range, "the range that it covers, as for `render`")
             ->type_name("MIN,MAX|field");
         app()
             .add_option("--opacity", picture_.opacity, "opacities instead of those of --tf, as for `render`")

@@ -169,7 +169,7 @@ private:
     void probe(const MeshSource& source, const std::vector<Vec3>& places, const LimitOptions& limit, Report& report) const {
         const ProbeResult found =
             report.timed("probe", [&] { return probe_limit(source, places, {.limit = limit}, report.progress()); });
-        show_probed(found, places, output_, common().json, report);
+        show_probed(found, places, output_, common(), report);
     }
 
     /// The volume of a scheme of tetrahedra: linear between the vertices of a level, which are on the limit.
@@ -181,7 +181,7 @@ private:
         if (!places.empty()) {
             const auto probe = report.timed("prepare", [&] { return MixedProbe(fine, cells, 0, report.progress()); });
             const ProbeResult found = report.timed("probe", [&] { return probe.at(places, report.progress()); });
-            show_probed(found, places, output_, common().json, report);
+            show_probed(found, places, output_, common(), report);
         }
         if (!stats_) return;
         show_measured(

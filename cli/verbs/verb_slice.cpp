@@ -44,9 +44,9 @@ public:
                               .help("N", "lines at this many values between the least and the largest on the plane"));
         add_option(app(), Option("tf", function_).help("FILE|NAME", "the colours: a preset, or a colour map of ParaView"));
         app()
-            .add_option("--range", range_, "the values of the first and of the last colour (default: those on the plane)")
-            ->type_name("MIN,MAX")
-            ->transform(number_list(2, "0,1"));
+            .add_option("--range,--tf-range", range_,
+                        "the values of the first and of the last colour, or per cents of those on the plane (default: these)")
+            ->type_name("MIN,MAX");
         add_option(app(), Option("background", background_).help("COLOR", "the colour outside the volume, of a .png"));
         app().add_flag("--no-legend", no_legend_, "the picture alone");
         add_option(app(), Option("unit", unit_).help("TEXT", "of the field, for the legend").instead_of({"no-legend"}));
@@ -57,11 +57,7 @@ public:
     int run(Report& report) override {
         check_output(output_, {".png", ".exr", ".vtp", ".csv"});
         const Vec3 background = parse_background(background_);
-        std::vector<double> range;
-        if (!range_.empty()) range = parse_numbers("--range", range_, 2, "0,1");
-        if (!range.empty() && !(range[0] <= range[1])) {
-            throw Error(ErrorCode::InvalidInput, "'" + range_ + "' is not a range", "--range", "the smaller value first");
-        }
+        if (!range_.empty()) (void)parse_range("--range", range_, {0, 1});
         std::vector<double> plane;
         if (!plane_.empty()) plane = parse_numbers("--plane", plane_, 6, "0,0,0,0,0,1");
         report.if_long("a lower --resolution");
@@ -72,8 +68,8 @@ public:
         if (output_.ends_with(".vtp") || output_.ends_with(".csv")) {
             write_slice(output_, slice, lines);
         } else {
-            if (range.empty()) range = {slice.min, slice.max};
-            write_picture(slice, lines, {range[0], range[1]}, background, report);
+            const Range whole{slice.min, slice.max};
+            write_picture(slice, lines, range_.empty() ? whole : parse_range("--range", range_, whole), background, report);
         }
         report["output"] = output_;
         report["plane"] = plane;

@@ -44,9 +44,8 @@ public:
             ->type_name("FILE")
             ->required();
         app()
-            .add_option("--iso", options_.isos, "the value of an isosurface (repeatable)")
+            .add_option("--iso", isos_, "the value of an isosurface, or a per cent of the field's range such as 20% (repeatable)")
             ->type_name("V")
-            ->transform(any_number())
             ->allow_extra_args(false);
         add_options(app(), options_of(options_));
         app().add_flag("--keep-slivers", keep_slivers_, "leave triangles with small angles as they are");
@@ -80,7 +79,8 @@ public:
         const TetRefinement tets(scheme_);
         SurfaceOptions options = options_;
         options.scheme = scheme_.options(0, report.progress()).scheme;
-        options.boundary = options.boundary || options.isos.empty();
+        for (const std::string& iso : isos_) (void)parse_value("--iso", iso, {0, 1});
+        options.boundary = options.boundary || isos_.empty();
         options.improve = !keep_slivers_;
         options.progress = report.progress();
         report["input"] = input_;
@@ -92,7 +92,8 @@ public:
             throw Error(ErrorCode::InvalidInput, "shells are written with the whole surface", "--part",
                         "one process, or mpirun");
         }
-        SurfaceOutput output{.field = field, .range = body.range(field), .isos = options_.isos.size()};
+        SurfaceOutput output{.field = field, .range = body.range(field), .isos = isos_.size()};
+        for (const std::string& iso : isos_) options.isos.push_back(parse_value("--iso", iso, output.range));
         if (!origin_.empty()) output.file.origin = parse_vector("--origin", origin_);
         if (!color_field_.empty()) {
             const std::size_t number = body.add_scalar(color_field_);
@@ -134,6 +135,7 @@ private:
     }
 
     std::string input_, output_, color_field_, origin_, function_ = "viridis";
+    std::vector<std::string> isos_;
     SurfaceOptions options_;
     bool keep_slivers_ = false;
     RefineArguments scheme_;

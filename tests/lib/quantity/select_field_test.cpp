@@ -30,7 +30,7 @@ TEST(SelectField, TakesAChannelOfAVector) {
 
 TEST(SelectField, RefusesWhatIsNoChannel) {
     const HexMesh mesh = mesh_with_vector();
-    for (const char* name : {"v.3", "v.-1", "v.", "v.x", "v.1abc", "v.1.0", "v.1 ", "v. 1", "v.99999999999", "w.1"}) {
+    for (const char* name : {"v.3", "v.", "v.w", "v.1abc", "v.1.0", "v. 1", "v.99999999999", "w.1"}) {
         test::expect_error(ErrorCode::InvalidInput, std::string("there is no field \"") + name + "\"",
                            [&] { (void)select_field(mesh, name); });
     }

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "subvol/hex_mesh.h"
+
+namespace subvol {
+
+/// A part of space, or the cells where a quantity is not 0:
+///
+///     box:x0,y0,z0,x1,y1,z1    sphere:x,y,z,r    half:px,py,pz,nx,ny,nz    where:T>500
+///
+/// half: the side of the plane through p that the normal n points to
+/// where: a quantity as for `field_of`. A cell belongs to the region if it is not 0 at half of its corners or more
+class Region {
+public:
+    enum class Kind { Box, Sphere, Half, Where };
+
+    /// throws: Error(InvalidInput) if the text is no region, or one without volume
+    explicit Region(const std::string& text);
+
+    [[nodiscard]] Kind kind() const { return kind_; }
+    /// Of a part of space: about how far inside a place lies (world), negative outside. It is exact near the faces, and changes
+    /// by no more than the distance between two places.
+    [[nodiscard]] double depth(const Vec3& place) const;
+    /// The quantity of `where`.
+    [[nodiscard]] const std::string& quantity() const { return quantity_; }
+
+private:
+    Kind kind_ = Kind::Box;
+    Box box_{};
+    Vec3 point_{0.0}, normal_{0.0};
+    double radius_ = 0;
+    std::string quantity_;
+};
+
+/// How far inside all of several parts of space a place lies.
+[[nodiscard]] double depth(std::span<const Region> regions, const Vec3& place);
+
+/// The cells that belong to all regions: of parts of space those whose centre, the mean of the corners, lies inside.
+///
+/// throws: Error(InvalidInput) as `field_of`, or if there are none
+[[nodiscard]] std::vector<std::uint8_t> cells_in(const HexMesh& mesh, std::span<const Region> regions);
+
+/// The mesh of the cells that belong to all regions. The cells that were beside them no longer shape their limit.
+[[nodiscard]] HexMesh only_in(const HexMesh& mesh, std::span<const Region> regions);
+
+}  // namespace subvol

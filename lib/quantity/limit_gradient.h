@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "subvol/hex_mesh.h"
+
+namespace subvol::detail {
+
+/// The derivatives of an attribute's limit by places, at the mesh's points: for each channel the three by x, y, z.
+///
+/// Where cells meet at a point, their derivatives are the same if the limit is smooth there; else their mean counts, weighted
+/// by volume. The scheme is MCQ, whose limit goes through the points.
+///
+/// throws: Error(InvalidInput) as `evaluate_limit`
+[[nodiscard]] Attribute limit_gradient(const HexMesh& mesh, const Attribute& attribute);
+
+}  // namespace subvol::detail

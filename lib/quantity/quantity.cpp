@@ -1,0 +1,395 @@
+// SPDX-License-Identifier: Apache-2.0
+// A quantity is read from left to right. Names, calls of functions of vectors and tensors, and components of both are terms:
+// each is computed at all points first, and stands as a variable in what remains for muParser:
+//
+//     2*mises(S) + grad(T).x > `p 0`        →        2*v0 + v1 > v2
+//
+// A quantity that is one term keeps the channels of the term.
+#include "subvol/quantity.h"
+
+#include <muParser.h>
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <numbers>
+
+#include "limit_gradient.h"
+#include "quantity_source.h"
+#include "subvol/detail/near_name.h"
+#include "subvol/error.h"
+#include "tensor_functions.h"
+
+namespace subvol {
+namespace {
+
+constexpr std::array<std::string_view, 5> kDerivatives{"grad", "div", "curl", "vorticity", "qcriterion"};
+
+bool is_letter(char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
+}
+
+bool is_digit(char c) {
+    return c >= '0' && c <= '9';
+}
+
+bool is_word(std::string_view text) {
+    return !text.empty() && is_letter(text[0]) && std::ranges::all_of(text, [](char c) { return is_letter(c) || is_digit(c); });
+}
+
+std::string_view trimmed(std::string_view text) {
+    while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
+    while (!text.empty() && text.back() == ' ') text.remove_suffix(1);
+    return text;
+}
+
+std::vector<std::string> names_of(const HexMesh& mesh) {
+    std::vector<std::string> names;
+    for (const Attribute& attribute : mesh.attributes) names.push_back(attribute.name);
+    return names;
+}
+
+[[noreturn]] void refuse_name(const HexMesh& mesh, const std::string& name) {
+    throw Error(ErrorCode::InvalidInput, "there is no field \"" + name + "\"" + detail::did_you_mean(name, names_of(mesh)), {},
+                mesh.attributes.empty() ? "the mesh has no fields" : "the mesh has: " + detail::list_of(mesh));
+}
+
+/// The channel that a component's name or number means.
+std::optional<std::size_t> channel_named(int channels, std::string_view component) {
+    std::size_t number = 0;
+    const char* const end = component.data() + component.size();
+    const auto read = std::from_chars(component.data(), end, number);
+    if (read.ec == std::errc() && read.ptr == end && number < static_cast<std::size_t>(channels)) return number;
+    std::string name(component);
+    const std::vector<std::string> names = component_names(channels);
+    auto found = std::ranges::find(names, name);
+    if (found == names.end() && channels == 6) {
+        std::ranges::reverse(name);  // yx is xy
+        found = std::ranges::find(names, name);
+    }
+    if (found == names.end()) return std::nullopt;
+    return static_cast<std::size_t>(found - names.begin());
+}
+
+Attribute channel_of(const Attribute& field, std::size_t channel, const std::string& name) {
+    const auto channels = static_cast<std::size_t>(field.channels);
+    Attribute result{name, 1, std::vector<double>(field.values.size() / channels)};
+    for (std::size_t p = 0; p < result.values.size(); ++p) result.values[p] = field.values[p * channels + channel];
+    if (!field.bounds.empty()) result.bounds = {field.bounds[channel]};
+    return result;
+}
+
+/// function: of the channels at a point
+template <class Function>
+Attribute each_point(const Attribute& field, const Function& function) {
+    const auto channels = static_cast<std::size_t>(field.channels);
+    Attribute result{field.name, 1, std::vector<double>(field.values.size() / channels)};
+    tbb::parallel_for(std::size_t{0}, result.values.size(), [&](std::size_t p) {
+        result.values[p] = function(std::span<const double>(field.values.data() + p * channels, channels));
+    });
+    return result;
+}
+
+/// The sum of the derivatives of each component by its own direction, of the gradient of a vector.
+Attribute divergence(const Attribute& gradient) {
+    return each_point(gradient, [](std::span<const double> g) { return g[0] + g[4] + g[8]; });
+}
+
+/// Half of what the squared rotation has beyond the squared strain: −tr(G²)/2 of the gradient G.
+Attribute q_criterion(const Attribute& gradient) {
+    return each_point(gradient, [](std::span<const double> g) {
+        return -(g[0] * g[0] + g[4] * g[4] + g[8] * g[8]) / 2 - (g[1] * g[3] + g[2] * g[6] + g[5] * g[7]);
+    });
+}
+
+Attribute curl(const Attribute& gradient) {
+    Attribute result{gradient.name, 3, {}};
+    result.values.reserve(gradient.values.size() / 3);
+    for (const double* g = gradient.values.data(); g != gradient.values.data() + gradient.values.size(); g += 9) {
+        result.values.insert(result.values.end(), {g[7] - g[5], g[2] - g[6], g[3] - g[1]});
+    }
+    return result;
+}
+
+/// Reads one quantity.
+class Evaluation {
+public:
+    Evaluation(const HexMesh& mesh, const std::string& source) : mesh_(mesh), source_(source) {}
+
+    /// The value of a part of the source. begin: where the part begins, for errors
+    [[nodiscard]] Attribute value(std::string_view text, std::size_t begin) const {
+        begin += text.find_first_not_of(' ') == std::string_view::npos ? 0 : text.find_first_not_of(' ');
+        text = trimmed(text);
+        if (text.empty()) refuse("is empty", begin);
+        if (const Attribute* field = mesh_.find_attribute(text)) return *field;
+        if (auto component = component_of_field(text)) return std::move(*component);
+        std::size_t at = 0;
+        if (text[0] == '`' || is_letter(text[0])) {
+            auto whole = term(text, at, begin);
+            if (whole && at == text.size()) return std::move(*whole);
+        }
+        return arithmetic(text, begin);
+    }
+
+private:
+    [[noreturn]] void refuse(const std::string& message, std::size_t position) const {
+        std::string allowed = "numbers, functions and x, y, z";
+        if (!mesh_.attributes.empty()) allowed += ", " + detail::list_of(mesh_);
+        throw Error(ErrorCode::InvalidInput, message, "expression '" + source_ + "', position " + std::to_string(position),
+                    allowed);
+    }
+
+    /// NAME.x of any field, whatever its name.
+    [[nodiscard]] std::optional<Attribute> component_of_field(std::string_view text) const {
+        const std::size_t dot = text.rfind('.');
+        if (dot == std::string_view::npos) return std::nullopt;
+        const Attribute* field = mesh_.find_attribute(text.substr(0, dot));
+        if (field == nullptr) return std::nullopt;
+        const auto channel = channel_named(field->channels, text.substr(dot + 1));
+        if (!channel) return std::nullopt;
+        return channel_of(*field, *channel, std::string(text));
+    }
+
+    /// The term at a place of the text, which moves behind it; nothing, and the place stays, if there is none.
+    [[nodiscard]] std::optional<Attribute> term(std::string_view text, std::size_t& at, std::size_t begin) const {
+        std::size_t end = at;
+        if (text[at] == '`') {
+            end = text.find('`', at + 1);
+            if (end == std::string_view::npos) refuse("has no second backquote", begin + at);
+            const std::string name(text.substr(at + 1, end - at - 1));
+            const Attribute* field = mesh_.find_attribute(name);
+            if (field == nullptr)
+                refuse("there is no field \"" + name + "\"" + detail::did_you_mean(name, names_of(mesh_)), begin + at);
+            at = end + 1;
+            return with_component(*field, text, at, begin);
+        }
+        while (end < text.size() && (is_letter(text[end]) || is_digit(text[end]) || text[end] == '.')) ++end;
+        const std::string_view word = text.substr(at, end - at);
+        if (end < text.size() && text[end] == '(') {
+            if (!is_ours(word)) return std::nullopt;
+            const std::size_t close = closing(text, end, begin);
+            const Attribute argument = value(text.substr(end + 1, close - end - 1), begin + end + 1);
+            Attribute result = call(word, argument, begin + at);
+            at = close + 1;
+            return with_component(std::move(result), text, at, begin);
+        }
+        if (word == "x" || word == "y" || word == "z") {
+            at = end;
+            return coordinate(word[0] - 'x');
+        }
+        if (const Attribute* field = mesh_.find_attribute(word)) {
+            at = end;
+            return *field;
+        }
+        auto component = component_of_field(word);
+        if (component) at = end;
+        return component;
+    }
+
+    /// `.x` behind a term is its component.
+    [[nodiscard]] Attribute with_component(Attribute field, std::string_view text, std::size_t& at, std::size_t begin) const {
+        if (at + 1 >= text.size() || text[at] != '.') return field;
+        std::size_t end = at + 1;
+        while (end < text.size() && (is_letter(text[end]) || is_digit(text[end]))) ++end;
+        const std::string_view component = text.substr(at + 1, end - at - 1);
+        const auto channel = channel_named(field.channels, component);
+        if (!channel) {
+            std::string names;
+            for (const std::string& name : component_names(field.channels)) names += (names.empty() ? "" : ", ") + name;
+            const std::string kind =
+                names.empty() ? "a scalar has no component ." : "its components are " + names + "; there is none called .";
+            refuse(kind + std::string(component), begin + at);
+        }
+        at = end;
+        return channel_of(field, *channel, field.name);
+    }
+
+    [[nodiscard]] static bool is_ours(std::string_view word) {
+        return detail::find_tensor_function(word) != nullptr || std::ranges::find(kDerivatives, word) != kDerivatives.end();
+    }
+
+    [[nodiscard]] std::size_t closing(std::string_view text, std::size_t open, std::size_t begin) const {
+        int depth = 0;
+        bool quoted = false;
+        for (std::size_t at = open; at < text.size(); ++at) {
+            if (text[at] == '`') quoted = !quoted;
+            if (quoted) continue;
+            depth += text[at] == '(' ? 1 : text[at] == ')' ? -1 : 0;
+            if (depth == 0) return at;
+        }
+        refuse("has no closing parenthesis", begin + open);
+    }
+
+    [[nodiscard]] Attribute call(std::string_view word, const Attribute& argument, std::size_t position) const {
+        const auto needs = [&](bool right, const std::string& kind) {
+            if (right) return;
+            refuse(std::string(word) + " takes " + kind + ", not one with " + std::to_string(argument.channels), position);
+        };
+        if (const detail::TensorFunction* function = detail::find_tensor_function(word)) {
+            const bool any = function->sizes.empty();
+            needs(any || std::ranges::find(function->sizes, argument.channels) != function->sizes.end(),
+                  std::string(function->takes));
+            return each_point(argument, function->value);
+        }
+        if (mesh_.cells.empty()) refuse("there are no cells to take derivatives in", position);
+        if (word == "grad") {
+            needs(argument.channels == 1 || argument.channels == 3, "a scalar or a vector with 3 components");
+            return detail::limit_gradient(mesh_, argument);
+        }
+        needs(argument.channels == 3, "a vector with 3 components");
+        const Attribute gradient = detail::limit_gradient(mesh_, argument);
+        if (word == "div") return divergence(gradient);
+        return word == "qcriterion" ? q_criterion(gradient) : curl(gradient);
+    }
+
+    [[nodiscard]] Attribute coordinate(int axis) const {
+        Attribute result{std::string(1, static_cast<char>('x' + axis)), 1, std::vector<double>(mesh_.points.size())};
+        for (std::size_t p = 0; p < result.values.size(); ++p) result.values[p] = mesh_.points[p][axis];
+        return result;
+    }
+
+    /// What remains for the parser: its text, its variables, and where each of its letters was.
+    struct Rest {
+        std::string text;
+        std::vector<Attribute> variables;
+        std::vector<std::size_t> places;
+    };
+
+    [[nodiscard]] Rest without_terms(std::string_view text, std::size_t begin) const {
+        Rest rest;
+        const auto put = [&](std::string_view part, std::size_t place) {
+            rest.text += part;
+            rest.places.resize(rest.text.size(), begin + place);
+        };
+        for (std::size_t at = 0; at < text.size();) {
+            const std::size_t from = at;
+            if (is_digit(text[at])) {  // 1e5 holds no name
+                while (at < text.size() && (is_digit(text[at]) || text[at] == '.')) ++at;
+                const bool exponent = at + 1 < text.size() && (text[at] == 'e' || text[at] == 'E');
+                if (exponent && (is_digit(text[at + 1]) || text[at + 1] == '-' || text[at + 1] == '+')) at += 2;
+                while (at < text.size() && is_digit(text[at])) ++at;
+                put(text.substr(from, at - from), from);
+            } else if (text[at] == '`' || is_letter(text[at])) {
+                if (auto found = term(text, at, begin)) {
+                    put("v" + std::to_string(rest.variables.size()), from);
+                    rest.variables.push_back(found->channels == 1 ? std::move(*found) : detail::length_of(*found));
+                    continue;
+                }
+                while (at < text.size() && (is_letter(text[at]) || is_digit(text[at]) || text[at] == '.')) ++at;
+                const std::string word(text.substr(from, at - from));
+                const bool constant = word == "pi" || word == "_pi" || word == "_e";
+                if (!constant && (at == text.size() || text[at] != '(')) {
+                    refuse("there is no field \"" + word + "\"" + detail::did_you_mean(word, names_of(mesh_)), begin + from);
+                }
+                put(word, from);
+            } else {
+                const bool two = at + 1 < text.size() && text[at + 1] == '=' &&
+                                 std::string_view("=<>!").find(text[at]) != std::string_view::npos;
+                if (text[at] == '=' && !two) refuse("assigns a value; to compare, write ==", begin + at);
+                if (text[at] == ',' && std::ranges::count(rest.text, '(') == std::ranges::count(rest.text, ')')) {
+                    refuse("gives several values", begin + at);
+                }
+                at += two ? 2 : 1;
+                put(text.substr(from, at - from), from);
+            }
+        }
+        return rest;
+    }
+
+    [[nodiscard]] Attribute arithmetic(std::string_view text, std::size_t begin) const {
+        constexpr std::size_t kGrain = 16384;  // points per parser: enough to make the cost of building it negligible
+        const Rest rest = without_terms(text, begin);
+        Attribute result{std::string(text), 1, std::vector<double>(mesh_.points.size())};
+        const auto evaluate = [&](std::size_t from, std::size_t to) {
+            std::vector<double> at(rest.variables.size());
+            mu::Parser parser;
+            parser.DefineConst("pi", std::numbers::pi);
+            for (std::size_t v = 0; v < at.size(); ++v) parser.DefineVar("v" + std::to_string(v), &at[v]);
+            parser.SetExpr(rest.text);
+            for (std::size_t p = from; p < to; ++p) {
+                for (std::size_t v = 0; v < at.size(); ++v) at[v] = rest.variables[v].values[p];
+                result.values[p] = parser.Eval();
+            }
+        };
+        try {
+            evaluate(0, std::min<std::size_t>(1, result.values.size()));  // refuses what is wrong before threads begin
+            tbb::parallel_for(tbb::blocked_range<std::size_t>(0, result.values.size(), kGrain),
+                              [&](const auto& range) { evaluate(range.begin(), range.end()); });
+        } catch (const mu::ParserError& error) {
+            const auto position = static_cast<std::size_t>(std::max(0, error.GetPos()));
+            refuse(error.GetMsg(), position < rest.places.size() ? rest.places[position] : begin + text.size());
+        }
+        return result;
+    }
+
+    const HexMesh& mesh_;
+    const std::string& source_;
+};
+
+/// Whether a text would be a name, if there were a field of that name: then the error is about fields, not about signs.
+bool may_be_name(std::string_view source) {
+    return std::ranges::all_of(source, [](char c) { return is_letter(c) || is_digit(c) || c == '.' || c == ' '; });
+}
+
+}  // namespace
+
+std::string detail::list_of(const HexMesh& mesh) {
+    std::string list;
+    for (const Attribute& attribute : mesh.attributes) list += (list.empty() ? "" : ", ") + attribute.name;
+    return list;
+}
+
+Attribute detail::length_of(const Attribute& attribute) {
+    return each_point(attribute, find_tensor_function("length")->value);
+}
+
+std::string detail::quoted_name(const std::string& name) {
+    return is_word(name) ? name : "`" + name + "`";
+}
+
+std::vector<std::string> component_names(int channels) {
+    if (channels == 2) return {"x", "y"};
+    if (channels == 3) return {"x", "y", "z"};
+    if (channels == 6) return {"xx", "yy", "zz", "xy", "yz", "xz"};
+    if (channels == 9) return {"xx", "xy", "xz", "yx", "yy", "yz", "zx", "zy", "zz"};
+    std::vector<std::string> names;
+    for (int c = 0; channels > 1 && c < channels; ++c) names.push_back(std::to_string(c));
+    return names;
+}
+
+bool has_derivatives(std::string_view source) {
+    return std::ranges::any_of(kDerivatives, [&](std::string_view word) {
+        for (std::size_t at = source.find(word); at != std::string_view::npos; at = source.find(word, at + 1)) {
+            const bool begins = at == 0 || !(is_letter(source[at - 1]) || is_digit(source[at - 1]));
+            if (begins && source.substr(at + word.size()).starts_with('(')) return true;
+        }
+        return false;
+    });
+}
+
+Attribute field_of(const HexMesh& mesh, const std::string& name, const std::string& source) {
+    const std::string_view text = trimmed(source);
+    const bool coordinate = text == "x" || text == "y" || text == "z";
+    const Evaluation evaluation(mesh, source);
+    if (mesh.find_attribute(source) == nullptr && may_be_name(text) && !text.empty() && is_letter(text[0]) && !coordinate) {
+        const std::size_t dot = text.rfind('.');
+        const Attribute* field = dot == std::string_view::npos ? nullptr : mesh.find_attribute(text.substr(0, dot));
+        const bool component = field != nullptr && channel_named(field->channels, text.substr(dot + 1));
+        if (!component && mesh.find_attribute(text) == nullptr) refuse_name(mesh, source);
+    }
+    const Attribute* plain = mesh.find_attribute(source);
+    Attribute result = plain != nullptr ? *plain : evaluation.value(source, 0);
+    result.name = name;
+    for (std::size_t i = 0; i < result.values.size(); ++i) {
+        if (std::isfinite(result.values[i])) continue;
+        throw Error(ErrorCode::InvalidInput,
+                    "is not finite at point " + std::to_string(i / static_cast<std::size_t>(result.channels)),
+                    "expression '" + source + "'");
+    }
+    return result;
+}
+
+}  // namespace subvol

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "subvol/region.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <string_view>
+
+#include "mesh_subset.h"
+#include "subvol/detail/parallel_each.h"
+#include "subvol/error.h"
+#include "subvol/option.h"
+#include "subvol/quantity.h"
+
+namespace subvol {
+namespace {
+
+constexpr const char* kKinds = "box:x0,y0,z0,x1,y1,z1, sphere:x,y,z,r, half:px,py,pz,nx,ny,nz, where:EXPRESSION";
+
+std::vector<double> numbers_of(const std::string& text, std::string_view list, std::size_t count) {
+    std::vector<double> numbers;
+    for (bool more = true; more;) {
+        const std::size_t comma = list.find(',');
+        const std::optional<double> number = detail::plain_number(list.substr(0, comma));
+        if (!number || !std::isfinite(*number)) break;
+        numbers.push_back(*number);
+        more = comma != std::string_view::npos;
+        list.remove_prefix(more ? comma + 1 : list.size());
+    }
+    if (!list.empty() || numbers.size() != count) {
+        throw Error(ErrorCode::InvalidInput,
+                    "'" + text + "' is not a region: " + std::to_string(count) + " numbers are needed", {}, kKinds);
+    }
+    return numbers;
+}
+
+}  // namespace
+
+Region::Region(const std::string& text) {
+    const auto flat = [&](const std::string& why) {
+        throw Error(ErrorCode::InvalidInput, "'" + text + "' " + why, {}, kKinds);
+    };
+    const std::size_t colon = text.find(':');
+    const std::string name = text.substr(0, colon);
+    const std::string_view rest = colon == std::string::npos ? std::string_view() : std::string_view(text).substr(colon + 1);
+    if (name == "box") {
+        const auto n = numbers_of(text, rest, 6);
+        box_ = {{n[0], n[1], n[2]}, {n[3], n[4], n[5]}};
+        if (!(n[0] < n[3] && n[1] < n[4] && n[2] < n[5])) flat("has no volume: the first corner is the lower one");
+    } else if (name == "sphere") {
+        const auto n = numbers_of(text, rest, 4);
+        kind_ = Kind::Sphere;
+        point_ = {n[0], n[1], n[2]};
+        radius_ = n[3];
+        if (!(radius_ > 0)) flat("has no volume: the radius is more than 0");
+    } else if (name == "half") {
+        const auto n = numbers_of(text, rest, 6);
+        kind_ = Kind::Half;
+        point_ = {n[0], n[1], n[2]};
+        const Vec3 normal(n[3], n[4], n[5]);
+        if (glm::length(normal) == 0) flat("has no normal");
+        normal_ = glm::normalize(normal);
+    } else if (name == "where" && !rest.empty()) {
+        kind_ = Kind::Where;
+        quantity_ = rest;
+    } else {
+        flat("is not a region");
+    }
+}
+
+double Region::depth(const Vec3& place) const {
+    if (kind_ == Kind::Sphere) return radius_ - glm::distance(place, point_);
+    if (kind_ == Kind::Half) return glm::dot(place - point_, normal_);
+    double least = std::numeric_limits<double>::infinity();
+    for (int k = 0; k < 3; ++k) least = std::min({least, place[k] - box_.lower[k], box_.upper[k] - place[k]});
+    return least;
+}
+
+double depth(std::span<const Region> regions, const Vec3& place) {
+    double least = std::numeric_limits<double>::infinity();
+    for (const Region& region : regions) least = std::min(least, region.depth(place));
+    return least;
+}
+
+std::vector<std::uint8_t> cells_in(const HexMesh& mesh, std::span<const Region> regions) {
+    std::vector<std::uint8_t> inside(mesh.cells.size(), 1);
+    for (const Region& region : regions) {
+        const bool where = region.kind() == Region::Kind::Where;
+        const Attribute values = where ? select_field(mesh, region.quantity()).scalar : Attribute{};
+        detail::parallel_each(mesh.cells.size(), [&](std::size_t c) {
+            if (!inside[c]) return;
+            const auto& cell = mesh.cells[c];
+            if (where) {
+                inside[c] = std::ranges::count_if(cell, [&](Index p) { return values.values[p] != 0; }) >= 4;
+            } else {
+                Vec3 sum(0.0);
+                for (const Index p : cell) sum += mesh.points[p];
+                inside[c] = region.depth(sum / 8.0) >= 0;
+            }
+        });
+    }
+    if (std::ranges::count(inside, 1) == 0) throw Error(ErrorCode::InvalidInput, "no cell lies in the region");
+    return inside;
+}
+
+HexMesh only_in(const HexMesh& mesh, std::span<const Region> regions) {
+    return detail::subset(mesh, cells_in(mesh, regions)).mesh;
+}
+
+}  // namespace subvol

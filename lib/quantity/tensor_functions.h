@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+#include <string_view>
+
+namespace subvol::detail {
+
+/// A function of the channels of a vector or tensor at one point.
+///
+/// takes: which fields it takes, for errors
+/// sizes: the numbers of channels that it takes; none: any
+struct TensorFunction {
+    std::string_view name;
+    std::string_view takes;
+    std::span<const int> sizes;
+    double (*value)(std::span<const double> channels);
+};
+
+/// Null: there is none of that name.
+[[nodiscard]] const TensorFunction* find_tensor_function(std::string_view name);
+
+}  // namespace subvol::detail
