@@ -153,10 +153,10 @@ void PictureArguments::add_light_to(CLI::App& app) {
     described[2].value = &opacity_unit_world;
     described[3].value = &clamp;
     add_options(app, described);
-    app.add_option(
-           "--range,--tf-range", transfer_range,
-           "the range that the colour map and the percentages of --opacity cover: MIN,MAX, per cents of the field's range such as 10%,90%, or field (default: the field's "
-           "range; a map from a file keeps its own values)")
+    app.add_option("--range,--tf-range", transfer_range,
+                   "the range that the colour map and the percentages of --opacity cover: MIN,MAX, per cents of the field's "
+                   "range such as 10%,90%, or field (default: the field's "
+                   "range; a map from a file keeps its own values)")
         ->type_name("MIN,MAX|field");
     app.add_option(
            "--opacity", opacity,

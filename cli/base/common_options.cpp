@@ -49,23 +49,25 @@ void add_mesh_options(CLI::App& app, CommonOptions& options) {
 void add_common_options(CLI::App& app, CommonOptions& options, Reads reads) {
     const std::string group = "Common options";
     const std::string of_meshes = reads == Reads::Meshes ? "Reading meshes" : "";
-    auto* field =
-        app.add_option("--field", options.field,
-                       "the field to use, or a quantity: U.x, mises(S), grad(T).x, (T-293)/620; of a vector its length, of a stress "
-                       "the von Mises stress (default: a physical scalar, else a stress or a vector, else density 1)");
+    auto* field = app.add_option(
+        "--field", options.field,
+        "the field to use, or a quantity: U.x, mises(S), grad(T).x, (T-293)/620; of a vector its length, of a stress "
+        "the von Mises stress (default: a physical scalar, else a stress or a vector, else density 1)");
     field->group(of_meshes)->type_name("EXPR");
     app.add_option("--density", options.density, "an expression in x, y, z to use as the field, e.g. \"sin(3*x)+z\"")
         ->group(of_meshes)
         ->type_name("EXPR")
         ->excludes(field);
     if (reads == Reads::Meshes) {
-        app.add_option("--warp", options.warp,
-                       "move the points by this vector field, times a factor; auto: the longest becomes a tenth of the box's diagonal")
+        app.add_option(
+               "--warp", options.warp,
+               "move the points by this vector field, times a factor; auto: the longest becomes a tenth of the box's diagonal")
             ->group(of_meshes)
             ->type_name("FIELD[*S|*auto]");
-        app.add_option("--only", options.only,
-                       "only the cells in a region: block:A,B, box:x0,y0,z0,x1,y1,z1, sphere:x,y,z,r, half:px,py,pz,nx,ny,nz or "
-                       "where:EXPR (repeatable: in all of them)")
+        app.add_option(
+               "--only", options.only,
+               "only the cells in a region: block:A,B, box:x0,y0,z0,x1,y1,z1, sphere:x,y,z,r, half:px,py,pz,nx,ny,nz or "
+               "where:EXPR (repeatable: in all of them)")
             ->group(of_meshes)
             ->type_name("REGION")
             ->allow_extra_args(false);

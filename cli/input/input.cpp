@@ -165,7 +165,8 @@ WithFacts<ReadResult> read_input(const std::string& input, const CommonOptions& 
     if (model) refuse_file_options(options.app, "says how a file is read; this is a model");
     if (model && !options.read.sharp.empty()) throw Error(ErrorCode::InvalidInput, "a model has no groups", "--sharp");
     if (model && (options.step || options.time)) throw Error(ErrorCode::InvalidInput, "a model has no steps", "--step, --time");
-    if (model && !(options.read.blocks.empty() && blocks_of(options).empty())) throw Error(ErrorCode::InvalidInput, "a model has no blocks", "--blocks");
+    if (model && !(options.read.blocks.empty() && blocks_of(options).empty()))
+        throw Error(ErrorCode::InvalidInput, "a model has no blocks", "--blocks");
     ReadResult read = facts.timed(progress, "read", [&] {
         if (model) return generate(input.substr(kModelPrefix.size()));
         ReadOptions file_options = read_options(input, options);

@@ -181,8 +181,8 @@ std::filesystem::path PictureOutput::frame_path(std::size_t frame) const {
     if (has_number(path_.string())) return with_number(path_.string(), numbered);
     const std::string number = std::to_string(numbered);
     const std::size_t digits = std::max<std::size_t>(4, std::to_string(first_ + *frames_ - 1).size());
-    return path_.parent_path() /
-           (path_.stem().string() + (path_.stem().string().ends_with('_') ? "" : "_") + std::string(digits - number.size(), '0') + number + path_.extension().string());
+    return path_.parent_path() / (path_.stem().string() + (path_.stem().string().ends_with('_') ? "" : "_") +
+                                  std::string(digits - number.size(), '0') + number + path_.extension().string());
 }
 
 void PictureOutput::write_frame(std::size_t frame, const Picture& picture) {

@@ -4,8 +4,8 @@
 #include <algorithm>
 
 #include "input.h"
-#include "subvol/quantity.h"
 #include "subvol/field_range.h"
+#include "subvol/quantity.h"
 #include "subvol/vdb_contents.h"
 #include "vdb_functions.h"
 

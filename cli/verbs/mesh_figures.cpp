@@ -145,6 +145,18 @@ void add_fields(const ReadResult& read, Lines& lines) {
     if (read.fields.empty()) lines.emplace_back("fields", "none");
 }
 
+/// The names of the blocks with their cells; of many the first.
+std::string blocks_text(const std::vector<MeshBlock>& blocks) {
+    constexpr std::size_t kMostNamed = 12;
+    std::vector<std::string> words;
+    for (const MeshBlock& block : blocks) {
+        if (words.size() == kMostNamed) break;
+        words.push_back(block.name + " (" + count_text(block.cells) + ")");
+    }
+    if (blocks.size() > kMostNamed) words.push_back("and " + count_text(blocks.size() - kMostNamed) + " more");
+    return join(words);
+}
+
 }  // namespace
 
 std::string verdict(const MeshReport& report, std::span<const std::size_t> inverted) {
@@ -164,7 +176,7 @@ std::string verdict(const MeshReport& report, std::span<const std::size_t> inver
     return words.empty() ? "sound" : words;
 }
 
-std::string mesh_lines(const ReadResult& read, const detail::MeshShare& joined, const Json& seconds) {
+std::string mesh_lines(const ReadResult& read, const detail::MeshShare& joined, const Json& seconds, const std::string& steps) {
     const MeshReport& mesh = joined.counts;
     Lines lines;
     const ShellReport shells = inspect(read.shells);
@@ -199,6 +211,8 @@ std::string mesh_lines(const ReadResult& read, const detail::MeshShare& joined, 
     lines.emplace_back("worst corner", text(std::setprecision(3), mesh.min_scaled_jacobian,
                                             " (scaled Jacobian: 1 a cube's, below 0 inverted)"));
     add_fields(read, lines);
+    if (read.blocks.size() > 1) lines.emplace_back("blocks", blocks_text(read.blocks));
+    if (!steps.empty()) lines.emplace_back("steps", steps);
     std::vector<std::string> stages;
     for (const auto& [stage, value] : seconds.items()) stages.push_back(stage + " " + seconds_text(value.get<double>()));
     lines.emplace_back("time", join(stages));

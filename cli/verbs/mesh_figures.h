@@ -49,7 +49,9 @@ struct FigureParts {
 ///
 /// joined:  all shares
 /// seconds: of each stage, as in the report
-[[nodiscard]] std::string mesh_lines(const ReadResult& read, const detail::MeshShare& joined, const Json& seconds);
+/// steps:   a line about the steps of the file, if it has several
+[[nodiscard]] std::string mesh_lines(const ReadResult& read, const detail::MeshShare& joined, const Json& seconds,
+                                     const std::string& steps);
 
 /// The number of inverted cells that a verdict names.
 inline constexpr std::size_t kCellsNamed = 8;

@@ -66,8 +66,7 @@ void say(const ProbeResult& found, const std::vector<Vec3>& places, Report& repo
             }
             words += text("  (cell ", found.cells[p], ")");
         }
-        const Vec3& x = places[p];
-        lines.emplace_back(number_text(x.x) + "," + number_text(x.y) + "," + number_text(x.z), words);
+        lines.emplace_back(place_text(places[p]), words);
     }
     report.answer(aligned(lines));
     if (places.size() > kMostLines) {
@@ -76,21 +75,12 @@ void say(const ProbeResult& found, const std::vector<Vec3>& places, Report& repo
     report.all_said();
 }
 
-std::string quoted(const std::string& name) {
-    if (name.find_first_of(",\"\n") == std::string::npos) return name;
-    std::string words = "\"";
-    for (const char c : name) words += c == '"' ? std::string("\"\"") : std::string(1, c);
-    return words + "\"";
-}
-
 void write_csv(const ProbeResult& found, const std::vector<Vec3>& places, const std::string& file) {
     using detail::exact_text;
     std::string table = "x,y,z,inside,cell,u,v,w";
     for (const ProbedField& field : found.fields) {
-        for (std::size_t c = 0; c < field.channels; ++c) {
-            const std::string name =
-                field.name + (field.channels > 1 ? "." + component_names(static_cast<int>(field.channels))[c] : "");
-            for (const char* end : {"", "_dx", "_dy", "_dz"}) table += "," + quoted(detail::printable(name + end));
+        for (const std::string& name : channel_names(field)) {
+            for (const char* end : {"", "_dx", "_dy", "_dz"}) table += "," + csv_text(name + end);
         }
     }
     table += "\n";
@@ -187,17 +177,45 @@ void warn_of_overflow(const PartMeasure& part, Report& report) {
 
 }  // namespace
 
-void show_probed(const ProbeResult& found, const std::vector<Vec3>& places, const std::string& file, const CommonOptions& options,
-                 Report& report) {
+Json json_of(const ProbeResult& found, const std::vector<Vec3>& places) {
+    Json values = Json::array();
+    for (std::size_t p = 0; p < places.size(); ++p) values.push_back(as_json(found, p, places[p]));
+    return values;
+}
+
+Json json_of(const LimitMeasure& found) {
+    Json stats{{"whole", as_json(found.whole)}, {"parts", Json::array()}, {"pieces", found.pieces}};
+    for (const PartMeasure& part : found.parts) stats["parts"].push_back(as_json(part));
+    return stats;
+}
+
+std::vector<std::string> channel_names(const ProbedField& field) {
+    if (field.channels == 1) return {field.name};
+    std::vector<std::string> names = component_names(static_cast<int>(field.channels));
+    for (std::string& name : names) name = field.name + "." + name;
+    return names;
+}
+
+std::string place_text(const Vec3& place) {
+    using detail::number_text;
+    return number_text(place.x) + "," + number_text(place.y) + "," + number_text(place.z);
+}
+
+std::string csv_text(const std::string& text) {
+    const std::string name = detail::printable(text);
+    if (name.find_first_of(",\"\n") == std::string::npos) return name;
+    std::string words = "\"";
+    for (const char c : name) words += c == '"' ? std::string("\"\"") : std::string(1, c);
+    return words + "\"";
+}
+
+void show_probed(const ProbeResult& found, const std::vector<Vec3>& places, const std::string& file,
+                 const CommonOptions& options, Report& report) {
     std::size_t inside = 0;
     for (std::size_t p = 0; p < places.size(); ++p) inside += found.inside(p) ? 1 : 0;
     report["places"] = places.size();
     report["inside"] = inside;
-    Json values = Json::array();
-    if (options.json) {
-        for (std::size_t p = 0; p < places.size(); ++p) values.push_back(as_json(found, p, places[p]));
-        report["values"] = std::move(values);
-    }
+    if (options.json) report["values"] = json_of(found, places);
     if (!options.quiet || file.empty()) say(found, places, report);
     if (inside < places.size()) {
         report.note(
@@ -208,8 +226,7 @@ void show_probed(const ProbeResult& found, const std::vector<Vec3>& places, cons
 }
 
 void show_measured(const LimitMeasure& found, Report& report) {
-    report["stats"] = {{"whole", as_json(found.whole)}, {"parts", Json::array()}, {"pieces", found.pieces}};
-    for (const PartMeasure& part : found.parts) report["stats"]["parts"].push_back(as_json(part));
+    report["stats"] = json_of(found);
     warn_of_overflow(found.whole, report);
     say(found.whole, "", report);
     for (const PartMeasure& part : found.parts) say(part, part.name, report);

@@ -14,7 +14,20 @@ namespace subvol::cli {
 ///
 /// file: empty: none
 /// options: with --json the report gets the values of all places; with --quiet they are not said if a file has them
-void show_probed(const ProbeResult& found, const std::vector<Vec3>& places, const std::string& file, const CommonOptions& options, Report& report);
+void show_probed(const ProbeResult& found, const std::vector<Vec3>& places, const std::string& file,
+                 const CommonOptions& options, Report& report);
+
+/// The places with their values, as `show_probed` puts them into the report.
+[[nodiscard]] Json json_of(const ProbeResult& found, const std::vector<Vec3>& places);
+/// Integrals and extremes, as `show_measured` puts them into the report.
+[[nodiscard]] Json json_of(const LimitMeasure& found);
+
+/// The names of a field's channels: NAME, or NAME.x and so on.
+[[nodiscard]] std::vector<std::string> channel_names(const ProbedField& field);
+/// "0.1,0,2".
+[[nodiscard]] std::string place_text(const Vec3& place);
+/// A text as a cell of a .csv file.
+[[nodiscard]] std::string csv_text(const std::string& text);
 
 /// Integrals and extremes, into the report.
 void show_measured(const LimitMeasure& found, Report& report);

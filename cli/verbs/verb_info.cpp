@@ -200,7 +200,7 @@ private:
         }
         if (!share_.given()) report["verdict"] = verdict(about.counts, about.inverted);
         if (gl_) return;  // the table has all
-        std::string lines = mesh_lines(read, about, report.json().at("seconds"));
+        std::string lines = mesh_lines(read, about, report.json().at("seconds"), steps_text(report.json()));
         lines.pop_back();
         report.say(lines);
         if (tets_.asked()) report.say(refined_lines(report.json().at("refined")));
@@ -268,6 +268,15 @@ private:
         report["step"] = step;
         report["blocks"] = Json::array();
         for (const MeshBlock& block : read.blocks) report["blocks"].push_back({{"name", block.name}, {"cells", block.cells}});
+    }
+
+    /// "0 to 4, times 0 … 0.4; this is step 4"; empty if there is one step.
+    [[nodiscard]] static std::string steps_text(const Json& json) {
+        if (json.value("steps", 1) < 2) return {};
+        const Json& times = json.at("times");
+        const auto time = [](const Json& t) { return t.is_number() ? text(t.get<double>()) : std::string("unknown"); };
+        return text("0 to ", times.size() - 1, ", times ", time(times.front()), " … ", time(times.back()), "; this is step ",
+                    json.at("step").get<std::size_t>());
     }
 
     /// The head of a file with levels of detail; nothing else is read.

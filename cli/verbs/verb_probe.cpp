@@ -14,8 +14,10 @@
 #include "outputs.h"
 #include "places_input.h"
 #include "probe_output.h"
+#include "probe_series.h"
 #include "quantities.h"
 #include "refine_arguments.h"
+#include "steps.h"
 #include "subvol/error.h"
 #include "subvol/hex_mesh.h"
 #include "subvol/measure.h"
@@ -81,12 +83,14 @@ public:
                "  subvol probe part.vtu --at 0.1,0.2,0.3 --at 1,0,0\n"
                "  subvol probe part.vtu --line -1,0,0,1,0,0 --count 500 -o line.svg\n"
                "  subvol probe part.vtu --points bolts.csv -o values.csv --json\n"
-               "  subvol probe part.vtu --stats --field Temp\n"
+               "  subvol probe part.vtu --stats --field 'mises(STRESS)' --only box:0,0,0,1,1,2\n"
+               "  subvol probe run.exo --at 0,0,1 --step all -o history.csv\n"
                "\n"
                "JSON: values, one for each place: at, inside, value and gradient of the chosen field, cell, parameters, "
                "fields with value and gradient of each. Outside there is nothing: null. stats: whole and parts, with "
                "volume, error (of the volume and of means, in parts of them and of ranges), and for each field, or for "
-               "the one that --field names, integral, mean, min, max, their places, extreme_error, and a histogram.") {
+               "the one that --field names, integral, mean, min, max, their places, extreme_error, and a histogram. With "
+               "--step all or A-B: steps, each with step, time and values or stats.") {
         app().add_option("FILE", input_, input_help())->required();
         app()
             .add_option("--at", at_, "a place in world units (repeatable)")
@@ -117,19 +121,32 @@ public:
             throw Error(ErrorCode::InvalidInput, "the limit of " + scheme_.scheme + " is probed, not a level", "--levels",
                         "--scheme tetoct or boxspline, whose volume is that of a level");
         }
+        if (asks_for_steps(common()) && (places.empty() != stats_ || tets.asked())) {
+            throw Error(ErrorCode::InvalidInput, "a table of steps is about places or about the whole of hexahedra", "--step",
+                        "either --stats, or --at, --line and --points");
+        }
         const LimitOptions limit{.scheme = scheme_.options(0, report.progress()).scheme, .progress = report.progress()};
         report["input"] = input_;
-        BodyInput body = report.unpack(open_body(input_, common(), app(), report.progress()));
-        // Places have all fields; a field that is named for statistics is measured alone.
-        const bool alone = places.empty() && (common().field || common().density);
-        (void)report.unpack(body.select(common(), alone ? OtherFields::Drop : OtherFields::Keep));
-        report["cells"] = body.source().cells();
-        if (tets.asked()) {
-            probe_tets(tets, body.mesh_for(tets), places, report);
-            if (stats_ && body.blocks.size() > 1) report.warn("tetoct and boxspline measure the whole, not its blocks");
+        regions_ = regions_of(common());
+        const bool cells_only = std::erase_if(regions_, [](const Region& r) { return r.kind() == Region::Kind::Where; }) > 0;
+        CommonOptions reading = common();  // parts of space are cut exactly
+        std::erase_if(reading.only, [](const std::string& r) { return !r.starts_with("block:") && !r.starts_with("where:"); });
+        if (cells_only && stats_) report.note("whole cells are measured where a quantity decides");
+        if (asks_for_steps(common())) {
+            probe_steps(reading, places, limit, report);
         } else {
-            if (!places.empty()) probe(body.source(), places, limit, report);
-            if (stats_) measure(body, limit.scheme, report);
+            const BodyInput body = open(reading, places, report);
+            report["cells"] = body.source().cells();
+            if (tets.asked()) {
+                if (!regions_.empty()) {
+                    throw Error(ErrorCode::InvalidInput, "is cut from the limit of hexahedra", "--only", "where:EXPR");
+                }
+                probe_tets(tets, body.mesh_for(tets), places, report);
+                if (stats_ && body.blocks.size() > 1) report.warn("tetoct and boxspline measure the whole, not its blocks");
+            } else {
+                if (!places.empty()) show_probed(probe(body, places, limit, report), places, output_, common(), report);
+                if (stats_) show_measured(measure(body, limit.scheme, report), report);
+            }
         }
         if (!output_.empty()) report["output"] = output_;
         return 0;
@@ -157,6 +174,7 @@ private:
     void check_outputs() const {
         if (output_.empty()) return;
         check_output(output_, {".csv", ".svg"});
+        if (asks_for_steps(common())) return;
         if (output_.ends_with(".svg") && (line_.empty() || !at_.empty() || !points_.empty())) {
             throw Error(ErrorCode::InvalidInput, "a plot needs --line, and no other places", output_, "a .csv file takes all");
         }
@@ -166,10 +184,42 @@ private:
         }
     }
 
-    void probe(const MeshSource& source, const std::vector<Vec3>& places, const LimitOptions& limit, Report& report) const {
-        const ProbeResult found =
-            report.timed("probe", [&] { return probe_limit(source, places, {.limit = limit}, report.progress()); });
-        show_probed(found, places, output_, common(), report);
+    /// The body with the field of --field first.
+    [[nodiscard]] BodyInput open(const CommonOptions& options, const std::vector<Vec3>& places, Report& report) {
+        BodyInput body = report.unpack(open_body(input_, options, app(), report.progress()));
+        // Places have all fields; a field that is named for statistics is measured alone.
+        const bool alone = places.empty() && (common().field || common().density);
+        (void)report.unpack(body.select(options, alone ? OtherFields::Drop : OtherFields::Keep));
+        return body;
+    }
+
+    void probe_steps(const CommonOptions& options, const std::vector<Vec3>& places, const LimitOptions& limit, Report& report) {
+        const MeshSeries series = open_series(input_);
+        const FrameRange range = chosen_steps(series, options);
+        std::vector<ProbedStep> steps;
+        for (int step = range.first; step <= range.last; ++step) {
+            const auto number = static_cast<std::size_t>(step);
+            report.begin_part("step", number - static_cast<std::size_t>(range.first), static_cast<std::size_t>(range.count()));
+            const BodyInput body = open(of_step(options, step), places, report);
+            ProbedStep& found = steps.emplace_back(ProbedStep{number, series.times[number], {}, {}});
+            if (stats_) {
+                found.measure = measure(body, limit.scheme, report);
+            } else {
+                found.places = probe(body, places, limit, report);
+            }
+        }
+        report.begin_part("", 0, 0);
+        show_steps(steps, places, output_, common(), report);
+    }
+
+    [[nodiscard]] ProbeResult probe(const BodyInput& body, const std::vector<Vec3>& places, const LimitOptions& limit,
+                                    Report& report) const {
+        ProbeResult found =
+            report.timed("probe", [&] { return probe_limit(body.source(), places, {.limit = limit}, report.progress()); });
+        for (std::size_t p = 0; p < places.size(); ++p) {
+            if (depth(regions_, places[p]) < 0) found.cells[p] = kNone;
+        }
+        return found;
     }
 
     /// The volume of a scheme of tetrahedra: linear between the vertices of a level, which are on the limit.
@@ -190,25 +240,26 @@ private:
             report);
     }
 
-    void measure(const BodyInput& body, const SchemeOptions& scheme, Report& report) const {
+    [[nodiscard]] LimitMeasure measure(const BodyInput& body, const SchemeOptions& scheme, Report& report) const {
         const MeshSource source = body.source();
         BlockCells parts;
         if (source.mesh() != nullptr) {
             parts = report.unpack(
                 report.timed("blocks", [&] { return cells_of_blocks(input_, body.blocks, *source.mesh(), common()); }));
         }
-        const LimitMeasure found = report.timed("measure", [&] {
-            return measure_limit(source, {.scheme = scheme,
-                                          .bins = measured_.bins,
-                                          .groups = parts.groups,
-                                          .names = parts.names,
-                                          .progress = report.progress()});
+        const MeasureOptions options{.scheme = scheme,
+                                     .bins = measured_.bins,
+                                     .groups = parts.groups,
+                                     .names = parts.names,
+                                     .progress = report.progress()};
+        return report.timed("measure", [&] {
+            return regions_.empty() ? measure_limit(source, options) : measure_limit_in(*source.mesh(), regions_, options);
         });
-        show_measured(found, report);
     }
 
     std::string input_, line_, points_, output_;
     std::vector<std::string> at_;
+    std::vector<Region> regions_;  // of --only, but for cells
     std::size_t count_ = 200;
     MeasureOptions measured_;
     bool stats_ = false;

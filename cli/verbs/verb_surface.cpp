@@ -44,7 +44,8 @@ public:
             ->type_name("FILE")
             ->required();
         app()
-            .add_option("--iso", isos_, "the value of an isosurface, or a per cent of the field's range such as 20% (repeatable)")
+            .add_option("--iso", isos_,
+                        "the value of an isosurface, or a per cent of the field's range such as 20% (repeatable)")
             ->type_name("V")
             ->allow_extra_args(false);
         add_options(app(), options_of(options_));

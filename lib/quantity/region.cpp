@@ -20,17 +20,17 @@ constexpr const char* kKinds = "box:x0,y0,z0,x1,y1,z1, sphere:x,y,z,r, half:px,p
 
 std::vector<double> numbers_of(const std::string& text, std::string_view list, std::size_t count) {
     std::vector<double> numbers;
-    for (bool more = true; more;) {
-        const std::size_t comma = list.find(',');
-        const std::optional<double> number = detail::plain_number(list.substr(0, comma));
-        if (!number || !std::isfinite(*number)) break;
-        numbers.push_back(*number);
-        more = comma != std::string_view::npos;
-        list.remove_prefix(more ? comma + 1 : list.size());
+    bool right = true;
+    for (std::size_t at = 0; right && at <= list.size();) {
+        const std::size_t comma = std::min(list.find(',', at), list.size());
+        const std::optional<double> number = detail::plain_number(list.substr(at, comma - at));
+        right = number && std::isfinite(*number);
+        if (right) numbers.push_back(*number);
+        at = comma + 1;
     }
-    if (!list.empty() || numbers.size() != count) {
-        throw Error(ErrorCode::InvalidInput,
-                    "'" + text + "' is not a region: " + std::to_string(count) + " numbers are needed", {}, kKinds);
+    if (!right || numbers.size() != count) {
+        throw Error(ErrorCode::InvalidInput, "'" + text + "' is not a region: " + std::to_string(count) + " numbers are needed",
+                    {}, kKinds);
     }
     return numbers;
 }
@@ -69,11 +69,16 @@ Region::Region(const std::string& text) {
     }
 }
 
-double Region::depth(const Vec3& place) const {
+double Region::depth(const Vec3& place, std::size_t face) const {
     if (kind_ == Kind::Sphere) return radius_ - glm::distance(place, point_);
     if (kind_ == Kind::Half) return glm::dot(place - point_, normal_);
+    const int axis = static_cast<int>(face % 3);
+    return face < 3 ? place[axis] - box_.lower[axis] : box_.upper[axis] - place[axis];
+}
+
+double Region::depth(const Vec3& place) const {
     double least = std::numeric_limits<double>::infinity();
-    for (int k = 0; k < 3; ++k) least = std::min({least, place[k] - box_.lower[k], box_.upper[k] - place[k]});
+    for (std::size_t face = 0; face < faces(); ++face) least = std::min(least, depth(place, face));
     return least;
 }
 

@@ -27,6 +27,9 @@ public:
     /// Of a part of space: about how far inside a place lies (world), negative outside. It is exact near the faces, and changes
     /// by no more than the distance between two places.
     [[nodiscard]] double depth(const Vec3& place) const;
+    /// The same behind each of its faces: a box has six, others one.
+    [[nodiscard]] std::size_t faces() const { return kind_ == Kind::Box ? 6 : 1; }
+    [[nodiscard]] double depth(const Vec3& place, std::size_t face) const;
     /// The quantity of `where`.
     [[nodiscard]] const std::string& quantity() const { return quantity_; }
 

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "report.h"
+#include "subvol/measure.h"
+#include "subvol/probe.h"
+
+namespace subvol::cli {
+
+/// What was found in one step of a series. places, measure: what was asked for
+struct ProbedStep {
+    std::size_t step = 0;
+    double time = 0;
+    std::optional<ProbeResult> places;
+    std::optional<LimitMeasure> measure;
+};
+
+/// The steps of a series: into the report as `steps`, as lines for people, and into a table with a row for each step and place,
+/// or each step and part (.csv), or a plot of the first field over time (.svg).
+///
+/// file: empty: none; with --quiet there are no lines if a file has them
+void show_steps(const std::vector<ProbedStep>& steps, const std::vector<Vec3>& places, const std::string& file,
+                const CommonOptions& options, Report& report);
+
+}  // namespace subvol::cli
