@@ -441,12 +441,15 @@ private:
 
 LimitMeasure measure_limit_in(const HexMesh& mesh, std::span<const Region> regions, const MeasureOptions& options) {
     check_options(options);
-    for (const Region& region : regions) {
-        if (region.kind() != Region::Kind::Where) continue;
-        throw Error(ErrorCode::InvalidInput, "is a set of cells", "where:" + region.quantity(),
-                    "a mesh of these cells, by only_in");
+    std::vector<Region> space, cells;
+    for (const Region& region : regions) (region.kind() == Region::Kind::Where ? cells : space).push_back(region);
+    if (cells.empty()) return RegionMeasurer(mesh, space, options).measure();
+    if (!options.groups.empty()) {
+        throw Error(ErrorCode::InvalidInput, "chooses cells, which have no groups then", "where:" + cells.front().quantity(),
+                    "parts of space");
     }
-    return RegionMeasurer(mesh, regions, options).measure();
+    const HexMesh part = only_in(mesh, cells);
+    return space.empty() ? measure_limit(part, options) : RegionMeasurer(part, space, options).measure();
 }
 
 }  // namespace subvol

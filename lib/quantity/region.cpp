@@ -82,6 +82,10 @@ double Region::depth(const Vec3& place) const {
     return least;
 }
 
+std::vector<Region> parse_regions(std::span<const std::string> texts) {
+    return {texts.begin(), texts.end()};
+}
+
 double depth(std::span<const Region> regions, const Vec3& place) {
     double least = std::numeric_limits<double>::infinity();
     for (const Region& region : regions) least = std::min(least, region.depth(place));

@@ -132,12 +132,14 @@ py::dict as_dict(PartMeasure part) {
     return result;
 }
 
-py::dict measure(const HexMesh& mesh, const py::object& progress, const py::kwargs& keywords) {
+py::dict measure(const HexMesh& mesh, const std::vector<std::string>& only, const py::object& progress,
+                 const py::kwargs& keywords) {
+    const std::vector<Region> regions = parse_regions(only);
     MeasureOptions options;
     set_options(keywords_of(options), keywords);
     LimitMeasure found = result_of(progress, [&](Progress* listener) {
         options.progress = listener;
-        return measure_limit(mesh, options);
+        return regions.empty() ? measure_limit(mesh, options) : measure_limit_in(mesh, regions, options);
     });
     return as_dict(std::move(found.whole));
 }
@@ -205,7 +207,7 @@ void bind_measure(py::module_& module) {
     module.def("probe", &probe, py::arg("mesh"), py::arg("places"), py::arg("levels"), py::arg("progress"));
     module.def("points_error", &error_of_points, py::arg("volume"), py::arg("mesh"), py::arg("field"), py::arg("channel"),
                py::arg("progress"));
-    module.def("measure", &measure, py::arg("mesh"), py::arg("progress"));
+    module.def("measure", &measure, py::arg("mesh"), py::arg("only"), py::arg("progress"));
     module.def("slice", &slice, py::arg("mesh"), py::arg("field"), py::arg("point"), py::arg("normal"), py::arg("progress"));
     module.def("surface", &surface, py::arg("mesh"), py::arg("field"), py::arg("isos"), py::arg("path"), py::arg("origin"),
                py::arg("progress"));

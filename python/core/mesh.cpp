@@ -6,8 +6,11 @@
 #include "subvol/mesh_report.h"
 #include "subvol/mesh_series.h"
 #include "subvol/model.h"
+#include "subvol/quantity.h"
+#include "subvol/region.h"
 #include "subvol/surface.h"
 #include "subvol/topology.h"
+#include "subvol/warp.h"
 #include "subvol/wavelet_file.h"
 
 namespace subvol::python {
@@ -207,6 +210,33 @@ void bind_mesh(py::module_& module) {
         py::arg("path"), py::arg("mesh"));
     module.def("write_wavelets", &write_wavelets, py::arg("path"), py::arg("mesh"), py::arg("tolerance"),
                py::arg("point_tolerance"), py::arg("scheme"), py::arg("levels"), py::arg("progress"));
+    module.def(
+        "quantity",
+        [](const HexMesh& mesh, const std::string& source) {
+            Attribute field = [&] {
+                const py::gil_scoped_release without_gil;
+                return field_of(mesh, source, source);
+            }();
+            const py::ssize_t points = length(mesh.points.size()), channels = field.channels;
+            return channels == 1 ? owned(std::move(field.values), {points})
+                                 : owned(std::move(field.values), {points, channels});
+        },
+        py::arg("mesh"), py::arg("source"));
+    module.def(
+        "warp",
+        [](HexMesh mesh, const std::string& field, std::optional<double> factor) {
+            const py::gil_scoped_release without_gil;
+            move_points(mesh, {field, factor});
+            return mesh;
+        },
+        py::arg("mesh"), py::arg("field"), py::arg("factor"));
+    module.def(
+        "only",
+        [](const HexMesh& mesh, const std::vector<std::string>& regions) {
+            const py::gil_scoped_release without_gil;
+            return only_in(mesh, parse_regions(regions));
+        },
+        py::arg("mesh"), py::arg("regions"));
     module.def("select_field", &selected, py::arg("mesh"), py::arg("name"));
     module.def(
         "make_model",

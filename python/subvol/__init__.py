@@ -12,7 +12,7 @@ from ._errors import Cancelled, Error, FileError, InvalidInput, MissingCapabilit
 from ._exchange import from_meshio, from_pyvista, to_meshio, to_pyvista
 from ._fields import LimitSamples, as_field, evaluate, evaluate_limit
 from ._measure import PointsError, ProbeSamples, Slice, SurfaceMesh, measure, points_error, probe, slice, surface
-from ._mesh import Series, model, models, open_series, read_mesh, subdivide, write_mesh, write_wavelets
+from ._mesh import Series, model, models, only, open_series, quantity, read_mesh, subdivide, warp, write_mesh, write_wavelets
 from ._page import Page, page
 from ._pictures import FieldComparison, ImageComparison, compare, compare_fields, compare_images, read_image, render, write_image
 from ._points import fit, kernels, read_points, reduce, sample, write_points
@@ -30,7 +30,7 @@ __all__ = [
     "InvalidInput", "LimitSamples", "MissingCapability", "Page", "PointsError", "ProbeSamples", "RbfVolume", "Refinement", "Series",
     "Slice", "Study", "StudyCase", "StudyResults", "SubvolWarning", "SurfaceMesh", "TransferFunction", "as_field", "compare",
     "compare_fields", "compare_images", "evaluate", "evaluate_limit", "fit", "from_meshio", "from_pyvista", "gl_devices", "kernels",
-    "measure", "model", "models", "open_series", "page", "points_error", "probe", "rasterize", "read_image", "read_mesh", "read_points",
+    "measure", "model", "models", "only", "open_series", "page", "points_error", "probe", "quantity", "rasterize", "read_image", "read_mesh", "read_points",
     "read_vdb", "reduce", "render", "run_study", "sample", "sample_grid", "set_threads", "slice", "studies", "study", "subdivide",
-    "surface", "to_meshio", "to_pyvista", "write_image", "write_mesh", "write_points", "write_vdb", "write_wavelets",
+    "surface", "to_meshio", "to_pyvista", "warp", "write_image", "write_mesh", "write_points", "write_vdb", "write_wavelets",
 ]

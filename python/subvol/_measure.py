@@ -80,17 +80,18 @@ def probe(mesh: HexMesh, places: npt.ArrayLike, *, levels: Optional[int] = None,
 
 
 @described
-def measure(mesh: HexMesh, *, progress: Progress = None, **options: Any) -> dict[str, Any]:
+def measure(mesh: HexMesh, *, only: Union[str, Sequence[str]] = (), progress: Progress = None, **options: Any) -> dict[str, Any]:
     """The volume of the limit, and of each field its integral, mean, extremes with their places, and histogram.
 
     Returns cells, volume, error (an estimate of how far off the volume is, as a part of it, and each mean, as a part of its field's
     range), and fields: a dictionary by name of integral, mean, min, min_at, max, max_at, extreme_error (how far beyond these the limit
     may go), histogram (the volume in each of `bins` equal intervals from min to max).
 
+    only:        a region, or several of which all hold, as of `only`; parts of space are cut exactly out of the limit
     {keywords}
     """
     with listening(progress) as listener:
-        found: dict[str, Any] = _core.measure(mesh, listener, **options)
+        found: dict[str, Any] = _core.measure(mesh, [only] if isinstance(only, str) else list(only), listener, **options)
     return found
 
 

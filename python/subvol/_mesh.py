@@ -5,6 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import Any, Optional
 
+import numpy as np
+import numpy.typing as npt
+
 from . import _core
 from ._arguments import Path, path_bytes, warn
 from ._core import HexMesh
@@ -81,6 +84,31 @@ def subdivide(mesh: HexMesh, levels: int = 1, scheme: str = "mcq", *, on_limit: 
     """
     with listening(progress) as listener:
         return _core.subdivide(mesh, on_limit, listener, levels=levels, scheme=scheme, **options)
+
+
+def quantity(mesh: HexMesh, source: str) -> npt.NDArray[np.float64]:
+    """A quantity at the points of a mesh: (n,) or (n,channels).
+
+    source: a field by its name, a component such as "U.x" or "S.xy", or what is computed from fields: "mises(S)", "principal1(S)",
+            "length(U)", "grad(T)", "div(U)", "(T-293)/620"; docs/quantities.md has all. Calls with `field` take the same words.
+
+    Derivatives are those of the limit of the scheme mcq. Raises InvalidInput with the position of what is wrong.
+    """
+    return _core.quantity(mesh, source)
+
+
+def warp(mesh: HexMesh, field: str, factor: Optional[float] = 1) -> HexMesh:
+    """The mesh with its points moved by a vector field times a factor. None: the longest displacement becomes a tenth of the diagonal."""
+    return _core.warp(mesh, field, factor)
+
+
+def only(mesh: HexMesh, *regions: str) -> HexMesh:
+    """The cells that lie in all of some regions, as a mesh of its own; the cells beside them no longer shape their limit.
+
+    regions: "box:x0,y0,z0,x1,y1,z1", "sphere:x,y,z,r", "half:px,py,pz,nx,ny,nz" (cells by their centres; a plane's normal points into
+             the half), or "where:T>500": a quantity that is not 0 at half of a cell's corners or more
+    """
+    return _core.only(mesh, list(regions))
 
 
 class Series:

@@ -92,7 +92,9 @@ struct LimitMeasure {
 /// volume and the means change by less than the tolerance. extreme_error is 1/128 of the range, as the extremes are looked for
 /// at points; cells of a part are those with a piece whose centre lies inside.
 ///
-/// throws: Error(InvalidInput) as `measure_limit`, for a region of cells, or if no volume lies in the region
+/// Of regions of cells, the limit of these cells alone is measured.
+///
+/// throws: Error(InvalidInput) as `measure_limit`, if no volume lies in the region, or for groups with a region of cells
 /// cost:   parallel; that of the pieces, and some milliseconds for each that is cut
 [[nodiscard]] LimitMeasure measure_limit_in(const HexMesh& mesh, std::span<const Region> regions,
                                             const MeasureOptions& options = {});

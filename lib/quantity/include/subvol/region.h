@@ -21,7 +21,7 @@ public:
     enum class Kind { Box, Sphere, Half, Where };
 
     /// throws: Error(InvalidInput) if the text is no region, or one without volume
-    explicit Region(const std::string& text);
+    Region(const std::string& text);
 
     [[nodiscard]] Kind kind() const { return kind_; }
     /// Of a part of space: about how far inside a place lies (world), negative outside. It is exact near the faces, and changes
@@ -40,6 +40,9 @@ private:
     double radius_ = 0;
     std::string quantity_;
 };
+
+/// throws: Error(InvalidInput) if a text is no region
+[[nodiscard]] std::vector<Region> parse_regions(std::span<const std::string> texts);
 
 /// How far inside all of several parts of space a place lies.
 [[nodiscard]] double depth(std::span<const Region> regions, const Vec3& place);
