@@ -19,6 +19,7 @@
 #include "subvol/limit.h"
 #include "subvol/mesh_io.h"
 #include "subvol/model.h"
+#include "subvol/quantity.h"
 #include "subvol/refine.h"
 #include "subvol/topology.h"
 

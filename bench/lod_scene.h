@@ -7,10 +7,10 @@
 #include <string>
 
 #include "subvol/camera.h"
-#include "subvol/quantity.h"
 #include "subvol/mesh_io.h"
 #include "subvol/model.h"
 #include "subvol/optics.h"
+#include "subvol/quantity.h"
 
 namespace subvol::bench {
 

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "subvol/quantity.h"
+
 namespace subvol::cli {
 namespace {
 

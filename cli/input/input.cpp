@@ -178,7 +178,7 @@ WithFacts<ReadResult> read_input(const std::string& input, const CommonOptions& 
         if (options.field == field.name)
             throw Error(ErrorCode::InvalidInput, field.why, text(input, ", field '", field.name, "'"));
     }
-    if (!model) say_step(input, options, facts);
+    say_step(read, options, facts);
     if (read.cell_values) {
         Facts& means = facts.group("cell_values");
         means["method"] = std::string(name_of(read.cell_values->method));

@@ -55,17 +55,15 @@ std::optional<std::size_t> one_step(const std::string& input, const CommonOption
     return step;
 }
 
-void say_step(const std::string& input, const CommonOptions& options, Facts& facts) {
-    const MeshSeries series = open_series(input);
-    if (series.size() < 2) return;
-    const std::size_t step = one_step(input, options).value_or(series.size() - 1);
-    const double time = series.times[step];
-    facts["step"] = step;
+void say_step(const ReadResult& read, const CommonOptions& options, Facts& facts) {
+    if (read.steps < 2 || !read.mesh.time) return;
+    const double time = *read.mesh.time;
+    facts["step"] = read.step;
     facts["time"] = time;
-    const std::string taken = text("step ", step, " of 0 to ", series.size() - 1, ", time ", time);
-    const auto [first, last] = std::ranges::minmax(series.times);
-    if (options.time && (*options.time < first || *options.time > last)) {
-        facts.warn(text("time ", *options.time, " is not between ", first, " and ", last, ": it is ", taken));
+    const std::string taken = text("step ", read.step, " of 0 to ", read.steps - 1, ", time ", time);
+    const bool end = read.step == 0 || read.step == read.steps - 1;
+    if (options.time && end && (read.step == 0 ? *options.time < time : *options.time > time)) {
+        facts.warn(text("time ", *options.time, " is beyond the steps of the file: it is ", taken));
     } else {
         facts.note(taken);
     }

@@ -17,6 +17,7 @@
 #include "subvol/detail/atomic_file.h"
 #include "subvol/error.h"
 #include "subvol/page.h"
+#include "subvol/quantity.h"
 #include "subvol/splat.h"
 #include "tet_refinement.h"
 #include "text.h"

@@ -151,6 +151,7 @@ HexMesh without_unused_points(HexMesh mesh) {
     if (count == mesh.points.size()) return mesh;
 
     HexMesh result;
+    result.time = mesh.time;
     result.points.reserve(count);
     for (const auto& attribute : mesh.attributes)
         result.attributes.push_back({attribute.name, attribute.channels, {}, attribute.bounds});

@@ -35,6 +35,7 @@ void grow(const HexMesh& mesh, std::vector<std::uint8_t>& cells, int layers) {
 MeshSubset subset(const HexMesh& mesh, std::span<const std::uint8_t> cells) {
     std::vector<Index> places(mesh.points.size(), kNone);
     MeshSubset result;
+    result.mesh.time = mesh.time;
     for (Index c = 0; c < cells.size(); ++c) {
         if (!cells[c]) continue;
         result.mesh.cells.push_back(mesh.cells[c]);

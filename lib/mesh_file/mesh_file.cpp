@@ -226,6 +226,14 @@ std::size_t chosen_step(const ReadOptions& options, std::size_t steps, std::stri
                 steps == 1 ? "it has one step, number 0" : "steps are 0 to " + std::to_string(steps - 1));
 }
 
+void order_symmetric(std::vector<double>& values, const std::array<std::size_t, 6>& places) {
+    std::array<double, 6> given{};
+    for (auto tensor = values.begin(); values.end() - tensor >= 6; tensor += 6) {
+        std::copy_n(tensor, given.size(), given.begin());
+        for (std::size_t k = 0; k < given.size(); ++k) tensor[static_cast<std::ptrdiff_t>(k)] = given[places[k]];
+    }
+}
+
 }  // namespace subvol::detail
 
 namespace subvol {

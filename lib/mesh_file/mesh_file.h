@@ -25,6 +25,13 @@ struct FileArray {
     std::vector<double> values;
 };
 
+/// Symmetric tensors have their components in the order xx, yy, zz, xy, yz, xz. The place of each in files that list the upper
+/// triangle by rows: xx, xy, xz, yy, yz, zz.
+inline constexpr std::array<std::size_t, 6> kSymmetricByRows{0, 3, 5, 1, 4, 2};
+
+/// Values of symmetric tensors in our order. places: of our components in the file
+void order_symmetric(std::vector<double>& values, const std::array<std::size_t, 6>& places);
+
 /// The cells of one kind. numbers: the number of each among all cells of the file, from 0; empty if no array needs it
 template <std::size_t N>
 struct FileCells {

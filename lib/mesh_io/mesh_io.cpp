@@ -280,6 +280,12 @@ ReadResult read_mesh(const std::filesystem::path& path, const ReadOptions& optio
     }
     ReadResult result = format.read(path, resolved);
     if (!result.cell_means.empty()) fit_fields(result, resolved.cell_values);
+    if (format.times) {
+        const std::vector<double> times = format.times(path);
+        result.steps = std::max<std::size_t>(times.size(), 1);
+        result.step = options.step.value_or(result.steps - 1);
+        if (result.steps > 1) result.mesh.time = times[result.step];
+    }
     return result;
 }
 

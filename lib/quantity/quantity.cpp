@@ -32,6 +32,11 @@ bool is_letter(char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
 }
 
+/// Names that are no words stand in backquotes, or in single quotation marks.
+bool is_quote(char c) {
+    return c == '`' || c == '\'';
+}
+
 bool is_digit(char c) {
     return c >= '0' && c <= '9';
 }
@@ -127,7 +132,7 @@ public:
         if (const Attribute* field = mesh_.find_attribute(text)) return *field;
         if (auto component = component_of_field(text)) return std::move(*component);
         std::size_t at = 0;
-        if (text[0] == '`' || is_letter(text[0])) {
+        if (is_quote(text[0]) || is_letter(text[0])) {
             auto whole = term(text, at, begin);
             if (whole && at == text.size()) return std::move(*whole);
         }
@@ -156,9 +161,9 @@ private:
     /// The term at a place of the text, which moves behind it; nothing, and the place stays, if there is none.
     [[nodiscard]] std::optional<Attribute> term(std::string_view text, std::size_t& at, std::size_t begin) const {
         std::size_t end = at;
-        if (text[at] == '`') {
-            end = text.find('`', at + 1);
-            if (end == std::string_view::npos) refuse("has no second backquote", begin + at);
+        if (is_quote(text[at])) {
+            end = text.find(text[at], at + 1);
+            if (end == std::string_view::npos) refuse(std::string("has no second ") + text[at], begin + at);
             const std::string name(text.substr(at + 1, end - at - 1));
             const Attribute* field = mesh_.find_attribute(name);
             if (field == nullptr)
@@ -175,6 +180,11 @@ private:
             Attribute result = call(word, argument, begin + at);
             at = close + 1;
             return with_component(std::move(result), text, at, begin);
+        }
+        if (word == "time") {
+            if (!mesh_.time) refuse("the mesh has no time", begin + at);
+            at = end;
+            return Attribute{"time", 1, std::vector<double>(mesh_.points.size(), *mesh_.time)};
         }
         if (word == "x" || word == "y" || word == "z") {
             at = end;
@@ -213,10 +223,10 @@ private:
 
     [[nodiscard]] std::size_t closing(std::string_view text, std::size_t open, std::size_t begin) const {
         int depth = 0;
-        bool quoted = false;
+        char quote = 0;
         for (std::size_t at = open; at < text.size(); ++at) {
-            if (text[at] == '`') quoted = !quoted;
-            if (quoted) continue;
+            if (quote == 0 ? is_quote(text[at]) : text[at] == quote) quote = quote == 0 ? text[at] : '\0';
+            if (quote != 0) continue;
             depth += text[at] == '(' ? 1 : text[at] == ')' ? -1 : 0;
             if (depth == 0) return at;
         }
@@ -272,7 +282,7 @@ private:
                 if (exponent && (is_digit(text[at + 1]) || text[at + 1] == '-' || text[at + 1] == '+')) at += 2;
                 while (at < text.size() && is_digit(text[at])) ++at;
                 put(text.substr(from, at - from), from);
-            } else if (text[at] == '`' || is_letter(text[at])) {
+            } else if (is_quote(text[at]) || is_letter(text[at])) {
                 if (auto found = term(text, at, begin)) {
                     put("v" + std::to_string(rest.variables.size()), from);
                     rest.variables.push_back(found->channels == 1 ? std::move(*found) : detail::length_of(*found));
@@ -372,7 +382,7 @@ bool has_derivatives(std::string_view source) {
 
 Attribute field_of(const HexMesh& mesh, const std::string& name, const std::string& source) {
     const std::string_view text = trimmed(source);
-    const bool coordinate = text == "x" || text == "y" || text == "z";
+    const bool coordinate = text == "x" || text == "y" || text == "z" || text == "time";
     const Evaluation evaluation(mesh, source);
     if (mesh.find_attribute(source) == nullptr && may_be_name(text) && !text.empty() && is_letter(text[0]) && !coordinate) {
         const std::size_t dot = text.rfind('.');

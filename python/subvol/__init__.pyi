@@ -11,7 +11,7 @@ from ._errors import Cancelled, Error, FileError, InvalidInput, MissingCapabilit
 from ._exchange import from_meshio, from_pyvista, to_meshio, to_pyvista
 from ._fields import LimitSamples, as_field, evaluate, evaluate_limit
 from ._measure import PointsError, ProbeSamples, Slice, SurfaceMesh
-from ._mesh import Series, model, models, open_series, write_mesh, write_wavelets
+from ._mesh import Series, model, models, only, open_series, quantity, warp, write_mesh, write_wavelets
 from ._page import Page, page
 from ._pictures import FieldComparison, ImageComparison, compare, compare_fields, compare_images, read_image, write_image
 from ._points import kernels, read_points
@@ -37,8 +37,8 @@ def fit(
     """
 
 def measure(
-    mesh: HexMesh, *, scheme: str = 'mcq', tension: float = 0.0625, crease_angle: Optional[float] = None,
-    tolerance: float = 0.0001, bins: int = 32, progress: Progress = None
+    mesh: HexMesh, *, only: Union[str, Sequence[str]] = (), scheme: str = 'mcq', tension: float = 0.0625,
+    crease_angle: Optional[float] = None, tolerance: float = 0.0001, bins: int = 32, progress: Progress = None
 ) -> dict[str, Any]:
     """The volume of the limit, and of each field its integral, mean, extremes with their places, and histogram.
 
@@ -46,6 +46,7 @@ def measure(
     range), and fields: a dictionary by name of integral, mean, min, min_at, max, max_at, extreme_error (how far beyond these the limit
     may go), histogram (the volume in each of `bins` equal intervals from min to max).
 
+    only:        a region, or several of which all hold, as of `only`; parts of space are cut exactly out of the limit
     scheme:      mcq (smooth, through the control points), cc (Catmull-Clark), bsxw (Bajaj-Schaefer-Warren-Xu), linear [mcq,
                  cc, bsxw, linear]
     tension:     of mcq: 0 is linear; 1/16 reproduces cubics [0 to 0.125; with scheme='mcq']
@@ -305,7 +306,7 @@ __all__ = [
     "InvalidInput", "LimitSamples", "MissingCapability", "Page", "PointsError", "ProbeSamples", "RbfVolume", "Refinement", "Series",
     "Slice", "Study", "StudyCase", "StudyResults", "SubvolWarning", "SurfaceMesh", "TransferFunction", "as_field", "compare",
     "compare_fields", "compare_images", "evaluate", "evaluate_limit", "fit", "from_meshio", "from_pyvista", "gl_devices", "kernels",
-    "measure", "model", "models", "open_series", "page", "points_error", "probe", "rasterize", "read_image", "read_mesh", "read_points",
+    "measure", "model", "models", "only", "open_series", "page", "points_error", "probe", "quantity", "rasterize", "read_image", "read_mesh", "read_points",
     "read_vdb", "reduce", "render", "run_study", "sample", "sample_grid", "set_threads", "slice", "studies", "study", "subdivide",
-    "surface", "to_meshio", "to_pyvista", "write_image", "write_mesh", "write_points", "write_vdb", "write_wavelets",
+    "surface", "to_meshio", "to_pyvista", "warp", "write_image", "write_mesh", "write_points", "write_vdb", "write_wavelets",
 ]

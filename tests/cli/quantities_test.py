@@ -91,7 +91,7 @@ class Quantities(InFolder):
 
     def test_says_what_is_wrong(self):
         for field, words in {"mises(D)": "takes a tensor", "grad(STRESS)": "takes a scalar or a vector", "T+Q": "no field",
-                             "2*D.w": "", "mises(STRESS": "closing parenthesis", "time*2": "", "T=3": "==", "1/(T-T)": "not finite"}.items():
+                             "2*D.w": "", "mises(STRESS": "closing parenthesis", "time*2": "no time", "T=3": "==", "1/(T-T)": "not finite"}.items():
             with self.subTest(field):
                 self.assertIn(words, self.run_fails("probe", "a.vtk", "--stats", "--field", field).err)
 
@@ -139,7 +139,8 @@ class Quantities(InFolder):
         self.assertAlmostEqual(found["steps"][1]["stats"]["whole"]["fields"][0]["mean"], .6, delta=1e-3)
         late = self.run_ok("info", "run.pvd", "--time", 99, "--json").json()
         self.assertEqual((late["step"], late["time"]), (2, 1))
-        self.assertIn("not between 0 and 1", "".join(late["warnings"]))
+        self.assertIn("beyond the steps", "".join(late["warnings"]))
+        self.assertAlmostEqual(self.value("time*2+0*T", "1,1,1", "--step", 1, mesh="run.pvd"), 1)
         self.assertIn("--time .5", self.run_fails("info", "run.pvd", "--step", ".5").err)
         self.assertIn("steps", self.run_ok("info", "run.pvd").out)
         self.run_fails("probe", "run.pvd", "--stats", "--at", "1,1,1", "--step", "all")

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "subvol/quantity.h"
 #include "subvol/view_state.h"
 
 namespace subvol {

@@ -407,6 +407,7 @@ private:
         const std::size_t all = variable.at_cells ? part.elements : count, components = variable.components;
         std::vector<std::vector<double>> values;
         for (std::size_t c = 0; c < components; ++c) values.push_back(data.reals(given, "values"));
+        if (components == 6) std::swap(values[4], values[5]);  // xz comes before yz
         FileArray& array = array_of(data, variable, part, all);
         constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
         for (std::size_t i = 0; i < given; ++i) {

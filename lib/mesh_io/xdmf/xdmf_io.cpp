@@ -415,6 +415,7 @@ private:
             file_.fail_at(attribute, "array " + in_quotes(name) + " has " + counted(values.size(), "value", "values") +
                                          " for " + counted(count, at_cells ? "cell" : "point", at_cells ? "cells" : "points"));
         }
+        if (kind == "TENSOR6" && components == kSymmetricByRows.size()) order_symmetric(values, kSymmetricByRows);
         found.arrays.push_back({name, static_cast<int>(components), at_cells, std::move(values)});
     }
 

@@ -125,6 +125,10 @@ TEST(Quantity, NamesComponentsAndOddNames) {
         EXPECT_NEAR(nested[p], 1, 1e-9);
     }
     EXPECT_EQ(twice, quoted);
+    EXPECT_EQ(at("2*'alpha.water'"), twice);
+    HexMesh step = mesh;
+    step.time = 0.25;
+    EXPECT_EQ(field_of(step, "q", "time*4+0*T").values, std::vector<double>(mesh.points.size(), 1.0));
     EXPECT_EQ(at("1e1*(T>=3)"), at("(T>=3)*10")) << "an exponent is no name";
     EXPECT_EQ(select_field(mesh, "STRESS").scalar.name, "mises(STRESS)");
     EXPECT_EQ(select_field(mesh, "STRESS").scalar.values, at("mises(STRESS)"));
@@ -144,7 +148,8 @@ TEST(Quantity, SaysWhatATensorFunctionTakes) {
     refused("a scalar has no component .x", "trace(STRESS).x");
     refused("did you mean STRESS", "mises(STRES)");
     refused("no closing parenthesis", "mises(STRESS");
-    refused("no second backquote", "2*`T");
+    refused("no second `", "2*`T");
+    refused("no time", "2*time");
     refused("takes a vector", "div(T)");
 }
 

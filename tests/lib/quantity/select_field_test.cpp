@@ -5,6 +5,7 @@
 
 #include "lib/expect_error.h"
 #include "lib/test_meshes.h"
+#include "subvol/quantity.h"
 
 namespace subvol {
 namespace select_field_test {

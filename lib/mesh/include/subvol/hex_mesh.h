@@ -30,6 +30,7 @@ struct Attribute {
 /// cells:   8 point ids in VTK corner order: 0-3 the bottom counter-clockwise, 4-7 above them; parameters u along 0→1,
 ///          v along 0→3, w along 0→4
 /// creases: boundary edges to be kept sharp, besides those that the default rule finds; two point ids each, smaller first
+/// time:    of the step that the mesh is, if it was read from a file of steps
 /// sharp_faces: interior faces that schemes treat as a boundary from both sides; four point ids each, in cyclic order
 struct HexMesh {
     std::vector<Vec3> points;
@@ -37,6 +38,7 @@ struct HexMesh {
     std::vector<Attribute> attributes;
     std::vector<std::array<Index, 2>> creases;
     std::vector<std::array<Index, 4>> sharp_faces;
+    std::optional<double> time = {};
 
     [[nodiscard]] const Attribute* find_attribute(std::string_view name) const;
 };
@@ -68,18 +70,6 @@ std::size_t orient_cells(HexMesh& mesh);
 
 /// The box of the points that cells use.
 [[nodiscard]] Box bounds(const HexMesh& mesh);
-
-/// The scalar that is shown, exported or splatted.
-struct SelectedField {
-    Attribute scalar;     // one channel
-    std::string warning;  // how the field was chosen or converted; empty if it is simply the named or the first scalar
-};
-
-/// Chooses a scalar: `name`, else the most sensible one by its name and values (docs/formats.md), else density 1 everywhere.
-///
-/// name:   may name a vector, whose length is taken; "name.k" takes channel k
-/// throws: Error(InvalidInput) if no attribute has that name; lists those that exist, and the nearest
-[[nodiscard]] SelectedField select_field(const HexMesh& mesh, const std::optional<std::string>& name);
 
 /// The mesh with no attribute but this one. throws: as `scalar_field`
 [[nodiscard]] HexMesh with_scalar_field(const HexMesh& mesh, std::string_view field);

@@ -123,6 +123,7 @@ struct UnreadField {
 /// cell_parts: for each cell of the mesh the number of the file's cell that it is a part of; empty if there are no such fields
 /// cell_values: how well the means are met; nothing if there are no such fields
 /// curved:      nothing if there are no curved hexahedra, or only their corners are used
+/// steps, step: how many the file has, and which one this is; its time is `mesh.time`
 /// shells:     the quads and lines of VTK and Gmsh files beside hexahedra that were not split, but for those that are faces and
 ///             edges of the hexahedra
 struct ReadResult {
@@ -133,6 +134,7 @@ struct ReadResult {
     std::vector<Attribute> cell_means = {};
     std::vector<Index> cell_parts = {};
     std::optional<CellValuesReport> cell_values = {};
+    std::size_t steps = 1, step = 0;
     std::optional<CurvedReport> curved = {};
     Shells shells = {};
     std::vector<UnreadField> unread = {};

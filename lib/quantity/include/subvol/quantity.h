@@ -11,9 +11,22 @@
 
 namespace subvol {
 
+/// The scalar that is shown, exported or splatted.
+struct SelectedField {
+    Attribute scalar;     // one channel
+    std::string warning;  // how the field was chosen or converted; empty if it is simply the named or the first scalar
+};
+
+/// Chooses a scalar: `name`, else the most sensible one by its name and values (docs/quantities.md), else density 1 everywhere.
+///
+/// name:    a field, or a quantity as for `field_of`. Of a vector the length is taken; of a symmetric tensor that is called a
+///          stress the von Mises stress, which becomes its name, of other tensors the norm
+/// throws:  Error(InvalidInput) as `field_of`
+[[nodiscard]] SelectedField select_field(const HexMesh& mesh, const std::optional<std::string>& name);
+
 /// A quantity of a mesh at its points: a field by its name, or what is computed from fields.
 ///
-///     T   `von Mises`   U.x   S.xy   U.0          fields, in backquotes if their names are no words; components
+///     T   `von Mises`   U.x   S.xy   U.0          fields, in quotes (` or ') if their names are no words; components
 ///     length(U)  mises(S)  principal1(S)  …       functions of vectors and tensors
 ///     grad(T)  grad(U)  div(U)  curl(U)           derivatives of the limit of the scheme MCQ by places, at the points
 ///     (T-293)/620 + 2*length(U)*(z>0)             arithmetic and functions of muParser, of scalars; a vector stands for its

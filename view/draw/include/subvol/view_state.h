@@ -14,6 +14,7 @@
 #include "subvol/hex_mesh.h"
 #include "subvol/method.h"
 #include "subvol/picture_look.h"
+#include "subvol/quantity.h"
 #include "subvol/rbf_volume.h"
 #include "subvol/voxels.h"
 
