@@ -25,7 +25,7 @@ public:
     /// faces: their normals point out of the cell; see `orient_faces`. Changed
     void add(Index number, CellFaces& faces);
 
-    /// Returns how many cells `add` left out, as they are no hexahedra and others are ignored.
+    /// Returns how many cells `add` left out, as they are not hexahedra and others are ignored.
     [[nodiscard]] std::size_t left_out() const { return left_out_; }
     /// After the last cell: appends a warning that counts the cells that were split.
     void report();

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "mesh_file.h"
+#include "solver_formats.h"
 #include "subvol/read_options.h"
 
 namespace subvol::detail {
@@ -89,21 +90,9 @@ struct Plot3dFlow {
 [[nodiscard]] ReadResult read_gmsh(std::string_view text, std::string_view file, const ReadOptions& options);
 [[nodiscard]] std::vector<double> gmsh_times(const std::filesystem::path& path);
 
-/// Reads a step of Exodus II.
-///
-/// throws: Error(MissingCapability) for an HDF5 file if this library is built without HDF5
-[[nodiscard]] ReadResult read_exodus(std::string_view text, std::string_view file, const ReadOptions& options);
-/// The same from a file; a name such as a.e.4.0 stands for the first of four pieces, which are joined.
-[[nodiscard]] ReadResult read_exodus_file(const std::filesystem::path& path, const ReadOptions& options);
-[[nodiscard]] std::vector<double> exodus_times(const std::filesystem::path& path);
-
 /// Reads a step of XDMF 2 or 3. file: in its folder are the files of values
 [[nodiscard]] ReadResult read_xdmf(std::string_view text, std::string_view file, const ReadOptions& options);
 [[nodiscard]] std::vector<double> xdmf_times(const std::filesystem::path& path);
-
-/// Reads a step of CalculiX's results, as text.
-[[nodiscard]] ReadResult read_frd(std::string_view text, std::string_view file, const ReadOptions& options);
-[[nodiscard]] std::vector<double> frd_times(const std::filesystem::path& path);
 
 /// Reads a step of an unstructured grid in a VTKHDF file, of versions 1 and 2. Its partitions are joined.
 [[nodiscard]] ReadResult read_vtkhdf(const std::filesystem::path& path, const ReadOptions& options);
@@ -111,23 +100,6 @@ struct Plot3dFlow {
 
 [[nodiscard]] std::vector<double> vtkhdf_times(const std::filesystem::path& path);
 [[nodiscard]] std::vector<double> vtkhdf_times(const Hdf5File& file);
-
-/// Reads a step of the first base of a CGNS file in HDF5: structured and unstructured zones, as blocks that are joined.
-[[nodiscard]] ReadResult read_cgns(const std::filesystem::path& path, const ReadOptions& options);
-[[nodiscard]] ReadResult read_cgns(const Hdf5File& file, const ReadOptions& options);
-
-[[nodiscard]] std::vector<double> cgns_times(const std::filesystem::path& path);
-
-/// Reads a step of an EnSight Gold case, of text or of C's binary files. Its parts are joined.
-[[nodiscard]] ReadResult read_ensight(const std::filesystem::path& path, const ReadOptions& options);
-[[nodiscard]] std::vector<double> ensight_times(const std::filesystem::path& path);
-
-/// Reads a step of an OpenFOAM case. path: its folder, or a file in it
-[[nodiscard]] ReadResult read_foam(const std::filesystem::path& path, const ReadOptions& options);
-[[nodiscard]] std::vector<double> foam_times(const std::filesystem::path& path);
-
-/// Reads an Abaqus or CalculiX deck: nodes, elements of volumes, parts, instances, and sets of elements as blocks.
-[[nodiscard]] ReadResult read_inp(const std::filesystem::path& path, const ReadOptions& options);
 
 /// Reads a step of a list of files, and makes one mesh of them.
 [[nodiscard]] ReadResult read_collection(const std::filesystem::path& path, const ReadOptions& options);

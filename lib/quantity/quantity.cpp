@@ -32,7 +32,7 @@ bool is_letter(char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
 }
 
-/// Names that are no words stand in backquotes, or in single quotation marks.
+/// Names that are not words stand in backquotes, or in single quotation marks.
 bool is_quote(char c) {
     return c == '`' || c == '\'';
 }

@@ -35,7 +35,7 @@ Attribute displacement_of(const HexMesh& mesh, const std::string& field) {
     Attribute displacement = field_of(mesh, field, field);
     if (displacement.channels == 3) return displacement;
     throw Error(ErrorCode::InvalidInput,
-                "\"" + field + "\" has " + std::to_string(displacement.channels) + " components, and is no displacement", {},
+                "\"" + field + "\" has " + std::to_string(displacement.channels) + " components, a displacement has 3", {},
                 "a vector field: " + detail::list_of(mesh));
 }
 

@@ -133,7 +133,7 @@ TEST(Warp, MovesPointsByAVectorField) {
         HexMesh one = before;
         test::expect_error(ErrorCode::InvalidInput, part, [&] { (void)move_points(one, parse_warp(text)); });
     };
-    refused("is no displacement", "T");
+    refused("a displacement has 3", "T");
     refused("did you mean", "d");
     refused("not a factor", "D*x");
     refused("not a factor", "D*inf");

@@ -92,7 +92,7 @@ struct LimitMeasure {
 /// volume and the means change by less than the tolerance. extreme_error is 1/128 of the range, as the extremes are looked for
 /// at points; cells of a part are those with a piece whose centre lies inside.
 ///
-/// Of regions of cells, the limit of these cells alone is measured.
+/// Where regions choose cells, the limit of these cells alone is measured.
 ///
 /// throws: Error(InvalidInput) as `measure_limit`, if no volume lies in the region, or for groups with a region of cells
 /// cost:   parallel; that of the pieces, and some milliseconds for each that is cut

@@ -26,7 +26,7 @@ struct SelectedField {
 
 /// A quantity of a mesh at its points: a field by its name, or what is computed from fields.
 ///
-///     T   `von Mises`   U.x   S.xy   U.0          fields, in quotes (` or ') if their names are no words; components
+///     T   `von Mises`   U.x   S.xy   U.0          fields, in quotes (` or ') unless their names are words; components
 ///     length(U)  mises(S)  principal1(S)  …       functions of vectors and tensors
 ///     grad(T)  grad(U)  div(U)  curl(U)           derivatives of the limit of the scheme MCQ by places, at the points
 ///     (T-293)/620 + 2*length(U)*(z>0)             arithmetic and functions of muParser, of scalars; a vector stands for its

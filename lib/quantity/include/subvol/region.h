@@ -20,11 +20,11 @@ class Region {
 public:
     enum class Kind { Box, Sphere, Half, Where };
 
-    /// throws: Error(InvalidInput) if the text is no region, or one without volume
+    /// throws: Error(InvalidInput) if the text does not say a region, or one without volume
     Region(const std::string& text);
 
     [[nodiscard]] Kind kind() const { return kind_; }
-    /// Of a part of space: about how far inside a place lies (world), negative outside. It is exact near the faces, and changes
+    /// About how far inside a part of space a place lies (world), negative outside. It is exact near the faces, and changes
     /// by no more than the distance between two places.
     [[nodiscard]] double depth(const Vec3& place) const;
     /// The same behind each of its faces: a box has six, others one.
@@ -41,7 +41,7 @@ private:
     std::string quantity_;
 };
 
-/// throws: Error(InvalidInput) if a text is no region
+/// throws: Error(InvalidInput) as the constructor
 [[nodiscard]] std::vector<Region> parse_regions(std::span<const std::string> texts);
 
 /// How far inside all of several parts of space a place lies.

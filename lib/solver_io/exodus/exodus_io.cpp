@@ -13,10 +13,10 @@
 #include <vector>
 
 #include "assemble.h"
-#include "formats.h"
 #include "join_pieces.h"
 #include "mesh_file.h"
 #include "netcdf_source.h"
+#include "solver_formats.h"
 #include "subvol/detail/read_file.h"
 #include "subvol/error.h"
 #include "text_scanner.h"

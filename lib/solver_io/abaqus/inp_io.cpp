@@ -6,9 +6,9 @@
 #include <utility>
 
 #include "assemble.h"
-#include "formats.h"
 #include "inp_deck.h"
 #include "mesh_file.h"
+#include "solver_formats.h"
 #include "subvol/error.h"
 
 namespace subvol::detail {

@@ -11,11 +11,11 @@
 #include <vector>
 
 #include "assemble.h"
-#include "formats.h"
 #include "hdf5_file.h"
 #include "join_pieces.h"
 #include "mesh_file.h"
 #include "polyhedra.h"
+#include "solver_formats.h"
 #include "subvol/detail/printable.h"
 #include "subvol/error.h"
 #include "text_scanner.h"

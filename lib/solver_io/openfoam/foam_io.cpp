@@ -14,12 +14,12 @@
 
 #include "assemble.h"
 #include "foam_text.h"
-#include "formats.h"
 #include "gzip.h"
 #include "join_pieces.h"
 #include "mesh_file.h"
 #include "named_files.h"
 #include "polyhedra.h"
+#include "solver_formats.h"
 #include "subvol/error.h"
 #include "subvol/read_options.h"
 #include "text_scanner.h"

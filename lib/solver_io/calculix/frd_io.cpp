@@ -11,8 +11,8 @@
 #include <unordered_map>
 
 #include "assemble.h"
-#include "formats.h"
 #include "mesh_file.h"
+#include "solver_formats.h"
 #include "text_scanner.h"
 
 namespace subvol::detail {

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <string_view>
+#include <vector>
+
+#include "subvol/read_options.h"
+
+namespace subvol::detail {
+
+class Hdf5File;
+
+// The readers of solvers' files in the rows of the table of formats. Each `NAME_times` gives the times of the steps of a file.
+
+/// Reads a step of Exodus II.
+///
+/// throws: Error(MissingCapability) for an HDF5 file if this library is built without HDF5
+[[nodiscard]] ReadResult read_exodus(std::string_view text, std::string_view file, const ReadOptions& options);
+/// The same from a file; a name such as a.e.4.0 stands for the first of four pieces, which are joined.
+[[nodiscard]] ReadResult read_exodus_file(const std::filesystem::path& path, const ReadOptions& options);
+[[nodiscard]] std::vector<double> exodus_times(const std::filesystem::path& path);
+
+/// Reads a step of CalculiX's results, as text.
+[[nodiscard]] ReadResult read_frd(std::string_view text, std::string_view file, const ReadOptions& options);
+[[nodiscard]] std::vector<double> frd_times(const std::filesystem::path& path);
+
+/// Reads a step of the first base of a CGNS file in HDF5: structured and unstructured zones, as blocks that are joined.
+[[nodiscard]] ReadResult read_cgns(const std::filesystem::path& path, const ReadOptions& options);
+[[nodiscard]] ReadResult read_cgns(const Hdf5File& file, const ReadOptions& options);
+
+[[nodiscard]] std::vector<double> cgns_times(const std::filesystem::path& path);
+
+/// Reads a step of an EnSight Gold case, of text or of C's binary files. Its parts are joined.
+[[nodiscard]] ReadResult read_ensight(const std::filesystem::path& path, const ReadOptions& options);
+[[nodiscard]] std::vector<double> ensight_times(const std::filesystem::path& path);
+
+/// Reads a step of an OpenFOAM case. path: its folder, or a file in it
+[[nodiscard]] ReadResult read_foam(const std::filesystem::path& path, const ReadOptions& options);
+[[nodiscard]] std::vector<double> foam_times(const std::filesystem::path& path);
+
+/// Reads an Abaqus or CalculiX deck: nodes, elements of volumes, parts, instances, and sets of elements as blocks.
+[[nodiscard]] ReadResult read_inp(const std::filesystem::path& path, const ReadOptions& options);
+
+}  // namespace subvol::detail
