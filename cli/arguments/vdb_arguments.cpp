@@ -86,7 +86,7 @@ void VdbArguments::add_frames_to(CLI::App& app) {
         ->type_name("FILE");
     app.add_flag("--velocity", velocity,
                  "also write a grid of vectors, named vel: the velocity of the volume, in world units per frame; of steps per "
-                 "unit of their time");
+                 "unit of their time; of a mesh that stands still that of the flow in it (U, V, velocity)");
     add_option(app, Option("fps", frames_per_second)
                         .positive()
                         .help("F", "with --velocity: in world units per second, at this many frames per second")

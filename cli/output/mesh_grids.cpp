@@ -2,7 +2,10 @@
 #include "mesh_grids.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <optional>
+#include <string_view>
 #include <utility>
 
 #include "input.h"
@@ -45,6 +48,16 @@ Facts facts_of(const LimitCells& limit, const HexMesh& mesh, double voxel_size) 
     return facts;
 }
 
+/// The velocity of a flow: a vector field with the name of one.
+std::optional<Attribute> flow_of(const HexMesh& mesh) {
+    constexpr std::array<std::string_view, 8> kNames{"U", "V", "vel", "Vel", "VEL", "velocity", "Velocity", "VELOCITY"};
+    for (const std::string_view name : kNames) {
+        const Attribute* field = mesh.find_attribute(name);
+        if (field != nullptr && field->channels == 3) return *field;
+    }
+    return std::nullopt;
+}
+
 }  // namespace
 
 WithFacts<LimitCells> reported_limit(const HexMesh& mesh, const RefineOptions& refinement, double voxel_size) {
@@ -64,7 +77,15 @@ WithFacts<HexMesh> MeshGrids::load(const std::string& input, const CommonOptions
     Facts facts;
     HexMesh mesh = facts.unpack(load_mesh(input, options, progress));
     mesh = facts.unpack(tets_.hexes(std::move(mesh), 2, progress));
+    std::optional<Attribute> flow;
+    if (asked_.velocity) flow = flow_of(mesh);
     mesh = facts.unpack(fields_.chosen(std::move(mesh), options));
+    if (flow && mesh.find_attribute(kVelocity) == nullptr) {
+        facts.note("vel is the field " + flow->name + ", unless the mesh moves");
+        for (double& v : flow->values) v *= asked_.scale;
+        flow->name = kVelocity;
+        mesh.attributes.push_back(std::move(*flow));
+    }
     if (asked_.up == "y") turn_y_up(mesh);
     if (asked_.scale != 1) scale_points(mesh, asked_.scale);
     return {std::move(mesh), std::move(facts)};

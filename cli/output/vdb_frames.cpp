@@ -23,15 +23,19 @@ constexpr double kShutter_frames = 0.5;
 // In voxels. With more, the grid of a volume 200 voxels wide would have more voxels outside the volume than inside.
 constexpr int kMostVelocityLayers = 64;
 
-/// Adds a velocity to the fields of a mesh.
+/// Adds the velocity of a mesh to its fields. Where the mesh stands still, that of the flow in it stays, if it has one.
 ///
 /// factor: the values are multiplied with it
-/// throws: Error(InvalidInput) if the mesh has a field of its name
-void add_velocity(Attribute velocity, HexMesh& mesh, double factor) {
-    if (mesh.find_attribute(velocity.name)) {
-        throw Error(ErrorCode::InvalidInput, "the mesh has a field of this name", kVelocity, "--fields without it");
-    }
+/// named:  whether the user has named a field so
+/// throws: Error(InvalidInput) if that is so and the mesh moves
+void add_velocity(Attribute velocity, HexMesh& mesh, double factor, bool named) {
+    const auto flow = std::ranges::find(mesh.attributes, velocity.name, &Attribute::name);
+    const bool moves = std::ranges::any_of(velocity.values, [](double v) { return v != 0; });
+    if (flow != mesh.attributes.end() && !moves) return;
+    if (named)
+        throw Error(ErrorCode::InvalidInput, "the mesh moves, and a field has this name", kVelocity, "--fields without it");
     for (double& v : velocity.values) v *= factor;
+    if (flow != mesh.attributes.end()) mesh.attributes.erase(flow);
     mesh.attributes.push_back(std::move(velocity));
 }
 
@@ -87,7 +91,8 @@ WithFacts<Facts> FrameWriter::write(int frame) {
         const std::size_t other = step == 0 ? 1 : step - 1;
         if (asked_.velocity) frames_per_second = 1 / std::abs(times[step] - times.at(other));
     }
-    if (velocity) add_velocity(std::move(*velocity), mesh, frames_.times.empty() ? frames_per_second : 1);
+    const bool named = std::ranges::find(maker_.fields().asked(), kVelocity, &GridField::name) != maker_.fields().asked().end();
+    if (velocity) add_velocity(std::move(*velocity), mesh, frames_.times.empty() ? frames_per_second : 1, named);
     LimitCells limit;  // with tables the first limit serves all meshes with the same cells
     if (options_.limit && !options.tables && (asked_.velocity || frame > frames_.all.first)) {
         vdb().check_voxels(mesh, options);

@@ -96,9 +96,12 @@ public:
 
 private:
     void run_one(MeshGrids& maker, Report& report) {
-        if (asked_.velocity) throw Error(ErrorCode::InvalidInput, "needs a sequence", "--velocity", "--frames A-B");
         report["input"] = input_;
         const HexMesh mesh = report.unpack(maker.load(input_, common(), report.progress()));
+        if (asked_.velocity && mesh.find_attribute(kVelocity) == nullptr) {
+            throw Error(ErrorCode::InvalidInput, "needs a sequence, or a vector field that is called U, V or velocity",
+                        "--velocity", "--frames A-B, or --fields vel=FIELD");
+        }
         const bool once = output_.memory_bytes == 0;
         const RasterizeOptions options = report.unpack(maker.set_up(mesh, report.progress(), once));
         if (output_.memory_bytes > 0) {

@@ -148,6 +148,16 @@ class Quantities(InFolder):
             self.run_ok("render", "run.pvd", "-o", output, "--step", "all", "--size", 24, "--warp", "D*3")
             self.assertTrue((self.folder / first).exists())
 
+    def test_velocity_is_that_of_the_flow_in_a_mesh_at_rest(self):
+        text = (self.folder / "a.vtk").read_text()
+        (self.folder / "flow.vtk").write_text(text.replace("\nD 3 ", "\nU 3 "))
+        for output, more in ("a.vdb", []), ("b.vdb", ["--fields", "T"]):
+            grids = self.run_ok("vdb", "flow.vtk", "-o", output, "--velocity", "--resolution", 12, "--json", *more).json()["grids"]
+            velocity = next(grid for grid in grids if grid["name"] == "vel")
+            self.assertEqual(velocity["kind"], "vector")
+            self.assertAlmostEqual(velocity["max"], .6, delta=.06)
+        self.assertIn("a vector field", self.run_fails("vdb", "a.vtk", "-o", "c.vdb", "--velocity").err)
+
     def test_bricks_have_quantities_without_derivatives(self):
         self.run_ok("split", "a.vtk", "-o", "a.bricks", "--bricks", 3)
         for field in "mises(STRESS)", "T*2+x", "D.x", "length(D)":
