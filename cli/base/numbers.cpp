@@ -64,6 +64,17 @@ CLI::Validator any_number() {
     return as_described<double>([](Option&) {}, "");
 }
 
+CLI::Validator number_or_percent() {
+    const auto check = [number = any_number()](std::string& text) {
+        const bool percent = text.ends_with('%');
+        std::string digits = text.substr(0, text.size() - (percent ? 1 : 0));
+        std::string wrong = number(digits);
+        if (wrong.empty()) text = digits + (percent ? "%" : "");
+        return wrong;
+    };
+    return {check, "", "number"};
+}
+
 CLI::Validator byte_count() {
     return as_described<std::uint64_t>([](Option& option) { option.bytes(); }, "");
 }

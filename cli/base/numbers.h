@@ -21,6 +21,8 @@ namespace subvol::cli {
 [[nodiscard]] CLI::Validator positive_number();
 [[nodiscard]] CLI::Validator not_negative_number();
 [[nodiscard]] CLI::Validator any_number();
+/// A number, or one with % behind it.
+[[nodiscard]] CLI::Validator number_or_percent();
 /// A word, or one of these.
 [[nodiscard]] CLI::Validator number_or(const std::string& word, const CLI::Validator& number);
 /// So many numbers with commas between them. example: what would be right

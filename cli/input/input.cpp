@@ -83,6 +83,17 @@ std::vector<std::string> blocks_of(const CommonOptions& options) {
     return names;
 }
 
+/// What a call returns; its errors name the option.
+template <class Call>
+auto of_option(const std::string& option, const Call& call) {
+    try {
+        return call();
+    } catch (const Error& error) {
+        throw Error(error.code(), (error.where().empty() ? "" : error.where() + ": ") + error.message(), option,
+                    error.allowed());
+    }
+}
+
 /// What --only and --warp make of a mesh. Quantities are computed before, in the whole mesh at rest.
 void reshape(ReadResult& read, const CommonOptions& options, Facts& facts) {
     const std::vector<Region> regions = regions_of(options);
@@ -98,15 +109,15 @@ void reshape(ReadResult& read, const CommonOptions& options, Facts& facts) {
     }
     if (!regions.empty()) {
         const std::size_t before = mesh.cells.size();
-        mesh = only_in(mesh, regions);
+        mesh = of_option("--only", [&] { return only_in(mesh, regions); });
         facts["only_cells"] = mesh.cells.size();
         facts.note(text(count_text(mesh.cells.size()), " of ", counted(before, "cell"), " lie in the region"));
         read.cell_means.clear();
         read.cell_parts.clear();
     }
     if (options.warp) {
-        const Warp warp = parse_warp(*options.warp);
-        const double factor = move_points(mesh, warp);
+        const Warp warp = of_option("--warp", [&] { return parse_warp(*options.warp); });
+        const double factor = of_option("--warp", [&] { return move_points(mesh, warp); });
         Facts& said = facts.group("warp");
         said["field"] = warp.field;
         said["factor"] = factor;
@@ -118,11 +129,13 @@ void reshape(ReadResult& read, const CommonOptions& options, Facts& facts) {
 }  // namespace
 
 std::vector<Region> regions_of(const CommonOptions& options) {
-    std::vector<Region> regions;
-    for (const std::string& region : options.only) {
-        if (!region.starts_with(kBlockPrefix)) regions.emplace_back(region);
-    }
-    return regions;
+    return of_option("--only", [&] {
+        std::vector<Region> regions;
+        for (const std::string& region : options.only) {
+            if (!region.starts_with(kBlockPrefix)) regions.emplace_back(region);
+        }
+        return regions;
+    });
 }
 
 std::string input_help() {

@@ -57,7 +57,7 @@ public:
     int run(Report& report) override {
         check_output(output_, {".png", ".exr", ".vtp", ".csv"});
         const Vec3 background = parse_background(background_);
-        if (!range_.empty()) (void)parse_range("--range", range_, {0, 1});
+        if (range_) (void)parse_range("--range", *range_, {0, 1});
         std::vector<double> plane;
         if (!plane_.empty()) plane = parse_numbers("--plane", plane_, 6, "0,0,0,0,0,1");
         report.if_long("a lower --resolution");
@@ -69,7 +69,7 @@ public:
             write_slice(output_, slice, lines);
         } else {
             const Range whole{slice.min, slice.max};
-            write_picture(slice, lines, range_.empty() ? whole : parse_range("--range", range_, whole), background, report);
+            write_picture(slice, lines, range_ ? parse_range("--range", *range_, whole) : whole, background, report);
         }
         report["output"] = output_;
         report["plane"] = plane;
@@ -149,7 +149,8 @@ private:
     }
 
     static constexpr int kLeastLegend_px = 200;
-    std::string input_, output_, plane_, function_ = "viridis", range_, background_ = "white", unit_;
+    std::string input_, output_, plane_, function_ = "viridis", background_ = "white", unit_;
+    std::optional<std::string> range_;
     SliceOptions options_;
     int contours_ = 0;
     bool no_legend_ = false;

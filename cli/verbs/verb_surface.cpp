@@ -47,6 +47,7 @@ public:
             .add_option("--iso", isos_,
                         "the value of an isosurface, or a per cent of the field's range such as 20% (repeatable)")
             ->type_name("V")
+            ->transform(number_or_percent())
             ->allow_extra_args(false);
         add_options(app(), options_of(options_));
         app().add_flag("--keep-slivers", keep_slivers_, "leave triangles with small angles as they are");
@@ -80,7 +81,6 @@ public:
         const TetRefinement tets(scheme_);
         SurfaceOptions options = options_;
         options.scheme = scheme_.options(0, report.progress()).scheme;
-        for (const std::string& iso : isos_) (void)parse_value("--iso", iso, {0, 1});
         options.boundary = options.boundary || isos_.empty();
         options.improve = !keep_slivers_;
         options.progress = report.progress();

@@ -27,12 +27,24 @@ public:
         for (std::size_t i = 0; i < counts_.size(); ++i) counts_[i] += others.counts_[i];
         kernels_ += others.kernels_;
     }
+    /// Two sums: which octaves have counts in any process, and then the counts in these, which are few.
     void add_up(const SumCounts& sum) {
         if (!sum) return;
-        counts_.push_back(kernels_);
-        sum(counts_);
-        kernels_ = counts_.back();
-        counts_.pop_back();
+        std::vector<std::int64_t> used(counts_.size() / kOctave + 1, 0);
+        used.back() = kernels_;
+        for (std::size_t i = 0; i < counts_.size(); ++i) used[i / kOctave] |= counts_[i] != 0 ? 1 : 0;
+        sum(used);
+        kernels_ = used.back();
+        std::vector<std::int64_t> counts;
+        const auto each_used = [&](const auto& act) {
+            for (std::size_t i = 0; i < counts_.size(); ++i) {
+                if (used[i / kOctave] != 0) act(counts_[i]);
+            }
+        };
+        each_used([&](std::int64_t count) { counts.push_back(count); });
+        sum(counts);
+        auto next = counts.begin();
+        each_used([&](std::int64_t& count) { count = *next++; });
     }
 
     [[nodiscard]] std::int64_t kernels() const { return kernels_; }
@@ -48,6 +60,7 @@ public:
 
 private:
     static constexpr unsigned kShift = 17;
+    static constexpr std::size_t kOctave = 64;
     static constexpr double kUnit = 1LL << 40;
 
     std::vector<std::int64_t> counts_ = std::vector<std::int64_t>(std::size_t{1} << (31 - kShift));
