@@ -117,6 +117,15 @@ void PictureArguments::add_to(CLI::App& app) {
     add_light_to(app);
 }
 
+void PictureArguments::add_some_to(CLI::App& app, std::initializer_list<std::string_view> names) {
+    const std::size_t before = app.get_options().size();
+    add_to(app);
+    const std::vector<CLI::Option*> all = app.get_options();
+    for (auto option = all.begin() + static_cast<std::ptrdiff_t>(before); option != all.end(); ++option) {
+        if (std::ranges::find(names, (*option)->get_name()) == names.end()) app.remove_option(*option);
+    }
+}
+
 void PictureArguments::add_camera_to(CLI::App& app) {
     app.add_option("--size", size, "width and height of the picture in pixels (default 512x512)")->type_name("WxH");
     auto* place = app.add_option("--camera", camera,

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <initializer_list>
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "subvol/camera.h"
@@ -80,6 +82,8 @@ struct PictureArguments {
     std::optional<std::string> background;
 
     void add_to(CLI::App& app);
+    /// Only these options, such as "--camera".
+    void add_some_to(CLI::App& app, std::initializer_list<std::string_view> names);
 
     /// Decides on the look: the one asked for; else solid for bodies with a boundary, unless colours or opacities are given.
     ///

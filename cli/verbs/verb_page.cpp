@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "choices.h"
 #include "grid_fields.h"
 #include "input.h"
 #include "numbers.h"
@@ -51,13 +50,15 @@ public:
             ->transform(number_in(1e4, 2e9));
         app().add_option("--title", title_, "the page's title (default: the file's name)")->type_name("TEXT");
         app().add_flag("--no-reference", no_reference_, "without the picture of `render` to compare with");
-        add_picture_options();
+        picture_.add_some_to(
+            app(), {"--size", "--camera", "--view", "--ortho", "--look", "--tf", "--range", "--opacity", "--opacity-unit"});
+        app().add_option("--unit", unit_, "the first field's unit, for the legend")->type_name("TEXT");
         sample_.add_to(app());
         refine_.add_to(app(), "show the refined mesh of this level instead of the limit");
         set_essentials({"--output", "--fields", "--field", "--look", "--tf", "--opacity", "--view", "--camera", "--max-bytes",
                         "--per-edge", "--title", "--json"});
         group("Camera", {"--size", "--camera", "--view", "--ortho"});
-        group("Colours and light", {"--look", "--tf", "--tf-range", "--opacity", "--opacity-unit", "--unit"});
+        group("Colours and light", {"--look", "--tf", "--range", "--opacity", "--opacity-unit", "--unit"});
         group("Kernels",
               {"--per-edge", "--centers", "--spacing", "--spacing-voxels", "--tolerance", "--footprint", "--footprint-size",
                "--values", "--kernel", "--value-kernel", "--threshold", "--correction", "--reduce", "--refine"});
@@ -84,38 +85,6 @@ public:
     }
 
 private:
-    void add_picture_options() {
-        auto* camera = app().add_option("--camera", picture_.camera, "the camera that the page opens with, as for `render`");
-        camera->type_name("CAMERA");
-        app()
-            .add_option("--view", picture_.view, "the side to look from: +x -x +y -y +z -z iso (default iso)")
-            ->type_name("SIDE")
-            ->check(offered({"+x", "-x", "+y", "-y", "+z", "-z", "iso"}))
-            ->excludes(camera);
-        app().add_flag("--ortho", picture_.orthographic, "an orthographic camera");
-        app().add_option("--size", picture_.size, "of the picture to compare with (default 512x512)")->type_name("WxH");
-        app()
-            .add_option("--look", picture_.look_name,
-                        "solid (opaque and lit; the default without --tf, --opacity and --opacity-unit), volume or xray")
-            ->type_name("NAME")
-            ->check(offered(subvol::names_of<PageLook>()));
-        app()
-            .add_option("--tf", picture_.transfer_function, "the colour map, as for `render` (default viridis)")
-            ->type_name("FILE|NAME");
-        app()
-            .add_option("--range,--tf-range", picture_.transfer_range, "the range that it covers, as for `render`")
-            ->type_name("MIN,MAX|field");
-        app()
-            .add_option("--opacity", picture_.opacity, "opacities instead of those of --tf, as for `render`")
-            ->type_name("V:A,V:A,…");
-        app()
-            .add_option("--opacity-unit", picture_.opacity_unit_world,
-                        "the world distance over which an opacity acts (default: 1/100 of the box's diagonal)")
-            ->type_name("D")
-            ->transform(positive_number());
-        app().add_option("--unit", unit_, "the first field's unit, for the legend")->type_name("TEXT");
-    }
-
     /// What stands on the page: not the folders of whoever made it.
     [[nodiscard]] std::string source_name() const {
         return is_model(input_) ? input_ : std::filesystem::path(input_).filename().string();
