@@ -51,8 +51,8 @@ void add_common_options(CLI::App& app, CommonOptions& options, Reads reads) {
     const std::string of_meshes = reads == Reads::Meshes ? "Reading meshes" : "";
     auto* field = app.add_option(
         "--field", options.field,
-        "the field to use, or a quantity: U.x, mises(S), grad(T).x, (T-293)/620; of a vector its length, of a stress "
-        "the von Mises stress (default: a physical scalar, else a stress or a vector, else density 1)");
+        "the field to use, or a quantity such as U.x, mises(S) or grad(T) (default: a physical scalar, else the first "
+        "scalar, stress or vector, else density 1)");
     field->group(of_meshes)->type_name("EXPR");
     app.add_option("--density", options.density, "an expression in x, y, z to use as the field, e.g. \"sin(3*x)+z\"")
         ->group(of_meshes)

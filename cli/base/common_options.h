@@ -34,6 +34,7 @@ struct CommonOptions {
     bool quiet = false;
     std::string progress = "auto";
     std::uint64_t seed = 0;
+    bool draws = false;             // the verb makes pictures, which messages say
     const CLI::App* app = nullptr;  // which knows what was given
 };
 

@@ -316,7 +316,8 @@ WithFacts<HexMesh> with_selected_field(HexMesh mesh, const CommonOptions& option
     facts.warn(selected.warning);
     facts["field"] = selected.scalar.name;
     if (!options.density && !options.field && mesh.attributes.size() > 1 && selected.warning.empty()) {
-        facts.note(text("the field is ", selected.scalar.name, " (of ", mesh.attributes.size(), "; --field chooses)"));
+        facts.note(text(options.draws ? "drawing " : "taking ", selected.scalar.name, " (of ", mesh.attributes.size(),
+                        " fields; --field chooses)"));
     }
     std::vector<Attribute> chosen{std::move(selected.scalar)};
     if (second && *second != chosen.front().name) chosen.push_back(select_field(mesh, second).scalar);

@@ -11,6 +11,7 @@ Verb::Verb(CLI::App& program, const std::string& name, const std::string& descri
     : app_(*program.add_subcommand(name, description)), name_(name) {
     app_.footer("Examples:\n" + examples);
     add_common_options(app_, common_, reads);
+    common_.draws = name == "render" || name == "view" || name == "page";
 }
 
 void Verb::group(const std::string& heading, std::initializer_list<const char*> options) {

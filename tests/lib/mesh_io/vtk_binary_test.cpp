@@ -150,7 +150,7 @@ TEST_F(VtkBinary, ErrorsNameTheByte) {
     EXPECT_THAT(read_error(replaced(good, "CELLS 8 72", "CELLS 8 71")), HasSubstr("cell 7 does not fit into the 71 numbers"));
     const std::size_t cells = good.find("CELLS 8 72\n") + 11;
     EXPECT_THAT(read_error(std::string(good).replace(cells + 8, 4, big(std::vector<std::int32_t>{27}))),
-                HasSubstr("byte " + std::to_string(cells + 8) + ": cell 0: there is no point with index 27"));
+                HasSubstr("byte " + std::to_string(cells + 4) + ": cell 0: there is no point with index 27"));  // the cell's
 }
 
 }  // namespace vtk_binary_test
