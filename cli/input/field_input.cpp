@@ -19,6 +19,8 @@ FieldInput mesh_field(const std::string& input, const CommonOptions& options, co
     CommonOptions chosen = is_model(input) ? CommonOptions() : options;  // how a file is read concerns the other field then
     chosen.density = options.density;
     chosen.field = options.field;
+    chosen.warp = options.warp;
+    chosen.only = options.only;
     auto mesh =
         std::make_shared<HexMesh>(facts.unpack(with_selected_field(facts.unpack(load_mesh(input, chosen, progress)), chosen)));
     const std::string name = mesh->attributes.front().name;

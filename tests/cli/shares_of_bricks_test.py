@@ -207,7 +207,7 @@ class RanksOfBricks(WithRanks):
     def test_a_cancelled_run_is_one_sentence(self):
         """mpirun passes the signal on to all ranks; one of them speaks."""
         self.run_ok("split", "model:twist:40", "-o", "t.bricks", "--bricks", 30, "--quiet")
-        run = subprocess.Popen(in_ranks(4, COMMAND, "vdb", "t.bricks", "-o", "a.vdb", "--resolution", "300"), cwd=self.folder,
+        run = subprocess.Popen(in_ranks(4, COMMAND, "vdb", "t.bricks", "-o", "a.vdb", "--resolution", "300", "--quiet"), cwd=self.folder,
                                stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, env=AS_ROOT)
         ranks = []
         while run.poll() is None and len(ranks) < 4:

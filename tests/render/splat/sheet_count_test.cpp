@@ -4,8 +4,11 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <barrier>
 #include <cmath>
 #include <random>
+#include <thread>
 #include <vector>
 
 #include "splat_scenes.h"
@@ -59,13 +62,25 @@ TEST(SheetCount, ProcessesFindTheReachOfAllKernels) {
     const std::vector<Reach> reaches = many_reaches();
     const detail::ReachCounts whole = counts_of(reaches, 0, reaches.size());
     detail::ReachCounts own = counts_of(reaches, 0, 100), others = counts_of(reaches, 100, reaches.size());
-    std::vector<std::int64_t> told;
-    others.add_up([&](auto& counts) { told = counts; });
-    own.add_up([&](auto& counts) {
-        for (std::size_t i = 0; i < counts.size(); ++i) counts[i] += told[i];
-    });
+    std::array<std::vector<std::int64_t>, 2> told;
+    std::barrier<> both(2);
+    const auto process = [&](detail::ReachCounts& counts, std::size_t number) {
+        counts.add_up([&](std::vector<std::int64_t>& sums) {
+            EXPECT_LT(sums.size(), 2000U) << "what is sent is a few kilobytes";
+            told[number] = sums;
+            both.arrive_and_wait();
+            for (std::size_t i = 0; i < sums.size(); ++i) sums[i] += told[1 - number].at(i);
+            both.arrive_and_wait();
+        });
+    };
+    std::thread other([&] { process(others, 1); });
+    process(own, 0);
+    other.join();
     EXPECT_EQ(own.kernels(), static_cast<std::int64_t>(reaches.size()));
-    for (const double part : {.01, .05, .5}) EXPECT_EQ(own.finest(part), whole.finest(part));
+    for (const double part : {.01, .05, .5}) {
+        EXPECT_EQ(own.finest(part), whole.finest(part));
+        EXPECT_EQ(others.finest(part), whole.finest(part));
+    }
 }
 
 /// A cube of unit size whose cells are 1/8 wide; with a layer, twelve more layers of them lie in the last 1/50 of its depth.
