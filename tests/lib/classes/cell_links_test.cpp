@@ -40,12 +40,12 @@ TEST(CellLinks, AreThoseOfTheTopology) {
 TEST(CellLinks, RefuseFacesOfThreeCellsAndTwins) {
     HexMesh three = make_model("twist", 2), twins = three;
     three.cells.push_back(three.cells[0]);
-    for (std::size_t k : {4, 5, 6, 7}) {
+    for (const std::size_t k : {4U, 5U, 6U, 7U}) {
         three.points.push_back(three.points[three.cells[0][k]] + Vec3(0, 0, 9));
         three.cells.back()[k] = static_cast<Index>(three.points.size() - 1);
     }
     three.cells.push_back(three.cells.back());
-    for (std::size_t k : {4, 5, 6, 7}) {
+    for (const std::size_t k : {4U, 5U, 6U, 7U}) {
         three.points.push_back(three.points[three.cells[0][k]] + Vec3(0, 0, 12));
         three.cells.back()[k] = static_cast<Index>(three.points.size() - 1);
     }
