@@ -137,6 +137,8 @@ void add_fields(const ReadResult& read, Lines& lines) {
     for (const FieldInfo& field : read.fields) {
         const std::string kind = field.components == 1   ? ""
                                  : field.components == 3 ? " vectors"
+                                 : field.components == 6 ? " symmetric tensors"
+                                 : field.components == 9 ? " tensors"
                                                          : text(" of ", field.components);
         lines.emplace_back(&field == &read.fields.front() ? "fields" : "",
                            text(std::left, std::setw(static_cast<int>(name_width) + 2), field.name, std::setw(15),

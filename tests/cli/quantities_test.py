@@ -84,6 +84,9 @@ class Quantities(InFolder):
                 same = self.run_ok("compare", "a.vtk", "a.vtk", "--field", field, "--samples", 100, "--json").json()
                 self.assertLess(same["linf"], 1e-9)
 
+    def test_info_says_what_fields_are(self):
+        self.assertRegex(self.run_ok("info", "a.vtk").out, r"STRESS +at points symmetric tensors +\S")
+
     def test_a_stress_is_shown_by_its_von_mises_stress(self):
         by_name = self.stats("STRESS")[1]
         self.assertEqual(by_name["name"], "mises(STRESS)")
