@@ -41,8 +41,7 @@ std::size_t most_bytes(std::string_view beginning, std::size_t most_entries) {
 
 FoamText::FoamText(const std::filesystem::path& path, std::size_t most_entries, std::optional<std::size_t> block)
     : file_(path.string()),
-      text_(read_maybe_gzipped(path, [=](std::string_view beginning) { return most_bytes(beginning, most_entries); })),
-      in_(text_, file_, TextScanner::Comments::None) {
+      text_(read_maybe_gzipped(path, [=](std::string_view beginning) { return most_bytes(beginning, most_entries); })) {
     read_header();
     if (block) take_block(*block);
 }
@@ -65,7 +64,6 @@ void FoamText::take_block(std::size_t block) {
         expect(")");
     }
     text_ = std::move(found);
-    in_ = TextScanner(text_, file_, TextScanner::Comments::None);
     next_ = 0;
     read_header();
 }
@@ -84,7 +82,9 @@ std::size_t FoamText::blocks() {
 }
 
 void FoamText::fail(const std::string& message, const std::string& allowed) const {
-    in_.fail_at(std::min(next_, text_.size()), message, allowed);
+    TextScanner place(text_, file_, TextScanner::Comments::None);
+    if (binary_) place.name_bytes();
+    place.fail_at(std::min(next_, text_.size()), message, allowed);
 }
 
 void FoamText::skip_space() {
@@ -157,10 +157,7 @@ std::size_t FoamText::count(std::size_t width, std::size_t expected) {
 }
 
 std::string_view FoamText::bytes(std::size_t size) {
-    if (size > text_.size() - next_) {
-        in_.name_bytes();
-        fail("unexpected end of file");
-    }
+    if (size > text_.size() - next_) fail("unexpected end of file");
     next_ += size;
     return std::string_view(text_).substr(next_ - size, size);
 }
@@ -291,11 +288,11 @@ void FoamText::include(const std::filesystem::path& path, int depth) {
     if (depth == kDeepest || !std::filesystem::is_regular_file(path, none)) return;
     if (std::filesystem::file_size(path, none) > kMostBytes) return;
     // What is included may be any list of entries, without a header.
-    const std::string outer_text = std::exchange(text_, read_text(path)), outer_file = std::exchange(file_, path.string());
+    std::string outer_text = std::exchange(text_, read_text(path)), outer_file = std::exchange(file_, path.string());
     const std::size_t outer_next = std::exchange(next_, 0);
     find_internal_field(depth + 1);
-    text_ = outer_text;
-    file_ = outer_file;
+    text_ = std::move(outer_text);
+    file_ = std::move(outer_file);
     next_ = outer_next;
 }
 

@@ -80,7 +80,6 @@ private:
     void read_tuple(std::size_t components, std::vector<double>& values);
 
     std::string file_, text_;
-    TextScanner in_;
     std::size_t next_ = 0;
     std::map<std::string, std::string, std::less<>> entries_;
     std::string type_;
