@@ -278,11 +278,17 @@ LimitSlice slice_limit(const MeshSource& source, std::string_view field, const V
     if (const HexMesh* mesh = source.mesh()) {
         validate(*mesh);
         HexMesh chosen = with_scalar_field(*mesh, field);
-        std::string name = chosen.attributes.front().name;
-        const LimitProbe probe(std::move(chosen), {.limit = options.limit});
-        LimitSlice slice = empty_slice(probe.box(), point, normal, options);
-        slice.field = std::move(name);
-        take_found(slice, probe.at(places_of(slice), options.progress));
+        const std::string name = chosen.attributes.front().name;
+        LimitSlice slice;
+        if (chosen.cells.size() > kMostCellsOfAProbe) {
+            slice = empty_slice(bounds(chosen), point, normal, options);
+            take_found(slice, probe_limit(chosen, places_of(slice), {.limit = options.limit}, options.progress));
+        } else {
+            const LimitProbe probe(std::move(chosen), {.limit = options.limit});
+            slice = empty_slice(probe.box(), point, normal, options);
+            take_found(slice, probe.at(places_of(slice), options.progress));
+        }
+        slice.field = name;
         return slice;
     }
     LimitSlice slice = empty_slice(source.bounds(), point, normal, options);

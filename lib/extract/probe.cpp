@@ -317,11 +317,21 @@ ProbeResult probe_pieces(const MeshSource::Stored& stored, std::span<const Vec3>
 
 ProbeResult probe_limit(const MeshSource& source, std::span<const Vec3> places, const ProbeOptions& options,
                         Progress* progress) {
-    if (const HexMesh* mesh = source.mesh()) return LimitProbe(*mesh, options).at(places, progress);
+    const HexMesh* mesh = source.mesh();
+    if (mesh != nullptr && (mesh->cells.size() <= kMostCellsOfAProbe || options.reach_world > 0)) {
+        return LimitProbe(*mesh, options).at(places, progress);
+    }
     if (options.reach_world > 0) throw Error(ErrorCode::InvalidInput, "distances to bricks are not found");
     ProbeOptions quiet = options;
     quiet.limit.progress = nullptr;
-    return probe_pieces(source.stored(), places, quiet, progress);
+    constexpr int kLayersOfLimit = 3;  // of cells, that the limit in a cell depends on
+    MeshSource::Stored stored = source.in_pieces();
+    if (mesh != nullptr) {
+        validate(*mesh);
+        check(places);
+        stored.halo_layers = kLayersOfLimit;
+    }
+    return probe_pieces(stored, places, quiet, progress);
 }
 
 std::vector<Vec3> places_on_line(const Vec3& from, const Vec3& to, std::size_t count) {

@@ -149,6 +149,22 @@ TEST(Probe, IsTheSameForAnyNumberOfThreads) {
     EXPECT_EQ(values(1), values(4));
 }
 
+TEST(Probe, OfManyCellsIsThatOfTheCellsAboutThePlaces) {
+    const HexMesh mesh = make_model("twist", 65);
+    ASSERT_GT(mesh.cells.size(), kMostCellsOfAProbe);
+    std::vector<Vec3> places = places_on_line({-1, -0.7, 0.3}, {1, 0.6, 0.4}, 40);
+    places.push_back(mesh.points[1234]);
+    places.emplace_back(9, 9, 9);
+    const ProbeResult all = LimitProbe(mesh).at(places), near = probe_limit(mesh, places);
+    EXPECT_EQ(near.cells, all.cells);
+    EXPECT_EQ(near.fields[0].values, all.fields[0].values);
+    for (std::size_t p = 0; p < places.size(); ++p) {
+        EXPECT_LT(glm::distance(near.fields[0].gradients[p], all.fields[0].gradients[p]), 1e-12);
+        EXPECT_LT(glm::distance(near.parameters[p], all.parameters[p]), 1e-12);
+    }
+    EXPECT_FALSE(near.inside(41));
+}
+
 TEST(Probe, RefusesWhatIsNoPlace) {
     const LimitProbe probe(test::make_box(2, 2, 2));
     test::expect_error(ErrorCode::InvalidInput, "place 1", [&] { (void)probe.at(std::vector<Vec3>{{0, 0, 0}, {0, NAN, 0}}); });

@@ -45,8 +45,8 @@ struct LimitSlice {
 /// Samples a field where a plane cuts the volume. The picture's upper edge is where z is greater, or y for a plane z =
 /// constant.
 ///
-/// The frame of a mesh in memory is the box of its limit, that of a mesh in pieces the box of its control points, as the limit
-/// is known only when all pieces have been read. Pieces that the plane misses are not read.
+/// The frame of a mesh in memory is the box of its limit; that of a mesh in pieces, or of more than kMostCellsOfAProbe cells,
+/// the box of its control points, as the limit is known only where the plane is. Pieces that the plane misses are not read.
 ///
 /// field:  name of an attribute with one channel; empty: the first
 /// throws: Error(InvalidInput) as `scalar_field` and `LimitProbe`, if the normal has no length, an option is out of range, or

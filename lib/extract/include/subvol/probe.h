@@ -77,6 +77,9 @@ private:
     std::unique_ptr<State> state_;
 };
 
+/// A mesh in memory of more cells is probed in the cells about the places alone, as their pieces would take too much.
+inline constexpr std::size_t kMostCellsOfAProbe = std::size_t{1} << 18;
+
 /// Values and gradients of the limit at places, as `LimitProbe::at`. A mesh that is stored in pieces is probed piece by piece:
 /// each is read once, if a place may lie in it. Where cells meet, the one with the smallest number is found.
 ///
