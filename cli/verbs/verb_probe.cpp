@@ -18,6 +18,7 @@
 #include "quantities.h"
 #include "refine_arguments.h"
 #include "steps.h"
+#include "subvol/detail/number_text.h"
 #include "subvol/error.h"
 #include "subvol/hex_mesh.h"
 #include "subvol/measure.h"
@@ -60,7 +61,8 @@ WithFacts<BlockCells> cells_of_blocks(const std::string& input, const std::vecto
     found.groups.assign(mesh.cells.size(), others);
     for (Index b = 0; b < blocks.size(); ++b) {
         found.names.push_back(blocks[b].name);
-        CommonOptions one = options;
+        CommonOptions one = options;  // as it was read, but for what was left out
+        one.only.clear();
         one.read.blocks = {blocks[b].name};
         const HexMesh part = read_input(input, one, nullptr).value.mesh;
         for (const auto& cell : part.cells) {
@@ -145,7 +147,7 @@ public:
                 if (stats_ && body.blocks.size() > 1) report.warn("tetoct and boxspline measure the whole, not its blocks");
             } else {
                 if (!places.empty()) show_probed(probe(body, places, limit, report), places, output_, common(), report);
-                if (stats_) show_measured(measure(body, limit.scheme, report), report);
+                if (stats_) show_measured(measure(body, reading, limit.scheme, report), report);
             }
         }
         if (!output_.empty()) report["output"] = output_;
@@ -200,10 +202,11 @@ private:
         for (int step = range.first; step <= range.last; ++step) {
             const auto number = static_cast<std::size_t>(step);
             report.begin_part("step", number - static_cast<std::size_t>(range.first), static_cast<std::size_t>(range.count()));
-            const BodyInput body = open(of_step(options, step), places, report);
+            const CommonOptions one = of_step(options, step);
+            const BodyInput body = open(one, places, report);
             ProbedStep& found = steps.emplace_back(ProbedStep{number, series.times[number], {}, {}});
             if (stats_) {
-                found.measure = measure(body, limit.scheme, report);
+                found.measure = measure(body, one, limit.scheme, report);
             } else {
                 found.places = probe(body, places, limit, report);
             }
@@ -240,20 +243,32 @@ private:
             report);
     }
 
-    [[nodiscard]] LimitMeasure measure(const BodyInput& body, const SchemeOptions& scheme, Report& report) const {
+    /// The options that read the mesh as it was read: with the factor that --warp FIELD*auto has found.
+    [[nodiscard]] static CommonOptions reading_again(const CommonOptions& options, const Report& report) {
+        CommonOptions again = options;
+        if (options.warp) {
+            const Json& warp = report.json().at("warp");
+            again.warp = warp.at("field").get<std::string>() + "*" + detail::exact_text(warp.at("factor").get<double>());
+        }
+        return again;
+    }
+
+    [[nodiscard]] LimitMeasure measure(const BodyInput& body, const CommonOptions& options, const SchemeOptions& scheme,
+                                       Report& report) const {
         const MeshSource source = body.source();
         BlockCells parts;
         if (source.mesh() != nullptr) {
-            parts = report.unpack(
-                report.timed("blocks", [&] { return cells_of_blocks(input_, body.blocks, *source.mesh(), common()); }));
+            parts = report.unpack(report.timed("blocks", [&] {
+                return cells_of_blocks(input_, body.blocks, *source.mesh(), reading_again(options, report));
+            }));
         }
-        const MeasureOptions options{.scheme = scheme,
-                                     .bins = measured_.bins,
-                                     .groups = parts.groups,
-                                     .names = parts.names,
-                                     .progress = report.progress()};
+        const MeasureOptions asked{.scheme = scheme,
+                                   .bins = measured_.bins,
+                                   .groups = parts.groups,
+                                   .names = parts.names,
+                                   .progress = report.progress()};
         return report.timed("measure", [&] {
-            return regions_.empty() ? measure_limit(source, options) : measure_limit_in(*source.mesh(), regions_, options);
+            return regions_.empty() ? measure_limit(source, asked) : measure_limit_in(*source.mesh(), regions_, asked);
         });
     }
 

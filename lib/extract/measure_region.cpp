@@ -364,6 +364,7 @@ private:
     }
 
     [[nodiscard]] RegionSums sums_at(const LimitPieces& pieces, int depth, std::span<const std::array<double, 2>> range) const {
+        report_progress(options_.progress, "region", static_cast<double>(depth - kFirstDepth) / kMostDepth);
         const RegionSums none(options_.names.size() + 1, ranges_.size(), static_cast<std::size_t>(options_.bins));
         return tbb::parallel_deterministic_reduce(
             tbb::blocked_range<std::size_t>(0, pieces.cells.size(), kGrain), none,

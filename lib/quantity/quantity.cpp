@@ -20,6 +20,7 @@
 #include "limit_gradient.h"
 #include "quantity_source.h"
 #include "subvol/detail/near_name.h"
+#include "subvol/detail/printable.h"
 #include "subvol/error.h"
 #include "tensor_functions.h"
 
@@ -124,8 +125,13 @@ class Evaluation {
 public:
     Evaluation(const HexMesh& mesh, const std::string& source) : mesh_(mesh), source_(source) {}
 
-    /// The value of a part of the source. begin: where the part begins, for errors
-    [[nodiscard]] Attribute value(std::string_view text, std::size_t begin) const {
+    /// The value of a part of the source.
+    ///
+    /// begin: where the part begins, for errors
+    /// depth: of calls around it
+    [[nodiscard]] Attribute value(std::string_view text, std::size_t begin, int depth = 0) const {
+        constexpr int kDeepest = 64;
+        if (depth > kDeepest) refuse("has more than " + std::to_string(kDeepest) + " calls in each other", begin);
         begin += text.find_first_not_of(' ') == std::string_view::npos ? 0 : text.find_first_not_of(' ');
         text = trimmed(text);
         if (text.empty()) refuse("is empty", begin);
@@ -133,18 +139,18 @@ public:
         if (auto component = component_of_field(text)) return std::move(*component);
         std::size_t at = 0;
         if (is_quote(text[0]) || is_letter(text[0])) {
-            auto whole = term(text, at, begin);
+            auto whole = term(text, at, begin, depth);
             if (whole && at == text.size()) return std::move(*whole);
         }
-        return arithmetic(text, begin);
+        return arithmetic(text, begin, depth);
     }
 
 private:
     [[noreturn]] void refuse(const std::string& message, std::size_t position) const {
         std::string allowed = "numbers, functions and x, y, z";
         if (!mesh_.attributes.empty()) allowed += ", " + detail::list_of(mesh_);
-        throw Error(ErrorCode::InvalidInput, message, "expression '" + source_ + "', position " + std::to_string(position),
-                    allowed);
+        throw Error(ErrorCode::InvalidInput, message,
+                    "expression '" + detail::shortened(source_) + "', position " + std::to_string(position), allowed);
     }
 
     /// NAME.x of any field, whatever its name.
@@ -159,7 +165,7 @@ private:
     }
 
     /// The term at a place of the text, which moves behind it; nothing, and the place stays, if there is none.
-    [[nodiscard]] std::optional<Attribute> term(std::string_view text, std::size_t& at, std::size_t begin) const {
+    [[nodiscard]] std::optional<Attribute> term(std::string_view text, std::size_t& at, std::size_t begin, int depth) const {
         std::size_t end = at;
         if (is_quote(text[at])) {
             end = text.find(text[at], at + 1);
@@ -176,7 +182,7 @@ private:
         if (end < text.size() && text[end] == '(') {
             if (!is_ours(word)) return std::nullopt;
             const std::size_t close = closing(text, end, begin);
-            const Attribute argument = value(text.substr(end + 1, close - end - 1), begin + end + 1);
+            const Attribute argument = value(text.substr(end + 1, close - end - 1), begin + end + 1, depth + 1);
             Attribute result = call(word, argument, begin + at);
             at = close + 1;
             return with_component(std::move(result), text, at, begin);
@@ -268,7 +274,7 @@ private:
         std::vector<std::size_t> places;
     };
 
-    [[nodiscard]] Rest without_terms(std::string_view text, std::size_t begin) const {
+    [[nodiscard]] Rest without_terms(std::string_view text, std::size_t begin, int depth) const {
         Rest rest;
         const auto put = [&](std::string_view part, std::size_t place) {
             rest.text += part;
@@ -283,7 +289,7 @@ private:
                 while (at < text.size() && is_digit(text[at])) ++at;
                 put(text.substr(from, at - from), from);
             } else if (is_quote(text[at]) || is_letter(text[at])) {
-                if (auto found = term(text, at, begin)) {
+                if (auto found = term(text, at, begin, depth)) {
                     put("v" + std::to_string(rest.variables.size()), from);
                     rest.variables.push_back(found->channels == 1 ? std::move(*found) : detail::length_of(*found));
                     continue;
@@ -309,9 +315,9 @@ private:
         return rest;
     }
 
-    [[nodiscard]] Attribute arithmetic(std::string_view text, std::size_t begin) const {
+    [[nodiscard]] Attribute arithmetic(std::string_view text, std::size_t begin, int depth) const {
         constexpr std::size_t kGrain = 16384;  // points per parser: enough to make the cost of building it negligible
-        const Rest rest = without_terms(text, begin);
+        const Rest rest = without_terms(text, begin, depth);
         Attribute result{std::string(text), 1, std::vector<double>(mesh_.points.size())};
         const auto evaluate = [&](std::size_t from, std::size_t to) {
             std::vector<double> at(rest.variables.size());
@@ -397,7 +403,7 @@ Attribute field_of(const HexMesh& mesh, const std::string& name, const std::stri
         if (std::isfinite(result.values[i])) continue;
         throw Error(ErrorCode::InvalidInput,
                     "is not finite at point " + std::to_string(i / static_cast<std::size_t>(result.channels)),
-                    "expression '" + source + "'");
+                    "expression '" + detail::shortened(source) + "'");
     }
     return result;
 }

@@ -306,18 +306,10 @@ detail::MeshShare detail::join_shares(std::span<const MeshShare> shares, std::si
     all.bounds = shares.front().counts.bounds;
     all.min_scaled_jacobian = 1;
     for (const auto& [counts, range, volumes, inverted] : shares) {
-        all.points_used += counts.points_used;
-        all.edges += counts.edges;
-        all.faces += counts.faces;
-        all.boundary_faces += counts.boundary_faces;
-        all.interior_edges += counts.interior_edges;
-        for (const auto& [valence, count] : counts.interior_edge_valence) all.interior_edge_valence[valence] += count;
-        all.singular_nodes += counts.singular_nodes;
+        add_counts(all, counts);
         all.inverted_cells += counts.inverted_cells;
         all.degenerate_cells += counts.degenerate_cells;
         all.min_scaled_jacobian = std::min(all.min_scaled_jacobian, counts.min_scaled_jacobian);
-        all.nonmanifold_edges += counts.nonmanifold_edges;
-        all.nonmanifold_points += counts.nonmanifold_points;
         all.nonmanifold_faces += counts.nonmanifold_faces;
         for (const double volume : volumes) all.volume += volume;
         whole.inverted.insert(whole.inverted.end(), inverted.begin(), inverted.end());

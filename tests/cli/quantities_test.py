@@ -151,6 +151,23 @@ class Quantities(InFolder):
             self.run_ok("render", "run.pvd", "-o", output, "--step", "all", "--size", 24, "--warp", "D*3")
             self.assertTrue((self.folder / first).exists())
 
+    def test_blocks_are_measured_in_regions_moved_and_over_steps(self):
+        for k in range(2):
+            write_beam(self.folder / f"b{k}.vtk", .1)
+            self.run_ok("subdivide", f"b{k}.vtk", "-o", f"b{k}.vtu", "--levels", 0, "--only", f"half:0,0,{3},0,0,{2 * k - 1}")
+        (self.folder / "b.vtm").write_text('<VTKFile type="vtkMultiBlockDataSet"><vtkMultiBlockDataSet><DataSet index="0" name="low" '
+                                           'file="b0.vtu"/><DataSet index="1" name="high" file="b1.vtu"/></vtkMultiBlockDataSet></VTKFile>')
+        for more in [], ["--only", "block:low,high"], ["--warp", "D*auto"], ["--only", "box:-9,-9,-9,9,9,9"], ["--only", "where:x>=0"]:
+            with self.subTest(more):
+                stats = self.run_ok("probe", "b.vtm", "--stats", "--field", "T", *more, "--json").json()["stats"]
+                self.assertEqual([part["name"] for part in stats["parts"]], ["low", "high"])
+                for part in stats["parts"]:
+                    self.assertAlmostEqual(part["volume"], 12, delta=2e-3)
+        (self.folder / "blocks.pvd").write_text('<VTKFile type="Collection"><Collection>' + "".join(
+            f'<DataSet timestep="{k}" file="b.vtm"/>' for k in range(2)) + "</Collection></VTKFile>")
+        self.run_ok("probe", "blocks.pvd", "--stats", "--step", "all", "--field", "T", "-o", "parts.csv", "--quiet")
+        self.assertIn("low", (self.folder / "parts.csv").read_text())
+
     def test_velocity_is_that_of_the_flow_in_a_mesh_at_rest(self):
         text = (self.folder / "a.vtk").read_text()
         (self.folder / "flow.vtk").write_text(text.replace("\nD 3 ", "\nU 3 "))

@@ -151,6 +151,9 @@ TEST(Quantity, SaysWhatATensorFunctionTakes) {
     refused("no second `", "2*`T");
     refused("no time", "2*time");
     refused("takes a vector", "div(T)");
+    std::string deep = "T";
+    for (int k = 0; k < 20000; ++k) deep.insert(0, "length(").append(")");
+    refused("more than 64 calls", deep);
 }
 
 TEST(Quantity, SaysWhatIsWrong) {
