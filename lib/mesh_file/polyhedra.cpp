@@ -70,10 +70,11 @@ std::optional<std::array<Index, N>> cone(const CellFaces& faces, const std::vect
 void start_fan(std::vector<Index>& face, const std::vector<Vec3>& points) {
     std::rotate(face.begin(), std::ranges::min_element(face), face.end());
     if (face.size() <= 4) return;
-    constexpr double kFlat = 1e-9;  // of the largest triangle
+    constexpr double kFlat = 1e-9;          // of the largest triangle
+    constexpr std::size_t kMostTried = 64;  // a face of a hostile file may have any number of points
     std::vector<Index> best = face, turned = face;
     double most = -1;
-    for (std::size_t k = 0; k < face.size(); ++k) {
+    for (std::size_t k = 0; k < std::min(face.size(), kMostTried); ++k) {
         double least = HUGE_VAL, largest = 0;
         for (std::size_t i = 1; i + 1 < turned.size(); ++i) {
             const Vec3 a = points[turned[0]], normal = glm::cross(points[turned[i]] - a, points[turned[i + 1]] - a);

@@ -157,27 +157,4 @@ std::vector<double> EnsightData::reals(std::size_t count, const std::string& wha
     return values;
 }
 
-std::vector<double> EnsightData::columns(std::size_t count, std::size_t width, const std::string& what) {
-    if (count > in_.bytes_left()) fail(what + ": " + std::to_string(count) + " numbers are needed, and the file is too short");
-    std::vector<double> values;
-    values.reserve(count);
-    while (values.size() < count) {
-        if (in_.at_end()) fail(what + ": the file ends where a number is expected");
-        std::string_view line = in_.line();
-        if (line.ends_with('\r')) line.remove_suffix(1);
-        for (std::size_t at = 0; at < line.size() && values.size() < count; at += width) {
-            const std::string_view word = trimmed(line.substr(at, width));
-            if (word.empty()) continue;
-            double value = 0;
-            const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-            if (error == std::errc::invalid_argument || end != word.data() + word.size()) {
-                fail(what + ": a number of " + std::to_string(width) + " characters is expected, not " +
-                     in_quotes(std::string(word)));
-            }
-            values.push_back(value);
-        }
-    }
-    return values;
-}
-
 }  // namespace subvol::detail

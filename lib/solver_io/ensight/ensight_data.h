@@ -40,8 +40,6 @@ public:
     std::size_t count(const std::string& what);
     std::vector<std::int64_t> integers(std::size_t count, const std::string& what);
     std::vector<double> reals(std::size_t count, const std::string& what);
-    /// Numbers of the text that stand in columns of so many characters, possibly without blanks between them.
-    std::vector<double> columns(std::size_t count, std::size_t width, const std::string& what);
 
     [[nodiscard]] const TextScanner& in() const { return in_; }
     /// The place of the last line or number, for messages.

@@ -297,7 +297,12 @@ void FoamText::include(const std::filesystem::path& path, int depth) {
 }
 
 // The text with what its $names stand for.
-std::string FoamText::expanded(std::string_view text, int depth) const {
+std::string FoamText::expanded(std::string_view text) const {
+    std::size_t left = kMostExpanded;
+    return expanded(text, 0, left);
+}
+
+std::string FoamText::expanded(std::string_view text, int depth, std::size_t& left) const {
     constexpr int kDeepest = 16;
     std::string result;
     while (!text.empty()) {
@@ -311,7 +316,9 @@ std::string FoamText::expanded(std::string_view text, int depth) const {
         const auto entry = entries_.find(text.substr(0, end));
         if (entry == entries_.end() || depth == kDeepest)
             fail("there is no entry " + in_quotes("$" + std::string(text.substr(0, end))));
-        result += expanded(entry->second, depth + 1);
+        if (left == 0) fail("its entries stand for too much");
+        --left;
+        result += expanded(entry->second, depth + 1, left);
         text.remove_prefix(std::min(text.size(), end + braces));
         if (result.size() > kMostExpanded) fail("its entries stand for too much");
     }
@@ -322,7 +329,7 @@ std::vector<double> FoamText::uniform_value(std::size_t components) {
     skip_space();
     const std::size_t begin = next_;
     const std::size_t end = std::min(text_.find(';', begin), text_.size());
-    std::string value = expanded(std::string_view(text_).substr(begin, end - begin), 0);
+    std::string value = expanded(std::string_view(text_).substr(begin, end - begin));
     std::ranges::replace_if(
         value, [](char c) { return c == '(' || c == ')'; }, ' ');
     TextScanner words(value, file_, TextScanner::Comments::None);
@@ -346,8 +353,7 @@ std::vector<double> FoamText::internal_field(std::size_t components, std::size_t
     std::string_view kind = token();
     std::string named;
     if (kind.starts_with('$')) {
-        named =
-            expanded(std::string(kind) + text_.substr(next_, std::min(text_.find(';', next_), text_.size()) - next_), 0) + ";";
+        named = expanded(std::string(kind) + text_.substr(next_, std::min(text_.find(';', next_), text_.size()) - next_)) + ";";
         text_ = std::move(named);
         next_ = 0;
         kind = token();

@@ -74,7 +74,9 @@ private:
     void find_internal_field(int depth);
     void include(const std::filesystem::path& path, int depth);
     std::vector<double> uniform_value(std::size_t components);
-    [[nodiscard]] std::string expanded(std::string_view text, int depth) const;
+    [[nodiscard]] std::string expanded(std::string_view text) const;
+    /// left: how many names may still be replaced
+    [[nodiscard]] std::string expanded(std::string_view text, int depth, std::size_t& left) const;
     [[nodiscard]] NumberType label_type() const { return wide_labels_ ? NumberType::Int64 : NumberType::Int32; }
     [[nodiscard]] NumberType real_type() const { return wide_reals_ ? NumberType::Float64 : NumberType::Float32; }
     void read_tuple(std::size_t components, std::vector<double>& values);

@@ -209,6 +209,13 @@ TEST_F(OpenFoam, NamesStandForTheirEntriesAndOneBadFieldStopsNoOther) {
     put("0/bad", scalar + "internalField uniform #calc \"1 + 1\";", {});
     put("0/worse", scalar + "#include \"values\"\ninternalField uniform $loop;", {});
     put("0/none", scalar + "#includeIfPresent \"nothing\"\ninternalField uniform $nothing;", {});
+    std::string bomb = scalar + "e14 ;\n";  // 20¹⁴ times nothing
+    for (int k = 13; k >= 0; --k) {
+        bomb += "e" + std::to_string(k);
+        for (int i = 0; i < 20; ++i) bomb += " $e" + std::to_string(k + 1);
+        bomb += ";\n";
+    }
+    put("0/bomb", bomb + "internalField uniform $e0;", {});
     const ReadResult result = read_mesh(path("a.foam"));
     const auto value = [&](const std::string& name, std::size_t c) { return result.mesh.find_attribute(name)->values[c]; };
     EXPECT_NEAR(value("k", 0), .24, 1e-12);
@@ -218,8 +225,8 @@ TEST_F(OpenFoam, NamesStandForTheirEntriesAndOneBadFieldStopsNoOther) {
     EXPECT_NEAR(value("w", 0), 4, 1e-12);
     std::vector<std::string> unread;
     for (const UnreadField& field : result.unread) unread.push_back(field.name);
-    EXPECT_THAT(unread, ElementsAre("bad", "none", "worse"));
-    EXPECT_THAT(result.warnings, Contains(HasSubstr("3 fields left out (\"bad\", \"none\", \"worse\"): ")));
+    EXPECT_THAT(unread, ElementsAre("bad", "bomb", "none", "worse"));
+    EXPECT_THAT(result.warnings, Contains(HasSubstr("4 fields left out (\"bad\", \"bomb\", \"none\", \"worse\"): ")));
 }
 
 TEST_F(OpenFoam, FilesOfSeveralProcessorsAreTakenApart) {
