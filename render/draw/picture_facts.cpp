@@ -30,6 +30,7 @@ void add_facts(const SplatReport& splats, Method method, Facts& facts) {
     if (splats.seconds_colors > 0) facts.add_seconds("colors", splats.seconds_colors);
     facts["backend"] = splats.backend;
     facts["device"] = splats.device;
+    if (!splats.warning.empty()) facts.warn(splats.warning);
     facts["sheets"] = splats.sheets;
 }
 

@@ -43,13 +43,21 @@ public:
 
     [[nodiscard]] detail::Drawn draw(const detail::SplatFrame& frame, Progress* progress) {
         const detail::GlScope scope(context_);
-        return sheets_->draw(frame, progress);
+        try {
+            return sheets_->draw(frame, progress);
+        } catch (const Error& error) {
+            failed_ = failed_ || error.code() == ErrorCode::MissingCapability;
+            throw;
+        }
     }
+    /// Whether drawing has failed: the context may be lost.
+    [[nodiscard]] bool failed() const { return failed_; }
     [[nodiscard]] const std::string& renderer() const { return context_.renderer(); }
 
 private:
     detail::GlContext context_;
     std::unique_ptr<detail::GlSheets> sheets_;
+    bool failed_ = false;
 };
 
 std::unique_ptr<SheetDrawer> make_sheet_drawer(const SplatOptions& options) {
@@ -129,15 +137,49 @@ std::vector<double> light_key(const View& view, const Optics& optics, const Clip
 }  // namespace
 
 struct Splatter::State {
-    State(const RbfVolume& volume, const SplatOptions& wanted) : options(wanted), scene(detail::make_scene(volume, wanted)) {
+    State(const RbfVolume& volume, const SplatOptions& wanted)
+        : options(wanted), automatic(wanted.method == SplatMethod::Auto), scene(detail::make_scene(volume, wanted)) {
         options.method = resolved(wanted);
-        if (options.method == SplatMethod::Gl) gpu.emplace(scene, options.device);
         if (options.method == SplatMethod::Sheets && scene.shadowed()) {
             throw Error(ErrorCode::InvalidInput, "sheet buffers support neither shadows nor ambient occlusion", {},
                         "the method splat");
         }
-        if (options.method == SplatMethod::Sheets) sheets = make_sheet_drawer(options);
+        try {
+            open_device();
+        } catch (const Error& error) {
+            use_cpu_after(error);
+        }
         if (options.method == SplatMethod::Footprints) footprints.emplace(scene);
+    }
+
+    /// Makes what draws with OpenGL, unless it is there.
+    void open_device() {
+        if (options.method == SplatMethod::Gl && !gpu) gpu.emplace(scene, options.device);
+        if (options.method == SplatMethod::Sheets && !sheets) sheets = make_sheet_drawer(options);
+    }
+
+    /// Goes on with the CPU after an error of a GPU that nobody has asked for; throws it again if somebody has, or if the GPU
+    /// is not to blame. A context that failed is given up, so that the next picture makes a new one.
+    void use_cpu_after(const Error& error) {
+        if (sheets && sheets->failed()) sheets.reset();
+        if (gpu && gpu->failed()) gpu.reset();
+        if (!automatic || gpu || options.method != SplatMethod::Gl || error.code() != ErrorCode::MissingCapability) throw;
+        options.method = SplatMethod::Cpu;
+        warning = "the CPU draws, as the GPU cannot: " + error.message();
+    }
+
+    [[nodiscard]] detail::Drawn draw(const View& view, const detail::Classification& classification, Progress* progress,
+                                     SplatReport& report) {
+        if (footprints) return draw_footprints(view, classification, progress, report);
+        try {
+            open_device();
+            if (gpu) return draw_on_gpu(view, classification, progress, report);
+            if (sheets) return draw_frame(view, classification, progress, report);
+        } catch (const Error& error) {
+            use_cpu_after(error);
+        }
+        report.warning = std::exchange(warning, {});
+        return draw_frame(view, classification, progress, report);
     }
 
     /// Draws with the CPU or with sheet buffers; the CPU prepares the frame for both.
@@ -177,6 +219,8 @@ struct Splatter::State {
     }
 
     SplatOptions options;
+    bool automatic;         // whether nobody has chosen the backend
+    std::string warning{};  // that has not been reported yet
     detail::SplatScene scene;
     const Surface* boundary = nullptr;  // whose values give the colours; null: kernels do
     std::span<const double> values{};
@@ -213,7 +257,11 @@ void Splatter::set_kernels(const RbfVolume& volume) {
     State& state = *state_;
     detail::set_kernels(state.scene, volume, state.options.clip);
     state.light_key.clear();  // the light in the volume is made of kernels
-    if (state.gpu) state.gpu->upload_kernels();
+    try {
+        if (state.gpu) state.gpu->upload_kernels();
+    } catch (const Error& error) {
+        state.use_cpu_after(error);
+    }
 }
 
 SplatResult Splatter::draw(const View& view, const Optics& optics, Progress* progress) {
@@ -235,9 +283,7 @@ SplatResult Splatter::draw(const View& view, const Optics& optics, Progress* pro
     report.seconds_prepare = watch.seconds();
     const int n = state.options.samples;
     const View fine(view.camera(), n * view.width(), n * view.height());  // the centres of its pixels are the samples
-    auto drawn = state.gpu          ? state.draw_on_gpu(fine, classification, progress, report)
-                 : state.footprints ? state.draw_footprints(fine, classification, progress, report)
-                                    : state.draw_frame(fine, classification, progress, report);
+    auto drawn = state.draw(fine, classification, progress, report);
     result.image = std::move(drawn.image);
     result.depth = std::move(drawn.depth);
     take_means(result, n);

@@ -74,7 +74,6 @@ void GlBuffer::upload(std::size_t bytes, const void* from, std::size_t at_byte) 
     if (bytes == 0) return;
     glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
     glNamedBufferSubData(id_, static_cast<GLintptr>(at_byte), size(bytes), from);
-    check_gl("an upload");
 }
 
 void GlBuffer::read(std::size_t bytes, void* to, std::size_t at_byte) const {
@@ -89,7 +88,6 @@ void GlBuffer::clear() {
     if (bytes_ == 0) return;
     glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
     glClearNamedBufferData(id_, GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, nullptr);
-    check_gl("clearing a buffer");
 }
 
 }  // namespace subvol::detail

@@ -11,7 +11,8 @@ namespace subvol::detail {
 /// A storage buffer of the current context that shaders read and write. It only grows, so that frames can share it.
 ///
 /// `upload`, `read` and `clear` see what shaders wrote before; between two shaders the caller sets a barrier.
-/// Every member throws Error(MissingCapability) if the device has no room or refuses the call.
+/// Every member throws Error(MissingCapability) if the device has no room or refuses the call; failures of `upload` and `clear`
+/// are noticed by the next one that makes room or reads, as asking the driver each time would cost more than the call.
 class GlBuffer {
 public:
     GlBuffer() = default;

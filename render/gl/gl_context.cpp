@@ -71,6 +71,39 @@ void check_picture_size(int width, int height, const char* allowed) {
         allowed);
 }
 
+std::size_t memory_budget() {
+    constexpr std::size_t kUnknown = std::size_t{1} << 31;
+    std::array<GLint, 4> kib{};  // ATI's query has four results; the first is the free memory
+    if (epoxy_has_gl_extension("GL_NVX_gpu_memory_info"))
+        glGetIntegerv(GL_GPU_MEMORY_INFO_CURRENT_AVAILABLE_VIDMEM_NVX, kib.data());
+    else if (epoxy_has_gl_extension("GL_ATI_meminfo"))
+        glGetIntegerv(GL_VBO_FREE_MEMORY_ATI, kib.data());
+    return kib[0] > 0 ? static_cast<std::size_t>(kib[0]) * (1024 * 3 / 4) : kUnknown;
+}
+
+GlStorage GlStorage::available() {
+    GlStorage found;
+    glGetIntegerv(GL_MAX_VERTEX_SHADER_STORAGE_BLOCKS, &found.vertex);
+    glGetIntegerv(GL_MAX_FRAGMENT_SHADER_STORAGE_BLOCKS, &found.fragment);
+    glGetIntegerv(GL_MAX_COMPUTE_SHADER_STORAGE_BLOCKS, &found.compute);
+    glGetIntegerv(GL_MAX_SHADER_STORAGE_BUFFER_BINDINGS, &found.bindings);
+    return found;
+}
+
+void check_storage(const GlStorage& needed, const GlStorage& available, const char* allowed) {
+    const auto check = [&](const char* what, int count, int most) {
+        if (count <= most) return;
+        throw Error(ErrorCode::MissingCapability,
+                    "the GL device has " + std::to_string(most) + " storage buffers " + what + "; this work needs " +
+                        std::to_string(count),
+                    {}, allowed);
+    };
+    check("for vertex shaders", needed.vertex, available.vertex);
+    check("for fragment shaders", needed.fragment, available.fragment);
+    check("for compute shaders", needed.compute, available.compute);
+    check("at a time", needed.bindings, available.bindings);
+}
+
 void check_gl(const std::string& where) {
     constexpr const char* kHint = "use the CPU backend, or a smaller picture";
     GLenum first = glGetError();

@@ -57,6 +57,23 @@ void free_in(const GlContext& context, std::unique_ptr<T>& owned) {
 /// throws: Error(MissingCapability) with the hint `allowed` if the current context cannot draw a picture of that size
 void check_picture_size(int width, int height, const char* allowed);
 
+/// The bytes that work on the current context should take: three quarters of what is free on the device, or 2 GiB if the driver
+/// does not say.
+[[nodiscard]] std::size_t memory_budget();
+
+/// What shaders need beyond the least that OpenGL 4.5 guarantees, and what a device has: storage buffers in each kind of
+/// shader. The standard guarantees 8 of them, and none in vertex shaders.
+struct GlStorage {
+    int vertex = 0, fragment = 0, compute = 0;
+    int bindings = 0;  // the highest binding is one less
+
+    /// Of the current context.
+    [[nodiscard]] static GlStorage available();
+};
+
+/// throws: Error(MissingCapability) with the hint `allowed` if a device has fewer than needed
+void check_storage(const GlStorage& needed, const GlStorage& available, const char* allowed);
+
 /// Checks whether a call, memory or the device of the current context has failed since the last check.
 ///
 /// where:  what was done, for the message: "splat", a shader's file

@@ -20,6 +20,7 @@ namespace {
 struct Candidate {
     EGLDisplay display = EGL_NO_DISPLAY;
     bool surfaceless = false;  // Mesa's own choice among what it can run on
+    bool software = false;     // as far as is known before it is opened
     std::string file;          // of the graphics card; empty if unknown
 };
 
@@ -62,7 +63,8 @@ std::vector<Candidate> find_candidates() {
     const char* client = eglQueryString(EGL_NO_DISPLAY, EGL_EXTENSIONS);
     if (!has_extension(client, "EGL_EXT_platform_base")) return {};
     if (has_extension(client, "EGL_MESA_platform_surfaceless"))
-        software.push_back({eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr), true, {}});
+        software.push_back(
+            {eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr), true, true, {}});
     if (has_extension(client, "EGL_EXT_platform_device") &&
         (has_extension(client, "EGL_EXT_device_enumeration") || has_extension(client, "EGL_EXT_device_base"))) {
         std::array<EGLDeviceEXT, 64> devices{};
@@ -70,9 +72,10 @@ std::vector<Candidate> find_candidates() {
         if (!eglQueryDevicesEXT(static_cast<EGLint>(devices.size()), devices.data(), &count)) count = 0;
         for (const EGLDeviceEXT device : std::span(devices).first(static_cast<std::size_t>(count))) {
             const char* extensions = eglQueryDeviceStringEXT(device, EGL_EXTENSIONS);
-            auto& list = has_extension(extensions, "EGL_MESA_device_software") ? software : hardware;
-            list.push_back(
-                {eglGetPlatformDisplayEXT(EGL_PLATFORM_DEVICE_EXT, device, nullptr), false, card_file(device, extensions)});
+            const bool on_cpu = has_extension(extensions, "EGL_MESA_device_software");
+            (on_cpu ? software : hardware)
+                .push_back({eglGetPlatformDisplayEXT(EGL_PLATFORM_DEVICE_EXT, device, nullptr), false, on_cpu,
+                            card_file(device, extensions)});
         }
     }
     hardware.insert(hardware.end(), software.begin(), software.end());
@@ -131,7 +134,7 @@ std::string text_of(GLenum name) {
 }
 
 bool is_software(const std::string& renderer) {
-    constexpr std::array kNames{"llvmpipe", "softpipe", "swrast", "SwiftShader"};
+    constexpr std::array kNames{"llvmpipe", "lavapipe", "softpipe", "swrast", "SwiftShader", "Basic Render"};
     return std::ranges::any_of(kNames, [&](const char* name) { return renderer.find(name) != std::string::npos; });
 }
 
@@ -210,6 +213,16 @@ struct GlFinder::State {
     int found = 0;
     bool software_found = false;
 
+    /// Puts a device that turned out to be software behind those that may be hardware; false if there are none.
+    bool defer(Candidate candidate) {
+        const auto rest = candidates.begin() + static_cast<std::ptrdiff_t>(next);
+        if (candidate.software || std::all_of(rest, candidates.end(), [](const Candidate& c) { return c.software; }))
+            return false;
+        candidate.software = true;
+        candidates.push_back(candidate);
+        return true;
+    }
+
     /// Two drivers may offer the same card; software counts as one device, whichever way it is reached.
     [[nodiscard]] bool known(const Candidate& candidate, const GlDevice& device) const {
         if (!device.hardware) return software_found;
@@ -226,11 +239,11 @@ GlFinder::~GlFinder() = default;
 std::optional<OpenedGl> GlFinder::next() {
     State& s = *state_;
     while (s.next < s.candidates.size()) {
-        const Candidate& candidate = s.candidates[s.next++];
+        const Candidate candidate = s.candidates[s.next++];
         const EglContext context = make_context(candidate.display);
         if (!context.context) continue;
         GlDevice device = describe();
-        if (s.known(candidate, device)) {
+        if (s.known(candidate, device) || (!device.hardware && s.defer(candidate))) {
             context.destroy();
             continue;
         }

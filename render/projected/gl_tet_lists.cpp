@@ -7,6 +7,8 @@
 #include <string>
 
 #include "gl_dispatch.h"
+#include "gl_pace.h"
+#include "subvol/detail/stopwatch.h"
 #include "subvol/error.h"
 #include "subvol/raster.h"
 
@@ -30,6 +32,8 @@ std::uint32_t groups_of(std::size_t threads) {
     return static_cast<std::uint32_t>((threads + kGroup - 1) / kGroup);
 }
 constexpr double kCounting = 0.2;  // the part of counting in the work, roughly
+constexpr double kStoring = 0.5;   // the part of storing the fragments in the rest
+constexpr std::size_t kFirstSteps = 4096, kLeastSteps = 64, kMostSteps = 1 << 15;  // of a pixel in a dispatch
 
 constexpr std::size_t kMostPixels = std::size_t{1} << 20;  // of a part: the numbers kept for each pixel have to fit too
 
@@ -119,7 +123,7 @@ std::vector<std::uint32_t> GlTetLists::count_fragments(Items items, const DrawSt
     counts_.grow(bytes);
     counts_.clear();
     counts_.bind(kCountsBinding);
-    tets_.draw_into_lists(items, tets_.program(items, "FRAGMENT_COUNT"), {0, 0, view.width(), view.height()}, stage);
+    tets_.draw_into_lists(items, false, {0, 0, view.width(), view.height()}, stage);
     counts_.read(bytes, counts.data());
     return counts;
 }
@@ -143,10 +147,10 @@ void GlTetLists::draw_part(Items items, const PixelRect& part, const std::vector
     entries_.bind(kEntriesBinding);
     ranks_.grow(std::size_t{offsets.back()} * sizeof(std::uint32_t));
     ranks_.bind(kRanksBinding);
-    tets_.draw_into_lists(items, tets_.program(items, "FRAGMENT_KEEP"), part, stage);
+    tets_.draw_into_lists(items, true, part, stage.part(0, kStoring));
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
     sort_part(items, part, offsets);
-    composite_part(items, part, image);
+    composite_part(items, part, image, stage.part(kStoring, 1 - kStoring));
 }
 
 /// Sorts the lists: blocks of kRun entries by insertion, then pairs of runs are merged until each list is one run. The blocks
@@ -197,19 +201,24 @@ void GlTetLists::sort_part(Items items, const PixelRect& part, const std::vector
 }
 
 /// Repeats a dispatch until no pixel is unfinished.
-void GlTetLists::repeat(const GlProgram& program, std::uint32_t pixels) {
+void GlTetLists::repeat(const GlProgram& program, std::uint32_t pixels, const DrawStage& stage) {
     program.use();
     Counters counters;
+    GlPace pace(kFirstSteps, kLeastSteps, kMostSteps);
+    Stopwatch watch;
     for (bool resumed = false; !resumed || counters.unfinished > 0; resumed = true) {
         glProgramUniform1i(program.id(), program.uniform("resumed"), resumed);
         constexpr std::uint32_t kNone = 0;
         counters_.upload(sizeof kNone, &kNone, offsetof(Counters, unfinished));
+        glProgramUniform1ui(program.id(), program.uniform("list_steps"), static_cast<GLuint>(pace.amount()));
         dispatch(groups_of(pixels));
         counters_.read(sizeof counters, &counters);
+        pace.took(watch.restart());
+        stage.report(1 - static_cast<double>(counters.unfinished) / pixels);
     }
 }
 
-void GlTetLists::composite_part(Items items, const PixelRect& part, Image& image) {
+void GlTetLists::composite_part(Items items, const PixelRect& part, Image& image, const DrawStage& stage) {
     const auto width = static_cast<std::size_t>(part.x1 - part.x0), height = static_cast<std::size_t>(part.y1 - part.y0);
     const auto pixels = static_cast<std::uint32_t>(width * height);
     picture_.grow(pixels * kPixel_bytes);
@@ -220,12 +229,12 @@ void GlTetLists::composite_part(Items items, const PixelRect& part, Image& image
         const GlProgram& window = tets_.program(items, GlTets::ListStep::Window);
         tets_.set_uniforms(window, part);
         glProgramUniform1ui(window.id(), window.uniform("kbuffer"), kbuffer_);
-        repeat(window, pixels);
+        repeat(window, pixels, stage.part(0, 0.5));
     }
     const GlProgram& composite = tets_.program(items, GlTets::ListStep::Composite);
     tets_.set_uniforms(composite, part);
     glProgramUniform1f(composite.id(), composite.uniform("eye_value"), static_cast<float>(tets_.frame().eye_value));
-    repeat(composite, pixels);
+    repeat(composite, pixels, stage.part(0.5, 0.5));
     std::vector<std::array<float, 4>> colors(pixels);
     picture_.read(pixels * kPixel_bytes, colors.data());
     for (std::size_t i = 0; i < pixels; ++i) {

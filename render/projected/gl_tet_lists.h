@@ -47,8 +47,8 @@ private:
     void draw_part(Items items, const PixelRect& part, const std::vector<std::uint32_t>& counts, Image& image,
                    const DrawStage& stage);
     void sort_part(Items items, const PixelRect& part, const std::vector<std::uint32_t>& offsets);
-    void composite_part(Items items, const PixelRect& part, Image& image);
-    void repeat(const GlProgram& program, std::uint32_t pixels);
+    void composite_part(Items items, const PixelRect& part, Image& image, const DrawStage& stage);
+    void repeat(const GlProgram& program, std::uint32_t pixels, const DrawStage& stage);
 
     GlTets& tets_;
     std::uint32_t kbuffer_ = 1;

@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "gl_context.h"
+#include "gl_pace.h"
 #include "pixel_tiles.h"
 #include "shader_exp_log_glsl.h"
 #include "shader_projected_clip_glsl.h"
@@ -26,6 +27,7 @@
 #include "shader_projected_tet_vert.h"
 #include "shader_projected_window_comp.h"
 #include "subvol/detail/ray_clip.h"
+#include "subvol/detail/stopwatch.h"
 #include "subvol/error.h"
 
 namespace subvol::detail {
@@ -34,7 +36,7 @@ namespace {
 
 // The same as in the shaders.
 constexpr GLuint kPointsBinding = 0, kItemsBinding = 1, kOrderBinding = 2, kPlanesBinding = 9, kKnotsBinding = 10;
-constexpr std::size_t kDrawnAtOnce = 1U << 16;  // between two reports of progress
+constexpr std::size_t kFirstDrawn = 1U << 14, kLeastDrawn = 1U << 8, kMostDrawn = 1U << 20;  // at a time
 
 template <class T>
 void fill(GlBuffer& buffer, const std::vector<T>& values) {
@@ -60,6 +62,7 @@ std::vector<ShaderText> drawing_texts() {
 }  // namespace
 
 GlTets::GlTets() {
+    check_storage({.vertex = 3, .fragment = 6, .compute = 8, .bindings = 13}, GlStorage::available(), "the method tets");
     glCreateVertexArrays(1, &vertices_);  // it has no attributes, but OpenGL does not draw without one
     glCreateFramebuffers(1, &framebuffer_);
     glDisable(GL_DEPTH_TEST);
@@ -123,8 +126,7 @@ std::string GlTets::defines(const char* mode, int corners) const {
     const auto define = [&](const char* name, const auto& value) { text << "#define " << name << ' ' << value << '\n'; };
     define("PERSPECTIVE", int{view_->perspective()});
     define("FRAGMENT_COMPOSITE", 0);
-    define("FRAGMENT_COUNT", 1);
-    define("FRAGMENT_KEEP", 2);
+    define("FRAGMENT_LISTS", 1);
     define("FRAGMENT_MODE", mode);
     define("CLIPPED", int{!frame_->planes.empty()});
     define("kCorners", corners);
@@ -151,7 +153,7 @@ const GlProgram& GlTets::program(Items items, ListStep step) {
                               : step == ListStep::Window ? ShaderText{"projected_window.comp", kShader_projected_window_comp}
                               : faces                    ? ShaderText{"projected_kbuffer.comp", kShader_projected_kbuffer_comp}
                                                          : ShaderText{"projected_resolve.comp", kShader_projected_resolve_comp};
-    const std::string text = defines("FRAGMENT_KEEP", faces ? 3 : 4) + "#define FACES " + (faces ? "1\n" : "0\n");
+    const std::string text = defines("FRAGMENT_LISTS", faces ? 3 : 4) + "#define FACES " + (faces ? "1\n" : "0\n");
     const std::string key = source.file + text;
     if (const auto found = programs_.find(key); found != programs_.end()) return found->second;
     std::vector<ShaderText> texts{{"projected_frame.glsl", kShader_projected_frame_glsl}};
@@ -193,18 +195,25 @@ void GlTets::draw_all(Items items, const GlProgram& program, const PixelRect& re
     glScissor(rect.x0, rect.y0, rect.x1 - rect.x0, rect.y1 - rect.y0);
     program.use();
     const std::size_t count = frame_->order.size(), corners = items == Items::Tets ? 6 : 3;
-    for (std::size_t first = 0; first < count; first += kDrawnAtOnce) {
-        const std::size_t end = std::min(count, first + kDrawnAtOnce);
+    GlPace pace(kFirstDrawn, kLeastDrawn, kMostDrawn);
+    Stopwatch watch;
+    for (std::size_t first = 0; first < count;) {
+        const std::size_t end = std::min(count, first + pace.amount());
         glDrawArrays(GL_TRIANGLES, static_cast<GLint>(corners * first), static_cast<GLsizei>(corners * (end - first)));
-        if (stage.progress) glFinish();  // otherwise all of it would be queued at once
+        glFinish();  // otherwise all of it would be queued at once
+        pace.took(watch.restart());
         stage.report(static_cast<double>(end) / static_cast<double>(count));
+        first = end;
     }
     check_gl("projected tetrahedra");
 }
 
-void GlTets::draw_into_lists(Items items, const GlProgram& program, const PixelRect& rect, const DrawStage& stage) {
+void GlTets::draw_into_lists(Items items, bool keep, const PixelRect& rect, const DrawStage& stage) {
+    // One program counts and keeps: two of them may be compiled to different instructions, and disagree about a pixel.
+    const GlProgram& used = program(items, "FRAGMENT_LISTS");
+    glProgramUniform1i(used.id(), used.uniform("keep"), keep);
     glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
-    draw_all(items, program, rect, stage);
+    draw_all(items, used, rect, stage);
 }
 
 Image GlTets::draw_in_order(const DrawStage& stage) {

@@ -82,18 +82,18 @@ public:
     // For GlTetLists.
     [[nodiscard]] const View& view() const { return *view_; }
     [[nodiscard]] const GlTetFrame& frame() const { return *frame_; }
-    /// mode: of the fragment shader, for example "FRAGMENT_COUNT"
-    [[nodiscard]] const GlProgram& program(Items items, const char* mode);
     /// A compute shader that works on lists.
     enum class ListStep { Sort, Merge, Window, Composite };
     [[nodiscard]] const GlProgram& program(Items items, ListStep step);
     void set_uniforms(const GlProgram& program, const PixelRect& rect);
-    /// Draws without writing to the picture.
-    void draw_into_lists(Items items, const GlProgram& program, const PixelRect& rect, const DrawStage& stage);
+    /// Draws without writing to the picture: counts the fragments of each pixel of the rectangle, or stores them too.
+    void draw_into_lists(Items items, bool keep, const PixelRect& rect, const DrawStage& stage);
 
 private:
     [[nodiscard]] const GlBuffer& buffer_of(Items items) const { return items == Items::Tets ? tets_ : faces_; }
     [[nodiscard]] std::string defines(const char* mode, int corners) const;
+    /// mode: of the fragment shader, FRAGMENT_COMPOSITE or FRAGMENT_LISTS
+    [[nodiscard]] const GlProgram& program(Items items, const char* mode);
     void make_target(int width, int height);
     void draw_all(Items items, const GlProgram& program, const PixelRect& rect, const DrawStage& stage);
 

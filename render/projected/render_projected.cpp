@@ -148,16 +148,31 @@ std::size_t most_fragments(std::size_t list_bytes, const GlDevice& device, GlTet
 }  // namespace
 
 struct ProjectedRenderer::State {
+    /// What draws, in a context of its own, which is current where it is made.
+    struct Device {
+        explicit Device(const std::optional<int>& number)
+            : context(checked_device(number)),
+              drawer(std::make_unique<GlTets>()),
+              lists(std::make_unique<detail::GlTetLists>(*drawer)) {}
+        ~Device() {
+            free_in(context, lists);
+            free_in(context, drawer);
+        }
+        Device(const Device&) = delete;
+        Device& operator=(const Device&) = delete;
+
+        detail::GlContext context;
+        std::unique_ptr<GlTets> drawer;
+        std::unique_ptr<detail::GlTetLists> lists;
+    };
+
     /// build: gives the tetrahedra
     template <class Build>
-    State(const std::optional<int>& device, Progress* progress, const Build& build);
-    ~State() {
-        free_in(context, lists);
-        free_in(context, drawer);
-    }
+    State(const std::optional<int>& number, Progress* progress, const Build& build);
     State(const State&) = delete;
     State& operator=(const State&) = delete;
 
+    [[nodiscard]] ProjectedResult draw(const View& view, const Optics& optics, const ProjectedOptions& options);
     void upload(GlTets::Items items);
     void order(detail::GlTetFrame& frame, const View& view, const ProjectedOptions& options, ProjectedReport& report);
     [[nodiscard]] Image draw_sample(const ProjectedOptions& options, ProjectedReport& report, const DrawStage& stage);
@@ -169,22 +184,19 @@ struct ProjectedRenderer::State {
     std::optional<TetFaces> faces;  // found when they are drawn for the first time
     Box box;
     ProjectedReport built;
-    detail::GlContext context;
-    std::unique_ptr<GlTets> drawer;
-    std::unique_ptr<detail::GlTetLists> lists;
+    std::optional<int> device_number;
+    std::unique_ptr<Device> device;  // null after it has failed: the next picture makes another one
 };
 
 template <class Build>
-ProjectedRenderer::State::State(const std::optional<int>& device, Progress* progress, const Build& build)
-    : context(checked_device(device)) {
+ProjectedRenderer::State::State(const std::optional<int>& number, Progress* progress, const Build& build)
+    : device_number(number), device(std::make_unique<Device>(number)) {
     report_progress(progress, "build", 0);
     tets = build();
     check_count("tetrahedra", tets.tets.size(), kMostTets);
     box = bounds_of(tets);
-    drawer = std::make_unique<GlTets>();
-    lists = std::make_unique<detail::GlTetLists>(*drawer);
-    context.release();
-    built.device = context.renderer();
+    device->context.release();
+    built.device = device->context.renderer();
     built.tets = tets.tets.size();
     built.degenerate_tets = tets.shapes.degenerate;
     built.inverted_tets = tets.shapes.inverted;
@@ -197,15 +209,15 @@ void ProjectedRenderer::State::upload(GlTets::Items items) {
         faces = find_faces(tets);
         check_count("faces", faces->faces.size(), kMostFaces);
     }
-    if (drawer->has(items)) return;
-    if (items == GlTets::Items::Faces) return drawer->set_faces(faces->faces);
+    if (device->drawer->has(items)) return;
+    if (items == GlTets::Items::Faces) return device->drawer->set_faces(faces->faces);
     std::vector<std::array<std::uint32_t, 4>> corners;
     corners.reserve(tets.tets.size());
     for (const auto& tet : tets.tets) {
         corners.push_back(tet.corner);
         std::sort(corners.back().begin(), corners.back().end());
     }
-    drawer->set_tets(corners);
+    device->drawer->set_tets(corners);
 }
 
 void ProjectedRenderer::State::order(detail::GlTetFrame& frame, const View& view, const ProjectedOptions& options,
@@ -224,9 +236,10 @@ void ProjectedRenderer::State::order(detail::GlTetFrame& frame, const View& view
 
 Image ProjectedRenderer::State::draw_lists(const ProjectedOptions& options, ProjectedReport& report, const DrawStage& stage) {
     const auto items = options.order == ProjectedOrder::Havs ? GlTets::Items::Faces : GlTets::Items::Tets;
-    const std::size_t most = most_fragments(options.list_bytes, context.device(), items);
-    auto drawn = items == GlTets::Items::Faces ? lists->draw_faces(static_cast<std::size_t>(options.kbuffer), most, stage)
-                                               : lists->draw_tets(most, stage);
+    const std::size_t most = most_fragments(options.list_bytes, device->context.device(), items);
+    detail::GlTetLists& lists = *device->lists;
+    auto drawn = items == GlTets::Items::Faces ? lists.draw_faces(static_cast<std::size_t>(options.kbuffer), most, stage)
+                                               : lists.draw_tets(most, stage);
     report.fragments += drawn.fragments;
     report.parts += drawn.parts;
     report.late_faces += drawn.late_faces;
@@ -236,7 +249,7 @@ Image ProjectedRenderer::State::draw_lists(const ProjectedOptions& options, Proj
 
 Image ProjectedRenderer::State::draw_sample(const ProjectedOptions& options, ProjectedReport& report, const DrawStage& stage) {
     const bool in_order = options.order == ProjectedOrder::Centroid || options.order == ProjectedOrder::Topological;
-    return in_order ? drawer->draw_in_order(stage) : draw_lists(options, report, stage);
+    return in_order ? device->drawer->draw_in_order(stage) : draw_lists(options, report, stage);
 }
 
 /// The same grid of rays as in trace_pixel, with one picture for each place of the grid.
@@ -249,12 +262,12 @@ Image ProjectedRenderer::State::draw_samples(const ProjectedOptions& options, Pr
     Image image;
     for (int k = 0; k < n * n; ++k) {
         const int column = k % n, row = k / n;
-        drawer->set_offset({(column + 0.5) / n - 0.5, (row + 0.5) / n - 0.5});
+        device->drawer->set_offset({(column + 0.5) / n - 0.5, (row + 0.5) / n - 0.5});
         image = draw_sample(options, report, whole.part(k / pictures, 1 / pictures));
         sums.resize(image.rgba.size());
         for (std::size_t i = 0; i < sums.size(); ++i) sums[i] += double{image.rgba[i]};
     }
-    drawer->set_offset(Vec2(0.0));
+    device->drawer->set_offset(Vec2(0.0));
     for (std::size_t i = 0; i < sums.size(); ++i) image.rgba[i] = static_cast<float>(sums[i] / pictures);
     return image;
 }
@@ -285,24 +298,35 @@ double ProjectedRenderer::seconds_build() const {
 ProjectedResult ProjectedRenderer::draw(const View& view, const Optics& optics, const ProjectedOptions& options) {
     check_options(options);
     State& state = *state_;
-    const detail::GlScope scope(state.context);
-    ProjectedResult result{{}, state.built};
+    const detail::KeepCurrent keep;
+    if (!state.device) state.device = std::make_unique<State::Device>(state.device_number);
+    const detail::GlScope scope(state.device->context);
+    try {
+        return state.draw(view, optics, options);
+    } catch (const Error& error) {
+        if (error.code() == ErrorCode::MissingCapability) state.device.reset();
+        throw;
+    }
+}
+
+ProjectedResult ProjectedRenderer::State::draw(const View& view, const Optics& optics, const ProjectedOptions& options) {
+    ProjectedResult result{{}, built};
     ProjectedReport& report = result.report;
-    const bool faces = options.order == ProjectedOrder::Havs;
+    const bool with_faces = options.order == ProjectedOrder::Havs;
 
     Stopwatch watch;
-    state.upload(faces ? GlTets::Items::Faces : GlTets::Items::Tets);
-    detail::GlTetFrame frame = make_tet_frame(state.tets, state.box, view, optics,
-                                              RayClip(without_far_faces(options.clip, state.box), state.box.diagonal()), faces);
+    upload(with_faces ? GlTets::Items::Faces : GlTets::Items::Tets);
+    detail::GlTetFrame frame =
+        make_tet_frame(tets, box, view, optics, RayClip(without_far_faces(options.clip, box), box.diagonal()), with_faces);
     report.seconds_prepare = watch.restart();
 
-    state.order(frame, view, options, report);
+    order(frame, view, options, report);
     report.seconds_sort = watch.restart();
 
-    state.drawer->set_frame(frame, view);
-    result.image = state.draw_samples(options, report);
+    device->drawer->set_frame(frame, view);
+    result.image = draw_samples(options, report);
     report.seconds_draw = watch.seconds();
-    if (options.count_violations && !report.violations) (void)state.draw_lists(options, report, {options.progress});
+    if (options.count_violations && !report.violations) (void)draw_lists(options, report, {options.progress});
     return result;
 }
 

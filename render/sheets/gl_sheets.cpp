@@ -37,6 +37,8 @@ namespace {
 
 /// The number of sheets whose kernels are listed at a time: the lists take no more memory than the kernels, of 16 words each.
 constexpr int kListed = 16;
+/// A draw has about so many fragments and at most so many kernels, so that no draw takes long.
+constexpr std::size_t kMostFragments = std::size_t{1} << 26, kMostDrawn = std::size_t{1} << 20;
 constexpr GLuint kListBinding = 6;
 constexpr GLuint kTableBinding = 7;  // the same as in splat_classify.glsl; then those of sheet_composite.comp
 
@@ -126,6 +128,13 @@ void fill(GlBuffer& buffer, GLuint binding, const std::vector<T>& values) {
     buffer.bind(binding);
 }
 
+/// Sets a buffer to zero and binds it.
+void start(GlBuffer& buffer, GLuint binding, std::size_t bytes) {
+    buffer.grow(bytes);
+    buffer.clear();
+    buffer.bind(binding);
+}
+
 /// The state of a pixel between two sheets; the same as in shaders/sheet_composite.comp.
 struct Last {
     float value, weight, depth;
@@ -165,6 +174,7 @@ std::vector<PixelRect> rects_of_ends(const SplatFrame& frame) {
 }  // namespace
 
 GlSheets::GlSheets() {
+    check_storage({.vertex = 7, .fragment = 6, .compute = 10, .bindings = 16}, GlStorage::available(), "the method splat");
     glCreateVertexArrays(1, &vertices_);  // it has no attributes, but OpenGL does not draw without one
     check_gl("sheet buffers");
 }
@@ -202,11 +212,11 @@ Drawn GlSheets::draw(const SplatFrame& frame, Progress* progress) {
             last = lists.rects[k];
             if (rect.empty()) continue;
             target_.clear(rect);
-            draw_kernels(frame, used.kernels, sheet, lists.offsets[k], lists.offsets[k + 1] - lists.offsets[k]);
+            draw_kernels(frame, used.kernels, sheet, lists, k);
             composite(frame, used.composite, sheet, rect);
+            report_progress(progress, "splat", static_cast<double>(sheet + 1) / frame.sheets.count);
         }
-        report_progress(progress, "splat", static_cast<double>(end) / frame.sheets.count);
-        if (done_pixels() == to_do) break;
+        if (done_pixels_.ask(done_) == to_do) break;
     }
     check_gl("splat");
     return read(frame);
@@ -247,18 +257,17 @@ void GlSheets::upload(const SplatFrame& frame) {
 
 void GlSheets::start_beams(const SplatFrame& frame) {
     const std::size_t count = pixels(*frame.view);
-    const bool intervals = !frame.intervals.offsets.empty();
-    std::vector<Last> lasts(count);
-    for (std::size_t id = 0; intervals && id < count; ++id) lasts[id].interval = frame.intervals.offsets[id];
-    fill(beams_, kTableBinding + 5, std::vector<std::array<float, 4>>(count));
-    fill(lasts_, kTableBinding + 6, lasts);
+    start(beams_, kTableBinding + 5, count * 4 * sizeof(float));
+    start(lasts_, kTableBinding + 6, count * sizeof(Last));
     if (frame.scene->shading || frame.scene->color_channel) looks_.grow(count * 4 * sizeof(float));
     looks_.bind(kTableBinding + 7);
-    fill(done_, kTableBinding + 8, std::vector<std::uint32_t>{0});
+    done_pixels_.reset();  // a picture may have been cancelled
+    start(done_, kTableBinding + 8, sizeof(std::uint32_t));
 }
 
-void GlSheets::draw_kernels(const SplatFrame& frame, const GlProgram& program, int sheet, std::size_t first,
-                            std::size_t count) {
+void GlSheets::draw_kernels(const SplatFrame& frame, const GlProgram& program, int sheet, const SheetLists& lists,
+                            std::size_t at) {
+    const std::size_t begin = lists.offsets[at], count = lists.offsets[at + 1] - begin;
     if (count == 0) return;
     const float z = frame.sheets.depth(sheet), across = frame.view->perspective() ? frame.sheets.middle + z : 1.0f;
     const Uniforms u(program);
@@ -268,7 +277,12 @@ void GlSheets::draw_kernels(const SplatFrame& frame, const GlProgram& program, i
     program.use();
     ids_.bind(kListBinding);
     // Triangles instead of instances: hardware does not fill its units with four vertices; for software it is the same.
-    glDrawArrays(GL_TRIANGLES, static_cast<GLint>(6 * first), static_cast<GLsizei>(6 * count));
+    const std::size_t draws = std::clamp<std::size_t>(lists.fragments[at] / kMostFragments + 1, count / kMostDrawn + 1, count);
+    for (std::size_t i = 0; i < draws; ++i) {
+        const std::size_t first = begin + count * i / draws, end = begin + count * (i + 1) / draws;
+        glDrawArrays(GL_TRIANGLES, static_cast<GLint>(6 * first), static_cast<GLsizei>(6 * (end - first)));
+        if (draws > 1) glFlush();
+    }
 }
 
 void GlSheets::composite(const SplatFrame& frame, const GlProgram& program, int sheet, const PixelRect& rect) {
@@ -282,14 +296,10 @@ void GlSheets::composite(const SplatFrame& frame, const GlProgram& program, int 
     u.set("first", int{sheet == 0});
     program.use();
     ends_.bind(kListBinding);  // the place of the list, which is not used here
+    glTextureBarrier();        // the sums that are read have been drawn, and their texture stays attached
     glDispatchCompute(groups(rect.x0, rect.x1), groups(rect.y0, rect.y1), 1);
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
-}
-
-std::uint32_t GlSheets::done_pixels() const {
-    std::uint32_t count = 0;
-    done_.read(sizeof count, &count);
-    return count;
+    glTextureBarrier();  // the next sheet is drawn over them
 }
 
 Drawn GlSheets::read(const SplatFrame& frame) const {

@@ -7,6 +7,7 @@
 
 #include "gl_context.h"
 #include "subvol/error.h"
+#include "subvol/raster.h"
 
 namespace subvol::detail {
 
@@ -87,6 +88,7 @@ SheetLists list_sheets(const SplatFrame& frame, const PixelRect& window, int fir
     const Sections sections(frame, window, first, last);
     std::vector<std::size_t> next(sheets * chunks);
     std::vector<PixelRect> rects(sheets * chunks);
+    std::vector<std::size_t> fragments(sheets * chunks);
     // Calls visit(slot, kernel, rectangle); a slot belongs to a sheet and a chunk of kernels.
     const auto each = [&](const auto& visit) {
         tbb::parallel_for(std::size_t{0}, chunks, [&](std::size_t chunk) {
@@ -100,15 +102,18 @@ SheetLists list_sheets(const SplatFrame& frame, const PixelRect& window, int fir
     each([&](std::size_t slot, std::size_t, const PixelRect& rect) {
         ++next[slot];
         rects[slot] = rects[slot].with(rect);
+        fragments[slot] += pixel_count(rect.x1 - rect.x0, rect.y1 - rect.y0);
     });
     SheetLists lists;
     lists.rects.resize(sheets);
+    lists.fragments.resize(sheets);
     lists.offsets.resize(sheets + 1);
     std::size_t sum = 0;
     for (std::size_t slot = 0; slot < next.size(); ++slot) {
         if (slot % chunks == 0) lists.offsets[slot / chunks] = sum;
         sum += std::exchange(next[slot], sum);
         lists.rects[slot / chunks] = lists.rects[slot / chunks].with(rects[slot]);
+        lists.fragments[slot / chunks] += fragments[slot];
     }
     lists.offsets[sheets] = sum;
     lists.splats.resize(sum);

@@ -12,9 +12,10 @@
 namespace subvol::detail {
 
 /// The kernels that sheets cut, in their order, and the pixels that they may touch: sheet first + k has
-/// splats[offsets[k] .. offsets[k + 1]).
+/// splats[offsets[k] .. offsets[k + 1]), which draw about fragments[k].
 struct SheetLists {
     std::vector<PixelRect> rects;
+    std::vector<std::size_t> fragments;
     std::vector<std::size_t> offsets;
     std::vector<std::uint32_t> splats;
 };

@@ -33,6 +33,7 @@ namespace {
 
 constexpr int kBandRows = 8;
 constexpr std::int64_t kSnap = 4096;   // units a pixel
+constexpr double kSnapTie = 0x1p-16;   // more than a division on any device is off
 constexpr double kGuard_px = 1 << 17;  // triangles that reach further out are clipped: edge functions could overflow
 constexpr std::size_t kChunksOfTriangles = 64;
 
@@ -63,8 +64,11 @@ struct Hit {
     std::uint32_t triangle;
 };
 
+/// Rounds to the nearest unit. Between two of them is a little less than a half, as in shaders/boundary_points.comp: points in
+/// the middle are frequent where numbers are round, and the rounding of a division must not decide about them.
 std::int64_t snap(double px) {
-    return static_cast<std::int64_t>(std::llround(px * static_cast<double>(kSnap)));
+    const double below = std::floor(std::abs(px) * static_cast<double>(kSnap) + (0.5 + kSnapTie));
+    return static_cast<std::int64_t>(px < 0 ? -below : below);
 }
 
 SnappedPoint center(int x, int y) {

@@ -21,6 +21,7 @@ namespace {
 
 constexpr std::size_t kEyePoint_bytes = 32, kBox_bytes = 16, kPair_bytes = 8, kPlan_bytes = 16;
 constexpr GLuint kCameraBinding = 1;
+constexpr std::size_t kMostPixels = std::size_t{1} << 25;  // of 128 hits each: their sum has 32 bits
 
 GlProgram boundary_program(const char* file, const char* source, const char* defines = "") {
     return {file,
@@ -95,7 +96,8 @@ void GlBoundary::find(const Surface& surface, const View& view, double near, dou
     pixels_ = pixel_count(view.width(), view.height());
     ranges_.grow(pixels_ * kPair_bytes);
     on_device_now_ = on_device_ && GlBuffer::fits(surface.points.size() * kEyePoint_bytes) &&
-                     GlBuffer::fits(surface.triangles.size() * kBox_bytes) && !needs_clipping(surface, view, near);
+                     GlBuffer::fits(surface.triangles.size() * kBox_bytes) && pixels_ <= kMostPixels &&
+                     !needs_clipping(surface, view, near);
     if (!on_device_now_) return upload_intervals(boundary_intervals(surface, view, near, middle));
 
     stages.begin("boundary");
@@ -130,17 +132,22 @@ void GlBoundary::count_hits() {
     corners_.bind(2);
     boxes_.bind(3);
     strips_.bind(4);
+    strip_total_.grow(2 * kWord_bytes);
+    strip_total_.clear();
+    strip_total_.bind(5);
     dispatch(groups_for(triangles_));
     scan_.exclusive_scan(strips_, static_cast<std::uint32_t>(triangles_));
 
     plan_.grow(kPlan_bytes);
+    hit_offsets_.grow((pixels_ + 2) * kWord_bytes);
+    hit_offsets_.clear();
     plan_program_.use();
     strips_.bind(0);
     plan_.bind(1);
+    strip_total_.bind(2);
+    hit_offsets_.bind(3);
     dispatch(1);
 
-    hit_offsets_.grow((pixels_ + 2) * kWord_bytes);
-    hit_offsets_.clear();
     count_program_.use();
     strips_.bind(0);
     eye_points_.bind(1);
@@ -172,7 +179,7 @@ void GlBoundary::fill() {
 
 bool GlBoundary::found_all() {
     if (!on_device_now_) return true;
-    std::array<std::uint32_t, 2> found{};  // all hits; whether a pixel has too many
+    std::array<std::uint32_t, 2> found{};  // all hits; whether a pixel has too many, or the triangles
     hit_offsets_.read(sizeof found, found.data(), pixels_ * kWord_bytes);
     hits_ = found[0];
     if (found[1] != 0) {

@@ -10,7 +10,8 @@
 namespace subvol::detail {
 
 /// boundary_intervals() on the current context. Coverage is bitwise the same, depths differ by rounding only. The CPU does
-/// surfaces that have to be clipped, and those that a ray meets more often than one thread should sort.
+/// surfaces that have to be clipped, those that a ray meets more often than one thread should sort, and those of which the
+/// triangles touch more rows of pixels than a dispatch should go through.
 class GlBoundary {
 public:
     /// on_device: false: the CPU finds all intervals
@@ -50,7 +51,8 @@ private:
     GlProgram points_program_, strips_program_, plan_program_, count_program_, fill_program_, resolve_program_;
     GlScan scan_;
     std::size_t points_ = 0, triangles_ = 0, pixels_ = 0, hits_ = 0, room_ = 0;
-    GlBuffer camera_, positions_, corners_, eye_points_, boxes_, strips_, plan_, hit_offsets_, counts_, intervals_, ranges_;
+    GlBuffer camera_, positions_, corners_, eye_points_, boxes_, strips_, strip_total_, plan_, hit_offsets_, counts_,
+        intervals_, ranges_;
 };
 
 }  // namespace subvol::detail

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <utility>
 
 #include "eye_splats.h"
 #include "kernel_axes.h"
@@ -193,6 +194,18 @@ namespace {
 
 constexpr std::size_t kSplat_bytes = 64, kVector_bytes = 16;
 
+/// What the lists depend on besides the kernels: which tiles and batches a kernel meets, not its values or colours.
+std::vector<double> list_key(const GlSplatFrame& f) {
+    std::vector<double> key{static_cast<double>(f.perspective),    static_cast<double>(f.first_depth),
+                            static_cast<double>(f.sheet_distance), static_cast<double>(f.middle_depth),
+                            static_cast<double>(f.pixel),          static_cast<double>(f.kernels),
+                            static_cast<double>(f.most_entries)};
+    for (const auto* axis : {&f.right, &f.up, &f.forward}) key.insert(key.end(), axis->begin(), axis->end());
+    for (const int n : {f.width, f.height, f.tiles_x, f.tiles_y, f.sheets, f.batches, f.first_batch, f.end_batch})
+        key.push_back(n);
+    return key;
+}
+
 GlProgram bins_program(const char* file, const char* source, const std::string& defines) {
     return {
         file, source, defines, {{"gl_groups.glsl", kShader_gl_groups_glsl}, {"splat_frame.glsl", kShader_splat_frame_glsl}}};
@@ -211,7 +224,12 @@ std::size_t GlSplatBins::kernel_bytes(std::uint32_t extras) {
     return std::max(kSplat_bytes, extras * kVector_bytes);
 }
 
+std::size_t GlSplatBins::bytes_of_kernel(std::uint32_t extras) {
+    return GlKernelData::kFloats * sizeof(float) + kSplat_bytes + 2 * kVector_bytes + 2 * extras * kVector_bytes;
+}
+
 void GlSplatBins::upload(const GlKernelData& data) {
+    listed_.clear();
     kernels_ = static_cast<std::uint32_t>(data.kernels.size() / GlKernelData::kFloats);
     kernel_buffer_.grow(data.kernels.size() * sizeof(float));
     kernel_buffer_.upload(data.kernels.size() * sizeof(float), data.kernels.data());
@@ -240,8 +258,6 @@ void GlSplatBins::count(GlStages& stages) {
     counts_.bind(6);
     total_.bind(7);
     dispatch(groups_for(kernels_));
-    stages.begin("bins");
-    scan_.exclusive_scan(counts_, kernels_);
     stages.begin("");
 }
 
@@ -251,9 +267,13 @@ std::uint64_t GlSplatBins::entries() const {
     return std::uint64_t{words[1]} << 32 | words[0];
 }
 
-void GlSplatBins::list(const GlSplatFrame& frame, GlStages& stages) {
+bool GlSplatBins::list(const GlSplatFrame& frame, GlStages& stages) {
+    std::vector<double> key = list_key(frame);
+    if (key == listed_) return false;
+    listed_.clear();  // in case of an error
     const std::uint32_t most = frame.most_entries;
     stages.begin("bins");
+    scan_.exclusive_scan(counts_, kernels_);
     keys_.grow(std::size_t{most} * kWord_bytes);
     ids_.grow(std::size_t{most} * kWord_bytes);
     emit_.use();
@@ -268,6 +288,8 @@ void GlSplatBins::list(const GlSplatFrame& frame, GlStages& stages) {
     sort_.radix_sort(keys_, ids_, entries, std::max(1, static_cast<int>(std::bit_width(bins - 1))));
     find_.find_ranges(keys_, entries, bins, offsets_);
     stages.begin("");
+    listed_ = std::move(key);
+    return true;
 }
 
 void GlSplatBins::bind() {

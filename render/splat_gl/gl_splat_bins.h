@@ -67,6 +67,10 @@ public:
 
     /// The most bytes that a kernel takes in any buffer.
     [[nodiscard]] static std::size_t kernel_bytes(std::uint32_t extras);
+    /// The bytes that it takes in all of them.
+    [[nodiscard]] static std::size_t bytes_of_kernel(std::uint32_t extras);
+    /// The bytes of an entry, with those that sorting takes.
+    static constexpr std::size_t kEntry_bytes = 17;
 
     void upload(const GlKernelData& data);
     [[nodiscard]] std::uint32_t kernels() const { return kernels_; }
@@ -77,8 +81,11 @@ public:
     /// The number of entries of the last count; inexact beyond 2³² − 1. Waits for the device.
     [[nodiscard]] std::uint64_t entries() const;
 
-    /// Lists the entries by bins, at most as many as the frame allows.
-    void list(const GlSplatFrame& frame, GlStages& stages);
+    /// Lists the entries by bins, at most as many as the frame allows. The lists are those of the last call if neither kernels
+    /// nor camera have changed since.
+    ///
+    /// returns: whether they have been made
+    bool list(const GlSplatFrame& frame, GlStages& stages);
 
     /// Binds the buffers for the shader that draws.
     void bind();
@@ -89,6 +96,7 @@ private:
     GlScan scan_;
     GlSort sort_;
     GlRanges find_;
+    std::vector<double> listed_;  // what the lists were made for; empty: there are none
     GlBuffer kernel_buffer_, kernel_extras_, splats_, splat_extras_, ranges_, rects_, counts_, total_, keys_, ids_, offsets_;
 };
 

@@ -27,6 +27,7 @@
 #include "clip_intervals.h"
 #include "gl_boundary.h"
 #include "gl_context.h"
+#include "gl_pace.h"
 #include "gl_splat_bins.h"
 #include "kernel_axes.h"
 #include "shader_exp_log_glsl.h"
@@ -39,6 +40,7 @@
 #include "shader_splat_shadow_glsl.h"
 #include "shader_splat_sums_glsl.h"
 #include "shader_splat_walk_glsl.h"
+#include "subvol/detail/stopwatch.h"
 #include "subvol/error.h"
 #include "subvol/raster.h"
 
@@ -46,9 +48,11 @@ namespace subvol::detail {
 
 namespace {
 
-constexpr std::size_t kPixel_bytes = 16;  // for each pixel of the picture
-constexpr std::size_t kState_bytes = 64;  // for each pixel, between dispatches
-constexpr std::size_t kEnds_bytes = 32;   // for each interval
+constexpr std::size_t kPixel_bytes = 16;                     // for each pixel of the picture
+constexpr std::size_t kState_bytes = 64;                     // for each pixel, between dispatches
+constexpr std::size_t kEnds_bytes = 32;                      // for each interval
+constexpr std::size_t kKept_bytes = std::size_t{1} << 26;    // for sums that have to be continued, about
+constexpr std::size_t kFirstTiles = 1024, kLeastTiles = 16;  // of a dispatch
 
 std::string decimal(float value) {
     char text[32];
@@ -89,6 +93,12 @@ GlProgram drawing_program(const std::string& defines) {
              {"splat_walk.glsl", kShader_splat_walk_glsl}}};
 }
 
+/// throws: Error(MissingCapability) if the current context cannot run the shaders of a scene
+const SplatScene& checked(const SplatScene& scene) {
+    check_storage({.compute = scene.shadowed() ? 16 : 15, .bindings = 16}, GlStorage::available(), "use the CPU backend");
+    return scene;
+}
+
 /// The kernels that may meet some sheets, with a sheet more on each side, so that rounding does not lose one.
 std::vector<std::uint32_t> kernels_between(const SplatScene& scene, const View& view, const SheetStack& sheets, int first_sheet,
                                            int end_sheet) {
@@ -117,7 +127,7 @@ class GlSplatter::State {
 public:
     State(const SplatScene& scene, std::optional<int> device, const GlTuning& tuning)
         : context(device),
-          scene_(scene),
+          scene_(checked(scene)),
           tuning_(tuning),
           bins_(common_defines(scene, tuning), GlExtras(scene).count),
           boundary_(context.hardware() || tuning.boundary_on_device),
@@ -125,9 +135,16 @@ public:
         GLint64 most = 0;
         glGetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &most);
         const std::size_t bytes = std::min(tuning.most_buffer_bytes, static_cast<std::size_t>(std::max<GLint64>(most, 0)));
-        most_kernels_ = bytes / GlSplatBins::kernel_bytes(GlExtras(scene).count) - 1;
-        most_entries_ = std::min({tuning.most_entries, bytes / sizeof(std::uint32_t) - 1, std::size_t{kMostGlItems}});
+        const std::size_t memory = tuning.memory_bytes > 0 ? tuning.memory_bytes : memory_budget();
+        const std::uint32_t extras = GlExtras(scene).count;
+        most_kernels_ =
+            std::min(bytes / GlSplatBins::kernel_bytes(extras) - 1, memory / 2 / GlSplatBins::bytes_of_kernel(extras));
+        most_entries_ = std::min({tuning.most_entries, bytes / sizeof(std::uint32_t) - 1, std::size_t{kMostGlItems},
+                                  memory / 2 / GlSplatBins::kEntry_bytes});
         most_bins_ = std::min(bytes / sizeof(std::uint32_t) - 1, std::size_t{kMostGlItems});
+        most_tiles_ = static_cast<std::uint32_t>(
+            std::clamp<std::size_t>(kKept_bytes / (tile_pixels() * sums_bytes()), 1, tuning.most_tiles));
+        pace_ = {kFirstTiles, std::min<std::size_t>(kLeastTiles, most_tiles_), most_tiles_};
         upload(kernel_table_, scene.kernel_table);
         upload_kernels();
     }
@@ -139,8 +156,19 @@ public:
 
     Drawn draw(const View& view, const Classification& classification, int sheets, Progress* progress);
 
+    /// Does some work, and remembers if the device fails.
+    auto attempt(const auto& work) {
+        try {
+            return work();
+        } catch (const Error& error) {
+            failed = failed || error.code() == ErrorCode::MissingCapability;
+            throw;
+        }
+    }
+
     GlContext context;
     GlSplatReport report;
+    bool failed = false;
 
 private:
     void prepare(const View& view, const Classification& classification);
@@ -166,6 +194,8 @@ private:
     const SplatScene& scene_;
     GlTuning tuning_;
     std::size_t most_kernels_ = 0, most_entries_ = 0, most_bins_ = 0;
+    std::uint32_t most_tiles_ = 1;
+    GlPace pace_{1, 1, 1};   // of tiles; kept from picture to picture
     bool resident_ = false;  // whether all kernels are on the device
     std::size_t room_ = 0;   // for so many entries
     SheetStack sheets_;
@@ -228,7 +258,7 @@ const GlProgram& GlSplatter::State::program() {
 }
 
 void GlSplatter::State::draw_pass(Progress* progress) {
-    bins_.list(frame_, stages_);
+    report.lists += bins_.list(frame_, stages_) ? 1 : 0;
     stages_.begin("draw");
     program().use();
     bins_.bind();
@@ -238,17 +268,20 @@ void GlSplatter::State::draw_pass(Progress* progress) {
     color_rows_.bind(9);
     kernel_table_.bind(10);
     picture_.bind(11);
-    const std::uint32_t tiles = frame_.tiles(), at_once = std::min(tiles, tuning_.most_tiles);
+    const std::uint32_t tiles = frame_.tiles(), room = std::min(tiles, most_tiles_);
     const bool whole = frame_.end_batch - frame_.first_batch == frame_.batches;  // no pass needs the states of another
     const auto pixels = pixel_count(frame_.width, frame_.height);
-    kept_.grow(sizeof(std::uint32_t) + pixels * sizeof(float) + at_once * tile_pixels() * sums_bytes());
+    kept_.grow(sizeof(std::uint32_t) + pixels * sizeof(float) + room * tile_pixels() * sums_bytes());
     kept_.bind(12);
-    states_.grow((whole ? at_once : tiles) * tile_pixels() * kState_bytes);
+    states_.grow((whole ? room : tiles) * tile_pixels() * kState_bytes);
     states_.bind(13);
     ends_.bind(14);
     if (scene_.light) light_.bind(15);
-    for (std::uint32_t first = 0; first < tiles; first += at_once)
-        draw_tiles(first, std::min(first + at_once, tiles), whole, progress);
+    for (std::uint32_t first = 0; first < tiles;) {
+        const std::uint32_t end = std::min(first + static_cast<std::uint32_t>(pace_.amount()), tiles);
+        draw_tiles(first, end, whole, progress);
+        first = end;
+    }
     stages_.begin("");
     check_gl("splat");
 }
@@ -262,12 +295,14 @@ void GlSplatter::State::draw_tiles(std::uint32_t first, std::uint32_t end, bool 
     const double batches = frame_.end_batch - frame_.first_batch, of_pass = batches * frame_.tiles();
     constexpr std::uint32_t kNone = 0;
     std::uint32_t left = 0;
+    Stopwatch watch;
     for (bool resumed = false; !resumed || left > 0; resumed = true) {
         glProgramUniform1i(used.id(), used.uniform("resumed"), resumed);
         kept_.upload(sizeof kNone, &kNone);
         dispatch(end - first);
         ++report.dispatches;
         kept_.read(sizeof left, &left);
+        pace_.took(watch.restart());
         const double done = (batches * end - left) / of_pass;
         report_progress(progress, "splat", (frame_.first_batch + batches * done) / frame_.batches);
     }
@@ -367,12 +402,16 @@ GlSplatter& GlSplatter::operator=(GlSplatter&& other) noexcept {
 
 void GlSplatter::upload_kernels() {
     const GlScope scope(state_->context);
-    state_->upload_kernels();
+    state_->attempt([&] { state_->upload_kernels(); });
 }
 
 Drawn GlSplatter::draw(const View& view, const Classification& classification, int sheets, Progress* progress) {
     const GlScope scope(state_->context);
-    return state_->draw(view, classification, sheets, progress);
+    return state_->attempt([&] { return state_->draw(view, classification, sheets, progress); });
+}
+
+bool GlSplatter::failed() const {
+    return state_->failed;
 }
 
 const std::string& GlSplatter::renderer() const {

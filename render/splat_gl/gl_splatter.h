@@ -16,6 +16,7 @@ namespace subvol::detail {
 /// tile_px:            8 or 16
 /// batch:              sheets, 1..16
 /// most_buffer_bytes:  limit for a buffer, if the device has no lower one
+/// memory_bytes:       limit for kernels and lists together; 0: memory_budget()
 /// most_entries:       limit for the pairs of a bin and a kernel
 /// most_tiles:         limit for the tiles of a dispatch
 /// most_steps:         a thread of a dispatch ends soon after so many iterations of loops; at least 64 for each sheet of a
@@ -25,8 +26,9 @@ struct GlTuning {
     int tile_px = 16;
     int batch = kBatch;
     std::size_t most_buffer_bytes = std::size_t{1} << 31;
+    std::size_t memory_bytes = 0;
     std::size_t most_entries = std::size_t{1} << 26;
-    std::uint32_t most_tiles = 1024;
+    std::uint32_t most_tiles = 4096;
     std::uint32_t most_steps = 1U << 14;
     bool boundary_on_device = false;
 };
@@ -36,6 +38,7 @@ struct GlSplatReport {
     std::size_t bin_entries = 0;    // (tile, batch, kernel)
     std::size_t boundary_hits = 0;  // entries and exits over all pixels
     int passes = 0;
+    int lists = 0;                  // of kernels by tiles that were made; 0 if the camera is that of the picture before
     std::size_t dispatches = 0;     // that draw
     std::vector<StageTime> stages;  // measured by the device
 };
@@ -62,6 +65,9 @@ public:
 
     /// throws: Error(MissingCapability) if the device has no room or is lost
     [[nodiscard]] Drawn draw(const View& view, const Classification& classification, int sheets, Progress* progress);
+
+    /// Whether drawing or uploading has failed: the context may be lost, and another splatter should take over.
+    [[nodiscard]] bool failed() const;
 
     [[nodiscard]] const std::string& renderer() const;
 

@@ -8,14 +8,42 @@ vec2 off_ray(vec2 slope, vec4 corner) {
     return q;
 }
 
+// The product of two floats without rounding: fraction · 2^power with 48 bits, of which the first is set; all are 0 for zero.
+struct Product {
+    int sign, power;
+    uint high, low;
+};
+
+Product exact_product(float a, float b) {
+    uint x = floatBitsToUint(a), y = floatBitsToUint(b);
+    int x_power = int(x >> 23 & 0xffu), y_power = int(y >> 23 & 0xffu);
+    if (x_power == 0 || y_power == 0) return Product(0, 0, 0u, 0u);  // what is below the normal numbers may count as zero
+    Product p = Product((x ^ y) >> 31 == 0u ? 1 : -1, x_power + y_power, 0u, 0u);
+    umulExtended(x & 0x7fffffu | 0x800000u, y & 0x7fffffu | 0x800000u, p.high, p.low);
+    if ((p.high & 0x8000u) == 0u) {
+        p.high = p.high << 1 | p.low >> 31;
+        p.low <<= 1;
+        --p.power;
+    }
+    return p;
+}
+
+// −1, 0 or 1: whether a product is less than another one, equal or more.
+int order_of(Product a, Product b) {
+    if (a.sign != b.sign) return sign(a.sign - b.sign);
+    if (a.power != b.power) return a.power < b.power ? -a.sign : a.sign;
+    if (a.high != b.high) return a.high < b.high ? -a.sign : a.sign;
+    return a.low == b.low ? 0 : a.low < b.low ? -a.sign : a.sign;
+}
+
 // Twice the area of (ray, a, b), and on which side the ray passes: to the left or to the right, never neither (`side_of` in
 // ray_plane.h). Rounding may make the two products equal but does not exchange them.
 float doubled_area(vec2 a, vec2 b, out bool left) {
     precise float one = a.x * b.y, other = b.x * a.y;
     left = one > other;
     if (one == other) {
-        double exact_one = double(a.x) * double(b.y), exact_other = double(b.x) * double(a.y);
-        left = exact_one != exact_other ? exact_one > exact_other : a.y != b.y ? a.y > b.y : b.x >= a.x;
+        int exact = order_of(exact_product(a.x, b.y), exact_product(b.x, a.y));
+        left = exact != 0 ? exact > 0 : a.y != b.y ? a.y > b.y : b.x >= a.x;
     }
     return abs(one - other);
 }

@@ -1,16 +1,16 @@
 #version 450
 // SPDX-License-Identifier: Apache-2.0
-// The crossing of a pixel's ray with a face. FRAGMENT_COUNT counts it, FRAGMENT_KEEP stores it in the pixel's list.
+// The crossing of a pixel's ray with a face. It is counted, and stored in the pixel's list if `keep` is set: by one
+// program, so that what is stored was counted.
 flat in vec4 corner0, corner1, corner2;
 flat in uint rank;
 flat in uint cover;  // 2 + tetrahedra on the side of the face's normal − those on the other
 
 layout(std430, binding = 3) buffer Counts { uint counts[]; };
-#if FRAGMENT_MODE == FRAGMENT_KEEP
 layout(std430, binding = 4) readonly buffer Offsets { uint offsets[]; };
 layout(std430, binding = 5) writeonly buffer Crossings { vec2 crossings[]; };  // depth, value
 layout(std430, binding = 6) writeonly buffer Marks { uint marks[]; };  // 8 · rank + 2 + tetrahedra behind the face − before it
-#endif
+uniform bool keep;
 uniform ivec4 rectangle;  // whose pixels are counted or kept
 
 void main() {
@@ -24,11 +24,10 @@ void main() {
     ivec2 place = ivec2(gl_FragCoord.xy) - rectangle.xy;
     int id = place.y * (rectangle.z - rectangle.x) + place.x;
     uint before = atomicAdd(counts[id], 1u);
-#if FRAGMENT_MODE == FRAGMENT_KEEP
+    if (!keep) return;
     uint behind = s01 ? 4u - cover : cover;  // to the left: the normal points towards the eye
     uint to = offsets[id] + before;
     if (to >= offsets[id + 1]) return;  // was not counted
     crossings[to] = here;
     marks[to] = 8u * rank + behind;
-#endif
 }

@@ -31,7 +31,7 @@ void main() {
     }
     vec2 slope = slope_of(id);
     float ray_length = perspective ? sqrt(1.0 + dot(slope, slope)) : 1.0;
-    for (; s.next < end && steps < kListSteps; ++s.next) {
+    for (; s.next < end && steps < list_steps; ++s.next) {
         steps += kSegmentSteps;
         if (s.cover > 0) leave_before_entering(s.next, end);
         vec2 here = crossings[s.next];

@@ -6,9 +6,9 @@ layout(std430, binding = 4) readonly buffer Offsets { uint offsets[]; };
 layout(std430, binding = 11) buffer Counters { uint wrong_pixels, late_faces, unfinished; };
 uniform ivec4 rectangle;
 uniform bool resumed;
+uniform uint list_steps;  // a dispatch ends soon after so many for each pixel
 
 const uint kListThreads = 64u;
-const uint kListSteps = 4096u;
 #if CLIPPED
 #define kSegmentSteps (1u + uint(plane_counts.x + plane_counts.y))  // besides those that the integration counts
 #else

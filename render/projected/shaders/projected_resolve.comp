@@ -37,7 +37,7 @@ void main() {
     }
     vec2 slope = slope_of(id);
     float ray_length = perspective ? sqrt(1.0 + dot(slope, slope)) : 1.0;
-    for (; s.next < end && steps < kListSteps; ++s.next) {
+    for (; s.next < end && steps < list_steps; ++s.next) {
         steps += kSegmentSteps;
         vec4 segment = segments[s.next];
         check_order(s, segment, ranks[s.next]);

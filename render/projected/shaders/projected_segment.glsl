@@ -79,7 +79,7 @@ vec4 segment_light(float x0, float x1, float segment_length) {
     bool up = x1 > x0;
     int above = knots_up_to(x0), last = knots_up_to(x1);
     float at = x0, units = segment_length * per_unit;
-    for (;;) {
+    for (int i = 0; i <= kKnots; ++i) {  // there are no more, whatever the values are
         ++steps;
         bool done = above == last;
         float to = done ? x1 : knots[up ? above : above - 1].value.x;
@@ -89,4 +89,5 @@ vec4 segment_light(float x0, float x1, float segment_length) {
         above += up ? 1 : -1;
         at = to;
     }
+    return light;
 }

@@ -1,7 +1,7 @@
 #version 450
 // SPDX-License-Identifier: Apache-2.0
-// The segment of a pixel's ray in a tetrahedron. FRAGMENT_COMPOSITE blends it over what was drawn before, FRAGMENT_COUNT counts
-// it, FRAGMENT_KEEP stores it in the pixel's list.
+// The segment of a pixel's ray in a tetrahedron. FRAGMENT_COMPOSITE blends it over what was drawn before, FRAGMENT_LISTS counts
+// it, and stores it in the pixel's list if `keep` is set. Both are done by one program, so that what is stored was counted.
 flat in vec4 corner0, corner1, corner2, corner3;
 flat in uint rank;
 
@@ -9,11 +9,10 @@ flat in uint rank;
 layout(location = 0) out vec4 color;
 #else
 layout(std430, binding = 3) buffer Counts { uint counts[]; };
-#endif
-#if FRAGMENT_MODE == FRAGMENT_KEEP
 layout(std430, binding = 4) readonly buffer Offsets { uint offsets[]; };
 layout(std430, binding = 5) writeonly buffer Segments { vec4 segments[]; };  // depths of both ends, values there
 layout(std430, binding = 6) writeonly buffer Ranks { uint ranks[]; };
+uniform bool keep;
 #endif
 uniform ivec4 rectangle;  // whose pixels are counted or kept
 
@@ -42,15 +41,14 @@ bool find_segment(vec2 slope, out vec2 front, out vec2 back) {
 void main() {
     vec2 slope = (gl_FragCoord.xy - middle_px) * vec2(pixel, -pixel), front, back;
     if (!find_segment(slope, front, back)) discard;
-#if FRAGMENT_MODE != FRAGMENT_COMPOSITE
-    ivec2 place = ivec2(gl_FragCoord.xy) - rectangle.xy;
-    int id = place.y * (rectangle.z - rectangle.x) + place.x;
-    uint before = atomicAdd(counts[id], 1u);
-#endif
 #if FRAGMENT_MODE == FRAGMENT_COMPOSITE
     float ray_length = perspective ? sqrt(1.0 + dot(slope, slope)) : 1.0;
     color = visible_light(slope, front, back, ray_length);
-#elif FRAGMENT_MODE == FRAGMENT_KEEP
+#else
+    ivec2 place = ivec2(gl_FragCoord.xy) - rectangle.xy;
+    int id = place.y * (rectangle.z - rectangle.x) + place.x;
+    uint before = atomicAdd(counts[id], 1u);
+    if (!keep) return;
     uint to = offsets[id] + before;
     if (to >= offsets[id + 1]) return;  // was not counted
     segments[to] = vec4(front.x, back.x, front.y, back.y);

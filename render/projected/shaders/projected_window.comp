@@ -15,7 +15,7 @@ void main() {
         if (s.next >= end) return;
     }
     uint steps = 0u;
-    for (; s.next < end && steps < kListSteps; ++steps) {
+    for (; s.next < end && steps < list_steps; ++steps) {
         uint last = s.next - first > kbuffer ? s.next - kbuffer : first;
         if (s.at > last && crossings[s.at - 1u].x > crossings[s.at].x) {
             exchange(s.at - 1u, s.at);

@@ -4,7 +4,7 @@
 layout(local_size_x = 8, local_size_y = 8) in;
 struct Last {
     float value, weight, depth;
-    uint interval;  // that the ray is in or reaches next
+    uint interval;  // of the pixel's, that the ray is in or reaches next
 };
 layout(binding = 0) uniform sampler2D sums;
 layout(binding = 1) uniform sampler2D more_sums;
@@ -61,11 +61,12 @@ End end_of_interval(uint i) {
 #endif
 }
 
-uint intervals_end(uint id) {
+// The pixel's intervals: first, end.
+uvec2 intervals_of(uint id) {
 #if INTERVALS
-    return interval_offsets[id + 1u];
+    return uvec2(interval_offsets[id], interval_offsets[id + 1u]);
 #else
-    return 1u;
+    return uvec2(0u, 1u);
 #endif
 }
 
@@ -74,7 +75,9 @@ void main() {
     if (any(greaterThanEqual(at, rectangle.zw))) return;
     uint id = uint(at.y * size_px.x + at.x);
     Last last = lasts[id];
-    uint end = intervals_end(id);
+    uvec2 range = intervals_of(id);
+    uint end = range.y;
+    last.interval += range.x;
     if (last.interval >= end) return;
     if (interval(last.interval).x >= back_z + 1.5 * (back_z - front_z)) {  // the next sheet does not need these values
         if (last.weight != 0.0) lasts[id].weight = 0.0;
@@ -110,7 +113,7 @@ void main() {
         last.depth = beam.depth;
         if (last.interval >= end) atomicAdd(done_pixels, 1u);  // integers: the order of the additions does not matter
     }
-    lasts[id] = Last(here.value, here.weight, last.depth, last.interval);
+    lasts[id] = Last(here.value, here.weight, last.depth, last.interval - range.x);
 #if SHADED || COLORED
     looks[id] = vec4(here.color, here.light, 0.0);
 #endif

@@ -17,6 +17,7 @@ struct EyePoint {
 const int kSnap = 4096;
 const int kStrip_px = 32;  // the pixels of a row that a thread works on at a time
 const uint kMostHits = 128u;  // that a thread sorts
+const uint kMostStrips = 1u << 24;  // of all triangles: more would keep the device busy for too long
 
 // The 64-bit product (a − o) × (b − o), of which the sign gives the side on which a point lies.
 struct Product {

@@ -5,10 +5,11 @@ layout(local_size_x = 256) in;
 layout(std430, binding = 0) readonly buffer Positions { double positions[]; };
 layout(std430, binding = 1) writeonly buffer EyePoints { EyePoint eye_points[]; };
 
-// Rounds to the nearest integer, halves away from 0.
+// Rounds to the nearest integer. The border is a little less than a half, which points often have exactly: a division need not
+// be rounded correctly, so its last bits must not decide.
 int snap(double px) {
-    precise double scaled = px * double(kSnap), low = floor(scaled), part = scaled - low;
-    return int(low) + (part > 0.5lf || (part == 0.5lf && scaled > 0.0lf) ? 1 : 0);
+    precise double below = floor(abs(px) * double(kSnap) + (0.5lf + 1.0lf / 65536.0lf));
+    return px < 0.0lf ? -int(below) : int(below);
 }
 
 void main() {

@@ -4,12 +4,15 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cstdlib>
 #include <memory>
 #include <numeric>
 #include <thread>
 #include <vector>
 
 #include "gl_buffer.h"
+#include "gl_echo.h"
+#include "gl_pace.h"
 #include "gl_program.h"
 #include "subvol/error.h"
 
@@ -17,10 +20,13 @@ namespace subvol {
 namespace gl_context_test {
 
 using detail::check_gl;
+using detail::check_storage;
 using detail::GlBuffer;
 using detail::GlContext;
+using detail::GlEcho;
 using detail::GlProgram;
 using detail::GlScope;
+using detail::GlStorage;
 
 class Gl : public testing::Test {
 protected:
@@ -72,6 +78,12 @@ TEST_F(GlContexts, AreThoseOfTheList) {
         }
     }
     EXPECT_EQ(find_gl_device()->index, 0);
+}
+
+TEST_F(GlContexts, AreThoseOfTheDriverThatIsAskedFor) {
+    const char* driver = std::getenv("GALLIUM_DRIVER");
+    if (driver == nullptr) GTEST_SKIP() << "none is";
+    EXPECT_NE(GlContext(0).renderer().find(driver), std::string::npos) << GlContext(0).renderer();
 }
 
 TEST_F(GlContexts, OfAnUnknownNumberAreRefusedWithAList) {
@@ -196,6 +208,46 @@ TEST_F(GlBuffers, ThatDoNotFitAreRefused) {
     const std::string message = message_of([&] { buffer.grow(context.device().max_ssbo_bytes + 1); });
     EXPECT_NE(message.find(std::to_string(context.device().max_ssbo_bytes)), std::string::npos) << message;
     EXPECT_EQ(buffer.bytes(), 16U) << "the buffer has not changed";
+}
+
+TEST_F(GlContexts, SayWhichStorageBuffersAreMissing) {
+    const GlContext context;
+    const GlStorage available = GlStorage::available(), least{.compute = 8, .bindings = 8};  // that the standard guarantees
+    EXPECT_GE(available.compute, least.compute);
+    EXPECT_GE(available.bindings, least.bindings);
+    EXPECT_NO_THROW(check_storage(available, available, ""));
+    const std::string compute = message_of([&] { check_storage({.compute = 16, .bindings = 16}, least, "the CPU"); });
+    EXPECT_NE(compute.find("8 storage buffers for compute shaders; this work needs 16 (the CPU)"), std::string::npos)
+        << compute;
+    const std::string vertex = message_of([&] { check_storage({.vertex = 1}, least, "the CPU"); });
+    EXPECT_NE(vertex.find("0 storage buffers for vertex shaders"), std::string::npos) << vertex;
+}
+
+TEST_F(GlBuffers, EchoTheirFirstWordARequestLater) {
+    const GlContext context;
+    GlBuffer buffer(64);
+    GlEcho echo;
+    for (std::uint32_t i = 1; i < 5; ++i) {
+        buffer.upload(sizeof i, &i);
+        const auto answer = echo.ask(buffer);
+        EXPECT_EQ(answer, i == 1 ? std::nullopt : std::optional(i - 1));
+    }
+    echo.reset();
+    EXPECT_EQ(echo.ask(buffer), std::nullopt) << "what was asked for before is forgotten";
+    EXPECT_EQ(echo.ask(buffer), 4u);
+}
+
+TEST(GlPaces, GiveTheDeviceLessIfItTakesLongAndMoreIfItDoesNot) {
+    detail::GlPace pace(64, 16, 256);
+    EXPECT_EQ(pace.amount(), 64u);
+    pace.took(.2);
+    EXPECT_EQ(pace.amount(), 32u);
+    pace.took(.03);
+    EXPECT_EQ(pace.amount(), 32u) << "as it should be";
+    for (int i = 0; i < 9; ++i) pace.took(1);
+    EXPECT_EQ(pace.amount(), 16u);
+    for (int i = 0; i < 9; ++i) pace.took(.001);
+    EXPECT_EQ(pace.amount(), 256u);
 }
 
 TEST_F(GlPrograms, NameFileAndLineOfAnError) {

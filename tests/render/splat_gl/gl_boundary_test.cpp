@@ -102,6 +102,36 @@ TEST_F(GlBoundaries, RaysThatMeetTooManyShellsForAThreadComeFromTheCpu) {
     expect_like_cpu(surface, view_of(false, 16, 16));
 }
 
+TEST_F(GlBoundaries, TrianglesWithTooManyRowsForADispatchComeFromTheCpu) {
+    // Needles across the picture: their boxes cover all of it, they themselves hardly a pixel.
+    Surface surface;
+    for (int i = 0; i < 200; ++i) {
+        append(surface, surface_of(test::make_box(1, 1, 1), 1, {0, 0, 0}));
+        const double shift = .02 * i - 2;
+        for (std::size_t k = surface.points.size() - 8; k < surface.points.size(); ++k) {
+            Vec3& p = surface.points[k];
+            p = Vec3(3 * p.x - 1.5 + shift, .01 * p.y, 3 * p.x - 1.5 - shift + .02 * p.z);
+        }
+    }
+    const View view = view_of(false, 1024, 1024);
+    expect_like_cpu(surface, view);
+    GlBoundary boundary(true);
+    GlStages stages;
+    boundary.find(surface, view, kNear, kMiddle, stages);
+    EXPECT_EQ(boundary.hits(), detail::boundary_intervals(surface, view, kNear, kMiddle).hits)
+        << "known without waiting: the CPU has found them";
+}
+
+TEST_F(GlBoundaries, PointsBetweenTwoStepsOfTheRasterAreRoundedAsOnTheCpu) {
+    // Every corner lies in the middle between two of the 4096 steps of a pixel, where the last bit of a quotient would decide.
+    Surface surface = surface_of(test::make_nested_cubes(2), 1, {0, 0, 0});
+    const double step = 7.0 / 49 / 4096;
+    for (auto& p : surface.points)
+        p = Vec3((std::round(p.x * 300) * 97 + .5) * step, p.y, (std::round(p.z * 300) * 89 + .5) * step);
+    const View view({.eye = {0, -4, 0}, .target = {0, 0, 0}, .up = {0, 0, 1}, .ortho_height = 7}, 49, 49);
+    expect_like_cpu(surface, view);
+}
+
 TEST(IntervalsForGl, AreLimited) {
     PixelIntervals intervals{.offsets = {0, 3, 3 + detail::kMostGlIntervals}, .depths = {}, .triangles = {}};
     EXPECT_NO_THROW(detail::check_for_gl(intervals));

@@ -217,6 +217,41 @@ TEST_F(GlSplats, PassesChangeNoBit) {
     }
 }
 
+TEST_F(GlSplats, OfOneCameraAreListedOnce) {
+    RbfVolume volume = sampled(Correction::Second);
+    const auto scene = detail::make_scene(volume, {});
+    const auto some = detail::classify(scene, optics()), others = detail::classify(scene, one_shell());
+    GlSplatter kept(scene, {});
+    const auto expect = [&](const View& view, const detail::Classification& colors, int sheets, int lists) {
+        const Drawn drawn = kept.draw(view, colors, sheets, nullptr);
+        EXPECT_EQ(kept.report().lists, lists);
+        const Drawn fresh = GlSplatter(scene, {}).draw(view, colors, sheets, nullptr);
+        EXPECT_EQ(drawn.image.rgba, fresh.image.rgba);
+        EXPECT_EQ(drawn.depth, fresh.depth);
+        EXPECT_GT(kept.report().bin_entries, 0u);
+    };
+    expect(perspective(), some, kSheets, 1);
+    expect(perspective(), others, kSheets, 0);
+    expect(perspective(), some, kSheets, 0);
+    expect(perspective(), some, kSheets - 1, 1);
+    expect(orthographic(), some, kSheets, 1);
+    for (auto& center : volume.centers) center *= .9;
+    kept.upload_kernels();
+    expect(orthographic(), some, kSheets, 1);
+}
+
+TEST_F(GlSplats, ThatTakeMoreThanTheMemoryAreDrawnInPasses) {
+    const RbfVolume volume = sampled(Correction::Second);
+    const auto scene = detail::make_scene(volume, {});
+    const auto classification = detail::classify(scene, optics());
+    // Half of the memory is for kernels of 160 bytes: nine of ten have room.
+    GlSplatter reference(scene, {}), small(scene, {}, {.batch = 4, .memory_bytes = 288 * volume.size()});
+    const Drawn expected = reference.draw(perspective(), classification, 80, nullptr),
+                drawn = small.draw(perspective(), classification, 80, nullptr);
+    EXPECT_GT(small.report().passes, 1);
+    EXPECT_EQ(drawn.image.rgba, expected.image.rgba);
+}
+
 TEST_F(GlSplats, TilesWithTenThousandKernelsLookAsOnTheCpu) {
     // Mesa's software ends all loops of a thread after 65,535 iterations; a tile needs several times as many.
     HexMesh mesh = test::make_box(21, 21, 21);

@@ -28,6 +28,7 @@ struct SplatReport {
     double seconds_prepare = 0, seconds_draw = 0;
     double seconds_colors = 0;        // of the boundary's own colours
     std::vector<StageTime> stages{};  // of the GPU
+    std::string warning{};            // why the CPU draws in place of a GPU that failed, in the first picture since then
 };
 
 /// depth: for each pixel the mean eye depth of what is seen, weighted by opacity; infinity where nothing is seen

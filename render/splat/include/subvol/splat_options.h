@@ -15,7 +15,9 @@ namespace subvol {
 
 /// How kernels are drawn; the pictures of the first four are the same.
 ///
-/// Auto:   Gl where there is a hardware GPU, else Cpu
+/// Auto:   Gl where there is a hardware GPU, else Cpu; Cpu, too, as soon as the GPU refuses the shaders, has no memory left or
+/// is
+///         lost, with a warning in the report
 /// Cpu:    tiles of the picture, batches of sheets, on all threads
 /// Gl:     the same by OpenGL compute shaders
 /// Sheets: one sheet buffer after the other, drawn and composited by OpenGL, also by software: the method of the EuroVis 2007
