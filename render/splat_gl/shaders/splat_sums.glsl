@@ -20,7 +20,7 @@ const int kBlocksX = kTile / 8, kBlocksY = kTile / 4, kBlocks = kBlocksX * kBloc
 // counted, and the dispatch ends soon after most_steps. A chunk has up to kChunk · kKernelSteps + kStagingSteps.
 const uint kKernelSteps = 1u + uint(kBatch) * (SEPARABLE == 1 ? 4u : 1u);
 const uint kStagingSteps =
-    (uint(kChunk * kBatch) / kPixels + 1u) * uint(kBlocks + kBlocksY + kExtras + 5) + uint(kChunk * kBlocks) / kPixels + 8u;
+    (uint(kChunk * kBatch) / kPixels + 1u) * uint(kBlocksY + kExtras + 5) + (uint(kChunk * kBlocks) / kPixels + 1u) * uint(kBatch + 1) + 8u;
 const uint kBatchSteps = uint(kBatch) * uint(kBatch + 16) + 16u;  // of choosing a batch, or of compositing its sheets
 const uint kRoundSteps = 4u * uint(kBatch) + 8u;                    // of the next ends of all rays
 const uint kMostRanged = 2048u * kPixels;
@@ -32,6 +32,7 @@ shared vec4 shapes[kChunk];         // root xx, xy, yy; moment
 shared vec2 gradients[kChunk];
 shared vec4 places[kChunk];         // for sums at ends: middle x, y, depth; 1 / S_zz
 shared vec4 slopes[kChunk];         // shear x, y; value, its slope
+shared uint met_blocks[kChunk * kBatch];   // a bit for each block
 shared uint met_sheets[kChunk * kBlocks];  // a bit for each sheet
 shared uint met_kernels[kWords * kBlocks];  // a bit for each kernel
 #if GENERAL
@@ -60,18 +61,16 @@ precise vec3 gradient_sums[kBatch];
 
 float across_at(int sheet) { return perspective ? middle_depth + sheet_depth(sheet) : 1.0; }
 
-// Marks the blocks that a section with its middle at px may meet, with a margin of half a pixel and a little for rounding.
-void mark_blocks(uint j, uint k, vec2 px, vec2 half_size) {
+// The blocks that a section with its middle at px may meet, a bit for each, with a margin of half a pixel and a little for
+// rounding.
+uint blocks_at(vec2 px, vec2 half_size) {
     const vec2 kSize = vec2(8.0, 4.0);
     ivec2 first = max(ivec2(clamp((px - half_size) / kSize, -1.0, 64.0) + 1.0) - 1, 0);
     ivec2 last = min(ivec2(clamp((px + half_size) / kSize, -1.0, 64.0) + 1.0) - 1, ivec2(kBlocksX, kBlocksY) - 1);
-    for (int y = first.y; y <= last.y; ++y) {
-        for (int x = first.x; x <= last.x; ++x) {
-            uint of = uint(y * kBlocksX + x);
-            atomicOr(met_sheets[j * kBlocks + of], 1u << k);
-            atomicOr(met_kernels[of * kWords + j / 32u], 1u << (j % 32u));
-        }
-    }
+    if (any(lessThan(last, first))) return 0u;
+    uint row = (2u << last.x) - (1u << first.x), met = 0u;
+    for (int y = first.y; y <= last.y; ++y) met |= row << (y * kBlocksX);
+    return met;
 }
 
 void cut(uint j, uint k, uint id, int sheet, bool wanted) {
@@ -79,11 +78,13 @@ void cut(uint j, uint k, uint id, int sheet, bool wanted) {
     float zs = sheet_depth(sheet) - s.place.z, e = zs * zs * s.place.w, left = 1.0 - e;
     vec2 middle = fma(s.shape.xy, vec2(zs), s.place.xy);
     cuts[j * kBatch + k] = vec4(middle, e, fma(zs, s.rest.x, s.slope.y));
+    uint met = 0u;
     if (left > 0.0 && wanted) {
         float scale = 1.0 / (across_at(sheet) * pixel);
         vec2 px = vec2(middle.x, -middle.y) * scale + (0.5 * vec2(size) - vec2(tile_px));
-        mark_blocks(j, k, px, s.rest.zw * (sqrt(left) * scale) + 0.55);
+        met = blocks_at(px, s.rest.zw * (sqrt(left) * scale) + 0.55);
     }
+    met_blocks[j * kBatch + k] = met;
     if (k == 0u) {
         shapes[j] = vec4(s.shape.zw, s.slope.x, s.rest.y);
         gradients[j] = s.slope.zw;
@@ -97,16 +98,25 @@ void cut(uint j, uint k, uint id, int sheet, bool wanted) {
 #endif
 }
 
+// Turns the blocks that a kernel meets on each sheet into the sheets on which it meets a block: one atomic operation for a
+// kernel and a block instead of two for each section.
+void mark(uint j, uint at) {
+    uint met = 0u;
+    for (uint k = 0u; k < kBatch; ++k) met |= (met_blocks[j * kBatch + k] >> at & 1u) << k;
+    met_sheets[j * kBlocks + at] = met;
+    if (met != 0u) atomicOr(met_kernels[at * kWords + j / 32u], 1u << (j % 32u));
+}
+
 // Puts kernels `first` to `end` into shared memory.
 void stage(uint first, uint end, int first_sheet, uint wanted_sheets) {
     barrier();  // until the last chunk is not used any more
-    for (uint i = gl_LocalInvocationIndex; i < kChunk * kBlocks; i += kPixels) met_sheets[i] = 0u;
     for (uint i = gl_LocalInvocationIndex; i < kWords * kBlocks; i += kPixels) met_kernels[i] = 0u;
-    barrier();
     for (uint i = gl_LocalInvocationIndex; i < (end - first) * kBatch; i += kPixels) {
         uint j = i / kBatch, k = i % kBatch;
         cut(j, k, bin_splats[first + j], first_sheet + int(k), (wanted_sheets & (1u << k)) != 0u);
     }
+    barrier();
+    for (uint i = gl_LocalInvocationIndex; i < (end - first) * kBlocks; i += kPixels) mark(i / kBlocks, i % kBlocks);
     barrier();
 }
 
