@@ -40,6 +40,9 @@ void add_mesh_options(CLI::App& app, CommonOptions& options) {
         ->type_name("T")
         ->transform(any_number())
         ->excludes(step);
+    app.add_flag("--interpolate-time", options.interpolate_time, "points and values between the two steps around --time")
+        ->group(group)
+        ->needs("--time");
     add("blocks")->delimiter(',');
     add("sharp")->allow_extra_args(false);
 }
@@ -64,10 +67,10 @@ void add_common_options(CLI::App& app, CommonOptions& options, Reads reads) {
                "move the points by this vector field, times a factor; auto: the longest becomes a tenth of the box's diagonal")
             ->group(of_meshes)
             ->type_name("FIELD[*S|*auto]");
-        app.add_option(
-               "--only", options.only,
-               "only the cells in a region: block:A,B, box:x0,y0,z0,x1,y1,z1, sphere:x,y,z,r, half:px,py,pz,nx,ny,nz or "
-               "where:EXPR (repeatable: in all of them)")
+        app.add_option("--only", options.only,
+                       "only the cells in a region: block:A,B, box:x0,y0,z0,x1,y1,z1, sphere:x,y,z,r, half:px,py,pz,nx,ny,nz, "
+                       "set:NAME or "
+                       "where:EXPR (repeatable: in all of them)")
             ->group(of_meshes)
             ->type_name("REGION")
             ->allow_extra_args(false);
@@ -101,10 +104,10 @@ void refuse_mesh_options(const CLI::App& app, const std::string& reason) {
 
 void refuse_file_options(const CLI::App* app, const std::string& reason) {
     if (app == nullptr) return;
-    refuse_options(
-        *app,
-        {"--other-cells", "--curved", "--cell-values", "--step", "--time", "--blocks", "--weld", "--weld-distance", "--sharp"},
-        reason);
+    refuse_options(*app,
+                   {"--other-cells", "--curved", "--cell-values", "--step", "--time", "--interpolate-time", "--blocks",
+                    "--weld", "--weld-distance", "--sharp"},
+                   reason);
 }
 
 }  // namespace subvol::cli

@@ -24,11 +24,13 @@ struct CommonOptions {
     std::optional<std::string> density;  // an expression in x, y, z
     std::optional<std::string> warp;     // "DISPL*20"
     std::vector<std::string> only;       // regions
+    std::vector<std::string> at_rest;    // quantities that are computed before --warp and --only, besides that of --field
     ReadOptions read{};                  // what the library describes of them
     bool weld = false;                   // join points at the same place
     std::string curved = "5e-6";         // of the mesh's size, or "corners"
     std::optional<std::string> step;     // a number from 0, "last", "all" or a range
     std::optional<double> time;          // the step nearest to it
+    bool interpolate_time = false;       // between the two steps around it
     int threads = 0;                     // 0: all
     bool json = false;
     bool quiet = false;

@@ -52,6 +52,7 @@ public:
 
     Shells shells{};                  // of a mesh in memory
     std::vector<MeshBlock> blocks{};  // of a mesh in memory
+    MeshSets sets{};                  // of a mesh in memory
 
 private:
     std::string input_;

@@ -11,6 +11,7 @@
 #include "subvol/bricks.h"
 #include "subvol/error.h"
 #include "subvol/expression.h"
+#include "subvol/mesh_motion.h"
 #include "subvol/model.h"
 #include "subvol/quantity.h"
 #include "subvol/warp.h"
@@ -85,13 +86,38 @@ std::vector<std::string> blocks_of(const CommonOptions& options) {
 
 /// What a call returns; its errors name the option.
 template <class Call>
-auto of_option(const std::string& option, const Call& call) {
+decltype(auto) of_option(const std::string& option, const Call& call) {
     try {
         return call();
     } catch (const Error& error) {
         throw Error(error.code(), (error.where().empty() ? "" : error.where() + ": ") + error.message(), option,
                     error.allowed());
     }
+}
+
+/// What lies between two steps: points and values linearly, the rest as in the step before.
+ReadResult read_between(const std::string& input, const BetweenSteps& between, double time, ReadOptions options, Facts& facts) {
+    options.step = between.after;
+    const ReadResult after = read_mesh(input, options);
+    options.step = between.before;
+    ReadResult read = read_mesh(input, options);
+    const auto name_of_time = [](const ReadResult& step) { return step.mesh.time.value_or(0); };
+    facts.note(text("time ", time, " is interpolated between step ", between.before, " (time ", name_of_time(read),
+                    ") and step ", between.after, " (time ", name_of_time(after), ")"));
+    facts["interpolated"] = between.part;
+    read.mesh = of_option("--interpolate-time", [&] { return mesh_between(std::move(read.mesh), after.mesh, between.part); });
+    read.mesh.time = time;
+    read.cell_means.clear();  // as in no step
+    read.cell_parts.clear();
+    for (FieldInfo& field : read.fields) {
+        const Attribute* values = read.mesh.find_attribute(field.name);
+        if (values == nullptr) continue;
+        const Attribute lengths = select_field(read.mesh, "length(`" + field.name + "`)").scalar;
+        const auto [least, greatest] = std::ranges::minmax(values->channels == 1 ? values->values : lengths.values);
+        field.min = least;
+        field.max = greatest;
+    }
+    return read;
 }
 
 /// What --only and --warp make of a mesh. Quantities are computed before, in the whole mesh at rest.
@@ -103,13 +129,18 @@ void reshape(ReadResult& read, const CommonOptions& options, Facts& facts) {
         mesh.attributes.push_back(select_field(mesh, options.field).scalar);
         mesh.attributes.back().name = *options.field;
     }
+    for (const std::string& quantity : options.at_rest) {
+        if (mesh.find_attribute(quantity) == nullptr) mesh.attributes.push_back(field_of(mesh, quantity, quantity));
+    }
     if (!read.shells.empty()) {
         facts.warn("shells and beams are left out with --only and --warp");
         read.shells = {};
     }
     if (!regions.empty()) {
         const std::size_t before = mesh.cells.size();
-        mesh = of_option("--only", [&] { return only_in(mesh, regions); });
+        const auto cells = of_option("--only", [&] { return cells_in(mesh, regions, read.sets); });
+        mesh = only_cells(mesh, cells);
+        read.sets = sets_of_cells(std::move(read.sets), cells);
         facts["only_cells"] = mesh.cells.size();
         facts.note(text(count_text(mesh.cells.size()), " of ", counted(before, "cell"), " lie in the region"));
         read.cell_means.clear();
@@ -184,7 +215,9 @@ WithFacts<ReadResult> read_input(const std::string& input, const CommonOptions& 
         if (model) return generate(input.substr(kModelPrefix.size()));
         ReadOptions file_options = read_options(input, options);
         file_options.shells_alone = alone == ShellsAlone::Take;
-        return read_mesh(input, file_options);
+        const auto between = between_steps(input, options);
+        if (!between) return read_mesh(input, file_options);
+        return read_between(input, *between, *options.time, file_options, facts);
     });
     for (const std::string& warning : read.warnings) facts.warn(warning);
     for (const UnreadField& field : read.unread) {
@@ -293,6 +326,22 @@ Shells with_fields_of(Shells shells, const HexMesh& mesh) {
         shells.attributes.push_back(std::move(field));
     }
     return shells;
+}
+
+std::vector<Patch> chosen_patches(const MeshSets& sets, const std::vector<std::string>& names) {
+    std::vector<Patch> patches;
+    for (const std::string& name : names) {
+        if (name == "all" && !sets.patches.empty() &&
+            std::ranges::find(sets.patches, name, &Patch::name) == sets.patches.end()) {
+            std::ranges::copy_if(sets.patches, std::back_inserter(patches), [](const Patch& p) { return !p.sides.empty(); });
+            continue;
+        }
+        const Patch& patch = of_option("--patch", [&]() -> const Patch& { return find_patch(sets, name); });
+        if (patch.sides.empty())
+            throw Error(ErrorCode::InvalidInput, text("no face of '", name, "' is left"), "--patch", "another --only");
+        patches.push_back(patch);
+    }
+    return patches;
 }
 
 HexMesh used_mesh(HexMesh read, const CommonOptions& options) {

@@ -64,6 +64,11 @@ enum class ShellsAlone { Refuse, Take };
 /// The shells with the fields that the mesh has, which were selected from the same ones.
 [[nodiscard]] Shells with_fields_of(Shells shells, const HexMesh& mesh);
 
+/// The patches of these names; all of the mesh for "all", unless one is called so.
+///
+/// throws: Error(InvalidInput) if there is none of a name, or if it has lost all its faces
+[[nodiscard]] std::vector<Patch> chosen_patches(const MeshSets& sets, const std::vector<std::string>& names);
+
 /// A mesh that was read, without the unused points; --density becomes the first attribute.
 [[nodiscard]] HexMesh used_mesh(HexMesh read, const CommonOptions& options);
 

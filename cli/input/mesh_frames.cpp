@@ -76,23 +76,12 @@ MeshFrames::MeshFrames(FrameRange range, std::vector<double> times, std::functio
     : range_(range), load_(std::move(load)), times_(std::move(times)) {
 }
 
-HexMesh MeshFrames::between(double t) const {
-    HexMesh mesh = *from_;
-    for (std::size_t i = 0; i < mesh.points.size(); ++i) mesh.points[i] = (1 - t) * mesh.points[i] + t * to_->points[i];
-    for (std::size_t a = 0; a < mesh.attributes.size(); ++a) {
-        std::vector<double>& values = mesh.attributes[a].values;
-        const std::vector<double>& last = to_->attributes[a].values;
-        for (std::size_t i = 0; i < values.size(); ++i) values[i] = (1 - t) * values[i] + t * last[i];
-    }
-    return mesh;
-}
-
 const HexMesh& MeshFrames::mesh(int frame) {
     meshes_.erase(meshes_.begin(), meshes_.lower_bound(frame - 2));
     const auto found = meshes_.find(frame);
     if (found != meshes_.end()) return found->second;
     const double t = range_.count() > 1 ? static_cast<double>(frame - range_.first) / (range_.count() - 1) : 0;
-    return meshes_.emplace(frame, from_ ? between(t) : load_(frame)).first->second;
+    return meshes_.emplace(frame, from_ ? mesh_between(*from_, *to_, t) : load_(frame)).first->second;
 }
 
 Attribute MeshFrames::velocity(int frame) {

@@ -51,8 +51,6 @@ public:
     [[nodiscard]] Attribute velocity(int frame);
 
 private:
-    [[nodiscard]] HexMesh between(double t) const;
-
     FrameRange range_;
     std::function<HexMesh(int)> load_;
     std::vector<double> times_;

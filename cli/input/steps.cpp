@@ -5,8 +5,11 @@
 #include <charconv>
 
 #include "input.h"
+#include "subvol/detail/number_text.h"
 #include "subvol/error.h"
 #include "subvol/option.h"
+#include "subvol/progress.h"
+#include "subvol/warp.h"
 #include "text.h"
 
 namespace subvol::cli {
@@ -84,6 +87,46 @@ CommonOptions of_step(const CommonOptions& options, int step) {
     CommonOptions one = options;
     one.step = std::to_string(step);
     return one;
+}
+
+WithFacts<CommonOptions> for_steps(const std::string& input, const CommonOptions& options, const FrameRange& range,
+                                   Progress* progress) {
+    WithFacts<CommonOptions> result{options, {}};
+    if (!options.warp) return result;
+    const Warp warp = parse_warp(*options.warp);
+    if (warp.factor) return result;
+    CommonOptions at_rest = options;
+    at_rest.warp.reset();
+    at_rest.field.reset();
+    at_rest.at_rest.clear();
+    std::optional<double> least;
+    for (int step = range.first; step <= range.last; ++step) {
+        report_progress(progress, "factor of --warp", static_cast<std::size_t>(step - range.first),
+                        static_cast<std::size_t>(range.count()));
+        const auto factor = automatic_factor(read_input(input, of_step(at_rest, step), nullptr).value.mesh, warp.field);
+        if (factor) least = std::min(*factor, least.value_or(*factor));
+    }
+    if (!least) {
+        throw Error(ErrorCode::InvalidInput, "\"" + warp.field + "\" is 0 in all steps, so there is no factor to find",
+                    "--warp", warp.field + "*1");
+    }
+    result.value.warp = warp.field + "*" + detail::exact_text(*least);
+    result.facts.note(text("all steps are moved by ", *least, " × ", warp.field));
+    return result;
+}
+
+std::optional<BetweenSteps> between_steps(const std::string& input, const CommonOptions& options) {
+    if (!options.interpolate_time || !options.time) return std::nullopt;
+    const MeshSeries series = open_series(input);
+    std::optional<std::size_t> before, after;
+    for (std::size_t k = 0; k < series.size(); ++k) {
+        const double time = series.times[k];
+        if (time <= *options.time && (!before || time > series.times[*before])) before = k;
+        if (time >= *options.time && (!after || time < series.times[*after])) after = k;
+    }
+    if (!before || !after || series.times[*before] == series.times[*after]) return std::nullopt;
+    const double from = series.times[*before], to = series.times[*after];
+    return BetweenSteps{*before, *after, (*options.time - from) / (to - from)};
 }
 
 void check_numbered(const std::string& output) {

@@ -33,6 +33,21 @@ void say_step(const ReadResult& read, const CommonOptions& options, Facts& facts
 /// The same options with one step.
 [[nodiscard]] CommonOptions of_step(const CommonOptions& options, int step);
 
+/// The options for several steps: --warp FIELD*auto gets one factor for all of them, with which the longest displacement of
+/// the step that moves most is a tenth of the box's diagonal. Each step is read for that.
+///
+/// throws: Error(InvalidInput) if nothing moves in any step
+[[nodiscard]] WithFacts<CommonOptions> for_steps(const std::string& input, const CommonOptions& options,
+                                                 const FrameRange& range, Progress* progress);
+
+/// The steps before and after --time, and how far it lies between them, from 0 to 1. Nothing without --interpolate-time, and
+/// at a step or beyond the first and the last one.
+struct BetweenSteps {
+    std::size_t before = 0, after = 0;
+    double part = 0;
+};
+[[nodiscard]] std::optional<BetweenSteps> between_steps(const std::string& input, const CommonOptions& options);
+
 /// Refuses an output whose name has no place for the number of a step.
 void check_numbered(const std::string& output);
 

@@ -75,7 +75,9 @@ MeshGrids::MeshGrids(std::string input, const VdbArguments& asked, RefineArgumen
 
 WithFacts<HexMesh> MeshGrids::load(const std::string& input, const CommonOptions& options, Progress* progress) const {
     Facts facts;
-    HexMesh mesh = facts.unpack(load_mesh(input, options, progress));
+    CommonOptions reading = options;
+    for (const GridField& field : fields_.asked()) reading.at_rest.push_back(field.source);
+    HexMesh mesh = facts.unpack(load_mesh(input, reading, progress));
     mesh = facts.unpack(tets_.hexes(std::move(mesh), 2, progress));
     std::optional<Attribute> flow;
     if (asked_.velocity) flow = flow_of(mesh);

@@ -5,6 +5,7 @@
 #include <array>
 #include <iomanip>
 #include <limits>
+#include <set>
 
 #include "quantities.h"
 #include "subvol/detail/json_depth.h"
@@ -147,16 +148,40 @@ void add_fields(const ReadResult& read, Lines& lines) {
     if (read.fields.empty()) lines.emplace_back("fields", "none");
 }
 
-/// The names of the blocks with their cells; of many the first.
-std::string blocks_text(const std::vector<MeshBlock>& blocks) {
-    constexpr std::size_t kMostNamed = 12;
-    std::vector<std::string> words;
-    for (const MeshBlock& block : blocks) {
-        if (words.size() == kMostNamed) break;
-        words.push_back(block.name + " (" + count_text(block.cells) + ")");
+/// The names of parts with the number of their cells or faces; of many the first.
+class PartNames {
+public:
+    void add(const std::string& name, std::size_t count) {
+        constexpr std::size_t kMostNamed = 12;
+        if (words_.size() < kMostNamed) words_.push_back(name + " (" + count_text(count) + ")");
+        ++count_;
     }
-    if (blocks.size() > kMostNamed) words.push_back("and " + count_text(blocks.size() - kMostNamed) + " more");
-    return join(words);
+    void add_to(Lines& lines, const std::string& kind) {
+        if (words_.empty()) return;
+        if (count_ > words_.size()) words_.push_back("and " + count_text(count_ - words_.size()) + " more");
+        lines.emplace_back(kind, join(words_));
+    }
+
+private:
+    std::vector<std::string> words_;
+    std::size_t count_ = 0;
+};
+
+/// Blocks, patches, and sets of cells that are not blocks.
+void add_parts(const ReadResult& read, Lines& lines) {
+    PartNames blocks, patches, sets;
+    std::set<std::string_view> known;
+    for (const MeshBlock& block : read.blocks) {
+        if (read.blocks.size() > 1) blocks.add(block.name, block.cells);
+        known.insert(block.name);
+    }
+    for (const Patch& patch : read.sets.patches) patches.add(patch.name, patch.sides.size());
+    for (const CellSet& set : read.sets.sets) {
+        if (!known.contains(set.name)) sets.add(set.name, set.cells.size());
+    }
+    blocks.add_to(lines, "blocks");
+    patches.add_to(lines, "patches");
+    sets.add_to(lines, "sets");
 }
 
 }  // namespace
@@ -213,7 +238,7 @@ std::string mesh_lines(const ReadResult& read, const detail::MeshShare& joined, 
     lines.emplace_back("worst corner", text(std::setprecision(3), mesh.min_scaled_jacobian,
                                             " (scaled Jacobian: 1 a cube's, below 0 inverted)"));
     add_fields(read, lines);
-    if (read.blocks.size() > 1) lines.emplace_back("blocks", blocks_text(read.blocks));
+    add_parts(read, lines);
     if (!steps.empty()) lines.emplace_back("steps", steps);
     std::vector<std::string> stages;
     for (const auto& [stage, value] : seconds.items()) stages.push_back(stage + " " + seconds_text(value.get<double>()));

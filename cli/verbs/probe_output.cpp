@@ -225,6 +225,53 @@ void show_probed(const ProbeResult& found, const std::vector<Vec3>& places, cons
     if (file.ends_with(".svg")) write_plot(found, places, file);
 }
 
+Json json_of(const std::vector<PatchMeasure>& found) {
+    Json patches = Json::array();
+    for (const PatchMeasure& patch : found) {
+        Json one{{"name", patch.name}, {"faces", patch.sides}, {"area", patch.area}, {"error", patch.error}};
+        one["normal"] = json_of(patch.normal);
+        if (patch.flux) {
+            one["flux"] = *patch.flux;
+            one["throughput"] = *patch.throughput;
+        }
+        one["fields"] = Json::array();
+        for (const PatchField& field : patch.fields) {
+            one["fields"].push_back({{"name", field.name},
+                                     {"integral", field.integral},
+                                     {"mean", field.mean},
+                                     {"min", field.min},
+                                     {"max", field.max}});
+        }
+        patches.push_back(std::move(one));
+    }
+    return patches;
+}
+
+void show_patches(const std::vector<PatchMeasure>& found, Report& report) {
+    using detail::number_text;
+    report["patches"] = json_of(found);
+    double flux = 0, throughput = 0;
+    for (const PatchMeasure& patch : found) {
+        Lines lines{{"patch", text(patch.name, " (", counted(patch.sides, "face"), ")")},
+                    {"area", number_text(patch.area) + "  within " + number_text(patch.error, 2) + " of it"}};
+        for (const PatchField& field : patch.fields) {
+            lines.emplace_back(field.name, "mean " + number_text(field.mean) + "  min " + number_text(field.min) + "  max " +
+                                               number_text(field.max));
+        }
+        if (patch.flux) {
+            lines.emplace_back("flow out", number_text(*patch.flux));
+            flux += *patch.flux;
+            throughput += *patch.throughput;
+        }
+        report.answer(aligned(lines));
+    }
+    if (found.size() > 1 && found.front().flux) {
+        report["flux_sum"] = flux;
+        report.answer(text("flow out of all: ", number_text(flux), " of ", number_text(throughput), " in both directions"));
+    }
+    report.all_said();
+}
+
 void show_measured(const LimitMeasure& found, Report& report) {
     report["stats"] = json_of(found);
     warn_of_overflow(found.whole, report);

@@ -6,6 +6,7 @@
 
 #include "report.h"
 #include "subvol/measure.h"
+#include "subvol/patch_measure.h"
 #include "subvol/probe.h"
 
 namespace subvol::cli {
@@ -28,6 +29,10 @@ void show_probed(const ProbeResult& found, const std::vector<Vec3>& places, cons
 [[nodiscard]] std::string place_text(const Vec3& place);
 /// A text as a cell of a .csv file.
 [[nodiscard]] std::string csv_text(const std::string& text);
+
+/// Patches of the boundary: into the report, and as lines for people, with the sum of the flows of several.
+void show_patches(const std::vector<PatchMeasure>& found, Report& report);
+[[nodiscard]] Json json_of(const std::vector<PatchMeasure>& found);
 
 /// Integrals and extremes, into the report.
 void show_measured(const LimitMeasure& found, Report& report);

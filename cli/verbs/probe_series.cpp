@@ -83,6 +83,25 @@ SeriesTable table_of_parts(const std::vector<ProbedStep>& steps) {
     return table;
 }
 
+SeriesTable table_of_patches(const std::vector<ProbedStep>& steps) {
+    const PatchMeasure& first = steps.front().patches.front();
+    SeriesTable table{{"area"}, {}};
+    if (first.flux) table.columns.insert(table.columns.begin(), "flow out");
+    for (const PatchField& field : first.fields) {
+        for (const char* figure : {"mean", "integral", "min", "max"}) table.columns.push_back(field.name + " " + figure);
+    }
+    for (const ProbedStep& step : steps) {
+        for (const PatchMeasure& patch : step.patches) {
+            SeriesTable::Row row{step.step, step.time, patch.name, {patch.area}};
+            if (patch.flux) row.numbers.insert(row.numbers.begin(), *patch.flux);
+            for (const PatchField& field : patch.fields)
+                row.numbers.insert(row.numbers.end(), {field.mean, field.integral, field.min, field.max});
+            table.rows.push_back(std::move(row));
+        }
+    }
+    return table;
+}
+
 void say(const SeriesTable& table, Report& report) {
     constexpr int kDigits = 6;
     for (const SeriesTable::Row& row : table.rows) {
@@ -107,7 +126,8 @@ void write_table(const SeriesTable& table, const std::string& file) {
     detail::write_text_file(file, lines);
 }
 
-/// The first field over time: a line for each place, or its mean, minimum and maximum over the whole.
+/// The first field over time: a line for each place, the flow or area of each patch, or the field's mean, minimum and maximum
+/// over the whole.
 void write_plot(const SeriesTable& table, bool places, const std::string& file) {
     std::vector<PlotLine> lines;
     const auto add = [&](const std::string& name, double time, double value) {
@@ -141,15 +161,19 @@ void show_steps(const std::vector<ProbedStep>& steps, const std::vector<Vec3>& p
         Json one{{"step", step.step}, {"time", step.time}};
         if (step.places) one["values"] = json_of(*step.places, places);
         if (step.measure) one["stats"] = json_of(*step.measure);
+        if (!step.patches.empty()) one["patches"] = json_of(step.patches);
         all.push_back(std::move(one));
     }
     report["steps"] = std::move(all);
     const bool of_places = steps.front().places.has_value();
-    const SeriesTable table = of_places ? table_of_places(steps, places) : table_of_parts(steps);
+    const bool of_patches = !steps.front().patches.empty();
+    const SeriesTable table = of_places    ? table_of_places(steps, places)
+                              : of_patches ? table_of_patches(steps)
+                                           : table_of_parts(steps);
     if (!options.quiet || file.empty()) say(table, report);
     report.all_said();
     if (file.ends_with(".csv")) write_table(table, file);
-    if (file.ends_with(".svg")) write_plot(table, of_places, file);
+    if (file.ends_with(".svg")) write_plot(table, of_places || of_patches, file);
 }
 
 }  // namespace subvol::cli

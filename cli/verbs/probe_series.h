@@ -7,16 +7,18 @@
 
 #include "report.h"
 #include "subvol/measure.h"
+#include "subvol/patch_measure.h"
 #include "subvol/probe.h"
 
 namespace subvol::cli {
 
-/// What was found in one step of a series. places, measure: what was asked for
+/// What was found in one step of a series. places, measure, patches: what was asked for
 struct ProbedStep {
     std::size_t step = 0;
     double time = 0;
     std::optional<ProbeResult> places;
     std::optional<LimitMeasure> measure;
+    std::vector<PatchMeasure> patches = {};
 };
 
 /// The steps of a series: into the report as `steps`, as lines for people, and into a table with a row for each step and place,

@@ -268,6 +268,11 @@ private:
         report["step"] = step;
         report["blocks"] = Json::array();
         for (const MeshBlock& block : read.blocks) report["blocks"].push_back({{"name", block.name}, {"cells", block.cells}});
+        report["patches"] = Json::array();
+        for (const Patch& patch : read.sets.patches)
+            report["patches"].push_back({{"name", patch.name}, {"faces", patch.sides.size()}});
+        report["sets"] = Json::array();
+        for (const CellSet& set : read.sets.sets) report["sets"].push_back({{"name", set.name}, {"cells", set.cells.size()}});
     }
 
     /// "0 to 4, times 0 … 0.4; this is step 4"; empty if there is one step.

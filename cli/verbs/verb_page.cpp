@@ -146,8 +146,9 @@ private:
         if (asks_for_steps(common())) {
             const MeshSeries series = open_series(input_);
             const FrameRange range = chosen_steps(series, common());
+            const CommonOptions all = report.unpack(for_steps(input_, common(), range, report.progress()));
             for (int step = range.first; step <= range.last; ++step) {
-                add(of_step(common(), step), text(step, " (t = ", series.times[static_cast<std::size_t>(step)], ")"));
+                add(of_step(all, step), text(step, " (t = ", series.times[static_cast<std::size_t>(step)], ")"));
             }
         } else {
             add(common(), "");

@@ -264,12 +264,13 @@ private:
     void write_steps(const Share& share, Report& report) {
         check_numbered(output_);
         const MeshSeries series = open_series(input_);
-        const FrameRange range = frames_of(share, chosen_steps(series, common()));
+        const FrameRange steps = chosen_steps(series, common()), range = frames_of(share, steps);
+        const CommonOptions all = report.unpack(for_steps(input_, common(), steps, report.progress()));
         if (share_.given()) report["part"] = share.name();
         report["frames"] = Json::array();
         for (int step = range.first; step <= range.last; ++step) {
             const std::string path = with_number(output_, step);
-            report.merge(write_kernels(path, points_of_mesh(of_step(common(), step), report), written_, report.progress()));
+            report.merge(write_kernels(path, points_of_mesh(of_step(all, step), report), written_, report.progress()));
             report["frames"].push_back({{"frame", step},
                                         {"time", series.times[static_cast<std::size_t>(step)]},
                                         {"points", report["points"]},

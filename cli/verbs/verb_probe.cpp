@@ -24,7 +24,9 @@
 #include "subvol/measure.h"
 #include "subvol/mesh_io.h"
 #include "subvol/mixed_probe.h"
+#include "subvol/patch_measure.h"
 #include "subvol/probe.h"
+#include "subvol/quantity.h"
 #include "tet_refinement.h"
 #include "text.h"
 #include "verb.h"
@@ -87,12 +89,15 @@ public:
                "  subvol probe part.vtu --points bolts.csv -o values.csv --json\n"
                "  subvol probe part.vtu --stats --field 'mises(STRESS)' --only box:0,0,0,1,1,2\n"
                "  subvol probe run.exo --at 0,0,1 --step all -o history.csv\n"
+               "  subvol probe case --patch inlet --patch outlet --flux U\n"
                "\n"
                "JSON: values, one for each place: at, inside, value and gradient of the chosen field, cell, parameters, "
                "fields with value and gradient of each. Outside there is nothing: null. stats: whole and parts, with "
                "volume, error (of the volume and of means, in parts of them and of ranges), and for each field, or for "
                "the one that --field names, integral, mean, min, max, their places, extreme_error, and a histogram. With "
-               "--step all or A-B: steps, each with step, time and values or stats.") {
+               "--step all or A-B: steps, each with step, time and values, stats or patches. patches: name, faces, area, "
+               "error, normal (its integral), flux and throughput (of --flux, outward and without sign), fields with "
+               "integral, mean, min, max; flux_sum of several.") {
         app().add_option("FILE", input_, input_help())->required();
         app()
             .add_option("--at", at_, "a place in world units (repeatable)")
@@ -109,10 +114,18 @@ public:
         app().add_flag("--stats", stats_, "integral, mean, extremes with their places, histogram; by block too");
         add_option(app(), options_of(measured_).back().only_with("stats"));
         app()
+            .add_option("--patch", patches_,
+                        "area and means over a patch of the boundary, as info lists them; all (repeatable)")
+            ->type_name("NAME")
+            ->allow_extra_args(false);
+        add_option(app(),
+                   Option("flux", flux_).help("EXPR", "the flow of this vector out through the patches").only_with("patch"));
+        app()
             .add_option("-o,--output", output_, "a table of all fields (.csv), or a plot along the line (.svg)")
             ->type_name("FILE");
         scheme_.add_to(app(), "tetoct, boxspline: the level whose volume is probed (default 2)");
-        set_essentials({"--at", "--line", "--count", "--points", "--stats", "--output", "--field", "--json"});
+        set_essentials(
+            {"--at", "--line", "--count", "--points", "--stats", "--patch", "--flux", "--output", "--field", "--json"});
     }
 
     int run(Report& report) override {
@@ -123,17 +136,25 @@ public:
             throw Error(ErrorCode::InvalidInput, "the limit of " + scheme_.scheme + " is probed, not a level", "--levels",
                         "--scheme tetoct or boxspline, whose volume is that of a level");
         }
-        if (asks_for_steps(common()) && (places.empty() != stats_ || tets.asked())) {
-            throw Error(ErrorCode::InvalidInput, "a table of steps is about places or about the whole of hexahedra", "--step",
-                        "either --stats, or --at, --line and --points");
+        const int kinds = (places.empty() ? 0 : 1) + (stats_ ? 1 : 0) + (patches_.empty() ? 0 : 1);
+        if (asks_for_steps(common()) && (kinds > 1 || tets.asked())) {
+            throw Error(ErrorCode::InvalidInput, "a table of steps is about places, patches or the whole of hexahedra",
+                        "--step", "either --stats, or --patch, or --at, --line and --points");
         }
         const LimitOptions limit{.scheme = scheme_.options(0, report.progress()).scheme, .progress = report.progress()};
         report["input"] = input_;
         regions_ = regions_of(common());
-        const bool cells_only = std::erase_if(regions_, [](const Region& r) { return r.kind() == Region::Kind::Where; }) > 0;
+        const bool cells_only = std::erase_if(regions_, [](const Region& r) { return r.chooses_cells(); }) > 0;
         CommonOptions reading = common();  // parts of space are cut exactly
-        std::erase_if(reading.only, [](const std::string& r) { return !r.starts_with("block:") && !r.starts_with("where:"); });
-        if (cells_only && stats_) report.note("whole cells are measured where a quantity decides");
+        std::erase_if(reading.only, [](const std::string& r) {
+            return !r.starts_with("block:") && !r.starts_with("where:") && !r.starts_with("set:");
+        });
+        if (!patches_.empty() && (tets.asked() || !regions_.empty())) {
+            throw Error(ErrorCode::InvalidInput, "patches are those of the limit of hexahedra, of whole cells", "--patch",
+                        "--only set:, block: or where:, and no scheme of tetrahedra");
+        }
+        if (!flux_.empty()) reading.at_rest.push_back(flux_);
+        if (cells_only && stats_) report.note("whole cells are measured where a quantity or a set decides");
         if (asks_for_steps(common())) {
             probe_steps(reading, places, limit, report);
         } else {
@@ -148,6 +169,7 @@ public:
             } else {
                 if (!places.empty()) show_probed(probe(body, places, limit, report), places, output_, common(), report);
                 if (stats_) show_measured(measure(body, reading, limit.scheme, report), report);
+                if (!patches_.empty()) show_patches(patches_of(body, limit.scheme, report), report);
             }
         }
         if (!output_.empty()) report["output"] = output_;
@@ -167,8 +189,8 @@ private:
             const auto more = read_places(points_);
             places.insert(places.end(), more.begin(), more.end());
         }
-        if (places.empty() && !stats_) {
-            throw Error(ErrorCode::InvalidInput, "nothing is asked for", "probe", "--at, --line, --points or --stats");
+        if (places.empty() && !stats_ && patches_.empty()) {
+            throw Error(ErrorCode::InvalidInput, "nothing is asked for", "probe", "--at, --line, --points, --stats or --patch");
         }
         return places;
     }
@@ -180,15 +202,16 @@ private:
         if (output_.ends_with(".svg") && (line_.empty() || !at_.empty() || !points_.empty())) {
             throw Error(ErrorCode::InvalidInput, "a plot needs --line, and no other places", output_, "a .csv file takes all");
         }
-        if (stats_ && line_.empty() && at_.empty() && points_.empty()) {
+        if (line_.empty() && at_.empty() && points_.empty()) {
             throw Error(ErrorCode::InvalidInput, "a file of places needs --at, --line or --points", output_,
-                        "--stats prints, with --json in full");
+                        "--stats and --patch print, with --json in full; with --step all there is a table");
         }
     }
 
     /// The body with the field of --field first.
     [[nodiscard]] BodyInput open(const CommonOptions& options, const std::vector<Vec3>& places, Report& report) {
         BodyInput body = report.unpack(open_body(input_, options, app(), report.progress()));
+        if (!flux_.empty()) flux_vectors_ = vectors_of(body);
         // Places have all fields; a field that is named for statistics is measured alone.
         const bool alone = places.empty() && (common().field || common().density);
         (void)report.unpack(body.select(options, alone ? OtherFields::Drop : OtherFields::Keep));
@@ -198,21 +221,45 @@ private:
     void probe_steps(const CommonOptions& options, const std::vector<Vec3>& places, const LimitOptions& limit, Report& report) {
         const MeshSeries series = open_series(input_);
         const FrameRange range = chosen_steps(series, options);
+        const CommonOptions all = report.unpack(for_steps(input_, options, range, report.progress()));
         std::vector<ProbedStep> steps;
         for (int step = range.first; step <= range.last; ++step) {
             const auto number = static_cast<std::size_t>(step);
             report.begin_part("step", number - static_cast<std::size_t>(range.first), static_cast<std::size_t>(range.count()));
-            const CommonOptions one = of_step(options, step);
+            const CommonOptions one = of_step(all, step);
             const BodyInput body = open(one, places, report);
             ProbedStep& found = steps.emplace_back(ProbedStep{number, series.times[number], {}, {}});
             if (stats_) {
                 found.measure = measure(body, one, limit.scheme, report);
+            } else if (!patches_.empty()) {
+                found.patches = patches_of(body, limit.scheme, report);
             } else {
                 found.places = probe(body, places, limit, report);
             }
         }
         report.begin_part("", 0, 0);
         show_steps(steps, places, output_, common(), report);
+    }
+
+    /// The field whose flow is asked for, before others take its name.
+    [[nodiscard]] std::vector<double> vectors_of(const BodyInput& body) const {
+        const HexMesh* mesh = body.source().mesh();
+        if (mesh == nullptr) throw Error(ErrorCode::InvalidInput, "bricks have no patches", "--flux", "the mesh itself");
+        Attribute field = field_of(*mesh, flux_, flux_);
+        if (field.channels == 3) return std::move(field.values);
+        throw Error(ErrorCode::InvalidInput,
+                    text("'", flux_, "' has ", counted(static_cast<std::size_t>(field.channels), "component")), "--flux",
+                    "a vector, such as U or grad(T)");
+    }
+
+    [[nodiscard]] std::vector<PatchMeasure> patches_of(const BodyInput& body, const SchemeOptions& scheme,
+                                                       Report& report) const {
+        const HexMesh* mesh = body.source().mesh();
+        if (mesh == nullptr) throw Error(ErrorCode::InvalidInput, "bricks have no patches", "--patch", "the mesh itself");
+        const std::vector<Patch> patches = chosen_patches(body.sets, patches_);
+        return report.timed("patches", [&] {
+            return measure_patches(*mesh, patches, {.scheme = scheme, .flux = flux_vectors_, .progress = report.progress()});
+        });
     }
 
     [[nodiscard]] ProbeResult probe(const BodyInput& body, const std::vector<Vec3>& places, const LimitOptions& limit,
@@ -272,9 +319,10 @@ private:
         });
     }
 
-    std::string input_, line_, points_, output_;
-    std::vector<std::string> at_;
-    std::vector<Region> regions_;  // of --only, but for cells
+    std::string input_, line_, points_, output_, flux_;
+    std::vector<std::string> at_, patches_;
+    std::vector<double> flux_vectors_;  // at the points
+    std::vector<Region> regions_;       // of --only, but for cells
     std::size_t count_ = 200;
     MeasureOptions measured_;
     bool stats_ = false;

@@ -56,7 +56,9 @@ WithFacts<ShownBody> load_shown_body(const std::string& input, const CommonOptio
     const bool refined = arguments.tets.asked();  // tetrahedra are refined by other rules than shells
     if (refined) alone = ShellsAlone::Refuse;
     Facts facts;
-    BodyInput body = facts.unpack(open_body(input, options, app, progress, !refined, alone));
+    CommonOptions reading = options;
+    if (arguments.splat.color_field) reading.at_rest.push_back(*arguments.splat.color_field);
+    BodyInput body = facts.unpack(open_body(input, reading, app, progress, !refined, alone));
     const std::string field = facts.unpack(body.select(options, OtherFields::Drop, arguments.splat.color_field));
     facts.merge(body.refine(arguments.tets, default_tet_level(arguments.method), progress));
     ShownBody shown{std::move(body), {field, {}}, {field, {}}};
@@ -269,10 +271,11 @@ private:
         const FrameRange steps = chosen_steps(series, common());
         PictureOutput output(output_, steps.count(), picture_, steps.first);
         set_share(output, true);
+        const CommonOptions all = report.unpack(for_steps(input_, common(), steps, report.progress()));
         Box box, seen;
         ShownField field, colors;
         for (int step = steps.first; step <= steps.last; ++step) {
-            const ShownBody mesh = load_shown(of_step(common(), step), report);
+            const ShownBody mesh = load_shown(of_step(all, step), report);
             const bool first = step == steps.first;
             field = first ? mesh.field : united(field, mesh.field);
             colors = first ? mesh.colors : united(colors, mesh.colors);
@@ -287,7 +290,7 @@ private:
                     output.skip();
                     continue;
                 }
-                const ShownBody mesh = load_shown(of_step(common(), step), report);
+                const ShownBody mesh = load_shown(of_step(all, step), report);
                 set_notes(mesh, shown, output, report);
                 if (views.empty()) views = picture_.make_views(seen);
                 PictureMaker maker = maker_of(body_of(mesh), report);

@@ -31,6 +31,7 @@ public:
                "  subvol surface part.vtu -o part.stl --boundary\n"
                "  subvol surface part.vtu -o iso.ply --iso 300 --iso 350 --field Temp\n"
                "  subvol surface part.vtu -o hot.stl --iso 350 --cap --tolerance 3e-4\n"
+               "  subvol surface case -o inlet.vtp --patch inlet\n"
                "  subvol surface part.vtu -o skin.glb --boundary --color-field Temp --tf viridis\n"
                "  subvol surface big.bricks -o iso.ply --iso 300\n"
                "  subvol surface big.vtu -o part2.svshare --part 2/4     a share, for join\n"
@@ -50,6 +51,11 @@ public:
             ->transform(number_or_percent())
             ->allow_extra_args(false);
         add_options(app(), options_of(options_));
+        app()
+            .add_option("--patch", patches_, "this patch of the boundary alone, as info lists them (repeatable)")
+            ->type_name("NAME")
+            ->allow_extra_args(false)
+            ->excludes("--iso", "--cap");
         app().add_flag("--keep-slivers", keep_slivers_, "leave triangles with small angles as they are");
         add_option(app(), Option("color-field", color_field_)
                               .help("NAME", "colour the points by this field (default in .ply, .obj, .glb: none)"));
@@ -85,8 +91,14 @@ public:
         options.improve = !keep_slivers_;
         options.progress = report.progress();
         report["input"] = input_;
-        const bool with_shells = options.boundary && !tets.asked();
-        BodyInput body = report.unpack(open_body(input_, common(), app(), report.progress(), with_shells));
+        if (!patches_.empty() && (tets.asked() || shares(share_))) {
+            throw Error(ErrorCode::InvalidInput, "is cut from a mesh of hexahedra by one process", "--patch",
+                        "no --part, and no scheme of tetrahedra");
+        }
+        const bool with_shells = options.boundary && !tets.asked() && patches_.empty();
+        CommonOptions reading = common();
+        if (!color_field_.empty()) reading.at_rest.push_back(color_field_);
+        BodyInput body = report.unpack(open_body(input_, reading, app(), report.progress(), with_shells));
         report.merge(body.refine(tets, 2, report.progress()));
         const std::string field = report.unpack(body.select(common(), OtherFields::Keep));
         if (share_.given() && !body.shells.empty()) {
@@ -102,6 +114,12 @@ public:
             output.file.function = find_transfer_function(function_, body.range(color_field_));
         }
         const MeshSource source = body.source();
+        std::vector<CellSide> sides;
+        if (!patches_.empty()) {
+            for (const Patch& patch : chosen_patches(body.sets, patches_))
+                sides.insert(sides.end(), patch.sides.begin(), patch.sides.end());
+        }
+        options.sides = sides;
         std::optional<LimitSurface> surface =
             made([&] { return limit_surface(source, field, options); },
                  [&](const auto& share) { return detail::share_of_surface(source, field, options, share); }, output, report);
@@ -136,7 +154,7 @@ private:
     }
 
     std::string input_, output_, color_field_, origin_, function_ = "viridis";
-    std::vector<std::string> isos_;
+    std::vector<std::string> isos_, patches_;
     SurfaceOptions options_;
     bool keep_slivers_ = false;
     RefineArguments scheme_;

@@ -254,7 +254,8 @@ private:
         check_numbered(output_.path);
         const MeshSeries series = open_series(input_);
         const FrameRange range = chosen_steps(series, common());
-        MeshFrames frames(range, series.times, [&](int step) { return load(maker, input_, of_step(common(), step), report); });
+        const CommonOptions all = report.unpack(for_steps(input_, common(), range, report.progress()));
+        MeshFrames frames(range, series.times, [&](int step) { return load(maker, input_, of_step(all, step), report); });
         const FrameRange steps = frames_of(share, range);
         report["times"] = std::vector(series.times.begin() + steps.first, series.times.begin() + steps.last + 1);
         write(maker, {frames, range, share, series.times}, report);

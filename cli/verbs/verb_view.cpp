@@ -221,10 +221,12 @@ private:
     }
 
     [[nodiscard]] ViewSource source(Report& report) {
+        const int steps = static_cast<int>(times().size());
+        const CommonOptions all = report.unpack(for_steps(input_, common(), {0, steps - 1}, report.progress()));
         return {.input = input_,
                 .read =
-                    [this, &report](std::size_t step) {
-                        return report.unpack(load_mesh(input_, of_step(common(), static_cast<int>(step)), report.progress()));
+                    [this, &report, all](std::size_t step) {
+                        return report.unpack(load_mesh(input_, of_step(all, static_cast<int>(step)), report.progress()));
                     },
                 .times = times(),
                 .write_picture = [](const std::filesystem::path& path, const Image& image,

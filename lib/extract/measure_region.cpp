@@ -443,7 +443,7 @@ private:
 LimitMeasure measure_limit_in(const HexMesh& mesh, std::span<const Region> regions, const MeasureOptions& options) {
     check_options(options);
     std::vector<Region> space, cells;
-    for (const Region& region : regions) (region.kind() == Region::Kind::Where ? cells : space).push_back(region);
+    for (const Region& region : regions) (region.chooses_cells() ? cells : space).push_back(region);
     if (cells.empty()) return RegionMeasurer(mesh, space, options).measure();
     if (!options.groups.empty()) {
         throw Error(ErrorCode::InvalidInput, "chooses cells, which have no groups then", "where:" + cells.front().quantity(),

@@ -9,6 +9,22 @@ bool same_cells(const HexMesh& a, const HexMesh& b) {
     return a.points.size() == b.points.size() && a.cells == b.cells && a.creases == b.creases && a.sharp_faces == b.sharp_faces;
 }
 
+HexMesh mesh_between(HexMesh a, const HexMesh& b, double t) {
+    const auto refuse = [](const char* what) {
+        throw Error(ErrorCode::InvalidInput, std::string("two meshes have other ") + what + ", so that none lies between them");
+    };
+    if (!same_cells(a, b)) refuse("cells");
+    if (a.attributes.size() != b.attributes.size()) refuse("fields");
+    for (std::size_t i = 0; i < a.points.size(); ++i) a.points[i] = (1 - t) * a.points[i] + t * b.points[i];
+    for (std::size_t f = 0; f < a.attributes.size(); ++f) {
+        Attribute& from = a.attributes[f];
+        const Attribute& to = b.attributes[f];
+        if (from.name != to.name || from.channels != to.channels) refuse("fields");
+        for (std::size_t i = 0; i < from.values.size(); ++i) from.values[i] = (1 - t) * from.values[i] + t * to.values[i];
+    }
+    return a;
+}
+
 Attribute velocity_between(const HexMesh& before, const HexMesh& after, double time, const std::string& name) {
     if (!same_cells(before, after)) {
         throw Error(ErrorCode::InvalidInput, "a velocity needs two meshes with the same cells; these differ");

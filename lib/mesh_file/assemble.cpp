@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "cell_splits.h"
+#include "file_sets.h"
 #include "sharp_groups.h"
 #include "subvol/cell.h"
 #include "subvol/error.h"
@@ -429,6 +430,8 @@ ReadResult assemble(MeshFile&& found, std::string_view file, const EntityNames& 
     try {
         if (!others.empty()) split_all(result, std::move(others), cut, origin);
         warn_of_folded(result);
+        result.sets =
+            sets_of_mesh(result.mesh, found, origin.cell_numbers, origin.sources ? &*origin.sources : nullptr, result.warnings);
         ArrayConversion conversion(result, origin, file, names, are_means(options.cell_values));
         for (auto& array : found.arrays) conversion.take(std::move(array));
         conversion.finish(std::move(found.unread));

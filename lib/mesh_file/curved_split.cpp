@@ -218,6 +218,8 @@ private:
         for (const FileArray* array : arrays_) values.emplace_back(points.size() * static_cast<std::size_t>(array->components));
         std::vector<std::uint8_t> filled(points.size());
         FileCells<8> hexes;
+        const bool with_carriers = !found_.patches.empty();
+        std::vector<std::vector<Index>> carriers(with_carriers ? points.size() : 0);
         for (std::size_t c = 0; c < cells_.size(); ++c) {
             const Sizes n = pieces_.of_cell(c);
             const auto grid = grids.grid_of(c);
@@ -226,6 +228,7 @@ private:
                 const Index p = grid[i];
                 if (filled[p] != 0) continue;  // by a neighbour
                 filled[p] = 1;
+                if (with_carriers) carriers[p] = carrier_in(cells_[c], n, i);
                 const double* from = &at_grid[i * channels_];
                 points[p] = {from[0], from[1], from[2]};
                 from += 3;
@@ -238,6 +241,10 @@ private:
             add_hexes(hexes, grid, n, found_.hexes.numbers[c]);
         }
         found_.points = std::move(points);
+        for (const auto& carrier : carriers) {
+            found_.carriers.values.insert(found_.carriers.values.end(), carrier.begin(), carrier.end());
+            found_.carriers.offsets.push_back(found_.carriers.values.size());
+        }
         std::size_t next = 0;
         for (FileArray& array : found_.arrays) {
             if (next < arrays_.size() && &array == arrays_[next]) array.values = std::move(values[next++]);
@@ -247,6 +254,18 @@ private:
                                   : array.name == kWeights && array.components == 1;
         });
         new_hexes_ = std::move(hexes);
+    }
+
+    // The corners of the smallest edge, face or cell that place i of the grid of a cell lies on.
+    static std::vector<Index> carrier_in(const Hex& cell, const Sizes& n, std::size_t i) {
+        const Sizes at{i % (n[0] + 1), i / (n[0] + 1) % (n[1] + 1), i / (n[0] + 1) / (n[1] + 1)};
+        std::vector<Index> carrier;
+        for (std::size_t k = 0; k < 8; ++k) {
+            bool near = true;
+            for (std::size_t a = 0; a < 3; ++a) near = near && at[a] != (kCornerParameters[k][a] == 0 ? n[a] : 0);
+            if (near) carrier.push_back(cell[k]);
+        }
+        return carrier;
     }
 
     static void add_hexes(FileCells<8>& hexes, const std::vector<Index>& grid, const Sizes& n, Index number) {

@@ -216,6 +216,15 @@ private:
         append(all_.tets, piece.tets);
         append(all_.prisms, piece.prisms);
         append(all_.pyramids, piece.pyramids);
+        for (FilePatch& patch : piece.patches) {
+            for (Index& p : patch.corners) p = points[p];
+            FilePatch& whole = patches_[patch.name];
+            for (std::size_t f = 0; f < patch.size(); ++f) whole.add(patch.face(f));
+        }
+        for (const FileSet& set : piece.sets) {
+            FileSet& whole = sets_[set.name];
+            for (const Index number : set.numbers) whole.numbers.push_back(first + number);
+        }
         std::vector<Index> nodes;
         for (std::size_t k = 0; k < piece.curved.size(); ++k) {
             nodes.clear();
@@ -342,6 +351,8 @@ private:
     std::vector<MeshFile> pieces_;
     std::string_view word_, file_;
     MeshFile all_;
+    ByName<FilePatch> patches_{all_.patches};
+    ByName<FileSet> sets_{all_.sets};
     std::vector<std::vector<Index>> places_;                    // of each piece's points in the whole
     std::vector<std::pair<std::size_t, std::size_t>> sources_;  // of each point of the whole: piece and point
     std::vector<std::size_t> first_cells_;

@@ -7,9 +7,11 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <unordered_map>
 #include <vector>
 
 #include "curved_cells.h"
+#include "subvol/detail/flat_array.h"
 #include "subvol/index.h"
 #include "subvol/read_options.h"
 #include "subvol/vec.h"
@@ -70,14 +72,54 @@ struct FileTags {
     [[nodiscard]] bool empty() const { return faces.empty() && edges.empty(); }
 };
 
+/// A named part of the surface of cells: faces by their corners, each a cycle of points.
+struct FilePatch {
+    std::string name;
+    std::vector<std::size_t> ends;
+    std::vector<Index> corners;
+
+    [[nodiscard]] std::size_t size() const { return ends.size(); }
+    [[nodiscard]] std::span<const Index> face(std::size_t f) const {
+        const std::size_t begin = f == 0 ? 0 : ends[f - 1];
+        return std::span(corners).subspan(begin, ends[f] - begin);
+    }
+    void add(std::span<const Index> face) {
+        corners.insert(corners.end(), face.begin(), face.end());
+        ends.push_back(corners.size());
+    }
+};
+
+/// A named set of cells, by their numbers among all cells of the file.
+struct FileSet {
+    std::string name;
+    std::vector<Index> numbers;
+};
+
+/// Finds the patches or sets of a list by their names, and adds those that are not there.
+template <class Named>
+class ByName {
+public:
+    /// all: is referred to, and changed by nobody else
+    explicit ByName(std::vector<Named>& all) : all_(all) {}
+
+    Named& operator[](const std::string& name) {
+        const auto [at, is_new] = places_.try_emplace(name, all_.size());
+        if (is_new) all_.emplace_back().name = name;
+        return all_[at->second];
+    }
+
+private:
+    std::vector<Named>& all_;
+    std::unordered_map<std::string, std::size_t> places_;
+};
+
 /// The contents of a file as a reader found them; `assemble` makes a mesh of them.
 ///
-/// prisms:     of either handedness, since formats differ; otherwise as in MixedCells
-/// quads, lines: of shells and beams; they need numbers
-/// cut:        the cells fit together only if all are cut into tetrahedra
-/// turned:     the hexahedra stay as they are, also where their volume is negative
-/// unread:     fields that could not be read
-/// not_finite: points with a coordinate that is not finite, and their position in the text: an error if a cell uses the point
+/// carriers:   of points that were made in curved cells: the corners between which each lies; none: points are those of the
+/// file prisms:     of either handedness, since formats differ; otherwise as in MixedCells quads, lines: of shells and beams;
+/// they need numbers cut:        the cells fit together only if all are cut into tetrahedra turned:     the hexahedra stay as
+/// they are, also where their volume is negative unread:     fields that could not be read not_finite: points with a coordinate
+/// that is not finite, and their position in the text: an error if a cell uses the point
 struct MeshFile {
     struct NotFinite {
         std::size_t point;
@@ -97,6 +139,9 @@ struct MeshFile {
     std::vector<NotFinite> not_finite;
     std::vector<std::string> warnings;
     std::vector<MeshBlock> blocks;
+    std::vector<FilePatch> patches;
+    std::vector<FileSet> sets;
+    IndexRows carriers;
     bool cut = false, turned = false;
 };
 

@@ -16,7 +16,7 @@
 namespace subvol {
 namespace {
 
-constexpr const char* kKinds = "box:x0,y0,z0,x1,y1,z1, sphere:x,y,z,r, half:px,py,pz,nx,ny,nz, where:EXPRESSION";
+constexpr const char* kKinds = "box:x0,y0,z0,x1,y1,z1, sphere:x,y,z,r, half:px,py,pz,nx,ny,nz, where:EXPRESSION, set:NAME";
 
 std::vector<double> numbers_of(const std::string& text, std::string_view list, std::size_t count) {
     std::vector<double> numbers;
@@ -61,8 +61,8 @@ Region::Region(const std::string& text) {
         const Vec3 normal(n[3], n[4], n[5]);
         if (glm::length(normal) == 0) flat("has no normal");
         normal_ = glm::normalize(normal);
-    } else if (name == "where" && !rest.empty()) {
-        kind_ = Kind::Where;
+    } else if ((name == "where" || name == "set") && !rest.empty()) {
+        kind_ = name == "set" ? Kind::Set : Kind::Where;
         quantity_ = rest;
     } else {
         flat("is not a region");
@@ -92,9 +92,37 @@ double depth(std::span<const Region> regions, const Vec3& place) {
     return least;
 }
 
-std::vector<std::uint8_t> cells_in(const HexMesh& mesh, std::span<const Region> regions) {
+namespace {
+
+/// A flag for each cell: whether it is in one of several sets, whose names have commas between, unless one is called so.
+std::vector<std::uint8_t> cells_of_sets(const HexMesh& mesh, const std::string& names, const MeshSets& sets) {
+    std::vector<std::uint8_t> inside(mesh.cells.size(), 0);
+    const auto add = [&](const CellSet& set) {
+        for (const Index c : set.cells) inside[c] = 1;
+    };
+    const auto whole = std::ranges::find(sets.sets, names, &CellSet::name);
+    if (whole != sets.sets.end()) {
+        add(*whole);
+        return inside;
+    }
+    for (std::size_t at = 0; at <= names.size();) {
+        const std::size_t comma = std::min(names.find(',', at), names.size());
+        add(find_set(sets, names.substr(at, comma - at)));
+        at = comma + 1;
+    }
+    return inside;
+}
+
+}  // namespace
+
+std::vector<std::uint8_t> cells_in(const HexMesh& mesh, std::span<const Region> regions, const MeshSets& sets) {
     std::vector<std::uint8_t> inside(mesh.cells.size(), 1);
     for (const Region& region : regions) {
+        if (region.kind() == Region::Kind::Set) {
+            const std::vector<std::uint8_t> of_sets = cells_of_sets(mesh, region.quantity(), sets);
+            for (std::size_t c = 0; c < inside.size(); ++c) inside[c] = inside[c] && of_sets[c];
+            continue;
+        }
         const bool where = region.kind() == Region::Kind::Where;
         const Attribute values = where ? select_field(mesh, region.quantity()).scalar : Attribute{};
         detail::parallel_each(mesh.cells.size(), [&](std::size_t c) {
@@ -113,8 +141,12 @@ std::vector<std::uint8_t> cells_in(const HexMesh& mesh, std::span<const Region> 
     return inside;
 }
 
-HexMesh only_in(const HexMesh& mesh, std::span<const Region> regions) {
-    return detail::subset(mesh, cells_in(mesh, regions)).mesh;
+HexMesh only_cells(const HexMesh& mesh, std::span<const std::uint8_t> cells) {
+    return detail::subset(mesh, cells).mesh;
+}
+
+HexMesh only_in(const HexMesh& mesh, std::span<const Region> regions, const MeshSets& sets) {
+    return only_cells(mesh, cells_in(mesh, regions, sets));
 }
 
 }  // namespace subvol

@@ -20,15 +20,11 @@ void add(std::vector<Vec3>& points, const Attribute& displacement, double factor
     }
 }
 
-double automatic_factor(const HexMesh& mesh, const Attribute& displacement) {
+std::optional<double> automatic_factor(const HexMesh& mesh, const Attribute& displacement) {
     constexpr double kPart = 0.1;
     const std::vector<double> lengths = detail::length_of(displacement).values;
     const double longest = lengths.empty() ? 0 : *std::ranges::max_element(lengths);
-    if (longest == 0) {
-        throw Error(ErrorCode::InvalidInput, "\"" + displacement.name + "\" is 0 everywhere, so there is no factor to find",
-                    displacement.name + "*auto", displacement.name + "*1");
-    }
-    return kPart * bounds(mesh).diagonal() / longest;
+    return longest > 0 ? std::optional(kPart * bounds(mesh).diagonal() / longest) : std::nullopt;
 }
 
 Attribute displacement_of(const HexMesh& mesh, const std::string& field) {
@@ -51,11 +47,19 @@ Warp parse_warp(const std::string& text) {
     throw Error(ErrorCode::InvalidInput, "'" + factor + "' is not a factor", {}, "FIELD, FIELD*20 or FIELD*auto");
 }
 
+std::optional<double> automatic_factor(const HexMesh& mesh, const std::string& field) {
+    return automatic_factor(mesh, displacement_of(mesh, field));
+}
+
 double move_points(HexMesh& mesh, const Warp& warp) {
     const Attribute displacement = displacement_of(mesh, warp.field);
-    const double factor = warp.factor ? *warp.factor : automatic_factor(mesh, displacement);
-    add(mesh.points, displacement, factor);
-    return factor;
+    const std::optional<double> factor = warp.factor ? warp.factor : automatic_factor(mesh, displacement);
+    if (!factor) {
+        throw Error(ErrorCode::InvalidInput, "\"" + displacement.name + "\" is 0 everywhere, so there is no factor to find",
+                    displacement.name + "*auto", displacement.name + "*1");
+    }
+    add(mesh.points, displacement, *factor);
+    return *factor;
 }
 
 void move_points(std::vector<Vec3>& points, std::span<const Attribute> attributes, const Warp& warp, double factor) {

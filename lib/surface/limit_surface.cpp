@@ -398,6 +398,18 @@ LimitSurface no_surface(const HexMesh* mesh) {
 
 LimitSurface limit_surface(const MeshSource& source, std::string_view field, const SurfaceOptions& options) {
     check_surface_options(options);
+    if (!options.sides.empty()) {
+        if (source.mesh() == nullptr)
+            throw Error(ErrorCode::InvalidInput, "pieces of a mesh have no patches", source.stored().name, "the mesh itself");
+        SurfaceOptions boundary = options;
+        boundary.sides = {};
+        boundary.isos.clear();
+        boundary.improve = false;  // which joins triangles of several sides
+        boundary.boundary = true;
+        LimitSurface surface = limit_surface(source, field, boundary);
+        keep_sides(surface, *source.mesh(), options.sides);
+        return surface;
+    }
     NearCells cells(source, field, options);
     for (int layers = first_layers(options); layers <= cells.most_layers(); ++layers) {
         const std::optional<NearSurface> near = cells.find(layers);

@@ -43,4 +43,9 @@ std::size_t mend_slivers(const std::vector<Vec3>& points, const std::vector<Vec3
     return std::abs(glm::dot(b - a, normal_b - normal_a)) / 8;
 }
 
+/// Leaves the triangles of a boundary that lie on some sides of cells, and their points, and measures the surface anew.
+///
+/// mesh: that the places are in
+void keep_sides(LimitSurface& surface, const HexMesh& mesh, std::span<const CellSide> sides);
+
 }  // namespace subvol::detail

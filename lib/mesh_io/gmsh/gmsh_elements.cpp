@@ -60,6 +60,22 @@ bool GmshGroups::has_sharp(std::int64_t dimension, std::int64_t entity) {
     return sharp;
 }
 
+std::string GmshGroups::name_of(std::int64_t dimension, std::int64_t group) const {
+    const auto named = names_.find({dimension, group});
+    return named == names_.end() ? "group " + std::to_string(group) : named->second;
+}
+
+std::vector<std::string> GmshGroups::names_of_entity(std::int64_t dimension, std::int64_t entity) const {
+    std::vector<std::string> names;
+    const auto groups = groups_of_.find({dimension, entity});
+    if (groups == groups_of_.end()) return names;
+    constexpr std::int64_t kMostGroup = std::numeric_limits<std::int64_t>::max();
+    for (const std::int64_t group : groups->second) {
+        if (group != 0 && group >= -kMostGroup) names.push_back(name_of(dimension, std::abs(group)));
+    }
+    return names;
+}
+
 std::int64_t dimension_of(const GmshElement& element) {
     if (element.shape == GmshShape::Line) return 1;
     return element.shape == GmshShape::Triangle || element.shape == GmshShape::Quad ? 2 : 3;
@@ -73,6 +89,8 @@ bool GmshCells::take(const GmshElement& element, std::size_t number, bool sharp,
     if (element.shape == GmshShape::Pyramid && others) return take_as(found_.pyramids, element, number, type, place);
     if (sharp && dimension_of(element) < 3) {
         take_tag(element, type, place);
+    } else if (!groups_.empty() && dimension_of(element) == 2) {
+        take_surface(element, number, type, place);
     } else if (element.shape == GmshShape::Quad && element.nodes == 4) {
         take_shell(found_.quads, element, number, type, place);
     } else if (element.shape == GmshShape::Line && element.nodes == 2) {
@@ -125,12 +143,30 @@ void GmshCells::take_tag(const GmshElement& element, NumberType type, const Plac
     found_.sharp.faces.push_back(tag);
 }
 
+// A triangle or quad of a group. Plain quads may be shells as well.
+void GmshCells::take_surface(const GmshElement& element, std::size_t number, NumberType type, const Place& place) {
+    const std::size_t corners = element.shape == GmshShape::Triangle ? 3 : 4;
+    std::vector<Index> nodes;
+    for (std::size_t k = 0; k < element.nodes; ++k) {
+        const Index node = nodes_.find(values_.integer(place, type));
+        if (k < corners) nodes.push_back(node);
+    }
+    const bool known = std::ranges::find(nodes, kNone) == nodes.end();
+    for (const std::string& group : groups_) {
+        if (known) patches_[group].add(nodes);
+    }
+    if (!known || element.nodes != 4 || corners != 4) return leave_out(element, 1);
+    found_.quads.corners.push_back({nodes[0], nodes[1], nodes[2], nodes[3]});
+    found_.quads.numbers.push_back(static_cast<Index>(number));
+}
+
 template <std::size_t N>
 bool GmshCells::take_as(FileCells<N>& into, const GmshElement& element, std::size_t number, NumberType type,
                         const Place& place) {
     auto& corners = into.corners.emplace_back();
     for (Index& corner : corners) corner = read_corner(place, type);
     into.numbers.push_back(static_cast<Index>(number));
+    for (const std::string& group : groups_) sets_[group].numbers.push_back(static_cast<Index>(number));
     const bool whole = N == 8 && element.nodes > N && options_.curved_tolerance.has_value();
     curved_ += element.nodes > N && !whole;
     std::vector<Index> nodes(corners.begin(), corners.end());

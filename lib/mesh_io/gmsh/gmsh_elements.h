@@ -142,7 +142,7 @@ class GmshGroups {
 public:
     explicit GmshGroups(std::span<const std::string> wanted) : wanted_(wanted) {}
 
-    /// Whether any are wanted; if not, the sections of groups need not be read.
+    /// Whether any are wanted.
     [[nodiscard]] bool any() const { return wanted_.any(); }
 
     /// Reads the section $PhysicalNames, whose keyword was the last word.
@@ -158,6 +158,10 @@ public:
 
     /// Whether the user wants one of the groups that an entity of the geometry is in.
     [[nodiscard]] bool has_sharp(std::int64_t dimension, std::int64_t entity);
+
+    /// The names of the groups of an entity of the geometry, or of one group; numbers where they have none.
+    [[nodiscard]] std::vector<std::string> names_of_entity(std::int64_t dimension, std::int64_t entity) const;
+    [[nodiscard]] std::string name_of(std::int64_t dimension, std::int64_t group) const;
 
     /// To be called after the last element. throws: as SharpGroups::check
     void check(std::string_view file) const { wanted_.check(file); }
@@ -189,12 +193,16 @@ public:
     /// returns: whether it is read as a cell
     bool take(const GmshElement& element, std::size_t number, bool sharp, NumberType type, const Place& place);
 
+    /// The names of the groups of the elements that follow: triangles and quads become patches, cells sets.
+    void set_groups(std::vector<std::string> names) { groups_ = std::move(names); }
+
     /// To be called after the last element: warnings of what is left out.
     void list_left_out(std::string_view file);
 
 private:
     Index read_corner(const Place& place, NumberType type);
     void take_tag(const GmshElement& element, NumberType type, const Place& place);
+    void take_surface(const GmshElement& element, std::size_t number, NumberType type, const Place& place);
     template <std::size_t N>
     void take_shell(FileCells<N>& into, const GmshElement& element, std::size_t number, NumberType type, const Place& place);
     template <std::size_t N>
@@ -206,6 +214,9 @@ private:
     const GmshNumbers& nodes_;
     const ReadOptions& options_;
     MeshFile& found_;
+    ByName<FilePatch> patches_{found_.patches};
+    ByName<FileSet> sets_{found_.sets};
+    std::vector<std::string> groups_;
     std::size_t curved_ = 0;
     std::map<std::string_view, std::pair<std::size_t, std::string_view>> left_out_;
 };

@@ -254,9 +254,9 @@ private:
         } else if (keyword == "$ElementData") {
             if (!has_elements_) in_.fail("$ElementData come before $Elements");
             read_gmsh_data(in_, values_, {.at_cells = true, .numbers = elements_, .needed = taken_}, found_);
-        } else if (keyword == "$PhysicalNames" && groups_.any()) {
+        } else if (keyword == "$PhysicalNames") {
             groups_.read_names(in_);
-        } else if (keyword == "$Entities" && groups_.any() && layout_ != Layout::V2) {
+        } else if (keyword == "$Entities" && layout_ != Layout::V2) {
             groups_.read_entities(values_, layout_ == Layout::V41);
         } else {
             skip_section(keyword, keyword.ends_with("Data"));
@@ -387,6 +387,7 @@ private:
         const std::int64_t number = in_.integer(place);
         const GmshElement& element = element_of(in_.integer(place));
         const std::size_t tags = in_.count(place);
+        if (tags == 0) set_group(0, 0);
         for (std::size_t t = 0; t < tags; ++t) read_tag(element, t, in_.integer(place));
         take(element, number, place);
     }
@@ -402,13 +403,25 @@ private:
             const std::int64_t number = values_.integer(place);
             for (std::size_t t = 0; t < tags; ++t) read_tag(element, t, values_.integer(place));
             if (tags == 0) in_sharp_group_ = false;
+            if (tags == 0) set_group(0, 0);
             take(element, number, place);
         }
     }
 
     // The first tag of an element is its physical group.
     void read_tag(const GmshElement& element, std::size_t tag, std::int64_t value) {
-        if (tag == 0) in_sharp_group_ = groups_.is_sharp(dimension_of(element), value);
+        if (tag > 0) return;
+        const std::int64_t dimension = dimension_of(element);
+        in_sharp_group_ = groups_.is_sharp(dimension, value);
+        set_group(dimension, value);
+    }
+
+    // The names of groups are looked up once for each run of elements of a group.
+    void set_group(std::int64_t dimension, std::int64_t group) {
+        if (group_ == std::pair(dimension, group)) return;
+        group_ = {dimension, group};
+        const bool one = group > 0 && dimension > 1;
+        cells_.set_groups(one ? std::vector<std::string>{groups_.name_of(dimension, group)} : std::vector<std::string>{});
     }
 
     // Reads a block: elements of one type on one entity of the geometry.
@@ -417,6 +430,7 @@ private:
         const std::int64_t second = values_.integer({"block of $Elements"});
         const auto entity = layout_ == Layout::V41 ? std::pair(first, second) : std::pair(second, first);
         in_sharp_group_ = groups_.has_sharp(entity.first, entity.second);
+        cells_.set_groups(groups_.names_of_entity(entity.first, entity.second));
         const GmshElement& element = element_of(values_.integer({"block of $Elements"}));
         const std::size_t count = values_.count({"block of $Elements"}, NumberType::UInt64);
         if (count > of - elements_.size()) {
@@ -434,9 +448,10 @@ private:
     GmshValues values_;
     GmshGroups groups_;
     GmshSteps steps_;
-    int step_ = 0;                 // that is read
-    std::size_t sections_ = 0;     // of data so far
-    bool in_sharp_group_ = false;  // the element that is being read
+    int step_ = 0;                                       // that is read
+    std::size_t sections_ = 0;                           // of data so far
+    std::pair<std::int64_t, std::int64_t> group_{0, 0};  // of the element before: dimension and number
+    bool in_sharp_group_ = false;                        // the element that is being read
     Layout layout_ = Layout::V2;
     MeshFile found_;
     EntityNames names_{"node", "element", 1};

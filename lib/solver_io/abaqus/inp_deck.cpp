@@ -105,7 +105,7 @@ public:
     }
 
 private:
-    enum class Section { Other, Node, Element, ElementSet, Instance, System, NodesBetween, ElementsLike };
+    enum class Section { Other, Node, Element, ElementSet, Instance, System, NodesBetween, ElementsLike, Surface };
 
     struct Places {
         std::unordered_map<std::int64_t, std::size_t> at;
@@ -215,8 +215,31 @@ private:
             if (values_.contains("INSTANCE")) scope_ = kInside + upper_case(values_["INSTANCE"]);
             set_of(values_["ELSET"]);
         }
+        if (keyword == "*SURFACE") start_surface();
         const bool has_data = section_ == Section::Node || section_ == Section::Element;
         return has_data && values_.contains("INPUT") ? std::optional(values_["INPUT"]) : std::nullopt;
+    }
+
+    void start_surface() {
+        const std::string type = upper_case(values_["TYPE"]);
+        if (values_["NAME"].empty() || (!type.empty() && type != "ELEMENT") || values_.contains("COMBINE")) return;
+        section_ = Section::Surface;
+        deck_.surfaces.push_back({values_["NAME"], part_, {}});
+    }
+
+    // A set or an element, and "S1" to "S6"; without it the free sides are meant.
+    void take_side(const std::vector<std::string_view>& fields) {
+        if (fields.empty() || fields[0].empty()) return;
+        InpSide side;
+        const auto number = number_in(fields[0]);
+        if (number) side.number = *number;
+        if (!number) side.set = upper_case(name_of(fields[0]));
+        if (fields.size() > 1) {
+            const auto label = fields[1].size() == 2 && (fields[1][0] == 'S' || fields[1][0] == 's') ? fields[1][1] : '0';
+            if (label < '1' || label > '6') return;  // SPOS, EDGE1, …: of shells
+            side.side = static_cast<std::size_t>(label - '0');
+        }
+        deck_.surfaces.back().sides.push_back(std::move(side));
     }
 
     void start_instance() {
@@ -262,6 +285,7 @@ private:
         if (section_ == Section::NodesBetween) generate_nodes(fields_of(line));
         if (section_ == Section::ElementsLike) generate_elements(fields_of(line));
         if (section_ == Section::ElementSet) take_set(fields_of(line));
+        if (section_ == Section::Surface) take_side(fields_of(line));
         if (section_ == Section::Instance) take_place(fields_of(line));
         if (section_ == Section::System) take_system(fields_of(line));
     }

@@ -30,6 +30,19 @@ struct InpSet {
     std::vector<std::array<std::int64_t, 3>> ranges;
 };
 
+/// Sides of elements. set: of elements, or empty: `number` is one of them; side: from 1, or 0 for all sides that are free
+struct InpSide {
+    std::string set;
+    std::int64_t number = 0;
+    std::size_t side = 0;
+};
+
+/// scope: the part that the surface is of, as in InpInstance; empty: of the assembly
+struct InpSurface {
+    std::string name, scope;
+    std::vector<InpSide> sides;
+};
+
 /// The nodes and elements of a part, or those that an instance adds to its part. sets: of elements, by names in capitals
 struct InpPart {
     std::vector<std::int64_t> numbers;
@@ -60,8 +73,9 @@ struct InpDeck {
     std::vector<InpInstance> instances;
     std::map<std::string, InpType> types;  // owns the types, by their names
     std::set<std::string> files;           // owns the names of files
-    std::size_t made = 0;                  // nodes and elements that are not in the text, those of instances among them
-    std::size_t longer = 0;                // elements with more numbers than their types have nodes
+    std::vector<InpSurface> surfaces;
+    std::size_t made = 0;    // nodes and elements that are not in the text, those of instances among them
+    std::size_t longer = 0;  // elements with more numbers than their types have nodes
     LeftOut sets_left_out;
 };
 

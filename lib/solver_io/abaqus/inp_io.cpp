@@ -17,6 +17,32 @@ namespace {
 
 constexpr EntityNames kAbaqusNames{"node", "element", 1};
 
+// The nodes of the sides of each shape, as Abaqus and CalculiX number them.
+using CornersOfSides = std::vector<std::vector<std::size_t>>;
+const CornersOfSides kInpHexSides{{0, 1, 2, 3}, {4, 7, 6, 5}, {0, 4, 5, 1}, {1, 5, 6, 2}, {2, 6, 7, 3}, {3, 7, 4, 0}};
+const CornersOfSides kInpTetSides{{0, 1, 2}, {0, 3, 1}, {1, 3, 2}, {2, 3, 0}};
+const CornersOfSides kInpPrismSides{{0, 1, 2}, {3, 5, 4}, {0, 3, 4, 1}, {1, 4, 5, 2}, {2, 5, 3, 0}};
+const CornersOfSides kInpPyramidSides{{0, 1, 2, 3}, {0, 4, 1}, {1, 4, 2}, {2, 4, 3}, {3, 4, 0}};
+
+const CornersOfSides& inp_sides(InpShape shape) {
+    static const CornersOfSides none;
+    switch (shape) {
+        case InpShape::Hex:
+            return kInpHexSides;
+        case InpShape::Tet:
+            return kInpTetSides;
+        case InpShape::Prism:
+            return kInpPrismSides;
+        case InpShape::Pyramid:
+            return kInpPyramidSides;
+        default:
+            return none;
+    }
+}
+
+// Lines of a small deck may name any number of sides, each the members of a set.
+constexpr std::size_t kMostSides = std::size_t{1} << 22, kSidesOfElement = 64;
+
 class DeckAssembly {
 public:
     DeckAssembly(const InpDeck& deck, std::string file, const ReadOptions& options)
@@ -44,6 +70,8 @@ public:
             found_.warnings.push_back(counted(curved_, "element has", "elements have") +
                                       " more nodes than corners: only the corners are used");
         }
+        if (sides_ > kMostSides + kSidesOfElement * next_)
+            found_.warnings.emplace_back("its surfaces have too many sides: some are left out");
         drop_parts();
         std::string list;
         for (const auto& [type, count] : left_out_) {
@@ -88,10 +116,10 @@ private:
                 if (choice.takes(blocks_.at(key).name)) chosen.insert(set.numbers.begin(), set.numbers.end());
             }
         }
-        std::unordered_set<std::int64_t> cells;
+        std::unordered_map<std::int64_t, std::pair<Index, const InpElement*>> cells;
         for (const InpElement& element : part.elements) {
             if (!options_.blocks.empty() && !chosen.contains(element.number)) continue;
-            if (take(element)) cells.insert(element.number);
+            if (take(element)) cells[element.number] = {static_cast<Index>(next_), &element};
             ++next_;
         }
         for (const Sets* sets : all_sets) {
@@ -99,9 +127,46 @@ private:
                 MeshBlock& block = blocks_.at(key);
                 if (!choice.takes(block.name)) continue;
                 const std::unordered_set<std::int64_t> of_set(set.numbers.begin(), set.numbers.end());
+                FileSet& cells_of_set = sets_[block.name];
+                for (const std::int64_t number : of_set) {
+                    const auto cell = cells.find(number);
+                    if (cell != cells.end()) cells_of_set.numbers.push_back(cell->second.first);
+                }
                 block.cells += static_cast<std::size_t>(
                     std::ranges::count_if(of_set, [&](std::int64_t number) { return cells.contains(number); }));
             }
+        }
+        for (const InpSurface& surface : deck_.surfaces) {
+            const bool of_all = surface.scope.empty();
+            if (!of_all && surface.scope != instance.part && surface.scope != instance.inside) continue;
+            FilePatch& patch = patches_[surface.name];
+            const auto add_sides = [&](std::int64_t number, std::size_t side) {
+                const auto cell = cells.find(number);
+                if (cell == cells.end() || ++sides_ > kMostSides + kSidesOfElement * next_) return;
+                add_side(*cell->second.second, side, patch);
+            };
+            for (const InpSide& side : surface.sides) {
+                if (side.set.empty()) add_sides(side.number, side.side);
+                const std::string prefix = instance.inside.empty() ? "" : instance.inside.substr(1) + ".";
+                const bool of_instance = !prefix.empty() && side.set.starts_with(prefix);
+                for (const Sets* sets : all_sets) {
+                    const auto set = sets->find(of_instance ? side.set.substr(prefix.size()) : side.set);
+                    if (side.set.empty() || set == sets->end()) continue;
+                    for (const std::int64_t number : set->second.numbers) add_sides(number, side.side);
+                }
+            }
+        }
+    }
+
+    // side: from 1, or 0 for all of them, of which those inside the mesh fall away later
+    void add_side(const InpElement& element, std::size_t side, FilePatch& patch) const {
+        const auto& sides = inp_sides(element.type->shape);
+        std::vector<Index> corners;
+        for (std::size_t s = 0; s < sides.size(); ++s) {
+            if (side != 0 && side != s + 1) continue;
+            corners.clear();
+            for (const std::size_t k : sides[s]) corners.push_back(place(element, element.nodes[k]));
+            patch.add(corners);
         }
     }
 
@@ -179,7 +244,9 @@ private:
     std::map<std::string, MeshBlock> blocks_;  // by names in capitals
     std::map<std::string, std::size_t> left_out_;
     std::vector<std::pair<Index, std::string_view>> shells_;  // numbers and types
-    std::size_t next_ = 0, curved_ = 0;
+    std::size_t next_ = 0, curved_ = 0, sides_ = 0;
+    ByName<FilePatch> patches_{found_.patches};
+    ByName<FileSet> sets_{found_.sets};
 };
 
 }  // namespace

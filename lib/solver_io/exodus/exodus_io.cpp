@@ -164,6 +164,21 @@ struct Block {
     bool taken = false;
 };
 
+// The nodes of the sides of each shape, as Exodus numbers them.
+using CornersOfSides = std::vector<std::vector<std::size_t>>;
+const CornersOfSides kExodusHexSides{{0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {0, 4, 7, 3}, {0, 3, 2, 1}, {4, 5, 6, 7}};
+const CornersOfSides kExodusTetSides{{0, 1, 3}, {1, 2, 3}, {0, 3, 2}, {0, 2, 1}};
+const CornersOfSides kExodusWedgeSides{{0, 1, 4, 3}, {1, 2, 5, 4}, {0, 3, 5, 2}, {0, 2, 1}, {3, 4, 5}};
+const CornersOfSides kExodusPyramidSides{{0, 1, 4}, {1, 2, 4}, {2, 3, 4}, {0, 4, 3}, {0, 3, 2, 1}};
+
+const CornersOfSides& exodus_sides(std::string_view type) {
+    static const CornersOfSides none;
+    if (type.starts_with("HEX")) return kExodusHexSides;
+    if (type.starts_with("TET")) return kExodusTetSides;
+    if (type.starts_with("WEDGE")) return kExodusWedgeSides;
+    return type.starts_with("PYR") ? kExodusPyramidSides : none;
+}
+
 struct Variable {
     std::string name;
     std::vector<std::size_t> numbers;  // of its components, from 1
@@ -227,6 +242,16 @@ private:
             if (!choice.takes(block.name)) continue;
             take(block);
             found_.blocks.push_back({block.name, block.size});
+            if (!block.taken) continue;
+            FileSet& set = found_.sets.emplace_back(FileSet{block.name, {}});
+            for (std::size_t e = 0; e < block.size; ++e) set.numbers.push_back(static_cast<Index>(block.first + e));
+        }
+        // What names parts of the mesh stops nothing but itself where it cannot be read.
+        try {
+            read_side_sets();
+            read_element_sets();
+        } catch (const Error& error) {
+            found_.warnings.push_back("side sets or element sets ignored: " + error.message());
         }
         list_left_out();
         read_variables();
@@ -329,6 +354,75 @@ private:
                          "nodes are 1 to " + std::to_string(count));
         }
         return static_cast<Index>(node - 1);
+    }
+
+    // The names of sets; those without one are called by their numbers. kind: "side set"; of: the part of Exodus's names
+    [[nodiscard]] std::vector<std::string> names_of_sets(std::size_t count, const std::string& of,
+                                                         const std::string& kind) const {
+        exodus_.expect_room(count, sizeof(std::int32_t), kind + "s");
+        auto names = exodus_.has(of + "_names") ? exodus_.names(of + "_names", count) : std::vector<std::string>(count);
+        const auto ids = exodus_.has(of + "_prop1") ? exodus_.integers(of + "_prop1", count) : std::vector<std::int64_t>();
+        for (std::size_t k = 0; k < count; ++k) {
+            if (names[k].empty()) names[k] = kind + " " + std::to_string(k < ids.size() ? ids[k] : std::int64_t(k + 1));
+        }
+        return names;
+    }
+
+    // The elements of a set, from 0; those that are not there are refused.
+    [[nodiscard]] std::vector<std::size_t> elements_in(const std::string& variable, std::size_t count) const {
+        std::vector<std::size_t> elements;
+        for (const std::int64_t element : exodus_.integers(variable, count)) {
+            if (element < 1 || static_cast<std::uint64_t>(element) > elements_)
+                exodus_.fail(variable + ": there is no element " + std::to_string(element));
+            elements.push_back(static_cast<std::size_t>(element - 1));
+        }
+        return elements;
+    }
+
+    void read_side_sets() {
+        const std::size_t count = exodus_.dimension("num_side_sets");
+        const auto names = names_of_sets(count, "ss", "side set");
+        std::map<std::size_t, std::vector<std::int64_t>> nodes_of;  // of blocks that sides are of
+        std::vector<Index> corners;
+        for (std::size_t k = 0; k < count; ++k) {
+            const std::string number = std::to_string(k + 1);
+            const std::size_t sides = exodus_.dimension("num_side_ss" + number);
+            if (sides == 0) continue;
+            const auto elements = elements_in("elem_ss" + number, sides);
+            const auto places = exodus_.integers("side_ss" + number, sides);
+            FilePatch patch{names[k], {}, {}};
+            for (std::size_t s = 0; s < sides; ++s) {
+                // Blocks have elements, one behind the other.
+                const auto block = std::ranges::upper_bound(blocks_, elements[s], {}, &Block::first) - 1;
+                if (!block->taken) continue;
+                const CornersOfSides& all = exodus_sides(block->type);
+                if (places[s] < 1 || static_cast<std::size_t>(places[s]) > all.size())
+                    exodus_.fail(names[k] + ": " + kExodusNames.cell(elements[s]) + " has no side " +
+                                 std::to_string(places[s]));
+                auto& nodes = nodes_of[block->number];
+                if (nodes.empty())
+                    nodes = exodus_.integers("connect" + std::to_string(block->number), block->size * block->nodes);
+                corners.clear();
+                for (const std::size_t corner_of : all[static_cast<std::size_t>(places[s] - 1)])
+                    corners.push_back(corner(nodes[(elements[s] - block->first) * block->nodes + corner_of], elements[s]));
+                patch.add(corners);
+            }
+            found_.patches.push_back(std::move(patch));
+        }
+    }
+
+    void read_element_sets() {
+        const std::size_t count = exodus_.dimension("num_elem_sets");
+        const auto names = names_of_sets(count, "els", "element set");
+        for (std::size_t k = 0; k < count; ++k) {
+            const std::string number = std::to_string(k + 1);
+            const std::size_t size = exodus_.dimension("num_ele_els" + number);
+            if (size == 0) continue;
+            FileSet set{names[k], {}};
+            for (const std::size_t element : elements_in("elem_els" + number, size))
+                set.numbers.push_back(static_cast<Index>(element));
+            found_.sets.push_back(std::move(set));
+        }
     }
 
     void list_left_out() {

@@ -345,10 +345,64 @@ private:
         if (mesh.cells >= kNone / 2) fail("there are too many cells");
         cells_ = mesh.cells;
         add_foam_cells(mesh, options_.other_cells == OtherCells::Ignore, found_);
+        without_failing("boundary", [&](const fs::path& path) { read_patches(path, mesh.faces); });
+        without_failing("cellZones", [&](const fs::path& path) { read_zones(path); });
         const std::string of_points = file("points").string();
         TextScanner in(std::string_view(), of_points, TextScanner::Comments::None);
         in.name_no_place();
         refuse_not_finite(found_, in, kFoamNames);
+    }
+
+    // What names parts of the mesh stops nothing but itself where it cannot be read.
+    template <class Read>
+    void without_failing(const std::string& name, const Read& read) {
+        const fs::path path = file(name);
+        if (!is_there(path)) return;
+        try {
+            read(path);
+        } catch (const Error& error) {
+            found_.warnings.push_back(in_quotes(name) + " ignored: " + error.what());
+        }
+    }
+
+    void read_patches(const fs::path& path, const FoamFaces& faces) {
+        FoamText text(path, kNoLimit, block());
+        std::vector<FilePatch> patches;
+        std::vector<Index> corners;
+        const auto all = static_cast<std::int64_t>(faces.size());
+        std::int64_t left = all;  // patches have no face in common
+        for (const FoamPatch& patch : text.patches()) {
+            left -= std::clamp<std::int64_t>(patch.count, 0, all);
+            if (patch.first < 0 || patch.count < 0 || patch.first > all || patch.count > all - patch.first || left < 0) {
+                text.fail("patch " + in_quotes(patch.name) + " has " + std::to_string(patch.count) + " faces from " +
+                              std::to_string(patch.first) + " on",
+                          "the mesh has " + std::to_string(all));
+            }
+            if (patch.type.starts_with("processor")) continue;  // where the mesh was cut
+            FilePatch& taken = patches.emplace_back(FilePatch{patch.name, {}, {}});
+            for (std::int64_t f = patch.first; f < patch.first + patch.count; ++f) {
+                const auto face = faces[static_cast<std::size_t>(f)];
+                corners.assign(face.begin(), face.end());
+                taken.add(corners);
+            }
+        }
+        take(path, text, 0);
+        found_.patches = std::move(patches);
+    }
+
+    void read_zones(const fs::path& path) {
+        FoamText text(path, limit(cells_), block());
+        std::vector<FileSet> sets;
+        for (const FoamZone& zone : text.zones("cellLabels")) {
+            FileSet& set = sets.emplace_back(FileSet{zone.name, {}});
+            for (const std::int64_t cell : zone.labels) {
+                if (cell < 0 || static_cast<std::uint64_t>(cell) >= cells_)
+                    text.fail("zone " + in_quotes(zone.name) + ": there is no cell " + std::to_string(cell));
+                set.numbers.push_back(static_cast<Index>(cell));
+            }
+        }
+        take(path, text, 0);
+        found_.sets = std::move(sets);
     }
 
     // Those of the points in the whole mesh; points that were added in the middle of cells belong to no other part.

@@ -256,6 +256,49 @@ FoamFaces FoamText::faces() {
     return faces;
 }
 
+template <class Entry>
+void FoamText::each_entry(const Entry& entry) {
+    const std::size_t dictionaries = count(2);
+    expect("(");
+    for (std::size_t k = 0; k < dictionaries; ++k) {
+        const std::string name(token());
+        expect("{");
+        for (std::string key(token()); key != "}"; key = token()) {
+            entry(name, key);
+            int open = 0;
+            for (std::string_view word = token(); word != ";" || open > 0; word = token()) {
+                if (word.empty()) fail("the entry " + in_quotes(key) + " does not end");
+                if (word == "{" || word == "(" || word == "[") ++open;
+                if (word == "}" || word == ")" || word == "]") --open;
+                if (word == "}" && open == 0) break;
+            }
+        }
+    }
+    expect(")");
+}
+
+std::vector<FoamPatch> FoamText::patches() {
+    std::vector<FoamPatch> patches;
+    each_entry([&](const std::string& name, std::string_view key) {
+        if (patches.empty() || patches.back().name != name) patches.push_back({name});
+        if (key == "nFaces") patches.back().count = label();
+        if (key == "startFace") patches.back().first = label();
+        if (key == "type") patches.back().type = token();
+    });
+    return patches;
+}
+
+std::vector<FoamZone> FoamText::zones(std::string_view wanted) {
+    std::vector<FoamZone> zones;
+    each_entry([&](const std::string& name, std::string_view key) {
+        if (key != wanted) return;
+        skip_space();
+        if (next_ < text_.size() && (text_[next_] < '0' || text_[next_] > '9')) std::ignore = token();  // List<label>
+        zones.push_back({name, labels()});
+    });
+    return zones;
+}
+
 // An entry is a word and what follows up to a semicolon, or a dictionary.
 void FoamText::find_internal_field(int depth) {
     for (std::string_view word = token(); word != "internalField"; word = token()) {

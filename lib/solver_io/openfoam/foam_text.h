@@ -26,6 +26,17 @@ struct FoamFaces {
     }
 };
 
+/// A patch: type: such as wall or processor; its faces are `count` from `first` on.
+struct FoamPatch {
+    std::string name, type = {};
+    std::int64_t first = 0, count = 0;
+};
+
+struct FoamZone {
+    std::string name;
+    std::vector<std::int64_t> labels;
+};
+
 /// A file of OpenFOAM: its header and the list or field that follows, as text or in binary numbers of the widths that the
 /// header gives. Every failure is an Error(InvalidInput) that names the file and the line, in binary files the byte.
 class FoamText {
@@ -52,6 +63,11 @@ public:
     [[nodiscard]] std::vector<double> reals(std::size_t components, std::size_t expected = 0);
     [[nodiscard]] FoamFaces faces();
 
+    /// The patches of the file `boundary`.
+    [[nodiscard]] std::vector<FoamPatch> patches();
+    /// The lists of labels of the file `cellZones`. key: of the list in each zone, cellLabels
+    [[nodiscard]] std::vector<FoamZone> zones(std::string_view key);
+
     /// The internalField of a field file, for so many cells. Entries before it and in files that it includes are what $names of
     /// its value stand for; what has to be computed (#calc) is refused.
     [[nodiscard]] std::vector<double> internal_field(std::size_t components, std::size_t cells);
@@ -70,6 +86,10 @@ private:
     std::string_view bytes(std::size_t size);
     void read_header();
     void take_block(std::size_t block);
+    /// Calls entry(name, key) for each entry of each dictionary in a list of named ones, before the entry's value, of which it
+    /// may read some; goes on behind the entry.
+    template <class Entry>
+    void each_entry(const Entry& entry);
     /// Goes to the internalField, and keeps the entries before it.
     void find_internal_field(int depth);
     void include(const std::filesystem::path& path, int depth);

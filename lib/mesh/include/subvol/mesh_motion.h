@@ -10,6 +10,11 @@ namespace subvol {
 /// Whether two meshes have the same cells, creases and sharp faces: their refinements then differ only in points and values.
 [[nodiscard]] bool same_cells(const HexMesh& a, const HexMesh& b);
 
+/// The mesh whose points and values are 1 − t of those of a mesh and t of those of another.
+///
+/// throws: Error(InvalidInput) if their cells, or the names and channels of their fields differ
+[[nodiscard]] HexMesh mesh_between(HexMesh a, const HexMesh& b, double t);
+
 /// The velocity of the points between two meshes with the same cells, as an attribute: their displacement divided by the time
 /// between the meshes, in world units per unit of `time`. It is of second order in the middle of that time. As refinement is
 /// linear, the refined attribute is the velocity of the refined points.

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "subvol/hex_mesh.h"
+#include "subvol/mesh_sets.h"
 #include "subvol/names.h"
 #include "subvol/option.h"
 #include "subvol/shells.h"
@@ -119,6 +120,7 @@ struct UnreadField {
 
 /// blocks:     the parts that were read, of formats that have such parts
 /// unread:     fields that could not be read; a warning names them
+/// sets:       patches of the boundary and sets of cells, of formats that have them: what lies inside the mesh is left out
 /// cell_means: only if values at cells were fitted: the values of these fields in the file, for each cell of the mesh
 /// cell_parts: for each cell of the mesh the number of the file's cell that it is a part of; empty if there are no such fields
 /// cell_values: how well the means are met; nothing if there are no such fields
@@ -138,6 +140,7 @@ struct ReadResult {
     std::optional<CurvedReport> curved = {};
     Shells shells = {};
     std::vector<UnreadField> unread = {};
+    MeshSets sets = {};
 };
 
 }  // namespace subvol

@@ -7,30 +7,33 @@
 #include <vector>
 
 #include "subvol/hex_mesh.h"
+#include "subvol/mesh_sets.h"
 
 namespace subvol {
 
-/// A part of space, or the cells where a quantity is not 0:
+/// A part of space, the cells where a quantity is not 0, or those of named sets:
 ///
-///     box:x0,y0,z0,x1,y1,z1    sphere:x,y,z,r    half:px,py,pz,nx,ny,nz    where:T>500
+///     box:x0,y0,z0,x1,y1,z1    sphere:x,y,z,r    half:px,py,pz,nx,ny,nz    where:T>500    set:rotor,stator
 ///
 /// half: the side of the plane through p that the normal n points to
 /// where: a quantity as for `field_of`. A cell belongs to the region if it is not 0 at half of its corners or more
 class Region {
 public:
-    enum class Kind { Box, Sphere, Half, Where };
+    enum class Kind { Box, Sphere, Half, Where, Set };
 
     /// throws: Error(InvalidInput) if the text does not say a region, or one without volume
     Region(const std::string& text);
 
     [[nodiscard]] Kind kind() const { return kind_; }
+    /// Whether it consists of whole cells, not of a part of space.
+    [[nodiscard]] bool chooses_cells() const { return kind_ == Kind::Where || kind_ == Kind::Set; }
     /// About how far inside a part of space a place lies (world), negative outside. It is exact near the faces, and changes
     /// by no more than the distance between two places.
     [[nodiscard]] double depth(const Vec3& place) const;
     /// The same behind each of its faces: a box has six, others one.
     [[nodiscard]] std::size_t faces() const { return kind_ == Kind::Box ? 6 : 1; }
     [[nodiscard]] double depth(const Vec3& place, std::size_t face) const;
-    /// The quantity of `where`.
+    /// The quantity of `where`; the names of `set`, with commas between.
     [[nodiscard]] const std::string& quantity() const { return quantity_; }
 
 private:
@@ -49,10 +52,15 @@ private:
 
 /// The cells that belong to all regions: of parts of space those whose centre, the mean of the corners, lies inside.
 ///
-/// throws: Error(InvalidInput) as `field_of`, or if there are none
-[[nodiscard]] std::vector<std::uint8_t> cells_in(const HexMesh& mesh, std::span<const Region> regions);
+/// sets:   those of the mesh that regions may name
+/// throws: Error(InvalidInput) as `field_of` and `find_set`, or if there are none
+[[nodiscard]] std::vector<std::uint8_t> cells_in(const HexMesh& mesh, std::span<const Region> regions,
+                                                 const MeshSets& sets = {});
 
-/// The mesh of the cells that belong to all regions. The cells that were beside them no longer shape their limit.
-[[nodiscard]] HexMesh only_in(const HexMesh& mesh, std::span<const Region> regions);
+/// The mesh of some cells. The cells that were beside them no longer shape their limit. cells: a flag for each cell
+[[nodiscard]] HexMesh only_cells(const HexMesh& mesh, std::span<const std::uint8_t> cells);
+
+/// The mesh of the cells that belong to all regions.
+[[nodiscard]] HexMesh only_in(const HexMesh& mesh, std::span<const Region> regions, const MeshSets& sets = {});
 
 }  // namespace subvol

@@ -23,6 +23,11 @@ struct Warp {
 /// throws: Error(InvalidInput) if the factor is not a finite number
 [[nodiscard]] Warp parse_warp(const std::string& text);
 
+/// The factor of a displacement whose longest one is then a tenth of the diagonal of the mesh's box; nothing if nothing moves.
+///
+/// throws: Error(InvalidInput) if the field is not a vector of three components
+[[nodiscard]] std::optional<double> automatic_factor(const HexMesh& mesh, const std::string& field);
+
 /// Moves the points by the displacement; the mesh's fields stay as they are.
 ///
 /// returns: the factor

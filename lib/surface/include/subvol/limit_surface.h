@@ -3,11 +3,13 @@
 
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "subvol/limit.h"
+#include "subvol/mesh_sets.h"
 #include "subvol/mesh_source.h"
 #include "subvol/option.h"
 #include "subvol/probe.h"
@@ -23,6 +25,8 @@ namespace subvol {
 /// tolerance:     how far triangles may lie from the limit, as a part of the longest side of the box; > 0
 /// max_level:     cells are refined no further, 1 to 8
 /// max_triangles: the search for a finer level ends before there would be more
+/// sides:         those of cells to which the boundary is restricted, as of a patch; empty: the whole boundary. Isosurfaces are
+///                left out then, and triangles are not improved
 /// improve:       edges of triangles with small angles are collapsed or flipped, so that fewer of them are slivers
 struct SurfaceOptions {
     SchemeOptions scheme{};
@@ -32,6 +36,7 @@ struct SurfaceOptions {
     double tolerance = 1e-3;
     int max_level = 6;
     std::size_t max_triangles = 40'000'000;
+    std::span<const CellSide> sides{};
     bool improve = true;
     Progress* progress = nullptr;
 };

@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: Apache-2.0
+// A side of a cell is a map x(s,t) of the unit square. With the outward normal n the patch's area and flow are
+//
+//     A = Σ ∫∫ |∂x/∂s × ∂x/∂t| ds dt        Φ = Σ ∫∫ F · (∂x/∂s × ∂x/∂t) ds dt        (n dA = ∂x/∂s × ∂x/∂t ds dt)
+//
+// over its sides. Both are summed at the places of Gauss, of which the limit gives position, Jacobian and fields. The flow
+// needs no unit normal, so that it is exact where A is not: the integrand is a product of smooth functions.
+#include "subvol/patch_measure.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "mesh_subset.h"
+#include "subvol/detail/limit_of_part.h"
+#include "subvol/error.h"
+#include "subvol/progress.h"
+
+namespace subvol {
+namespace {
+
+constexpr int kMostPartsOfSide = 8;
+constexpr std::size_t kSidePlacesAtOnce = std::size_t{1} << 18;
+
+/// A place of a rule on the unit interval.
+struct RuleNode {
+    double at, weight;
+};
+
+/// The 3-point rule of Gauss in each of n equal parts.
+std::vector<RuleNode> gauss_nodes(int n) {
+    const double away = std::sqrt(0.6);
+    std::vector<RuleNode> nodes;
+    for (int part = 0; part < n; ++part) {
+        for (const auto& [at, weight] : {RuleNode{-away, 5.0 / 18}, RuleNode{0, 8.0 / 18}, RuleNode{away, 5.0 / 18}})
+            nodes.push_back({(part + (1 + at) / 2) / n, weight / n});
+    }
+    return nodes;
+}
+
+/// Places at which least and greatest values are looked for, corners among them.
+std::vector<RuleNode> even_nodes() {
+    return {{0, 0}, {0.25, 0}, {0.5, 0}, {0.75, 0}, {1, 0}};
+}
+
+Vec3 vector_of(const std::array<double, 3>& a) {
+    return {a[0], a[1], a[2]};
+}
+
+/// What is summed over a patch.
+struct PatchSums {
+    double area = 0, flux = 0, throughput = 0;
+    Vec3 normal{0.0};
+    std::vector<double> fields;  // of each channel
+};
+
+/// The limit near some patches, at places of their sides.
+class PatchLimit {
+public:
+    PatchLimit(const HexMesh& mesh, std::span<const Patch> patches, const PatchOptions& options)
+        : part_(near(mesh, patches, options.flux)),
+          limit_(part_.mesh, {.scheme = options.scheme, .tolerance = 1e-5}, extent(mesh, options.flux)),
+          has_flux_(!options.flux.empty()) {
+        for (const Attribute& attribute : mesh.attributes) {
+            for (int c = 0; c < attribute.channels; ++c) {
+                const std::string suffix = attribute.channels > 1 ? "." + std::to_string(c) : "";
+                channels_.push_back(attribute.name + suffix);
+            }
+        }
+    }
+
+    [[nodiscard]] const std::vector<std::string>& channels() const { return channels_; }
+    [[nodiscard]] bool has_flux() const { return has_flux_; }
+
+    /// PatchSums over a patch by a rule in both directions of each side.
+    [[nodiscard]] PatchSums sums(const Patch& patch, const std::vector<RuleNode>& rule) const {
+        PatchSums sums;
+        sums.fields.resize(channels_.size(), 0);
+        each_place(patch, rule, [&](const Vec3& normal, std::span<const double> values, double weight) {
+            const double area = weight * glm::length(normal);
+            sums.area += area;
+            sums.normal += weight * normal;
+            const std::size_t fields = channels_.size();
+            for (std::size_t k = 0; k < fields; ++k) sums.fields[k] += area * values[k];
+            if (!has_flux_) return;
+            const double flow = weight * glm::dot(normal, Vec3(values[fields], values[fields + 1], values[fields + 2]));
+            sums.flux += flow;
+            sums.throughput += std::abs(flow);
+        });
+        return sums;
+    }
+
+    /// Widens the ranges by the values at places of a patch.
+    void add_extremes(const Patch& patch, const std::vector<RuleNode>& rule, std::vector<PatchField>& fields) const {
+        each_place(patch, rule, [&](const Vec3&, std::span<const double> values, double) {
+            for (std::size_t k = 0; k < fields.size(); ++k) {
+                fields[k].min = std::min(fields[k].min, values[k]);
+                fields[k].max = std::max(fields[k].max, values[k]);
+            }
+        });
+    }
+
+private:
+    static detail::LimitExtent extent(const HexMesh& mesh, std::span<const double> flux) {
+        detail::LimitExtent extent = detail::limit_extent(mesh);
+        if (flux.empty()) return extent;
+        const auto [least, greatest] = std::ranges::minmax(flux);
+        extent.ranges.push_back({least, greatest});
+        return extent;
+    }
+
+    /// The cells near the patches; the vectors of the flow become the last attribute.
+    static detail::MeshSubset near(const HexMesh& mesh, std::span<const Patch> patches, std::span<const double> flux) {
+        if (!flux.empty() && flux.size() != 3 * mesh.points.size())
+            throw Error(ErrorCode::InvalidInput, "has " + std::to_string(flux.size()) + " numbers", "flux",
+                        "three for each of the " + std::to_string(mesh.points.size()) + " points");
+        std::vector<std::uint8_t> cells(mesh.cells.size(), 0);
+        for (const Patch& patch : patches) {
+            if (patch.sides.empty()) throw Error(ErrorCode::InvalidInput, "has no sides", "patch \"" + patch.name + "\"");
+            for (const CellSide& side : patch.sides) {
+                if (side.cell >= cells.size() || side.side > 5)
+                    throw Error(ErrorCode::InvalidInput, "has a side that is not of the mesh", "patch \"" + patch.name + "\"");
+                cells[side.cell] = 1;
+            }
+        }
+        detail::grow(mesh, cells, detail::kHaloOfLimit);
+        detail::MeshSubset part = detail::subset(mesh, cells);
+        if (flux.empty()) return part;
+        Attribute& vectors = part.mesh.attributes.emplace_back(Attribute{"", 3, {}});
+        for (const Index p : part.points) {
+            const auto of_point = flux.subspan(3 * std::size_t{p}, 3);
+            vectors.values.insert(vectors.values.end(), of_point.begin(), of_point.end());
+        }
+        return part;
+    }
+
+    /// Calls call(∂x/∂s × ∂x/∂t, values of all channels, weight) place by place, in the order of the sides.
+    template <class Call>
+    void each_place(const Patch& patch, const std::vector<RuleNode>& rule, const Call& call) const {
+        const std::size_t of_side = rule.size() * rule.size();
+        const std::size_t at_once = std::max<std::size_t>(1, kSidePlacesAtOnce / of_side);
+        std::vector<LimitQuery> queries;
+        std::vector<double> values(channels_.size() + (has_flux_ ? 3 : 0));
+        for (std::size_t begin = 0; begin < patch.sides.size(); begin += at_once) {
+            const std::size_t end = std::min(begin + at_once, patch.sides.size());
+            queries.clear();
+            for (std::size_t i = begin; i < end; ++i) {
+                const auto [cell, side] = patch.sides[i];
+                const auto at = std::ranges::lower_bound(part_.cells, cell);
+                const auto number = static_cast<Index>(at - part_.cells.begin());
+                for (const RuleNode& s : rule) {
+                    for (const RuleNode& t : rule) queries.push_back({number, vector_of(place_on_side(side, s.at, t.at))});
+                }
+            }
+            const LimitSamples samples = limit_.at(queries);
+            for (std::size_t q = 0; q < queries.size(); ++q) {
+                const std::uint8_t side = patch.sides[begin + q / of_side].side;
+                const Vec3 origin = vector_of(place_on_side(side, 0, 0));
+                const Vec3 along_s = samples.jacobians[q] * (vector_of(place_on_side(side, 1, 0)) - origin);
+                const Vec3 along_t = samples.jacobians[q] * (vector_of(place_on_side(side, 0, 1)) - origin);
+                std::size_t next = 0;
+                for (const LimitAttribute& attribute : samples.attributes) {
+                    for (std::size_t c = 0; c < attribute.channels; ++c)
+                        values[next++] = attribute.values[q * attribute.channels + c];
+                }
+                const std::size_t k = q % of_side;
+                call(glm::cross(along_s, along_t), values, rule[k / rule.size()].weight * rule[k % rule.size()].weight);
+            }
+        }
+    }
+
+    detail::MeshSubset part_;
+    LimitEvaluator limit_;
+    std::vector<std::string> channels_;
+    bool has_flux_;
+};
+
+PatchMeasure measure_patch(const PatchLimit& limit, const Patch& patch, const PatchOptions& options) {
+    PatchMeasure result;
+    result.name = patch.name;
+    result.sides = patch.sides.size();
+    for (const std::string& channel : limit.channels()) result.fields.push_back({channel, 0, 0, HUGE_VAL, -HUGE_VAL});
+    limit.add_extremes(patch, even_nodes(), result.fields);
+    PatchSums sums = limit.sums(patch, gauss_nodes(1));
+    for (int n = 2; n <= kMostPartsOfSide; n *= 2) {
+        const PatchSums finer = limit.sums(patch, gauss_nodes(n));
+        result.error = finer.area > 0 ? std::abs(finer.area - sums.area) / finer.area : 0;
+        for (std::size_t k = 0; k < result.fields.size(); ++k) {
+            const double range = (result.fields[k].max - result.fields[k].min) * finer.area;
+            const double change =
+                std::abs(finer.fields[k] - sums.fields[k] - (finer.area - sums.area) * finer.fields[k] / finer.area);
+            if (range > 0) result.error = std::max(result.error, change / range);
+        }
+        if (finer.throughput > 0) result.error = std::max(result.error, std::abs(finer.flux - sums.flux) / finer.throughput);
+        sums = finer;
+        if (result.error <= options.tolerance) break;
+    }
+    result.area = sums.area;
+    result.normal = sums.normal;
+    if (limit.has_flux()) {
+        result.flux = sums.flux;
+        result.throughput = sums.throughput;
+    }
+    for (std::size_t k = 0; k < result.fields.size(); ++k) {
+        result.fields[k].integral = sums.fields[k];
+        result.fields[k].mean = sums.area > 0 ? sums.fields[k] / sums.area : 0;
+    }
+    return result;
+}
+
+}  // namespace
+
+std::vector<PatchMeasure> measure_patches(const HexMesh& mesh, std::span<const Patch> patches, const PatchOptions& options) {
+    validate(mesh);
+    report_progress(options.progress, "patches", 0);
+    const PatchLimit limit(mesh, patches, options);
+    std::vector<PatchMeasure> all;
+    for (const Patch& patch : patches) {
+        report_progress(options.progress, "patches", static_cast<double>(all.size()) / static_cast<double>(patches.size()));
+        all.push_back(measure_patch(limit, patch, options));
+    }
+    return all;
+}
+
+}  // namespace subvol

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "subvol/index.h"
+
+namespace subvol {
+
+/// A side of a cell, on the boundary of the mesh. side: 0 to 5 as in `kCellFaces`
+struct CellSide {
+    Index cell = 0;
+    std::uint8_t side = 0;
+
+    bool operator==(const CellSide&) const = default;
+};
+
+/// A named part of a mesh's boundary: a patch, a side set, a surface.
+struct Patch {
+    std::string name;
+    std::vector<CellSide> sides;
+};
+
+/// A named set of a mesh's cells, ascending.
+struct CellSet {
+    std::string name;
+    std::vector<Index> cells;
+};
+
+/// The named parts of a mesh. Patches and sets may have cells and sides in common.
+struct MeshSets {
+    std::vector<Patch> patches;
+    std::vector<CellSet> sets;
+
+    [[nodiscard]] bool empty() const { return patches.empty() && sets.empty(); }
+};
+
+/// throws: Error(InvalidInput) if there is no patch of that name; lists those that exist
+[[nodiscard]] const Patch& find_patch(const MeshSets& sets, std::string_view name);
+
+/// throws: Error(InvalidInput) if there is no set of that name; lists those that exist
+[[nodiscard]] const CellSet& find_set(const MeshSets& sets, std::string_view name);
+
+/// The sets of a mesh of which some cells are left, in their order. Patches and sets that have lost all cells stay, empty.
+///
+/// kept: a flag for each cell
+[[nodiscard]] MeshSets sets_of_cells(MeshSets sets, std::span<const std::uint8_t> kept);
+
+/// The place on a side: s and t in [0,1], along the first and the last edge of the side's corners in `kCellFaces`.
+[[nodiscard]] std::array<double, 3> place_on_side(std::uint8_t side, double s, double t);
+
+}  // namespace subvol

@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: Apache-2.0
+// A face of a file may have become several sides of hexahedra: where cells were split into hexahedra, a curved cell into
+// smaller ones, a polygon into triangles first. Whatever was done, each new point lies on a corner, an edge, a face or in the
+// middle of a cell of the file, and the file's points of that entity carry it. So a side of a hexahedron lies on a face of the
+// file if the points that carry its four corners are all points of the face:
+//
+//     a───m───b      the corners of the side (a, m, c, n) are carried by a, by a and b, by a, b, d and e, and by a and d:
+//     │   │   │      together by a, b, d and e, which are points of the face a b e d
+//     n───c───┤
+//     │   │   │
+//     d───┴───e
+#include "file_sets.h"
+
+#include <algorithm>
+#include <map>
+#include <numeric>
+
+#include "subvol/cell.h"
+
+namespace subvol::detail {
+
+namespace {
+
+/// All faces of all patches, by the points of the file.
+class PatchFaces {
+public:
+    PatchFaces(const std::vector<FilePatch>& patches, std::size_t file_points) : patches_(patches) {
+        for (std::size_t k = 0; k < patches.size(); ++k) {
+            for (std::size_t f = 0; f < patches[k].size(); ++f) faces_.push_back({k, f});
+            for (const Index p : patches[k].corners) file_points = std::max(file_points, std::size_t{p} + 1);
+        }
+        std::vector<std::size_t> counts(file_points + 1, 0);
+        for (const Face& face : faces_) {
+            for (const Index p : points_of(face)) ++counts[p + 1];
+        }
+        for (std::size_t p = 0; p < file_points; ++p) counts[p + 1] += counts[p];
+        starts_ = counts;
+        at_point_.resize(counts.back());
+        for (std::size_t i = 0; i < faces_.size(); ++i) {
+            for (const Index p : points_of(faces_[i])) at_point_[counts[p]++] = i;
+        }
+    }
+
+    [[nodiscard]] bool has(Index p) const { return p + std::size_t{1} < starts_.size() && starts_[p] < starts_[p + 1]; }
+
+    /// Calls call(patch) once for each patch with a face that has all these points.
+    template <class Call>
+    void each_patch_with(std::span<const Index> points, const Call& call) const {
+        std::size_t last = patches_.size();  // faces at a point come in the order of their patches
+        for (std::size_t i = starts_[points[0]]; i < starts_[points[0] + 1]; ++i) {
+            const Face& face = faces_[at_point_[i]];
+            if (face.patch == last) continue;
+            const auto of_face = points_of(face);
+            if (!std::ranges::all_of(points, [&](Index p) { return std::ranges::find(of_face, p) != of_face.end(); })) continue;
+            last = face.patch;
+            call(face.patch);
+        }
+    }
+
+private:
+    struct Face {
+        std::size_t patch, face;
+    };
+    [[nodiscard]] std::span<const Index> points_of(const Face& face) const { return patches_[face.patch].face(face.face); }
+
+    const std::vector<FilePatch>& patches_;
+    std::vector<Face> faces_;
+    std::vector<std::size_t> starts_, at_point_;
+};
+
+/// Which points of the file carry a point of the mesh.
+struct Carriers {
+    const IndexRows* sources;
+    const IndexRows& of_curved;
+
+    template <class Call>
+    void each(Index p, const Call& call) const {
+        const auto of_source = [&](Index q) {
+            if (of_curved.size() == 0) return call(q);
+            for (const Index r : of_curved[q]) call(r);
+        };
+        if (sources == nullptr) return of_source(p);
+        for (const Index q : (*sources)[p]) of_source(q);
+    }
+};
+
+std::vector<Patch> patches_of_mesh(const HexMesh& mesh, const MeshFile& found, const IndexRows* sources,
+                                   std::vector<std::string>& warnings) {
+    if (found.patches.empty()) return {};
+    const PatchFaces faces(found.patches, found.points.size());
+    const Carriers carriers{sources, found.carriers};
+    std::vector<std::uint8_t> on_patch(mesh.points.size(), 0);
+    for (Index p = 0; p < on_patch.size(); ++p) {
+        bool all = true;
+        carriers.each(p, [&](Index q) { all = all && faces.has(q); });
+        on_patch[p] = all;
+    }
+    struct Side {
+        CellSide side;
+        std::vector<std::size_t> patches;
+        bool inside = false;
+    };
+    std::map<std::array<Index, 4>, Side> sides;
+    std::vector<Index> points;
+    for (Index c = 0; c < mesh.cells.size(); ++c) {
+        for (std::uint8_t side = 0; side < 6; ++side) {
+            std::array<Index, 4> key;
+            for (std::size_t k = 0; k < 4; ++k) key[k] = mesh.cells[c][kCellFaces[side][k]];
+            if (!std::ranges::all_of(key, [&](Index p) { return on_patch[p] != 0; })) continue;
+            points.clear();
+            for (const Index p : key) carriers.each(p, [&](Index q) { points.push_back(q); });
+            std::ranges::sort(points);
+            points.erase(std::unique(points.begin(), points.end()), points.end());
+            std::vector<std::size_t> patches;
+            faces.each_patch_with(points, [&](std::size_t patch) { patches.push_back(patch); });
+            if (patches.empty()) continue;
+            std::ranges::sort(key);
+            const auto [at, is_new] = sides.try_emplace(key, Side{{c, side}, std::move(patches)});
+            at->second.inside = !is_new;
+        }
+    }
+    std::vector<std::uint8_t> inside(found.patches.size(), 0);
+    std::vector<Patch> result;
+    for (const FilePatch& patch : found.patches) result.push_back({printable(patch.name), {}});
+    for (const auto& [key, side] : sides) {
+        for (const std::size_t patch : side.patches) inside[patch] |= side.inside ? 1 : 0;
+        if (side.inside) continue;
+        for (const std::size_t patch : side.patches) result[patch].sides.push_back(side.side);
+    }
+    for (Patch& patch : result) {
+        std::ranges::sort(patch.sides, {}, [](const CellSide& side) { return std::pair(side.cell, side.side); });
+    }
+    LeftOut left_out;
+    for (std::size_t k = 0; k < result.size(); ++k) {
+        if (result[k].sides.empty() && inside[k]) left_out.add(result[k].name, "its faces lie between cells");
+    }
+    left_out.report("patch", "patches", warnings);
+    std::erase_if(result, [](const Patch& patch) { return patch.sides.empty(); });
+    return result;
+}
+
+}  // namespace
+
+MeshSets sets_of_mesh(const HexMesh& mesh, const MeshFile& found, std::span<const Index> cell_numbers, const IndexRows* sources,
+                      std::vector<std::string>& warnings) {
+    MeshSets sets{patches_of_mesh(mesh, found, sources, warnings), {}};
+    if (found.sets.empty()) return sets;
+    const auto number = [&](Index c) { return cell_numbers.empty() ? c : cell_numbers[c]; };
+    std::vector<Index> by_number(mesh.cells.size());
+    std::iota(by_number.begin(), by_number.end(), Index{0});
+    std::ranges::stable_sort(by_number, {}, number);
+    for (const FileSet& set : found.sets) {
+        CellSet of_mesh{printable(set.name), {}};
+        for (const Index wanted : set.numbers) {
+            const auto [first, last] = std::ranges::equal_range(by_number, wanted, {}, number);
+            of_mesh.cells.insert(of_mesh.cells.end(), first, last);
+        }
+        std::ranges::sort(of_mesh.cells);
+        of_mesh.cells.erase(std::unique(of_mesh.cells.begin(), of_mesh.cells.end()), of_mesh.cells.end());
+        if (!of_mesh.cells.empty()) sets.sets.push_back(std::move(of_mesh));
+    }
+    return sets;
+}
+
+}  // namespace subvol::detail

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+
+#include "mesh_file.h"
+#include "subvol/hex_mesh.h"
+#include "subvol/mesh_sets.h"
+
+namespace subvol::detail {
+
+/// The patches and sets of a file as those of the mesh that was made of it. Faces between two cells of the mesh belong to no
+/// patch; patches that have only such faces are left out, with a warning.
+///
+/// cell_numbers: the number in the file of each cell of the mesh; empty if it is the same
+/// sources:      the points of the file whose mean each point of the mesh is, if its cells were split; else null
+[[nodiscard]] MeshSets sets_of_mesh(const HexMesh& mesh, const MeshFile& found, std::span<const Index> cell_numbers,
+                                    const IndexRows* sources, std::vector<std::string>& warnings);
+
+}  // namespace subvol::detail

@@ -1,0 +1,371 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Patches of the boundary and sets of cells: read from the files that have them, measured, cut out."""
+
+import csv
+import math
+import struct
+import unittest
+
+from command import InFolder, subvol
+
+# A bar of 3 x 1 x 1 unit cubes along x.
+POINTS = [(x, y, z) for z in range(2) for y in range(2) for x in range(4)]
+NUMBER = {p: i for i, p in enumerate(POINTS)}
+AROUND = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1)]
+CELLS = [[NUMBER[x + i, j, k] for i, j, k in AROUND] for x in range(3)]
+LEFT = [NUMBER[p] for p in ((0, 0, 0), (0, 0, 1), (0, 1, 1), (0, 1, 0))]
+RIGHT = [NUMBER[p] for p in ((3, 0, 0), (3, 1, 0), (3, 1, 1), (3, 0, 1))]
+
+
+def foam(name, kind, text):
+    return f"FoamFile\n{{\n version 2.0;\n format ascii;\n class {kind};\n object {name};\n}}\n{text}\n"
+
+
+def write_foam(folder, boundary=None, flow=(2, 0, 0)):
+    """The bar as a case: the flow U is the same in all cells."""
+    sides = [(0, 4, 7, 3), (1, 2, 6, 5), (0, 1, 5, 4), (3, 7, 6, 2), (0, 3, 2, 1), (4, 5, 6, 7)]
+    inner = [([CELLS[c][k] for k in sides[1]], c) for c in range(2)]
+    outer = {"left": [], "right": [], "walls": []}
+    for c, cell in enumerate(CELLS):
+        for s, corners in enumerate(sides):
+            if (s == 1 and c < 2) or (s == 0 and c > 0):
+                continue
+            outer["left" if s == 0 else "right" if s == 1 else "walls"].append(([cell[k] for k in corners], c))
+    faces = inner + outer["left"] + outer["right"] + outer["walls"]
+    mesh = folder / "constant" / "polyMesh"
+    mesh.mkdir(parents=True)
+    (mesh / "points").write_text(foam("points", "vectorField", f"{len(POINTS)}\n(" +
+                                      " ".join(f"({x} {y} {z})" for x, y, z in POINTS) + ")"))
+    (mesh / "faces").write_text(foam("faces", "faceList", f"{len(faces)}\n(" +
+                                     " ".join(f"4({' '.join(map(str, f))})" for f, _ in faces) + ")"))
+    (mesh / "owner").write_text(foam("owner", "labelList", f"{len(faces)}({' '.join(str(c) for _, c in faces)})"))
+    (mesh / "neighbour").write_text(foam("neighbour", "labelList", "2(1 2)"))
+    (mesh / "boundary").write_text(boundary or foam("boundary", "polyBoundaryMesh", """3
+(
+    left { type patch; nFaces 1; startFace 2; }
+    right { type patch; inGroups 1(out); nFaces 1; startFace 3; }
+    walls { type wall; nFaces 12; startFace 4; }
+)"""))
+    (mesh / "cellZones").write_text(foam("cellZones", "regIOobject", """1
+(
+    middle { type cellZone; cellLabels List<label> 1(1); }
+)"""))
+    (folder / "0").mkdir()
+    (folder / "0" / "U").write_text(foam("U", "volVectorField", f"dimensions [0 1 -1 0 0 0 0];\n"
+                                         f"internalField uniform ({flow[0]} {flow[1]} {flow[2]});\nboundaryField {{}}"))
+
+
+INP = """*NODE
+""" + "\n".join(f"{i + 1}, {x}, {y}, {z}" for i, (x, y, z) in enumerate(POINTS)) + """
+*ELEMENT, TYPE=C3D8, ELSET=all
+""" + "\n".join(f"{c + 1}, " + ", ".join(str(p + 1) for p in cell) for c, cell in enumerate(CELLS)) + """
+*ELSET, ELSET=ends
+1, 3
+*SURFACE, NAME=left, TYPE=ELEMENT
+1, S6
+*SURFACE, NAME=right
+3, S4
+*SURFACE, NAME=tips
+ends, S4
+1, S6
+*SURFACE, NAME=free
+ends
+*SURFACE, NAME=inside
+1, S4
+*SURFACE, NAME=nodes, TYPE=NODE
+1,
+"""
+
+MSH2 = f"""$MeshFormat
+2.2 0 8
+$EndMeshFormat
+$PhysicalNames
+3
+2 1 "left"
+2 2 "right"
+3 7 "bar"
+$EndPhysicalNames
+$Nodes
+{len(POINTS)}
+""" + "\n".join(f"{i + 1} {x} {y} {z}" for i, (x, y, z) in enumerate(POINTS)) + """
+$EndNodes
+$Elements
+6
+1 3 2 1 1 """ + " ".join(str(p + 1) for p in LEFT) + """
+2 3 2 2 2 """ + " ".join(str(p + 1) for p in RIGHT) + """
+3 3 2 0 3 1 2 6 5
+""" + "\n".join(f"{c + 4} 5 2 7 4 " + " ".join(str(p + 1) for p in cell) for c, cell in enumerate(CELLS)) + """
+$EndElements
+"""
+
+MSH4 = f"""$MeshFormat
+4.1 0 8
+$EndMeshFormat
+$PhysicalNames
+2
+2 1 "left"
+3 7 "bar"
+$EndPhysicalNames
+$Entities
+0 0 2 1
+1 0 0 0 0 1 1 1 1 0
+2 3 0 0 3 1 1 1 5 0
+1 0 0 0 3 1 1 1 7 0
+$EndEntities
+$Nodes
+1 {len(POINTS)} 1 {len(POINTS)}
+3 1 0 {len(POINTS)}
+""" + "\n".join(str(i + 1) for i in range(len(POINTS))) + "\n" + "\n".join(f"{x} {y} {z}" for x, y, z in POINTS) + """
+$EndNodes
+$Elements
+3 5 1 5
+2 1 3 1
+1 """ + " ".join(str(p + 1) for p in LEFT) + """
+2 2 3 1
+2 """ + " ".join(str(p + 1) for p in RIGHT) + """
+3 1 5 3
+""" + "\n".join(f"{c + 3} " + " ".join(str(p + 1) for p in cell) for c, cell in enumerate(CELLS)) + """
+$EndElements
+"""
+
+
+def netcdf(dimensions, variables):
+    """A classic netCDF file: dimensions {name: length}, variables [(name, dimensions, type, values)] of ints, reals, texts."""
+    def name(text):
+        return struct.pack(">i", len(text)) + text.encode() + b"\0" * (-len(text) % 4)
+    order = list(dimensions)
+    kinds = {"c": (2, 1), "i": (4, 4), "d": (6, 8)}
+    data = []
+    for _, _, kind, values in variables:
+        raw = values if kind == "c" else struct.pack(f">{len(values)}{kind}", *values)
+        data.append(raw + b"\0" * (-len(raw) % 4))
+    def header(first):
+        text = b"CDF\1" + struct.pack(">i", 0) + struct.pack(">ii", 10, len(order))
+        for dimension in order:
+            text += name(dimension) + struct.pack(">i", dimensions[dimension])
+        text += struct.pack(">ii", 0, 0) + struct.pack(">ii", 11, len(variables))
+        for (variable, over, kind, _), raw in zip(variables, data):
+            text += name(variable) + struct.pack(">i", len(over))
+            text += b"".join(struct.pack(">i", order.index(d)) for d in over)
+            if variable.startswith("connect"):
+                text += struct.pack(">ii", 12, 1) + name("elem_type") + struct.pack(">ii", 2, 4) + b"HEX8"
+            else:
+                text += struct.pack(">ii", 0, 0)
+            text += struct.pack(">iii", kinds[kind][0], len(raw), first)
+            first += len(raw)
+        return text
+    return header(len(header(0))) + b"".join(data)
+
+
+def exodus():
+    def names(*texts):
+        return b"".join(text.encode().ljust(8, b"\0") for text in texts)
+    return netcdf({"num_dim": 3, "num_nodes": len(POINTS), "num_elem": 3, "num_el_blk": 1, "num_el_in_blk1": 3,
+                   "num_nod_per_el1": 8, "num_side_sets": 3, "num_side_ss1": 1, "num_side_ss2": 1, "num_side_ss3": 2,
+                   "num_elem_sets": 1, "num_ele_els1": 1, "len": 8},
+                  [("coordx", ["num_nodes"], "d", [p[0] for p in POINTS]), ("coordy", ["num_nodes"], "d", [p[1] for p in POINTS]),
+                   ("coordz", ["num_nodes"], "d", [p[2] for p in POINTS]),
+                   ("connect1", ["num_el_in_blk1", "num_nod_per_el1"], "i", [p + 1 for cell in CELLS for p in cell]),
+                   ("ss_names", ["num_side_sets", "len"], "c", names("left", "", "between")),
+                   ("ss_prop1", ["num_side_sets"], "i", [4, 9, 11]),
+                   ("elem_ss1", ["num_side_ss1"], "i", [1]), ("side_ss1", ["num_side_ss1"], "i", [4]),
+                   ("elem_ss2", ["num_side_ss2"], "i", [3]), ("side_ss2", ["num_side_ss2"], "i", [2]),
+                   ("elem_ss3", ["num_side_ss3"], "i", [1, 2]), ("side_ss3", ["num_side_ss3"], "i", [2, 4]),
+                   ("els_names", ["num_elem_sets", "len"], "c", names("one")),
+                   ("elem_els1", ["num_ele_els1"], "i", [2])])
+
+
+class Patches(InFolder):
+    def patches(self, file, *more):
+        found = self.run_ok("info", file, "--json", *more).json()
+        return ({p["name"]: p["faces"] for p in found["patches"]}, {s["name"]: s["cells"] for s in found["sets"]})
+
+    def refused(self, words, *arguments):
+        done = subvol(*arguments, folder=self.folder)
+        self.assertEqual(done.code, 2, done.err)
+        for word in words:
+            self.assertIn(word, done.err)
+
+    def centre_x(self, file, patch):
+        """The mean of x over a patch tells which side it is."""
+        found = self.run_ok("probe", file, "--patch", patch, "--density", "x", "--json").json()
+        return found["patches"][0]["fields"][0]["mean"]
+
+    def test_openfoam(self):
+        write_foam(self.folder / "case")
+        self.assertEqual(self.patches("case"), ({"left": 1, "right": 1, "walls": 12}, {"middle": 1}))
+        self.assertIn("patches", self.run_ok("info", "case").err + self.run_ok("info", "case").out)
+        self.assertAlmostEqual(self.centre_x("case", "left"), 0, 9)
+        self.assertAlmostEqual(self.centre_x("case", "right"), 3, 9)
+        found = self.run_ok("probe", "case", "--patch", "all", "--flux", "U", "--json").json()
+        flows = {p["name"]: p["flux"] for p in found["patches"]}
+        self.assertAlmostEqual(flows["left"], -2 * found["patches"][0]["area"], 9)
+        self.assertAlmostEqual(flows["right"], -flows["left"], 9)
+        self.assertAlmostEqual(found["flux_sum"], 0, 9)
+
+    def test_openfoam_that_is_wrong(self):
+        for number, entry in enumerate(("left { nFaces 99; startFace 2; }", "left { nFaces 1; startFace -2; }", "left { nFaces",
+                                        "left { nFaces 9999999999999999999; startFace 1; }", "left { nFaces 1 { ( }")):
+            write_foam(self.folder / f"c{number}", foam("boundary", "polyBoundaryMesh", f"1\n(\n{entry}\n)"))
+            done = self.run_ok("info", f"c{number}")
+            self.assertIn('"boundary" ignored', done.err)
+
+    def test_surfaces_of_abaqus(self):
+        (self.folder / "a.inp").write_text(INP)
+        patches, sets = self.patches("a.inp")
+        self.assertEqual(patches, {"left": 1, "right": 1, "tips": 2, "free": 10})
+        self.assertEqual(sets, {"all": 3, "ends": 2})
+        self.assertAlmostEqual(self.centre_x("a.inp", "left"), 0, 9)
+        self.assertAlmostEqual(self.centre_x("a.inp", "right"), 3, 9)
+        self.assertIn("inside", self.run_ok("info", "a.inp").err)
+
+    def test_groups_of_gmsh(self):
+        (self.folder / "a.msh").write_text(MSH2)
+        self.assertEqual(self.patches("a.msh"), ({"left": 1, "right": 1}, {"bar": 3}))
+        self.assertAlmostEqual(self.centre_x("a.msh", "right"), 3, 9)
+        (self.folder / "b.msh").write_text(MSH4)
+        self.assertEqual(self.patches("b.msh"), ({"left": 1, "group 5": 1}, {"bar": 3}))
+        self.assertAlmostEqual(self.centre_x("b.msh", "left"), 0, 9)
+
+    def test_side_sets_of_exodus(self):
+        (self.folder / "a.exo").write_bytes(exodus())
+        self.assertEqual(self.patches("a.exo"), ({"left": 1, "side set 9": 1}, {"block 1": 3, "one": 1}))
+        self.assertAlmostEqual(self.centre_x("a.exo", "left"), 0, 9)
+        self.assertAlmostEqual(self.centre_x("a.exo", "side set 9"), 3, 9)
+        self.assertIn("between", self.run_ok("info", "a.exo").err)
+
+    def test_prisms_are_split_with_their_patches(self):
+        lines = INP.split("*ELEMENT")[0] + """*ELEMENT, TYPE=C3D6
+1, 1, 2, 5, 9, 10, 13
+2, 2, 6, 5, 10, 14, 13
+*SURFACE, NAME=bottom
+1, S1
+2, S1
+*SURFACE, NAME=front
+1, S3
+"""
+        (self.folder / "a.inp").write_text(lines)
+        patches, _ = self.patches("a.inp")
+        self.assertEqual(patches, {"bottom": 6, "front": 4})
+        found = self.run_ok("probe", "a.inp", "--patch", "bottom", "--patch", "front", "--scheme", "linear", "--density", "y+z",
+                            "--json").json()["patches"]
+        self.assertAlmostEqual(found[0]["area"], 1, 9)
+        self.assertAlmostEqual(found[0]["fields"][0]["mean"], .5, 9)
+        self.assertAlmostEqual(found[1]["area"], 1, 9)
+        self.assertAlmostEqual(found[1]["normal"][1], -1, 9)
+
+    def test_curved_cells_keep_their_patches(self):
+        middle = [(a, b) for a, b in ((0, 1), (1, 2), (2, 3), (3, 0), (4, 5), (5, 6), (6, 7), (7, 4), (0, 4), (1, 5), (2, 6), (3, 7))]
+        corners = [(i, j, k) for i, j, k in AROUND]
+        nodes = corners + [tuple((u + v) / 2 for u, v in zip(corners[a], corners[b])) for a, b in middle]
+        nodes = [(x, y, z + .3 * x * (1 - x)) for x, y, z in nodes]
+        (self.folder / "a.inp").write_text("*NODE\n" + "\n".join(f"{i + 1}, {x}, {y}, {z}" for i, (x, y, z) in enumerate(nodes)) +
+                                           "\n*ELEMENT, TYPE=C3D20\n1, " + ", ".join(str(k + 1) for k in range(20)) +
+                                           "\n*SURFACE, NAME=top\n1, S2\n*SURFACE, NAME=side\n1, S6\n")
+        patches, _ = self.patches("a.inp")
+        self.assertGreater(patches["top"], 1)
+        found = self.run_ok("probe", "a.inp", "--patch", "top", "--patch", "side", "--density", "x", "--json").json()["patches"]
+        slopes = [math.hypot(1, .3 * (1 - 2 * (k + .5) / 1000)) for k in range(1000)]
+        self.assertAlmostEqual(found[0]["area"], sum(slopes) / 1000, 3)  # of the parabola
+        self.assertAlmostEqual(found[1]["fields"][0]["mean"], 0, 9)
+
+    def test_means_and_flows_agree_with_formulas(self):
+        (self.folder / "a.inp").write_text(INP)
+        found = self.run_ok("probe", "a.inp", "--patch", "free", "--patch", "left", "--density", "x+2*y", "--flux",
+                            "grad(density)", "--scheme", "linear", "--json").json()
+        free, left = found["patches"]
+        self.assertAlmostEqual(free["area"], 10, 9)
+        self.assertAlmostEqual(free["flux"], 0, 9)
+        self.assertAlmostEqual(left["flux"], -1, 9)
+        self.assertAlmostEqual(left["fields"][0]["mean"], 1, 9)
+        self.assertEqual((left["fields"][0]["min"], left["fields"][0]["max"]), (0, 2))
+        self.assertAlmostEqual(found["flux_sum"], -1, 9)
+
+    def test_sets_choose_cells(self):
+        (self.folder / "a.inp").write_text(INP)
+        linear = ("--density", "x", "--scheme", "linear", "--json")
+        volume = lambda *only: self.run_ok("probe", "a.inp", "--stats", *linear, *only).json()["stats"]["whole"]["volume"]
+        self.assertAlmostEqual(volume("--only", "set:ends"), 2, 9)
+        self.assertAlmostEqual(volume("--only", "set:ends,all"), 3, 9)
+        self.assertAlmostEqual(volume("--only", "set:ends", "--only", "box:0,0,0,.5,1,1"), .5, 6)
+        found = self.run_ok("probe", "a.inp", "--patch", "right", "--only", "set:ends", *linear).json()
+        self.assertAlmostEqual(found["patches"][0]["area"], 1, 9)
+        self.refused(["no set \"nowhere\"", "all, ends"], "probe", "a.inp", "--stats", "--only", "set:nowhere")
+
+    def test_names_that_are_not_there(self):
+        (self.folder / "a.inp").write_text(INP)
+        self.refused(["no patch \"inlet\"", "left, right, tips, free"], "probe", "a.inp", "--patch", "inlet")
+        self.refused(["no patch \"inlet\"", "left, right, tips, free"], "surface", "a.inp", "-o", "a.ply", "--patch", "inlet")
+        self.refused(["has no patches"], "probe", "model:ball:2", "--patch", "all")
+        self.refused(["--flux", "1 component"], "probe", "a.inp", "--patch", "left", "--density", "x", "--flux", "density")
+        self.refused(["--flux", "--patch"], "probe", "a.inp", "--stats", "--flux", "x")
+        self.refused(["--patch", "set:"], "probe", "a.inp", "--patch", "left", "--only", "box:0,0,0,1,1,1")
+
+    def test_the_surface_of_a_patch(self):
+        (self.folder / "a.inp").write_text(INP)
+        whole = self.run_ok("surface", "a.inp", "-o", "a.ply", "--scheme", "linear", "--json").json()
+        self.assertAlmostEqual(whole["area"], 14, 6)
+        for names, area in ((["left"], 1), (["free"], 10), (["left", "right"], 2), (["all"], 10)):
+            words = [word for name in names for word in ("--patch", name)]
+            part = self.run_ok("surface", "a.inp", "-o", "b.ply", "--scheme", "linear", "--json", *words).json()
+            self.assertAlmostEqual(part["area"], area, 6)
+
+    def test_a_table_over_steps(self):
+        write_foam(self.folder / "case")
+        later = self.folder / "case" / "0.5"
+        later.mkdir()
+        (later / "U").write_text((self.folder / "case" / "0" / "U").read_text().replace("(2 0 0)", "(4 0 0)"))
+        self.run_ok("probe", "case", "--patch", "left", "--patch", "right", "--flux", "U", "--step", "all", "-o", "a.csv")
+        rows = list(csv.DictReader((self.folder / "a.csv").read_text().splitlines()))
+        self.assertEqual([row["of"] for row in rows], ["left", "right", "left", "right"])
+        flows = [float(row["flow out"]) for row in rows]
+        for flow, expected in zip(flows, (-1, 1, -2, 2)):
+            self.assertAlmostEqual(flow / abs(flows[0]), expected, 6)
+        self.run_ok("probe", "case", "--patch", "left", "--flux", "U", "--step", "all", "-o", "a.svg")
+        self.assertIn("flow out", (self.folder / "a.svg").read_text())
+
+
+class Times(InFolder):
+    def write_bar(self, name, bend):
+        path = self.folder / name
+        import quantities_test
+        quantities_test.write_beam(path, bend)
+
+    def setUp(self):
+        super().setUp()
+        for k, bend in enumerate((0, .1, .2)):
+            self.write_bar(f"s{k}.vtk", bend)
+        sets = "".join(f'<DataSet timestep="{t}" file="s{k}.vtk"/>' for k, t in enumerate((0, 1, 3)))
+        (self.folder / "a.pvd").write_text(f'<VTKFile type="Collection"><Collection>{sets}</Collection></VTKFile>')
+
+    def displacement(self, *more):
+        return self.run_ok("probe", "a.pvd", "--at", "1,1,3", "--field", "D.x", "--json", *more).json()
+
+    def test_a_time_between_steps(self):
+        found = self.displacement("--time", "1.5", "--interpolate-time")
+        self.assertAlmostEqual(found["values"][0]["value"], (.75 * .1 + .25 * .2) * 3, 9)
+        self.assertAlmostEqual(found["time"], 1.5)
+        self.assertAlmostEqual(self.displacement("--time", "1.5")["values"][0]["value"], .3, 9)
+        self.assertAlmostEqual(self.displacement("--time", "1", "--interpolate-time")["values"][0]["value"], .3, 9)
+        self.assertAlmostEqual(self.displacement("--time", "7", "--interpolate-time")["values"][0]["value"], .6, 9)
+        self.assertNotEqual(subvol("probe", "a.pvd", "--at", "1,1,1", "--interpolate-time", folder=self.folder).code, 0)
+
+    def test_one_factor_for_all_steps(self):
+        def heights(*more):
+            found = self.run_ok("probe", "a.pvd", "--stats", "--field", "x", "--step", "0-2", "--json", *more).json()
+            return [step["stats"]["whole"]["fields"][0]["max"] for step in found["steps"]], found
+        _, found = heights("--warp", "D*auto")
+        factor = found["warp"]["factor"]
+        self.assertAlmostEqual(factor * .2 * 6, .1 * math.sqrt(4 + 4 + 36), 6)  # of the last step, which moves most
+
+    def test_quantities_at_rest(self):
+        self.run_ok("surface", "s2.vtk", "-o", "a.vtp", "--color-field", "grad(T).z", "--warp", "D*3", "--json")
+        rest = self.run_ok("vdb", "s2.vtk", "-o", "a.vdb", "--fields", "g=grad(T).z", "--resolution", "12", "--warp", "D*3",
+                           "--json").json()
+        grid = {g["name"]: g for g in rest["grids"]}["g"]
+        self.assertAlmostEqual(grid["min"], .5, 4)
+        self.assertAlmostEqual(grid["max"], .5, 4)
+
+
+if __name__ == "__main__":
+    unittest.main()
