@@ -110,17 +110,20 @@ void ExtremeSearch::know(std::size_t part, std::size_t channel, double value) {
     }
 }
 
+void ExtremeSearch::know_constant(std::size_t part, std::size_t channel, double value, Index cell) {
+    for (const bool high : {false, true}) {
+        Side& side = sides_[side_of(part, channel, high)];
+        if (side.starts.empty()) side.add({value, side.sign * value, cell, Vec3(0.0), Vec3(0.0), 0});
+    }
+}
+
 void ExtremeSearch::look(std::size_t part, Index cell, std::size_t number, double step,
-                         std::span<const GridMeasure::Extremes> channels) {
-    for (std::size_t c = 0; c < channels.size(); ++c) {
-        const GridMeasure::Extremes& found = channels[c];
-        sides_[side_of(part, c, false)].add({found.low.value, cell, found.low.uvw, found.low_peak, step});
-        sides_[side_of(part, c, true)].add({found.high.value, cell, found.high.uvw, found.high_peak, step});
-        for (const bool high : {false, true}) {
-            const Candidate candidate{static_cast<std::uint32_t>(number), static_cast<std::uint32_t>(side_of(part, c, high)),
-                                      high ? found.high_bound : -found.low_bound};
-            is_open(candidate) ? candidates_.push_back(candidate) : leave(candidate);
-        }
+                         std::span<const GridMeasure::Extreme> found) {
+    for (const GridMeasure::Extreme& one : found) {
+        const std::size_t side = side_of(part, one.channel, one.sign > 0);
+        sides_[side].add({one.sign * one.value, one.bound, cell, one.uvw, one.peak, step});
+        const Candidate candidate{static_cast<std::uint32_t>(number), static_cast<std::uint32_t>(side), one.bound};
+        is_open(candidate) ? candidates_.push_back(candidate) : leave(candidate);
     }
     if (candidates_.size() > 2 * kept_ + kEnough) keep_open();
 }
@@ -155,6 +158,7 @@ void ExtremeSearch::find(const HexMesh& control, const SchemeOptions& scheme, co
     for (std::size_t s = 0; s < sides_.size(); ++s) {
         const std::size_t channel = s / 2 % scales_.size();
         for (const Start& start : sides_[s].starts) {
+            if (&start != &sides_[s].starts.front() && start.bound < sides_[s].best) continue;  // leads to nothing better
             about[start.cell] = 1;
             climbs.push_back({s / 2 / scales_.size(), channel, s % 2 == 1, start.cell, scales_[channel] > 0 ? start.step : 0});
             queries.push_back({start.cell, start.uvw});

@@ -24,12 +24,20 @@ public:
     /// Takes a value that the limit has somewhere.
     void know(std::size_t part, std::size_t channel, double value);
 
+    /// Takes the value that a constant channel has everywhere, and a cell for its place.
+    void know_constant(std::size_t part, std::size_t channel, double value, Index cell);
+
+    /// The best values so far: the least one times −1, the largest.
+    [[nodiscard]] std::array<double, 2> known(std::size_t part, std::size_t channel) const {
+        return {sides_[side_of(part, channel, false)].best, sides_[side_of(part, channel, true)].best};
+    }
+
     /// Looks at the nodes of a cell.
     ///
-    /// number:   of the cell among those of the level
-    /// step:     in parameters, how far an extreme may be from the node that is nearest to it
-    /// channels: what the nodes say of each
-    void look(std::size_t part, Index cell, std::size_t number, double step, std::span<const GridMeasure::Extremes> channels);
+    /// number: of the cell among those of the level
+    /// step:   in parameters, how far an extreme may be from the node that is nearest to it
+    /// found:  the extremes of those channels in which the cell may go beyond what is known
+    void look(std::size_t part, Index cell, std::size_t number, double step, std::span<const GridMeasure::Extreme> found);
 
     /// Ends a level: marks the cells that are to be refined, the most promising first.
     ///
@@ -45,9 +53,9 @@ public:
               std::vector<PartMeasure>& found) const;
 
 private:
-    /// A place with a value near an extreme. peak: where it may be even nearer
+    /// A place with a value near an extreme. peak: where it may be even nearer; bound: sign × what it may reach
     struct Start {
-        double value;
+        double value, bound;
         Index cell;
         Vec3 uvw, peak;
         double step;

@@ -5,7 +5,13 @@
 //     f(g_u, g_v, g_w) = Σ_k B[g_w][k] Σ_j B[g_v][j] Σ_i B[g_u][i] f_ijk
 //
 // one pass of 27 sums of three terms along each axis. Derivatives have the slopes D in place of B along their axis; the eight
-// passes of a coordinate share what is equal. The volume element is the determinant of the three derivatives.
+// passes of a coordinate share what is equal. The volume element is the determinant of the three derivatives. The integral of f
+// is Σ_g W_g f(g), W_g the weight of the Gauss point times the volume element. By the passes' transposes it is a sum over
+// nodes:
+//
+//     Σ_ijk w_ijk f_ijk,   w_ijk = Σ_g W_g B[g_u][i] B[g_v][j] B[g_w][k]
+//
+// so the passes are made once for all channels.
 #include "grid_measure.h"
 
 #include <algorithm>
@@ -25,7 +31,7 @@ constexpr std::array<double, 3> kGaussPlaces{0.11270166537925831, 0.5, 0.8872983
 constexpr std::array<double, 3> kGaussWeights{5.0 / 18, 8.0 / 18, 5.0 / 18};
 
 struct Passes {
-    Matrix values, slopes;
+    Matrix values, slopes, transposed;
 };
 
 Passes make_passes() {
@@ -34,6 +40,7 @@ Passes make_passes() {
         const QuadraticWeights at(kGaussPlaces[g]);
         passes.values[g] = at.values;
         passes.slopes[g] = at.slopes;
+        for (std::size_t n = 0; n < 3; ++n) passes.transposed[n][g] = at.values[n];
     }
     return passes;
 }
@@ -53,11 +60,12 @@ inline void pass(const Matrix& by, const Piece& from, Piece& to) {
     }
 }
 
-void at_gauss_points(const Piece& nodes, Piece& to) {
+/// The same pass along all three axes.
+void pass_thrice(const Matrix& by, const Piece& from, Piece& to) {
     Piece one, two;
-    pass(kPasses.values, nodes, one);
-    pass(kPasses.values, one, two);
-    pass(kPasses.values, two, to);
+    pass(by, from, one);
+    pass(by, one, two);
+    pass(by, two, to);
 }
 
 /// The derivatives along u, v, w.
@@ -83,6 +91,20 @@ Piece trilinear(Piece nodes) {
     return nodes;
 }
 
+/// What the weights of the nodes of a trilinear piece are for its corners: the transpose of `trilinear`.
+void move_to_corners(Piece& weights) {
+    const auto halve = [&](std::size_t n, std::size_t step) {
+        weights[n - step] += weights[n] / 2;
+        weights[n + step] += weights[n] / 2;
+        weights[n] = 0;
+    };
+    for (std::size_t n = 9; n < 18; ++n) halve(n, 9);
+    for (std::size_t first = 3; first < 27; first += 9) {
+        for (std::size_t n = first; n < first + 3; ++n) halve(n, 3);
+    }
+    for (const std::size_t n : {1u, 7u, 19u, 25u}) halve(n, 1);
+}
+
 /// How far a node lies from the trilinear piece.
 double largest_step(const Piece& nodes) {
     const Piece flat = trilinear(nodes);
@@ -93,26 +115,19 @@ double largest_step(const Piece& nodes) {
 
 }  // namespace
 
-GridMeasure::GridMeasure(std::vector<double> origins)
-    : origins_(std::move(origins)), values_(origins_.size()), at_gauss_(origins_.size()) {
+GridMeasure::GridMeasure(std::vector<double> origins) : origins_(std::move(origins)), at_gauss_(origins_.size()) {
 }
 
-/// Positions are relative to the first node, and values to their origins, so that sums keep their digits.
-void GridMeasure::load(const DenseCell& grid, std::size_t first, std::size_t step) {
-    const Vec3 origin = grid.points[first];
+/// Positions are relative to the first node, so that sums keep their digits.
+void GridMeasure::load(const DenseCell& grid, const Nodes& nodes) {
+    const Vec3 origin = grid.points[nodes[0]];
     for (std::size_t n = 0; n < kNodes; ++n) {
-        const std::size_t node = first + step * (n % 3 + grid.side * (n / 3 % 3 + grid.side * (n / 9)));
-        const Vec3 p = grid.points[node] - origin;
+        const Vec3 p = grid.points[nodes[n]] - origin;
         for (std::size_t d = 0; d < 3; ++d) positions_[d][n] = p[static_cast<int>(d)];
-        std::size_t c = 0;
-        for (const auto& values : grid.values) {
-            const std::size_t count = values.size() / grid.points.size();
-            for (std::size_t k = 0; k < count; ++k, ++c) values_[c][n] = values[node * count + k] - origins_[c];
-        }
     }
 }
 
-void GridMeasure::evaluate() {
+void GridMeasure::weigh() {
     std::array<std::array<Piece, 3>, 3> slopes;
     for (std::size_t d = 0; d < 3; ++d) slopes_at_gauss_points(positions_[d], slopes[d]);
     const auto& [x, y, z] = slopes;
@@ -122,30 +137,54 @@ void GridMeasure::evaluate() {
                                    x[2][g] * (y[0][g] * z[1][g] - y[1][g] * z[0][g]);
         weights_[g] = kGaussWeights[g % 3] * kGaussWeights[g / 3 % 3] * kGaussWeights[g / 9] * determinant;
     }
-    for (std::size_t c = 0; c < values_.size(); ++c) at_gauss_points(values_[c], at_gauss_[c]);
+    if (!origins_.empty()) pass_thrice(kPasses.transposed, weights_, node_weights_);
 }
 
-void GridMeasure::add(std::span<double> sums) const {
+/// Values are relative to their origins, so that sums keep their digits.
+void GridMeasure::add(const DenseCell& grid, const Nodes& nodes, std::span<double> sums) const {
     double volume = 0;
     for (const double weight : weights_) volume += weight;
     sums[0] += volume;
-    for (std::size_t c = 0; c < at_gauss_.size(); ++c) {
-        double sum = 0;
-        for (std::size_t g = 0; g < kNodes; ++g) sum += weights_[g] * at_gauss_[c][g];
-        sums[1 + c] += sum;
+    std::size_t c = 0;
+    for (const auto& values : grid.values) {
+        const std::size_t count = values.size() / grid.points.size();
+        for (std::size_t k = 0; k < count; ++k, ++c) {
+            double sum = 0;
+            for (std::size_t n = 0; n < kNodes; ++n) {
+                if (node_weights_[n] != 0) sum += node_weights_[n] * (values[nodes[n] * count + k] - origins_[c]);
+            }
+            sums[1 + c] += sum;
+        }
+    }
+}
+
+void GridMeasure::find_values(const DenseCell& grid, const Nodes& nodes) {
+    Piece at_nodes;
+    std::size_t c = 0;
+    for (const auto& values : grid.values) {
+        const std::size_t count = values.size() / grid.points.size();
+        for (std::size_t k = 0; k < count; ++k, ++c) {
+            for (std::size_t n = 0; n < kNodes; ++n) at_nodes[n] = values[nodes[n] * count + k] - origins_[c];
+            pass_thrice(kPasses.values, at_nodes, at_gauss_[c]);
+        }
     }
 }
 
 void GridMeasure::add_sums(const DenseCell& grid, std::size_t step, std::span<double> sums) {
-    each_piece(grid, step, [&] { add(sums); });
+    each_piece(grid, step, [&](const Nodes& nodes) {
+        load(grid, nodes);
+        weigh();
+        add(grid, nodes, sums);
+    });
 }
 
 void GridMeasure::add_trilinear_sums(const DenseCell& grid, std::span<double> sums) {
-    load(grid, 0, (grid.side - 1) / 2);
-    for (Piece& nodes : positions_) nodes = trilinear(nodes);
-    for (Piece& nodes : values_) nodes = trilinear(nodes);
-    evaluate();
-    add(sums);
+    const Nodes nodes(grid.side, 0, (grid.side - 1) / 2);
+    load(grid, nodes);
+    for (Piece& axis : positions_) axis = trilinear(axis);
+    weigh();
+    move_to_corners(node_weights_);
+    add(grid, nodes, sums);
 }
 
 namespace {
@@ -164,38 +203,25 @@ struct SideNodes {
     }
 };
 
-struct SidePoint {
-    std::array<double, 9> values, along, across;
-    double weight;
-};
-
-std::array<SidePoint, 9> make_side_points() {
-    std::array<SidePoint, 9> points{};
-    for (std::size_t g = 0; g < 9; ++g) {
-        const QuadraticWeights u(kGaussPlaces[g % 3]), v(kGaussPlaces[g / 3]);
-        for (std::size_t n = 0; n < 9; ++n) {
-            points[g].values[n] = u.values[n % 3] * v.values[n / 3];
-            points[g].along[n] = u.slopes[n % 3] * v.values[n / 3];
-            points[g].across[n] = u.values[n % 3] * v.slopes[n / 3];
-        }
-        points[g].weight = kGaussWeights[g % 3] * kGaussWeights[g / 3] / 3;
-    }
-    return points;
-}
-
-const std::array<SidePoint, 9> kSidePoints = make_side_points();
-
-/// The volume of the cone from the origin to a piece of nine nodes: a third of the integral of x · n.
+/// The volume of the cone from the origin to a piece of nine nodes: a third of the integral of x · n. Two passes, as above.
 double cone(const std::array<Vec3, 9>& nodes) {
-    double volume = 0;
-    for (const SidePoint& at : kSidePoints) {
-        Vec3 x(0.0), along(0.0), across(0.0);
-        for (std::size_t n = 0; n < 9; ++n) {
-            x += at.values[n] * nodes[n];
-            along += at.along[n] * nodes[n];
-            across += at.across[n] * nodes[n];
+    std::array<Vec3, 9> values, slopes;  // at the Gauss points along the first axis, at the nodes along the second
+    const auto sum = [](const std::array<double, 3>& by, const Vec3& a, const Vec3& b, const Vec3& c) {
+        return by[0] * a + by[1] * b + by[2] * c;
+    };
+    for (std::size_t row = 0; row < 9; row += 3) {
+        for (std::size_t g = 0; g < 3; ++g) {
+            values[row + g] = sum(kPasses.values[g], nodes[row], nodes[row + 1], nodes[row + 2]);
+            slopes[row + g] = sum(kPasses.slopes[g], nodes[row], nodes[row + 1], nodes[row + 2]);
         }
-        volume += at.weight * glm::dot(x, glm::cross(along, across));
+    }
+    double volume = 0;
+    for (std::size_t g = 0; g < 9; ++g) {
+        const std::size_t i = g % 3, j = g / 3;
+        const Vec3 x = sum(kPasses.values[j], values[i], values[3 + i], values[6 + i]),
+                   across = sum(kPasses.slopes[j], values[i], values[3 + i], values[6 + i]),
+                   along = sum(kPasses.values[j], slopes[i], slopes[3 + i], slopes[6 + i]);
+        volume += kGaussWeights[i] * kGaussWeights[j] / 3 * glm::dot(x, glm::cross(along, across));
     }
     return volume;
 }
@@ -260,83 +286,138 @@ void GridMeasure::read_channel(const DenseCell& grid, std::size_t channel) {
     }
 }
 
-/// Each piece of 27 nodes has its largest step: how far a node lies from the trilinear piece between the eight corners. Where
-/// the limit is smooth, it goes a quarter of the step beyond the nodes. Twice that is for its kinks.
-void GridMeasure::find_bounds(std::size_t side, Extremes& result) const {
+/// Half of how far a node of the piece lies from the trilinear one between its corners is what the limit goes beyond the nodes
+/// at most: where it is smooth it is a quarter, and twice that is for its kinks.
+double GridMeasure::first_bound(double known) const {
     constexpr double kReach = 0.5;
-    result.low_bound = HUGE_VAL;
-    result.high_bound = -HUGE_VAL;
+    const auto [low, high] = std::ranges::minmax(channel_);
+    if (high + kReach * (high - low) < known) return -HUGE_VAL;  // no node is farther from the corners than the two
     Piece nodes;
-    for (std::size_t first = 0, w = 0; w + 1 < side; w += 2) {
-        for (std::size_t v = 0; v + 1 < side; v += 2) {
-            for (std::size_t u = 0; u + 1 < side; u += 2) {
-                first = u + side * (v + side * w);
-                for (std::size_t n = 0; n < kNodes; ++n) {
-                    nodes[n] = channel_[first + n % 3 + side * (n / 3 % 3 + side * (n / 9))];
-                }
-                const auto [low, high] = std::ranges::minmax(nodes);
-                const double reach = kReach * largest_step(nodes);
-                result.low_bound = std::min(result.low_bound, low - reach);
-                result.high_bound = std::max(result.high_bound, high + reach);
-            }
-        }
-    }
+    std::ranges::copy(channel_, nodes.begin());
+    return high + kReach * largest_step(nodes);
 }
 
-/// The extreme of the quadratic through the 27 nodes around a node, or beside it at the cell's sides: its values, slopes and
-/// second derivatives by central differences in steps of the grid, then the best place along one axis after the other.
-Vec3 GridMeasure::peak(std::size_t node, std::size_t side, double sign) const {
-    const std::array<std::size_t, 3> at{node % side, node / side % side, node / side / side}, strides{1, side, side * side};
-    std::array<std::size_t, 3> middle;
-    for (std::size_t d = 0; d < 3; ++d) middle[d] = std::clamp<std::size_t>(at[d], 1, side - 2);
-    const double* f = &channel_[middle[0] + side * (middle[1] + side * middle[2])];
-    const auto value = [&](std::ptrdiff_t offset) { return sign * f[offset]; };
-    Vec3 slope(0.0), place(0.0);
-    Mat3 bend(0.0);
-    for (std::size_t a = 0; a < 3; ++a) {
-        const auto i = static_cast<std::ptrdiff_t>(strides[a]);
-        const int d = static_cast<int>(a);
-        place[d] = static_cast<double>(at[a]) - static_cast<double>(middle[a]);
-        slope[d] = (value(i) - value(-i)) / 2;
-        bend[d][d] = value(i) - 2 * value(0) + value(-i);
-        for (std::size_t b = 0; b < a; ++b) {
-            const auto j = static_cast<std::ptrdiff_t>(strides[b]);
-            const int e = static_cast<int>(b);
-            bend[d][e] = bend[e][d] = (value(i + j) - value(i - j) - value(j - i) + value(-i - j)) / 4;
+/// By how much nodes of the finest level differ from the parabolas through those of the level before, in the piece of that
+/// level that begins at `first`: the largest difference along each axis, summed.
+double GridMeasure::bend_of_lines(std::size_t first, std::size_t side) const {
+    const std::array<std::size_t, 3> strides{1, side, side * side};
+    double sum = 0;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const std::size_t step = strides[axis], other = strides[(axis + 1) % 3], third = strides[(axis + 2) % 3];
+        double largest = 0;
+        for (std::size_t line = 0; line < 25; ++line) {
+            const double* f = &channel_[first + line % 5 * other + line / 5 * third];
+            const double middle = 6 * f[2 * step], ends[2] = {f[0], f[4 * step]};
+            largest = std::max({largest, std::abs((3 * ends[0] + middle - ends[1]) / 8 - f[step]),
+                                std::abs((3 * ends[1] + middle - ends[0]) / 8 - f[3 * step])});
         }
+        sum += largest;
     }
-    constexpr int kRounds = 24;
-    for (int round = 0; round < kRounds; ++round) {
+    return sum;
+}
+
+namespace {
+
+/// The quadratic through a node and its 26 neighbours by central differences in steps of the grid.
+struct NodeQuadratic {
+    double value;
+    Vec3 slope{0.0};
+    Mat3 bend{0.0};
+
+    NodeQuadratic(const double* f, std::size_t side) : value(*f) {
+        const std::array<std::ptrdiff_t, 3> strides{1, static_cast<std::ptrdiff_t>(side),
+                                                    static_cast<std::ptrdiff_t>(side * side)};
         for (int d = 0; d < 3; ++d) {
-            const double here = slope[d] + bend[0][d] * place.x + bend[1][d] * place.y + bend[2][d] * place.z;
-            if (bend[d][d] < 0) {
-                place[d] = std::clamp(place[d] - here / bend[d][d], -1.0, 1.0);
-            } else if (here != 0) {
-                place[d] = here > 0 ? 1 : -1;
+            const std::ptrdiff_t i = strides[static_cast<std::size_t>(d)];
+            slope[d] = (f[i] - f[-i]) / 2;
+            bend[d][d] = f[i] - 2 * f[0] + f[-i];
+            for (int e = 0; e < d; ++e) {
+                const std::ptrdiff_t j = strides[static_cast<std::size_t>(e)];
+                bend[d][e] = bend[e][d] = (f[i + j] - f[i - j] - f[j - i] + f[-i - j]) / 4;
             }
         }
     }
-    const Vec3 from(middle[0], middle[1], middle[2]);
-    return (from + place) / static_cast<double>(side - 1);
+    [[nodiscard]] double at(const Vec3& place) const {
+        return value + glm::dot(slope, place) + glm::dot(place, bend * place) / 2;
+    }
+    /// The best place, from -1 to 1, along one axis after the other.
+    [[nodiscard]] Vec3 peak(Vec3 place) const {
+        constexpr int kRounds = 24;
+        for (int round = 0; round < kRounds; ++round) {
+            const Vec3 before = place;
+            for (int d = 0; d < 3; ++d) {
+                const double rise = slope[d] + bend[0][d] * place.x + bend[1][d] * place.y + bend[2][d] * place.z;
+                if (bend[d][d] < 0) {
+                    place[d] = std::clamp(place[d] - rise / bend[d][d], -1.0, 1.0);
+                } else if (rise != 0) {
+                    place[d] = rise > 0 ? 1 : -1;
+                }
+            }
+            if (place == before) break;
+        }
+        return place;
+    }
+};
+
+}  // namespace
+
+/// From level 2 on a piece has a quadratic, whose largest value is known. What it lacks is told by its 27 nodes, and by how the
+/// finest level differs from the one before.
+double GridMeasure::finer_bound(std::size_t side, double known) const {
+    const auto [low, high] = std::ranges::minmax(channel_);
+    if (high + (high - low) < known) return -HUGE_VAL;
+    double bound = -HUGE_VAL;
+    for (std::size_t w = 1; w < side; w += 2) {
+        for (std::size_t v = 1; v < side; v += 2) {
+            for (std::size_t u = 1; u < side; u += 2) {
+                const double* middle = &channel_[u + side * (v + side * w)];
+                const NodeQuadratic quadratic(middle, side);
+                const double bend = bend_of_lines(u / 4 * 4 + side * (v / 4 * 4 + side * (w / 4 * 4)), side) / 2;
+                double highest = -HUGE_VAL, off = 0;
+                Vec3 best(0.0);
+                for (std::size_t n = 0; n < kNodes; ++n) {
+                    const Vec3 at = Vec3(n % 3, n / 3 % 3, n / 9) - Vec3(1.0);
+                    const double value = *(middle + (static_cast<std::ptrdiff_t>(n % 3) - 1) +
+                                           (static_cast<std::ptrdiff_t>(n / 3 % 3) - 1) * static_cast<std::ptrdiff_t>(side) +
+                                           (static_cast<std::ptrdiff_t>(n / 9) - 1) * static_cast<std::ptrdiff_t>(side * side));
+                    if (value > highest) best = at;
+                    highest = std::max(highest, value);
+                    off = std::max(off, std::abs(quadratic.at(at) - value));
+                }
+                bound = std::max(bound, std::max(highest, quadratic.at(quadratic.peak(best))) + bend + off / 2);
+            }
+        }
+    }
+    return bound;
 }
 
-GridMeasure::Extremes GridMeasure::extremes(const DenseCell& grid, std::size_t channel) {
-    read_channel(grid, channel);
-    const auto [low, high] = std::ranges::minmax_element(channel_);
-    const std::size_t side = grid.side;
-    const auto place = [&](auto found) -> Place {
-        const auto n = static_cast<std::size_t>(found - channel_.begin());
-        return {*found, Vec3(n % side, n / side % side, n / side / side) / static_cast<double>(side - 1)};
-    };
-    Extremes result{.low = place(low), .high = place(high)};
-    find_bounds(side, result);
-    result.low_peak = result.low.uvw;
-    result.high_peak = result.high.uvw;
-    if (side > 3) {
-        result.low_peak = peak(static_cast<std::size_t>(low - channel_.begin()), side, -1);
-        result.high_peak = peak(static_cast<std::size_t>(high - channel_.begin()), side, 1);
+/// Where the quadratic through the 27 nodes around a node, or beside it at the cell's sides, has its largest value.
+Vec3 GridMeasure::peak(std::size_t node, std::size_t side) const {
+    const std::array<std::size_t, 3> at{node % side, node / side % side, node / side / side};
+    std::array<std::size_t, 3> middle;
+    Vec3 place(0.0);
+    for (std::size_t d = 0; d < 3; ++d) {
+        middle[d] = std::clamp<std::size_t>(at[d], 1, side - 2);
+        place[static_cast<int>(d)] = static_cast<double>(at[d]) - static_cast<double>(middle[d]);
     }
-    return result;
+    const NodeQuadratic quadratic(&channel_[middle[0] + side * (middle[1] + side * middle[2])], side);
+    return (Vec3(middle[0], middle[1], middle[2]) + quadratic.peak(place)) / static_cast<double>(side - 1);
+}
+
+void GridMeasure::add_extremes(const DenseCell& grid, std::size_t channel, const std::array<double, 2>& known,
+                               std::vector<Extreme>& extremes) {
+    const std::size_t side = grid.side;
+    read_channel(grid, channel);
+    for (const std::size_t s : {0u, 1u}) {
+        for (double& value : channel_) value = -value;  // times -1, then times 1 again
+        const double bound = side > 3 ? finer_bound(side, known[s]) : first_bound(known[s]);
+        if (bound < known[s]) continue;
+        const auto node = static_cast<std::size_t>(std::ranges::max_element(channel_) - channel_.begin());
+        Extreme found{channel, s == 0 ? -1.0 : 1.0, channel_[node], bound};
+        found.uvw = Vec3(node % side, node / side % side, node / side / side) / static_cast<double>(side - 1);
+        found.peak = side > 3 ? peak(node, side) : found.uvw;
+        extremes.push_back(found);
+    }
 }
 
 }  // namespace subvol::detail

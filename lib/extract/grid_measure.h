@@ -12,7 +12,8 @@ namespace subvol::detail {
 /// Integrals and extremes of one refined cell, from the grid of its nodes.
 ///
 /// Nodes of two levels make pieces of 27 nodes, which are integrated by 27 Gauss points: exact for volumes of triquadratic
-/// pieces. The passes go along one axis after the other, so that a piece takes some thousand operations.
+/// pieces. The passes go along one axis after the other, so that a piece takes some thousand operations; each channel takes 27
+/// more, as the weights of the Gauss points are taken to the nodes once.
 ///
 /// Sums: the volume, then for each channel the integral of the value without the channel's origin.
 class GridMeasure {
@@ -42,7 +43,10 @@ public:
     template <class Visit>
     void each_gauss_point(const DenseCell& grid, const Visit& visit) {
         std::vector<double> values(channels());
-        each_piece(grid, 1, [&] {
+        each_piece(grid, 1, [&](const Nodes& nodes) {
+            load(grid, nodes);
+            weigh();
+            find_values(grid, nodes);
             for (std::size_t g = 0; g < kNodes; ++g) {
                 for (std::size_t c = 0; c < values.size(); ++c) values[c] = at_gauss_[c][g];
                 visit(weights_[g], std::span<const double>(values));
@@ -50,26 +54,29 @@ public:
         });
     }
 
-    /// A value of a channel, and where in the cell.
-    struct Place {
-        double value = 0;
-        Vec3 uvw{0.0};
-    };
-    /// The least and the largest value of a channel.
+    /// The largest value of a channel times a sign, at a node.
     ///
-    /// low, high: at nodes
-    /// low_peak, high_peak: from level 2 on, where the quadratics through the nodes around these have their extremes
-    /// low_bound, high_bound: how far the limit may go between the nodes, an estimate
-    struct Extremes {
-        Place low, high;
-        Vec3 low_peak{0.0}, high_peak{0.0};
-        double low_bound = 0, high_bound = 0;
+    /// uvw:   where in the cell; peak: where the quadratic through the nodes around has it, from level 2 on
+    /// bound: how far the limit may go between the nodes, an estimate
+    struct Extreme {
+        std::size_t channel = 0;
+        double sign = 1, value = 0, bound = 0;
+        Vec3 uvw{0.0}, peak{0.0};
     };
-    [[nodiscard]] Extremes extremes(const DenseCell& grid, std::size_t channel);
+    /// Adds the extremes of the channel whose bounds reach what is known: the largest values times −1 and times 1.
+    void add_extremes(const DenseCell& grid, std::size_t channel, const std::array<double, 2>& known,
+                      std::vector<Extreme>& extremes);
 
 private:
     static constexpr std::size_t kNodes = 27;
     using Piece = std::array<double, kNodes>;
+
+    /// The 27 nodes of a piece in its grid.
+    struct Nodes : std::array<std::size_t, kNodes> {
+        Nodes(std::size_t side, std::size_t first, std::size_t step) {
+            for (std::size_t n = 0; n < kNodes; ++n) (*this)[n] = first + step * (n % 3 + side * (n / 3 % 3 + side * (n / 9)));
+        }
+    };
 
     template <class Visit>
     void each_piece(const DenseCell& grid, std::size_t step, const Visit& visit) {
@@ -77,25 +84,27 @@ private:
         for (std::size_t w = 0; w + 1 < grid.side; w += width) {
             for (std::size_t v = 0; v + 1 < grid.side; v += width) {
                 for (std::size_t u = 0; u + 1 < grid.side; u += width) {
-                    load(grid, u + grid.side * (v + grid.side * w), step);
-                    evaluate();
-                    visit();
+                    visit(Nodes(grid.side, u + grid.side * (v + grid.side * w), step));
                 }
             }
         }
     }
-    void load(const DenseCell& grid, std::size_t first, std::size_t step);
-    void evaluate();
-    void add(std::span<double> sums) const;
+    void load(const DenseCell& grid, const Nodes& nodes);
+    void weigh();
+    void add(const DenseCell& grid, const Nodes& nodes, std::span<double> sums) const;
+    void find_values(const DenseCell& grid, const Nodes& nodes);
     void read_channel(const DenseCell& grid, std::size_t channel);
-    void find_bounds(std::size_t side, Extremes& result) const;
-    [[nodiscard]] Vec3 peak(std::size_t node, std::size_t side, double sign) const;
+    [[nodiscard]] double first_bound(double known) const;
+    [[nodiscard]] double finer_bound(std::size_t side, double known) const;
+    [[nodiscard]] double bend_of_lines(std::size_t first, std::size_t side) const;
+    [[nodiscard]] Vec3 peak(std::size_t node, std::size_t side) const;
 
     std::vector<double> origins_;
-    std::array<Piece, 3> positions_{};      // of the piece's nodes
-    std::vector<Piece> values_, at_gauss_;  // of each channel at the nodes, at the Gauss points
-    Piece weights_{};
-    std::vector<double> channel_;  // at all nodes of a grid
+    std::array<Piece, 3> positions_{};  // of the piece's nodes
+    std::vector<Piece> at_gauss_;       // of each channel at the Gauss points
+    Piece weights_{};                   // of the Gauss points
+    Piece node_weights_{};              // of the nodes: of the integral of a quadratic over the piece
+    std::vector<double> channel_;       // at all nodes of a grid, times the sign
 };
 
 }  // namespace subvol::detail

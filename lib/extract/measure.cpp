@@ -2,13 +2,17 @@
 // Every cell is refined once, by the table of its class, and integrated. What is left is estimated by what the last level
 // changed, and the cells in which that is too much for the whole are refined again:
 //
-//     level 1  all cells      S₁ is added         left: |S₁ − S₀| / 8, S₀ of the trilinear cell
-//     level 2  some of them   S₂ − S₁ is added    left: |S₂ − S₁| / 3
+//     level 1  all cells      S₁ is added         left: a part of S₁ − S₀, S₀ of the trilinear cell
+//     level 2  some of them   S₂ − S₁ is added    left: a part of S₂ − S₁
 //     level 3  some of those  S₃ − S₂ is added …
 //
-// The cells in which most is left are refined, until that of the others sums up to less than the tolerance. Extremes follow by
-// branch and bound: a cell is refined as well if the limit may go beyond the best value so far between its nodes. In the end
-// the best places are evaluated in the limit itself.
+// The cells in which most is left are refined, until that of the others sums up to less than the tolerance. Which part of a
+// change is left, is measured where it matters: by a sample of the cells that is refined once more, and from level 3 on by the
+// cells themselves. If ρ is the part by which the sums change again, ρ·(S₂ − S₁) is added for the cells that are not refined,
+// and ρ times what the changes are without regard to signs is said as the error.
+//
+// Extremes follow by branch and bound: a cell is refined as well if the limit may go beyond the best value so far between its
+// nodes. In the end the best places are evaluated in the limit itself.
 //
 // Cells are worked on in blocks. What is kept of a cell beyond its block is a number, and which cells go on.
 #include "subvol/measure.h"
@@ -18,6 +22,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <optional>
 
 #include "cell_refiner.h"
 #include "extreme_search.h"
@@ -40,8 +45,15 @@ using detail::GridMeasure;
 using detail::Rest;
 
 constexpr std::size_t kBlock = 8192;  // cells: fixed, so that sums do not depend on the number of threads
-constexpr int kMostLevels = 6;
-constexpr double kLeftOfTrilinear = 1.0 / 8, kLeftOfQuadratic = 1.0 / 3;
+constexpr int kUnitBits = 52;         // of the largest volume of a histogram
+constexpr int kMostLevels = 6, kMostLevelsOfExtremes = 4;
+constexpr double kLeftOfTrilinear = 1, kLeftOfQuadratic = 1.0 / 3;  // at most
+
+/// The part of the tolerance that the cells use up which end at a level: as each level costs eight times as much a cell, later
+/// ones get more than what their changes are.
+double share_of(int level) {
+    return level <= 2 ? 0.4 : std::ldexp(0.2, 2 - level);
+}
 
 /// One channel of an attribute. scale: 1/range of the attribute, or 0 for a constant
 struct Channel {
@@ -86,13 +98,13 @@ struct PartSums {
 /// before.
 struct CellNote {
     std::vector<double> sums, changes;
-    std::vector<GridMeasure::Extremes> extremes;
+    std::vector<GridMeasure::Extreme> extremes;
 };
 
 /// Memory of one thread.
 struct Scratch {
     GridMeasure measure;
-    std::vector<double> means, counts;
+    std::vector<double> means;
     std::vector<Vec3> points;
 };
 
@@ -109,11 +121,13 @@ public:
           channels_(channels_of(control_, extent)),
           scales_(scales_of(channels_)),
           scratch_([this] {
-              return Scratch{GridMeasure(origins_of(channels_)), std::vector<double>(channels_.size()), {}, {}};
+              return Scratch{GridMeasure(origins_of(channels_)), std::vector<double>(channels_.size()), {}};
           }),
+          has_fields_(std::ranges::any_of(channels_, [](const Channel& channel) { return channel.scale > 0; })),
           slots_(control_.cells.size()),
           levels_(control_.cells.size(), 1),
           coarsest_(control_.points.size(), 1),
+          is_candidate_(control_.cells.size(), 0),
           parts_(part_count(options), PartSums{std::vector<double>(1 + channels_.size(), 0)}),
           extremes_(parts_.size(), {scales_.begin() + 1, scales_.end()}, options.tolerance) {
         list_cells(owned);
@@ -137,8 +151,7 @@ public:
         for (PartMeasure& part : found) {
             for (FieldMeasure& field : part.fields) field.histogram.assign(bins, 0);
         }
-        if (std::ranges::all_of(found[0].fields,
-                                [](const FieldMeasure& field) { return !(field.min.value < field.max.value); })) {
+        if (!has_fields_) {
             for (PartMeasure& part : found) {
                 for (FieldMeasure& field : part.fields) field.histogram[0] = part.volume;
             }
@@ -148,20 +161,25 @@ public:
         constexpr std::size_t kEnough = 16384;  // pieces
         int level = 1;
         while (level < 4 && cells_.size() << 3 * level <= kEnough) ++level;
-        std::vector<std::vector<double>> notes(std::min(kBlock, cells_.size()));
-        const auto add_note = [&](const std::vector<double>& note, PartMeasure& part) {
-            for (std::size_t i = 0; i < note.size(); i += 2) {
-                const auto at = static_cast<std::size_t>(note[i]);
-                part.fields[at / bins].histogram[at % bins] += note[i + 1];
-            }
-        };
+        // Volumes are counted in a unit, as sums of whole numbers are the same in any order.
+        const double unit = std::ldexp(std::max(std::abs(found[0].volume), box_volume()), -kUnitBits);
+        using Counts = std::vector<std::int64_t>;
+        const std::size_t each = channels_.size() * bins;
+        tbb::enumerable_thread_specific<Counts> counts([&] { return Counts(parts_.size() * each, 0); });
         each_block(
             cells_, level, "histogram",
-            [&](const DenseCell& grid, std::size_t slot) { note_bins(grid, found[0], notes[slot]); },
-            [&](Index cell, std::size_t, std::size_t slot) {
-                add_note(notes[slot], found[0]);
-                if (found.size() > 1) add_note(notes[slot], found[part_of(cell) + 1]);
-            });
+            [&](const DenseCell& grid, std::size_t) {
+                count(grid, found[0], unit, std::span(counts.local()).subspan(part_of(grid.cell) * each, each));
+            },
+            [](Index, std::size_t, std::size_t) {});
+        Counts all(parts_.size() * each, 0);
+        for (const Counts& some : counts) std::ranges::transform(some, all, all.begin(), std::plus{});
+        for (std::size_t i = 0; i < all.size(); ++i) {
+            const double volume = static_cast<double>(all[i]) * unit;
+            const auto add = [&](PartMeasure& part) { part.fields[i % each / bins].histogram[i % bins] += volume; };
+            add(found[0]);
+            if (found.size() > 1) add(found[i / each + 1]);
+        }
     }
 
     /// The volumes of a histogram sum up to that of the part, which is known better.
@@ -198,16 +216,19 @@ private:
         cells_ = std::move(order);
     }
 
-    /// If the scheme interpolates, the limit is known to have the values of the control points.
+    /// If the scheme interpolates, the limit is known to have the values of the control points; a constant has its own anyway.
     void start() {
-        if (!interpolates(options_.scheme.kind)) return;
+        const bool is_known = interpolates(options_.scheme.kind);
         for (const Index cell : cells_) {
             std::size_t c = 0;
             for (const Attribute& attribute : control_.attributes) {
                 const auto count = static_cast<std::size_t>(attribute.channels);
                 for (std::size_t k = 0; k < count; ++k, ++c) {
-                    for (const Index p : control_.cells[cell]) {
-                        extremes_.know(part_of(cell), c, attribute.values[p * count + k]);
+                    const auto value = [&](Index p) { return attribute.values[p * count + k]; };
+                    if (channels_[c].scale == 0) {
+                        extremes_.know_constant(part_of(cell), c, value(control_.cells[cell][0]), cell);
+                    } else if (is_known) {
+                        for (const Index p : control_.cells[cell]) extremes_.know(part_of(cell), c, value(p));
                     }
                 }
             }
@@ -225,28 +246,35 @@ private:
             report_progress(options_.progress, stage, static_cast<double>(first) / static_cast<double>(cells.size()));
             const auto block = cells.subspan(first, std::min(most, cells.size() - first));
             for (std::size_t slot = 0; slot < block.size(); ++slot) slots_[block[slot]] = static_cast<Index>(slot);
-            refiner_.for_each(block, level, nullptr, [&](const DenseCell& grid) { note(grid, slots_[grid.cell]); });
+            refiner_.for_each(
+                block, level, nullptr, [&](const DenseCell& grid) { note(grid, slots_[grid.cell]); },
+                detail::CellRefiner::Tables::Common);
             for (std::size_t slot = 0; slot < block.size(); ++slot) collect(block[slot], first + slot, slot);
         }
     }
 
-    /// How much of the first level's changes is left depends on how well the mesh resolves its fields, by a factor of forty. A
-    /// sample of the cells tells: twice the part by which the next level changes it again.
-    void calibrate(std::span<const Index> cells, Changes& changes) {
-        constexpr std::size_t kStride = 64, kLeast = 64;
-        std::vector<std::uint32_t> order(cells.size());
-        std::iota(order.begin(), order.end(), 0U);
+    /// How much of a level's changes is left depends on how well the mesh resolves its fields, by a factor of forty. A sample
+    /// of the cells tells.
+    void calibrate(std::span<const Index> cells, int level, Changes& changes) {
+        constexpr std::size_t kSample = 128;
+        std::vector<std::uint32_t> order;
+        for (std::uint32_t i = 0; i < cells.size(); ++i) {
+            if (levels_[cells[i]] == level) order.push_back(i);
+        }
         std::ranges::stable_sort(order, std::ranges::greater{}, [&](std::uint32_t i) { return changes.largest(i); });
-        const std::size_t stride = std::clamp<std::size_t>(cells.size() / kLeast, 1, kStride);
-        std::vector<Index> sample;
-        Rest before(changes);
-        for (std::size_t i = 0; i < order.size(); i += stride) {
-            sample.push_back(cells[order[i]]);
-            before.add(order[i], 1);
+        const std::size_t stride = std::max<std::size_t>(static_cast<std::size_t>(level) * order.size() / kSample, 1);
+        const std::size_t all = order.size(), count = (all + stride - 1) / stride;
+        for (std::size_t i = 0; i < count; ++i) order[i] = order[i * stride];
+        order.resize(count);
+        std::vector<Index> sample(count);
+        Rest before(scales_.size());
+        for (std::size_t i = 0; i < count; ++i) {
+            sample[i] = cells[order[i]];
+            before.add(changes, order[i], 1);
         }
         Changes next(1 + channels_.size(), sample.size(), 0);
         each_block(
-            sample, 2, "measure",
+            sample, level + 1, "measure",
             [&](const DenseCell& grid, std::size_t slot) {
                 GridMeasure& measure = scratch_.local().measure;
                 std::vector<double> coarse(1 + channels_.size(), 0);
@@ -258,11 +286,9 @@ private:
             },
             [&](Index, std::size_t number, std::size_t slot) { next.note(number, notes_[slot].changes, scales_); });
         next.compare([](std::size_t) { return std::array<Index, 0>{}; });
-        Rest after(next);
-        for (std::size_t i = 0; i < sample.size(); ++i) after.add(i, 1);
-        for (std::size_t i = 0; i < changes.left.size(); ++i) {
-            if (before.change(i) > 0) changes.left[i] = std::min(1.0, 2 * after.change(i) / before.change(i));
-        }
+        Rest after(scales_.size());
+        for (std::size_t i = 0; i < sample.size(); ++i) after.add(next, i, 1);
+        changes.expect(before, after, stray_of_sample(changes, order, next, all));
     }
 
     /// Measures cells at a level. Returns those that are to be refined further, in the same order.
@@ -279,7 +305,15 @@ private:
                 collect(cell, number, std::ldexp(0.5, -level), notes_[slot]);
             });
         compare_with_neighbors(cells, changes);
-        if (level == 1) calibrate(cells, changes);
+        if (level > 2 && gone_on_) {
+            Rest after(scales_.size());
+            for (std::size_t i = 0; i < cells.size(); ++i) {
+                if (levels_[cells[i]] == level) after.add(changes, i, 1);
+            }
+            changes.expect(*gone_on_, after);
+        } else if (!is_enough(cells, level, changes)) {
+            calibrate(cells, level, changes);
+        }
         return choose(cells, changes, level);
     }
 
@@ -302,7 +336,11 @@ private:
         note.changes.assign(1 + channels_.size(), 0);
         if (levels_[grid.cell] == level) note_sums(grid, level, note);
         note.extremes.clear();
-        for (std::size_t c = 0; c < channels_.size(); ++c) note.extremes.push_back(measure.extremes(grid, c));
+        if (level > 1 && is_candidate_[grid.cell] == 0) return;
+        for (std::size_t c = 0; c < channels_.size(); ++c) {
+            if (channels_[c].scale == 0) continue;
+            measure.add_extremes(grid, c, extremes_.known(part_of(grid.cell), c), note.extremes);
+        }
     }
 
     void note_sums(DenseCell grid, int level, CellNote& note) {
@@ -326,8 +364,10 @@ private:
         Scratch& scratch = scratch_.local();
         changes[0] = 0;
         for (std::size_t side = 0; side < 6; ++side) {
+            const bool is_hull = refiner_.links().neighbors[grid.cell][side] == kNone;
+            if (!is_hull && !has_fields_) continue;
             const double swept = GridMeasure::swept(grid, side);
-            if (refiner_.links().neighbors[grid.cell][side] == kNone) {
+            if (is_hull) {
                 changes[0] += swept;
                 continue;
             }
@@ -375,37 +415,64 @@ private:
         constexpr std::size_t kLeastWork = 32768;  // pieces
         const std::size_t work = level >= kMostLevels ? 0 : std::max(cells_.size(), kLeastWork);
         std::vector<std::uint8_t> for_extremes(cells.size(), 0), for_sums(cells.size(), 0);
-        extremes_.end_level(work >> 3 * level, for_extremes);
+        extremes_.end_level(level < kMostLevelsOfExtremes ? work >> 3 * level : 0, for_extremes);
         choose_for_sums(cells, changes, level, 8 * work >> 3 * level, for_sums);
         std::vector<Index> next, summed;
         for (std::size_t i = 0; i < cells.size(); ++i) {
             if (for_extremes[i] != 0 || for_sums[i] != 0) next.push_back(cells[i]);
             if (for_sums[i] != 0) summed.push_back(cells[i]);
+            is_candidate_[cells[i]] = for_extremes[i];
         }
         note_levels(summed, level + 1);
         return next;
     }
 
+    /// What is left of each part in the cells that are known to a level.
+    [[nodiscard]] std::vector<Rest> rests_of(std::span<const Index> cells, int level, const Changes& changes) const {
+        std::vector<Rest> rests(parts_.size(), Rest(scales_.size()));
+        for (std::size_t i = 0; i < cells.size(); ++i) {
+            if (levels_[cells[i]] == level) rests[part_of(cells[i])].add(changes, i, 1);
+        }
+        return rests;
+    }
+
+    [[nodiscard]] double allowed(std::size_t part, int level) const {
+        return share_of(level) * options_.tolerance * std::abs(parts_[part].sums[0]);
+    }
+
+    /// Whether nothing has to be refined for sums.
+    [[nodiscard]] bool is_enough(std::span<const Index> cells, int level, const Changes& changes) const {
+        const std::vector<Rest> rests = rests_of(cells, level, changes);
+        for (std::size_t p = 0; p < rests.size(); ++p) {
+            if (rests[p].size(changes.left) > allowed(p, level)) return false;
+        }
+        return true;
+    }
+
     void choose_for_sums(std::span<const Index> cells, const Changes& changes, int level, std::size_t room,
                          std::vector<std::uint8_t>& chosen) {
-        std::vector<Rest> rests(parts_.size(), Rest(changes));
-        for (std::size_t i = 0; i < cells.size(); ++i) {
-            if (levels_[cells[i]] == level) rests[part_of(cells[i])].add(i, 1);
-        }
+        std::vector<Rest> rests = rests_of(cells, level, changes);
         std::vector<std::uint32_t> order;
         for (std::uint32_t i = 0; i < cells.size(); ++i) {
             if (levels_[cells[i]] == level) order.push_back(i);
         }
         std::ranges::stable_sort(order, std::ranges::greater{}, [&](std::uint32_t i) { return changes.largest(i); });
+        gone_on_.reset();
         for (const std::uint32_t i : order) {
             const std::size_t p = part_of(cells[i]);
-            const double allowed = std::ldexp(options_.tolerance * std::abs(parts_[p].sums[0]), -level);
-            if (room == 0 || rests[p].size() <= allowed) continue;
+            if (room == 0 || rests[p].size(changes.left) <= allowed(p, level)) continue;
             chosen[i] = 1;
-            rests[p].add(i, -1);
+            rests[p].add(changes, i, -1);
+            if (!gone_on_) gone_on_.emplace(scales_.size());
+            gone_on_->add(changes, i, 1);
             --room;
         }
-        for (std::size_t p = 0; p < parts_.size(); ++p) parts_[p].left += rests[p].size();
+        for (std::size_t p = 0; p < parts_.size(); ++p) {
+            parts_[p].left += rests[p].size(changes.left);
+            for (std::size_t i = 0; i < parts_[p].sums.size(); ++i) {
+                if (scales_[i] > 0) parts_[p].sums[i] += changes.follows[i] * rests[p].sum(i) / scales_[i];
+            }
+        }
     }
 
     /// The whole and the parts, without their extremes.
@@ -440,24 +507,25 @@ private:
         return measure;
     }
 
-    /// The volumes of a cell by channel and interval: channel, interval, volume, one after the other.
-    void note_bins(const DenseCell& grid, const PartMeasure& whole, std::vector<double>& note) {
-        GridMeasure& measure = scratch_.local().measure;
-        std::vector<double>& counts = scratch_.local().counts;
+    [[nodiscard]] double box_volume() const {
+        const Vec3 size = extent_.box.upper - extent_.box.lower;
+        return size.x * size.y * size.z;
+    }
+
+    /// Adds the volumes of a cell to the counts, bin by bin, channel after channel.
+    void count(const DenseCell& grid, const PartMeasure& whole, double unit, std::span<std::int64_t> counts) {
         const auto bins = static_cast<std::size_t>(options_.bins);
-        note.clear();
-        counts.assign(channels_.size() * bins, 0);
-        measure.each_gauss_point(grid, [&](double weight, std::span<const double> values) {
+        scratch_.local().measure.each_gauss_point(grid, [&](double weight, std::span<const double> values) {
+            const double units = weight / unit;
+            if (!(std::abs(units) < std::ldexp(1.0, kUnitBits))) return;  // no such volume is in the box
+            const auto whole_units = static_cast<std::int64_t>(std::llround(units));
             for (std::size_t c = 0; c < values.size(); ++c) {
                 const double low = whole.fields[c].min.value - channels_[c].origin;
                 const double width = whole.fields[c].max.value - whole.fields[c].min.value;
                 const double t = width > 0 ? (values[c] - low) / width * static_cast<double>(bins) : 0;
-                counts[c * bins + static_cast<std::size_t>(std::clamp(t, 0.0, static_cast<double>(bins - 1)))] += weight;
+                counts[c * bins + static_cast<std::size_t>(std::clamp(t, 0.0, static_cast<double>(bins - 1)))] += whole_units;
             }
         });
-        for (std::size_t i = 0; i < counts.size(); ++i) {
-            if (counts[i] != 0) note.insert(note.end(), {static_cast<double>(i), counts[i]});
-        }
     }
 
     const MeasureOptions& options_;
@@ -467,8 +535,11 @@ private:
     std::vector<Channel> channels_;
     std::vector<double> scales_;  // of the volume and of the channels
     tbb::enumerable_thread_specific<Scratch> scratch_;
+    bool has_fields_;                              // that are not constant
     std::vector<Index> cells_, slots_;             // that are measured; the place of each in its block
     std::vector<std::uint8_t> levels_, coarsest_;  // of the cells; the least at each point
+    std::vector<std::uint8_t> is_candidate_;       // a flag for each cell: for an extreme
+    std::optional<Rest> gone_on_;                  // the changes of the cells that were refined further for their sums
     std::vector<PartSums> parts_;
     std::vector<CellNote> notes_;
     detail::ExtremeSearch extremes_;

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -14,17 +15,25 @@
 
 namespace subvol::detail {
 
+class Rest;
+
 /// By how much the sums of the cells of a level differ from those of the level before: of integrals divided by the range.
 ///
-/// left: of each sum, the part of its change that is expected to be left
+/// follows: of each sum, the part of its change that is expected to follow in the levels to come, with its sign; it is added
+/// left:    of each sum, the part of its change that may be left after that
 /// size: of a cell's change. What curves up along one axis and down along another changes a sum little, although much is left.
 ///       The cells beside it tell: the largest change of a cell and those across its sides counts
 class Changes {
 public:
     Changes(std::size_t sums, std::size_t cells, double part)
-        : left(sums, part), sums_(sums), changes_(sums * cells), sizes_(sums * cells) {}
+        : follows(sums, 0), left(sums, part), sums_(sums), changes_(sums * cells), sizes_(sums * cells) {}
 
-    std::vector<double> left;
+    std::vector<double> follows, left;
+
+    /// Some cells have changed by `before` at this level, and by `after` at the next one.
+    ///
+    /// stray: how far off a sum of `after` may be as that of a sample, in its unit; none: they are all cells
+    void expect(const Rest& before, const Rest& after, std::span<const double> stray = {});
 
     /// scales: of each sum
     void note(std::size_t number, std::span<const double> changes, std::span<const double> scales) {
@@ -58,32 +67,72 @@ private:
 };
 
 /// What is left in the cells that are not refined further. Volumes that one cell gains are mostly lost by its neighbours, so
-/// that changes are added up with their signs, and what does not cancel as if it were random, twice.
+/// that changes are added up with their signs.
 class Rest {
 public:
-    explicit Rest(const Changes& changes) : changes_(changes), sums_(changes.of_cell(0).size(), 0), squares_(sums_.size(), 0) {}
+    explicit Rest(std::size_t sums) : sums_(sums, 0), squares_(sums, 0) {}
 
     /// sign: 1 adds a cell, −1 takes it away
-    void add(std::size_t number, double sign) {
-        const auto changes = changes_.of_cell(number), sizes = changes_.sizes(number);
+    void add(const Changes& from, std::size_t number, double sign) {
+        const auto changes = from.of_cell(number), sizes = from.sizes(number);
         for (std::size_t i = 0; i < changes.size(); ++i) {
             const auto size = static_cast<double>(sizes[i]);
             sums_[i] += sign * static_cast<double>(changes[i]);
             squares_[i] += sign * size * size;
         }
     }
-    [[nodiscard]] double change(std::size_t sum) const {
-        return std::abs(sums_[sum]) + 2 * std::sqrt(std::max(0.0, squares_[sum]));
-    }
-    [[nodiscard]] double size() const {
+    /// What the changes add up to, with their signs, and what does not cancel as if it were random, twice.
+    [[nodiscard]] double sum(std::size_t number) const { return sums_[number]; }
+    [[nodiscard]] double spread(std::size_t number) const { return 2 * std::sqrt(std::max(0.0, squares_[number])); }
+    [[nodiscard]] double change(std::size_t number) const { return std::abs(sum(number)) + spread(number); }
+
+    /// The largest part that may be left. left: of each sum
+    [[nodiscard]] double size(std::span<const double> left) const {
         double most = 0;
-        for (std::size_t i = 0; i < sums_.size(); ++i) most = std::max(most, changes_.left[i] * change(i));
+        for (std::size_t i = 0; i < sums_.size(); ++i) most = std::max(most, left[i] * change(i));
         return most;
     }
 
 private:
-    const Changes& changes_;
     std::vector<double> sums_, squares_;
 };
+
+inline void Changes::expect(const Rest& before, const Rest& after, std::span<const double> stray) {
+    for (std::size_t i = 0; i < left.size(); ++i) {
+        if (before.change(i) <= 0) continue;
+        const double ratio = (after.change(i) + (stray.empty() ? 0 : stray[i])) / before.change(i);
+        // Signs that cancel say nothing about what follows.
+        const bool has_sign = std::abs(before.sum(i)) > before.spread(i) && after.sum(i) / before.sum(i) > 0;
+        const double again = has_sign ? std::min(after.sum(i) / before.sum(i), 0.5) : 0;
+        follows[i] = again / (1 - again);
+        left[i] = std::min(left[i], has_sign ? ratio : 2 * ratio);
+    }
+}
+
+/// How far off the sums of a sample may be: twice the deviation of what the ratio of the sums does not explain, cell by cell.
+///
+/// numbers: of the cells of the sample in `before`, in the order of `after`; all: how many cells they stand for
+inline std::vector<double> stray_of_sample(const Changes& before, std::span<const std::uint32_t> numbers, const Changes& after,
+                                           std::size_t all) {
+    const std::size_t sums = before.left.size();
+    std::vector<double> ratios(sums, 0), totals(sums, 0), stray(sums, 0);
+    const auto each = [&](const auto& visit) {
+        for (std::size_t n = 0; n < numbers.size(); ++n) {
+            for (std::size_t i = 0; i < sums; ++i) {
+                visit(i, static_cast<double>(before.of_cell(numbers[n])[i]), static_cast<double>(after.of_cell(n)[i]));
+            }
+        }
+    };
+    each([&](std::size_t i, double first, double next) {
+        totals[i] += first;
+        ratios[i] += next;
+    });
+    for (std::size_t i = 0; i < sums; ++i) ratios[i] = totals[i] != 0 ? ratios[i] / totals[i] : 0;
+    each(
+        [&](std::size_t i, double first, double next) { stray[i] += (next - ratios[i] * first) * (next - ratios[i] * first); });
+    const double missing = 1 - static_cast<double>(numbers.size()) / static_cast<double>(all);
+    for (double& one : stray) one = 2 * std::sqrt(missing * one);
+    return stray;
+}
 
 }  // namespace subvol::detail

@@ -40,8 +40,8 @@ namespace subvol::detail {
 namespace {
 
 constexpr std::size_t kClassified = CellRefiner::kRun;  // cells whose classes are looked for together: 1 kB each
-constexpr int kMostTableLevels = 3;             // a table of one more level has 5,000 rows: children's tables serve instead
-constexpr std::size_t kGroupBytes = 32U << 20;  // of the grids that wait for the last of their parts
+constexpr int kMostTableLevels = 3;            // a table of one more level has 5,000 rows: children's tables serve instead
+constexpr std::size_t kGroupBytes = 8U << 20;  // of the grids that wait for the last of their parts
 
 using Sink = std::function<void(Index cell, const CellGrid& grid)>;
 
@@ -175,6 +175,18 @@ struct CellRefiner::State {
                 refine_batch(cut, std::span(rare).subspan(b * batch, std::min(batch, rare.size() - b * batch)), levels, sink);
             });
         });
+    }
+
+    /// Control cells by tables as far as there are classes of them: regular ones are found without a walk, so they come first.
+    void evaluate_common(const Cut& cut, std::span<const Index> cells, int levels, const Sink& sink) {
+        Classified regulars = classify(top, cells, levels, 2, regular_key, std::max(levels, kWhole));
+        std::vector<Index> rest;
+        for (const Member& member : regulars.members) {
+            if (member.key == kNoClass) rest.push_back(member.cell);
+        }
+        std::erase_if(regulars.members, [](const Member& member) { return member.key == kNoClass; });
+        evaluate(top, cut, regulars, levels, sink);
+        evaluate(top, cut, classes_of(top, rest, levels, 0), levels, sink);
     }
 
     /// Some cells, and those of their children that the visitor asks for.
@@ -349,7 +361,7 @@ CellRefiner::CellRefiner(CellRefiner&&) noexcept = default;
 CellRefiner& CellRefiner::operator=(CellRefiner&&) noexcept = default;
 
 void CellRefiner::for_each(std::span<const Index> cells, int levels, Progress* progress,
-                           const std::function<void(const DenseCell&)>& visit) const {
+                           const std::function<void(const DenseCell&)>& visit, Tables tables) const {
     State& state = *state_;
     const State::Cut cut = state.cut_of_control();
     const Sink sink = [&](Index cell, const CellGrid& grid) { visit(grid.dense_cell(cell, levels)); };
@@ -361,8 +373,11 @@ void CellRefiner::for_each(std::span<const Index> cells, int levels, Progress* p
     for (std::size_t first = 0; first < cells.size(); first += kClassified) {
         report_progress(progress, "dense cells", first, cells.size());
         const auto batch = cells.subspan(first, std::min(kClassified, cells.size() - first));
-        const Classified classified = state.classes_of(state.top, batch, levels);
-        state.evaluate(state.top, cut, classified.members, levels, sink);
+        if (tables == Tables::Regular) {
+            state.evaluate(state.top, cut, state.classes_of(state.top, batch, levels), levels, sink);
+        } else {
+            state.evaluate_common(cut, batch, levels, sink);
+        }
     }
     report_progress(progress, "dense cells", 1);
 }

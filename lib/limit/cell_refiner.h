@@ -42,8 +42,11 @@ public:
 
     /// Calls visit for each of the cells, from several threads at once and in no order. Which cells share a table depends on
     /// the list of cells, and so do the last bits of the results; not on the number of threads.
+    ///
+    /// tables: Regular: up to level 2 regular cells alone have one; Common: all classes with many members do
+    enum class Tables : std::uint8_t { Regular, Common };
     void for_each(std::span<const Index> cells, int levels, Progress* progress,
-                  const std::function<void(const DenseCell&)>& visit) const;
+                  const std::function<void(const DenseCell&)>& visit, Tables tables = Tables::Regular) const;
 
     /// What lies across the sides of the cells.
     [[nodiscard]] const CellLinks& links() const;

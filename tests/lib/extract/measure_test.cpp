@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <numeric>
@@ -122,11 +123,60 @@ TEST(Measure, PartsAddUpToTheWhole) {
 
 TEST(Measure, IsTheSameForAnyNumberOfThreads) {
     const HexMesh mesh = make_model("pawn", 12);
-    const auto integral = [&](std::size_t threads) {
+    const auto field = [&](std::size_t threads) {
         const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
-        return measure_limit(mesh, {.tolerance = 1e-3}).whole.fields[0].integral;
+        return measure_limit(mesh, {.tolerance = 1e-3}).whole.fields[0];
     };
-    EXPECT_EQ(integral(1), integral(4));
+    EXPECT_EQ(field(1).integral, field(4).integral);
+    EXPECT_EQ(field(1).histogram, field(4).histogram);
+    EXPECT_EQ(field(1).max.value, field(4).max.value);
+}
+
+// What is added for cells that are not refined is within what is said, whatever the tolerance is and however the mesh bends.
+TEST(Measure, WhatIsExpectedToFollowIsWithinTheError) {
+    for (const auto& [model, resolution] : {std::pair{"ball", 5}, {"twist", 5}, {"pawn", 4}}) {
+        const HexMesh mesh = make_model(model, resolution);
+        const PartMeasure fine = measure_limit(refine(mesh, {.levels = 1}), {.tolerance = 1e-5}).whole;
+        const double range = fine.fields[0].max.value - fine.fields[0].min.value;
+        for (const double tolerance : {1e-2, 1e-3, 1e-4}) {
+            const PartMeasure found = measure_limit(mesh, {.tolerance = tolerance}).whole;
+            EXPECT_LE(found.error, tolerance) << model;
+            const double allowed = found.error + fine.error;
+            EXPECT_LE(std::abs(found.volume / fine.volume - 1), allowed) << model << ' ' << tolerance;
+            EXPECT_LE(std::abs(found.fields[0].mean - fine.fields[0].mean) / range, allowed) << model << ' ' << tolerance;
+            EXPECT_NEAR(found.fields[0].max.value, fine.fields[0].max.value, 1e-4 * range) << model << ' ' << tolerance;
+            EXPECT_NEAR(found.fields[0].min.value, fine.fields[0].min.value, 1e-4 * range) << model << ' ' << tolerance;
+        }
+    }
+}
+
+// Random values in a distorted box have extremes between nodes in cells that no control value points to.
+TEST(Measure, NoPlaceIsBeyondTheExtremes) {
+    HexMesh mesh = test::distorted_box(4, .15);
+    std::mt19937 random(7);
+    std::vector<double> values(mesh.points.size());
+    for (double& value : values) value = static_cast<double>(random() % 1000) / 1000;
+    mesh.attributes = {{"f", 1, values}};
+    const FieldMeasure field = measure_limit(mesh).whole.fields[0];
+    std::vector<LimitQuery> queries;
+    for (Index cell = 0; cell < mesh.cells.size(); ++cell) {
+        for (int n = 0; n < 216; ++n) queries.push_back({cell, Vec3(n % 6, n / 6 % 6, n / 36) / 5.0});
+    }
+    const auto found = evaluate_limit(mesh, queries).attributes[0].values;
+    const auto [low, high] = std::ranges::minmax(found);
+    EXPECT_GE(static_cast<double>(low), field.min.value - 1e-4);  // the search stops at 1e-4 of the range
+    EXPECT_LE(static_cast<double>(high), field.max.value + 1e-4);
+}
+
+TEST(Measure, AConstantHasItsPlaceInACell) {
+    HexMesh mesh = test::make_box(2, 2, 2);
+    mesh.attributes = {{"f", 1, std::vector<double>(mesh.points.size(), 2.5)}};
+    const FieldMeasure field = measure_limit(mesh, {.bins = 4}).whole.fields[0];
+    EXPECT_EQ(field.min.value, 2.5);
+    EXPECT_EQ(field.max.value, 2.5);
+    EXPECT_LT(field.min.cell, mesh.cells.size());
+    EXPECT_NEAR(field.histogram[0], 8, 1e-12);
+    EXPECT_EQ(field.extreme_error, 0);
 }
 
 // More than are searched together; one of them a vector.

@@ -71,9 +71,10 @@ struct LimitMeasure {
 /// Integrals, means, extremes and histograms of the limit.
 ///
 /// Every cell is refined once and integrated as a triquadratic piece, by 27 Gauss points (exact for volumes). Each cell has an
-/// estimate of what is left; those in which most is left are refined further, until the rest is within the tolerance. So are
-/// cells whose nodes lie so near the best value that the limit may go beyond it. Both end at level 6, or when they have taken
-/// several times as long as the first level: `error` and `extreme_error` say how far the figures may be off.
+/// estimate of what is left; those in which most is left are refined further, until the rest is within the tolerance. What a
+/// sample of cells shows to follow is added. So are refined cells whose nodes lie so near the best value that the limit may go
+/// beyond it. Sums end at level 6, extremes at level 4, both when they have taken several times as long as the first level:
+/// `error` and `extreme_error` say how far the figures may be off.
 ///
 /// A mesh that is stored in pieces is measured piece by piece: each is read and refined twice, the second time for the
 /// histograms, whose bins lie between the extremes of the whole. Sums are those of the pieces in their order. The cells of
@@ -82,8 +83,7 @@ struct LimitMeasure {
 /// throws: Error(InvalidInput) as `evaluate_limit`, if an option is out of range, if there are groups of a mesh in pieces, or
 ///         if these have fewer than three layers of halo
 /// cost:   parallel; the same bits for any number of threads. Memory: a copy of the mesh, what refines it, and a block of
-/// cells; of a
-///         mesh in pieces for one of them
+///         cells; of a mesh in pieces for one of them
 [[nodiscard]] LimitMeasure measure_limit(const MeshSource& source, const MeasureOptions& options = {});
 
 /// The same of the part of the limit that lies in all of several parts of space, cut exactly along their faces.
