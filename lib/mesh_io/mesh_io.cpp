@@ -83,7 +83,7 @@ constexpr std::array<MeshFormat, 22> kFormats{{
      .read = read_exodus_file,
      .times = exodus_times,
      .blocks = true},
-    {.extensions = {".vtkhdf", ".hdf"}, .name = "VTKHDF", .read = read_vtkhdf, .times = vtkhdf_times},
+    {.extensions = {".vtkhdf", ".hdf"}, .name = "VTKHDF", .read = read_vtkhdf, .write = write_vtkhdf, .times = vtkhdf_times},
     {.extensions = {".xdmf", ".xmf"}, .name = "XDMF", .read = read_file<read_xdmf>, .times = xdmf_times},
     {.extensions = {".frd"}, .name = "CalculiX", .read = read_file<read_frd>, .times = frd_times},
     {.extensions = {".cgns"}, .name = "CGNS", .read = read_cgns, .times = cgns_times, .blocks = true},
@@ -153,58 +153,102 @@ void fit_fields(ReadResult& result, CellValues method) {
                               percent(report.most_off) + ")");
 }
 
-// The extension of the format that a file's first bytes are those of; empty if they are none's.
-std::string extension_of_contents(const std::filesystem::path& path) {
-    constexpr std::size_t kBegin = 4096, kOfGroups = 1 << 16;
-    if (!not_regular(path).empty()) return {};
-    std::string begin(kOfGroups, '\0');
-    std::ifstream in(path, std::ios::binary);
-    in.read(begin.data(), static_cast<std::streamsize>(begin.size()));
-    begin.resize(static_cast<std::size_t>(std::max<std::streamsize>(0, in.gcount())));
-    const std::string_view all = begin, first = trimmed(all.substr(0, kBegin));
-    const auto has = [&](std::string_view text) { return all.find(text) != std::string_view::npos; };
-    if (all.starts_with("CDF\1") || all.starts_with("CDF\2") || all.starts_with("CDF\5")) return ".exo";
-    if (all.starts_with("\x89HDF")) {
-        return has("VTKHDF") ? ".vtkhdf" : has("CGNSLibraryVersion") || has("CGNSBase_t") ? ".cgns" : ".exo";
-    }
-    if (all.substr(0, 64).find("ADF Database") != std::string_view::npos) return ".cgns";
+// The extension of the format whose files begin as this one does. certain: an ending that says something else is wrong
+struct Contents {
+    std::string_view extension;
+    bool certain = true;
+};
+
+// The types of VTK XML, and the ending of each.
+constexpr std::array<std::array<std::string_view, 2>, 10> kVtkXmlTypes{{{"\"UnstructuredGrid\"", ".vtu"},
+                                                                        {"\"StructuredGrid\"", ".vts"},
+                                                                        {"\"RectilinearGrid\"", ".vtr"},
+                                                                        {"\"ImageData\"", ".vti"},
+                                                                        {"\"PUnstructuredGrid\"", ".pvtu"},
+                                                                        {"\"PStructuredGrid\"", ".pvts"},
+                                                                        {"\"PRectilinearGrid\"", ".pvtr"},
+                                                                        {"\"PImageData\"", ".pvti"},
+                                                                        {"\"vtkMultiBlockDataSet\"", ".vtm"},
+                                                                        {"\"Collection\"", ".pvd"}}};
+
+// begin: of a file of text
+Contents contents_of_text(std::string_view begin) {
+    const std::string_view first = trimmed(begin);
     const std::string upper = upper_case(first);
-    if (upper.starts_with("# VTK DATAFILE")) return ".vtk";
-    if (const std::size_t vtk = first.substr(0, 1024).find("<VTKFile"); vtk != std::string_view::npos) {
-        constexpr std::array<std::array<std::string_view, 2>, 10> kTypes{{{"\"UnstructuredGrid\"", ".vtu"},
-                                                                          {"\"StructuredGrid\"", ".vts"},
-                                                                          {"\"RectilinearGrid\"", ".vtr"},
-                                                                          {"\"ImageData\"", ".vti"},
-                                                                          {"\"PUnstructuredGrid\"", ".pvtu"},
-                                                                          {"\"PStructuredGrid\"", ".pvts"},
-                                                                          {"\"PRectilinearGrid\"", ".pvtr"},
-                                                                          {"\"PImageData\"", ".pvti"},
-                                                                          {"\"vtkMultiBlockDataSet\"", ".vtm"},
-                                                                          {"\"Collection\"", ".pvd"}}};
-        const std::string_view element = first.substr(vtk, first.find('>', vtk) - vtk);
-        for (const auto& [type, extension] : kTypes) {
-            if (element.find(type) != std::string_view::npos) return std::string(extension);
+    if (upper.starts_with("# VTK DATAFILE")) return {".vtk"};
+    if (first.starts_with('<')) {
+        if (const std::size_t vtk = first.substr(0, 1024).find("<VTKFile"); vtk != std::string_view::npos) {
+            const std::string_view element = first.substr(vtk, first.find('>', vtk) - vtk);
+            for (const auto& [type, extension] : kVtkXmlTypes) {
+                if (element.find(type) != std::string_view::npos) return {extension};
+            }
+            return {};
         }
-        return {};
+        return {upper.find("<XDMF") != std::string::npos ? ".xdmf" : ""};
     }
-    if (upper.find("<XDMF") != std::string::npos) return ".xdmf";
-    if (first.starts_with("$MeshFormat") || first.starts_with("$Comments") || first.starts_with("$PhysicalNames"))
-        return ".msh";
-    if (upper.starts_with("MESHVERSIONFORMATTED")) return ".mesh";
-    if (all.starts_with("    1C")) return ".frd";
+    if (first.starts_with("$MeshFormat") || first.starts_with("$NOD")) return {".msh"};
+    if (first.starts_with("$Comments") || first.starts_with("$PhysicalNames")) return {".msh", false};
+    if (upper.starts_with("MESHVERSIONFORMATTED")) return {".mesh"};
+    if (begin.starts_with("    1C")) return {".frd"};
     if (upper.find("FORMAT") != std::string::npos && upper.find("ENSIGHT") != std::string::npos &&
         upper.find("GEOMETRY") != std::string::npos)
-        return ".case";
+        return {".case", upper.starts_with("FORMAT")};
     for (const std::string_view keyword : {"*HEADING", "*NODE", "*PART", "*INCLUDE", "**"}) {
-        if (upper.starts_with(keyword) && upper.find("*NODE") != std::string::npos) return ".inp";
+        if (upper.starts_with(keyword) && upper.find("*NODE") != std::string::npos) return {".inp", keyword != "**"};
     }
     return {};
 }
 
-// Other programs' files, which meshio reads most of.
-constexpr std::array<std::string_view, 24> kForeign{".med",  ".bdf", ".nas", ".fem", ".dat",    ".op2", ".cdb", ".ans",
-                                                    ".k",    ".key", ".unv", ".su2", ".f3grid", ".neu", ".avs", ".dato",
-                                                    ".post", ".tec", ".h5m", ".off", ".ugrid",  ".wkt", ".pf3", ".mphtxt"};
+// No extension if the first bytes are no format's.
+Contents contents_of(const std::filesystem::path& path) {
+    constexpr std::size_t kText = 4096, kGroups = 1 << 16;
+    if (!not_regular(path).empty()) return {};
+    std::string begin(kGroups, '\0');
+    std::ifstream in(path, std::ios::binary);
+    in.read(begin.data(), static_cast<std::streamsize>(begin.size()));
+    begin.resize(static_cast<std::size_t>(std::max<std::streamsize>(0, in.gcount())));
+    const std::string_view all = begin;
+    const auto has = [&](std::string_view text) { return all.find(text) != std::string_view::npos; };
+    if (all.starts_with("CDF\1") || all.starts_with("CDF\2") || all.starts_with("CDF\5")) return {".exo"};
+    if (all.starts_with("\x89HDF")) {
+        if (has("VTKHDF")) return {".vtkhdf"};
+        if (has("CGNSLibraryVersion") || has("CGNSBase_t")) return {".cgns"};
+        return {".exo", false};  // the names of its groups may come later
+    }
+    if (all.substr(0, 64).find("ADF Database") != std::string_view::npos) return {".cgns"};
+    return contents_of_text(all.substr(0, kText));
+}
+
+// Other programs' files that meshio reads; python/subvol/_foreign.py has the same.
+constexpr std::array<std::string_view, 19> kForeign{".med",  ".bdf",  ".nas", ".fem", ".su2", ".f3grid", ".avs",
+                                                    ".dato", ".post", ".dat", ".tec", ".ele", ".node",   ".ugrid",
+                                                    ".vol",  ".mdpa", ".xml", ".h5m", ".hmf"};
+
+// The way to files that the library does not read, for its refusal; empty for endings that are unknown.
+std::string way_to(const std::filesystem::path& path) {
+    std::string extension = path.extension().string();
+    std::ranges::transform(extension, extension.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    if (std::ranges::find(kForeign, extension) != kForeign.end()) {
+        return "; python3 -m subvol.convert " + path.filename().string() +
+               " mesh.vtu converts it by meshio (Debian: python3-meshio" + (extension == ".med" ? ", python3-h5py" : "") + ")";
+    }
+    if (extension == ".unv") return "; gmsh -save -format msh4 -o mesh.msh " + path.filename().string() + " converts it";
+    constexpr std::array<std::string_view, 8> kUnknown{".k", ".key", ".cdb", ".ans", ".op2", ".neu", ".mphtxt", ".pf3"};
+    if (std::ranges::find(kUnknown, extension) != kUnknown.end()) {
+        return "; neither does meshio: export one of these from the program that made it";
+    }
+    return {};
+}
+
+// The row with an extension in any case; null if there is none.
+const MeshFormat* format_with(std::string_view extension) {
+    const std::string upper = upper_case(extension);
+    const auto has_it = [&](const MeshFormat& format) {
+        return std::ranges::any_of(format.extensions, [&](std::string_view e) { return !e.empty() && upper_case(e) == upper; });
+    };
+    const auto found = std::ranges::find_if(kFormats, has_it);
+    return found == kFormats.end() ? nullptr : &*found;
+}
 
 [[noreturn]] void refuse_format(const std::filesystem::path& path, const std::string& verb, const std::string& allowed) {
     throw Error(ErrorCode::InvalidInput, in_quotes(path.extension().string()) + " files cannot be " + verb, path.string(),
@@ -215,36 +259,17 @@ constexpr std::array<std::string_view, 24> kForeign{".med",  ".bdf", ".nas", ".f
 
 const MeshFormat* detail::format_of(const std::filesystem::path& path) {
     std::error_code none;
-    const bool folder = std::filesystem::is_directory(path, none);
-    std::string extension = upper_case(path.extension().string());
-    const auto has_it = [&](const MeshFormat& format) {
-        return std::ranges::any_of(format.extensions,
-                                   [&](std::string_view e) { return !e.empty() && upper_case(e) == extension; });
-    };
-    auto found = std::ranges::find_if(kFormats, has_it);
-    if (!folder && found == kFormats.end()) {
-        extension = upper_case(extension_of_contents(path));
-        if (!extension.empty()) found = std::ranges::find_if(kFormats, has_it);
-    }
-    if (folder && found == kFormats.end()) {
-        extension = ".FOAM";
-        found = std::ranges::find_if(kFormats, has_it);
-    }
-    return found == kFormats.end() ? nullptr : &*found;
+    const MeshFormat* named = format_with(path.extension().string());
+    if (std::filesystem::is_directory(path, none)) return named ? named : format_with(".foam");
+    const Contents contents = contents_of(path);
+    const MeshFormat* found = format_with(contents.extension);
+    return found && (contents.certain || !named) ? found : named;
 }
 
 const MeshFormat& detail::readable_format(const std::filesystem::path& path) {
     const MeshFormat* format = format_of(path);
     if (!format) {
-        std::string extension = path.extension().string();
-        std::ranges::transform(extension, extension.begin(),
-                               [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-        const bool foreign = std::ranges::find(kForeign, extension) != kForeign.end();
-        refuse_format(
-            path, "read",
-            list_formats(false) + (foreign ? "; meshio (Debian: python3-meshio) converts many others: meshio convert " +
-                                                 path.filename().string() + " mesh.vtu"
-                                           : ""));
+        refuse_format(path, "read", list_formats(false) + way_to(path));
     }
     return *format;
 }
@@ -279,6 +304,11 @@ ReadResult read_mesh(const std::filesystem::path& path, const ReadOptions& optio
         resolved.cell_values = format.finite_volumes ? CellValues::Fit : CellValues::Mean;
     }
     ReadResult result = format.read(path, resolved);
+    if (const MeshFormat* named = format_with(path.extension().string()); named && named != &format) {
+        result.warnings.insert(result.warnings.begin(), "the contents are those of " + std::string(format.name) +
+                                                            ", which decides, not the ending " + path.extension().string() +
+                                                            " (" + std::string(named->name) + ")");
+    }
     if (!result.cell_means.empty()) fit_fields(result, resolved.cell_values);
     if (format.times) {
         const std::vector<double> times = format.times(path);

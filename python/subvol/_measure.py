@@ -142,7 +142,7 @@ def surface(mesh: HexMesh, iso: Union[float, Sequence[float], None] = None, fiel
     """Isosurfaces of a field of the limit, and its boundary, as triangles.
 
     iso:         a value, or several; None: the boundary alone
-    path:        also write it: .ply, .stl, .vtp, .obj, .glb
+    path:        also write it: .ply, .stl, .vtp, .obj, .glb, .vtkhdf
     origin:      the file's points are relative to this place (3,): .stl rounds to 32-bit floats; None: (0, 0, 0)
     {keywords}
     """

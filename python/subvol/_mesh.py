@@ -8,7 +8,7 @@ from typing import Any, Optional
 import numpy as np
 import numpy.typing as npt
 
-from . import _core
+from . import _core, _foreign
 from ._arguments import Path, path_bytes, warn
 from ._core import HexMesh
 from ._errors import InvalidInput
@@ -18,21 +18,23 @@ from ._progress import Progress, listening
 
 @described
 def read_mesh(path: Path, **options: Any) -> HexMesh:
-    """Reads a mesh. The extension of the file name decides the format; docs/formats.md has the list.
+    """Reads a mesh. The contents and the extension decide the format; docs/formats.md has the list. Formats that the library does not
+    read but meshio does (MED, Nastran, SU2, FLAC3D and others) are read by meshio, without their sets and steps.
 
     {keywords}
 
     Warns (SubvolWarning) once for each thing left out, turned round or converted.
-    Raises FileError if the file cannot be opened; InvalidInput, with file and line, if it is malformed.
+    Raises FileError if the file cannot be opened; InvalidInput, with file and line, if it is malformed; MissingCapability if meshio is
+    needed and not installed.
     """
-    mesh, said = _core.read_mesh(path_bytes(path), **options)
+    mesh, said = _foreign.read_mesh(path, options) if _foreign.is_foreign(path) else _core.read_mesh(path_bytes(path), **options)
     for text in said:
         warn(text)
     return mesh
 
 
 def write_mesh(mesh: HexMesh, path: Path) -> None:
-    """Writes `.vtu` (with all fields) or `.mesh` (geometry only). The file appears whole under its name or not at all.
+    """Writes `.vtu` or `.vtkhdf` (with all fields) or `.mesh` (geometry only). The file appears whole under its name or not at all.
 
     Raises InvalidInput for another extension, FileError if the file cannot be written.
     """
