@@ -157,7 +157,7 @@ private:
     }
 
     void join_surfaces(Report& report) {
-        check_output(output_, {".ply", ".stl", ".vtp", ".obj", ".glb"});
+        check_output(output_, {".ply", ".stl", ".vtp", ".obj", ".glb", ".vtkhdf"});
         const LimitSurface surface = joined(SurfaceParts{.progress = report.progress()}, report);
         const SurfaceOutput output = surface_output_from(how_, parts_.front());
         if (output.file.color && output_.ends_with(".stl")) {

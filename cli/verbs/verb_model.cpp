@@ -22,7 +22,9 @@ public:
                "  subvol model twist --resolution 40 -o twist.vtu",
                Reads::NoMesh) {
         app().add_option("NAME", name_, "the model's name");
-        app().add_option("-o,--output", output_, "the mesh to write (.vtu with its field, .mesh without)")->type_name("FILE");
+        app()
+            .add_option("-o,--output", output_, "the mesh to write (.vtu or .vtkhdf with its field, .mesh without)")
+            ->type_name("FILE");
         add_option(app(), Option("resolution", resolution_).between(2, 512).help("N", "cells along the main direction"));
         app().add_flag("--list", list_, "list the models");
     }
@@ -45,7 +47,7 @@ private:
     void generate(Report& report) {
         if (name_.empty()) throw Error(ErrorCode::InvalidInput, "needs the name of a model", "model", "see --list");
         if (output_.empty()) throw Error(ErrorCode::InvalidInput, "needs a file to write", "model", "-o FILE");
-        check_output(output_, {".vtu", ".mesh"});
+        check_output(output_, {".vtu", ".vtkhdf", ".mesh"});
         const HexMesh mesh = report.timed("generate", [&] { return make_model(name_, resolution_); });
         for (const std::string& warning : report.timed("write", [&] { return write_mesh(output_, mesh); }))
             report.warn(warning);

@@ -26,7 +26,7 @@ public:
                "  subvol subdivide part.mesh -o fine.vtu --density \"exp(-(x^2+y^2+z^2))\"") {
         app().add_option("FILE", input_, input_help())->required();
         app()
-            .add_option("-o,--output", output_, "the mesh to write (.vtu with its fields, .mesh without)")
+            .add_option("-o,--output", output_, "the mesh to write (.vtu or .vtkhdf with its fields, .mesh without)")
             ->type_name("FILE")
             ->required();
         refine_.add_to(app(), "number of refinements (default 1)");
@@ -41,7 +41,7 @@ public:
             return 0;
         }
         const RefineOptions options = refine_.options(1, report.progress());
-        check_output(output_, {".vtu", ".mesh"});
+        check_output(output_, {".vtu", ".vtkhdf", ".mesh"});
         report.if_long("fewer --levels");
         Shells shells;
         report["input"] = input_;
@@ -55,8 +55,8 @@ public:
         }
         HexMesh fine = report.unpack(refine_reported(mesh, options, on_limit_ ? Vertices::OnTheLimit : Vertices::OfTheLevel));
         keep_in_range(mesh, fine, report);
-        if (!shells.empty() && output_.ends_with(".mesh")) {
-            report.warn("shells and beams are not written to .mesh, but to .vtu");
+        if (!shells.empty() && !output_.ends_with(".vtu")) {
+            report.warn("shells and beams are written to .vtu only");
             shells = {};
         }
         shells = report.timed("sheets", [&] { return refined(mesh, shells, options, report); });

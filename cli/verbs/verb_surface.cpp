@@ -41,7 +41,8 @@ public:
                "surface encloses), watertight, euler, components, min_angle (degrees), deviation (world), level.") {
         app().add_option("FILE", input_, input_help())->required();
         app()
-            .add_option("-o,--output", output_, "the surface to write (.ply, .stl, .vtp, .obj, .glb; .svshare with --part)")
+            .add_option("-o,--output", output_,
+                        "the surface to write (.ply, .stl, .vtp, .obj, .glb, .vtkhdf; .svshare with --part)")
             ->type_name("FILE")
             ->required();
         app()
@@ -78,7 +79,7 @@ public:
             (void)share_of(share_);
             check_output(output_, {".svshare"});
         } else {
-            check_output(output_, {".ply", ".stl", ".vtp", ".obj", ".glb"});
+            check_output(output_, {".ply", ".stl", ".vtp", ".obj", ".glb", ".vtkhdf"});
         }
         if (output_.ends_with(".stl") && !color_field_.empty()) {
             throw Error(ErrorCode::InvalidInput, ".stl has no colours", "--color-field", ".ply, .vtp, .obj, .glb");

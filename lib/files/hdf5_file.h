@@ -8,10 +8,12 @@
 #include <set>
 #include <span>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "named_files.h"
 #include "number_type.h"
+#include "subvol/detail/atomic_file.h"
 
 namespace subvol::detail {
 
@@ -51,6 +53,44 @@ public:
 /// throws: Error(Io) if the file cannot be opened, Error(InvalidInput) if it is not an HDF5 file, Error(MissingCapability) if
 ///         the build has no HDF5 library
 [[nodiscard]] std::unique_ptr<Hdf5Source> open_hdf5(const std::filesystem::path& path);
+
+/// A new HDF5 file that appears complete or not at all. Every failure is an Error(Io) that names the file.
+class Hdf5Output {
+public:
+    /// throws: also Error(MissingCapability) if the build has no HDF5 library
+    explicit Hdf5Output(const std::filesystem::path& target);
+    ~Hdf5Output();
+    Hdf5Output(const Hdf5Output&) = delete;
+    Hdf5Output& operator=(const Hdf5Output&) = delete;
+
+    void group(const std::string& path);
+    /// A dataset of numbers, compressed; its groups are made as they are needed. columns: 0 for a list, else the numbers of a
+    /// row
+    template <class T>
+    void put(const std::string& path, std::span<const T> values, std::size_t columns = 0) {
+        write(path, number_type_of<T>(), columns, values.data(), values.size());
+    }
+    /// Attributes of a group or dataset. text: not empty
+    void attribute(const std::string& object, const std::string& name, const std::string& text);
+    void attribute(const std::string& object, const std::string& name, std::span<const std::int64_t> values);
+    /// Closes the file and gives it its final name.
+    void commit();
+
+private:
+    template <class T>
+    static constexpr NumberType number_type_of() {
+        if constexpr (std::is_same_v<T, double>) return NumberType::Float64;
+        if constexpr (std::is_same_v<T, float>) return NumberType::Float32;
+        if constexpr (std::is_same_v<T, std::int64_t>) return NumberType::Int64;
+        if constexpr (std::is_same_v<T, std::uint8_t>) return NumberType::UInt8;
+    }
+    void write(const std::string& path, NumberType type, std::size_t columns, const void* values, std::size_t count);
+    void check(std::int64_t result) const;
+
+    std::filesystem::path target_;
+    AtomicFile file_;
+    [[maybe_unused]] std::int64_t open_ = -1;  // not used in builds without HDF5
+};
 
 /// Datasets of numbers in an HDF5 file, checked. Every failure is an Error(InvalidInput) that names the dataset.
 ///

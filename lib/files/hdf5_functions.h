@@ -36,6 +36,16 @@ struct Hdf5Functions {
     /// Texts and integers of an attribute. They return the number of characters or integers, at most `most`.
     std::int64_t (*text)(std::int64_t file, const char* object, const char* name, char* into, std::size_t most);
     std::int64_t (*integers)(std::int64_t file, const char* object, const char* name, std::int64_t* into, std::size_t most);
+    /// A new file, and what is put into it. rank: 1 or 2; a dataset's groups are made as they are needed; values are compressed
+    std::int64_t (*create)(const char* path);
+    int (*group)(std::int64_t file, const char* path);
+    int (*write)(std::int64_t file, const char* dataset, int type, unsigned rank, const std::uint64_t* lengths,
+                 const void* values);
+    int (*write_text)(std::int64_t file, const char* object, const char* name, const char* text, std::size_t length);
+    int (*write_integers)(std::int64_t file, const char* object, const char* name, const std::int64_t* values,
+                          std::size_t count);
+    /// As `close`, but below 0 if not everything could be written.
+    int (*finish)(std::int64_t file);
 };
 
 }  // namespace subvol::detail

@@ -5,6 +5,7 @@
 #include <fstream>
 #include <mutex>
 #include <system_error>
+#include <utility>
 
 #include "hdf5_file.h"
 #include "hdf5_functions.h"
@@ -131,6 +132,52 @@ std::unique_ptr<Hdf5Source> open_hdf5(const std::filesystem::path& path) {
     return std::make_unique<Hdf5Library>(path);
 }
 
+Hdf5Output::Hdf5Output(const std::filesystem::path& target) : target_(target), file_(target) {
+    const Lock lock(hdf5_mutex());
+    open_ = library().create(file_.path().c_str());
+    check(open_);
+}
+
+Hdf5Output::~Hdf5Output() {
+    const Lock lock(hdf5_mutex());
+    if (open_ >= 0) library().close(open_);
+}
+
+void Hdf5Output::check(std::int64_t result) const {
+    if (result < 0) {
+        throw Error(ErrorCode::Io, "cannot be written: the disk is full, or HDF5's library fails", target_.string());
+    }
+}
+
+void Hdf5Output::group(const std::string& path) {
+    const Lock lock(hdf5_mutex());
+    check(library().group(open_, path.c_str()));
+}
+
+void Hdf5Output::write(const std::string& path, NumberType type, std::size_t columns, const void* values, std::size_t count) {
+    const Lock lock(hdf5_mutex());
+    const std::array<std::uint64_t, 2> lengths{columns > 0 ? count / columns : count, columns};
+    check(library().write(open_, path.c_str(), static_cast<int>(type), columns > 0 ? 2 : 1, lengths.data(), values));
+}
+
+void Hdf5Output::attribute(const std::string& object, const std::string& name, const std::string& text) {
+    const Lock lock(hdf5_mutex());
+    check(library().write_text(open_, object.c_str(), name.c_str(), text.data(), text.size()));
+}
+
+void Hdf5Output::attribute(const std::string& object, const std::string& name, std::span<const std::int64_t> values) {
+    const Lock lock(hdf5_mutex());
+    check(library().write_integers(open_, object.c_str(), name.c_str(), values.data(), values.size()));
+}
+
+void Hdf5Output::commit() {
+    {
+        const Lock lock(hdf5_mutex());
+        check(library().finish(std::exchange(open_, -1)));
+    }
+    file_.commit();
+}
+
 #else
 
 }  // namespace
@@ -139,6 +186,24 @@ std::unique_ptr<Hdf5Source> open_hdf5(const std::filesystem::path& path) {
     expect_hdf5(path);
     throw Error(ErrorCode::MissingCapability, "this build cannot read HDF5 files", path.string(),
                 "it needs the HDF5 library and the build option SUBVOL_HDF5");
+}
+
+Hdf5Output::Hdf5Output(const std::filesystem::path& target) : target_(target), file_(target) {
+    throw Error(ErrorCode::MissingCapability, "this build cannot write HDF5 files", target.string(),
+                "it needs the HDF5 library and the build option SUBVOL_HDF5");
+}
+Hdf5Output::~Hdf5Output() = default;
+void Hdf5Output::check(std::int64_t) const {
+}
+void Hdf5Output::group(const std::string&) {
+}
+void Hdf5Output::write(const std::string&, NumberType, std::size_t, const void*, std::size_t) {
+}
+void Hdf5Output::attribute(const std::string&, const std::string&, const std::string&) {
+}
+void Hdf5Output::attribute(const std::string&, const std::string&, std::span<const std::int64_t>) {
+}
+void Hdf5Output::commit() {
 }
 
 #endif

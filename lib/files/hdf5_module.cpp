@@ -301,6 +301,72 @@ std::int64_t integers(std::int64_t file, const char* object, const char* name, s
     return H5Aread(attribute, H5T_NATIVE_INT64, into) < 0 ? -1 : count;
 }
 
+std::int64_t create(const char* path) {
+    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+    const Handle properties(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+    H5Pset_fclose_degree(properties, H5F_CLOSE_STRONG);
+#if H5_VERSION_GE(1, 10, 7)
+    H5Pset_file_locking(properties, false, true);
+#endif
+    return H5Fcreate(path, H5F_ACC_TRUNC, H5P_DEFAULT, properties);
+}
+
+// Objects without the time at which they were made: the same contents are the same bytes.
+hid_t without_times(hid_t kind) {
+    const hid_t properties = H5Pcreate(kind);
+    H5Pset_obj_track_times(properties, false);
+    return properties;
+}
+
+hid_t with_groups() {
+    const hid_t properties = H5Pcreate(H5P_LINK_CREATE);
+    H5Pset_create_intermediate_group(properties, 1);
+    return properties;
+}
+
+int make_group(std::int64_t file, const char* path) {
+    const Handle made(without_times(H5P_GROUP_CREATE), H5Pclose), links(with_groups(), H5Pclose);
+    const Handle group(H5Gcreate2(file, path, links, made, H5P_DEFAULT), H5Gclose);
+    return group < 0 ? -1 : 0;
+}
+
+int write(std::int64_t file, const char* path, int type, unsigned rank, const std::uint64_t* lengths, const void* values) {
+    constexpr hsize_t kChunkBytes = 1 << 20;
+    constexpr unsigned kDeflate = 4;
+    const hid_t number = native_type(static_cast<NumberType>(type));
+    if (rank < 1 || rank > 2) return -1;
+    std::array<hsize_t, 2> sizes{lengths[0], rank == 2 ? lengths[1] : 1}, chunk = sizes;
+    const Handle space(H5Screate_simple(static_cast<int>(rank), sizes.data(), nullptr), H5Sclose);
+    const Handle properties(without_times(H5P_DATASET_CREATE), H5Pclose), links(with_groups(), H5Pclose);
+    if (sizes[0] > 0 && sizes[1] > 0) {
+        chunk[0] = std::clamp<hsize_t>(kChunkBytes / (H5Tget_size(number) * sizes[1]), 1, sizes[0]);
+        if (H5Pset_chunk(properties, static_cast<int>(rank), chunk.data()) < 0) return -1;
+        if (H5Pset_shuffle(properties) < 0 || H5Pset_deflate(properties, kDeflate) < 0) return -1;
+    }
+    const Handle dataset(H5Dcreate2(file, path, number, space, links, properties, H5P_DEFAULT), H5Dclose);
+    if (dataset < 0) return -1;
+    return H5Dwrite(dataset, number, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) < 0 ? -1 : 0;
+}
+
+int write_text(std::int64_t file, const char* object, const char* name, const char* text, std::size_t length) {
+    const Handle type(H5Tcopy(H5T_C_S1), H5Tclose), space(H5Screate(H5S_SCALAR), H5Sclose);
+    if (H5Tset_size(type, length) < 0 || H5Tset_strpad(type, H5T_STR_NULLPAD) < 0) return -1;
+    const Handle attribute(H5Acreate_by_name(file, object, name, type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
+    return attribute < 0 || H5Awrite(attribute, type, text) < 0 ? -1 : 0;
+}
+
+int write_integers(std::int64_t file, const char* object, const char* name, const std::int64_t* values, std::size_t count) {
+    const hsize_t length = count;
+    const Handle space(H5Screate_simple(1, &length, nullptr), H5Sclose);
+    const Handle attribute(
+        H5Acreate_by_name(file, object, name, H5T_NATIVE_INT64, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
+    return attribute < 0 || H5Awrite(attribute, H5T_NATIVE_INT64, values) < 0 ? -1 : 0;
+}
+
+int finish(std::int64_t file) {
+    return H5Fclose(file) < 0 ? -1 : 0;
+}
+
 }  // namespace
 
 }  // namespace subvol::detail
@@ -317,7 +383,13 @@ const subvol::detail::Hdf5Functions* subvol_hdf5() {
                                               .shape = &own::shape,
                                               .read = &own::read,
                                               .text = &own::text,
-                                              .integers = &own::integers};
+                                              .integers = &own::integers,
+                                              .create = &own::create,
+                                              .group = &own::make_group,
+                                              .write = &own::write,
+                                              .write_text = &own::write_text,
+                                              .write_integers = &own::write_integers,
+                                              .finish = &own::finish};
     return &functions;
 }
 }

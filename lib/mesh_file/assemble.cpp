@@ -399,9 +399,12 @@ ReadResult assemble(MeshFile&& found, const TextScanner& in, std::string_view fi
 
 ReadResult assemble(MeshFile&& found, std::string_view file, const EntityNames& names_in_file, const ReadOptions& options) {
     drop_ghosts(found);
-    if (!options.weld) say_points_of_their_own(found);
-    if (options.weld) {
+    if (!options.weld) {
+        say_points_of_their_own(found);
+        say_hanging_points(found);
+    } else {
         weld_points(found, *options.weld, file, names_in_file);
+        if (options.other_cells == OtherCells::Split && found.curved.size() == 0) join_hanging_points(found);
         const auto [quads, lines] = drop_parts_of_cells(found, options.shells_alone);
         if (quads + lines > 0) found.warnings.push_back(list_of_shells(quads, lines) + " ignored: parts of cells");
     }

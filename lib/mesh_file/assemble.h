@@ -68,6 +68,15 @@ void weld_points(MeshFile& found, double tolerance, std::string_view file, const
 /// cost: counts the points of most meshes; O(n) where there are many for the cells
 void say_points_of_their_own(MeshFile& found);
 
+/// Adds a warning if points hang: corners of hexahedra in the middle of an edge or a face of a larger one.
+///
+/// cost: O(n); looks for points only where edges differ in length by a factor of 1.8 and more
+void say_hanging_points(MeshFile& found);
+
+/// Splits the hexahedra that have hanging points on their edges and faces from their middle, so that all cells fit together: the
+/// mesh is then cut into tetrahedra. Adds a warning with the number of these hexahedra.
+void join_hanging_points(MeshFile& found);
+
 /// Splits all hexahedra of a mesh with curved ones into smaller ones with points on the curved shape, and evaluates the arrays
 /// at the points there. Opposite edges of a cell are split alike, so that neighbours share their points. Adds a warning with
 /// the estimated error, which is the sum of h² f''/8 over the three directions.

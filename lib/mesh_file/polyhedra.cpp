@@ -190,10 +190,20 @@ void PolyhedronTaker::report() {
                               counted(tets_, "tetrahedron", "tetrahedra"));
 }
 
+// A face whose corners are at fewer points, such as those of a collapsed prism, is the polygon of these points, or none.
+void drop_repeated_points(CellFaces& faces) {
+    for (auto& face : faces) {
+        face.erase(std::unique(face.begin(), face.end()), face.end());
+        while (face.size() > 1 && face.front() == face.back()) face.pop_back();
+    }
+    std::erase_if(faces, [](const auto& face) { return face.size() < 3; });
+}
+
 std::size_t Polyhedra::take_into(MeshFile& found, bool ignore_others) {
     PolyhedronTaker taker(found, ignore_others);
     std::size_t open = 0;
     for (auto& [number, faces] : cells_) {
+        drop_repeated_points(faces);
         if (is_closed(faces)) {
             orient_faces(faces, found.points);
             taker.add(number, faces);

@@ -18,6 +18,8 @@ enum CellType : std::int64_t {
     kHexahedron = 12,
     kWedge = 13,
     kPyramid = 14,
+    kPentagonalPrism = 15,
+    kHexagonalPrism = 16,
     kLagrangeHexahedron = 72,
     kBezierHexahedron = 79
 };
@@ -46,10 +48,24 @@ const std::map<std::int64_t, std::array<std::string_view, 2>> kCellNames{
     {10, {"tetrahedron", "tetrahedra"}},
     {13, {"wedge", "wedges"}},
     {14, {"pyramid", "pyramids"}},
+    {15, {"pentagonal prism", "pentagonal prisms"}},
+    {16, {"hexagonal prism", "hexagonal prisms"}},
     {24, {"quadratic tetrahedron", "quadratic tetrahedra"}},
     {26, {"quadratic wedge", "quadratic wedges"}},
     {27, {"quadratic pyramid", "quadratic pyramids"}},
     {42, {"polyhedron", "polyhedra"}}};
+
+// The faces of a prism: its base, the same corners above it, and a quad on each side.
+CellFaces prism_faces(std::span<const Index> corners) {
+    const std::size_t sides = corners.size() / 2;
+    CellFaces faces{{corners.begin(), corners.begin() + static_cast<std::ptrdiff_t>(sides)},
+                    {corners.begin() + static_cast<std::ptrdiff_t>(sides), corners.end()}};
+    for (std::size_t k = 0; k < sides; ++k) {
+        const std::size_t next = (k + 1) % sides;
+        faces.push_back({corners[k], corners[next], corners[sides + next], corners[sides + k]});
+    }
+    return faces;
+}
 
 }  // namespace
 
@@ -82,6 +98,11 @@ void VtkCellSorter::take(std::int64_t type_in_file, std::span<const Index> corne
         take_as(found_.quads, corners, position, "a quad", false);
     } else if (type == kLine && corners.size() == 2) {
         take_as(found_.lines, corners, position, "a line", false);
+    } else if (const std::size_t sides = type == kPentagonalPrism  ? 5
+                                         : type == kHexagonalPrism ? 6
+                                                                   : 0;
+               others && sides > 0 && corners.size() == 2 * sides) {
+        polyhedra_.add(next_, prism_faces(corners));
     } else {
         ++left_out_[type_in_file];
     }
@@ -140,6 +161,32 @@ std::optional<CellFaces> faces_of_stream(std::span<const std::int64_t> stream, s
         at += corners;
     }
     return of_cell > 0 && at == stream.size() ? std::optional(std::move(faces)) : std::nullopt;
+}
+
+std::optional<CellFaces> VtkFaces::of_cell(std::size_t cell, std::size_t first_point, std::size_t point_count) const {
+    const auto is_part = [](const std::vector<std::int64_t>& list, std::int64_t begin, std::int64_t end) {
+        return begin >= 0 && begin <= end && static_cast<std::size_t>(end) <= list.size();
+    };
+    const auto before = [](const std::vector<std::int64_t>& list, std::size_t at) { return at == 0 ? 0 : list[at - 1]; };
+    if (number_ends.empty()) {
+        const std::int64_t begin = before(ends, cell);
+        if (!is_part(stream, begin, ends[cell])) return std::nullopt;
+        const auto length = static_cast<std::size_t>(ends[cell] - begin);
+        return faces_of_stream(std::span(stream).subspan(static_cast<std::size_t>(begin), length), first_point, point_count);
+    }
+    const std::int64_t begin = before(number_ends, cell);
+    if (!is_part(numbers, begin, number_ends[cell])) return std::nullopt;
+    std::vector<std::int64_t> one{number_ends[cell] - begin};
+    for (std::int64_t k = begin; k < number_ends[cell]; ++k) {
+        const std::int64_t face = numbers[static_cast<std::size_t>(k)];
+        if (face < 0 || static_cast<std::size_t>(face) >= point_ends.size()) return std::nullopt;
+        const std::int64_t from = before(point_ends, static_cast<std::size_t>(face));
+        const std::int64_t to = point_ends[static_cast<std::size_t>(face)];
+        if (!is_part(points, from, to)) return std::nullopt;
+        one.push_back(to - from);
+        one.insert(one.end(), points.begin() + from, points.begin() + to);
+    }
+    return faces_of_stream(one, first_point, point_count);
 }
 
 void VtkCellSorter::take_polyhedron(CellFaces&& faces) {

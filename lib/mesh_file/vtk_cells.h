@@ -27,6 +27,18 @@ inline constexpr std::int64_t kVtkPolyhedron = 42;
 [[nodiscard]] std::optional<CellFaces> faces_of_stream(std::span<const std::int64_t> stream, std::size_t first_point,
                                                        std::size_t points);
 
+/// The faces of the polyhedra of a piece, in VTK's lists of two generations: for each cell all its faces, one after the other;
+/// or faces with numbers, and the numbers of each cell, if there are `number_ends`.
+///
+/// ends: in `stream`, that of the cell before for other cells
+struct VtkFaces {
+    std::vector<std::int64_t> stream, ends;
+    std::vector<std::int64_t> points, point_ends, numbers, number_ends;
+
+    /// The faces of a cell; first_point, point_count and the result as for `faces_of_stream`
+    [[nodiscard]] std::optional<CellFaces> of_cell(std::size_t cell, std::size_t first_point, std::size_t point_count) const;
+};
+
 /// Sorts the cells of a VTK file into the kinds of cells that are read, and those that are left out.
 class VtkCellSorter {
 public:

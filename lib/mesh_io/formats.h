@@ -40,8 +40,8 @@ struct MeshFormat {
     bool finite_volumes = false;
 };
 
-/// The format that a file name's extension names, in upper or lower case, else that of the file's first bytes; that of a folder
-/// is OpenFOAM. Null if there is none.
+/// Returns the format of a file: the one that its first bytes show beyond doubt, else the one that its extension names, in upper
+/// or lower case, else the one that the first bytes suggest; for a folder OpenFOAM. Null if there is none.
 [[nodiscard]] const MeshFormat* format_of(const std::filesystem::path& path);
 
 /// The same; throws: Error(InvalidInput) that lists all formats if there is none.
@@ -111,7 +111,10 @@ std::vector<std::string> write_medit(const std::filesystem::path& path, const He
 
 /// Writes VTK XML, UnstructuredGrid, compressed.
 std::vector<std::string> write_vtu(const std::filesystem::path& path, const HexMesh& mesh);
-/// The same with valid shells and beams after the cells.
+/// Writes VTKHDF 1.0, compressed.
+std::vector<std::string> write_vtkhdf(const std::filesystem::path& path, const HexMesh& mesh);
+
+/// Writes VTK XML with valid shells and beams after the cells.
 std::vector<std::string> write_vtu(const std::filesystem::path& path, const HexMesh& mesh, const Shells& shells);
 
 }  // namespace subvol::detail

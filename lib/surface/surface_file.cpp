@@ -15,6 +15,7 @@
 #include "subvol/limit_surface.h"
 #include "subvol/srgb.h"
 #include "vtk_xml_writer.h"
+#include "vtkhdf_writer.h"
 
 namespace subvol {
 
@@ -121,6 +122,26 @@ void write_vtp(OutputFile& out, const LimitSurface& surface, const std::optional
     for (const ProbedField& field : surface.fields) xml.array<double>(field.name, field.channels, field.values);
     xml.line("</PointData>\n</Piece>");
     xml.end();
+}
+
+/// An unstructured grid of triangles: VTK reads surfaces of VTKHDF from version 9.2 on only.
+void write_vtkhdf(const std::filesystem::path& path, const LimitSurface& surface) {
+    constexpr std::uint8_t kTriangle = 5;
+    detail::VtkHdfWriter out(path);
+    std::vector<std::int64_t> corners;
+    corners.reserve(3 * surface.surface.triangles.size());
+    for (const auto& t : surface.surface.triangles) corners.insert(corners.end(), t.begin(), t.end());
+    out.grid(surface.surface.points, corners, kTriangle, 3);
+    std::vector<float> normals;
+    normals.reserve(3 * surface.normals.size());
+    for (const Vec3& n : surface.normals) {
+        for (int k = 0; k < 3; ++k) normals.push_back(static_cast<float>(n[k]));
+    }
+    out.array("Normals", std::span<const float>(normals), 3);
+    for (const ProbedField& field : surface.fields) {
+        out.array(field.name, std::span<const double>(field.values), field.channels);
+    }
+    out.commit();
 }
 
 void write_obj(OutputFile& out, const LimitSurface& surface, const std::vector<Bytes3>& colors) {
@@ -254,9 +275,10 @@ void write_limit_surface(const std::filesystem::path& path, const LimitSurface& 
         return;
     }
     const std::string extension = path.extension().string();
-    if (extension != ".ply" && extension != ".stl" && extension != ".vtp" && extension != ".obj" && extension != ".glb") {
+    constexpr std::array<std::string_view, 6> kExtensions{".ply", ".stl", ".vtp", ".obj", ".glb", ".vtkhdf"};
+    if (std::ranges::find(kExtensions, extension) == kExtensions.end()) {
         throw Error(ErrorCode::InvalidInput, "'" + detail::printable(extension) + "' is not a format of surfaces",
-                    path.string(), ".ply, .stl, .vtp, .obj, .glb");
+                    path.string(), ".ply, .stl, .vtp, .obj, .glb, .vtkhdf");
     }
     if (surface.surface.triangles.empty()) {
         throw Error(ErrorCode::InvalidInput, "the surface has no triangles", path.string());
@@ -266,6 +288,10 @@ void write_limit_surface(const std::filesystem::path& path, const LimitSurface& 
                     "below " + std::to_string(surface.fields.size()));
     }
     const auto colors = colors_of(surface, options);
+    if (extension == ".vtkhdf") {
+        write_vtkhdf(path, surface);
+        return;
+    }
     OutputFile out(path);
     if (extension == ".ply") write_ply(out, surface, colors);
     if (extension == ".stl") write_stl(out, surface);

@@ -64,7 +64,7 @@ class Sheets(InFolder):
             self.run_ok("subdivide", "without.vtk", "-o", "alone.vtu", "--levels", 2, "--scheme", scheme)
             alone = self.json("info", "alone.vtu")
             self.assertEqual(alone["volume"], again["volume"])
-        self.assertIn("not written to .mesh", self.run_ok("subdivide", "with.vtk", "-o", "fine.mesh").err)
+        self.assertIn("shells and beams are written to .vtu only", self.run_ok("subdivide", "with.vtk", "-o", "fine.mesh").err)
 
     def test_surface_writes_the_shells_after_the_boundary(self):
         told = self.json("surface", "with.vtk", "-o", "skin.ply", "--boundary", "--color-field", "load")

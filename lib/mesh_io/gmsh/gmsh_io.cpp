@@ -149,9 +149,9 @@ void read_gmsh_data(TextScanner& in, GmshValues& values, const GmshEntities& ent
     }
 }
 
-// The layout of nodes and elements: version 2 lists them one by one, 4.0 and 4.1 in blocks, one for each entity of the
+// The layout of nodes and elements: versions 1 and 2 list them one by one, 4.0 and 4.1 in blocks, one for each entity of the
 // geometry.
-enum class Layout { V2, V40, V41 };
+enum class Layout { V1, V2, V40, V41 };
 
 class GmshReader {
 public:
@@ -188,8 +188,10 @@ private:
         const std::string_view start = first;
         while (first.starts_with('$') && first != "$MeshFormat" && first != "$NOD" && skip_unknown(first) && !in_.at_end())
             first = in_.word();
-        if (first == "$NOD" || first == "$NODE") {
-            in_.fail("version 1 of Gmsh's format is not supported", "2 and 4 are");
+        if (first == "$NOD") {  // version 1 begins with its nodes
+            layout_ = Layout::V1;
+            in_.seek(in_.position());
+            return;
         }
         if (first != "$MeshFormat") first = start;
         if (first != "$MeshFormat") in_.fail("not a Gmsh file: it begins with " + in_quotes(first), "$MeshFormat is missing");
@@ -232,7 +234,7 @@ private:
     }
 
     void read_end(std::string_view keyword) {
-        const std::string end = "$End" + std::string(keyword.substr(1));
+        const std::string end = (layout_ == Layout::V1 ? "$END" : "$End") + std::string(keyword.substr(1));
         const std::string_view word = in_.word();
         if (word != end) in_.fail_word({shortened(keyword)}, shortened(end), word);
     }
@@ -243,9 +245,9 @@ private:
             skip_section(keyword, false);
             return;
         }
-        if (keyword == "$Nodes") {
+        if (keyword == "$Nodes" || (keyword == "$NOD" && layout_ == Layout::V1)) {
             read_nodes();
-        } else if (keyword == "$Elements") {
+        } else if (keyword == "$Elements" || (keyword == "$ELM" && layout_ == Layout::V1)) {
             read_elements();
         } else if (keyword == "$NodeData") {
             if (found_.points.empty()) in_.fail("$NodeData come before $Nodes");
@@ -256,7 +258,7 @@ private:
             read_gmsh_data(in_, values_, {.at_cells = true, .numbers = elements_, .needed = taken_}, found_);
         } else if (keyword == "$PhysicalNames") {
             groups_.read_names(in_);
-        } else if (keyword == "$Entities" && layout_ != Layout::V2) {
+        } else if (keyword == "$Entities" && layout_ > Layout::V2) {
             groups_.read_entities(values_, layout_ == Layout::V41);
         } else {
             skip_section(keyword, keyword.ends_with("Data"));
@@ -303,7 +305,7 @@ private:
 
     void read_nodes() {
         if (nodes_.size() > 0) in_.fail("there is a second $Nodes section");
-        if (layout_ == Layout::V2) {
+        if (layout_ <= Layout::V2) {
             const std::size_t count = in_.count({"$Nodes"});
             values_.begin();
             reserve_nodes(count);
@@ -351,7 +353,7 @@ private:
         if (has_elements_) in_.fail("there is a second $Elements section");
         if (found_.points.empty()) in_.fail("$Elements come before $Nodes");
         has_elements_ = true;
-        if (layout_ == Layout::V2) {
+        if (layout_ <= Layout::V2) {
             const std::size_t count = in_.count({"$Elements"});
             values_.begin();
             while (elements_.size() < count) values_.binary() ? read_element_run(count) : read_element_line(count);
@@ -386,9 +388,12 @@ private:
         in_sharp_group_ = false;
         const std::int64_t number = in_.integer(place);
         const GmshElement& element = element_of(in_.integer(place));
-        const std::size_t tags = in_.count(place);
+        const bool counted = layout_ == Layout::V1;  // two tags, then the number of nodes
+        const std::size_t tags = counted ? 2 : in_.count(place);
         if (tags == 0) set_group(0, 0);
         for (std::size_t t = 0; t < tags; ++t) read_tag(element, t, in_.integer(place));
+        if (counted && in_.count(place) != element.nodes)
+            in_.fail("element " + std::to_string(number) + " has another number of nodes");
         take(element, number, place);
     }
 

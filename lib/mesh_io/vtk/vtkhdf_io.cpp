@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <tuple>
+#include <utility>
 
 #include "assemble.h"
 #include "formats.h"
 #include "hdf5_file.h"
 #include "join_pieces.h"
 #include "mesh_file.h"
+#include "sharp_groups.h"
 #include "subvol/error.h"
 #include "vtk_cells.h"
+#include "vtkhdf_writer.h"
 
 namespace subvol::detail {
 
@@ -22,7 +26,8 @@ void check_root(const Hdf5File& file) {
     if (version[0] != 1 && version[0] != 2) {
         file.fail("version " + std::to_string(version[0]) + " of VTKHDF is not supported", "1 and 2 are");
     }
-    const std::string type = file.text(kRoot, "Type").value_or("");
+    // Files of the first writers have no type: they are unstructured grids.
+    const std::string type = file.text(kRoot, "Type").value_or(file.has(kRoot + "/Types") ? "UnstructuredGrid" : "");
     if (type != "UnstructuredGrid") {
         file.fail(in_quotes(type) + " is not an UnstructuredGrid", "a volume mesh of that type is needed");
     }
@@ -32,9 +37,10 @@ void check_root(const Hdf5File& file) {
 struct Range {
     std::size_t first = 0, count = 0;
 };
+// faces, face_corners, cell_faces: those of polyhedra
 struct Partition {
-    Range points, cells, corners;
-    std::size_t offsets = 0;  // each partition has one more of them than cells
+    Range points, cells, corners, faces, face_corners, cell_faces;
+    std::size_t offsets = 0, face_offsets = 0;  // each partition has one more of them than cells or faces
 };
 
 class VtkHdfReader {
@@ -99,7 +105,47 @@ private:
             next.cells.first += next.cells.count;
             next.corners.first += next.corners.count;
         }
+        if (file_.has(kRoot + "/NumberOfFaces")) find_faces(first, partitions);
         return partitions;
+    }
+
+    // The faces of polyhedra follow each other in the order of the partitions of all steps. first: the step's first partition
+    void find_faces(std::size_t first, std::vector<Partition>& partitions) const {
+        const auto place = [&](const char* name, Range Partition::*range) {
+            const std::string path = kRoot + "/" + name;
+            std::size_t begin = 0;
+            const auto counts = file_.integers(path, 0, first + partitions.size());
+            for (std::size_t p = 0; p < counts.size(); ++p) {
+                const std::size_t count = checked(counts[p], path);
+                if (p >= first) partitions[p - first].*range = {begin, count};
+                begin += count;
+                std::ignore = checked(static_cast<std::int64_t>(begin), path);
+            }
+        };
+        place("NumberOfFaces", &Partition::faces);
+        place("NumberOfFaceConnectivityIds", &Partition::face_corners);
+        place("NumberOfPolyhedronToFaceIds", &Partition::cell_faces);
+        for (std::size_t p = 0; p < partitions.size(); ++p) {
+            partitions[p].face_offsets = partitions[p].faces.first + first + p;
+        }
+    }
+
+    // Of cells that are no polyhedra the offsets repeat.
+    [[nodiscard]] VtkFaces read_faces(const Partition& part) const {
+        const auto list = [&](const char* name, std::size_t begin, std::size_t count) {
+            return file_.integers(kRoot + "/" + name, begin, count);
+        };
+        const auto ends = [&](const char* name, std::size_t begin, std::size_t count) {
+            std::vector<std::int64_t> all = list(name, begin, count + 1);
+            all.erase(all.begin());
+            return all;
+        };
+        VtkFaces faces;
+        faces.points = list("FaceConnectivity", part.face_corners.first, part.face_corners.count);
+        faces.point_ends = ends("FaceOffsets", part.face_offsets, part.faces.count);
+        faces.numbers = list("PolyhedronToFaces", part.cell_faces.first, part.cell_faces.count);
+        faces.number_ends = ends("PolyhedronOffsets", part.offsets, part.cells.count);
+        return faces;
     }
 
     // Up to the first partition of another step.
@@ -123,16 +169,17 @@ private:
             add_point(found, {places[3 * p], places[3 * p + 1], places[3 * p + 2]}, 0);
         }
         read_cells(part, found, alone);
-        refuse_not_finite(found, in_, kVtkNames);
-        read_arrays(part.points, "PointData", false, found);
-        read_arrays(part.cells, "CellData", true, found);
         return found;
     }
 
+    // Cells, and then the arrays.
     void read_cells(const Partition& part, MeshFile& found, bool alone) const {
         const auto types = file_.integers(kRoot + "/Types", part.cells.first, part.cells.count);
         const auto ends = file_.integers(kRoot + "/Offsets", part.offsets, part.cells.count + 1);
         const auto corners = file_.integers(kRoot + "/Connectivity", part.corners.first, part.corners.count);
+        const bool polyhedra = std::ranges::find(types, kVtkPolyhedron) != types.end();
+        if (polyhedra && !file_.has(kRoot + "/NumberOfFaces")) file_.fail("its polyhedra have no faces");
+        const VtkFaces faces = polyhedra ? read_faces(part) : VtkFaces{};
         VtkCellSorter sorter(in_, found, options_);
         std::vector<Index> of_cell;
         for (std::size_t c = 0; c < part.cells.count; ++c) {
@@ -149,9 +196,19 @@ private:
                 }
                 of_cell.push_back(static_cast<Index>(corner));
             }
-            sorter.take(types[c], of_cell, 0);
+            if (types[c] != kVtkPolyhedron) {
+                sorter.take(types[c], of_cell, 0);
+                continue;
+            }
+            auto faces_of_cell = faces.of_cell(c, 0, part.points.count);
+            if (!faces_of_cell) file_.fail(kVtkNames.cell(c) + ": its faces are not those of a polyhedron");
+            sorter.take_polyhedron(std::move(*faces_of_cell));
         }
+        // Polyhedra are split once all arrays are there.
+        read_arrays(part.points, "PointData", false, found);
+        read_arrays(part.cells, "CellData", true, found);
         sorter.report(alone ? std::optional<std::string_view>(file_.name()) : std::nullopt);
+        refuse_not_finite(found, in_, kVtkNames);
     }
 
     // Arrays may have offsets of their own at each step.
@@ -193,6 +250,24 @@ ReadResult read_vtkhdf(const std::filesystem::path& path, const ReadOptions& opt
 
 std::vector<double> vtkhdf_times(const std::filesystem::path& path) {
     return vtkhdf_times(Hdf5File(open_hdf5(path), path.string()));
+}
+
+std::vector<std::string> write_vtkhdf(const std::filesystem::path& path, const HexMesh& mesh) {
+    constexpr std::uint8_t kHexahedron = 12;
+    VtkHdfWriter out(path);
+    std::vector<std::int64_t> corners;
+    corners.reserve(8 * mesh.cells.size());
+    for (const auto& cell : mesh.cells) corners.insert(corners.end(), cell.begin(), cell.end());
+    out.grid(mesh.points, corners, kHexahedron, 8);
+    std::vector<std::string> warnings;
+    for (const Attribute& attribute : mesh.attributes) {
+        const std::string name =
+            out.array(attribute.name, std::span<const double>(attribute.values), static_cast<std::size_t>(attribute.channels));
+        if (name != attribute.name) warnings.push_back("field " + in_quotes(attribute.name) + " is called " + in_quotes(name));
+    }
+    out.commit();
+    if (!mesh.creases.empty() || !mesh.sharp_faces.empty()) warnings.push_back(sharp_counts(mesh) + " not written");
+    return warnings;
 }
 
 }  // namespace subvol::detail

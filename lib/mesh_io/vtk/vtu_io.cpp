@@ -231,7 +231,7 @@ private:
             found_.hexes.numbers.reserve(count);
         }
         const bool polyhedra = std::ranges::find(types, kVtkPolyhedron) != types.end();
-        const PieceFaces faces = polyhedra ? read_faces(element, piece, count) : PieceFaces{};
+        const VtkFaces faces = polyhedra ? read_faces(element, piece, count) : VtkFaces{};
         const std::size_t position = xml_.place(connectivity);
         const auto points = static_cast<std::int64_t>(found_.points.size() - first_point);
         std::vector<Index> corners;  // of cell c, those read so far
@@ -239,7 +239,7 @@ private:
         const auto take_full = [&] {
             for (; c < count && end == ends[c]; ++c) {
                 if (types[c] == kVtkPolyhedron) {
-                    auto of_cell = faces.of(c, first_point, static_cast<std::size_t>(points));
+                    auto of_cell = faces.of_cell(c, first_point, static_cast<std::size_t>(points));
                     if (!of_cell)
                         xml_.fail_at(piece, kVtkNames.cell(cells_before_ + c) + ": its faces are not those of a polyhedron");
                     sorter_.take_polyhedron(std::move(*of_cell));
@@ -264,43 +264,7 @@ private:
         });
     }
 
-    // The faces of polyhedra, in VTK's lists of two generations: for each cell all its faces, one after the other; or faces
-    // with numbers, and the numbers of each cell. ends: in `stream`, that of the cell before for other cells
-    struct PieceFaces {
-        std::vector<std::int64_t> stream, ends;
-        std::vector<std::int64_t> points, point_ends, numbers, number_ends;
-
-        [[nodiscard]] std::optional<CellFaces> of(std::size_t c, std::size_t first_point, std::size_t most) const {
-            if (number_ends.empty()) {
-                const std::int64_t begin = c == 0 ? 0 : ends[c - 1];
-                return part(stream, begin, ends[c])
-                           ? faces_of_stream(std::span(stream).subspan(static_cast<std::size_t>(begin),
-                                                                       static_cast<std::size_t>(ends[c] - begin)),
-                                             first_point, most)
-                           : std::nullopt;
-            }
-            const std::int64_t begin = c == 0 ? 0 : number_ends[c - 1];
-            if (!part(numbers, begin, number_ends[c])) return std::nullopt;
-            std::vector<std::int64_t> one{number_ends[c] - begin};
-            for (std::int64_t k = begin; k < number_ends[c]; ++k) {
-                const std::int64_t face = numbers[static_cast<std::size_t>(k)];
-                if (face < 0 || static_cast<std::size_t>(face) >= point_ends.size()) return std::nullopt;
-                const std::int64_t from = face == 0 ? 0 : point_ends[static_cast<std::size_t>(face) - 1];
-                const std::int64_t to = point_ends[static_cast<std::size_t>(face)];
-                if (!part(points, from, to)) return std::nullopt;
-                one.push_back(to - from);
-                one.insert(one.end(), points.begin() + from, points.begin() + to);
-            }
-            return faces_of_stream(one, first_point, most);
-        }
-
-    private:
-        static bool part(const std::vector<std::int64_t>& list, std::int64_t begin, std::int64_t end) {
-            return begin >= 0 && begin <= end && static_cast<std::size_t>(end) <= list.size();
-        }
-    };
-
-    PieceFaces read_faces(const pugi::xml_node& element, const pugi::xml_node& piece, std::size_t count) const {
+    VtkFaces read_faces(const pugi::xml_node& element, const pugi::xml_node& piece, std::size_t count) const {
         const auto list = [&](const char* name) { return arrays_.integers(cell_array(element, piece, name)); };
         // Offsets begin with a 0 in some files.
         const auto ends = [&](const char* name, std::optional<std::size_t> wanted) {
@@ -310,7 +274,7 @@ private:
             if (wanted) xml_.expect_size(cell_array(element, piece, name), all.size(), *wanted, "one a cell");
             return all;
         };
-        PieceFaces faces;
+        VtkFaces faces;
         if (element.find_child_by_attribute("DataArray", "Name", "polyhedron_to_faces")) {
             faces.points = list("face_connectivity");
             faces.point_ends = ends("face_offsets", std::nullopt);

@@ -54,7 +54,9 @@ public:
             const auto part = deck_.parts.find(instance.part), inside = deck_.parts.find(instance.inside);
             const bool has_mesh = inside != deck_.parts.end() && !inside->second.points.empty();
             if (part == deck_.parts.end() && !has_mesh) {
-                fail(instance.part.empty() ? "it has no nodes" : "there is no part " + in_quotes(instance.part));
+                if (!instance.part.empty()) fail("there is no part " + in_quotes(instance.part));
+                throw Error(ErrorCode::InvalidInput, "it has no nodes", file_,
+                            "*NODE is needed; AVS UCD files have this ending, too: python3 -m subvol.convert --format avsucd");
             }
             std::vector<const std::map<std::string, InpSet>*> sets;
             if (part != deck_.parts.end()) sets.push_back(&part->second.sets);

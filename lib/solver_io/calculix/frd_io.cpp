@@ -1,17 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 // CalculiX's results. A line begins with its key: -1 a node, an element or the values at a node, -2 what follows of it, -3 the
-// end of a list, -4 a result, -5 a component of it. Numbers have fixed widths and may touch each other.
+// end of a list, -4 a result, -5 a component of it. Numbers have fixed widths and may touch each other. In binary files the
+// lines with -1 and -2 are records instead, as many as the head of the list says, and there are no lines with -3.
 
 #include <algorithm>
+#include <bit>
 #include <charconv>
 #include <cmath>
 #include <limits>
 #include <map>
 #include <numeric>
+#include <tuple>
 #include <unordered_map>
 
 #include "assemble.h"
 #include "mesh_file.h"
+#include "number_type.h"
 #include "solver_formats.h"
 #include "text_scanner.h"
 
@@ -92,6 +96,20 @@ public:
     [[noreturn]] void fail(const std::string& message, const std::string& allowed = {}) const {
         in_.fail_at(position_, message, allowed);
     }
+    /// The next bytes, after the line. what: for messages
+    std::string_view bytes(std::size_t count, std::string_view what) {
+        position_ = std::min(next_, text_.size());
+        if (count > text_.size() - position_) fail(std::string(what) + ": the file ends");
+        next_ += count;
+        return text_.substr(position_, count);
+    }
+    std::int64_t binary_integer(std::string_view what) {
+        return integer_from(bytes(4, what), NumberType::Int32, std::endian::little);
+    }
+    std::vector<double> binary_reals(std::size_t count, NumberType type, std::string_view what) {
+        if (count > text_.size()) fail(std::string(what) + ": the file ends");
+        return reals_from(bytes(count * size_of(type), what), type, std::endian::little);
+    }
     [[nodiscard]] std::size_t position() const { return position_; }
     [[nodiscard]] const TextScanner& in() const { return in_; }
 
@@ -101,14 +119,81 @@ private:
     std::size_t next_ = 0, position_ = 0;
 };
 
-// The width of numbers of nodes and elements, by the number at the end of a header line.
-std::size_t width_of(const FrdLines& lines) {
+// The head of a list. width: of the numbers of nodes and elements in text; number: the type of reals in binary files
+struct FrdHead {
+    std::size_t count = 0, width = 0;
+    NumberType number = NumberType::Float32;
+    bool binary = false;
+};
+
+FrdHead head_of(const FrdLines& lines) {
     const std::string_view line = trimmed(lines.line());
     const std::size_t last = line.find_last_of(' ');
     const std::string_view form = last == std::string_view::npos ? std::string_view() : line.substr(last + 1);
-    if (form == "0") return 5;
-    if (form == "1") return 10;
-    lines.fail("the format of the list is " + in_quotes(form), "0 and 1 are supported: CalculiX's text, not its binary files");
+    FrdHead head;
+    if (form == "0" || form == "1") {
+        head.width = form == "0" ? 5 : 10;
+    } else if (form == "2" || form == "3") {
+        head.binary = true;
+        head.number = form == "2" ? NumberType::Float32 : NumberType::Float64;
+        const std::int64_t count = lines.integer(24, 12, "the number of records");
+        if (count < 0 || static_cast<std::size_t>(count) > lines.in().size()) {
+            lines.fail("count out of range: " + std::to_string(count));
+        }
+        head.count = static_cast<std::size_t>(count);
+    } else {
+        lines.fail("the format of the list is " + in_quotes(form), "0 and 1 are text, 2 and 3 are binary");
+    }
+    return head;
+}
+
+const FrdType& type_of(const FrdLines& lines, std::int64_t element, std::int64_t type) {
+    if (type < 1 || type >= static_cast<std::int64_t>(kFrdTypes.size())) {
+        lines.fail("element " + std::to_string(element) + " is of type " + std::to_string(type), "types are 1 to 12");
+    }
+    return kFrdTypes[static_cast<std::size_t>(type)];
+}
+
+// The name of a result and its components; kind: 1 at the nodes.
+struct FrdResult {
+    std::string name;
+    std::int64_t kind = 1;
+    std::size_t components = 0;
+};
+
+// Reads the lines -4 and -5. Components that follow from others are not in the file.
+FrdResult result_of(FrdLines& lines) {
+    if (!lines.next() || lines.key() != "-4") lines.fail("the name of a result is expected, a line that begins with -4");
+    FrdResult result{as_utf8(lines.part(5, 8)), 1, 0};
+    if (!lines.part(18, 5).empty()) result.kind = lines.integer(18, 5, "where the values are");
+    while (lines.next() && lines.key() == "-5") {
+        const bool follows = !lines.part(33, 5).empty() && lines.integer(33, 5, "a flag") != 0;
+        result.components += !follows;
+    }
+    lines.back();
+    return result;
+}
+
+// Skips the records of a result. Those of text are lines like all others.
+void skip_values(FrdLines& lines, const FrdHead& head) {
+    if (!head.binary) return;
+    const std::size_t components = result_of(lines).components;
+    for (std::size_t k = 0; k < head.count; ++k) std::ignore = lines.bytes(4 * (components + 1), "values");
+}
+
+// The same for nodes and elements. key: "2C" or "3C"
+void skip_list(FrdLines& lines, std::string_view key) {
+    const FrdHead head = head_of(lines);
+    if (!head.binary) return;
+    for (std::size_t k = 0; k < head.count; ++k) {
+        if (key == "2C") {
+            std::ignore = lines.bytes(4 + 3 * size_of(head.number), "a node");
+            continue;
+        }
+        const std::int64_t number = lines.binary_integer("the number of an element");
+        const std::int64_t type = lines.binary_integer("the type of an element");
+        std::ignore = lines.bytes(4 * (2 + type_of(lines, number, type).nodes), "an element");
+    }
 }
 
 // A line 100C: the results of a step begin.
@@ -153,7 +238,12 @@ StepTimes steps_of(std::string_view text, std::string_view file) {
     FrdLines lines(text, file);
     StepTimes steps;
     while (lines.next()) {
-        if (lines.key() == "100C") steps.add(step_of(lines));
+        const std::string_view key = lines.key();
+        if (key == "2C" || key == "3C") skip_list(lines, key);
+        if (key == "9999") break;
+        if (key != "100C") continue;
+        steps.add(step_of(lines));
+        skip_values(lines, head_of(lines));
     }
     return steps;
 }
@@ -177,7 +267,12 @@ public:
             if (key == "100C") {
                 steps.add(step_of(lines_));
                 if (numbers_.empty()) lines_.fail("it has results, but no nodes before them");
-                if (steps.current() == step_) read_result();
+                const FrdHead head = head_of(lines_);
+                if (steps.current() == step_) {
+                    read_result(head);
+                } else {
+                    skip_values(lines_, head);
+                }
             }
             if (key == "9999") break;
         }
@@ -190,34 +285,52 @@ public:
 
 private:
     void read_nodes() {
-        const std::size_t width = width_of(lines_);
+        const FrdHead head = head_of(lines_);
+        for (std::size_t k = 0; k < head.count; ++k) {
+            const std::int64_t number = lines_.binary_integer("the number of a node");
+            const auto x = lines_.binary_reals(3, head.number, "a coordinate");
+            add_node(number, {x[0], x[1], x[2]});
+        }
+        if (head.binary) return;
         while (lines_.next() && lines_.key() == "-1") {
-            const std::int64_t number = lines_.integer(3, width, "the number of a node");
-            if (found_.points.size() >= kNone) lines_.fail("there are too many nodes");
-            if (!places_.try_emplace(number, static_cast<Index>(found_.points.size())).second) {
-                lines_.fail("there is another node " + std::to_string(number));
-            }
+            const std::int64_t number = lines_.integer(3, head.width, "the number of a node");
             Vec3 x;
-            for (std::size_t a = 0; a < 3; ++a) x[static_cast<int>(a)] = lines_.real(3 + width + a * kOfReal, "a coordinate");
-            add_point(found_, x, lines_.position());
-            numbers_.push_back(number);
+            for (std::size_t a = 0; a < 3; ++a)
+                x[static_cast<int>(a)] = lines_.real(3 + head.width + a * kOfReal, "a coordinate");
+            add_node(number, x);
         }
         if (lines_.key() != "-3") lines_.fail("the list of nodes does not end with -3");
     }
 
+    void add_node(std::int64_t number, const Vec3& x) {
+        if (found_.points.size() >= kNone) lines_.fail("there are too many nodes");
+        if (!places_.try_emplace(number, static_cast<Index>(found_.points.size())).second) {
+            lines_.fail("there is another node " + std::to_string(number));
+        }
+        add_point(found_, x, lines_.position());
+        numbers_.push_back(number);
+    }
+
     void read_elements() {
-        const std::size_t width = width_of(lines_);
+        const FrdHead head = head_of(lines_);
+        std::vector<Index> nodes;
+        for (std::size_t k = 0; k < head.count; ++k) {
+            const std::int64_t number = lines_.binary_integer("the number of an element");
+            const FrdType& kind = type_of(lines_, number, lines_.binary_integer("the type of an element"));
+            std::ignore = lines_.bytes(8, "the group and the material of an element");
+            nodes.clear();
+            while (nodes.size() < kind.nodes) nodes.push_back(place(number, lines_.binary_integer("the number of a node")));
+            take(kind, nodes);
+            ++elements_;
+        }
+        if (head.binary) return;
         while (lines_.next() && lines_.key() == "-1") {
-            const std::int64_t number = lines_.integer(3, width, "the number of an element");
-            const std::int64_t type = lines_.integer(3 + width, 5, "the type of an element");
-            if (type < 1 || type >= static_cast<std::int64_t>(kFrdTypes.size())) {
-                lines_.fail("element " + std::to_string(number) + " is of type " + std::to_string(type), "types are 1 to 12");
-            }
-            const FrdType& kind = kFrdTypes[static_cast<std::size_t>(type)];
-            std::vector<Index> nodes;
+            const std::int64_t number = lines_.integer(3, head.width, "the number of an element");
+            const FrdType& kind = type_of(lines_, number, lines_.integer(3 + head.width, 5, "the type of an element"));
+            nodes.clear();
             while (lines_.next() && lines_.key() == "-2") {
-                for (std::size_t at = 3; nodes.size() < kind.nodes && lines_.has(at); at += width) {
-                    nodes.push_back(place(number, lines_.integer(at, width, "the number of a node")));
+                for (std::size_t at = 3; nodes.size() < kind.nodes && lines_.has(at); at += head.width) {
+                    nodes.push_back(place(number, lines_.integer(at, head.width, "the number of a node")));
                 }
             }
             lines_.back();
@@ -263,37 +376,45 @@ private:
         into.numbers.push_back(static_cast<Index>(elements_));
     }
 
-    // The values of a result at the nodes. Components that follow from others are not in the file.
-    void read_result() {
-        const std::size_t width = width_of(lines_);
-        if (!lines_.next() || lines_.key() != "-4") lines_.fail("the name of a result is expected, a line that begins with -4");
-        FileArray array{as_utf8(lines_.part(5, 8)), 0, false, {}};
-        const std::int64_t kind = lines_.part(18, 5).empty() ? 1 : lines_.integer(18, 5, "where the values are");
-        while (lines_.next() && lines_.key() == "-5") {
-            const bool follows = !lines_.part(33, 5).empty() && lines_.integer(33, 5, "a flag") != 0;
-            array.components += !follows;
-        }
-        lines_.back();
-        const auto components = static_cast<std::size_t>(array.components);
-        if (kind != 1 || components == 0 || components > kMostComponents) {
-            found_.warnings.push_back("result " + in_quotes(array.name) + " is not at the nodes: ignored");
+    // The values of a result at the nodes.
+    void read_result(const FrdHead& head) {
+        const FrdResult result = result_of(lines_);
+        const std::size_t components = result.components;
+        if (result.kind != 1 || components == 0 || components > kMostComponents) {
+            found_.warnings.push_back("result " + in_quotes(result.name) + " is not at the nodes: ignored");
+            for (std::size_t k = 0; k < head.count; ++k) std::ignore = lines_.bytes(4 * (components + 1), "values");
             return;
         }
         if (found_.points.size() > lines_.in().size()) lines_.fail("there are too many nodes");
+        FileArray array{result.name, static_cast<int>(components), false, {}};
         array.values.assign(found_.points.size() * components, std::numeric_limits<double>::quiet_NaN());
+        for (std::size_t k = 0; k < head.count; ++k) {
+            double* const values = array.values.data() + node(lines_.binary_integer("the number of a node")) * components;
+            std::ranges::copy(lines_.binary_reals(components, NumberType::Float32, "a value"), values);
+        }
+        if (!head.binary) read_values(head.width, array);
+        found_.arrays.push_back(std::move(array));
+    }
+
+    void read_values(std::size_t width, FileArray& array) {
+        const auto components = static_cast<std::size_t>(array.components);
         while (lines_.next() && lines_.key() == "-1") {
             const std::int64_t number = lines_.integer(3, width, "the number of a node");
-            const auto node = places_.find(number);
-            if (node == places_.end()) lines_.fail("there is no node " + std::to_string(number));
+            const std::size_t first = node(number) * components;
             for (std::size_t c = 0; c < components; ++c) {
                 if (c > 0 && c % kOfLine == 0 && (!lines_.next() || lines_.key() != "-2")) {
                     lines_.fail("node " + std::to_string(number) + " has fewer values than " + std::to_string(components));
                 }
-                array.values[node->second * components + c] = lines_.real(3 + width + c % kOfLine * kOfReal, "a value");
+                array.values[first + c] = lines_.real(3 + width + c % kOfLine * kOfReal, "a value");
             }
         }
         if (lines_.key() != "-3") lines_.fail("the result does not end with -3");
-        found_.arrays.push_back(std::move(array));
+    }
+
+    [[nodiscard]] std::size_t node(std::int64_t number) const {
+        const auto found = places_.find(number);
+        if (found == places_.end()) lines_.fail("there is no node " + std::to_string(number));
+        return found->second;
     }
 
     void finish() {

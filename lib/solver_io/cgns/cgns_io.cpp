@@ -562,7 +562,7 @@ Hdf5File open(const std::filesystem::path& path) {
     if (not_regular(path).empty()) std::ifstream(path, std::ios::binary).read(begin.data(), begin.size());
     if (std::string_view(begin.data(), begin.size()).find("ADF Database") != std::string_view::npos) {
         throw Error(ErrorCode::InvalidInput, "the CGNS file is of the older kind ADF", path.string(),
-                    "cgnsconvert -h converts it to HDF5");
+                    "cgnsconvert -h, of Debian's cgns-convert, makes it HDF5");
     }
     return {open_hdf5(path), path.string()};
 }

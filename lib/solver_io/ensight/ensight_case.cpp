@@ -68,8 +68,11 @@ EnsightCase::EnsightCase(std::string_view text, std::string_view file)
         }
         const std::string key = lower_case(trimmed(line.substr(0, colon)));
         const std::string_view rest = trimmed(line.substr(colon + 1));
-        if (section == "format" && key == "type" && lower_case(rest) != "ensight gold") {
-            in_.fail_at(position, "the format is " + in_quotes(rest), "ensight gold is supported");
+        if (section == "format" && key == "type") {
+            six_ = lower_case(rest) == "ensight" || lower_case(rest) == "ensight6";
+            if (!six_ && lower_case(rest) != "ensight gold") {
+                in_.fail_at(position, "the format is " + in_quotes(rest), "ensight gold and ensight (6) are supported");
+            }
         }
         if (section == "geometry") take_geometry(key, rest, position);
         if (section == "variable") take_variable(key, rest, position);

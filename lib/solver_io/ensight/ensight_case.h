@@ -41,7 +41,7 @@ struct EnsightStep {
     std::optional<std::size_t> step;
 };
 
-/// What an EnSight Gold case consists of: the file that names all others.
+/// What a case of EnSight Gold or 6 consists of: the file that names all others.
 class EnsightCase {
 public:
     /// text, file: must outlive it
@@ -56,6 +56,8 @@ public:
 
     /// The step whose geometry has the elements of all; nothing if each step has its own.
     [[nodiscard]] std::optional<std::size_t> coordinates_step() const { return coordinates_step_; }
+    /// Whether the files are those of version 6.
+    [[nodiscard]] bool six() const { return six_; }
     [[nodiscard]] const EnsightFiles& geometry() const { return geometry_; }
     [[nodiscard]] const std::vector<EnsightVariable>& variables() const { return variables_; }
     [[nodiscard]] const std::vector<std::string>& warnings() const { return warnings_; }
@@ -71,6 +73,7 @@ private:
     TextScanner in_;
     std::filesystem::path folder_;
     EnsightFiles geometry_;
+    bool six_ = false;
     std::optional<std::size_t> coordinates_step_;
     std::vector<EnsightVariable> variables_;
     std::map<int, EnsightTimes> sets_;

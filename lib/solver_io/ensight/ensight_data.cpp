@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <charconv>
+#include <functional>
+#include <map>
 #include <tuple>
 #include <utility>
 
@@ -27,7 +29,29 @@ std::optional<std::endian> order_of_records(std::string_view text) {
     return std::nullopt;
 }
 
+bool begins_with_c(std::string_view text) {
+    return upper_case(text.substr(0, kOfLine)).starts_with("C BINARY");
+}
+
+const std::map<std::string, std::size_t, std::less<>> kNodes{{"point", 1},    {"bar2", 2},     {"bar3", 3},       {"tria3", 3},
+                                                             {"tria6", 6},    {"quad4", 4},    {"quad8", 8},      {"tetra4", 4},
+                                                             {"tetra10", 10}, {"pyramid5", 5}, {"pyramid13", 13}, {"penta6", 6},
+                                                             {"penta15", 15}, {"hexa8", 8},    {"hexa20", 20}};
+
+// Fortran leaves the letter of an exponent out where it has three digits: 1.5+100.
+std::string with_exponent(std::string_view number) {
+    std::string text(number);
+    const std::size_t sign = text.find_first_of("+-", 1);
+    if (sign != std::string::npos && text[sign - 1] >= '0' && text[sign - 1] <= '9') text.insert(sign, "e");
+    return text;
+}
+
 }  // namespace
+
+std::size_t nodes_of_ensight(std::string_view type) {
+    const auto known = kNodes.find(type);
+    return known == kNodes.end() ? 0 : known->second;
+}
 
 EnsightData::EnsightData(const std::filesystem::path& path, std::optional<EnsightForm> form, std::optional<std::size_t> step)
     : name_(path.string()), text_(read_text(path)), in_(text_, name_, TextScanner::Comments::None) {
@@ -39,6 +63,14 @@ EnsightData::EnsightData(const std::filesystem::path& path, std::optional<Ensigh
     if (binary()) in_.name_bytes();
     const bool says_so = fortran || c;
     if (says_so && !step) std::ignore = in_.bytes(std::min(kOfLine, text_.size()), {"line"});
+}
+
+EnsightData::EnsightData(std::string gold, const std::string& name)
+    : name_(name), text_(std::move(gold)), in_(text_, name_, TextScanner::Comments::None), form_(EnsightForm::C) {
+    has_order_ = true;
+    order_ = std::endian::native;
+    in_.name_bytes();
+    std::ignore = begins_with_c(text_) ? in_.bytes(kOfLine, {"line"}) : std::string_view();
 }
 
 // The contents of all records are what C's files have.
@@ -83,6 +115,11 @@ void EnsightData::take_step(std::size_t step) {
     in_ = TextScanner(std::string_view(text_).substr(0, end), name_, TextScanner::Comments::None);
     in_.seek(at);
     if (!binary()) std::ignore = in_.line();
+}
+
+void EnsightData::set_order(std::endian order) {
+    order_ = order;
+    has_order_ = true;
 }
 
 bool EnsightData::at_end() {
@@ -155,6 +192,47 @@ std::vector<double> EnsightData::reals(std::size_t count, const std::string& wha
     values.reserve(count);
     for (std::size_t i = 0; i < count; ++i) values.push_back(in_.real({what, static_cast<std::int64_t>(i + 1), count}));
     return values;
+}
+
+std::string_view EnsightData::column(std::size_t width, const std::string& what) {
+    if (in_.at_end()) fail(what + ": the file ends");
+    const std::string_view rest = in_.rest().substr(0, width);
+    const std::string_view text = rest.substr(0, rest.find_first_of(" \t\r\n"));
+    std::ignore = in_.bytes(text.size(), {what});
+    in_line_ = true;
+    return text;
+}
+
+std::vector<std::int64_t> EnsightData::column_integers(std::size_t count, const std::string& what) {
+    constexpr std::size_t kWidth = 8;
+    if (binary()) return integers(count, what);
+    std::vector<std::int64_t> values;
+    for (std::size_t i = 0; i < count; ++i) {
+        const std::string_view text = column(kWidth, what);
+        values.push_back(TextScanner(text, {}, TextScanner::Comments::None).integer({what}));
+    }
+    return values;
+}
+
+std::vector<double> EnsightData::column_reals(std::size_t count, const std::string& what) {
+    constexpr std::size_t kWidth = 12;
+    if (binary()) return reals(count, what);
+    std::vector<double> values;
+    for (std::size_t i = 0; i < count; ++i) {
+        const std::string text = with_exponent(column(kWidth, what));
+        double value = 0;
+        const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+        if (error != std::errc() || end != text.data() + text.size())
+            fail(what + ": a number is expected, not " + in_quotes(text));
+        values.push_back(value);
+    }
+    return values;
+}
+
+std::string EnsightData::kind_of_ids(const std::string& owner) {
+    const std::string text = keyword();
+    if (!text.starts_with(owner + " id")) fail("a line \"" + owner + " id …\" is expected, not " + in_quotes(text));
+    return text.substr(text.find_last_of(' ') + 1);
 }
 
 }  // namespace subvol::detail

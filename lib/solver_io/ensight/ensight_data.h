@@ -16,6 +16,9 @@ namespace subvol::detail {
 /// (C) or each line and list as a record with its length before and behind it (Fortran).
 enum class EnsightForm { Text, C, Fortran };
 
+/// The number of nodes of an element; 0 if the type is unknown or has any number of them.
+[[nodiscard]] std::size_t nodes_of_ensight(std::string_view type);
+
 /// The lines and numbers of an EnSight file.
 class EnsightData {
 public:
@@ -23,11 +26,16 @@ public:
     /// step: which of several steps in the file is read, from 0; nothing: the file is one step
     explicit EnsightData(const std::filesystem::path& path, std::optional<EnsightForm> form = {},
                          std::optional<std::size_t> step = {});
+    /// The bytes of a file of Gold, binary and in this machine's byte order. name: for messages
+    EnsightData(std::string gold, const std::string& name);
     EnsightData(const EnsightData&) = delete;
     EnsightData& operator=(const EnsightData&) = delete;
 
     [[nodiscard]] EnsightForm form() const { return form_; }
     [[nodiscard]] bool binary() const { return form_ != EnsightForm::Text; }
+    /// The order of bytes that the file was found to have, and that of another file for this one.
+    [[nodiscard]] std::endian order() const { return order_; }
+    void set_order(std::endian order);
     [[nodiscard]] bool at_end();
     /// The next line without blanks around it.
     std::string line();
@@ -40,6 +48,12 @@ public:
     std::size_t count(const std::string& what);
     std::vector<std::int64_t> integers(std::size_t count, const std::string& what);
     std::vector<double> reals(std::size_t count, const std::string& what);
+    /// The same in columns of a fixed width, as texts of version 6 have them, with no blanks between where the numbers are
+    /// wide.
+    std::vector<std::int64_t> column_integers(std::size_t count, const std::string& what);
+    std::vector<double> column_reals(std::size_t count, const std::string& what);
+    /// Reads a line "node id given" and returns its last word.
+    std::string kind_of_ids(const std::string& owner);
 
     [[nodiscard]] const TextScanner& in() const { return in_; }
     /// The place of the last line or number, for messages.
@@ -48,6 +62,7 @@ public:
 
 private:
     void expect_room(std::size_t count, const std::string& what) const;
+    std::string_view column(std::size_t width, const std::string& what);
     void take_records();
     void take_step(std::size_t step);
 

@@ -12,6 +12,7 @@
 #include "assemble.h"
 #include "ensight_case.h"
 #include "ensight_data.h"
+#include "ensight_six.h"
 #include "join_pieces.h"
 #include "mesh_file.h"
 #include "named_files.h"
@@ -26,11 +27,6 @@ namespace subvol::detail {
 namespace {
 
 constexpr EntityNames kEnsightNames{"node", "element", 1};
-
-const std::map<std::string, std::size_t, std::less<>> kNodes{{"point", 1},    {"bar2", 2},     {"bar3", 3},       {"tria3", 3},
-                                                             {"tria6", 6},    {"quad4", 4},    {"quad8", 8},      {"tetra4", 4},
-                                                             {"tetra10", 10}, {"pyramid5", 5}, {"pyramid13", 13}, {"penta6", 6},
-                                                             {"penta15", 15}, {"hexa8", 8},    {"hexa20", 20}};
 
 // A uniform block lists no points: with its cells it is much more than its few numbers.
 constexpr std::size_t kBytesOfBlockPoint = 64;
@@ -141,8 +137,11 @@ private:
 
     void read_geometry(double time) {
         const EnsightStep step = checked(case_.geometry(), time);
-        EnsightData data(step.path, {}, step.step);
-        form_ = data.form();
+        EnsightData given(step.path, {}, step.step);
+        form_ = given.form();
+        std::optional<EnsightData> gold;
+        if (case_.six()) gold.emplace(six_.geometry(given), step.path.string());
+        EnsightData& data = gold ? *gold : given;
         std::ignore = data.description();
         std::ignore = data.description();
         const bool node_ids = has_ids(data, "node"), element_ids = has_ids(data, "element");
@@ -173,11 +172,9 @@ private:
         for (const auto& [number, part] : parts_) refuse_not_finite(part.found, data.in(), kEnsightNames);
     }
 
-    // "node id given": the numbers follow, and say nothing about who refers to what.
-    static bool has_ids(EnsightData& data, const std::string& of) {
-        const std::string line = data.keyword();
-        if (!line.starts_with(of + " id")) data.fail("a line \"" + of + " id …\" is expected, not " + in_quotes(line));
-        const std::string kind = line.substr(line.find_last_of(' ') + 1);
+    // The numbers of "node id given" follow, and say nothing about who refers to what.
+    static bool has_ids(EnsightData& data, const std::string& owner) {
+        const std::string kind = data.kind_of_ids(owner);
         return kind == "given" || kind == "ignore";
     }
 
@@ -247,8 +244,8 @@ private:
     void read_elements(EnsightData& data, Part& part, const std::string& line, bool ids) {
         const bool ghost = line.starts_with("g_");
         const std::string type = ghost ? line.substr(2) : line;
-        const auto known = kNodes.find(type);
-        if (known == kNodes.end() && type != "nsided" && type != "nfaced")
+        const std::size_t nodes = nodes_of_ensight(type);
+        if (nodes == 0 && type != "nsided" && type != "nfaced")
             data.fail("elements of type " + in_quotes(line) + " are not known");
         const std::size_t count = data.count("elements");
         if (ids) std::ignore = data.integers(count, "numbers of elements");
@@ -257,7 +254,7 @@ private:
         part.groups.push_back({line, first, count});
         part.elements += count;
         if (part.elements >= kNone) data.fail("there are too many elements");
-        if (known == kNodes.end()) {
+        if (nodes == 0) {
             const auto counts = data.integers(count, "counts");
             std::vector<std::int64_t> corners;
             if (type == "nfaced") corners = data.integers(total(data, counts), "counts");
@@ -269,7 +266,6 @@ private:
             }
             return;
         }
-        const std::size_t nodes = known->second;
         if (count > data.in().size() / nodes) data.fail("there are too many elements");
         const auto numbers = data.integers(count * nodes, "nodes of elements");
         if (ghost) {
@@ -360,7 +356,10 @@ private:
     // A part that a variable lacks has not got it: the parts are joined without.
     void read_variable(const EnsightVariable& variable) {
         const EnsightStep step = checked(variable.files, time_);
-        EnsightData data(step.path, form_, step.step);
+        EnsightData given(step.path, form_, step.step);
+        std::optional<EnsightData> gold;
+        if (case_.six()) gold.emplace(six_.variable(given, variable.components, variable.at_cells), step.path.string());
+        EnsightData& data = gold ? *gold : given;
         std::ignore = data.description();
         Part* part = nullptr;
         while (!data.at_end()) {
@@ -435,6 +434,7 @@ private:
     EnsightCase case_;
     ReadOptions options_;
     NamedFiles named_;
+    EnsightSix six_;
     std::map<int, Part> parts_;
     std::map<std::string, std::size_t> left_out_;
     double time_ = 0;

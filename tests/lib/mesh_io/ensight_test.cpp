@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// EnSight Gold cases, as text and in C's binary files of both byte orders.
+// EnSight cases of Gold and of version 6, as text and in C's binary files of both byte orders.
 
 #include <gmock/gmock.h>
 
 #include <algorithm>
 #include <bit>
 #include <cstring>
+#include <random>
+#include <span>
 
 #include "lib/test_meshes.h"
 #include "mesh_damage.h"
@@ -336,7 +338,119 @@ TEST_F(Ensight, CoordinatesMayChangeAlone) {
     EXPECT_NEAR(inspect(read_mesh(path("a.case"), {.step = 0}).mesh).volume, 4, 1e-4);
 }
 
+// Version 6: two cubes that share a face as two parts of one list of nodes, with numbers from 100 on, and a block beside them.
+std::string geometry_six(Form form) {
+    GoldText out(form);
+    out.line("made by a test").line("version 6").line("node id given").line("element id given");
+    const HexMesh mesh = make_box(2, 1, 1);
+    out.line("coordinates").integers(std::vector{12});
+    std::vector<int> numbers;
+    for (int p = 0; p < 12; ++p) numbers.push_back(100 + 2 * p);
+    std::vector<double> all;
+    for (const Vec3& x : mesh.points) all.insert(all.end(), {x.x, x.y, x.z});
+    if (form == Form::Text) {
+        for (std::size_t p = 0; p < 12; ++p) {
+            out.integers(std::vector{numbers[p]}).reals(std::span(all).subspan(3 * p, 3));
+        }
+    } else {
+        out.integers(numbers).reals(all);
+    }
+    for (std::size_t c = 0; c < 2; ++c) {
+        out.line("part " + std::to_string(c + 1)).line(c == 0 ? "left" : "right");
+        out.line("hexa8").integers(std::vector{1}).integers(std::vector{7});
+        std::vector<int> corners;
+        for (const Index p : mesh.cells[c]) corners.push_back(numbers[p]);
+        out.integers(corners);
+    }
+    out.line("part 3").line("beside").line("block").integers(std::vector{2, 2, 2});
+    out.reals(std::vector<double>{2, 3, 2, 3, 2, 3, 2, 3, 0, 0, 1, 1, 0, 0, 1, 1, 0, 0, 0, 0, 1, 1, 1, 1});
+    return out.text();
+}
+
+TEST_F(Ensight, Version6HasOneListOfNodes) {
+    std::string text_case = kCase.substr(0, kCase.find("TIME"));
+    for (const auto& [from, to] : {std::array{"ensight gold", "ensight"}, std::array{"1 a.geo**", "a.geo"},
+                                   std::array{"1 T a.T**", "T a.T"}, std::array{"1 \"U\" a.U**", "U a.U"}}) {
+        text_case.replace(text_case.find(from), std::strlen(from), to);
+    }
+    const HexMesh mesh = make_box(2, 1, 1);
+    for (const Form form : {Form::Text, Form::Little, Form::Big, Form::Fortran}) {
+        GoldText t(form, false), u(form, false), c(form, false);
+        std::vector<double> at_nodes, vectors;
+        for (const Vec3& x : mesh.points) {
+            at_nodes.push_back(x.x);
+            vectors.insert(vectors.end(), {x.x, 10 * x.y, 100 * x.z});
+        }
+        t.line("T").reals(at_nodes).line("part 3").line("block").reals(std::vector<double>{2, 3, 2, 3, 2, 3, 2, 3});
+        u.line("U").reals(vectors).line("part 3").line("block");
+        u.reals(std::vector<double>{2, 3, 2, 3, 2, 3, 2, 3, 0, 0, 10, 10, 0, 0, 10, 10, 0, 0, 0, 0, 100, 100, 100, 100});
+        c.line("c");
+        for (const int part : {1, 2})
+            c.line("part " + std::to_string(part)).line("hexa8").reals(std::vector<double>{1. * part});
+        c.line("part 3").line("block").reals(std::vector<double>{3});
+        write("a.case", text_case);
+        write("a.geo", geometry_six(form));
+        write("a.T", t.text());
+        write("a.U", u.text());
+        write("a.c", c.text());
+        const ReadResult result = read_mesh(path("a.case"));
+        EXPECT_EQ(result.mesh.cells.size(), 3u);
+        EXPECT_NEAR(inspect(result.mesh).volume, 3, 1e-6);
+        EXPECT_EQ(inspect(result.mesh).points_used, 16u);  // the parts are joined
+        ASSERT_EQ(result.blocks.size(), 3u);
+        EXPECT_EQ(result.blocks[1].name, "right");
+        for (std::size_t p = 0; p < result.mesh.points.size(); ++p) {
+            const Vec3& x = result.mesh.points[p];
+            EXPECT_NEAR(result.mesh.find_attribute("T")->values[p], x.x, 1e-6);
+            EXPECT_NEAR(result.mesh.find_attribute("U")->values[3 * p + 2], 100 * x.z, 1e-6);
+        }
+        EXPECT_EQ(read_mesh(path("a.case"), {.blocks = {"right"}}).mesh.find_attribute("c")->values[0], 2);
+    }
+}
+
+// Numbers fill their columns of 12 and 8, and Fortran leaves out the letter of long exponents.
+TEST_F(Ensight, NumbersOfVersion6MayTouch) {
+    const std::string begin = "a\nb\nnode id assign\nelement id off\ncoordinates\n       8\n",
+                      end = "part 1\np\nhexa8\n       1\n       1       2       3       4       5       6       7       8\n";
+    std::string points;
+    for (const Vec3& x : make_box(1, 1, 1).points) {
+        for (int k = 0; k < 3; ++k) points += x[k] == 0 ? "-1.00000e+00" : "1.0000000+00";
+        points += "\n";
+    }
+    write("a.case", "FORMAT\ntype: ensight\nGEOMETRY\nmodel: a.geo\n");
+    std::string hex = end;
+    const auto corners = make_box(1, 1, 1).cells[0];
+    hex.erase(hex.find("       1       2"));
+    for (const Index p : corners) hex += "       " + std::to_string(p + 1);
+    write("a.geo", begin + points + hex + "\n");
+    EXPECT_NEAR(inspect(read_mesh(path("a.case")).mesh).volume, 8, 1e-6);
+    write("a.geo", begin + points + end.substr(0, end.size() - 2) + "9\n");
+    const auto read = [&] { static_cast<void>(read_mesh(path("a.case"))); };
+    EXPECT_THAT(error_of(read), HasSubstr("a.geo, line 19: hexa8 1: there is no node 9"));
+}
+
 class EnsightFuzz : public MeshFuzz {};
+
+// The case is as it should be, its files are damaged.
+TEST_F(EnsightFuzz, Version6) {
+    write("a.case", "FORMAT\ntype: ensight\nGEOMETRY\nmodel: a.geo\nVARIABLE\nscalar per node: T a.T\n");
+    std::mt19937 random(42);
+    int refused = 0;
+    for (int run = 0; run < run_count(); ++run) {
+        const Form form = run % 2 == 0 ? Form::Text : Form::Little;
+        GoldText t(form, false);
+        t.line("T").reals(std::vector<double>(12, 1)).line("part 3").line("block").reals(std::vector<double>(8, 2));
+        write("a.geo", run % 3 == 0 ? geometry_six(form) : damaged(geometry_six(form), random));
+        write("a.T", damaged(t.text(), random));
+        try {
+            validate(read_mesh(path("a.case")).mesh);
+        } catch (const Error& error) {
+            expect_printable(error.what());
+            ++refused;
+        }
+    }
+    EXPECT_GT(refused, run_count() / 10);
+}
 
 TEST_F(EnsightFuzz, Cases) {
     write("a.geo00", geometry(Form::Text));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// CalculiX's results as text.
+// CalculiX's results as text and in binary.
 
 #include <gmock/gmock.h>
 
@@ -104,6 +104,64 @@ TEST_F(Frd, NodesElementsAndResultsOfEachStep) {
     }
 }
 
+template <class Number>
+void append_bytes(std::string& text, Number number) {
+    text.append(reinterpret_cast<const char*>(&number), sizeof number);
+}
+
+// The same in binary: the heads of lists stay text, records follow without an end.
+std::string binary_mesh(const HexMesh& mesh, bool doubles) {
+    std::string text = line("    2C                  %12d                                     %d",
+                            static_cast<int>(mesh.points.size()), doubles ? 3 : 2);
+    for (std::size_t p = 0; p < mesh.points.size(); ++p) {
+        append_bytes(text, static_cast<std::int32_t>(p + 1));
+        for (int k = 0; k < 3; ++k) {
+            if (doubles) append_bytes(text, mesh.points[p][k]);
+            if (!doubles) append_bytes(text, static_cast<float>(mesh.points[p][k]));
+        }
+    }
+    text += line("    3C                  %12d                                     2", static_cast<int>(mesh.cells.size()));
+    for (std::size_t c = 0; c < mesh.cells.size(); ++c) {
+        for (const int number : {static_cast<int>(c + 1), 1, 0, 1}) append_bytes(text, static_cast<std::int32_t>(number));
+        for (const Index p : mesh.cells[c]) append_bytes(text, static_cast<std::int32_t>(p + 1));
+    }
+    return text;
+}
+
+std::string binary_result(const std::string& name, std::size_t nodes, int components, double time, int step) {
+    std::string text =
+        line("    1PSTEP                %12d           1           1", step) +
+        line("  100CL  101%12.5E%12d                     0%5d           2", time, static_cast<int>(nodes), step) +
+        line(" -4  %-8s%5d%5d", name.c_str(), components + 1, 1);
+    for (int c = 0; c < components; ++c) text += line(" -5  C%-7d%5d%5d%5d%5d", c, 1, 2, c, 0);
+    text += line(" -5  ALL     %5d%5d%5d%5d%5dALL", 1, 2, 0, 0, 1);
+    for (std::size_t n = 1; n <= nodes; ++n) {
+        append_bytes(text, static_cast<std::int32_t>(n));
+        for (int c = 0; c < components; ++c) append_bytes(text, static_cast<float>(step * 100 + static_cast<int>(n) * 10 + c));
+    }
+    return text;
+}
+
+TEST_F(Frd, BinaryFilesOfFloatsAndDoubles) {
+    const HexMesh mesh = make_box(2, 1, 1);
+    for (const bool doubles : {false, true}) {
+        std::string text = "    1C\n    1UUSER\n" + binary_mesh(mesh, doubles);
+        for (int step = 1; step <= 2; ++step) {
+            text += binary_result("DISP", 12, 3, .5 * step, step) + binary_result("STRESS", 12, 6, .5 * step, step);
+        }
+        EXPECT_THAT(open_series(write("a.frd", text + " 9999\n")).times, ElementsAre(.5, 1));
+        for (std::size_t k = 0; k < 2; ++k) {
+            const ReadResult result = read(text, {.step = k});
+            EXPECT_EQ(result.mesh.points, mesh.points);
+            EXPECT_EQ(result.mesh.cells, mesh.cells);
+            EXPECT_EQ(result.mesh.find_attribute("DISP")->values[3 * 6 + 2], 100. * static_cast<double>(k + 1) + 72);
+            EXPECT_EQ(result.mesh.find_attribute("STRESS")->values[6 * 11 + 5], 100. * static_cast<double>(k + 1) + 125);
+        }
+        EXPECT_THAT(error(text.substr(0, text.size() - 30)), HasSubstr("values: the file ends"));
+        EXPECT_THAT(error(binary_mesh(mesh, doubles).substr(0, 200)), HasSubstr("a node: the file ends"));
+    }
+}
+
 TEST_F(Frd, WrongFilesGetASentenceWithTheLine) {
     const HexMesh mesh = make_box(1, 1, 1);
     const std::string nodes = nodes_of(mesh), elements = elements_of(mesh);
@@ -122,8 +180,8 @@ TEST_F(Frd, WrongFilesGetASentenceWithTheLine) {
     EXPECT_THAT(error(bad.replace(bad.find("0.00000E+00"), 11, "     zero  ") + elements),
                 HasSubstr("line 2: a coordinate is expected, not \"zero\""));
     bad = nodes;
-    bad[bad.find('\n') - 1] = '2';
-    EXPECT_THAT(error(bad), HasSubstr("line 1: the format of the list is \"2\" (0 and 1 are supported"));
+    bad[bad.find('\n') - 1] = '4';
+    EXPECT_THAT(error(bad), HasSubstr("line 1: the format of the list is \"4\" (0 and 1 are text, 2 and 3 are binary"));
     EXPECT_THAT(error(nodes + elements + result_of("T", 9, 1, 0, 1, 1)), HasSubstr("there is no node 9"));
     const ReadResult partial = read(nodes + elements + result_of("T", 7, 1, 0, 1, 1));
     EXPECT_THAT(partial.warnings, ElementsAre("result \"T\" is not at node 8: ignored"));
@@ -139,6 +197,7 @@ TEST_F(Frd, ResultsWithoutNodesAreSaid) {
 
 TEST_F(FrdFuzz, WithResults) {
     const HexMesh mesh = make_box(1, 1, 1);
+    expect_sound_or_refused(".frd", binary_mesh(mesh, true) + binary_result("DISP", 8, 3, 0, 1) + " 9999\n", 34);
     expect_sound_or_refused(".frd", nodes_of(mesh) + elements_of(mesh) + result_of("DISP", 8, 3, 0, 1, 1) + " 9999\n", 33);
 }
 

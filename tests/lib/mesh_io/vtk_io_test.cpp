@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cmath>
+#include <tuple>
 
 #include "lib/test_meshes.h"
 #include "mesh_files.h"
@@ -338,6 +339,33 @@ TEST_F(VtkIo, PolyhedraAreSplitFromTheirMiddle) {
                 HasSubstr("cell 1: its faces are not those of a polyhedron"));
 }
 
+// Prisms of five and six sides; one of six that repeats a corner in both bases has five.
+TEST_F(VtkIo, PrismsOfFiveAndSixSidesAreSplit) {
+    const auto prism = [](int sides, bool collapsed) {
+        std::string points, corners;
+        for (int k = 0; k < 2 * sides; ++k) {
+            const double angle = 2 * 3.14159265358979323846 * (k % sides) / sides;
+            points += std::to_string(std::cos(angle)) + " " + std::to_string(std::sin(angle)) + (k < sides ? " 0\n" : " 1\n");
+        }
+        for (int half = 0; half < 2; ++half) {
+            for (int k = 0; k < sides; ++k) corners += " " + std::to_string(half * sides + k);
+            if (collapsed) corners += " " + std::to_string(half * sides + sides - 1);
+        }
+        const int used = sides + collapsed;
+        return "# vtk DataFile Version 3.0\nx\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS " + std::to_string(2 * sides) +
+               " double\n" + points + "CELLS 1 " + std::to_string(2 * used + 1) + "\n" + std::to_string(2 * used) + corners +
+               "\nCELL_TYPES 1\n" + (used == 5 ? "15" : "16") + "\n";
+    };
+    const double five = 2.5 * std::sin(2 * 3.14159265358979323846 / 5), six = 1.5 * std::sqrt(3.0);
+    EXPECT_NEAR(inspect(read("a.vtk", prism(5, false)).mesh).volume, five, 1e-5);  // six digits in the text
+    EXPECT_NEAR(inspect(read("a.vtk", prism(6, false)).mesh).volume, six, 1e-5);
+    const ReadResult collapsed = read("a.vtk", prism(5, true));
+    EXPECT_NEAR(inspect(collapsed.mesh).volume, five, 1e-5);
+    EXPECT_EQ(inspect(collapsed.mesh).inverted_cells, 0u);
+    const auto ignored = [&] { std::ignore = read("a.vtk", prism(5, false), {.other_cells = OtherCells::Ignore}); };
+    EXPECT_THAT(error_of(ignored), HasSubstr("1 pentagonal prism"));
+}
+
 TEST_F(VtkIo, CellsWithPointsOfTheirOwnAreSaid) {
     const HexMesh box = make_box(2, 2, 2);
     HexMesh apart;
@@ -371,7 +399,9 @@ TEST_F(VtkIo, FirstBytesDecideWhereTheExtensionIsUnknown) {
     EXPECT_EQ(read("without", text).mesh.cells.size(), 1u);
     EXPECT_TRUE(is_mesh_file(path("a.dump")));
     EXPECT_THAT(read_error("a.dump", "nothing"), HasSubstr("\".dump\" files cannot be read"));
-    EXPECT_THAT(read_error("a.med", "nothing"), HasSubstr("meshio convert a.med mesh.vtu"));
+    EXPECT_THAT(read_error("a.med", "nothing"), HasSubstr("python3 -m subvol.convert a.med mesh.vtu converts it"));
+    EXPECT_THAT(read_error("a.unv", "nothing"), HasSubstr("gmsh -save"));
+    EXPECT_THAT(read_error("a.k", "nothing"), HasSubstr("neither does meshio"));
     EXPECT_THAT(error_of([&] { write_mesh(path("a.dump"), make_box(1, 1, 1)); }), HasSubstr("files cannot be written"));
 }
 

@@ -9,6 +9,8 @@
 #include "hdf5_texts.h"
 #include "lib/temp_folder.h"
 #include "lib/test_meshes.h"
+#include "subvol/detail/read_file.h"
+#include "subvol/limit_surface.h"
 #include "subvol/mesh_report.h"
 #include "subvol/mesh_series.h"
 
@@ -51,7 +53,7 @@ void append(std::vector<T>& to, const std::vector<T>& from) {
 class VtkHdf : public TempFolder {
 protected:
     // parts: one after the other in the arrays
-    void start(Hdf5Writer& file, const std::vector<Row>& parts, bool deflated = false) const {
+    void start(Hdf5Writer& file, const std::vector<Row>& parts, bool deflated = false, bool typed = true) const {
         Row all{{}, {}, {}, {}, 0};
         Numbers points, cells, corners;
         for (const Row& part : parts) {
@@ -65,7 +67,7 @@ protected:
         }
         file.group("/VTKHDF");
         file.attribute("/VTKHDF", "Version", Numbers{2, 0});
-        file.attribute("/VTKHDF", "Type", "UnstructuredGrid");
+        if (typed) file.attribute("/VTKHDF", "Type", "UnstructuredGrid");
         file.put("/VTKHDF/NumberOfPoints", points);
         file.put("/VTKHDF/NumberOfCells", cells);
         file.put("/VTKHDF/NumberOfConnectivityIds", corners);
@@ -142,6 +144,99 @@ TEST_F(VtkHdf, StepsHaveTheirOffsets) {
         EXPECT_NEAR(inspect(result.mesh).volume, volume[k], 1e-12);
     }
     EXPECT_THAT(read_mesh(path("a.vtkhdf")).warnings, Contains("the file has 3 steps; the last one is read"));
+}
+
+// The points of all faces; ends: of each of them
+Numbers faces_of(const std::vector<Numbers>& faces, Numbers& ends) {
+    Numbers points;
+    for (const Numbers& face : faces) {
+        append(points, face);
+        ends.push_back(static_cast<std::int64_t>(points.size()));
+    }
+    return points;
+}
+
+// A cube and a cube whose roof is two triangles, in two partitions: faces are numbered in each partition from 0.
+TEST_F(VtkHdf, PolyhedraOfEachPartitionAreSplit) {
+    const Row cubes = row(2);
+    const Numbers& second = cubes.connectivity;
+    const auto at = [&](std::initializer_list<std::size_t> corners) {
+        Numbers face;
+        for (const std::size_t k : corners) face.push_back(second[8 + k]);
+        return face;
+    };
+    Numbers ends{0};
+    const Numbers points = faces_of({at({0, 3, 2, 1}), at({4, 5, 6}), at({4, 6, 7}), at({0, 1, 5, 4}), at({1, 2, 6, 5}),
+                                     at({2, 3, 7, 6}), at({3, 0, 4, 7})},
+                                    ends);
+    const auto twice = [](Numbers numbers) {
+        append(numbers, Numbers(numbers));
+        return numbers;
+    };
+    for (const bool damaged : {false, true}) {
+        {
+            Row one = cubes, other = row(2, 5);
+            one.types[1] = other.types[1] = 42;
+            Hdf5Writer file(path("a.vtkhdf"));
+            start(file, {one, other});
+            file.put("/VTKHDF/NumberOfFaces", Numbers{7, 7});
+            file.put("/VTKHDF/NumberOfFaceConnectivityIds", Numbers{26, 26});
+            file.put("/VTKHDF/NumberOfPolyhedronToFaceIds", Numbers{7, 7});
+            file.put("/VTKHDF/FaceConnectivity", twice(points));
+            file.put("/VTKHDF/FaceOffsets", twice(ends));
+            file.put("/VTKHDF/PolyhedronToFaces", twice({0, 1, 2, 3, 4, 5, damaged ? 7 : 6}));
+            file.put("/VTKHDF/PolyhedronOffsets", twice({0, 0, 7}));
+            file.put("/VTKHDF/PointData/x", std::vector<double>(24, 2));
+        }
+        if (damaged) {
+            EXPECT_THROW(read_mesh(path("a.vtkhdf")), Error);
+            continue;
+        }
+        const ReadResult result = read_mesh(path("a.vtkhdf"));
+        EXPECT_NEAR(inspect(result.mesh).volume, 4, 1e-12);
+        EXPECT_EQ(inspect(result.mesh).inverted_cells, 0u);
+        EXPECT_EQ(inspect(result.mesh).nonmanifold_faces, 0u);
+        EXPECT_THAT(result.warnings, Contains("1 polyhedron split from the middle into 12 tetrahedra"));
+        for (const double x : result.mesh.find_attribute("x")->values) EXPECT_NEAR(x, 2, 1e-12);
+    }
+}
+
+// The first writers gave no type.
+TEST_F(VtkHdf, AGridWithoutATypeIsUnstructured) {
+    {
+        Hdf5Writer file(path("a.hdf"));
+        start(file, {row(2)}, false, false);
+    }
+    EXPECT_EQ(read_mesh(path("a.hdf")).mesh.cells.size(), 2u);
+}
+
+TEST_F(VtkHdf, WhatIsWrittenIsReadToTheBit) {
+    HexMesh mesh = make_box(2, 2, 2);
+    for (Vec3& x : mesh.points) x = {x.x / 3 + 1e-17, x.y * 1e6 / 7, x.z / 7e9 - 4.9406564584124654e-324};
+    mesh.attributes.push_back({"a/b", 1, std::vector<double>(27, .1)});
+    mesh.attributes.push_back({"velocity", 3, std::vector<double>(81, 1.0 / 3)});
+    mesh.creases.push_back({0, 1});
+    EXPECT_THAT(write_mesh(path("a.vtkhdf"), mesh),
+                ElementsAre("field \"a/b\" is called \"a_b\"", HasSubstr("1 crease not written")));
+    const ReadResult back = read_mesh(path("a.vtkhdf"));
+    EXPECT_EQ(back.mesh.points, mesh.points);
+    EXPECT_EQ(back.mesh.cells, mesh.cells);
+    EXPECT_TRUE(back.warnings.empty());
+    EXPECT_EQ(back.mesh.find_attribute("a_b")->values, mesh.attributes[0].values);
+    EXPECT_EQ(back.mesh.find_attribute("velocity")->values, mesh.attributes[1].values);
+    const std::string first = detail::read_regular(path("a.vtkhdf"));
+    write_mesh(path("a.vtkhdf"), mesh);
+    EXPECT_EQ(detail::read_regular(path("a.vtkhdf")), first);
+}
+
+TEST_F(VtkHdf, SurfacesAreGridsOfTriangles) {
+    LimitSurface surface;
+    surface.surface = {.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, .triangles = {{0, 1, 2}}};
+    surface.normals = std::vector<Vec3>(3, Vec3(0, 0, 1));
+    surface.fields = {{.name = "T", .channels = 1, .values = {1, 2, 3}, .gradients = {}}};
+    write_limit_surface(path("a.vtkhdf"), surface);
+    const auto read = [&] { static_cast<void>(read_mesh(path("a.vtkhdf"))); };
+    EXPECT_THAT(error_of(read), HasSubstr("no hexahedra, but 1 triangle (VTK type 5)"));
 }
 
 TEST_F(VtkHdf, WrongFilesGetASentence) {

@@ -192,7 +192,7 @@ TEST_F(VtuIo, ErrorsNameFileLineAndArray) {
     const std::string good = with_arrays(vtu);
     static_cast<void>(read(good));
     const std::vector<std::array<std::string, 3>> cases{
-        {"=\"UnstructuredGrid\"", "=\"ImageData\"", "line 1: \"ImageData\" is not an UnstructuredGrid"},
+        {"=\"UnstructuredGrid\"", "=\"PolyData\"", "line 1: \"PolyData\" is not an UnstructuredGrid"},
         {"</Piece>", "", "line 34: not well-formed XML"},
         {"LittleEndian", "MiddleEndian", "byte_order \"MiddleEndian\" is unknown"},
         {"UInt32", "UInt16", "header_type \"UInt16\" is unknown"},

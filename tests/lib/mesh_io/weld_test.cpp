@@ -3,10 +3,14 @@
 
 #include <gmock/gmock.h>
 
+#include <cmath>
+
 #include "lib/temp_folder.h"
 #include "lib/test_meshes.h"
 #include "subvol/mesh_io.h"
 #include "subvol/mesh_report.h"
+#include "subvol/surface.h"
+#include "subvol/topology.h"
 #include "vtu_texts.h"
 
 namespace subvol::test {
@@ -62,6 +66,60 @@ TEST_F(Weld, MinusZeroIsZero) {
         if (mesh.points[p].y == 0) mesh.points[p].y = -0.0;
     }
     EXPECT_THAT(read(mesh, {.weld = 0}).warnings, ElementsAre(HasSubstr("9 points welded")));
+}
+
+// A box of cells around x = 0, of which those at x > 0 are halved `levels` times.
+HexMesh box_with_hanging_points(int levels) {
+    HexMesh mesh = make_box(2, 2, 2);
+    std::vector<std::array<Index, 8>> coarse;
+    HexMesh fine;
+    for (const auto& cell : mesh.cells) {
+        double middle = 0;
+        for (const Index p : cell) middle += mesh.points[p].x / 8;
+        if (middle < 1) coarse.push_back(cell);
+    }
+    const auto n = static_cast<Index>(1 << levels);
+    fine = make_box(n, 2 * n, 2 * n);
+    const auto first = static_cast<Index>(mesh.points.size());
+    for (const Vec3& x : fine.points) mesh.points.push_back(Vec3(1, 0, 0) + x / static_cast<double>(n));
+    mesh.cells = coarse;
+    for (auto cell : fine.cells) {
+        for (Index& p : cell) p += first;
+        mesh.cells.push_back(cell);
+    }
+    return mesh;
+}
+
+double area_of(const Surface& surface) {
+    double area = 0;
+    for (const auto& [a, b, c] : surface.triangles) {
+        area += glm::length(glm::cross(surface.points[b] - surface.points[a], surface.points[c] - surface.points[a])) / 2;
+    }
+    return area;
+}
+
+TEST_F(Weld, HangingPointsAreSaidAndTheirCellsSplit) {
+    for (const int levels : {1, 2}) {
+        const HexMesh mesh = box_with_hanging_points(levels);
+        const std::size_t side = (2U << levels) + 1, hanging = side * side - 9;  // but the corners of the large cells
+        const ReadResult apart = read(mesh, {});
+        if (levels == 1) {
+            EXPECT_THAT(apart.warnings, testing::Contains(HasSubstr(std::to_string(hanging) + " points hang in the middle")));
+        }
+        EXPECT_NEAR(area_of(boundary_surface(apart.mesh)), 24 + 8, 1e-9);
+        const ReadResult welded = read(mesh, {.weld = 0});
+        EXPECT_THAT(welded.warnings, testing::Contains(HasSubstr("4 cells with hanging points split")));
+        const MeshReport report = inspect(welded.mesh);
+        EXPECT_NEAR(report.volume, 8, 1e-9);
+        EXPECT_EQ(report.inverted_cells, 0u);
+        EXPECT_EQ(report.nonmanifold_faces, 0u);
+        EXPECT_NEAR(area_of(boundary_surface(welded.mesh)), 24, 1e-9);  // nothing is open inside
+    }
+    // Cells of any size that fit together have no such points.
+    HexMesh graded = make_box(4, 2, 2);
+    for (Vec3& x : graded.points) x.x = std::exp(x.x);
+    EXPECT_TRUE(read(graded, {}).warnings.empty());
+    EXPECT_EQ(read(graded, {.weld = 0}).mesh.cells.size(), 16u);
 }
 
 TEST_F(Weld, RefusesToCollapseCells) {

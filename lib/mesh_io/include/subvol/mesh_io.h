@@ -11,7 +11,8 @@
 
 namespace subvol {
 
-/// Reads a mesh. The extension of the file name decides the format, or if it is none of these, the first bytes of the file:
+/// Reads a mesh. The first bytes of the file decide the format where they show it beyond doubt (with a warning if the extension
+/// names another one), else the extension, or if that is unknown what the first bytes suggest:
 ///
 ///   .mesh, .meshb          MEDIT, ASCII and binary
 ///   .vtk                   legacy VTK, ASCII and BINARY: unstructured, structured and rectilinear grids, structured points
@@ -44,11 +45,12 @@ namespace subvol {
 ///         Error(MissingCapability) for a file of HDF5 if the library is built without HDF5
 [[nodiscard]] ReadResult read_mesh(const std::filesystem::path& path, const ReadOptions& options = {});
 
-/// Writes a mesh: MEDIT `.mesh` (geometry only) or VTK XML `.vtu` (compressed, with all attributes). The file is written under
-/// a temporary name and then renamed, so that it is never incomplete.
+/// Writes a mesh: MEDIT `.mesh` (geometry only), or VTK XML `.vtu` or VTKHDF `.vtkhdf` (compressed, with all attributes). The
+/// file is written under a temporary name and then renamed, so that it is never incomplete.
 ///
 /// returns: warnings, for example about attributes that the format cannot hold
-/// throws:  Error(InvalidInput) for an unknown extension, Error(Io) if the file cannot be written
+/// throws:  Error(InvalidInput) for an unknown extension, Error(Io) if the file cannot be written, Error(MissingCapability) for
+///          `.vtkhdf` if the library is built without HDF5
 std::vector<std::string> write_mesh(const std::filesystem::path& path, const HexMesh& mesh);
 
 /// The same with shells and beams, as quads and lines after the cells; their points that are none of the mesh come after its
@@ -57,7 +59,7 @@ std::vector<std::string> write_mesh(const std::filesystem::path& path, const Hex
 /// throws: also Error(InvalidInput) as `validate`, or for another extension if there are shells or beams
 std::vector<std::string> write_mesh(const std::filesystem::path& path, const HexMesh& mesh, const Shells& shells);
 
-/// Whether `read_mesh` reads a file: by its extension, or if that is unknown by its first bytes.
+/// Whether `read_mesh` reads a file: by its first bytes and its extension.
 [[nodiscard]] bool is_mesh_file(const std::filesystem::path& path);
 
 /// The extensions of the files that `read_mesh` reads and `write_mesh` writes, such as ".vtu".
