@@ -66,14 +66,18 @@ def prepared(mesh: Any) -> Any:
         if names:
             some = ", ".join(f'"{name}"' for name in names[:5]) + (", …" if len(names) > 5 else "")
             warn(f"{len(names)} {what}{'s' if len(names) > 1 else ''} left out ({some})", 6)
-    mesh.point_sets, mesh.cell_sets = {}, {}
+    mesh.point_sets, mesh.cell_sets, mesh.field_data = {}, {}, {}
     return mesh
 
 
 def write_vtu(mesh: Any, path: str) -> None:
     meshio = importlib.import_module("meshio")
-    with contextlib.redirect_stdout(io.StringIO()):
-        meshio.write(path, prepared(mesh), file_format="vtu")
+    found = prepared(mesh)
+    try:
+        with contextlib.redirect_stdout(io.StringIO()):
+            meshio.write(path, found, file_format="vtu")
+    except (Exception, SystemExit) as error:
+        raise InvalidInput(f"{path}: meshio cannot write the mesh: {type(error).__name__}: {error}", path) from error
 
 
 def read_mesh(path: Path, options: dict[str, Any]) -> tuple[_core.HexMesh, list[str]]:
