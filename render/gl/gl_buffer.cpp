@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gl_buffer.h"
 
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
 #include <cassert>
 #include <string>
 
@@ -11,6 +15,7 @@ namespace subvol::detail {
 
 namespace {
 
+constexpr std::size_t kMuch_bytes = std::size_t{1} << 18;
 constexpr std::size_t kGranule_bytes = 16;  // a shader may declare the buffer as vectors of four words
 
 std::size_t largest_block() {
@@ -33,6 +38,7 @@ GlBuffer::GlBuffer(GLuint binding, std::size_t bytes, const void* data) {
 
 GlBuffer::~GlBuffer() {
     if (id_ != 0) glDeleteBuffers(1, &id_);
+    if (mapped_ != 0) glDeleteBuffers(1, &mapped_);
 }
 
 bool GlBuffer::fits(std::size_t bytes) {
@@ -80,8 +86,29 @@ void GlBuffer::read(std::size_t bytes, void* to, std::size_t at_byte) const {
     check_range(bytes, at_byte);
     if (bytes == 0) return;
     glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
-    glGetNamedBufferSubData(id_, static_cast<GLintptr>(at_byte), size(bytes), to);
+    if (bytes >= kMuch_bytes) {
+        read_mapped(bytes, to, at_byte);
+    } else {
+        glGetNamedBufferSubData(id_, static_cast<GLintptr>(at_byte), size(bytes), to);
+    }
     check_gl("reading from the GL device");
+}
+
+void GlBuffer::read_mapped(std::size_t bytes, void* to, std::size_t at_byte) const {
+    if (bytes > mapped_bytes_) {
+        if (mapped_ != 0) glDeleteBuffers(1, &mapped_);
+        glCreateBuffers(1, &mapped_);
+        glNamedBufferStorage(mapped_, size(bytes), nullptr, GL_MAP_READ_BIT | GL_CLIENT_STORAGE_BIT);
+        mapped_bytes_ = bytes;
+        check_gl("a buffer of " + std::to_string(bytes) + " bytes to read from");
+    }
+    glCopyNamedBufferSubData(id_, mapped_, static_cast<GLintptr>(at_byte), 0, size(bytes));
+    const auto* from = static_cast<const char*>(glMapNamedBufferRange(mapped_, 0, size(bytes), GL_MAP_READ_BIT));
+    if (!from) return;  // the caller checks for errors
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, bytes, kMuch_bytes), [&](const auto& part) {
+        std::copy(from + part.begin(), from + part.end(), static_cast<char*>(to) + part.begin());
+    });
+    glUnmapNamedBuffer(mapped_);
 }
 
 void GlBuffer::clear() {

@@ -37,6 +37,8 @@ public:
     void bind(GLuint binding);
 
     void upload(std::size_t bytes, const void* from, std::size_t at_byte = 0);
+
+    /// Waits for the device. Much at a time comes through memory that the device writes directly, which is kept.
     void read(std::size_t bytes, void* to, std::size_t at_byte = 0) const;
 
     /// Sets all of it to zero.
@@ -52,11 +54,16 @@ private:
     void swap(GlBuffer& other) noexcept {
         std::swap(id_, other.id_);
         std::swap(bytes_, other.bytes_);
+        std::swap(mapped_, other.mapped_);
+        std::swap(mapped_bytes_, other.mapped_bytes_);
     }
     void check_range(std::size_t bytes, std::size_t at_byte) const;
+    void read_mapped(std::size_t bytes, void* to, std::size_t at_byte) const;
 
     GLuint id_ = 0;
     std::size_t bytes_ = 0;
+    mutable GLuint mapped_ = 0;  // a buffer in the host's memory, into which much is copied before it is read
+    mutable std::size_t mapped_bytes_ = 0;
 };
 
 }  // namespace subvol::detail

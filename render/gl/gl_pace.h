@@ -16,9 +16,12 @@ public:
     [[nodiscard]] std::size_t amount() const { return amount_; }
 
     /// seconds: that the last amount took
-    void took(double seconds) {
+    /// returns: whether the next one differs
+    bool took(double seconds) {
+        const std::size_t before = amount_;
         if (seconds > kMost_s) amount_ = std::max(amount_ / 2, least_);
         if (seconds < kMost_s / 5) amount_ = std::min(2 * amount_, most_);
+        return amount_ != before;
     }
 
 private:

@@ -53,6 +53,7 @@ constexpr std::size_t kState_bytes = 64;                     // for each pixel, 
 constexpr std::size_t kEnds_bytes = 32;                      // for each interval
 constexpr std::size_t kKept_bytes = std::size_t{1} << 26;    // for sums that have to be continued, about
 constexpr std::size_t kFirstTiles = 1024, kLeastTiles = 16;  // of a dispatch
+constexpr std::size_t kFirstSteps = std::size_t{1} << 14;    // of its threads; Mesa's software ends loops after 2^16
 
 std::string decimal(float value) {
     char text[32];
@@ -144,7 +145,9 @@ public:
         most_bins_ = std::min(bytes / sizeof(std::uint32_t) - 1, std::size_t{kMostGlItems});
         most_tiles_ = static_cast<std::uint32_t>(
             std::clamp<std::size_t>(kKept_bytes / (tile_pixels() * sums_bytes()), 1, tuning.most_tiles));
-        pace_ = {kFirstTiles, std::min<std::size_t>(kLeastTiles, most_tiles_), most_tiles_};
+        tiles_at_once_ = {kFirstTiles, std::min<std::size_t>(kLeastTiles, most_tiles_), most_tiles_};
+        const std::size_t least = std::min<std::size_t>(kFirstSteps, tuning.most_steps);
+        steps_at_once_ = {least, least, context.hardware() ? tuning.most_steps : least};
         upload(kernel_table_, scene.kernel_table);
         upload_kernels();
     }
@@ -195,9 +198,9 @@ private:
     GlTuning tuning_;
     std::size_t most_kernels_ = 0, most_entries_ = 0, most_bins_ = 0;
     std::uint32_t most_tiles_ = 1;
-    GlPace pace_{1, 1, 1};   // of tiles; kept from picture to picture
-    bool resident_ = false;  // whether all kernels are on the device
-    std::size_t room_ = 0;   // for so many entries
+    GlPace tiles_at_once_{1, 1, 1}, steps_at_once_{1, 1, 1};  // of a dispatch; kept from picture to picture
+    bool resident_ = false;                                   // whether all kernels are on the device
+    std::size_t room_ = 0;                                    // for so many entries
     SheetStack sheets_;
     GlSplatFrame frame_;
     GlSplatBins bins_;
@@ -278,7 +281,7 @@ void GlSplatter::State::draw_pass(Progress* progress) {
     ends_.bind(14);
     if (scene_.light) light_.bind(15);
     for (std::uint32_t first = 0; first < tiles;) {
-        const std::uint32_t end = std::min(first + static_cast<std::uint32_t>(pace_.amount()), tiles);
+        const std::uint32_t end = std::min(first + static_cast<std::uint32_t>(tiles_at_once_.amount()), tiles);
         draw_tiles(first, end, whole, progress);
         first = end;
     }
@@ -291,18 +294,20 @@ void GlSplatter::State::draw_tiles(std::uint32_t first, std::uint32_t end, bool 
     const GlProgram& used = program();
     glProgramUniform2ui(used.id(), used.uniform("tile_range"), first, end);
     glProgramUniform1ui(used.id(), used.uniform("first_state"), whole ? first : 0);
-    glProgramUniform1ui(used.id(), used.uniform("most_steps"), tuning_.most_steps);
     const double batches = frame_.end_batch - frame_.first_batch, of_pass = batches * frame_.tiles();
     constexpr std::uint32_t kNone = 0;
     std::uint32_t left = 0;
     Stopwatch watch;
     for (bool resumed = false; !resumed || left > 0; resumed = true) {
         glProgramUniform1i(used.id(), used.uniform("resumed"), resumed);
+        glProgramUniform1ui(used.id(), used.uniform("most_steps"), static_cast<GLuint>(steps_at_once_.amount()));
         kept_.upload(sizeof kNone, &kNone);
         dispatch(end - first);
         ++report.dispatches;
         kept_.read(sizeof left, &left);
-        pace_.took(watch.restart());
+        // What ended the dispatch is adapted: its steps, or else its tiles.
+        const double seconds = watch.restart();
+        if (left == 0 || !steps_at_once_.took(seconds)) tiles_at_once_.took(seconds);
         const double done = (batches * end - left) / of_pass;
         report_progress(progress, "splat", (frame_.first_batch + batches * done) / frame_.batches);
     }

@@ -19,8 +19,8 @@ namespace subvol::detail {
 /// memory_bytes:       limit for kernels and lists together; 0: memory_budget()
 /// most_entries:       limit for the pairs of a bin and a kernel
 /// most_tiles:         limit for the tiles of a dispatch
-/// most_steps:         a thread of a dispatch ends soon after so many iterations of loops; at least 64 for each sheet of a
-///                     batch
+/// most_steps:         a thread of a dispatch ends soon after so many iterations of loops, or earlier where the device is slow;
+///                     at least 64 for each sheet of a batch. Software ends them after 2¹⁴.
 /// boundary_on_device: rasterize the boundary with OpenGL even if it is software, where the CPU's rasterizer is faster
 struct GlTuning {
     int tile_px = 16;
@@ -29,7 +29,7 @@ struct GlTuning {
     std::size_t memory_bytes = 0;
     std::size_t most_entries = std::size_t{1} << 26;
     std::uint32_t most_tiles = 4096;
-    std::uint32_t most_steps = 1U << 14;
+    std::uint32_t most_steps = 1U << 18;
     bool boundary_on_device = false;
 };
 
