@@ -152,6 +152,33 @@ TEST_F(Sheets, ShowAConstantFieldAsThatConstant) {
     }
 }
 
+TEST_F(Sheets, AndComputeShadersDrawThinSlabsAsTheCpuDoes) {
+    // A thousandth as thick as wide: between two sheets, or cut by one of them on a slant; kernels are as flat.
+    HexMesh slab = test::make_box(6, 6, 1);
+    test::add_field(slab, "f", [](const Vec3& p) { return .8 * std::sin(p.x) * std::cos(p.y); });
+    for (Vec3& p : slab.points) p = Vec3(p.x / 3 - 1, p.y / 3 - 1, .002 * p.z);
+    const auto volume = sample_rbf_points(slab).volume;
+    const Optics dense(optics(false).function(), .001);
+    for (const Vec3& eye : {Vec3(2, -3, 1.5), Vec3(.3, -4, .02), Vec3(0, 0, 4)}) {
+        const View from({.eye = eye, .target = {0, 0, 0}, .up = {.1, 1, .3}}, 80, 64);
+        const auto cpu = render_splats(volume, from, dense, {.method = SplatMethod::Cpu, .sheets = 30});
+        for (const SplatMethod method : {SplatMethod::Gl, SplatMethod::Sheets}) {
+            const auto drawn = render_splats(volume, from, dense, {.method = method, .sheets = 30});
+            EXPECT_LT(compare(drawn.image, cpu.image).largest, 1e-3) << "depths of single precision beside a thickness of .002";
+        }
+        EXPECT_GT(compare(cpu.image, cpu.image).mean, .001) << "something is in the picture";
+    }
+}
+
+TEST_F(Sheets, WithTenThousandKernelsOnAPixelAreDrawnAsTheCpuDoes) {
+    HexMesh mesh = test::make_box(21, 21, 21);
+    test::add_field(mesh, "f", [](const Vec3& p) { return .5 * std::sin(.3 * p.x) * std::cos(.2 * p.y); });
+    const auto volume = sample_rbf_points(mesh).volume;
+    ASSERT_GT(volume.size(), 10000u);
+    const View far({.eye = {50, -40, 35}, .target = {10.5, 10.5, 10.5}, .up = {0, 0, 1}}, 8, 8);
+    expect_as_cpu("ten thousand", volume, far, Optics(optics(false).function(), 3));
+}
+
 TEST_F(Sheets, AreTheSameInEveryLocale) {
     const auto volume = sampled_ball(Correction::Second);
     const auto image = sheets(volume, view(), optics(false)).image;
