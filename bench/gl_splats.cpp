@@ -60,7 +60,7 @@ int main(int argc, char** argv) {
             for (const int batch : {2, 4, 8}) measure(scene, view, classification, sheets, {.tile_px = tile, .batch = batch});
         }
         for (const std::uint32_t steps : {1U << 14, 1U << 16, 1U << 20})
-            measure(scene, view, classification, sheets, {.most_steps = steps});
+            measure(scene, view, classification, sheets, {.tile_px = 8, .batch = 4, .most_steps = steps});
     } catch (const Error& error) {
         std::fprintf(stderr, "%s\n", error.what());
         return 3;

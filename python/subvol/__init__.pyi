@@ -37,9 +37,10 @@ def fit(
     """
 
 def measure(
-    mesh: HexMesh, *, only: Union[str, Sequence[str]] = (), scheme: str = 'mcq', tension: float = 0.0625,
-    crease_angle: Optional[float] = None, tolerance: float = 0.0001, bins: int = 32, progress: Progress = None
-) -> dict[str, Any]:
+    mesh: HexMesh, *, only: Union[str, Sequence[str]] = (), patch: Union[str, Sequence[str], None] = None,
+    flux: Optional[str] = None, scheme: str = 'mcq', tension: float = 0.0625, crease_angle: Optional[float] = None,
+    tolerance: float = 0.0001, bins: int = 32, progress: Progress = None
+) -> Any:
     """The volume of the limit, and of each field its integral, mean, extremes with their places, and histogram.
 
     Returns cells, volume, error (an estimate of how far off the volume is, as a part of it, and each mean, as a part of its field's
@@ -47,6 +48,9 @@ def measure(
     may go), histogram (the volume in each of `bins` equal intervals from min to max).
 
     only:        a region, or several of which all hold, as of `only`; parts of space are cut exactly out of the limit
+    patch:       a patch of the boundary, of `mesh.patches`: returns name, faces, area, normal (its integral), error, and fields: by name
+                 integral, mean, min, max. Several: a list of these. Regions choose whole cells then
+    flux:        with `patch`, a vector such as "U" or "grad(T)": also flux, its flow out through the patch, and throughput, without sign
     scheme:      mcq (smooth, through the control points), cc (Catmull-Clark), bsxw (Bajaj-Schaefer-Warren-Xu), linear [mcq,
                  cc, bsxw, linear]
     tension:     of mcq: 0 is linear; 1/16 reproduces cubics [0 to 0.125; with scheme='mcq']
@@ -91,8 +95,10 @@ def read_mesh(
     path: Path, *, other_cells: str = 'split', weld: Optional[float] = None, cell_values: str = 'auto',
     step: Optional[int] = None, blocks: Sequence[str] = (), sharp: Sequence[str] = ()
 ) -> HexMesh:
-    """Reads a mesh. The contents and the extension decide the format; docs/formats.md has the list. Formats that the library does not
-    read but meshio does (MED, Nastran, SU2, FLAC3D and others) are read by meshio, without their sets and steps.
+    """Reads a mesh. The extension of the file name decides the format; docs/formats.md has the list.
+
+    The names of the file are in `mesh.patches`, by name (n,2): a cell and its side, u=0, u=1, v=0, v=1, w=0 or w=1, and in
+    `mesh.sets`, by name (n,): cells. `warp` and `only` keep them.
 
     other_cells: what to do with tetrahedra, prisms and pyramids: split (all cells, into hexahedra), ignore, refuse [split,
                  ignore, refuse]
@@ -106,8 +112,7 @@ def read_mesh(
                  name or number, a reference of MEDIT, or Ridges (repeatable)
 
     Warns (SubvolWarning) once for each thing left out, turned round or converted.
-    Raises FileError if the file cannot be opened; InvalidInput, with file and line, if it is malformed; MissingCapability if meshio is
-    needed and not installed.
+    Raises FileError if the file cannot be opened; InvalidInput, with file and line, if it is malformed.
     """
 
 def reduce(
@@ -280,7 +285,7 @@ def surface(
     """Isosurfaces of a field of the limit, and its boundary, as triangles.
 
     iso:         a value, or several; None: the boundary alone
-    path:        also write it: .ply, .stl, .vtp, .obj, .glb, .vtkhdf
+    path:        also write it: .ply, .stl, .vtp, .obj, .glb
     origin:      the file's points are relative to this place (3,): .stl rounds to 32-bit floats; None: (0, 0, 0)
     scheme:      mcq (smooth, through the control points), cc (Catmull-Clark), bsxw (Bajaj-Schaefer-Warren-Xu), linear [mcq,
                  cc, bsxw, linear]

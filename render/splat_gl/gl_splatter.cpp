@@ -94,6 +94,13 @@ GlProgram drawing_program(const std::string& defines) {
              {"splat_walk.glsl", kShader_splat_walk_glsl}}};
 }
 
+/// The tuning with sizes for the device where it leaves them open.
+GlTuning tuned(GlTuning tuning, bool hardware) {
+    if (tuning.tile_px == 0) tuning.tile_px = hardware ? 8 : 16;
+    if (tuning.batch == 0) tuning.batch = hardware ? 4 : kBatch;
+    return tuning;
+}
+
 /// throws: Error(MissingCapability) if the current context cannot run the shaders of a scene
 const SplatScene& checked(const SplatScene& scene) {
     check_storage({.compute = scene.shadowed() ? 16 : 15, .bindings = 16}, GlStorage::available(), "use the CPU backend");
@@ -129,10 +136,10 @@ public:
     State(const SplatScene& scene, std::optional<int> device, const GlTuning& tuning)
         : context(device),
           scene_(checked(scene)),
-          tuning_(tuning),
-          bins_(common_defines(scene, tuning), GlExtras(scene).count),
+          tuning_(tuned(tuning, context.hardware())),
+          bins_(common_defines(scene, tuning_), GlExtras(scene).count),
           boundary_(context.hardware() || tuning.boundary_on_device),
-          draw_(drawing_program(common_defines(scene, tuning) + "#define CLIPPED 0\n")) {
+          draw_(drawing_program(common_defines(scene, tuning_) + "#define CLIPPED 0\n")) {
         GLint64 most = 0;
         glGetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &most);
         const std::size_t bytes = std::min(tuning.most_buffer_bytes, static_cast<std::size_t>(std::max<GLint64>(most, 0)));
@@ -389,7 +396,7 @@ Drawn GlSplatter::State::read(const View& view) {
 }
 
 GlSplatter::GlSplatter(const SplatScene& scene, std::optional<int> device, const GlTuning& tuning) {
-    assert((tuning.tile_px == 8 || tuning.tile_px == 16) && tuning.batch >= 1 && tuning.batch <= 16);
+    assert((tuning.tile_px == 0 || tuning.tile_px == 8 || tuning.tile_px == 16) && tuning.batch >= 0 && tuning.batch <= 16);
     assert(tuning.most_tiles > 0 && tuning.most_steps >= 64 * static_cast<std::uint32_t>(tuning.batch));
     const KeepCurrent keep;
     state_ = std::make_unique<State>(scene, device, tuning);

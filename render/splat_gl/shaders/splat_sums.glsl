@@ -27,11 +27,11 @@ const uint kMostRanged = 2048u * kPixels;
 uniform uint most_steps;
 uint steps = 0u;
 
-shared vec4 cuts[kChunk * kBatch];  // of a kernel with a sheet: middle x, y; e and value there
+// Of a kernel with a sheet: middle x, y; e and value there. Or, for sums at ends, two of each kernel: middle x, y, depth and
+// 1 / S_zz; shear x, y, value and its slope.
+shared vec4 cuts[kChunk * (kBatch > 1 ? kBatch : 2)];
 shared vec4 shapes[kChunk];         // root xx, xy, yy; moment
 shared vec2 gradients[kChunk];
-shared vec4 places[kChunk];         // for sums at ends: middle x, y, depth; 1 / S_zz
-shared vec4 slopes[kChunk];         // shear x, y; value, its slope
 shared uint met_blocks[kChunk * kBatch];   // a bit for each block
 shared uint met_sheets[kChunk * kBlocks];  // a bit for each sheet
 shared uint met_kernels[kWords * kBlocks];  // a bit for each kernel
@@ -308,9 +308,8 @@ void stage_whole(uint first, uint end) {
     for (uint j = gl_LocalInvocationIndex; j < end - first; j += kPixels) {
         uint id = bin_splats[first + j];
         Splat s = splats[id];
-        places[j] = s.place;
-        if (!usable(s, id)) places[j].w = 3e38;
-        slopes[j] = vec4(s.shape.xy, s.slope.y, s.rest.x);
+        cuts[2u * j] = vec4(s.place.xyz, usable(s, id) ? s.place.w : 3e38);
+        cuts[2u * j + 1u] = vec4(s.shape.xy, s.slope.y, s.rest.x);
         shapes[j] = vec4(s.shape.zw, s.slope.x, s.rest.y);
         gradients[j] = s.slope.zw;
 #if GENERAL
@@ -334,7 +333,7 @@ bool sum_kernels_at(uint bin, float depth, bool awake) {
         steps += (chunk_end - first) * kKernelSteps + kStagingSteps;
         stage_whole(first, chunk_end);
         for (uint j = 0u; awake && j < chunk_end - first; ++j) {
-            vec4 place = places[j], slope = slopes[j];
+            vec4 place = cuts[2u * j], slope = cuts[2u * j + 1u];
             float zs = depth - place.z, e = zs * zs * place.w;
             if (!(e < 1.0)) continue;
             precise vec2 d = fma(ray, vec2(across_here), -fma(slope.xy, vec2(zs), place.xy));
