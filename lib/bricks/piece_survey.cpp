@@ -83,6 +83,7 @@ private:
 
     void look_at_arrays(const MeshFile& piece) {
         for (const FileArray& array : piece.arrays) {
+            if (array.name == kNodeNumberMap) continue;
             if (known_.insert({array.name, array.at_cells}).second) {
                 survey_.arrays.push_back({{array.name, array.components, array.at_cells, {}}, 0});
             }

@@ -11,7 +11,9 @@
 namespace subvol::detail {
 
 /// The arrays that number points and cells over all parts of a mesh, the first choice first.
-inline constexpr std::array<std::string_view, 3> kPointNumberArrays{"GlobalNodeId", "GlobalNodeID", "GlobalPointIds"};
+inline constexpr std::string_view kNodeNumberMap = "node_num_map";  // of Exodus, which is no field
+inline constexpr std::array<std::string_view, 4> kPointNumberArrays{"GlobalNodeId", "GlobalNodeID", "GlobalPointIds",
+                                                                    kNodeNumberMap};
 inline constexpr std::array<std::string_view, 3> kCellNumberArrays{"GlobalCellId", "GlobalElementId", "GlobalCellIds"};
 
 /// The most that points of different parts with the same number may be apart.

@@ -23,6 +23,8 @@ struct Collection;
 /// write:          null if the library only reads the format
 /// times:          the times of the steps of a file; null if a file of this format is one step
 /// piece:          reads a file as a piece of a mesh, before it is assembled; null if a file is always a whole mesh
+/// pieces:         lists the files of a mesh that one of their names stands for, each of which is a piece; null if a name is that
+///                 of one file
 /// files:          reads a list of other files; null if the format is not such a list
 /// groups:         whether its groups of faces and edges are read
 /// blocks:         whether it has named parts, which ReadOptions::blocks chooses
@@ -34,6 +36,7 @@ struct MeshFormat {
     std::vector<std::string> (*write)(const std::filesystem::path& path, const HexMesh& mesh) = nullptr;
     std::vector<double> (*times)(const std::filesystem::path& path) = nullptr;
     MeshFile (*piece)(std::string_view text, std::string_view file, const ReadOptions& options) = nullptr;
+    std::vector<std::filesystem::path> (*pieces)(const std::filesystem::path& path) = nullptr;
     Collection (*files)(const std::filesystem::path& path) = nullptr;
     bool groups = false;
     bool blocks = false;

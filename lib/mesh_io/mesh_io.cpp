@@ -82,6 +82,8 @@ constexpr std::array<MeshFormat, 22> kFormats{{
      .name = "Exodus II",
      .read = read_exodus_file,
      .times = exodus_times,
+     .piece = read_exodus_piece,
+     .pieces = exodus_pieces,
      .blocks = true},
     {.extensions = {".vtkhdf", ".hdf"}, .name = "VTKHDF", .read = read_vtkhdf, .write = write_vtkhdf, .times = vtkhdf_times},
     {.extensions = {".xdmf", ".xmf"}, .name = "XDMF", .read = read_file<read_xdmf>, .times = xdmf_times},

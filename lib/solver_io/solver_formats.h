@@ -10,6 +10,7 @@
 namespace subvol::detail {
 
 class Hdf5File;
+struct MeshFile;
 
 // The readers of solvers' files in the rows of the table of formats. Each `NAME_times` gives the times of the steps of a file.
 
@@ -19,6 +20,9 @@ class Hdf5File;
 [[nodiscard]] ReadResult read_exodus(std::string_view text, std::string_view file, const ReadOptions& options);
 /// The same from a file; a name such as a.e.4.0 stands for the first of four pieces, which are joined.
 [[nodiscard]] ReadResult read_exodus_file(const std::filesystem::path& path, const ReadOptions& options);
+/// The files of the pieces that such a name stands for; none if it is another name.
+[[nodiscard]] std::vector<std::filesystem::path> exodus_pieces(const std::filesystem::path& path);
+[[nodiscard]] MeshFile read_exodus_piece(std::string_view text, std::string_view file, const ReadOptions& options);
 [[nodiscard]] std::vector<double> exodus_times(const std::filesystem::path& path);
 
 /// Reads a step of CalculiX's results, as text.

@@ -332,8 +332,13 @@ const EntityNames& names_in_parts() {
 
 std::optional<PartFiles> part_files(const std::filesystem::path& path, const ReadOptions& options) {
     const MeshFormat& format = readable_format(path);
-    if (format.files == nullptr) return {};
+    if (format.files == nullptr && format.pieces == nullptr) return {};
     check_options(format, path, options);
+    if (format.pieces != nullptr) {
+        PartFiles pieces{.files = {}, .word = "piece", .warnings = {}};
+        for (const auto& file : format.pieces(path)) pieces.files.push_back({file, {}, path.string()});
+        return pieces.files.empty() ? std::nullopt : std::optional(std::move(pieces));
+    }
     std::vector<std::string> none;
     if (!format.times) std::ignore = chosen_step(options, 1, path.string(), none);
     NamedFiles named;

@@ -227,7 +227,7 @@ public:
         refuse_not_finite(found_, in_, kExodusNames);
         if (exodus_.has("node_num_map")) {
             const auto numbers = exodus_.integers("node_num_map", found_.points.size());
-            found_.arrays.push_back({std::string(kPointNumberArrays[0]), 1, false, {numbers.begin(), numbers.end()}});
+            found_.arrays.push_back({std::string(kNodeNumberMap), 1, false, {numbers.begin(), numbers.end()}});
         }
         return std::move(found_);
     }
@@ -516,11 +516,9 @@ ReadResult read_exodus(std::string_view text, std::string_view file, const ReadO
     return ExodusReader(text, file, options).read();
 }
 
-namespace {
-
 // The files of a mesh in pieces, of which one is called NAME.4.0, NAME.4.1, … or with zeros before the last number: none if the
 // name is not of this form.
-std::vector<std::filesystem::path> piece_files(const std::filesystem::path& path) {
+std::vector<std::filesystem::path> exodus_pieces(const std::filesystem::path& path) {
     const std::string last = path.extension().string(), count = path.stem().extension().string();
     const auto number = [](const std::string& extension) -> std::optional<std::size_t> {
         const std::string_view digits = std::string_view(extension).substr(extension.empty() ? 0 : 1);
@@ -541,18 +539,20 @@ std::vector<std::filesystem::path> piece_files(const std::filesystem::path& path
     return files;
 }
 
-}  // namespace
+MeshFile read_exodus_piece(std::string_view text, std::string_view file, const ReadOptions& options) {
+    return ExodusReader(text, file, options).read_piece();
+}
 
 ReadResult read_exodus_file(const std::filesystem::path& path, const ReadOptions& options) {
-    const std::vector<std::filesystem::path> files = piece_files(path);
+    const std::vector<std::filesystem::path> files = exodus_pieces(path);
     if (files.empty()) return read_exodus(read_text(path), path.string(), options);
     std::vector<MeshFile> pieces;
     for (const auto& file : files) {
         const std::string text = read_regular(file), name = file.string();
-        pieces.push_back(ExodusReader(text, name, options).read_piece());
+        pieces.push_back(read_exodus_piece(text, name, options));
     }
     MeshFile found = join_pieces(std::move(pieces), "piece", path.string());
-    std::erase_if(found.arrays, [](const FileArray& array) { return array.name == kPointNumberArrays[0]; });
+    std::erase_if(found.arrays, [](const FileArray& array) { return array.name == kNodeNumberMap; });
     std::vector<MeshBlock> blocks;
     for (const MeshBlock& block : found.blocks) {
         const auto same = std::ranges::find(blocks, block.name, &MeshBlock::name);

@@ -3,8 +3,10 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <cmath>
 #include <random>
 
+#include "lib/mesh_io/exodus_texts.h"
 #include "mesh_in_pieces.h"
 #include "subvol/model.h"
 
@@ -50,6 +52,33 @@ TEST_F(SplitPieces, TheBricksAreThoseOfTheWhole) {
             expect_same_bricks(pieces, {.bricks = 5, .shape = shape, .halo_layers = 1 + k % 3},
                                "case " + std::to_string(k) + (at_random ? " at random: " : ": "));
         }
+    }
+}
+
+// Files that one name of Exodus stands for, joined by their places and by their node_num_map.
+TEST_F(SplitPieces, PiecesOfExodus) {
+    const HexMesh mesh = test::make_box(4, 3, 2);
+    for (const bool numbered : {false, true}) {
+        for (int k = 0; k < 2; ++k) {
+            test::ExodusText half{.points = mesh.points, .blocks = {test::hex_block(mesh)}, .times = {0, 1}};
+            const double apart = numbered ? 1e-9 : 0;
+            for (Vec3& x : half.points) x.x += (4 + apart) * k;
+            half.of_nodes = {{"T", test::count_from(100. * k, 2 * mesh.points.size())}};
+            half.of_elements = {{"c", {test::count_from(10. * k, 2 * mesh.cells.size())}}};
+            auto variables = test::exodus_variables(half);
+            if (numbered) {
+                std::vector<double> numbers;
+                for (const Vec3& x : half.points) numbers.push_back(1 + std::round(x.x) + 9 * x.y + 36 * x.z);
+                constexpr std::size_t kNodes = 0;  // the first dimension
+                const std::size_t map = variables.variable("node_num_map", test::NetcdfText::Kind::Integers, {kNodes});
+                variables.put(map, numbers);
+            }
+            write("m.e.2." + std::to_string(k), variables.text(2));
+        }
+        const ReadResult whole = read_mesh(path("m.e.2.0"));
+        EXPECT_EQ(whole.mesh.points.size(), 2 * mesh.points.size() - 12);
+        EXPECT_EQ(whole.mesh.find_attribute("node_num_map"), nullptr);
+        expect_same_bricks(path("m.e.2.0"), {.bricks = 3}, numbered ? "numbered" : "by places");
     }
 }
 
