@@ -6,6 +6,8 @@
 #include <random>
 
 #include "sample_grid.h"
+#include "subvol/cell.h"
+#include "subvol/dense_cells.h"
 #include "subvol/error.h"
 #include "subvol/limit.h"
 #include "subvol/topology.h"
@@ -75,8 +77,55 @@ FieldSamples random_places(const HexMesh& mesh, std::string_view field, PlaceKin
     return {std::move(limit.positions), std::move(limit.attributes.front().values), std::vector<double>(count, 1.0)};
 }
 
-FieldSamples new_vertices(const HexMesh& mesh, std::string_view field, int level, Scheme scheme) {
+namespace {
+
+/// The part of a new vertex that one of its cells has. places: of the vertex, 0, 1 or 2 along each axis of the cell
+double share_of(const Topology& topology, Index cell, const std::array<std::size_t, 3>& places) {
+    const auto halves = std::ranges::count(places, 1);
+    if (halves == 3) return 1;
+    if (halves == 2) {
+        const std::size_t axis = places[0] != 1 ? 0 : places[1] != 1 ? 1 : 2;
+        return topology.face_on_hull(topology.cell_faces[cell][2 * axis + places[axis] / 2]) ? 1 : 0.5;
+    }
+    for (std::size_t e = 0; e < 12; ++e) {
+        const auto &from = kCornerParameters[kCellEdges[e][0]], &to = kCornerParameters[kCellEdges[e][1]];
+        bool is_here = true;
+        for (std::size_t a = 0; a < 3; ++a) is_here &= static_cast<std::size_t>(from[a] + to[a]) == places[a];
+        if (is_here) return 1 / static_cast<double>(topology.edge_cells[topology.cell_edges[cell][e]].size());
+    }
+    return 0;
+}
+
+/// The new vertices of some cells, ascending.
+FieldSamples new_vertices_of(const HexMesh& coarse, const std::vector<Index>& cells, Scheme scheme) {
+    constexpr std::size_t kNew = 19;  // of a cell: on 12 edges, on 6 sides, in the middle
+    const Topology topology = build_topology(coarse);
+    const std::size_t count = kNew * cells.size();
+    FieldSamples places{std::vector<Vec3>(count), std::vector<double>(count), std::vector<double>(count)};
+    for_each_dense_cell(coarse, {.scheme = {scheme}, .levels = 1}, {.cells = cells}, [&](const DenseCell& grid) {
+        auto to = kNew * static_cast<std::size_t>(std::ranges::lower_bound(cells, grid.cell) - cells.begin());
+        for (std::size_t n = 0; n < grid.points.size(); ++n) {
+            const std::array<std::size_t, 3> at{n % 3, n / 3 % 3, n / 9};
+            if (std::ranges::count(at, 1) == 0) continue;
+            places.points[to] = grid.points[n];
+            places.values[to] = grid.values.front()[n];
+            places.weights[to++] = share_of(topology, grid.cell, at);
+        }
+    });
+    return places;
+}
+
+}  // namespace
+
+FieldSamples new_vertices(const HexMesh& mesh, std::string_view field, int level, Scheme scheme, std::size_t most) {
+    constexpr std::size_t kOfACell = 7;  // of a large grid, as cells share them
     HexMesh coarse = refine(with_scalar_field(mesh, field), {.scheme = {scheme}, .levels = level});
+    if (coarse.cells.size() > most / kOfACell) {
+        const std::size_t stride = 1 + kOfACell * coarse.cells.size() / std::max<std::size_t>(most, 1);
+        std::vector<Index> cells;
+        for (std::size_t c = stride / 2; c < coarse.cells.size(); c += stride) cells.push_back(static_cast<Index>(c));
+        return new_vertices_of(coarse, cells, scheme);
+    }
     const auto old = static_cast<std::ptrdiff_t>(coarse.points.size());  // they keep their numbers
     const HexMesh fine = refine(coarse, {.scheme = {scheme}, .levels = 1});
     const auto& values = fine.attributes.front().values;

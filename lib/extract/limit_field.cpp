@@ -20,11 +20,13 @@ namespace {
 
 constexpr double kInside = 1e-3;  // of a cell's side
 
+/// Each cell has room for a piece, and a quarter of them for more: with less, all would be looked for several times.
 LimitCellsOptions default_options(const HexMesh& mesh) {
+    constexpr std::size_t kPieceBytes = LimitPieces::kNodes * 4 * sizeof(float);
     return {.position_world = 3e-4 * bounds(mesh).diagonal(),
             .value_of_range = 5e-4,
             .max_levels = 3,
-            .max_bytes = std::size_t{256} << 20};
+            .max_bytes = std::max(std::size_t{256} << 20, mesh.cells.size() * kPieceBytes / 4 * 5)};
 }
 
 }  // namespace

@@ -26,7 +26,12 @@
 namespace subvol {
 namespace {
 
-constexpr int kTetsLevel = 1;
+/// The level of the tetrahedra by default: of more cells those of level 1 would take gigabytes (4.8 kB a cell), and the cells
+/// themselves are nearer to the limit than a picture shows (68 dB of a million).
+int tets_level(std::uint64_t cells) {
+    constexpr std::uint64_t kMostCells = 300'000;
+    return cells <= kMostCells ? 1 : 0;
+}
 
 SplatMethod splat_method(Method method, SplatMethod otherwise) {
     if (method == Method::Sheets) return SplatMethod::Sheets;
@@ -194,7 +199,8 @@ struct PictureMaker::State {
         if (missing && body.tets) {
             make_tets(join_split_cells(*mesh()));
         } else if (missing) {
-            const RefineOptions refine = refinement(options.kernels.levels.value_or(kTetsLevel), progress);
+            const RefineOptions refine =
+                refinement(options.kernels.levels.value_or(tets_level(mesh()->cells.size())), progress);
             make_tets(facts.unpack(refined_on_limit(*mesh(), refine, options.kernels.levels_option)));
         }
         if (lights_boundary()) (void)skin_of_mesh(progress, facts);
@@ -220,8 +226,14 @@ struct PictureMaker::State {
         facts["cells"] = piece_tets->tets / 6;
     }
 
+    [[nodiscard]] std::uint64_t cells_of_pieces() const {
+        std::uint64_t cells = 0;
+        for (const PieceExtent& piece : body.mesh->stored().pieces) cells += piece.cells;
+        return cells;
+    }
+
     [[nodiscard]] BrickTetsOptions piece_tets_options(Progress* progress) const {
-        return {.refine = refinement(options.kernels.levels.value_or(kTetsLevel), progress),
+        return {.refine = refinement(options.kernels.levels.value_or(tets_level(cells_of_pieces())), progress),
                 .tets = {.progress = progress},
                 .memory_bytes = options.memory_bytes};
     }

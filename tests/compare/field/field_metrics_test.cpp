@@ -11,6 +11,7 @@
 #include "subvol/error.h"
 #include "subvol/field_places.h"
 #include "subvol/mesh_field.h"
+#include "subvol/model.h"
 #include "subvol/sample.h"
 #include "vdb/test_meshes.h"
 
@@ -144,6 +145,25 @@ TEST(NewVertices, AreThoseThatOneRefinementAdds) {
     // The refined mesh has the scheme's values, so the paper's error measure is 0 for it.
     EXPECT_LT(compare_field(MeshField(fine, "f").view(), places).l2, 1e-7);  // places are found to 1e-8 of a cell's size
     EXPECT_THROW((void)new_vertices(mesh, "g"), Error);
+}
+
+// Those of some cells: each is one of all, and edges, sides and middles count as often as in the whole.
+TEST(NewVertices, OfSomeCellsStandForAll) {
+    const HexMesh mesh =
+        test::with_field(make_model("twist", 12), "f", [](const Vec3& x) { return std::sin(x.x) + x.y * x.z; });
+    const FieldSamples all = new_vertices(mesh, "f"), some = new_vertices(mesh, "f", 0, Scheme::Mcq, 3000);
+    EXPECT_LT(some.size(), 3 * 3000u);  // 19 of each cell instead of 7
+    EXPECT_GT(some.size(), 3000u / 2);
+    const auto square_of = [](const FieldSamples& places) {
+        double weights = 0, squares = 0;
+        for (std::size_t i = 0; i < places.size(); ++i) {
+            weights += places.weights[i];
+            squares += places.weights[i] * places.values[i] * places.values[i];
+        }
+        return squares / weights;
+    };
+    EXPECT_NEAR(square_of(some) / square_of(all), 1, .05);  // a sixth of the cells
+    EXPECT_LT(compare_field(MeshField(refine(mesh), "f").view(), some).l2, 1e-7);
 }
 
 TEST(IntegrateField, LinearFieldsInBoxesAreExact) {

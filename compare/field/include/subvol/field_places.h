@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <limits>
 #include <string_view>
 
 #include "subvol/field_samples.h"
@@ -29,8 +30,10 @@ struct NameTable<PlaceKind> {
 /// The vertices that are new at level `level` + 1 of a refinement, with the scheme's values there; all have weight 1. These are
 /// the places where [mnmq2007] measures (table 2). The given mesh is level 0.
 ///
+/// most:   beyond about so many, those of some cells, evenly chosen in their order, stand for all; a vertex that several cells
+///         share has the weight of its share
 /// throws: Error(InvalidInput) as `refine` and `scalar_field`
-[[nodiscard]] FieldSamples new_vertices(const HexMesh& mesh, std::string_view field, int level = 0,
-                                        Scheme scheme = Scheme::Mcq);
+[[nodiscard]] FieldSamples new_vertices(const HexMesh& mesh, std::string_view field, int level = 0, Scheme scheme = Scheme::Mcq,
+                                        std::size_t most = std::numeric_limits<std::size_t>::max());
 
 }  // namespace subvol

@@ -41,7 +41,7 @@ struct PictureStyle {
 /// All options of pictures, for every method.
 ///
 /// kernels:         how meshes become kernels; its scheme is that of all methods, and so are its levels (none: the limit, for
-///                  tets and pt level 1)
+///                  tets and pt level 1, of more than 300,000 cells level 0)
 /// drop_invisible:  kernels that the colours of the first picture make invisible are dropped from all
 /// splat:           how kernels are drawn; method, samples and clip are those of the style, channels those of the body, and
 ///                  light is added where the look has it
