@@ -15,6 +15,7 @@ import json
 import pathlib
 import shlex
 import subprocess
+import tempfile
 
 ENDS = (".vtk .vtu .vts .vtr .vti .pvtu .pvts .pvtr .pvti .vtm .e .exo .ex2 .g .gen .exii .case .vtkhdf .hdf .foam .cgns .msh .mesh "
         ".meshb .inp .xdmf .xmf").split()
@@ -70,9 +71,10 @@ def main():
     arguments = parser.parse_args()
     paths = list(files_of(arguments.folder.resolve()))
     listed = "".join(str(path).removeprefix(arguments.root) + "\n" for path in paths)
-    peers = subprocess.Popen(shlex.split(arguments.peer), stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
-    peers.stdin.write(listed)
-    peers.stdin.close()
+    with tempfile.TemporaryFile("w+") as names:  # a pipe would wait for the reader of the answers
+        names.write(listed)
+        names.seek(0)
+        peers = subprocess.Popen(shlex.split(arguments.peer), stdin=names, stdout=subprocess.PIPE, text=True)
     table, told, records = collections.defaultdict(collections.Counter), [], []
     for path, line in zip(paths, peers.stdout):
         peer, ours = json.loads(line), ours_of(shlex.split(arguments.command), path)
@@ -87,7 +89,7 @@ def main():
                 told.append(f"{name}: {peer['cells']} cells by {peer['peer']}; ours: {ours['error']}")
             continue
         row["both"] += 1
-        found = differences(ours, peer)
+        found = [text for text in differences(ours, peer) if not (peer["curved"] and text.startswith("range"))]  # nodes that are left out
         row["volumes"] += not any(text.startswith("volume") for text in found)
         row["ranges"] += not any(text.startswith("range") for text in found)
         told += [f"{name}: {text}" for text in found]
