@@ -38,6 +38,7 @@ class HangingPoints {
 public:
     explicit HangingPoints(const MeshFile& found) : points_(found.points) {
         std::vector<std::uint8_t> cells(points_.size());
+        at_point_.assign(points_.size(), std::numeric_limits<float>::infinity());
         double longest = 0;
         shortest_ = std::numeric_limits<double>::infinity();
         for (const auto& hex : found.hexes.corners) {
@@ -45,11 +46,11 @@ public:
             for (const auto& [a, b] : kEdges) {
                 const Vec3 along = points_[hex[b]] - points_[hex[a]];
                 const double length = glm::dot(along, along);
+                for (const Index p : {hex[a], hex[b]}) at_point_[p] = std::min(at_point_[p], static_cast<float>(length));
                 if (length > 0) shortest_ = std::min(shortest_, length);
                 longest = std::max(longest, length);
             }
         }
-        constexpr double kHalf = 3.2;  // squared lengths of an edge and of its half, with room for bent edges
         if (!(longest > kHalf * shortest_) || !std::isfinite(longest)) return;
         least_edge_ = kHalf * shortest_;
         width_ = std::sqrt(shortest_) / 64;
@@ -66,7 +67,10 @@ public:
     template <class... Corners>
     [[nodiscard]] Index between(Index a, Index b, Corners... others) const {
         const Vec3 along = points_[b] - points_[a];
-        if (glm::dot(along, along) < least_edge_) return kNone;
+        // The small cells have edges of half the length at the ends of an edge, which few edges have at both.
+        const double length = glm::dot(along, along);
+        if (length < least_edge_) return kNone;
+        if (sizeof...(others) == 0 && length < kHalf * std::max(at_point_[a], at_point_[b])) return kNone;
         const Vec3 middle = ((points_[a] + points_[b]) + ... + points_[others]) / static_cast<double>(2 + sizeof...(others));
         // The box of the tolerance lies in one cube of the lattice, or in two along an axis.
         const double tolerance = width_ / 16;
@@ -105,7 +109,9 @@ private:
         return hash;
     }
 
+    static constexpr double kHalf = 3.2;  // squared lengths of an edge and of its half, with room for bent edges
     const std::vector<Vec3>& points_;
+    std::vector<float> at_point_;  // the square of the shortest edge there
     double shortest_ = 0, least_edge_ = 0, width_ = 0;
     std::unordered_multimap<std::uint64_t, Index> places_;
 };

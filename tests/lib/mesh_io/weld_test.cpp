@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "lib/temp_folder.h"
@@ -80,11 +81,16 @@ HexMesh box_with_hanging_points(int levels) {
     }
     const auto n = static_cast<Index>(1 << levels);
     fine = make_box(n, 2 * n, 2 * n);
-    const auto first = static_cast<Index>(mesh.points.size());
-    for (const Vec3& x : fine.points) mesh.points.push_back(Vec3(1, 0, 0) + x / static_cast<double>(n));
+    std::vector<Index> number;
+    for (const Vec3& x : fine.points) {
+        const Vec3 at = Vec3(1, 0, 0) + x / static_cast<double>(n);
+        const auto same = std::ranges::find(mesh.points, at);  // the corners of the large cells are those of small ones
+        number.push_back(static_cast<Index>(same - mesh.points.begin()));
+        if (same == mesh.points.end()) mesh.points.push_back(at);
+    }
     mesh.cells = coarse;
     for (auto cell : fine.cells) {
-        for (Index& p : cell) p += first;
+        for (Index& p : cell) p = number[p];
         mesh.cells.push_back(cell);
     }
     return mesh;
