@@ -154,16 +154,20 @@ void EnsightData::expect_room(std::size_t count, const std::string& what) const 
     fail(what + ": " + std::to_string(count) + " numbers are needed, and the file is too short");
 }
 
+// By a number that is not large: that of a part, a count or a size. 0 has no order.
+void EnsightData::find_order(std::string_view bytes) {
+    if (has_order_ || bytes.size() < kOfNumber) return;
+    constexpr std::int64_t kMostParts = 65536;
+    const std::int64_t little = integer_from(bytes, NumberType::Int32, std::endian::little);
+    has_order_ = little != 0;
+    if (little < 0 || little > kMostParts) order_ = std::endian::big;
+}
+
 std::int64_t EnsightData::integer(const std::string& what) {
     in_line_ = true;
     if (!binary()) return in_.integer({what});
     const std::string_view bytes = in_.bytes(kOfNumber, {what});
-    if (!has_order_) {
-        has_order_ = true;
-        constexpr std::int64_t kMostParts = 65536;
-        const std::int64_t little = integer_from(bytes, NumberType::Int32, std::endian::little);
-        if (little < 0 || little > kMostParts) order_ = std::endian::big;
-    }
+    find_order(bytes);
     return integer_from(bytes, NumberType::Int32, order_);
 }
 
@@ -176,7 +180,11 @@ std::size_t EnsightData::count(const std::string& what) {
 
 std::vector<std::int64_t> EnsightData::integers(std::size_t count, const std::string& what) {
     expect_room(count, what);
-    if (binary()) return integers_from(in_.bytes(count * kOfNumber, {what}), NumberType::Int32, order_);
+    if (binary()) {
+        const std::string_view bytes = in_.bytes(count * kOfNumber, {what});
+        find_order(bytes);
+        return integers_from(bytes, NumberType::Int32, order_);
+    }
     in_line_ |= count > 0;
     std::vector<std::int64_t> values;
     values.reserve(count);

@@ -408,6 +408,19 @@ TEST_F(Ensight, Version6HasOneListOfNodes) {
     }
 }
 
+// A file of blocks alone has no nodes, and a 0 shows no order of bytes.
+TEST_F(Ensight, BlocksOfVersion6) {
+    write("a.case", "FORMAT\ntype: ensight\nGEOMETRY\nmodel: a.geo\n");
+    for (const Form form : {Form::Text, Form::Little, Form::Big, Form::Fortran}) {
+        GoldText out(form);
+        out.line("a").line("b").line("node id off").line("element id off").line("coordinates").integers(std::vector{0});
+        out.line("part 1").line("p").line("block").integers(std::vector{2, 2, 2});
+        out.reals(std::vector<double>{0, 3, 0, 3, 0, 3, 0, 3, 0, 0, 1, 1, 0, 0, 1, 1, 0, 0, 0, 0, 1, 1, 1, 1});
+        write("a.geo", out.text());
+        EXPECT_NEAR(inspect(read_mesh(path("a.case")).mesh).volume, 3, 1e-6);
+    }
+}
+
 // Numbers fill their columns of 12 and 8, and Fortran leaves out the letter of long exponents.
 TEST_F(Ensight, NumbersOfVersion6MayTouch) {
     const std::string begin = "a\nb\nnode id assign\nelement id off\ncoordinates\n       8\n",
