@@ -279,7 +279,9 @@ void PictureArguments::check() const {
 
 LegendOptions PictureArguments::legend_options(const ShownField& field, const ShownField& colors) const {
     const Range range = shown_range(colors.range);
-    LegendOptions options{.title = colors.name + (unit.empty() ? "" : " [" + unit + "]"), .min = range.min, .max = range.max};
+    const std::string& known = unit.empty() ? colors.unit : unit;
+    LegendOptions options{.title = colors.name + (known.empty() ? "" : " [" + known + "]"), .min = range.min, .max = range.max};
+    options.note = legend_note;
     if (field.name != colors.name) {
         const Range opacities = shown_range(field.range);
         options.opacity_title = field.name;

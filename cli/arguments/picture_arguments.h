@@ -24,10 +24,11 @@ namespace subvol::cli {
 /// The range of a field's values.
 using Range = ValueRange;
 
-/// A field with the range of its values.
+/// A field with the range of its values, and its unit where that is known.
 struct ShownField {
     std::string name;
     Range range;
+    std::string unit = {};
 };
 
 struct PictureSize {
@@ -77,6 +78,9 @@ struct PictureArguments {
     std::optional<std::string> legend;  // the file; empty: inside the picture
     int legend_px = 0;                  // the width of a legend inside the picture, as settled
     std::string unit;                   // of the field that the legend shows
+    std::string legend_note;            // what the legend says besides, as settled
+    std::string title;                  // above the picture
+    bool time_label = false;            // the time of the step below it
     bool axes = false, edges = false;
     bool clamp = false;  // values beyond the field's range look like its ends
     std::optional<std::string> background;

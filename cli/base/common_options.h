@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "subvol/progress.h"
 #include "subvol/read_options.h"
 
 namespace CLI {
@@ -37,6 +38,7 @@ struct CommonOptions {
     std::string progress = "auto";
     std::uint64_t seed = 0;
     bool draws = false;             // the verb makes pictures, which messages say
+    Progress* listener = nullptr;   // of what is computed from fields
     const CLI::App* app = nullptr;  // which knows what was given
 };
 

@@ -97,11 +97,13 @@ WithFacts<BodyInput> open_body(const std::string& input, const CommonOptions& op
     auto [read, facts] = read_input(input, options, progress, alone);
     std::vector<MeshBlock> blocks = std::move(read.blocks);
     MeshSets sets = std::move(read.sets);
+    std::vector<FieldInfo> fields = std::move(read.fields);
     Shells taken;
     HexMesh mesh = facts.unpack(mesh_of(std::move(read), options, shells ? &taken : nullptr));
     WithFacts<BodyInput> body{{input, std::move(mesh)}, std::move(facts)};
     body.value.blocks = std::move(blocks);
     body.value.sets = std::move(sets);
+    body.value.of_file = std::move(fields);
     body.value.shells = std::move(taken);
     return body;
 }

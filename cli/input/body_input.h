@@ -50,9 +50,10 @@ public:
     /// throws: Error(InvalidInput) for bricks, which the scheme of tetrahedra does not refine
     [[nodiscard]] const HexMesh& mesh_for(const TetRefinement& tets) const;
 
-    Shells shells{};                  // of a mesh in memory
-    std::vector<MeshBlock> blocks{};  // of a mesh in memory
-    MeshSets sets{};                  // of a mesh in memory
+    Shells shells{};                   // of a mesh in memory
+    std::vector<MeshBlock> blocks{};   // of a mesh in memory
+    MeshSets sets{};                   // of a mesh in memory
+    std::vector<FieldInfo> of_file{};  // of its file
 
 private:
     std::string input_;

@@ -126,11 +126,12 @@ void reshape(ReadResult& read, const CommonOptions& options, Facts& facts) {
     if (regions.empty() && !options.warp) return;
     HexMesh mesh = used_mesh(std::move(read.mesh), options);
     if (options.field && mesh.find_attribute(*options.field) == nullptr) {
-        mesh.attributes.push_back(select_field(mesh, options.field).scalar);
+        mesh.attributes.push_back(select_field(mesh, options.field, options.listener).scalar);
         mesh.attributes.back().name = *options.field;
     }
     for (const std::string& quantity : options.at_rest) {
-        if (mesh.find_attribute(quantity) == nullptr) mesh.attributes.push_back(field_of(mesh, quantity, quantity));
+        if (mesh.find_attribute(quantity) == nullptr)
+            mesh.attributes.push_back(field_of(mesh, quantity, quantity, options.listener));
     }
     if (!read.shells.empty()) {
         facts.warn("shells and beams are left out with --only and --warp");
@@ -328,6 +329,14 @@ Shells with_fields_of(Shells shells, const HexMesh& mesh) {
     return shells;
 }
 
+std::string unit_of(const std::vector<FieldInfo>& fields, const std::string& quantity) {
+    for (const FieldInfo& field : fields) {
+        const bool component = quantity.starts_with(field.name + ".");
+        if (quantity == field.name || component || quantity == "length(" + field.name + ")") return field.unit;
+    }
+    return {};
+}
+
 std::vector<Patch> chosen_patches(const MeshSets& sets, const std::vector<std::string>& names) {
     std::vector<Patch> patches;
     for (const std::string& name : names) {
@@ -361,7 +370,8 @@ HexMesh with_written_field(HexMesh mesh, const CommonOptions& options) {
 
 WithFacts<HexMesh> with_selected_field(HexMesh mesh, const CommonOptions& options, const std::optional<std::string>& second) {
     Facts facts;
-    SelectedField selected = select_field(mesh, options.density ? std::optional<std::string>("density") : options.field);
+    SelectedField selected =
+        select_field(mesh, options.density ? std::optional<std::string>("density") : options.field, options.listener);
     facts.warn(selected.warning);
     facts["field"] = selected.scalar.name;
     if (!options.density && !options.field && mesh.attributes.size() > 1 && selected.warning.empty()) {
@@ -369,7 +379,7 @@ WithFacts<HexMesh> with_selected_field(HexMesh mesh, const CommonOptions& option
                         " fields; --field chooses)"));
     }
     std::vector<Attribute> chosen{std::move(selected.scalar)};
-    if (second && *second != chosen.front().name) chosen.push_back(select_field(mesh, second).scalar);
+    if (second && *second != chosen.front().name) chosen.push_back(select_field(mesh, second, options.listener).scalar);
     mesh.attributes = std::move(chosen);
     return {std::move(mesh), std::move(facts)};
 }

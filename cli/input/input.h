@@ -64,6 +64,9 @@ enum class ShellsAlone { Refuse, Take };
 /// The shells with the fields that the mesh has, which were selected from the same ones.
 [[nodiscard]] Shells with_fields_of(Shells shells, const HexMesh& mesh);
 
+/// The unit of a field of a file, of a component of it, or of its length, such as "U", "U.x", "length(U)"; empty: not known.
+[[nodiscard]] std::string unit_of(const std::vector<FieldInfo>& fields, const std::string& quantity);
+
 /// The patches of these names; all of the mesh for "all", unless one is called so.
 ///
 /// throws: Error(InvalidInput) if there is none of a name, or if it has lost all its faces

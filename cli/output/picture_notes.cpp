@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "shell_scene.h"
+#include "subvol/detail/number_text.h"
 #include "subvol/error.h"
 #include "subvol/overlay.h"
 
@@ -46,6 +47,11 @@ void PictureNotes::draw_over(Picture& picture, const View& view) const {
 }
 
 void PictureNotes::add_legend(Picture& picture) const {
+    const double letter = std::clamp(picture.image.height / 30.0, 9.0, 140.0);
+    for (std::size_t line = 0; line < caption.size(); ++line) {
+        draw_text(picture.image, {0.9 * letter, (1.5 + 1.4 * static_cast<double>(line)) * letter}, caption[line],
+                  {.size_px = letter, .color = ink});
+    }
     if (!legend) return;
     picture = widened(picture, picture.image.width + legend_px);
     draw_legend(picture.image, function, *legend, ink);
@@ -59,6 +65,12 @@ PictureNotes make_notes(PictureArguments& arguments, const ShownColors& colors, 
     if (arguments.edges) {
         if (mesh == nullptr) throw Error(ErrorCode::InvalidInput, "needs a mesh; this input has no cells", "--edges");
         notes.edges = mesh;
+    }
+    if (!arguments.title.empty()) notes.caption.push_back(arguments.title);
+    if (arguments.time_label) {
+        if (mesh == nullptr || !mesh->time)
+            throw Error(ErrorCode::InvalidInput, "the input has no steps with times", "--time-label", "--title");
+        notes.caption.push_back("t = " + detail::number_text(*mesh->time, 4));
     }
     if (arguments.legend_inside()) {
         notes.legend = legend;

@@ -25,6 +25,7 @@ struct PictureNotes {
     const HexMesh* edges = nullptr;  // of this mesh
     std::shared_ptr<const ShellScene> shells{};
     Vec3 ink{0.0};
+    std::vector<std::string> caption{};  // lines in the upper left corner
     TransferFunction function{};
     std::optional<LegendOptions> legend{};
     int legend_px = 0;  // its width
@@ -33,7 +34,7 @@ struct PictureNotes {
     void draw_shells(Picture& picture, const View& view) const;
     /// Draws axes and edges.
     void draw_over(Picture& picture, const View& view) const;
-    /// Makes room at the right for the legend, and draws it.
+    /// Draws the caption. Makes room at the right for the legend, and draws it.
     void add_legend(Picture& picture) const;
 };
 
@@ -41,6 +42,7 @@ struct PictureNotes {
 /// on.
 ///
 /// mesh: the control mesh, which the notes refer to; null: there is none
+/// throws: Error(InvalidInput) if it is needed for edges or its time for a label
 [[nodiscard]] PictureNotes make_notes(PictureArguments& arguments, const ShownColors& colors, const HexMesh* mesh);
 
 }  // namespace subvol::cli

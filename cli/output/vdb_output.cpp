@@ -104,6 +104,11 @@ Facts write_reported(std::span<const VdbGrid> grids, const VdbOutput& output, Pr
         facts.note(text(first.name, " is ", detail::number_text(first.min, 5), " to ", detail::number_text(first.max, 5),
                         "; a renderer shows it with a density of ", detail::number_text(*density, 2), " times the value"));
     }
+    const auto is_density = [](const VdbGrid& grid) { return grid.report().name == "density"; };
+    if (output.level_set.empty() && std::ranges::none_of(grids, is_density)) {
+        facts.note(text("no grid is called density, which Blender's volume material looks for: --fields \"density=", first.name,
+                        "\" writes one"));
+    }
     if (!output.level_set.empty()) {
         facts.note(text(output.level_set, " is a level set: distances have no density; a renderer makes a surface of it at 0"));
     }

@@ -23,14 +23,14 @@ WithFacts<HexMesh> WrittenFields::chosen(HexMesh mesh, const CommonOptions& opti
         std::vector<Attribute> chosen;
         for (const auto& [name, source] : fields_) {
             if (name != source) {
-                chosen.push_back(field_of(mesh, name, source));
+                chosen.push_back(field_of(mesh, name, source, options.listener));
                 continue;
             }
             if (const Attribute* vector = mesh.find_attribute(name); vector && vector->channels == 3) {
                 chosen.push_back(*vector);
                 continue;
             }
-            SelectedField selected = select_field(mesh, name);
+            SelectedField selected = select_field(mesh, name, options.listener);
             facts.warn(selected.warning);
             chosen.push_back(std::move(selected.scalar));
         }

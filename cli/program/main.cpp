@@ -211,6 +211,7 @@ int run(CLI::App& program, std::vector<std::string> arguments) {
         if (rank) verb->set_ranks(&ranks.emplace());
         subvol::cli::catch_interrupts(!speaks());
         subvol::cli::Report report(speaks() ? verb->common() : silent(verb->common()));
+        verb->set_progress(report.progress());
         const int code = ranks ? run_in_ranks(*verb, report, *ranks) : run_naming_input(*verb, report);
         report.finish();
         return code;

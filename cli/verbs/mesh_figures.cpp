@@ -143,7 +143,8 @@ void add_fields(const ReadResult& read, Lines& lines) {
                                                          : text(" of ", field.components);
         lines.emplace_back(&field == &read.fields.front() ? "fields" : "",
                            text(std::left, std::setw(static_cast<int>(name_width) + 2), field.name, std::setw(15),
-                                "at " + field.location + "s" + kind, "  ", range(field.min, field.max)));
+                                "at " + field.location + "s" + kind, "  ", range(field.min, field.max),
+                                field.unit.empty() ? "" : " " + field.unit));
     }
     if (read.fields.empty()) lines.emplace_back("fields", "none");
 }

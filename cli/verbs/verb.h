@@ -31,6 +31,8 @@ public:
 
     [[nodiscard]] bool chosen() const;
     [[nodiscard]] const CommonOptions& common() const { return common_; }
+    /// Quantities report to it, and may be cancelled.
+    void set_progress(Progress* progress) { common_.listener = progress; }
     [[nodiscard]] const std::string& name() const { return name_; }
 
     /// The options that --help shows; --help-all shows all. None: all of the verb's own.

@@ -194,6 +194,7 @@ private:
                                         {"components", field.components},
                                         {"min", field.min},
                                         {"max", field.max}});
+            if (!field.unit.empty()) report["fields"].back()["unit"] = field.unit;
         }
         if (tets_.asked()) {
             report["refined"] = json_of(report.unpack(tets_.figures(used_mesh(read.mesh, {}), 2, report.progress())));

@@ -245,7 +245,7 @@ private:
     [[nodiscard]] std::vector<double> vectors_of(const BodyInput& body) const {
         const HexMesh* mesh = body.source().mesh();
         if (mesh == nullptr) throw Error(ErrorCode::InvalidInput, "bricks have no patches", "--flux", "the mesh itself");
-        Attribute field = field_of(*mesh, flux_, flux_);
+        Attribute field = field_of(*mesh, flux_, flux_, common().listener);
         if (field.channels == 3) return std::move(field.values);
         throw Error(ErrorCode::InvalidInput,
                     text("'", flux_, "' has ", counted(static_cast<std::size_t>(field.channels), "component")), "--flux",

@@ -18,6 +18,7 @@
 #include "share.h"
 #include "shell_scene.h"
 #include "steps.h"
+#include "subvol/detail/number_text.h"
 #include "subvol/error.h"
 #include "text.h"
 #include "verb.h"
@@ -63,6 +64,7 @@ WithFacts<ShownBody> load_shown_body(const std::string& input, const CommonOptio
     facts.merge(body.refine(arguments.tets, default_tet_level(arguments.method), progress));
     ShownBody shown{std::move(body), {field, {}}, {field, {}}};
     shown.field.range = shown.body.range(field);
+    shown.field.unit = unit_of(shown.body.of_file, field);
     shown.colors = shown.field;
     const MeshSource source = shown.body.source();
     shown.box = source.bounds();
@@ -70,7 +72,7 @@ WithFacts<ShownBody> load_shown_body(const std::string& input, const CommonOptio
         check_points(mesh->points);
         check_points(shown.body.shells.points);
         const std::string& colors = mesh->attributes.back().name;
-        shown.colors = {colors, shown.body.range(colors)};
+        shown.colors = {colors, shown.body.range(colors), unit_of(shown.body.of_file, colors)};
         if (mesh->cells.empty()) {
             for (const Vec3& p : mesh->points) shown.box.add(p);
         }
@@ -93,7 +95,7 @@ PictureNotes make_notes(const ShownBody& shown, const ShownColors& colors, Rende
 }
 
 ShownField united(const ShownField& a, const ShownField& b) {
-    return {b.name, {std::min(a.range.min, b.range.min), std::max(a.range.max, b.range.max)}};
+    return {b.name, {std::min(a.range.min, b.range.min), std::max(a.range.max, b.range.max)}, b.unit};
 }
 
 class RenderVerb : public Verb {
@@ -115,6 +117,8 @@ public:
             ->type_name("IMAGE")
             ->required();
         arguments_.add_to(app());
+        app().add_option("--title", picture_.title, "a line of text in the upper left corner")->type_name("TEXT");
+        app().add_flag("--time-label", picture_.time_label, "draw the time of the step in the upper left corner");
         share_.add_to(app(), "rows of the picture, or some of the frames");
         set_essentials({"--output", "--field", "--look", "--tf", "--opacity", "--background", "--size", "--view", "--views",
                         "--camera", "--turntable", "--legend", "--per-edge", "--method", "--levels", "--json"});
@@ -200,8 +204,9 @@ private:
     void set_groups() {
         group("Camera", {"--size", "--camera", "--view", "--views", "--fit", "--ortho", "--turntable", "--fps"});
         group("Cuts", {"--clip", "--clip-box", "--slice", "--around"});
-        group("Colours and light", {"--look", "--tf", "--tf-range", "--opacity", "--opacity-unit", "--legend", "--background",
-                                    "--shade", "--shadows", "--ambient-occlusion", "--color-field"});
+        group("Colours and light",
+              {"--look", "--tf", "--tf-range", "--opacity", "--opacity-unit", "--legend", "--title", "--time-label",
+               "--background", "--shade", "--shadows", "--ambient-occlusion", "--color-field"});
         group("Kernels",
               {"--per-edge", "--centers", "--spacing", "--spacing-voxels", "--tolerance", "--footprint", "--footprint-size",
                "--values", "--kernel", "--value-kernel", "--threshold", "--correction", "--reduce", "--refine"});
@@ -218,6 +223,10 @@ private:
               const Draw& draw) {
         box_ = box;
         range_ = field.range;
+        if (const auto warp = report.json().find("warp"); warp != report.json().end()) {
+            picture_.legend_note = text("moved by ", detail::number_text(warp->at("factor").get<double>(), 3), " × ",
+                                        warp->at("field").get<std::string>());
+        }
         const ShownColors shown{picture_.make_optics(box, field.range, colors.range), picture_.legend_options(field, colors)};
         draw(shown);
         output.set_notes({});  // what they refer to is gone

@@ -79,7 +79,8 @@ public:
                                            {"fill", kInk}});
         append(svg, "rect", {{"width", "100%"}, {"height", "100%"}, {"fill", "#fff"}});
         append_colors(svg);
-        append_text(svg, 0.5 * (kLeft + end_), 20, "middle", options_.title)
+        append_text(svg, 0.5 * (kLeft + end_), 20, "middle",
+                    options_.note.empty() ? options_.title : options_.title + ", " + options_.note)
             .append_attribute("style")
             .set_value("font-size:14px;font-weight:bold");
         append_opacity(svg);

@@ -41,7 +41,8 @@ public:
 
     [[nodiscard]] int width() const {
         const double most = kMostOfHeight * height_;
-        const double titles = std::max(title_width(options_.title), apart() ? title_width(options_.opacity_title) : 0.0);
+        const double titles = std::max(
+            {title_width(options_.title), title_width(options_.note), apart() ? title_width(options_.opacity_title) : 0.0});
         const double bars = curve_width() + bar_width() + 0.9 * letter_ +
                             std::max(labels_width(colors_), apart() ? labels_width(opacities_) : 0.0);
         return static_cast<int>(std::ceil(std::max(std::min(titles, most), bars) + 2 * margin()));
@@ -51,7 +52,8 @@ public:
         image_ = &image;
         ink_ = ink;
         left_ = image.width - width() + margin();
-        const double bottom = height_ - 2.2 * letter_;
+        const double bottom = height_ - (options_.note.empty() ? 2.2 : 4) * letter_;
+        if (!options_.note.empty()) draw_title(options_.note, height_ - 0.7 * letter_);
         const double middle = apart() ? 0.56 * height_ : bottom;
         draw_bar(2.2 * letter_, middle);
         if (apart()) {

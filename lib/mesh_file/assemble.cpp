@@ -39,7 +39,7 @@ void warn_of_folded(ReadResult& result) {
 }
 
 FieldInfo describe(const FileArray& array) {
-    FieldInfo info{array.name, array.at_cells ? "cell" : "point", array.components, 0, 0};
+    FieldInfo info{array.name, array.at_cells ? "cell" : "point", array.components, 0, 0, printable(array.unit)};
     const auto components = static_cast<std::size_t>(array.components);
     bool first = true;
     for (std::size_t i = 0; i + components <= array.values.size(); i += components) {

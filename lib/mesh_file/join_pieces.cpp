@@ -330,7 +330,7 @@ private:
 
     [[nodiscard]] FileArray joined(const FileArray& like, const std::vector<const FileArray*>& parts) const {
         const auto components = static_cast<std::size_t>(like.components);
-        FileArray array{like.name, like.components, like.at_cells, {}};
+        FileArray array{like.name, like.components, like.at_cells, {}, like.unit};
         if (!like.at_cells) {
             array.values.reserve(all_.points.size() * components);
             for (const auto& [piece, p] : sources_) {

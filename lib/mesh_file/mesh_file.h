@@ -19,12 +19,13 @@
 
 namespace subvol::detail {
 
-/// An array of a file. at_cells: one tuple for each cell of the file, of any kind; else one for each point
+/// An array of a file. at_cells: one tuple for each cell of the file, of any kind; else one for each point; unit: such as m/s
 struct FileArray {
     std::string name;
     int components = 1;
     bool at_cells = false;
     std::vector<double> values;
+    std::string unit = {};
 };
 
 /// Symmetric tensors have their components in the order xx, yy, zz, xy, yz, xz. The place of each in files that list the upper

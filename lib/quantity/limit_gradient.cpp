@@ -11,7 +11,7 @@
 namespace subvol::detail {
 namespace {
 
-constexpr std::size_t kCellsAtOnce = 1 << 16;  // cells that are evaluated together
+constexpr std::size_t kCellsAtOnce = 1 << 13;  // cells that are evaluated together
 
 /// A corner's own place, and one inside the cell for corners at which the cell has no volume.
 Vec3 place_of(int corner, double inset) {
@@ -63,7 +63,7 @@ private:
 
 }  // namespace
 
-Attribute limit_gradient(const HexMesh& mesh, const Attribute& attribute) {
+Attribute limit_gradient(const HexMesh& mesh, const Attribute& attribute, Progress* progress) {
     constexpr double kInset = 0.05;
     HexMesh alone{mesh.points, mesh.cells, {attribute}, mesh.creases, mesh.sharp_faces};
     alone.attributes[0].bounds.clear();
@@ -71,6 +71,7 @@ Attribute limit_gradient(const HexMesh& mesh, const Attribute& attribute) {
     GradientSum sum(mesh, attribute);
     for (std::size_t begin = 0; begin < mesh.cells.size(); begin += kCellsAtOnce) {
         const std::size_t end = std::min(begin + kCellsAtOnce, mesh.cells.size());
+        report_progress(progress, "derivatives", begin, mesh.cells.size());
         std::vector<LimitQuery> queries, flat;
         for (std::size_t cell = begin; cell < end; ++cell) {
             for (int corner = 0; corner < 8; ++corner) queries.push_back({static_cast<Index>(cell), place_of(corner, 0)});

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "subvol/hex_mesh.h"
+#include "subvol/progress.h"
 
 namespace subvol::detail {
 
@@ -10,7 +11,7 @@ namespace subvol::detail {
 /// Where cells meet at a point, their derivatives are the same if the limit is smooth there; else their mean counts, weighted
 /// by volume. The scheme is MCQ, whose limit goes through the points.
 ///
-/// throws: Error(InvalidInput) as `evaluate_limit`
-[[nodiscard]] Attribute limit_gradient(const HexMesh& mesh, const Attribute& attribute);
+/// throws: Error(InvalidInput) as `evaluate_limit`; Error(Cancelled)
+[[nodiscard]] Attribute limit_gradient(const HexMesh& mesh, const Attribute& attribute, Progress* progress);
 
 }  // namespace subvol::detail

@@ -123,7 +123,8 @@ Attribute curl(const Attribute& gradient) {
 /// Reads one quantity.
 class Evaluation {
 public:
-    Evaluation(const HexMesh& mesh, const std::string& source) : mesh_(mesh), source_(source) {}
+    Evaluation(const HexMesh& mesh, const std::string& source, Progress* progress)
+        : mesh_(mesh), source_(source), progress_(progress) {}
 
     /// The value of a part of the source.
     ///
@@ -253,10 +254,10 @@ private:
         if (mesh_.cells.empty()) refuse("there are no cells to take derivatives in", position);
         if (word == "grad") {
             needs(argument.channels == 1 || argument.channels == 3, "a scalar or a vector with 3 components");
-            return detail::limit_gradient(mesh_, argument);
+            return detail::limit_gradient(mesh_, argument, progress_);
         }
         needs(argument.channels == 3, "a vector with 3 components");
-        const Attribute gradient = detail::limit_gradient(mesh_, argument);
+        const Attribute gradient = detail::limit_gradient(mesh_, argument, progress_);
         if (word == "div") return divergence(gradient);
         return word == "qcriterion" ? q_criterion(gradient) : curl(gradient);
     }
@@ -343,6 +344,7 @@ private:
 
     const HexMesh& mesh_;
     const std::string& source_;
+    Progress* progress_;
 };
 
 /// Whether a text would be a name, if there were a field of that name: then the error is about fields, not about signs.
@@ -386,10 +388,10 @@ bool has_derivatives(std::string_view source) {
     });
 }
 
-Attribute field_of(const HexMesh& mesh, const std::string& name, const std::string& source) {
+Attribute field_of(const HexMesh& mesh, const std::string& name, const std::string& source, Progress* progress) {
     const std::string_view text = trimmed(source);
     const bool coordinate = text == "x" || text == "y" || text == "z" || text == "time";
-    const Evaluation evaluation(mesh, source);
+    const Evaluation evaluation(mesh, source, progress);
     if (mesh.find_attribute(source) == nullptr && may_be_name(text) && !text.empty() && is_letter(text[0]) && !coordinate) {
         const std::size_t dot = text.rfind('.');
         const Attribute* field = dot == std::string_view::npos ? nullptr : mesh.find_attribute(text.substr(0, dot));

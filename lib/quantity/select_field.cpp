@@ -94,9 +94,9 @@ SelectedField density(const HexMesh& mesh, std::string warning) {
 
 }  // namespace
 
-SelectedField select_field(const HexMesh& mesh, const std::optional<std::string>& name) {
+SelectedField select_field(const HexMesh& mesh, const std::optional<std::string>& name, Progress* progress) {
     if (name) {
-        Attribute found = field_of(mesh, *name, *name);
+        Attribute found = field_of(mesh, *name, *name, progress);
         if (found.channels == 1) return {std::move(found), {}};
         if (mesh.find_attribute(*name) != nullptr) return scalar_of(mesh, found);
         return {detail::length_of(found), "\"" + *name + "\" is a vector or a tensor: its length is taken"};

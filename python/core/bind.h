@@ -16,6 +16,7 @@
 #include "subvol/error.h"
 #include "subvol/facts.h"
 #include "subvol/hex_mesh.h"
+#include "subvol/mesh_sets.h"
 #include "subvol/optics.h"
 #include "subvol/option.h"
 #include "subvol/progress.h"
@@ -77,6 +78,11 @@ template <class T>
 
 /// Lower and upper corner, (2,3).
 [[nodiscard]] py::array as_array(const Box& box);
+
+/// The patches and sets of a mesh that was read; none for others. Meshes are given to C++ without them.
+[[nodiscard]] const MeshSets& sets_of(const py::object& mesh);
+/// A mesh as an object of Python, with its patches and sets.
+[[nodiscard]] py::object with_sets(HexMesh mesh, MeshSets sets);
 
 /// Does long work on a thread of its own, while this one, without the GIL, waits, passes on what is reported, and looks for
 /// signals: so Ctrl-C ends the work wherever it runs, and `progress` is called on the thread that made the call.

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <iterator>
 #include <limits>
 
 #include "bind.h"
@@ -6,8 +8,10 @@
 #include "subvol/limit_surface.h"
 #include "subvol/measure.h"
 #include "subvol/mixed_probe.h"
+#include "subvol/patch_measure.h"
 #include "subvol/points_error.h"
 #include "subvol/probe.h"
+#include "subvol/quantity.h"
 
 namespace subvol::python {
 namespace {
@@ -29,6 +33,10 @@ std::vector<Option> keywords_of(PointsErrorOptions& options) {
 
 std::vector<Option> keywords_of(MeasureOptions& options) {
     return scheme_and(options.scheme, options_of(options));
+}
+
+std::vector<Option> keywords_of(PatchOptions& options) {
+    return scheme_and(options.scheme);
 }
 
 std::vector<Option> keywords_of(SliceOptions& options) {
@@ -132,9 +140,15 @@ py::dict as_dict(PartMeasure part) {
     return result;
 }
 
-py::dict measure(const HexMesh& mesh, const std::vector<std::string>& only, const py::object& progress,
+py::dict measure(const py::object& self, const std::vector<std::string>& only, const py::object& progress,
                  const py::kwargs& keywords) {
-    const std::vector<Region> regions = parse_regions(only);
+    std::vector<Region> regions = parse_regions(only), of_cells;
+    std::ranges::copy_if(regions, std::back_inserter(of_cells), &Region::chooses_cells);
+    std::erase_if(regions, [](const Region& region) { return region.chooses_cells(); });
+    HexMesh part;
+    const auto& whole = self.cast<const HexMesh&>();
+    if (!of_cells.empty()) part = only_in(whole, of_cells, sets_of(self));
+    const HexMesh& mesh = of_cells.empty() ? whole : part;
     MeasureOptions options;
     set_options(keywords_of(options), keywords);
     LimitMeasure found = result_of(progress, [&](Progress* listener) {
@@ -142,6 +156,49 @@ py::dict measure(const HexMesh& mesh, const std::vector<std::string>& only, cons
         return regions.empty() ? measure_limit(mesh, options) : measure_limit_in(mesh, regions, options);
     });
     return as_dict(std::move(found.whole));
+}
+
+py::list measure_patches_of(const py::object& self, const std::vector<std::string>& names,
+                            const std::optional<std::string>& flux, const py::object& progress, const py::kwargs& keywords) {
+    const auto& mesh = self.cast<const HexMesh&>();
+    PatchOptions options;
+    set_options(keywords_of(options), keywords);
+    std::vector<Patch> patches;
+    for (const std::string& name : names) patches.push_back(find_patch(sets_of(self), name));
+    const std::vector<PatchMeasure> found = result_of(progress, [&](Progress* listener) {
+        Attribute vectors;
+        if (flux) vectors = field_of(mesh, *flux, *flux);
+        if (flux && vectors.channels != 3) {
+            throw Error(ErrorCode::InvalidInput, "\"" + *flux + "\" is not a vector", "flux", "a vector, such as U or grad(T)");
+        }
+        options.flux = vectors.values;
+        options.progress = listener;
+        return measure_patches(mesh, patches, options);
+    });
+    py::list list;
+    for (const PatchMeasure& patch : found) {
+        py::dict one, fields;
+        one["name"] = patch.name;
+        one["faces"] = patch.sides;
+        one["area"] = patch.area;
+        one["error"] = patch.error;
+        one["normal"] = as_tuple(patch.normal);
+        if (patch.flux) {
+            one["flux"] = *patch.flux;
+            one["throughput"] = *patch.throughput;
+        }
+        for (const PatchField& field : patch.fields) {
+            py::dict figures;
+            figures["integral"] = field.integral;
+            figures["mean"] = field.mean;
+            figures["min"] = field.min;
+            figures["max"] = field.max;
+            fields[py::str(field.name)] = figures;
+        }
+        one["fields"] = fields;
+        list.append(one);
+    }
+    return list;
 }
 
 py::dict slice(const HexMesh& mesh, const std::string& field, const std::array<double, 3>& point,
@@ -208,6 +265,7 @@ void bind_measure(py::module_& module) {
     module.def("points_error", &error_of_points, py::arg("volume"), py::arg("mesh"), py::arg("field"), py::arg("channel"),
                py::arg("progress"));
     module.def("measure", &measure, py::arg("mesh"), py::arg("only"), py::arg("progress"));
+    module.def("measure_patches", &measure_patches_of, py::arg("mesh"), py::arg("names"), py::arg("flux"), py::arg("progress"));
     module.def("slice", &slice, py::arg("mesh"), py::arg("field"), py::arg("point"), py::arg("normal"), py::arg("progress"));
     module.def("surface", &surface, py::arg("mesh"), py::arg("field"), py::arg("isos"), py::arg("path"), py::arg("origin"),
                py::arg("progress"));

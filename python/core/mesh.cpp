@@ -95,7 +95,44 @@ py::tuple read(const std::string& path, const py::kwargs& given) {
         return read_mesh(path, options);
     }();
     if (!result.shells.empty()) result.warnings.emplace_back("quads and lines of shells and beams left out");
-    return py::make_tuple(std::move(result.mesh), result.warnings);
+    return py::make_tuple(with_sets(std::move(result.mesh), std::move(result.sets)), result.warnings);
+}
+
+/// The mesh of some cells, with what is left of its patches and sets.
+py::object only_of(const py::object& self, const std::vector<std::string>& texts) {
+    const auto& mesh = self.cast<const HexMesh&>();
+    const MeshSets& sets = sets_of(self);
+    auto [part, of_part] = [&] {
+        const py::gil_scoped_release without_gil;
+        const std::vector<std::uint8_t> cells = cells_in(mesh, parse_regions(texts), sets);
+        return std::pair(only_cells(mesh, cells), sets_of_cells(sets, cells));
+    }();
+    return with_sets(std::move(part), std::move(of_part));
+}
+
+py::object warped(const py::object& self, const std::string& field, std::optional<double> factor) {
+    HexMesh mesh = self.cast<const HexMesh&>();
+    {
+        const py::gil_scoped_release without_gil;
+        move_points(mesh, {field, factor});
+    }
+    return with_sets(std::move(mesh), sets_of(self));
+}
+
+py::dict patches_of(const py::object& self) {
+    py::dict patches;
+    for (const Patch& patch : sets_of(self).patches) {
+        std::vector<Index> rows;
+        for (const CellSide& side : patch.sides) rows.insert(rows.end(), {side.cell, Index{side.side}});
+        patches[py::str(patch.name)] = owned(std::move(rows), {length(patch.sides.size()), 2});
+    }
+    return patches;
+}
+
+py::dict cell_sets_of(const py::object& self) {
+    py::dict sets;
+    for (const CellSet& set : sets_of(self).sets) sets[py::str(set.name)] = owned(set.cells, {length(set.cells.size())});
+    return sets;
 }
 
 py::tuple selected(const HexMesh& mesh, const std::optional<std::string>& name) {
@@ -142,10 +179,24 @@ py::dict write_wavelets(const std::string& path, const HexMesh& mesh, double tol
     return figures;
 }
 
+constexpr const char* kSets = "_sets";
+
 }  // namespace
 
+const MeshSets& sets_of(const py::object& mesh) {
+    static const MeshSets none;
+    return py::hasattr(mesh, kSets) ? mesh.attr(kSets).cast<const MeshSets&>() : none;
+}
+
+py::object with_sets(HexMesh mesh, MeshSets sets) {
+    py::object object = py::cast(std::move(mesh));
+    if (!sets.empty()) object.attr(kSets) = py::cast(std::move(sets));
+    return object;
+}
+
 void bind_mesh(py::module_& module) {
-    py::class_<HexMesh>(module, "HexMesh",
+    py::class_<MeshSets>(module, "MeshSets");
+    py::class_<HexMesh>(module, "HexMesh", py::dynamic_attr(),
                         "A hexahedral mesh with fields at its points. It does not change: its arrays are read-only views.")
         .def(py::init(&mesh_of), py::arg("points"), py::arg("cells"), py::arg("fields") = py::none(),
              py::arg("creases") = py::none(), py::arg("sharp_faces") = py::none())
@@ -162,6 +213,8 @@ void bind_mesh(py::module_& module) {
         .def_property_readonly(
             "sharp_faces", [](const py::object& self) { return view_of_rows(self.cast<const HexMesh&>().sharp_faces, self); })
         .def_property_readonly("fields", &fields_of)
+        .def_property_readonly("patches", &patches_of)
+        .def_property_readonly("sets", &cell_sets_of)
         .def_property_readonly("bounds", [](const HexMesh& mesh) { return as_array(bounds(mesh)); })
         .def("report", &figures_of)
         .def("boundary",
@@ -222,21 +275,8 @@ void bind_mesh(py::module_& module) {
                                  : owned(std::move(field.values), {points, channels});
         },
         py::arg("mesh"), py::arg("source"));
-    module.def(
-        "warp",
-        [](HexMesh mesh, const std::string& field, std::optional<double> factor) {
-            const py::gil_scoped_release without_gil;
-            move_points(mesh, {field, factor});
-            return mesh;
-        },
-        py::arg("mesh"), py::arg("field"), py::arg("factor"));
-    module.def(
-        "only",
-        [](const HexMesh& mesh, const std::vector<std::string>& regions) {
-            const py::gil_scoped_release without_gil;
-            return only_in(mesh, parse_regions(regions));
-        },
-        py::arg("mesh"), py::arg("regions"));
+    module.def("warp", &warped, py::arg("mesh"), py::arg("field"), py::arg("factor"));
+    module.def("only", &only_of, py::arg("mesh"), py::arg("regions"));
     module.def("select_field", &selected, py::arg("mesh"), py::arg("name"));
     module.def(
         "make_model",

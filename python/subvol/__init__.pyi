@@ -95,7 +95,8 @@ def read_mesh(
     path: Path, *, other_cells: str = 'split', weld: Optional[float] = None, cell_values: str = 'auto',
     step: Optional[int] = None, blocks: Sequence[str] = (), sharp: Sequence[str] = ()
 ) -> HexMesh:
-    """Reads a mesh. The extension of the file name decides the format; docs/formats.md has the list.
+    """Reads a mesh. The contents and the extension decide the format; docs/formats.md has the list. Formats that the library does not
+    read but meshio does (MED, Nastran, SU2, FLAC3D and others) are read by meshio, without their sets and steps.
 
     The names of the file are in `mesh.patches`, by name (n,2): a cell and its side, u=0, u=1, v=0, v=1, w=0 or w=1, and in
     `mesh.sets`, by name (n,): cells. `warp` and `only` keep them.
@@ -112,7 +113,8 @@ def read_mesh(
                  name or number, a reference of MEDIT, or Ridges (repeatable)
 
     Warns (SubvolWarning) once for each thing left out, turned round or converted.
-    Raises FileError if the file cannot be opened; InvalidInput, with file and line, if it is malformed.
+    Raises FileError if the file cannot be opened; InvalidInput, with file and line, if it is malformed; MissingCapability if meshio is
+    needed and not installed.
     """
 
 def reduce(
@@ -286,7 +288,7 @@ def surface(
     """Isosurfaces of a field of the limit, and its boundary, as triangles.
 
     iso:         a value, or several; None: the boundary alone
-    path:        also write it: .ply, .stl, .vtp, .obj, .glb
+    path:        also write it: .ply, .stl, .vtp, .obj, .glb, .vtkhdf
     origin:      the file's points are relative to this place (3,): .stl rounds to 32-bit floats; None: (0, 0, 0)
     scheme:      mcq (smooth, through the control points), cc (Catmull-Clark), bsxw (Bajaj-Schaefer-Warren-Xu), linear [mcq,
                  cc, bsxw, linear]

@@ -80,7 +80,8 @@ def probe(mesh: HexMesh, places: npt.ArrayLike, *, levels: Optional[int] = None,
 
 
 @described
-def measure(mesh: HexMesh, *, only: Union[str, Sequence[str]] = (), progress: Progress = None, **options: Any) -> dict[str, Any]:
+def measure(mesh: HexMesh, *, only: Union[str, Sequence[str]] = (), patch: Union[str, Sequence[str], None] = None,
+            flux: Optional[str] = None, progress: Progress = None, **options: Any) -> Any:
     """The volume of the limit, and of each field its integral, mean, extremes with their places, and histogram.
 
     Returns cells, volume, error (an estimate of how far off the volume is, as a part of it, and each mean, as a part of its field's
@@ -88,8 +89,19 @@ def measure(mesh: HexMesh, *, only: Union[str, Sequence[str]] = (), progress: Pr
     may go), histogram (the volume in each of `bins` equal intervals from min to max).
 
     only:        a region, or several of which all hold, as of `only`; parts of space are cut exactly out of the limit
+    patch:       a patch of the boundary, of `mesh.patches`: returns name, faces, area, normal (its integral), error, and fields: by name
+                 integral, mean, min, max. Several: a list of these. Regions choose whole cells then
+    flux:        with `patch`, a vector such as "U" or "grad(T)": also flux, its flow out through the patch, and throughput, without sign
     {keywords}
     """
+    if patch is not None:
+        names = [patch] if isinstance(patch, str) else list(patch)
+        left = mesh if not only else _core.only(mesh, [only] if isinstance(only, str) else list(only))
+        with listening(progress) as listener:
+            patches = _core.measure_patches(left, names, flux, listener, **options)
+        return patches[0] if isinstance(patch, str) else patches
+    if flux is not None:
+        raise InvalidInput("flux: goes through a patch", "flux", "patch=NAME with it")
     with listening(progress) as listener:
         found: dict[str, Any] = _core.measure(mesh, [only] if isinstance(only, str) else list(only), listener, **options)
     return found

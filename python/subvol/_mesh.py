@@ -21,6 +21,9 @@ def read_mesh(path: Path, **options: Any) -> HexMesh:
     """Reads a mesh. The contents and the extension decide the format; docs/formats.md has the list. Formats that the library does not
     read but meshio does (MED, Nastran, SU2, FLAC3D and others) are read by meshio, without their sets and steps.
 
+    The names of the file are in `mesh.patches`, by name (n,2): a cell and its side, u=0, u=1, v=0, v=1, w=0 or w=1, and in
+    `mesh.sets`, by name (n,): cells. `warp` and `only` keep them.
+
     {keywords}
 
     Warns (SubvolWarning) once for each thing left out, turned round or converted.
@@ -108,7 +111,8 @@ def only(mesh: HexMesh, *regions: str) -> HexMesh:
     """The cells that lie in all of some regions, as a mesh of its own; the cells beside them no longer shape their limit.
 
     regions: "box:x0,y0,z0,x1,y1,z1", "sphere:x,y,z,r", "half:px,py,pz,nx,ny,nz" (cells by their centres; a plane's normal points into
-             the half), or "where:T>500": a quantity that is not 0 at half of a cell's corners or more
+             the half), "set:A,B": the cells of `mesh.sets`, or "where:T>500": a quantity that is not 0 at half of a cell's corners
+             or more
     """
     return _core.only(mesh, list(regions))
 

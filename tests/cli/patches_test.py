@@ -7,6 +7,7 @@ import struct
 import unittest
 
 from command import InFolder, subvol
+from quantities_test import write_beam
 
 # A bar of 3 x 1 x 1 unit cubes along x.
 POINTS = [(x, y, z) for z in range(2) for y in range(2) for x in range(4)]
@@ -325,16 +326,26 @@ class Patches(InFolder):
         self.assertIn("flow out", (self.folder / "a.svg").read_text())
 
 
-class Times(InFolder):
-    def write_bar(self, name, bend):
-        path = self.folder / name
-        import quantities_test
-        quantities_test.write_beam(path, bend)
+    def test_units_of_openfoam(self):
+        write_foam(self.folder / "case")
+        zero = self.folder / "case" / "0"
+        for name, dimensions in (("a", "[1 -1 -2 0 0 0 0]"), ("b", "[0 2 -2 0 0]"), ("c", "[0 0 0 0 0 0 0]"), ("d", "[0 0 0.5 -1 0 0 0]"),
+                                 ("e", "[1 0 -3 -1 0 0 0]"), ("f", "[x 1"), ("g", "wrong")):
+            (zero / name).write_text(foam(name, "volScalarField", f"dimensions {dimensions};\ninternalField uniform 1;\n"))
+        fields = {f["name"]: f.get("unit") for f in self.run_ok("info", "case", "--json").json()["fields"]}
+        self.assertEqual(fields["U"], "m/s")
+        self.assertEqual([fields[name] for name in "abcde"], ["Pa", "m²/s²", None, "s^0.5/K", "kg/(s³ K)"])
+        self.assertEqual([fields.get(name) for name in "fg"], [None, None])
+        for field, unit in (("U.x", "U.x [m/s]"), ("a", "a [Pa]"), ("c", "c"), ("2*a", "2*a")):
+            self.run_ok("render", "case", "-o", "a.png", "--field", field, "--legend", "a.svg", "--size", "32x32")
+            self.assertIn(f">{unit}<", (self.folder / "a.svg").read_text())
 
+
+class Times(InFolder):
     def setUp(self):
         super().setUp()
         for k, bend in enumerate((0, .1, .2)):
-            self.write_bar(f"s{k}.vtk", bend)
+            write_beam(self.folder / f"s{k}.vtk", bend)
         sets = "".join(f'<DataSet timestep="{t}" file="s{k}.vtk"/>' for k, t in enumerate((0, 1, 3)))
         (self.folder / "a.pvd").write_text(f'<VTKFile type="Collection"><Collection>{sets}</Collection></VTKFile>')
 
@@ -357,6 +368,25 @@ class Times(InFolder):
         _, found = heights("--warp", "D*auto")
         factor = found["warp"]["factor"]
         self.assertAlmostEqual(factor * .2 * 6, .1 * math.sqrt(4 + 4 + 36), 6)  # of the last step, which moves most
+
+    def test_what_is_written_into_pictures(self):
+        def picture(*more):
+            self.run_ok("render", "a.pvd", "-o", "a.png", "--size", "96x64", "--field", "T", *more)
+            return (self.folder / "a.png").read_bytes()
+        plain, titled = picture("--time", "1"), picture("--time", "1", "--title", "A bar")
+        timed, later = picture("--time", "1", "--time-label"), picture("--time", "3", "--time-label")
+        self.assertEqual(len({plain, titled, timed, later}), 4)
+        done = subvol("render", "s0.vtk", "-o", "a.png", "--time-label", folder=self.folder)
+        self.assertEqual(done.code, 2)
+        self.assertIn("--time-label", done.err)
+        self.run_ok("render", "a.pvd", "-o", "a.png", "--size", "96x64", "--field", "T", "--warp", "D*3", "--legend", "a.svg")
+        self.assertIn("moved by 3 × D", (self.folder / "a.svg").read_text())
+
+    def test_a_grid_that_is_not_called_density_is_reported(self):
+        said = self.run_ok("vdb", "s2.vtk", "-o", "a.vdb", "--field", "T", "--resolution", "8").err
+        self.assertIn('"density=T"', said)
+        self.assertNotIn("no grid is called", self.run_ok("vdb", "s2.vtk", "-o", "a.vdb", "--fields", "density=T", "--resolution",
+                                                          "8").err)
 
     def test_quantities_at_rest(self):
         self.run_ok("surface", "s2.vtk", "-o", "a.vtp", "--color-field", "grad(T).z", "--warp", "D*3", "--json")

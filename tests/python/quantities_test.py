@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Quantities computed from fields, displacement, and regions."""
+from pathlib import Path
+
 import numpy as np
 import pytest
 import subvol
@@ -56,3 +58,48 @@ def test_warp_and_regions(bar: subvol.HexMesh) -> None:
     part = subvol.measure(bar, only="box:.5,.5,.5,3.25,2,4")
     assert part["volume"] == pytest.approx(2.75 * 1.5 * 3.5, rel=1e-4)
     assert part["fields"]["T"]["mean"] == pytest.approx(2 * 1.875 - 1.25 + .5 * 2.25, abs=2e-3)
+
+
+DECK = """*NODE
+1, 0, 0, 0
+2, 1, 0, 0
+3, 1, 1, 0
+4, 0, 1, 0
+5, 0, 0, 1
+6, 1, 0, 1
+7, 1, 1, 1
+8, 0, 1, 1
+9, 0, 0, 2
+10, 1, 0, 2
+11, 1, 1, 2
+12, 0, 1, 2
+*ELEMENT, TYPE=C3D8, ELSET=low
+1, 1, 2, 3, 4, 5, 6, 7, 8
+*ELEMENT, TYPE=C3D8, ELSET=high
+2, 5, 6, 7, 8, 9, 10, 11, 12
+*SURFACE, NAME=bottom
+low, S1
+*SURFACE, NAME=top
+high, S2
+"""
+
+
+def test_patches_and_sets_follow_the_cells(tmp_path: Path) -> None:
+    (tmp_path / "a.inp").write_text(DECK)
+    mesh = subvol.read_mesh(tmp_path / "a.inp")
+    assert {name: sides.tolist() for name, sides in mesh.patches.items()} == {"bottom": [[0, 4]], "top": [[1, 5]]}
+    assert {name: cells.tolist() for name, cells in mesh.sets.items()} == {"low": [0], "high": [1]}
+    upper = subvol.only(mesh, "set:high")
+    assert len(upper.cells) == 1
+    assert upper.patches["top"].tolist() == [[0, 5]] and len(upper.patches["bottom"]) == 0
+    assert subvol.measure(mesh, only="set:high", scheme="linear")["volume"] == pytest.approx(1)
+    found = subvol.measure(mesh, patch="top", scheme="linear")
+    assert found["area"] == pytest.approx(1) and found["normal"] == pytest.approx((0, 0, 1))
+    assert [p["name"] for p in subvol.measure(mesh, patch=["top", "bottom"])] == ["top", "bottom"]
+    assert subvol.model("ball", 2).patches == {}
+    with pytest.raises(subvol.InvalidInput, match="bottom, top"):
+        subvol.measure(mesh, patch="side")
+    with pytest.raises(subvol.InvalidInput, match="no set"):
+        subvol.only(mesh, "set:middle")
+    with pytest.raises(subvol.InvalidInput, match="patch"):
+        subvol.measure(mesh, flux="U")

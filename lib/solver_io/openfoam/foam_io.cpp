@@ -431,6 +431,7 @@ private:
         if (components == 0) return;
         take(path, text, cells_ * components * sizeof(double));  // "uniform" is one value for all cells
         found_.arrays.push_back({name, static_cast<int>(components), true, text.internal_field(components, cells_)});
+        found_.arrays.back().unit = text.unit();
         if (components == kSymmetricByRows.size()) order_symmetric(found_.arrays.back().values, kSymmetricByRows);
     }
 

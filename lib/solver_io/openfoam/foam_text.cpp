@@ -2,12 +2,15 @@
 #include "foam_text.h"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
+#include <cmath>
 #include <limits>
 #include <tuple>
 #include <utility>
 
 #include "gzip.h"
+#include "subvol/detail/number_text.h"
 
 namespace subvol::detail {
 
@@ -389,6 +392,47 @@ std::vector<double> FoamText::uniform_value(std::size_t components) {
     if (one.size() != components)
         fail("the uniform value has " + counted(one.size(), "number", "numbers"), std::to_string(components));
     return one;
+}
+
+namespace {
+
+/// "m²", "s^-0.5"; the sign is left out where the power is below a fraction bar.
+std::string power_text(std::string_view name, double power) {
+    constexpr std::array<std::string_view, 5> kRaised{"", "", "²", "³", "⁴"};
+    std::string text(name);
+    if (power == 1) return text;
+    if (power >= 2 && power <= 4 && power == std::floor(power))
+        return text + std::string(kRaised[static_cast<std::size_t>(power)]);
+    return text + "^" + number_text(power, 3);
+}
+
+}  // namespace
+
+// Powers of kg, m, s, K, mol, A, cd.
+std::string FoamText::unit() const {
+    constexpr std::array<std::string_view, 7> kNames{"kg", "m", "s", "K", "mol", "A", "cd"};
+    const auto entry = entries_.find("dimensions");
+    if (entry == entries_.end()) return {};
+    std::string words = entry->second;
+    std::ranges::replace_if(
+        words, [](char c) { return c == '[' || c == ']'; }, ' ');
+    TextScanner in(words, file_, TextScanner::Comments::None);
+    std::array<double, 7> powers{};
+    for (std::size_t k = 0; k < powers.size() && !in.at_end(); ++k) {
+        const std::string_view word = in.word();
+        const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), powers[k]);
+        if (end != word.data() + word.size() || error != std::errc() || !std::isfinite(powers[k])) return {};
+    }
+    if (powers == std::array<double, 7>{1, -1, -2}) return "Pa";
+    std::string above, below;
+    std::size_t of_below = 0;
+    for (std::size_t k = 0; k < powers.size(); ++k) {
+        if (powers[k] > 0) above += (above.empty() ? "" : " ") + power_text(kNames[k], powers[k]);
+        if (powers[k] < 0) below += (below.empty() ? "" : " ") + power_text(kNames[k], -powers[k]);
+        of_below += powers[k] < 0;
+    }
+    if (below.empty()) return above;
+    return (above.empty() ? "1" : above) + "/" + (of_below > 1 ? "(" + below + ")" : below);
 }
 
 std::vector<double> FoamText::internal_field(std::size_t components, std::size_t cells) {

@@ -72,6 +72,10 @@ public:
     /// its value stand for; what has to be computed (#calc) is refused.
     [[nodiscard]] std::vector<double> internal_field(std::size_t components, std::size_t cells);
 
+    /// The unit that the `dimensions` before the internalField say, such as "m/s"; empty if there are none. After
+    /// internal_field
+    [[nodiscard]] std::string unit() const;
+
     [[noreturn]] void fail(const std::string& message, const std::string& allowed = {}) const;
 
 private:

@@ -14,6 +14,7 @@ namespace subvol {
 /// width_px: of the colour bar, 50..10000
 /// opacity_title, opacity_min, opacity_max: where the opacities are of another field than the colours, its name and range: they
 ///           get a plot of their own; an empty title: they are of the same field
+/// note:     a line below the legend
 struct LegendOptions {
     std::string title{};
     double min = 0;
@@ -22,6 +23,7 @@ struct LegendOptions {
     std::string opacity_title{};
     double opacity_min = 0;
     double opacity_max = 1;
+    std::string note{};
 };
 
 /// A colour bar with ticks at round values and the opacity curve above it, as a self-contained SVG picture in sRGB on white.

@@ -13,13 +13,15 @@
 
 namespace subvol {
 
-/// An array of a file. location: "point" or "cell"; min and max over its finite values, of vectors over their lengths
+/// An array of a file. location: "point" or "cell"; min and max over its finite values, of vectors over their lengths; unit:
+/// empty where the file does not have it
 struct FieldInfo {
     std::string name;
     std::string location;
     int components = 1;
     double min = 0;
     double max = 0;
+    std::string unit = {};
 };
 
 /// How to read tetrahedra, prisms and pyramids.

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "subvol/hex_mesh.h"
+#include "subvol/progress.h"
 
 namespace subvol {
 
@@ -21,8 +22,10 @@ struct SelectedField {
 ///
 /// name:    a field, or a quantity as for `field_of`. Of a vector the length is taken; of a symmetric tensor that is called a
 ///          stress the von Mises stress, which becomes its name, of other tensors the norm
-/// throws:  Error(InvalidInput) as `field_of`
-[[nodiscard]] SelectedField select_field(const HexMesh& mesh, const std::optional<std::string>& name);
+/// progress: of derivatives
+/// throws:  Error(InvalidInput) as `field_of`; Error(Cancelled)
+[[nodiscard]] SelectedField select_field(const HexMesh& mesh, const std::optional<std::string>& name,
+                                         Progress* progress = nullptr);
 
 /// A quantity of a mesh at its points: a field by its name, or what is computed from fields.
 ///
@@ -37,9 +40,11 @@ struct SelectedField {
 /// but for a quantity that is a name alone.
 ///
 /// name:   of the result
+/// progress: of derivatives
 /// throws: Error(InvalidInput) with the position if the quantity is wrong, or if a value is not finite; lists the fields
 /// cost:   a few nanoseconds a point and operation; derivatives 15 to 150 µs a cell
-[[nodiscard]] Attribute field_of(const HexMesh& mesh, const std::string& name, const std::string& source);
+[[nodiscard]] Attribute field_of(const HexMesh& mesh, const std::string& name, const std::string& source,
+                                 Progress* progress = nullptr);
 
 /// Whether a quantity needs more than the values at a point: the cells around it.
 [[nodiscard]] bool has_derivatives(std::string_view source);
