@@ -15,11 +15,11 @@
 #include <vector>
 
 #include "subvol/error.h"
-#include "subvol/field_expression.h"
 #include "subvol/image_metrics.h"
 #include "subvol/mesh_io.h"
 #include "subvol/model.h"
 #include "subvol/optics.h"
+#include "subvol/quantity.h"
 #include "subvol/sample.h"
 #include "subvol/splat.h"
 

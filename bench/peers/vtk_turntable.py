@@ -4,78 +4,37 @@
 
     vtk_turntable.py MESH.vtu…
 
-Needs python3-vtk9 and, for the windowless OpenGL of Debian's package, xvfb. Field (f), colours, opacities and camera are those of
-bench/splat_sheets, which writes the meshes; hexahedra are split as vtkDataSetTriangleFilter does.
+Field (f), colours, opacities and camera are those of bench/splat_sheets, which writes the meshes. Needs what vtk_window needs.
 """
 import sys
-import time
 
 import vtk
+from vtk_window import cpu_seconds_of_frame, tetrahedra, volume_of, window_of
 
 SIZE, FRAMES, TURN = 512, 10, 36
 
 
-def tetrahedra(mesh):
-    reader = vtk.vtkXMLUnstructuredGridReader()
-    reader.SetFileName(mesh)
-    reader.Update()
-    reader.GetOutput().GetPointData().SetActiveScalars("f")
-    tets = vtk.vtkDataSetTriangleFilter()
-    tets.SetInputConnection(reader.GetOutputPort())
-    tets.TetrahedraOnlyOn()
-    tets.Update()
-    return tets.GetOutput()
-
-
-def volume_of(tets):
+def scene_of(tets):
     low, high = tets.GetPointData().GetArray("f").GetRange()
-    color, opacity = vtk.vtkColorTransferFunction(), vtk.vtkPiecewiseFunction()
-    for value, rgb in [(low, (.27, 0, .33)), ((low + high) / 2, (.13, .57, .55)), (high, (.99, .91, .14))]:
-        color.AddRGBPoint(value, *rgb)
-    opacity.AddPoint(low, 0)
-    opacity.AddPoint(high, .5)
-    volume = vtk.vtkVolume()
-    volume.SetMapper(vtk.vtkProjectedTetrahedraMapper())
-    volume.GetMapper().SetInputData(tets)
-    volume.GetProperty().SetColor(color)
-    volume.GetProperty().SetScalarOpacity(opacity)
-    volume.GetProperty().SetScalarOpacityUnitDistance(tets.GetLength() / 100)
-    volume.GetProperty().SetInterpolationTypeToLinear()
-    return volume
+    mapper = vtk.vtkProjectedTetrahedraMapper()
+    mapper.SetInputData(tets)
+    volume = volume_of(mapper, [(low, (.27, 0, .33)), ((low + high) / 2, (.13, .57, .55)), (high, (.99, .91, .14))],
+                       [(low, 0), (high, .5)], tets.GetLength() / 100)
+    center, distance = volume.GetCenter(), 1.93 * volume.GetLength() / 1.536
+    return window_of(volume, SIZE, [c + distance * d for c, d in zip(center, (1, -1, .6))], center, 30)
 
 
-def window_of(volume):
-    renderer = vtk.vtkRenderer()
-    renderer.AddVolume(volume)
-    renderer.SetBackground(0, 0, 0)
-    camera = renderer.GetActiveCamera()
-    center, length = volume.GetCenter(), volume.GetLength()
-    camera.SetFocalPoint(center)
-    camera.SetPosition([c + 1.93 * length * d / 1.536 for c, d in zip(center, (1, -1, .6))])
-    camera.SetViewUp(0, 0, 1)
-    camera.SetViewAngle(30)
-    renderer.ResetCameraClippingRange()
-    window = vtk.vtkRenderWindow()
-    window.SetOffScreenRendering(1)
-    window.SetMultiSamples(0)
-    window.SetSize(SIZE, SIZE)
-    window.AddRenderer(renderer)
-    return window, camera
+def main(meshes):
+    kept = []  # when the last window closes, the X server of xvfb-run ends
+    for mesh in meshes:
+        window, camera = scene_of(tetrahedra(mesh, "f"))
+        kept.append(window)
+        first, later = cpu_seconds_of_frame(window), []
+        for _ in range(1, FRAMES):
+            camera.Azimuth(360 / TURN)
+            later.append(cpu_seconds_of_frame(window))
+        print(f"{mesh}\t{first:.3f}\t{min(later):.3f}\t{sorted(later)[len(later) // 2]:.3f}", flush=True)
 
 
-def cpu_seconds_of_frame(window):
-    start = time.process_time()
-    window.Render()
-    window.WaitForCompletion()
-    return time.process_time() - start
-
-
-kept = []  # when the last window closes, the X server of xvfb-run ends
-for mesh in sys.argv[1:]:
-    window, camera = window_of(volume_of(tetrahedra(mesh)))
-    kept.append(window)
-    first, later = cpu_seconds_of_frame(window), []
-    for _ in range(1, FRAMES):
-        camera.Azimuth(360 / TURN)
-        later.append(cpu_seconds_of_frame(window))
-    print(f"{mesh}\t{first:.3f}\t{min(later):.3f}\t{sorted(later)[len(later) // 2]:.3f}", flush=True)
+if __name__ == "__main__":
+    main(sys.argv[1:])

@@ -4,15 +4,15 @@
 
     vtk_volumes.py twist.vtu exact.f32
 
-Needs python3-vtk9 and, for the windowless OpenGL of Debian's package, xvfb. Camera, transfer function and background are those
-of peers_ours. VTK draws 8 bits a channel: .001 of the error.
+Camera, transfer function and background are those of peers_ours. VTK draws 8 bits a channel: .001 of the error. Needs what
+vtk_window needs.
 """
 import sys
-import time
 
 import numpy
 import vtk
 from vtk.util.numpy_support import vtk_to_numpy
+from vtk_window import cpu_seconds_of_frame, tetrahedra, volume_of, window_of
 
 FRAMES = 3
 
@@ -41,58 +41,10 @@ MAPPERS = [
 ]
 
 
-def volume_property():
-    color, opacity = vtk.vtkColorTransferFunction(), vtk.vtkPiecewiseFunction()
-    for value, rgb in [(-1, (.1, .2, .9)), (0, (.9, .9, .9)), (1, (.9, .2, .1))]:
-        color.AddRGBPoint(value, *rgb)
-    for value, alpha in [(-1, .30), (-.3, .05), (0, 0), (.3, .05), (1, .40)]:
-        opacity.AddPoint(value, alpha)
-    result = vtk.vtkVolumeProperty()
-    result.SetColor(color)
-    result.SetScalarOpacity(opacity)
-    result.SetScalarOpacityUnitDistance(0.1)
-    result.SetInterpolationTypeToLinear()
-    return result
-
-
-def tetrahedra(mesh):
-    reader = vtk.vtkXMLUnstructuredGridReader()
-    reader.SetFileName(mesh)
-    reader.Update()
-    reader.GetOutput().GetPointData().SetActiveScalars("density")
-    tets = vtk.vtkDataSetTriangleFilter()
-    tets.SetInputConnection(reader.GetOutputPort())
-    tets.TetrahedraOnlyOn()
-    tets.Update()
-    return tets.GetOutput()
-
-
-def window_of(mapper, size):
-    volume = vtk.vtkVolume()
-    volume.SetMapper(mapper)
-    volume.SetProperty(volume_property())
-    renderer = vtk.vtkRenderer()
-    renderer.AddVolume(volume)
-    renderer.SetBackground(0, 0, 0)
-    camera = renderer.GetActiveCamera()
-    camera.SetPosition(2.6, -4.2, 2.0)
-    camera.SetFocalPoint(-.55, 0, 0)
-    camera.SetViewUp(0, 0, 1)
-    camera.SetViewAngle(40)
-    renderer.ResetCameraClippingRange()
-    window = vtk.vtkRenderWindow()
-    window.SetOffScreenRendering(1)
-    window.SetMultiSamples(0)
-    window.SetSize(size, size)
-    window.AddRenderer(renderer)
-    return window, camera
-
-
-def cpu_seconds_of_frame(window):
-    start = time.process_time()
-    window.Render()
-    window.WaitForCompletion()
-    return time.process_time() - start
+def scene_of(mapper, size):
+    volume = volume_of(mapper, [(-1, (.1, .2, .9)), (0, (.9, .9, .9)), (1, (.9, .2, .1))],
+                       [(-1, .30), (-.3, .05), (0, 0), (.3, .05), (1, .40)], .1)
+    return window_of(volume, size, (2.6, -4.2, 2.0), (-.55, 0, 0), 40)
 
 
 def picture(window, size):
@@ -105,12 +57,12 @@ def main(mesh, exact_file):
     exact = numpy.fromfile(exact_file, numpy.float32)
     size = round((exact.size / 3) ** .5)
     exact = exact.reshape(size, size, 3)
-    tets = tetrahedra(mesh)
+    tets = tetrahedra(mesh, "density")
     windows = []  # kept: when the last window closes, the X server of xvfb-run ends
     for name, make in MAPPERS:
         mapper = make()
         mapper.SetInputData(tets)
-        window, camera = window_of(mapper, size)
+        window, camera = scene_of(mapper, size)
         windows.append(window)
         first, later = cpu_seconds_of_frame(window), 1e30
         for _ in range(1, FRAMES):
@@ -120,4 +72,5 @@ def main(mesh, exact_file):
         print(f"VTK {vtk.vtkVersion().GetVTKVersion()} {name}\t{first:.2f}\t{later:.2f}\t{rmse:.5f}", flush=True)
 
 
-main(*sys.argv[1:])
+if __name__ == "__main__":
+    main(*sys.argv[1:])

@@ -32,13 +32,21 @@ namespace subvol::detail {
 namespace {
 
 constexpr int kBandRows = 8;
-constexpr std::int64_t kSnap = 4096;   // units a pixel
-constexpr double kSnapTie = 0x1p-16;   // more than a division on any device is off
-constexpr double kGuard_px = 1 << 17;  // triangles that reach further out are clipped: edge functions could overflow
+constexpr int kSnapBits = 12;
+constexpr std::int64_t kSnap = 1 << kSnapBits;  // units a pixel
+constexpr double kSnapTie = 0x1p-16;            // more than a division on any device is off
+constexpr double kGuard_px = 1 << 17;           // triangles that reach further out are clipped: edge functions could overflow
 constexpr std::size_t kChunksOfTriangles = 64;
 
 struct SnappedPoint {
     std::int64_t x, y;
+};
+
+/// The pixels whose centres are in the box around a triangle.
+struct PixelBlock {
+    int x0, x1, y0, y1;  // the last ones included
+
+    [[nodiscard]] bool empty() const { return x0 > x1 || y0 > y1; }
 };
 
 /// A triangle in the picture, with its plane in eye space. Those near no pixel's centre are left out, which
@@ -47,6 +55,7 @@ struct ScreenTriangle {
     std::array<std::array<std::int32_t, 2>, 3> snapped;  // corners, ordered so that the area is positive
     std::int32_t sign;                                   // +1 where a ray enters the solid
     std::uint32_t id;
+    PixelBlock block;
     Vec3 normal;
     double offset, z_min, z_max;
 
@@ -55,6 +64,13 @@ struct ScreenTriangle {
     }
 };
 static_assert(kGuard_px * kSnap < 2147483647.0, "corners have 32 bits");
+
+/// A point of the surface in eye space and in the picture, found once for all its triangles.
+struct ScreenPoint {
+    Vec3 eye;
+    std::array<std::int32_t, 2> snapped;  // if it is not outside
+    bool outside;                         // of a plane that triangles are clipped by
+};
 
 /// A crossing of the surface by the ray of a pixel; pixels are numbered within the band.
 struct Hit {
@@ -98,67 +114,71 @@ bool is_outside(const ClipPlane& plane, const Vec3& p) {
     return glm::dot(plane.normal, p) + plane.offset < 0;
 }
 
+/// The first pixel whose centre is not before a place, and the last one whose centre is not behind it.
 int first_pixel(std::int64_t snapped) {
-    return static_cast<int>(std::ceil(static_cast<double>(snapped) / static_cast<double>(kSnap) - 0.5));
+    return static_cast<int>((snapped - kSnap / 2 + kSnap - 1) >> kSnapBits);
 }
 int last_pixel(std::int64_t snapped) {
-    return static_cast<int>(std::floor(static_cast<double>(snapped) / static_cast<double>(kSnap) - 0.5));
+    return static_cast<int>((snapped - kSnap / 2) >> kSnapBits);
 }
 
-/// The pixels whose centres are in the box around a triangle, and in some rows of the picture.
-struct PixelBlock {
-    int x0, x1, y0, y1;  // the last ones included
-
-    [[nodiscard]] bool empty() const { return x0 > x1 || y0 > y1; }
-};
-
-PixelBlock pixels_near(const std::array<SnappedPoint, 3>& t, const View& view, int y_begin, int y_end) {
+PixelBlock pixels_near(const std::array<SnappedPoint, 3>& t, const View& view) {
     const auto [x_low, x_high] = std::minmax({t[0].x, t[1].x, t[2].x});
     const auto [y_low, y_high] = std::minmax({t[0].y, t[1].y, t[2].y});
-    return {std::max(0, first_pixel(x_low)), std::min(view.width() - 1, last_pixel(x_high)),
-            std::max(y_begin, first_pixel(y_low)), std::min(y_end - 1, last_pixel(y_high))};
+    return {std::max(0, first_pixel(x_low)), std::min(view.width() - 1, last_pixel(x_high)), std::max(0, first_pixel(y_low)),
+            std::min(view.height() - 1, last_pixel(y_high))};
+}
+
+std::array<std::int32_t, 2> snapped_in(const View& view, const Vec3& eye) {
+    const Vec2 px = view.to_pixels(eye);
+    return {static_cast<std::int32_t>(snap(px.x)), static_cast<std::int32_t>(snap(px.y))};
 }
 
 class TriangleSetup {
 public:
-    TriangleSetup(const View& view, double near) : view_(view), planes_(clip_planes(view, near)) {}
+    TriangleSetup(const View& view, const std::vector<ClipPlane>& planes, std::vector<ScreenTriangle>& out)
+        : view_(view), planes_(planes), out_(out) {}
 
-    void add(std::uint32_t id, const std::array<Vec3, 3>& eye, std::vector<ScreenTriangle>& out) {
+    void add(std::uint32_t id, const ScreenPoint& a, const ScreenPoint& b, const ScreenPoint& c) {
         id_ = id;
-        polygon_.assign(eye.begin(), eye.end());
+        eye_ = {a.eye, b.eye, c.eye};
+        if (!a.outside && !b.outside && !c.outside) return emit(eye_, {a.snapped, b.snapped, c.snapped});
+        polygon_.assign(eye_.begin(), eye_.end());
         for (const auto& plane : planes_) {
             const bool cut = std::any_of(polygon_.begin(), polygon_.end(), [&](const Vec3& p) { return is_outside(plane, p); });
             if (cut) clip_polygon(polygon_, plane, scratch_);
         }
-        const Vec3 normal = glm::cross(eye[1] - eye[0], eye[2] - eye[0]);
-        for (std::size_t i = 2; i < polygon_.size(); ++i) emit({polygon_[0], polygon_[i - 1], polygon_[i]}, eye, normal, out);
+        for (std::size_t i = 2; i < polygon_.size(); ++i) {
+            const std::array part{polygon_[0], polygon_[i - 1], polygon_[i]};
+            emit(part, {snapped_in(view_, part[0]), snapped_in(view_, part[1]), snapped_in(view_, part[2])});
+        }
     }
 
 private:
-    void emit(const std::array<Vec3, 3>& part, const std::array<Vec3, 3>& eye, const Vec3& normal,
-              std::vector<ScreenTriangle>& out) {
+    void emit(const std::array<Vec3, 3>& part, const std::array<std::array<std::int32_t, 2>, 3>& snapped) {
         ScreenTriangle t;
-        for (std::size_t k = 0; k < 3; ++k) {
-            const Vec2 px = view_.to_pixels(part[k]);
-            t.snapped[k] = {static_cast<std::int32_t>(snap(px.x)), static_cast<std::int32_t>(snap(px.y))};
-        }
+        t.snapped = snapped;
         const auto corners = t.corners();
         const std::int64_t twice_area = area(corners[0], corners[1], corners[2]);
-        if (twice_area == 0 || pixels_near(corners, view_, 0, view_.height()).empty()) return;
+        if (twice_area == 0) return;
+        t.block = pixels_near(corners, view_);
+        if (t.block.empty()) return;
         // Triangles are counter-clockwise as seen from outside. As rows run downwards, the area is negative where they face the
         // eye.
         t.sign = twice_area < 0 ? 1 : -1;
         if (twice_area < 0) std::swap(t.snapped[1], t.snapped[2]);
-        t.normal = normal;
-        t.offset = glm::dot(normal, eye[0]);
+        t.normal = glm::cross(eye_[1] - eye_[0], eye_[2] - eye_[0]);
+        t.offset = glm::dot(t.normal, eye_[0]);
         t.z_min = std::min({part[0].z, part[1].z, part[2].z});
         t.z_max = std::max({part[0].z, part[1].z, part[2].z});
         t.id = id_;
-        out.push_back(t);
+        out_.push_back(t);
     }
 
     const View& view_;
-    std::vector<ClipPlane> planes_;
+    const std::vector<ClipPlane>& planes_;
+    std::vector<ScreenTriangle>& out_;
+    std::array<Vec3, 3> eye_;
     std::vector<Vec3> polygon_, scratch_;
     std::uint32_t id_ = 0;
 };
@@ -182,9 +202,7 @@ struct Edge {
 
 void rasterize(const ScreenTriangle& t, const View& view, double middle, int y_begin, int y_end, std::vector<Hit>& hits) {
     const auto corners = t.corners();
-    const PixelBlock block = pixels_near(corners, view, y_begin, y_end);
-    if (block.empty()) return;
-    const auto [x0, x1, y0, y1] = block;
+    const int x0 = t.block.x0, x1 = t.block.x1, y0 = std::max(t.block.y0, y_begin), y1 = std::min(t.block.y1, y_end - 1);
     std::array<Edge, 3> edges{Edge(corners[0], corners[1], x0, y0), Edge(corners[1], corners[2], x0, y0),
                               Edge(corners[2], corners[0], x0, y0)};
     for (int y = y0; y <= y1; ++y) {
@@ -213,10 +231,13 @@ void sort_hits(std::vector<Hit>& hits, std::size_t pixels, std::vector<std::uint
     for (const Hit& hit : hits) sorted[ends[hit.pixel]++] = hit;
     for (std::size_t i = 0, begin = 0; i < pixels; begin = ends[i++]) {
         if (ends[i] < begin + 2) continue;
-        std::sort(sorted.data() + begin, sorted.data() + ends[i], [](const Hit& l, const Hit& r) {
-            // Where two shells touch, the entry into one comes before the exit from the other: no gap opens.
-            return l.depth != r.depth ? l.depth < r.depth : l.sign > r.sign;
-        });
+        // Where two shells touch, the entry into one comes before the exit from the other: no gap opens.
+        const auto before = [](const Hit& l, const Hit& r) { return l.depth != r.depth ? l.depth < r.depth : l.sign > r.sign; };
+        if (ends[i] > begin + 2) {
+            std::sort(sorted.data() + begin, sorted.data() + ends[i], before);
+        } else if (before(sorted[begin + 1], sorted[begin])) {
+            std::swap(sorted[begin], sorted[begin + 1]);
+        }
     }
 }
 
@@ -233,25 +254,62 @@ void resolve(std::span<const Hit> hits, float near, std::vector<float>& depths, 
             triangle = hit.triangle;
         }
         if (hit.sign < 0 && inside > 0 && --inside == 0 && hit.depth > enter) {
-            depths.insert(depths.end(), {enter, hit.depth});
+            depths.push_back(enter);
+            depths.push_back(hit.depth);
             triangles.push_back(triangle);
         }
     }
 }
 
+std::vector<ScreenPoint> project_points(const Surface& surface, const View& view, const std::vector<ClipPlane>& planes) {
+    std::vector<ScreenPoint> points(surface.points.size());
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, points.size(), 1024), [&](const auto& range) {
+        for (std::size_t i = range.begin(); i < range.end(); ++i) {
+            ScreenPoint& p = points[i];
+            p.eye = view.to_eye(surface.points[i]);
+            p.outside = std::any_of(planes.begin(), planes.end(), [&](const auto& plane) { return is_outside(plane, p.eye); });
+            if (!p.outside) p.snapped = snapped_in(view, p.eye);
+        }
+    });
+    return points;
+}
+
 std::vector<std::vector<ScreenTriangle>> project(const Surface& surface, const View& view, double near) {
-    std::vector<std::vector<ScreenTriangle>> chunks(kChunksOfTriangles);
+    const auto planes = clip_planes(view, near);
+    const std::vector<ScreenPoint> points = project_points(surface, view, planes);
     const std::size_t count = surface.triangles.size();
-    tbb::parallel_for(std::size_t{0}, kChunksOfTriangles, [&](std::size_t chunk) {
-        TriangleSetup setup(view, near);
-        for (std::size_t i = count * chunk / kChunksOfTriangles; i < count * (chunk + 1) / kChunksOfTriangles; ++i) {
+    std::vector<std::vector<ScreenTriangle>> chunks(std::clamp<std::size_t>(count / 1024, 1, kChunksOfTriangles));
+    tbb::parallel_for(std::size_t{0}, chunks.size(), [&](std::size_t chunk) {
+        TriangleSetup setup(view, planes, chunks[chunk]);
+        for (std::size_t i = count * chunk / chunks.size(); i < count * (chunk + 1) / chunks.size(); ++i) {
             const auto& t = surface.triangles[i];
-            setup.add(static_cast<std::uint32_t>(i),
-                      {view.to_eye(surface.points[t[0]]), view.to_eye(surface.points[t[1]]), view.to_eye(surface.points[t[2]])},
-                      chunks[chunk]);
+            setup.add(static_cast<std::uint32_t>(i), points[t[0]], points[t[1]], points[t[2]]);
         }
     });
     return chunks;
+}
+
+/// The triangles of bands of rows, so that a band does not go through all of them: those of band b are
+/// triangles[offsets[b]] to triangles[offsets[b + 1]], in the order of the surface.
+struct BandLists {
+    std::vector<std::size_t> offsets;
+    std::vector<const ScreenTriangle*> triangles;
+};
+
+BandLists list_bands(const std::vector<std::vector<ScreenTriangle>>& chunks, int bands) {
+    BandLists lists{std::vector<std::size_t>(static_cast<std::size_t>(bands) + 2), {}};
+    const auto each = [&](const auto& visit) {
+        for (const auto& chunk : chunks) {
+            for (const auto& t : chunk) {
+                for (int b = t.block.y0 / kBandRows; b <= t.block.y1 / kBandRows; ++b) visit(t, static_cast<std::size_t>(b));
+            }
+        }
+    };
+    each([&](const ScreenTriangle&, std::size_t b) { ++lists.offsets[b + 2]; });
+    for (std::size_t b = 2; b < lists.offsets.size(); ++b) lists.offsets[b] += lists.offsets[b - 1];
+    lists.triangles.resize(lists.offsets.back());
+    each([&](const ScreenTriangle& t, std::size_t b) { lists.triangles[lists.offsets[b + 1]++] = &t; });
+    return lists;
 }
 
 struct Band {
@@ -260,6 +318,26 @@ struct Band {
     std::vector<std::uint32_t> triangles;
     std::size_t hits = 0;
 };
+
+PixelIntervals joined(const std::vector<Band>& bands) {
+    PixelIntervals result;
+    std::vector<std::size_t> pixels(bands.size() + 1), intervals(bands.size() + 1);
+    for (std::size_t b = 0; b < bands.size(); ++b) {
+        pixels[b + 1] = pixels[b] + bands[b].counts.size();
+        intervals[b + 1] = intervals[b] + bands[b].triangles.size();
+        result.hits += bands[b].hits;
+    }
+    result.offsets.resize(pixels.back() + 1);
+    result.depths.resize(2 * intervals.back());
+    result.triangles.resize(intervals.back());
+    tbb::parallel_for(std::size_t{0}, bands.size(), [&](std::size_t b) {
+        auto sum = static_cast<std::uint32_t>(intervals[b]);
+        for (std::size_t i = 0; i < bands[b].counts.size(); ++i) result.offsets[pixels[b] + i + 1] = sum += bands[b].counts[i];
+        std::ranges::copy(bands[b].depths, result.depths.begin() + static_cast<std::ptrdiff_t>(2 * intervals[b]));
+        std::ranges::copy(bands[b].triangles, result.triangles.begin() + static_cast<std::ptrdiff_t>(intervals[b]));
+    });
+    return result;
+}
 
 }  // namespace
 
@@ -279,33 +357,27 @@ bool needs_clipping(const Surface& surface, const View& view, double near) {
 PixelIntervals boundary_intervals(const Surface& surface, const View& view, double near, double middle) {
     const auto chunks = project(surface, view, near);
     const int band_count = (view.height() + kBandRows - 1) / kBandRows;
-    // The triangles of each band, so that a band does not go through all of them.
-    std::vector<std::vector<const ScreenTriangle*>> of_band(static_cast<std::size_t>(band_count));
-    for (const auto& chunk : chunks) {
-        for (const auto& t : chunk) {
-            const PixelBlock block = pixels_near(t.corners(), view, 0, view.height());
-            for (int band = block.y0 / kBandRows; band <= block.y1 / kBandRows; ++band) {
-                of_band[static_cast<std::size_t>(band)].push_back(&t);
-            }
-        }
-    }
-
+    const BandLists lists = list_bands(chunks, band_count);
     struct Scratch {
         std::vector<Hit> hits, sorted;
         std::vector<std::uint32_t> ends;
     };
     std::vector<Band> bands(static_cast<std::size_t>(band_count));
     tbb::enumerable_thread_specific<Scratch> scratches;
-    tbb::parallel_for(0, band_count, [&](int b) {
-        const int y0 = b * kBandRows, y1 = std::min(view.height(), y0 + kBandRows);
-        Band& band = bands[static_cast<std::size_t>(b)];
+    tbb::parallel_for(std::size_t{0}, bands.size(), [&](std::size_t b) {
+        const int y0 = static_cast<int>(b) * kBandRows, y1 = std::min(view.height(), y0 + kBandRows);
+        Band& band = bands[b];
         auto& [hits, sorted, ends] = scratches.local();
         hits.clear();
-        for (const auto* t : of_band[static_cast<std::size_t>(b)]) rasterize(*t, view, middle, y0, y1, hits);
+        for (std::size_t i = lists.offsets[b]; i < lists.offsets[b + 1]; ++i) {
+            rasterize(*lists.triangles[i], view, middle, y0, y1, hits);
+        }
         const std::size_t pixels = static_cast<std::size_t>(y1 - y0) * static_cast<std::size_t>(view.width());
         sort_hits(hits, pixels, ends, sorted);
         band.hits = hits.size();
         band.counts.resize(pixels);
+        band.depths.reserve(hits.size());
+        band.triangles.reserve(hits.size() / 2);
         for (std::size_t i = 0, begin = 0; i < pixels; begin = ends[i++]) {
             if (ends[i] == begin) continue;
             const std::size_t before = band.depths.size();
@@ -314,17 +386,7 @@ PixelIntervals boundary_intervals(const Surface& surface, const View& view, doub
             band.counts[i] = static_cast<std::uint32_t>((band.depths.size() - before) / 2);
         }
     });
-
-    PixelIntervals result;
-    result.offsets.reserve(pixel_count(view.width(), view.height()) + 1);
-    result.offsets.push_back(0);
-    for (const Band& band : bands) {
-        for (const auto count : band.counts) result.offsets.push_back(result.offsets.back() + count);
-        result.depths.insert(result.depths.end(), band.depths.begin(), band.depths.end());
-        result.triangles.insert(result.triangles.end(), band.triangles.begin(), band.triangles.end());
-        result.hits += band.hits;
-    }
-    return result;
+    return joined(bands);
 }
 
 void check_for_gl(const PixelIntervals& intervals) {

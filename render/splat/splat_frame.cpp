@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "clip_intervals.h"
+#include "subvol/raster.h"
 #include "tile_finder.h"
 
 namespace subvol::detail {
@@ -16,12 +17,26 @@ namespace {
 
 constexpr std::size_t kChunksOfSplats = 64;
 
+/// The first batch of sheets and the last that a kernel may touch.
+std::array<std::uint16_t, 2> batches_of(const EyeSplat& s, const SheetStack& sheets) {
+    const float reach = 1.0f / std::sqrt(s.inv_szz), per_sheet = 1.0f / sheets.distance;
+    const auto sheet = [&](float z) {
+        return std::clamp((z - sheets.first) * per_sheet, -1.0f, static_cast<float>(sheets.count));
+    };
+    // Half a sheet more on each side, so that rounding does not lose one.
+    constexpr float kMore = 0.5f;
+    const int first = std::max(static_cast<int>(sheet(s.depth - reach) - kMore), 0);
+    const int last = std::min(static_cast<int>(sheet(s.depth + reach) + kMore), sheets.count - 1);
+    return {static_cast<std::uint16_t>(first / kBatch), static_cast<std::uint16_t>(last / kBatch)};
+}
+
 /// A counting sort in a fixed number of chunks: within a tile kernels keep their order, whatever the number of threads.
 void list_tiles(SplatFrame& frame) {
     const auto& splats = frame.kernels.splats;
     const auto tiles = static_cast<std::size_t>(frame.tiles_x) * static_cast<std::size_t>(frame.tiles_y);
     const TileFinder finder(frame);
     std::vector<TileRect> rects(splats.size());
+    frame.batches.resize(splats.size());
     const std::size_t chunks = std::clamp<std::size_t>(splats.size() / 4096, 1, kChunksOfSplats);
     std::vector<std::size_t> next(tiles * chunks);
     const auto each = [&](const auto& visit) {
@@ -40,6 +55,7 @@ void list_tiles(SplatFrame& frame) {
     };
     each([&](std::size_t i, const auto& each_slot) {
         rects[i] = finder.find(splats[i]);
+        frame.batches[i] = batches_of(splats[i], frame.sheets);
         each_slot([](std::size_t& slot) { ++slot; });
     });
     frame.tile_offsets.resize(tiles + 1);
@@ -56,6 +72,16 @@ void list_tiles(SplatFrame& frame) {
 }
 
 }  // namespace
+
+bool SplatFrame::meets_intervals(int x0, int y0) const {
+    if (intervals.offsets.empty()) return true;
+    const int x1 = std::min(x0 + kTile_px, view->width()), y1 = std::min(y0 + kTile_px, view->height());
+    for (int y = y0; y < y1; ++y) {
+        const std::size_t row = pixel_index(view->width(), x0, y);
+        if (intervals.offsets[row] != intervals.offsets[row + static_cast<std::size_t>(x1 - x0)]) return true;
+    }
+    return false;
+}
 
 void prepare_kernels(SplatFrame& frame, const SplatScene& scene, const View& view, const Classification& classification,
                      int sheets, Progress* progress) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -10,6 +11,10 @@
 #include "splat_scene.h"
 
 namespace subvol::detail {
+
+/// Half a pixel, less a little for rounding: what is between a and b, in pixels, has the centres of the pixels from that which
+/// a + kPastCenter_px is in to that of b − kPastCenter_px, and of none if that is before the first.
+inline constexpr float kPastCenter_px = 0.45f;
 
 /// What a ray meets where it enters or leaves the volume. x: the value, and that of the second channel, in cells;
 /// kUnknownValue where no kernel reaches. light: a factor of the colour, and white that is added.
@@ -32,9 +37,13 @@ struct SplatFrame {
     EyeToNodes to_light{};                    // of the scene's light volume
     float* optical_depths = nullptr;          // of each pixel on each sheet: these are wanted instead of a picture
     EyeSplats kernels;
+    std::vector<std::array<std::uint16_t, 2>> batches;  // of each kernel: the first and the last that it may touch
     int tiles_x = 0, tiles_y = 0;
     std::vector<std::size_t> tile_offsets;
     std::vector<std::uint32_t> tile_splats;
+
+    /// Whether any ray of the tile that begins at a pixel may be inside the volume.
+    [[nodiscard]] bool meets_intervals(int x0, int y0) const;
 };
 
 /// Fills the parts of a frame that depend on kernels alone: without the boundary and what rays meet there.

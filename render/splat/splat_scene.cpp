@@ -261,7 +261,10 @@ bool is_solid(const SplatScene& scene, const Optics& optics) {
 }
 
 Classification classify(const SplatScene& scene, const Optics& optics) {
-    Classification classification{make_preintegrated_table(optics), {}};
+    Classification classification{make_preintegrated_table(optics), {}, 0};
+    for (const auto& row : classification.table.rows) {
+        classification.most_extinction = std::max(classification.most_extinction, row.mean[0] + std::abs(row.bend[0]));
+    }
     check_range(scene.opacity_values(), classification.table.min, classification.table.max);
     if (!finite(classification.table)) {
         throw Error(ErrorCode::InvalidInput, "the extinction is beyond 32-bit floats", {}, "a larger opacity unit");

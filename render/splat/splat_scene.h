@@ -118,7 +118,8 @@ struct ColorTable {
 /// The transfer function as tables: extinction and emission, and the colours of the second channel.
 struct Classification {
     PreintegratedTable table;
-    ColorTable colors;  // empty rows: colours are those of `table`; of the first channel if slices need its colours
+    ColorTable colors;          // empty rows: colours are those of `table`; of the first channel if slices need its colours
+    float most_extinction = 0;  // of any value
 
     /// Extinction and emission at a value, in cells.
     [[nodiscard]] std::array<float, 4> light_at(float x) const;

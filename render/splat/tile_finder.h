@@ -14,7 +14,8 @@ struct TileRect {
 };
 using PixelBox = TileRect;
 
-/// The tiles that a kernel may touch on the sheets of a frame: those of a box around its ellipsoid.
+/// The tiles that a kernel may touch on the sheets of a frame: those with pixels whose centres are in a box around its
+/// ellipsoid. Most kernels that are far smaller than a pixel touch none.
 class TileFinder {
 public:
     /// The frame needs its view, its sheets and its numbers of tiles; it is kept by reference.
@@ -59,12 +60,12 @@ private:
         return {std::min(low * a, low * b), std::max(high * a, high * b)};
     }
     [[nodiscard]] static std::pair<int, int> tiles(float low, float high, int size_px, int count, int end_px) {
-        if (!(high > -1) || !(low < static_cast<float>(end_px) + 1)) return {0, -1};
-        // One pixel more on each side, so that rounding does not lose a kernel's rim.
-        const auto tile = [&](float px) {
-            return static_cast<int>(std::clamp(px / static_cast<float>(size_px), 0.0f, static_cast<float>(count - 1)));
-        };
-        return {tile(low - 1), tile(high + 1)};
+        const float first = low + kPastCenter_px, last = high - kPastCenter_px;
+        if (!(last >= 0) || !(first < static_cast<float>(end_px))) return {0, -1};
+        const auto pixel = [&](float px) { return static_cast<int>(std::clamp(px, 0.0f, static_cast<float>(end_px - 1))); };
+        const int begin = pixel(first), end = pixel(last);
+        if (begin > end) return {0, -1};
+        return {begin / size_px, std::min(end / size_px, count - 1)};
     }
 
     const SplatFrame& frame_;

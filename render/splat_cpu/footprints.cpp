@@ -74,7 +74,7 @@ std::vector<Footprints::Kernel> Footprints::kernels_of(const SplatFrame& frame) 
     const RbfVolume& volume = *scene_.volume;
     const RbfChannel& channel = scene_.opacity_values();
     const View& view = *frame.view;
-    const auto& [right, up, forward] = view.axes();
+    const std::array<Vec3, 3>& axes = view.axes();
     const double least = static_cast<double>(kLeastChange) / scene_.diagonal;
     const double range = frame.classification->table.max - frame.classification->table.min;
     std::vector<Kernel> kernels(volume.size());
@@ -87,7 +87,7 @@ std::vector<Footprints::Kernel> Footprints::kernels_of(const SplatFrame& frame) 
         if (scene_.shading) {
             const auto& g = channel.gradients[i];
             const Vec3 world = Vec3(g[0], g[1], g[2]) / range;
-            const Vec3 gradient(glm::dot(right, world), glm::dot(up, world), glm::dot(forward, world));
+            const Vec3 gradient(glm::dot(axes[0], world), glm::dot(axes[1], world), glm::dot(axes[2], world));
             const Vec3 to_eye = view.perspective() ? -glm::normalize(view.to_eye(volume.centers[i])) : Vec3(0, 0, -1);
             const BoundaryLight lit = light_on(*scene_.shading, gradient, to_eye, least);
             for (float& c : color) c = c * lit.diffuse + lit.specular;

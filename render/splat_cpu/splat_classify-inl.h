@@ -10,6 +10,7 @@
 #include <hwy/contrib/math/math-inl.h>
 #include <hwy/highway.h>
 
+#include <algorithm>
 #include <limits>
 
 #include "splat_sums-inl.h"
@@ -80,9 +81,21 @@ HWY_ATTR inline void load_rows(const float* table, const std::int32_t* offsets, 
 /// The optical model of a frame, for vectors.
 class Classifier {
 public:
-    explicit Classifier(const Classification& classification)
-        : classification_(classification),
-          all_visible_(static_cast<std::size_t>(classification.table.visible.back()) == classification.table.rows.size()) {}
+    explicit Classifier(const Classification& classification) : classification_(classification) {
+        const auto& visible = classification.table.visible;
+        const auto rows = classification.table.rows.size(), seen = static_cast<std::size_t>(visible.back());
+        const auto first = static_cast<std::size_t>(std::ranges::upper_bound(visible, 0) - visible.begin()) - 1;
+        const auto last = static_cast<std::size_t>(std::ranges::lower_bound(visible, visible.back()) - visible.begin()) - 1;
+        all_visible_ = seen == rows;
+        if (seen == 0) {
+            first_visible_ = kNever;
+            return;
+        }
+        // Row i is of the values from i − 1 to i; the first and the last row have no end.
+        if (first > 0) first_visible_ = static_cast<float>(first) - 1;
+        if (last + 1 < rows) end_visible_ = static_cast<float>(last);
+        gaps_ = seen != last + 1 - first;
+    }
 
     /// The mean extinction and emission (colour times extinction) of a stretch of ray between two values.
     HWY_ATTR void means(const Place& front, const Place& back, Floats mean[4]) const {
@@ -149,6 +162,10 @@ public:
     HWY_ATTR bool transparent(Mask lanes, Floats x0, Floats x1) const {
         if (all_visible_) return false;
         const Lanes d;
+        const auto before = hn::Lt(hn::Max(x0, x1), hn::Set(d, first_visible_));
+        const auto behind = hn::Ge(hn::Min(x0, x1), hn::Set(d, end_visible_));
+        if (hn::AllFalse(d, hn::AndNot(hn::Or(before, behind), lanes))) return true;
+        if (!gaps_) return false;
         const auto low = hn::IfThenElse(lanes, hn::Min(x0, x1), hn::Set(d, 3e38f));
         const auto high = hn::IfThenElse(lanes, hn::Max(x0, x1), hn::Set(d, -3e38f));
         return classification_.table.transparent(static_cast<double>(hn::GetLane(hn::MinOfLanes(d, low))),
@@ -175,7 +192,8 @@ private:
     }
 
     const Classification& classification_;
-    bool all_visible_;
+    bool all_visible_ = false, gaps_ = false;               // gaps: invisible values between visible ones
+    float first_visible_ = -kNever, end_visible_ = kNever;  // in cells; all values before and behind are invisible
 };
 
 }  // namespace subvol::detail::HWY_NAMESPACE

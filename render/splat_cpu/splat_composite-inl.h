@@ -54,6 +54,7 @@ inline bool see_boundary(const SplatFrame& frame, BlockState& state, std::size_t
     const View& view = *frame.view;
     const float across = view.perspective() ? frame.sheets.middle + state.enter[lane] : 1.0f;
     const float skin = kSkin_px * static_cast<float>(view.pixel()) * across;
+    if (!(frame.classification->most_extinction * skin * state.ray_length[lane] > kOpaqueDepth)) return false;
     const std::array<float, 4> light_at_end = frame.classification->light_at(end.x);
     if (!(light_at_end[0] * skin * state.ray_length[lane] > kOpaqueDepth && state.exit[lane] - state.enter[lane] > skin))
         return false;
@@ -83,7 +84,8 @@ inline bool see_slice(const SplatFrame& frame, BlockState& state, std::size_t la
 }
 
 /// Sets the ends of the interval of a pixel; those of a ray that is done or meets no more intervals are kNever.
-inline void take_interval(const SplatFrame& frame, BlockState& state, std::size_t lane) {
+template <bool kPlain>
+void take_interval(const SplatFrame& frame, BlockState& state, std::size_t lane) {
     const auto end_ray = [&] {
         state.enter[lane] = state.exit[lane] = kNever;
         state.enter_x[lane] = state.exit_x[lane] = kUnknownValue;
@@ -100,12 +102,14 @@ inline void take_interval(const SplatFrame& frame, BlockState& state, std::size_
     state.exit[lane] = frame.intervals.depths[2 * i + 1];
     state.enter_x[lane] = enter.x;
     state.exit_x[lane] = exit.x;
-    state.enter_color[lane] = enter.color;
-    state.exit_color[lane] = exit.color;
-    state.enter_diffuse[lane] = enter.light.diffuse;
-    state.exit_diffuse[lane] = exit.light.diffuse;
-    state.enter_specular[lane] = enter.light.specular;
-    state.exit_specular[lane] = exit.light.specular;
+    if constexpr (!kPlain) {
+        state.enter_color[lane] = enter.color;
+        state.exit_color[lane] = exit.color;
+        state.enter_diffuse[lane] = enter.light.diffuse;
+        state.exit_diffuse[lane] = exit.light.diffuse;
+        state.enter_specular[lane] = enter.light.specular;
+        state.exit_specular[lane] = exit.light.specular;
+    }
     if (!frame.optical_depths && see_boundary(frame, state, lane, enter)) end_ray();
 }
 
@@ -119,9 +123,12 @@ public:
         load();
         last_.x = hn::Load(d, state.value);
         last_.known = hn::Gt(hn::Load(d, state.known), hn::Zero(d));
-        last_.weight = hn::Load(d, state.weight);
-        last_.color = hn::Load(d, state.color);
-        last_.light = {hn::Load(d, state.diffuse), hn::Load(d, state.specular)};
+        last_.weight = last_.color = last_.light.diffuse = last_.light.specular = hn::Zero(d);
+        if constexpr (!kPlain) {
+            last_.weight = hn::Load(d, state.weight);
+            last_.color = hn::Load(d, state.color);
+            last_.light = {hn::Load(d, state.diffuse), hn::Load(d, state.specular)};
+        }
     }
 
     HWY_ATTR void store() {
@@ -135,10 +142,12 @@ public:
         hn::Store(exit_, d, state_.exit);
         hn::Store(last_.x, d, state_.value);
         hn::Store(hn::IfThenElseZero(last_.known, hn::Set(d, 1.0f)), d, state_.known);
-        hn::Store(last_.weight, d, state_.weight);
-        hn::Store(last_.color, d, state_.color);
-        hn::Store(last_.light.diffuse, d, state_.diffuse);
-        hn::Store(last_.light.specular, d, state_.specular);
+        if constexpr (!kPlain) {
+            hn::Store(last_.weight, d, state_.weight);
+            hn::Store(last_.color, d, state_.color);
+            hn::Store(last_.light.diffuse, d, state_.diffuse);
+            hn::Store(last_.light.specular, d, state_.specular);
+        }
     }
 
     /// Composites what lies between the last sheet, at `front_z`, and the next one, at `back_z` with the values `sheet`.
@@ -381,7 +390,7 @@ private:
         for (std::size_t i = 0; i < kBlock; ++i) {
             if (done[i] == 0) continue;
             ++state_.interval[i];
-            take_interval(frame_, state_, i);
+            take_interval<kPlain>(frame_, state_, i);
         }
         load();
     }

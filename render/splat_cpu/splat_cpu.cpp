@@ -31,7 +31,11 @@ void draw_tile(const SplatFrame& frame, int tile, Drawn& drawn) {
 }
 
 void find_ends(const SplatFrame& frame, int tile, std::vector<IntervalEnd>& ends) {
-    EndFinder(frame).find(tile, ends);
+    if (frame.scene->plain()) {
+        EndFinder<true>(frame).find(tile, ends);
+    } else {
+        EndFinder<false>(frame).find(tile, ends);
+    }
 }
 
 }  // namespace subvol::detail::HWY_NAMESPACE

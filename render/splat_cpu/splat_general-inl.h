@@ -33,14 +33,17 @@ public:
             const auto across = hn::Set(d, batch.across[k]), x = hn::Set(d, cuts.x[k]), y = hn::Set(d, cuts.y[k]);
             Offsets at{x, y, hn::Set(d, cuts.zs[k]), x};
             for (auto row = cuts.row0[k]; row <= cuts.row1[k]; ++row) {
+                const auto c0 = std::max(cuts.column0[k], batch.first_column[k][row]);
+                const auto c1 = std::min(cuts.column1[k], batch.last_column[k][row]);
+                if (c0 > c1) continue;
                 at.y = hn::MulSub(hn::Load(d, tile.y + static_cast<std::size_t>(row) * kBlock), across, y);
                 const auto across_row = hn::Mul(hn::Set(d, s.root_yy), at.y);
                 const auto e_row = hn::MulAdd(across_row, across_row, hn::Set(d, cuts.e[k]));
                 const auto e_slope = hn::Mul(hn::Set(d, s.root_xy), at.y);
                 float* to = sums + ((static_cast<std::size_t>(k) * kRows + static_cast<std::size_t>(row)) * kColumns +
-                                    static_cast<std::size_t>(cuts.column0[k])) *
+                                    static_cast<std::size_t>(c0)) *
                                        (kSums * kBlock);
-                for (auto column = cuts.column0[k]; column <= cuts.column1[k]; ++column, to += kSums * kBlock) {
+                for (auto column = c0; column <= c1; ++column, to += kSums * kBlock) {
                     at.x = hn::MulSub(hn::Load(d, tile.x + static_cast<std::size_t>(column) * kBlock), across, x);
                     const auto along_row = hn::MulAdd(hn::Set(d, s.root_xx), at.x, e_slope);
                     at.e = hn::MulAdd(along_row, along_row, e_row);

@@ -10,6 +10,7 @@
 #include <hwy/highway.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "splat_frame.h"
@@ -74,36 +75,65 @@ struct BatchView {
     HWY_ALIGN float to_pixels[kBatch];
     float mid_x, mid_y;
     int begin = 0, end = kBatch;  // the sheets of the batch that are summed
+    // For each sheet, the blocks of each row whose sums are needed, the last one included.
+    std::int32_t first_column[kBatch][kRows], last_column[kBatch][kRows];
+
+    void need_all() {
+        std::fill_n(first_column[0], kBatch * kRows, 0);
+        std::fill_n(last_column[0], kBatch * kRows, static_cast<std::int32_t>(kColumns) - 1);
+    }
+
+    /// sheets: of each block of a row, one bit for each sheet on which it is needed
+    void need(std::size_t row, const std::uint8_t* sheets) {
+        for (int k = 0; k < kBatch; ++k) {
+            first_column[k][row] = static_cast<std::int32_t>(kColumns);
+            last_column[k][row] = -1;
+        }
+        std::uint32_t left = 0, right = 0;  // the sheets whose first block, and last block, was found
+        for (std::size_t i = 0; i < kColumns; ++i) {
+            for (std::uint32_t bits = sheets[i] & ~left; bits != 0; bits &= bits - 1) {
+                first_column[std::countr_zero(bits)][row] = static_cast<std::int32_t>(i);
+            }
+            left |= sheets[i];
+            const std::size_t j = kColumns - 1 - i;
+            for (std::uint32_t bits = sheets[j] & ~right; bits != 0; bits &= bits - 1) {
+                last_column[std::countr_zero(bits)][row] = static_cast<std::int32_t>(j);
+            }
+            right |= sheets[j];
+        }
+    }
 };
 
+constexpr auto kTile_px = static_cast<std::int32_t>(kTile);
+constexpr auto kBlockWidth_px = static_cast<std::int32_t>(kBlockWidth),
+               kBlockHeight_px = static_cast<std::int32_t>(kBlockHeight);
+
+/// The pixel that a place is in; one before the tile's first or behind its last if it is not in the tile.
+HWY_ATTR inline std::int32_t pixel_in_tile(float p) {
+    return static_cast<std::int32_t>(std::min(std::max(p, -1.0f), kTile + 0.0f) + 1.0f) - 1;
+}
+
+/// Finds the sections of a kernel, and the blocks with pixels whose centres are in boxes around them.
 HWY_ATTR inline void cut(const EyeSplat& s, const BatchView& batch, const TilePixels& tile, Cuts& cuts) {
     for (std::size_t k = 0; k < kBatch; ++k) {
         const float zs = batch.depth[k] - s.depth, left = 1.0f - zs * zs * s.inv_szz;
-        const float root = std::sqrt(std::max(left, 0.0f)), margin = left > 0 ? 0.55f : -1e9f;
+        const float root = std::sqrt(std::max(left, 0.0f)), margin = left > 0 ? kPastCenter_px : 1e9f;
         const float x = s.center_x + s.shear_x * zs, y = s.center_y + s.shear_y * zs;
         cuts.zs[k] = zs;
         cuts.x[k] = x;
         cuts.y[k] = y;
         cuts.e[k] = zs * zs * s.inv_szz;
         cuts.v[k] = s.value + zs * s.value_slope;
-        // In blocks from the tile's corner. The margin is half a pixel and a little for rounding.
-        const float scale = batch.to_pixels[k];
-        const float px = x * scale + (batch.mid_x - tile.left), hx = s.extent_x * root * scale + margin;
-        const float py = (batch.mid_y - tile.top) - y * scale, hy = s.extent_y * root * scale + margin;
-        const auto column = [](float p) {
-            return static_cast<std::int32_t>(
-                       std::min(std::max(p, -static_cast<float>(kBlockWidth)), kTile + 0.0f) * (1.0f / kBlockWidth) + 1.0f) -
-                   1;
-        };
-        const auto row = [](float p) {
-            return static_cast<std::int32_t>(
-                       std::min(std::max(p, -static_cast<float>(kBlockHeight)), kTile + 0.0f) * (1.0f / kBlockHeight) + 1.0f) -
-                   1;
-        };
-        cuts.column0[k] = std::max(column(px - hx), 0);
-        cuts.column1[k] = std::min(column(px + hx), static_cast<std::int32_t>(kColumns) - 1);
-        cuts.row0[k] = std::max(row(py - hy), 0);
-        cuts.row1[k] = std::min(row(py + hy), static_cast<std::int32_t>(kRows) - 1);
+        const float scale = batch.to_pixels[k];  // pixels from the tile's corner
+        const float px = x * scale + (batch.mid_x - tile.left), hx = s.extent_x * root * scale - margin;
+        const float py = (batch.mid_y - tile.top) - y * scale, hy = s.extent_y * root * scale - margin;
+        const std::int32_t x0 = pixel_in_tile(px - hx), x1 = pixel_in_tile(px + hx);
+        const std::int32_t y0 = pixel_in_tile(py - hy), y1 = pixel_in_tile(py + hy);
+        const bool some = x0 <= x1 && y0 <= y1;
+        cuts.column0[k] = std::max(x0, 0) / kBlockWidth_px;
+        cuts.column1[k] = (some ? std::min(x1, kTile_px - 1) + kBlockWidth_px : 0) / kBlockWidth_px - 1;
+        cuts.row0[k] = std::max(y0, 0) / kBlockHeight_px;
+        cuts.row1[k] = (some ? std::min(y1, kTile_px - 1) + kBlockHeight_px : 0) / kBlockHeight_px - 1;
     }
 }
 
@@ -114,9 +144,11 @@ HWY_ATTR inline void add_plain(const EyeSplat& s, const BatchView& batch, const 
     const auto rxx = hn::Set(d, s.root_xx), gx = hn::Set(d, s.gradient_x), moment = hn::Set(d, s.moment);
     const auto one = hn::Set(d, 1.0f), zero = hn::Zero(d);
     for (int k = batch.begin; k < batch.end; ++k) {
-        const auto c0 = cuts.column0[k], c1 = cuts.column1[k];
         const auto across = hn::Set(d, batch.across[k]), x = hn::Set(d, cuts.x[k]), y = hn::Set(d, cuts.y[k]);
         for (auto row = cuts.row0[k]; row <= cuts.row1[k]; ++row) {
+            const auto c0 = std::max(cuts.column0[k], batch.first_column[k][row]);
+            const auto c1 = std::min(cuts.column1[k], batch.last_column[k][row]);
+            if (c0 > c1) continue;
             const auto dy = hn::MulSub(hn::Load(d, tile.y + static_cast<std::size_t>(row) * kBlock), across, y);
             const auto across_row = hn::Mul(hn::Set(d, s.root_yy), dy);
             const auto e_row = hn::MulAdd(across_row, across_row, hn::Set(d, cuts.e[k]));

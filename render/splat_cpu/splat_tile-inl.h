@@ -25,6 +25,7 @@
 #include <hwy/highway.h>
 
 #include <algorithm>
+#include <array>
 #include <new>
 #include <vector>
 
@@ -64,8 +65,12 @@ public:
             }
             if (passed_over) look_back(batch - 1);
             passed_over = false;
-            sum(batch, 0, std::min(kBatch, sheets_.count - batch * kBatch));
-            for (std::size_t block = 0; block < kBlocks; ++block) composite(block, batch);
+            const int sheets = std::min(kBatch, sheets_.count - batch * kBatch);
+            if (!find_needed(batch, sheets)) continue;
+            sum(batch, 0, sheets);
+            for (std::size_t block = 0; block < kBlocks; ++block) {
+                if (scratch().needed[block] != 0) composite(block, batch);
+            }
         }
         write(drawn);
     }
@@ -80,7 +85,11 @@ private:
         hwy::AlignedFreeUniquePtr<BlockState[]> blocks;
         std::vector<std::size_t> offsets;
         std::vector<std::uint32_t> splats;
-        std::vector<char> wanted;
+        std::vector<std::uint8_t> wanted;
+        // One bit for each sheet of a batch on which a block is needed: of all batches and blocks, as far as intervals of rays
+        // are there; and of the blocks of one batch, less those whose rays are done.
+        std::vector<std::uint8_t> sheets;
+        std::array<std::uint8_t, kBlocks> needed;
 
         void resize() {
             if (blocks) return;
@@ -98,20 +107,26 @@ private:
 
     /// Returns whether the ray of any pixel of the tile meets the volume.
     HWY_ATTR bool start_blocks() {
+        if (!frame_.meets_intervals(x0_, y0_)) return false;
         bool any = false;
         const std::size_t batches = static_cast<std::size_t>(sheets_.batches());
-        scratch().wanted.assign(batches, frame_.scene->half_weight > 0);
+        scratch().wanted.assign(batches, 0);
+        scratch().sheets.assign(batches * kBlocks, frame_.intervals.offsets.empty() ? 0xff : 0);
         for (std::size_t block = 0; block < kBlocks; ++block) {
             BlockState& b = scratch().blocks[block];
-            for (float* zero :
-                 {b.opacity, b.red, b.green, b.blue, b.depth, b.value, b.known, b.weight, b.color, b.diffuse, b.specular,
-                  b.enter_color, b.exit_color, b.enter_diffuse, b.exit_diffuse, b.enter_specular, b.exit_specular}) {
-                std::fill_n(zero, kBlock, 0.0f);
+            for (float* zero : {b.opacity, b.red, b.green, b.blue, b.depth, b.value, b.known}) std::fill_n(zero, kBlock, 0.0f);
+            if constexpr (!kPlain) {
+                for (float* zero : {b.weight, b.color, b.diffuse, b.specular, b.enter_color, b.exit_color, b.enter_diffuse,
+                                    b.exit_diffuse, b.enter_specular, b.exit_specular}) {
+                    std::fill_n(zero, kBlock, 0.0f);
+                }
             }
             std::fill_n(b.enter_x, kBlock, kUnknownValue);
             std::fill_n(b.exit_x, kBlock, kUnknownValue);
+            marked_ = {1, 0};
             for (std::size_t lane = 0; lane < kBlock; ++lane) any |= start_pixel(b, block, lane);
         }
+        for (std::size_t i = 0; i < batches * kBlocks; ++i) scratch().wanted[i / kBlocks] |= scratch().sheets[i];
         return any;
     }
 
@@ -129,38 +144,33 @@ private:
         const std::size_t first = frame_.intervals.offsets[id], end = frame_.intervals.offsets[id + 1];
         b.interval[lane] = static_cast<std::uint32_t>(first);
         b.intervals_end[lane] = static_cast<std::uint32_t>(end);
-        take_interval(frame_, b, lane);
+        take_interval<kPlain>(frame_, b, lane);
         if (b.enter[lane] == kNever) return b.opacity[lane] == 1;
-        for (std::size_t i = first; i < end; ++i) want(frame_.intervals.depths[2 * i], frame_.intervals.depths[2 * i + 1]);
+        for (std::size_t i = first; i < end; ++i)
+            mark(block, frame_.intervals.depths[2 * i], frame_.intervals.depths[2 * i + 1]);
         return true;
     }
 
-    /// Marks the batches with sheets between two depths, and with the next sheet on either side.
-    void want(float enter, float exit) {
-        const auto batch = [&](float z, float more) {
-            const float sheet =
-                std::clamp((z - sheets_.first) / sheets_.distance + more, 0.0f, static_cast<float>(sheets_.count - 1));
-            return static_cast<std::size_t>(sheet) / kBatch;
+    /// Marks the sheets that a block needs for a ray that is inside the volume between two depths: those between them, and the
+    /// next one on either side.
+    void mark(std::size_t block, float enter, float exit) {
+        const auto sheet = [&](float z, float more) {
+            return static_cast<std::size_t>(
+                std::clamp((z - sheets_.first) / sheets_.distance + more, 0.0f, static_cast<float>(sheets_.count - 1)));
         };
-        for (std::size_t b = batch(enter, -1.01f); b <= batch(exit, 1.01f); ++b) scratch().wanted[b] = 1;
+        const std::size_t first = sheet(enter, -1.01f), last = sheet(exit, 1.01f);
+        if (first >= marked_.first && last <= marked_.second) return;
+        marked_ = {first, last};
+        for (std::size_t b = first / kBatch; b <= last / kBatch; ++b) {
+            const std::size_t from = std::max(first, b * kBatch) % kBatch,
+                              to = std::min(last, b * kBatch + kBatch - 1) % kBatch;
+            scratch().sheets[b * kBlocks + block] |= static_cast<std::uint8_t>((2u << to) - (1u << from));
+        }
     }
 
     [[nodiscard]] std::pair<int, int> pixel(std::size_t block, std::size_t lane) const {
         return {x0_ + static_cast<int>(block % kColumns * kBlockWidth + lane % kBlockWidth),
                 y0_ + static_cast<int>(block / kColumns * kBlockHeight + lane / kBlockWidth)};
-    }
-
-    /// The first batch and the last that a kernel may touch.
-    [[nodiscard]] std::pair<int, int> batches_of(const EyeSplat& s) const {
-        const float reach = 1.0f / std::sqrt(s.inv_szz), per_sheet = 1.0f / sheets_.distance;
-        const auto sheet = [&](float z) {
-            return std::clamp((z - sheets_.first) * per_sheet, -1.0f, static_cast<float>(sheets_.count));
-        };
-        // Half a sheet more on each side, so that rounding does not lose one.
-        constexpr float kMore = 0.5f;
-        const int first = std::max(static_cast<int>(sheet(s.depth - reach) - kMore), 0);
-        const int last = std::min(static_cast<int>(sheet(s.depth + reach) + kMore), sheets_.count - 1);
-        return {first / kBatch, last / kBatch};
     }
 
     /// Lists the tile's kernels by batches; within a batch they keep their order.
@@ -175,9 +185,9 @@ private:
         offsets.assign(static_cast<std::size_t>(sheets_.batches()) + 1, 0);
         const auto each = [&](const auto& visit) {
             for (auto id = begin; id != end; ++id) {
-                const auto [first, last] = batches_of(frame_.kernels.splats[*id]);
-                for (int b = first; b <= last; ++b) {
-                    if (wanted[static_cast<std::size_t>(b)]) visit(*id, static_cast<std::size_t>(b));
+                const auto [first, last] = frame_.batches[*id];
+                for (std::size_t b = first; b <= last; ++b) {
+                    if (wanted[b]) visit(*id, b);
                 }
             }
         };
@@ -204,7 +214,8 @@ private:
         const auto& ranges = frame_.kernels.ranges;
         if (ranges.empty() || classifier_.all_visible() || frame_.scene->clip.has_slices()) return false;
         EyeRange range{std::numeric_limits<float>::infinity(), -std::numeric_limits<float>::infinity()};
-        const auto& [storage, sums, blocks, offsets, splats, wanted] = scratch();
+        const auto& offsets = scratch().offsets;
+        const auto& splats = scratch().splats;
         const auto b = static_cast<std::size_t>(batch);
         for (std::size_t i = offsets[b > 0 ? b - 1 : b]; i < offsets[b + 1]; ++i) {
             range.low = std::min(range.low, ranges[splats[i]].low);
@@ -213,8 +224,25 @@ private:
         return range.low > range.high || classifier_.transparent(range.low, range.high);
     }
 
+    /// Finds the sheets of a batch that its blocks need: none if all rays are done or enter the volume later. Returns whether
+    /// there are any.
+    HWY_ATTR bool find_needed(int batch, int sheets) {
+        const Lanes d;
+        const auto limit = hn::Set(d, sheets_.depth(batch * kBatch + sheets - 1) + 1.5f * sheets_.distance);
+        auto& needed = scratch().needed;
+        std::uint32_t any = 0;
+        for (std::size_t block = 0; block < kBlocks; ++block) {
+            const bool reached = !hn::AllFalse(d, hn::Lt(hn::Load(d, scratch().blocks[block].enter), limit));
+            needed[block] = reached ? scratch().sheets[static_cast<std::size_t>(batch) * kBlocks + block] : std::uint8_t{0};
+            any |= needed[block];
+        }
+        for (std::size_t row = 0; row < kRows; ++row) batch_.need(row, needed.data() + row * kColumns);
+        return any != 0;
+    }
+
     /// Takes the values of the last sheet of a batch that was passed over.
     HWY_ATTR void look_back(int batch) {
+        batch_.need_all();
         sum(batch, kBatch - 1, kBatch);
         for (std::size_t block = 0; block < kBlocks; ++block) {
             BlockWalk<kPlain> walk(frame_, classifier_, scratch().blocks[block]);
@@ -233,9 +261,16 @@ private:
         }
         batch_.begin = begin;
         batch_.end = end;
-        constexpr std::size_t kSheet = kBlocks * kStride * kBlock;
         float* sums = scratch().sums;
-        std::fill(sums + static_cast<std::size_t>(begin) * kSheet, sums + static_cast<std::size_t>(end) * kSheet, 0.0f);
+        for (int k = begin; k < end; ++k) {
+            for (std::size_t row = 0; row < kRows; ++row) {
+                if (batch_.first_column[k][row] > batch_.last_column[k][row]) continue;
+                const auto first = static_cast<std::size_t>(batch_.first_column[k][row]);
+                const auto count = static_cast<std::size_t>(batch_.last_column[k][row]) + 1 - first;
+                float* to = sums + ((static_cast<std::size_t>(k) * kRows + row) * kColumns + first) * (kStride * kBlock);
+                std::fill_n(to, count * kStride * kBlock, 0.0f);
+            }
+        }
         const auto& offsets = scratch().offsets;
         for (std::size_t i = offsets[static_cast<std::size_t>(batch)]; i < offsets[static_cast<std::size_t>(batch) + 1]; ++i) {
             const std::uint32_t id = scratch().splats[i];
@@ -248,13 +283,9 @@ private:
     }
 
     HWY_ATTR void composite(std::size_t block, int batch) {
-        const Lanes d;
-        BlockState& state = scratch().blocks[block];
-        const auto enter = hn::Load(d, state.enter);
-        const float last_depth = sheets_.depth(batch * kBatch + batch_.end - 1);
-        if (hn::AllTrue(d, hn::Ge(enter, hn::Set(d, last_depth + 1.5f * sheets_.distance)))) return;
-        BlockWalk<kPlain> walk(frame_, classifier_, state);
+        BlockWalk<kPlain> walk(frame_, classifier_, scratch().blocks[block]);
         for (int k = 0; k < batch_.end; ++k) {
+            if ((scratch().needed[block] >> k & 1) == 0) continue;
             const int sheet = batch * kBatch + k;
             const SheetValues at_sheet = values(block, k);
             if (sheet > 0) {
@@ -352,6 +383,7 @@ private:
     TilePixels tile_;
     BatchView batch_{};
     Cuts cuts_;
+    std::pair<std::size_t, std::size_t> marked_;  // sheets of a block, the last one included
     float x_offset_ = 0, color_offset_ = 0, least_gradient_ = 0;
     int x0_ = 0, y0_ = 0;
 };

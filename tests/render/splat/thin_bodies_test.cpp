@@ -63,6 +63,56 @@ TEST(ThinBodies, APlateBetweenTwoSheetsHasItsOpticalDepth) {
     }
 }
 
+TEST(ThinBodies, EveryPlateOfAStackHasItsOwnValue) {
+    constexpr int kPlates = 7;
+    const auto height = [](int plate) { return .12 * plate; };
+    const auto thickness = [](int plate) { return plate % 2 == 0 ? 1e-3 : .02; };
+    HexMesh mesh;
+    mesh.attributes = {{"f", 1, {}}};
+    TransferFunction function{.color = {{0, {1, 1, 1}}, {kPlates, {1, 1, 1}}}, .opacity = {}};
+    for (int plate = 0; plate < kPlates; ++plate) {
+        HexMesh part = test::box(4);
+        const auto first = static_cast<Index>(mesh.points.size());
+        for (const Vec3& p : part.points) mesh.points.push_back({p.x, p.y, height(plate) + thickness(plate) * p.z});
+        for (auto& cell : part.cells) {
+            for (Index& corner : cell) corner += first;
+            mesh.cells.push_back(cell);
+        }
+        mesh.attributes[0].values.resize(mesh.points.size(), plate);
+        function.opacity.push_back({double(plate), .1 + .1 * plate});
+    }
+    constexpr double kUnit = .01;
+    const Optics optics(function, kUnit);
+    const RbfVolume volume = sample_rbf_points(mesh).volume;
+    const View view({.eye = {1.5, -1, 4}, .target = {.5, .5, .4}, .up = {0, 1, 0}, .ortho_height = 1.4}, kSize_px, kSize_px);
+    const double slant = std::abs(view.axes()[2].z);
+    for (const int sheets : {9, 300}) {
+        const Image image = render_splats(volume, view, optics, {.method = SplatMethod::Cpu, .sheets = sheets}).image;
+        int whole = 0;
+        for (int y = 0; y < kSize_px; ++y) {
+            for (int x = 0; x < kSize_px; ++x) {
+                const Ray ray = view.ray(x + .5, y + .5);
+                const auto is_within = [&](double z) {
+                    const Vec3 p = ray.origin + (z - ray.origin.z) / ray.direction.z * ray.direction;
+                    return p.x > 0 && p.x < 1 && p.y > 0 && p.y < 1;
+                };
+                double depth = 0;
+                int met = 0;
+                bool at_rim = false;
+                for (int plate = 0; plate < kPlates; ++plate) {
+                    const bool top = is_within(height(plate) + thickness(plate)), bottom = is_within(height(plate));
+                    at_rim |= top != bottom;
+                    if (top && bottom) ++met, depth -= std::log(1 - (.1 + .1 * plate)) * thickness(plate) / (kUnit * slant);
+                }
+                if (at_rim) continue;
+                whole += met == kPlates ? 1 : 0;
+                ASSERT_NEAR(image.pixel(x, y)[3], 1 - std::exp(-depth), 1e-3) << sheets << " sheets, pixel " << x << ", " << y;
+            }
+        }
+        EXPECT_GT(whole, 100) << "rays through all plates, with more ends than are summed at once";
+    }
+}
+
 TEST(ThinBodies, AnOpaqueBodyShowsTheValuesOfItsBoundary) {
     const View view = askew();
     for (const double thickness : {1e-3, .3}) {
