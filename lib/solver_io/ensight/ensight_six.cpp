@@ -195,7 +195,8 @@ std::string EnsightSix::variable(EnsightData& data, std::size_t components, bool
         } else if (line.starts_with("block")) {
             const std::size_t count = at_cells ? part->block_cells : part->block_points;
             put_line(out, "block");
-            put_components(out, data.column_reals(components * count, "values"), 1);
+            // Texts list the first component of all values, then the next one; binary files list value by value.
+            put_components(out, data.column_reals(components * count, "values"), data.binary() ? components : 1);
         } else {
             const auto group = std::ranges::find(part->groups, line, &Group::type);
             if (!at_cells || group == part->groups.end()) data.fail("the part has no elements of type " + in_quotes(line));

@@ -383,7 +383,11 @@ TEST_F(Ensight, Version6HasOneListOfNodes) {
         }
         t.line("T").reals(at_nodes).line("part 3").line("block").reals(std::vector<double>{2, 3, 2, 3, 2, 3, 2, 3});
         u.line("U").reals(vectors).line("part 3").line("block");
-        u.reals(std::vector<double>{2, 3, 2, 3, 2, 3, 2, 3, 0, 0, 10, 10, 0, 0, 10, 10, 0, 0, 0, 0, 100, 100, 100, 100});
+        if (form == Form::Text) {
+            u.reals(std::vector<double>{2, 3, 2, 3, 2, 3, 2, 3, 0, 0, 10, 10, 0, 0, 10, 10, 0, 0, 0, 0, 100, 100, 100, 100});
+        } else {
+            u.reals(std::vector<double>{2, 0, 0, 3, 0, 0, 2, 10, 0, 3, 10, 0, 2, 0, 100, 3, 0, 100, 2, 10, 100, 3, 10, 100});
+        }
         c.line("c");
         for (const int part : {1, 2})
             c.line("part " + std::to_string(part)).line("hexa8").reals(std::vector<double>{1. * part});
