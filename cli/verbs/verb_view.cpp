@@ -71,9 +71,7 @@ public:
         add_option(app(), *std::ranges::find(described, "samples", &Option::name));
         sample_.add_to(app());
         add_options(app(), options_of(clip_));
-        refine_.add_to(app(),
-                       "show the refined mesh of this level (default for tets: 1, of more than 300,000 cells 0; for the "
-                       "others: the limit)");
+        refine_.add_to(app(), "show the refined mesh of this level (default for tets: 1, if large 0; others: the limit)");
         splat_.add_to(app());
         for (const char* option : kNotHere) app().remove_option(app().get_option(option));
         set_essentials({"--script", "--screenshot", "--window", "--state", "--field", "--look", "--tf", "--opacity",

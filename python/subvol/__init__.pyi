@@ -162,8 +162,7 @@ def render(
                  cc, bsxw, linear]
     tension:     of mcq: 0 is linear; 1/16 reproduces cubics [0 to 0.125; with scheme='mcq']
     crease_angle: keep boundary edges sharp that bend by more than this, in degrees (tetoct, boxspline: 60) [0 to 180]
-    levels:      draw the refined mesh of this level (default for tets and pt: 1, of more than 300,000 cells 0; for the
-                 others: the limit) [0 to 10]
+    levels:      draw the refined mesh of this level (default for tets and pt: 1, if large 0; others: the limit) [0 to 10]
     per_edge:    sample intervals per cell edge; 1 is one kernel per control point [1 to 64]
     spacing:     distance between samples in world units, instead of per_edge; for a grid, rounded to whole voxels (default:
                  one kernel per voxel) [more than 0; not with per_edge]

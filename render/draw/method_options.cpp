@@ -110,9 +110,7 @@ MethodOptions PictureSettings::chosen() const {
 std::vector<Option> options_of(PictureSettings& settings) {
     std::vector<Option> all = options_of(settings.refinement);
     all.back().value = &settings.levels;
-    all.back().help("L",
-                    "draw the refined mesh of this level (default for tets and pt: 1, of more than 300,000 cells 0; for the "
-                    "others: the limit)");
+    all.back().help("L", "draw the refined mesh of this level (default for tets and pt: 1, if large 0; others: the limit)");
     for (auto more : {options_of(settings.options.kernels.sample), options_of(settings.options.splat),
                       options_of(settings.options), options_of(settings.choices), options_of(settings.options.style.clip)})
         std::ranges::move(more, std::back_inserter(all));
