@@ -152,7 +152,8 @@ MeshSets sets_of_mesh(const HexMesh& mesh, const MeshFile& found, std::span<cons
     for (const FileSet& set : found.sets) {
         CellSet of_mesh{printable(set.name), {}};
         for (const Index wanted : set.numbers) {
-            const auto [first, last] = std::ranges::equal_range(by_number, wanted, {}, number);
+            const auto first = std::ranges::lower_bound(by_number, wanted, {}, number);
+            const auto last = std::ranges::upper_bound(by_number, wanted, {}, number);
             of_mesh.cells.insert(of_mesh.cells.end(), first, last);
         }
         std::ranges::sort(of_mesh.cells);
