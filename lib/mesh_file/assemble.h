@@ -73,8 +73,8 @@ void say_points_of_their_own(MeshFile& found);
 /// cost: O(n); looks for points only where edges differ in length by a factor of 1.8 and more
 void say_hanging_points(MeshFile& found);
 
-/// Splits the hexahedra that have hanging points on their edges and faces from their middle, so that all cells fit together: the
-/// mesh is then cut into tetrahedra. Adds a warning with the number of these hexahedra.
+/// Splits the hexahedra that have hanging points on their edges and faces from their middle, so that all cells fit together:
+/// the mesh is then cut into tetrahedra. Adds a warning with the number of these hexahedra.
 void join_hanging_points(MeshFile& found);
 
 /// Splits all hexahedra of a mesh with curved ones into smaller ones with points on the curved shape, and evaluates the arrays

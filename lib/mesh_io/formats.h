@@ -23,7 +23,8 @@ struct Collection;
 /// write:          null if the library only reads the format
 /// times:          the times of the steps of a file; null if a file of this format is one step
 /// piece:          reads a file as a piece of a mesh, before it is assembled; null if a file is always a whole mesh
-/// pieces:         lists the files of a mesh that one of their names stands for, each of which is a piece; null if a name is that
+/// pieces:         lists the files of a mesh that one of their names stands for, each of which is a piece; null if a name is
+/// that
 ///                 of one file
 /// files:          reads a list of other files; null if the format is not such a list
 /// groups:         whether its groups of faces and edges are read
@@ -43,8 +44,8 @@ struct MeshFormat {
     bool finite_volumes = false;
 };
 
-/// Returns the format of a file: the one that its first bytes show beyond doubt, else the one that its extension names, in upper
-/// or lower case, else the one that the first bytes suggest; for a folder OpenFOAM. Null if there is none.
+/// Returns the format of a file: the one that its first bytes show beyond doubt, else the one that its extension names, in
+/// upper or lower case, else the one that the first bytes suggest; for a folder OpenFOAM. Null if there is none.
 [[nodiscard]] const MeshFormat* format_of(const std::filesystem::path& path);
 
 /// The same; throws: Error(InvalidInput) that lists all formats if there is none.

@@ -299,7 +299,8 @@ void bind_mesh(py::module_& module) {
         },
         py::arg("expression"), py::arg("points"));
     module.def("readable_extensions", &readable_mesh_extensions);
-    module.def("is_mesh_file", [](const std::string& path) { return is_mesh_file(path); }, py::arg("path"));
+    module.def(
+        "is_mesh_file", [](const std::string& path) { return is_mesh_file(path); }, py::arg("path"));
 }
 
 }  // namespace subvol::python

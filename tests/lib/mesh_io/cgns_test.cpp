@@ -277,8 +277,10 @@ TEST_F(Cgns, WrongFilesGetASentence) {
     ASSERT_EQ(read_mesh(path("bad.cgns")).unread.size(), 1u);
     EXPECT_THAT(read_mesh(path("bad.cgns")).unread[0].why, HasSubstr("node \"/Base/b/S/p\" has 2 values (24 are needed)"));
     write("old.cgns", "@(#)ADF Database Version A02011>");
-    EXPECT_THAT(error_of([&] { static_cast<void>(read_mesh(path("old.cgns"))); }),
-                HasSubstr("old.cgns: the CGNS file is of the older kind ADF (cgnsconvert -h, of Debian's cgns-convert, makes it HDF5)"));
+    EXPECT_THAT(
+        error_of([&] { static_cast<void>(read_mesh(path("old.cgns"))); }),
+        HasSubstr(
+            "old.cgns: the CGNS file is of the older kind ADF (cgnsconvert -h, of Debian's cgns-convert, makes it HDF5)"));
 }
 
 }  // namespace cgns_test
