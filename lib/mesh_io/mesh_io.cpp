@@ -201,7 +201,7 @@ Contents contents_of_text(std::string_view begin) {
     return {};
 }
 
-// No extension if the first bytes are no format's.
+// Empty if the first bytes do not show a format.
 Contents contents_of(const std::filesystem::path& path) {
     constexpr std::size_t kText = 4096, kGroups = 1 << 16;
     if (!not_regular(path).empty()) return {};

@@ -130,7 +130,7 @@ private:
         }
     }
 
-    // Of cells that are no polyhedra the offsets repeat.
+    // The offsets of other cells than polyhedra repeat.
     [[nodiscard]] VtkFaces read_faces(const Partition& part) const {
         const auto list = [&](const char* name, std::size_t begin, std::size_t count) {
             return file_.integers(kRoot + "/" + name, begin, count);
