@@ -216,7 +216,7 @@ Drawn GlSheets::draw(const SplatFrame& frame, Progress* progress) {
             composite(frame, used.composite, sheet, rect);
             report_progress(progress, "splat", static_cast<double>(sheet + 1) / frame.sheets.count);
         }
-        if (done_pixels_.ask(done_) == to_do) break;
+        if (done_pixels() == to_do) break;
     }
     check_gl("splat");
     return read(frame);
@@ -261,7 +261,6 @@ void GlSheets::start_beams(const SplatFrame& frame) {
     start(lasts_, kTableBinding + 6, count * sizeof(Last));
     if (frame.scene->shading || frame.scene->color_channel) looks_.grow(count * 4 * sizeof(float));
     looks_.bind(kTableBinding + 7);
-    done_pixels_.reset();  // a picture may have been cancelled
     start(done_, kTableBinding + 8, sizeof(std::uint32_t));
 }
 
@@ -296,10 +295,16 @@ void GlSheets::composite(const SplatFrame& frame, const GlProgram& program, int 
     u.set("first", int{sheet == 0});
     program.use();
     ends_.bind(kListBinding);  // the place of the list, which is not used here
-    glTextureBarrier();        // the sums that are read have been drawn, and their texture stays attached
+    target_.detach();
     glDispatchCompute(groups(rect.x0, rect.x1), groups(rect.y0, rect.y1), 1);
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
-    glTextureBarrier();  // the next sheet is drawn over them
+}
+
+// Waits for the device: without that, pictures of an NVIDIA H200 were wrong (docs/adr/0032).
+std::uint32_t GlSheets::done_pixels() const {
+    std::uint32_t count = 0;
+    done_.read(sizeof count, &count);
+    return count;
 }
 
 Drawn GlSheets::read(const SplatFrame& frame) const {

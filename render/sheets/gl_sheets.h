@@ -5,7 +5,6 @@
 #include <string>
 
 #include "gl_buffer.h"
-#include "gl_echo.h"
 #include "gl_program.h"
 #include "sheet_target.h"
 
@@ -38,11 +37,11 @@ private:
     void start_beams(const SplatFrame& frame);
     void draw_kernels(const SplatFrame& frame, const GlProgram& program, int sheet, const SheetLists& lists, std::size_t at);
     void composite(const SplatFrame& frame, const GlProgram& program, int sheet, const PixelRect& rect);
+    [[nodiscard]] std::uint32_t done_pixels() const;
     [[nodiscard]] Drawn read(const SplatFrame& frame) const;
 
     std::map<std::string, Programs> programs_;  // by their defines
     SheetTarget target_;
-    GlEcho done_pixels_;
     GLuint vertices_ = 0;
     GlBuffer splats_, bends_, colors_, color_bends_, axes_, kernel_table_;
     GlBuffer table_, visible_, color_table_, interval_offsets_, intervals_, ends_;

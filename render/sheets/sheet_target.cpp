@@ -124,7 +124,6 @@ SheetLists list_sheets(const SplatFrame& frame, const PixelRect& window, int fir
 
 void SheetTarget::begin(int width, int height, bool four_more) {
     if (width != width_ || height != height_ || four_more != four_more_) make(width, height, four_more);
-    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
     for (GLuint unit = 0; unit < 2; ++unit) glBindTextureUnit(unit, textures_[unit]);
     glViewport(0, 0, width, height);
     glDisable(GL_DEPTH_TEST);
@@ -140,6 +139,7 @@ void SheetTarget::begin(int width, int height, bool four_more) {
 
 void SheetTarget::clear(const PixelRect& rect) {
     constexpr std::array<GLfloat, 4> kNothing{};
+    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
     glScissor(rect.x0, rect.y0, rect.x1 - rect.x0, rect.y1 - rect.y0);
     for (GLint i = 0; i < (four_more_ ? 2 : 1); ++i) glClearBufferfv(GL_COLOR, i, kNothing.data());
 }

@@ -43,8 +43,11 @@ public:
     /// throws:    Error(MissingCapability) if the device cannot draw into it
     void begin(int width, int height, bool four_more);
 
-    /// Sets a rectangle to zero, and restricts drawing to it.
+    /// Sets a rectangle to zero, and restricts drawing to it. It is the target again.
     void clear(const PixelRect& rect);
+
+    /// Lets shaders read what has been drawn: the textures that they read must not be those of the target.
+    void detach() const { glBindFramebuffer(GL_FRAMEBUFFER, 0); }
 
 private:
     void make(int width, int height, bool four_more);

@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "gl_buffer.h"
-#include "gl_echo.h"
 #include "gl_pace.h"
 #include "gl_program.h"
 #include "subvol/error.h"
@@ -23,7 +22,6 @@ using detail::check_gl;
 using detail::check_storage;
 using detail::GlBuffer;
 using detail::GlContext;
-using detail::GlEcho;
 using detail::GlProgram;
 using detail::GlScope;
 using detail::GlStorage;
@@ -221,20 +219,6 @@ TEST_F(GlContexts, SayWhichStorageBuffersAreMissing) {
         << compute;
     const std::string vertex = message_of([&] { check_storage({.vertex = 1}, least, "the CPU"); });
     EXPECT_NE(vertex.find("0 storage buffers for vertex shaders"), std::string::npos) << vertex;
-}
-
-TEST_F(GlBuffers, EchoTheirFirstWordARequestLater) {
-    const GlContext context;
-    GlBuffer buffer(64);
-    GlEcho echo;
-    for (std::uint32_t i = 1; i < 5; ++i) {
-        buffer.upload(sizeof i, &i);
-        const auto answer = echo.ask(buffer);
-        EXPECT_EQ(answer, i == 1 ? std::nullopt : std::optional(i - 1));
-    }
-    echo.reset();
-    EXPECT_EQ(echo.ask(buffer), std::nullopt) << "what was asked for before is forgotten";
-    EXPECT_EQ(echo.ask(buffer), 4u);
 }
 
 TEST(GlPaces, GiveTheDeviceLessIfItTakesLongAndMoreIfItDoesNot) {
