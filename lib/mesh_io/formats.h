@@ -24,8 +24,7 @@ struct Collection;
 /// times:          the times of the steps of a file; null if a file of this format is one step
 /// piece:          reads a file as a piece of a mesh, before it is assembled; null if a file is always a whole mesh
 /// pieces:         lists the files of a mesh that one of their names stands for, each of which is a piece; null if a name is
-/// that
-///                 of one file
+///                 always that of one file
 /// files:          reads a list of other files; null if the format is not such a list
 /// groups:         whether its groups of faces and edges are read
 /// blocks:         whether it has named parts, which ReadOptions::blocks chooses
