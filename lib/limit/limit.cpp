@@ -234,4 +234,13 @@ LimitSamples evaluate_limit(const HexMesh& mesh, std::span<const LimitQuery> que
     return Evaluation(mesh, options).at(queries, false);
 }
 
+std::vector<Option> options_of(LimitOptions& options) {
+    return {
+        Option("tolerance", options.tolerance)
+            .not_negative()
+            .help("E",
+                  "what is not exact is refined until two levels differ by less: of the diagonal and of each field's range"),
+        Option("max-levels", options.max_levels).between(2, 20).help("N", "refinement ends there in any case")};
+}
+
 }  // namespace subvol

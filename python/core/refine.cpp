@@ -151,8 +151,12 @@ private:
     RefinementTables tables_;
 };
 
-py::dict limit_of(const HexMesh& mesh, const py::object& cells, const py::object& uvw, const std::string& scheme,
-                  double tolerance, int max_levels, const py::object& progress) {
+std::vector<Option> keywords_of(LimitOptions& options) {
+    return scheme_and(options.scheme, options_of(options));
+}
+
+py::dict limit_of(const HexMesh& mesh, const py::object& cells, const py::object& uvw, const py::object& progress,
+                  const py::kwargs& keywords) {
     const py::array_t<std::int64_t> numbers_of_cells = numbers<std::int64_t>(cells, "cells");
     const std::vector<Vec3> places = vectors(uvw, "uvw");
     if (static_cast<std::size_t>(numbers_of_cells.size()) != places.size()) {
@@ -168,7 +172,8 @@ py::dict limit_of(const HexMesh& mesh, const py::object& cells, const py::object
         }
         queries[q] = {static_cast<Index>(cell), places[q]};
     }
-    LimitOptions options{.scheme = {.kind = scheme_named(scheme)}, .tolerance = tolerance, .max_levels = max_levels};
+    LimitOptions options;
+    set_options(keywords_of(options), keywords);
     LimitSamples samples = result_of(progress, [&](Progress* listener) {
         options.progress = listener;
         return evaluate_limit(mesh, queries, options);
@@ -242,8 +247,9 @@ void bind_refine(py::module_& module) {
             return "<subvol.Refinement: " + std::to_string(r.points()) + " points to " + std::to_string(r.tables().points()) +
                    " in " + std::to_string(r.tables().levels.size()) + (r.tables().levels.size() == 1 ? " level>" : " levels>");
         });
-    module.def("evaluate_limit", &limit_of, py::arg("mesh"), py::arg("cells"), py::arg("uvw"), py::arg("scheme"),
-               py::arg("tolerance"), py::arg("max_levels"), py::arg("progress"));
+    module.def("evaluate_limit", &limit_of, py::arg("mesh"), py::arg("cells"), py::arg("uvw"), py::arg("progress"));
+    LimitOptions limit;
+    describe(module, "evaluate_limit", keywords_of(limit));
     module.def(
         "limit_level",
         [](const HexMesh& mesh, const std::string& scheme, double position_world, double max_cells,

@@ -9,7 +9,7 @@ from ._colors import TransferFunction
 from ._core import Camera, Field, HexMesh, Image, RbfVolume, Refinement, Study, StudyCase, StudyResults, gl_devices, set_threads
 from ._errors import Cancelled, Error, FileError, InvalidInput, MissingCapability, SubvolWarning
 from ._exchange import from_meshio, from_pyvista, to_meshio, to_pyvista
-from ._fields import LimitSamples, as_field, evaluate, evaluate_limit
+from ._fields import LimitSamples, as_field, evaluate
 from ._measure import PointsError, ProbeSamples, Slice, SurfaceMesh
 from ._mesh import Series, model, models, only, open_series, quantity, warp, write_mesh, write_wavelets
 from ._page import Page, page
@@ -22,6 +22,25 @@ from ._pictures import Drawable
 from ._progress import Progress
 
 __version__: str
+
+def evaluate_limit(
+    mesh: HexMesh, cells: npt.ArrayLike, uvw: npt.ArrayLike, *, scheme: str = 'mcq', tension: float = 0.0625,
+    crease_angle: Optional[float] = None, tolerance: float = 1e-06, max_levels: int = 10, progress: Progress = None
+) -> LimitSamples:
+    """Positions, Jacobians and all fields of the limit at places in control cells.
+
+    cells:       (n,) their numbers
+    uvw:         (n,3) in [0,1]: u along corners 0-1, v along 0-3, w along 0-4
+    scheme:      mcq (smooth, through the control points), cc (Catmull-Clark), bsxw (Bajaj-Schaefer-Warren-Xu), linear [mcq,
+                 cc, bsxw, linear]
+    tension:     of mcq: 0 is linear; 1/16 reproduces cubics [0 to 0.125; with scheme='mcq']
+    crease_angle: keep boundary edges sharp that bend by more than this, in degrees (tetoct, boxspline: 60) [0 to 180]
+    tolerance:   what is not exact is refined until two levels differ by less: of the diagonal and of each field's range [0
+                 or more]
+    max_levels:  refinement ends there in any case [2 to 20]
+
+    Raises InvalidInput if a cell does not exist or a place lies outside [0,1].
+    """
 
 def fit(
     shape: str = 'gaussian', scheme: str = 'mcq', *, level: int = 5, extent: float = 2.0, terms: int = 2,

@@ -12,6 +12,7 @@ from . import _core
 from ._arguments import warn
 from ._core import Field, HexMesh, RbfVolume
 from ._errors import InvalidInput
+from ._options import described
 from ._points import _selected
 from ._progress import Progress, listening
 
@@ -77,14 +78,16 @@ class LimitSamples:
         return np.asarray(turned[..., 0])
 
 
-def evaluate_limit(mesh: HexMesh, cells: npt.ArrayLike, uvw: npt.ArrayLike, *, scheme: str = "mcq", tolerance: float = 1e-6,
-                   max_levels: int = 10, progress: Progress = None) -> LimitSamples:
+@described
+def evaluate_limit(mesh: HexMesh, cells: npt.ArrayLike, uvw: npt.ArrayLike, *, progress: Progress = None, **options: Any) -> LimitSamples:
     """Positions, Jacobians and all fields of the limit at places in control cells.
 
-    cells: (n,) their numbers; uvw: (n,3) in [0,1]: u along corners 0-1, v along 0-3, w along 0-4
+    cells:       (n,) their numbers
+    uvw:         (n,3) in [0,1]: u along corners 0-1, v along 0-3, w along 0-4
+    {keywords}
 
     Raises InvalidInput if a cell does not exist or a place lies outside [0,1].
     """
     with listening(progress) as listener:
-        found: dict[str, Any] = _core.evaluate_limit(mesh, cells, uvw, scheme, tolerance, max_levels, listener)
+        found: dict[str, Any] = _core.evaluate_limit(mesh, cells, uvw, listener, **options)
     return LimitSamples(**found)

@@ -30,6 +30,9 @@ struct LimitOptions {
     Progress* progress = nullptr;
 };
 
+/// The options without those of the scheme.
+[[nodiscard]] std::vector<Option> options_of(LimitOptions& options);
+
 /// How many values were found in which way. Exact ones are those of regular Catmull-Clark and BSXW cells (tricubic B-splines)
 /// and of the linear scheme; `unconverged` ones had not reached the tolerance at max_levels.
 struct LimitReport {
