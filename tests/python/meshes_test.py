@@ -129,6 +129,14 @@ def test_jacobians_of_a_stretched_block():
     assert at.report["unconverged"] == 0
 
 
+def test_a_tension_of_0_is_the_linear_scheme():
+    ball = subvol.model("ball", 4)
+    places = [[.5, .5, .5], [.2, .3, .4]]
+    tense, linear = subvol.evaluate_limit(ball, [3, 40], places, tension=0), subvol.evaluate_limit(ball, [3, 40], places, scheme="linear")
+    np.testing.assert_allclose(tense.positions, linear.positions, atol=1e-6)
+    assert not np.allclose(subvol.evaluate_limit(ball, [3, 40], places).positions, linear.positions, atol=1e-3)
+
+
 def test_jacobians_are_derivatives_of_positions(ball):
     h, uvw = 1e-4, np.array([[.4, .5, .6]])
     at = subvol.evaluate_limit(ball, [3], uvw, scheme="cc")
