@@ -60,6 +60,11 @@ public:
                     look_at_numbers(*piece, true, survey_.with_cells, numbers);
                 ++survey_.with_cells;
             }
+            for (const UnreadField& field : piece->unread) {
+                if (said_.insert(field.name).second) {
+                    survey_.warnings.push_back("array " + in_quotes(field.name) + " left out: " + field.why);
+                }
+            }
             for (const std::string& warning : piece->warnings) {
                 // Each warning is kept once, although many pieces may give it.
                 if (said_.insert(warning).second) survey_.warnings.push_back(warning);

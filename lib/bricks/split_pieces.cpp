@@ -208,7 +208,7 @@ PiecesSplit split_pieces(const std::filesystem::path& folder, const std::filesys
     const std::optional<PartFiles> files = part_files(mesh, pieces.read);
     if (!files) return done;
     if (pieces.read.weld) done.held_whole = "its points are welded";
-    if (are_means(pieces.read.cell_values)) done.held_whole = "its values at cells are fitted";
+    if (files->means) done.held_whole = "its values at cells are fitted";
     if (!done.held_whole.empty()) return done;
     check_target(folder);
     // Tables are as large as the mesh, so they lie on the disk that the bricks go to, and not in the folder for temporary

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 #include <optional>
+#include <set>
 #include <span>
 #include <utility>
 
@@ -217,6 +218,56 @@ std::size_t Polyhedra::take_into(MeshFile& found, bool ignore_others) {
         found.warnings.push_back(counted(open, "polyhedron", "polyhedra") + " whose faces do not enclose a volume left out");
     }
     return taker.left_out();
+}
+
+// The points in the plane of three of them, in their order around it; empty if others are on both sides of it.
+std::vector<Index> hull_face(const std::vector<Index>& corners, const std::vector<Vec3>& points, const std::array<Vec3, 3>& x,
+                             double near) {
+    const Vec3 across = glm::cross(x[1] - x[0], x[2] - x[0]);
+    const double area = glm::length(across);
+    if (!(area > near * near)) return {};
+    const Vec3 normal = across / area;
+    std::vector<Index> face;
+    bool below = false, above = false;
+    for (const Index p : corners) {
+        const double height = glm::dot(points[p] - x[0], normal);
+        if (std::abs(height) <= near) face.push_back(p);
+        below = below || height < -near;
+        above = above || height > near;
+    }
+    if (below == above) return {};
+    Vec3 middle(0.0);
+    for (const Index p : face) middle += points[p] / static_cast<double>(face.size());
+    const Vec3 right = glm::normalize(x[1] - x[0]), up = glm::cross(normal, right);
+    const auto angle = [&](Index p) {
+        return std::atan2(glm::dot(points[p] - middle, up), glm::dot(points[p] - middle, right));
+    };
+    std::ranges::sort(face, {}, angle);
+    return face;
+}
+
+CellFaces hull_faces(const std::vector<Index>& corners, const std::vector<Vec3>& points) {
+    constexpr std::size_t kMost = 64;
+    constexpr double kFlat = 1e-3;
+    if (corners.size() < 4 || corners.size() > kMost) return {};
+    Box box;
+    for (const Index p : corners) box.add(points[p]);
+    const double near = kFlat * box.diagonal();
+    std::map<std::set<Index>, std::vector<Index>> faces;  // by their points: many triples have the same plane
+    std::set<Index> met;
+    for (std::size_t a = 0; a < corners.size(); ++a) {
+        for (std::size_t b = a + 1; b < corners.size(); ++b) {
+            for (std::size_t c = b + 1; c < corners.size(); ++c) {
+                auto face = hull_face(corners, points, {points[corners[a]], points[corners[b]], points[corners[c]]}, near);
+                met.insert(face.begin(), face.end());
+                if (!face.empty()) faces.try_emplace({face.begin(), face.end()}, std::move(face));
+            }
+        }
+    }
+    if (met.size() != corners.size()) return {};
+    CellFaces found;
+    for (auto& [key, face] : faces) found.push_back(std::move(face));
+    return found;
 }
 
 bool is_closed(const CellFaces& faces) {

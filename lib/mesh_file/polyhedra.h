@@ -57,6 +57,11 @@ private:
     std::vector<std::pair<Index, CellFaces>> cells_;  // with their numbers
 };
 
+/// The faces of the convex hull of up to 64 different points, each with all points in its plane, in no orientation. Points are
+/// in a plane that they miss by up to a thousandth of the hull's size. Empty if the points are in one plane, or if one of them
+/// is not a corner of the hull.
+[[nodiscard]] CellFaces hull_faces(const std::vector<Index>& corners, const std::vector<Vec3>& points);
+
 /// Turns the faces of a closed cell so that their normals point out of it. Faces that repeat points or do not close the cell
 /// stay as they are.
 void orient_faces(CellFaces& faces, const std::vector<Vec3>& points);

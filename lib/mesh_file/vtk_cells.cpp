@@ -20,6 +20,7 @@ enum CellType : std::int64_t {
     kPyramid = 14,
     kPentagonalPrism = 15,
     kHexagonalPrism = 16,
+    kConvexPointSet = 41,
     kLagrangeHexahedron = 72,
     kBezierHexahedron = 79
 };
@@ -53,6 +54,7 @@ const std::map<std::int64_t, std::array<std::string_view, 2>> kCellNames{
     {24, {"quadratic tetrahedron", "quadratic tetrahedra"}},
     {26, {"quadratic wedge", "quadratic wedges"}},
     {27, {"quadratic pyramid", "quadratic pyramids"}},
+    {41, {"convex point set", "convex point sets"}},
     {42, {"polyhedron", "polyhedra"}}};
 
 // The faces of a prism: its base, the same corners above it, and a quad on each side.
@@ -103,6 +105,8 @@ void VtkCellSorter::take(std::int64_t type_in_file, std::span<const Index> corne
                                                                    : 0;
                others && sides > 0 && corners.size() == 2 * sides) {
         polyhedra_.add(next_, prism_faces(corners));
+    } else if (type == kConvexPointSet) {
+        point_sets_.emplace_back(next_, std::vector<Index>(corners.begin(), corners.end()));
     } else {
         ++left_out_[type_in_file];
     }
@@ -132,6 +136,20 @@ void VtkCellSorter::take_as(FileCells<N>& into, std::span<const Index> corners, 
     auto& taken = into.corners.emplace_back();
     std::copy_n(corners.begin(), N, taken.begin());
     into.numbers.push_back(static_cast<Index>(next_));
+}
+
+void VtkCellSorter::take_point_sets() {
+    for (auto& [number, corners] : point_sets_) {
+        std::ranges::sort(corners);
+        corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
+        CellFaces faces = hull_faces(corners, found_.points);
+        if (is_closed(faces)) {
+            polyhedra_.add(number, std::move(faces));
+        } else {
+            ++left_out_[kConvexPointSet];
+        }
+    }
+    point_sets_.clear();
 }
 
 void VtkCellSorter::take_no_shells() {
@@ -195,6 +213,7 @@ void VtkCellSorter::take_polyhedron(CellFaces&& faces) {
 
 void VtkCellSorter::report(std::optional<std::string_view> file) {
     take_ghost_levels(found_);
+    take_point_sets();
     const std::size_t others = polyhedra_.take_into(found_, options_.other_cells == OtherCells::Ignore);
     if (others > 0) left_out_[kVtkPolyhedron] += others;
     if (mislabelled_ > 0) {

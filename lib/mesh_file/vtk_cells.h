@@ -64,6 +64,8 @@ public:
     void report(std::optional<std::string_view> file);
 
 private:
+    /// Makes polyhedra of the hulls of convex point sets, which need the points of the file.
+    void take_point_sets();
     /// Counts all quads and lines as left out: parts of a mesh have no shells.
     void take_no_shells();
     /// Keeps all nodes of a curved hexahedron. returns: whether its shape is known
@@ -81,6 +83,7 @@ private:
     std::size_t curved_ = 0;  // cells of which only the corners are used
     std::map<std::int64_t, std::size_t> left_out_;
     Polyhedra polyhedra_;
+    std::vector<std::pair<std::size_t, std::vector<Index>>> point_sets_;  // convex ones, with the numbers of their cells
 };
 
 }  // namespace subvol::detail

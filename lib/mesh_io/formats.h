@@ -23,8 +23,9 @@ struct Collection;
 /// write:          null if the library only reads the format
 /// times:          the times of the steps of a file; null if a file of this format is one step
 /// piece:          reads a file as a piece of a mesh, before it is assembled; null if a file is always a whole mesh
-/// pieces:         lists the files of a mesh that one of their names stands for, each of which is a piece; null if a name is
-///                 always that of one file
+/// parts:          how many parts of a mesh a name stands for, such as the pieces of which it names one, or the processors of
+///                 a case; null if a name is always that of one
+/// part:           reads one of these parts
 /// files:          reads a list of other files; null if the format is not such a list
 /// groups:         whether its groups of faces and edges are read
 /// blocks:         whether it has named parts, which ReadOptions::blocks chooses
@@ -36,7 +37,8 @@ struct MeshFormat {
     std::vector<std::string> (*write)(const std::filesystem::path& path, const HexMesh& mesh) = nullptr;
     std::vector<double> (*times)(const std::filesystem::path& path) = nullptr;
     MeshFile (*piece)(std::string_view text, std::string_view file, const ReadOptions& options) = nullptr;
-    std::vector<std::filesystem::path> (*pieces)(const std::filesystem::path& path) = nullptr;
+    std::size_t (*parts)(const std::filesystem::path& path) = nullptr;
+    MeshFile (*part)(const std::filesystem::path& path, std::size_t part, const ReadOptions& options) = nullptr;
     Collection (*files)(const std::filesystem::path& path) = nullptr;
     bool groups = false;
     bool blocks = false;
@@ -49,6 +51,9 @@ struct MeshFormat {
 
 /// The same; throws: Error(InvalidInput) that lists all formats if there is none.
 [[nodiscard]] const MeshFormat& readable_format(const std::filesystem::path& path);
+
+/// How values at cells are read from a format where the options leave it open.
+[[nodiscard]] CellValues resolved_cell_values(const MeshFormat& format, CellValues chosen);
 
 /// Refuses options that a format has no use for.
 void check_options(const MeshFormat& format, const std::filesystem::path& path, const ReadOptions& options);

@@ -83,14 +83,21 @@ constexpr std::array<MeshFormat, 22> kFormats{{
      .read = read_exodus_file,
      .times = exodus_times,
      .piece = read_exodus_piece,
-     .pieces = exodus_pieces,
+     .parts = exodus_parts,
+     .part = read_exodus_part,
      .blocks = true},
     {.extensions = {".vtkhdf", ".hdf"}, .name = "VTKHDF", .read = read_vtkhdf, .write = write_vtkhdf, .times = vtkhdf_times},
     {.extensions = {".xdmf", ".xmf"}, .name = "XDMF", .read = read_file<read_xdmf>, .times = xdmf_times},
     {.extensions = {".frd"}, .name = "CalculiX", .read = read_file<read_frd>, .times = frd_times},
     {.extensions = {".cgns"}, .name = "CGNS", .read = read_cgns, .times = cgns_times, .blocks = true},
     {.extensions = {".case"}, .name = "EnSight Gold", .read = read_ensight, .times = ensight_times, .blocks = true},
-    {.extensions = {".foam", ".openfoam"}, .name = "OpenFOAM", .read = read_foam, .times = foam_times, .finite_volumes = true},
+    {.extensions = {".foam", ".openfoam"},
+     .name = "OpenFOAM",
+     .read = read_foam,
+     .times = foam_times,
+     .parts = foam_parts,
+     .part = read_foam_part,
+     .finite_volumes = true},
     {.extensions = {".inp"}, .name = "Abaqus", .read = read_inp, .blocks = true},
     {.extensions = {".svw"}, .name = "wavelets", .read = read_file<read_wavelets>},
 }};
@@ -276,6 +283,11 @@ const MeshFormat& detail::readable_format(const std::filesystem::path& path) {
     return *format;
 }
 
+CellValues detail::resolved_cell_values(const MeshFormat& format, CellValues chosen) {
+    if (chosen != CellValues::Auto) return chosen;
+    return format.finite_volumes ? CellValues::Fit : CellValues::Mean;
+}
+
 void detail::check_options(const MeshFormat& format, const std::filesystem::path& path, const ReadOptions& options) {
     if (!options.sharp.empty() && !format.groups) {
         throw Error(ErrorCode::InvalidInput, "groups of faces and edges are not read from such files", path.string(),
@@ -302,9 +314,7 @@ ReadResult read_mesh(const std::filesystem::path& path, const ReadOptions& optio
     std::vector<std::string> none;
     if (!format.times) std::ignore = chosen_step(options, 1, path.string(), none);
     ReadOptions resolved = options;
-    if (options.cell_values == CellValues::Auto) {
-        resolved.cell_values = format.finite_volumes ? CellValues::Fit : CellValues::Mean;
-    }
+    resolved.cell_values = resolved_cell_values(format, options.cell_values);
     ReadResult result = format.read(path, resolved);
     if (const MeshFormat* named = format_with(path.extension().string()); named && named != &format) {
         result.warnings.insert(result.warnings.begin(), "the contents are those of " + std::string(format.name) +

@@ -20,8 +20,9 @@ struct MeshFile;
 [[nodiscard]] ReadResult read_exodus(std::string_view text, std::string_view file, const ReadOptions& options);
 /// The same from a file; a name such as a.e.4.0 stands for the first of four pieces, which are joined.
 [[nodiscard]] ReadResult read_exodus_file(const std::filesystem::path& path, const ReadOptions& options);
-/// The files of the pieces that such a name stands for; none if it is another name.
-[[nodiscard]] std::vector<std::filesystem::path> exodus_pieces(const std::filesystem::path& path);
+/// The number of pieces that such a name stands for; 0 if it is another name.
+[[nodiscard]] std::size_t exodus_parts(const std::filesystem::path& path);
+[[nodiscard]] MeshFile read_exodus_part(const std::filesystem::path& path, std::size_t part, const ReadOptions& options);
 [[nodiscard]] MeshFile read_exodus_piece(std::string_view text, std::string_view file, const ReadOptions& options);
 [[nodiscard]] std::vector<double> exodus_times(const std::filesystem::path& path);
 
@@ -41,6 +42,9 @@ struct MeshFile;
 
 /// Reads a step of an OpenFOAM case. path: its folder, or a file in it
 [[nodiscard]] ReadResult read_foam(const std::filesystem::path& path, const ReadOptions& options);
+/// The number of processors of a decomposed case, else 1; and one of them as a part of the mesh.
+[[nodiscard]] std::size_t foam_parts(const std::filesystem::path& path);
+[[nodiscard]] MeshFile read_foam_part(const std::filesystem::path& path, std::size_t part, const ReadOptions& options);
 [[nodiscard]] std::vector<double> foam_times(const std::filesystem::path& path);
 
 /// Reads an Abaqus or CalculiX deck: nodes, elements of volumes, parts, instances, and sets of elements as blocks.

@@ -332,12 +332,15 @@ const EntityNames& names_in_parts() {
 
 std::optional<PartFiles> part_files(const std::filesystem::path& path, const ReadOptions& options) {
     const MeshFormat& format = readable_format(path);
-    if (format.files == nullptr && format.pieces == nullptr) return {};
+    if (format.files == nullptr && format.parts == nullptr) return {};
     check_options(format, path, options);
-    if (format.pieces != nullptr) {
-        PartFiles pieces{.files = {}, .word = "piece", .warnings = {}};
-        for (const auto& file : format.pieces(path)) pieces.files.push_back({file, {}, path.string()});
-        return pieces.files.empty() ? std::nullopt : std::optional(std::move(pieces));
+    const bool means = are_means(resolved_cell_values(format, options.cell_values));
+    if (format.parts != nullptr) {
+        const std::size_t count = format.parts(path);
+        if (count < 2) return {};
+        PartFiles parts{.files = {}, .word = format.finite_volumes ? "processor" : "piece", .warnings = {}, .means = means};
+        for (std::size_t k = 0; k < count; ++k) parts.files.push_back({path, {}, path.string(), k});
+        return parts;
     }
     std::vector<std::string> none;
     if (!format.times) std::ignore = chosen_step(options, 1, path.string(), none);
@@ -346,11 +349,13 @@ std::optional<PartFiles> part_files(const std::filesystem::path& path, const Rea
     if (step.is_single()) return {};
     PartFiles chosen = chosen_files(std::move(step.files), step.list.string(), options);
     chosen.warnings.insert(chosen.warnings.begin(), step.warnings.begin(), step.warnings.end());
+    chosen.means = means;
     return chosen;
 }
 
 MeshFile read_part(const ListedFile& file, const ReadOptions& options) {
     const MeshFormat* format = format_of(file.path);
+    if (format != nullptr && format->part != nullptr && file.part) return format->part(file.path, *file.part, options);
     if (format == nullptr || format->piece == nullptr) {
         throw Error(ErrorCode::InvalidInput, in_quotes(file.path.filename().string()) + " cannot be read as a part of a mesh",
                     file.place, ".vtu, .vts, .vtr and .vti files can");

@@ -16,10 +16,12 @@ namespace subvol::detail {
 ///
 /// block: its name; empty if the collection does not divide its mesh into blocks
 /// place: where the collection names it, for messages
+/// part:  which part of the mesh that the path stands for (MeshFormat::part); nothing: the file is one
 struct ListedFile {
     std::filesystem::path path;
     std::string block;
     std::string place;
+    std::optional<std::size_t> part = {};
 };
 
 /// The longest name of a block: each of its files has it.
@@ -42,10 +44,12 @@ struct Collection {
 ///
 /// files:    in the order of the lists; those of blocks that are not chosen and of surfaces are left out
 /// warnings: of the step, and of the surfaces
+/// means:    whether values at cells are read as means over them
 struct PartFiles {
     std::vector<ListedFile> files;
     std::string_view word;  // "piece" or "block"
     std::vector<std::string> warnings;
+    bool means = false;
 };
 
 /// Returns nothing if the file is not a collection, or if its step is a single file.

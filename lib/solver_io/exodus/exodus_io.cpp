@@ -516,6 +516,8 @@ ReadResult read_exodus(std::string_view text, std::string_view file, const ReadO
     return ExodusReader(text, file, options).read();
 }
 
+namespace {
+
 // The files of a mesh in pieces, of which one is called NAME.4.0, NAME.4.1, … or with zeros before the last number: none if the
 // name is not of this form.
 std::vector<std::filesystem::path> exodus_pieces(const std::filesystem::path& path) {
@@ -539,6 +541,21 @@ std::vector<std::filesystem::path> exodus_pieces(const std::filesystem::path& pa
     return files;
 }
 
+MeshFile read_piece_file(const std::filesystem::path& file, const ReadOptions& options) {
+    const std::string text = read_regular(file), name = file.string();
+    return read_exodus_piece(text, name, options);
+}
+
+}  // namespace
+
+std::size_t exodus_parts(const std::filesystem::path& path) {
+    return exodus_pieces(path).size();
+}
+
+MeshFile read_exodus_part(const std::filesystem::path& path, std::size_t part, const ReadOptions& options) {
+    return read_piece_file(exodus_pieces(path).at(part), options);
+}
+
 MeshFile read_exodus_piece(std::string_view text, std::string_view file, const ReadOptions& options) {
     return ExodusReader(text, file, options).read_piece();
 }
@@ -547,10 +564,7 @@ ReadResult read_exodus_file(const std::filesystem::path& path, const ReadOptions
     const std::vector<std::filesystem::path> files = exodus_pieces(path);
     if (files.empty()) return read_exodus(read_text(path), path.string(), options);
     std::vector<MeshFile> pieces;
-    for (const auto& file : files) {
-        const std::string text = read_regular(file), name = file.string();
-        pieces.push_back(read_exodus_piece(text, name, options));
-    }
+    for (const auto& file : files) pieces.push_back(read_piece_file(file, options));
     MeshFile found = join_pieces(std::move(pieces), "piece", path.string());
     std::erase_if(found.arrays, [](const FileArray& array) { return array.name == kNodeNumberMap; });
     std::vector<MeshBlock> blocks;

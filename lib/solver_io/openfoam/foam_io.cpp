@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <charconv>
-#include <cmath>
 #include <filesystem>
 #include <functional>
 #include <limits>
-#include <map>
 #include <optional>
 #include <set>
 #include <string>
@@ -13,6 +10,7 @@
 #include <vector>
 
 #include "assemble.h"
+#include "foam_case.h"
 #include "foam_text.h"
 #include "gzip.h"
 #include "join_pieces.h"
@@ -26,139 +24,9 @@
 
 namespace subvol::detail {
 
-namespace {
-
-/// Where the meshes and fields of an OpenFOAM case are.
-///
-/// parts:   the folder of the case, or those of its processors
-/// numbers: of the times in increasing order; folders: their names
-struct FoamCase {
-    /// block: in the files of the folder, where they have those of several processors
-    struct Part {
-        std::filesystem::path folder;
-        std::optional<std::size_t> block = {};
-    };
-    std::filesystem::path root;
-    std::vector<Part> parts;
-    std::vector<double> times;
-    std::vector<std::string> folders;
-    bool decomposed = false;
-
-    /// A file of the mesh of a part at a step: that of the last time, up to the step's, that has one; else in `constant`.
-    [[nodiscard]] std::filesystem::path mesh_file(std::size_t part, std::size_t step, const std::string& name) const;
-};
-
 namespace fs = std::filesystem;
 
-template <class Number>
-std::optional<Number> number_of(std::string_view text) {
-    Number number{};
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-    if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
-    return number;
-}
-
-bool is_there(const fs::path& file) {
-    std::error_code none;
-    return fs::exists(file, none) || fs::exists(file.string() + ".gz", none);
-}
-
-// The folders inside a folder, by the numbers that their names are after a prefix.
-std::map<double, std::string> numbered(const fs::path& folder, std::string_view prefix) {
-    std::map<double, std::string> found;
-    std::error_code none;
-    for (const auto& entry : fs::directory_iterator(folder, none)) {
-        const std::string name = entry.path().filename().string();
-        if (!name.starts_with(prefix) || !entry.is_directory(none)) continue;
-        const auto number = number_of<double>(std::string_view(name).substr(prefix.size()));
-        if (number && std::isfinite(*number)) found.emplace(*number, name);
-    }
-    return found;
-}
-
-bool has_mesh(const fs::path& part) {
-    if (is_there(part / "constant/polyMesh/faces")) return true;
-    return std::ranges::any_of(numbered(part, ""),
-                               [&](const auto& time) { return is_there(part / time.second / "polyMesh/faces"); });
-}
-
-double last_time(const fs::path& part) {
-    const auto times = numbered(part, "");
-    return times.empty() ? -1 : times.rbegin()->first;
-}
-
-fs::path FoamCase::mesh_file(std::size_t part, std::size_t step, const std::string& name) const {
-    for (std::size_t k = std::min(step + 1, folders.size()); k-- > 0;) {
-        const fs::path file = parts[part].folder / folders[k] / "polyMesh" / name;
-        if (is_there(file)) return file;
-    }
-    return parts[part].folder / "constant/polyMesh" / name;
-}
-
-// The folders of a case that have the files of several processors, by the first of these: "processors", "processors8", or
-// "processors8_4-7" for some of them.
-std::map<std::size_t, fs::path> collated_folders(const fs::path& root) {
-    constexpr std::string_view kPrefix = "processors";
-    std::map<std::size_t, fs::path> found;
-    std::error_code none;
-    for (const auto& entry : fs::directory_iterator(root, none)) {
-        const std::string name = entry.path().filename().string();
-        if (!name.starts_with(kPrefix) || !entry.is_directory(none) || !has_mesh(entry.path())) continue;
-        const std::string_view rest = std::string_view(name).substr(kPrefix.size());
-        const std::size_t ranks = rest.find('_');
-        const std::string_view first =
-            ranks == std::string_view::npos ? "0" : rest.substr(ranks + 1, rest.find('-') - ranks - 1);
-        if (const auto number = number_of<std::size_t>(first)) found.emplace(*number, entry.path());
-    }
-    return found;
-}
-
-// How many processors have their mesh in a folder: the blocks of any of its files.
-std::size_t blocks_in(const fs::path& folder) {
-    const fs::path of_constant = folder / "constant/polyMesh/owner";
-    if (is_there(of_constant)) return FoamText(of_constant).blocks();
-    for (const auto& [time, name] : numbered(folder, "")) {
-        const fs::path file = folder / name / "polyMesh/owner";
-        if (is_there(file)) return FoamText(file).blocks();
-    }
-    return 0;
-}
-
-// path: the folder, or a file in it. The case is decomposed if its processors have later times, or it has no mesh itself.
-//
-// throws: Error(InvalidInput) if there is no mesh
-FoamCase find_foam_case(const fs::path& path) {
-    std::error_code none;
-    if (!fs::exists(path, none)) std::ignore = read_text(path);  // says what is wrong; the file's contents mean nothing
-    FoamCase found;
-    found.root = fs::is_directory(path, none) ? path : path.has_parent_path() ? path.parent_path() : fs::path(".");
-    for (const auto& [number, name] : numbered(found.root, "processor")) {
-        if (has_mesh(found.root / name)) found.parts.push_back({found.root / name});
-    }
-    const auto collated = found.parts.empty() ? collated_folders(found.root) : std::map<std::size_t, fs::path>();
-    std::size_t expected = 0;
-    for (const auto& [first, folder] : collated) {
-        if (first != expected) {
-            throw Error(ErrorCode::InvalidInput, "there is no folder with the files of processor " + std::to_string(expected),
-                        path.string());
-        }
-        const std::size_t blocks = blocks_in(folder);
-        for (std::size_t b = 0; b < blocks; ++b) found.parts.push_back({folder, b});
-        expected += blocks;
-    }
-    const bool whole = has_mesh(found.root);
-    if (!whole && found.parts.empty()) {
-        throw Error(ErrorCode::InvalidInput, "there is no mesh of OpenFOAM", path.string(),
-                    "constant/polyMesh/faces is needed, there, in processor0 or in processors");
-    }
-    found.decomposed = !whole || (!found.parts.empty() && last_time(found.parts.front().folder) > last_time(found.root));
-    if (!found.decomposed) found.parts = {{found.root}};
-    for (const auto& [time, name] : numbered(found.parts.front().folder, "")) {
-        found.times.push_back(time);
-        found.folders.push_back(name);
-    }
-    return found;
-}
+namespace {
 
 /// A mesh as OpenFOAM has it. owner, neighbour: the cells of each face; only the first faces have a neighbour. The normal of a
 /// face points out of its owner
@@ -346,6 +214,10 @@ private:
         cells_ = mesh.cells;
         add_foam_cells(mesh, options_.other_cells == OtherCells::Ignore, found_);
         without_failing("boundary", [&](const fs::path& path) { read_patches(path, mesh.faces); });
+        if (case_.decomposed && borders_on_ >= static_cast<std::int64_t>(case_.parts.size())) {
+            throw Error(ErrorCode::InvalidInput, "processor " + std::to_string(borders_on_) + ", a neighbour, is not there",
+                        file("boundary").string(), "there are " + counted(case_.parts.size(), "processor", "processors"));
+        }
         without_failing("cellZones", [&](const fs::path& path) { read_zones(path); });
         const std::string of_points = file("points").string();
         TextScanner in(std::string_view(), of_points, TextScanner::Comments::None);
@@ -378,7 +250,10 @@ private:
                               std::to_string(patch.first) + " on",
                           "the mesh has " + std::to_string(all));
             }
-            if (patch.type.starts_with("processor")) continue;  // where the mesh was cut
+            if (patch.type.starts_with("processor")) {  // where the mesh was cut
+                borders_on_ = std::max(borders_on_, patch.neighbour);
+                continue;
+            }
             FilePatch& taken = patches.emplace_back(FilePatch{patch.name, {}, {}});
             for (std::int64_t f = patch.first; f < patch.first + patch.count; ++f) {
                 const auto face = faces[static_cast<std::size_t>(f)];
@@ -416,7 +291,11 @@ private:
             text.fail(counted(numbers.size(), "number", "numbers") + " of points", std::to_string(points_) + " are needed");
         }
         FileArray array{"GlobalNodeId", 1, false, {}};
-        for (const std::int64_t number : numbers) array.values.push_back(static_cast<double>(number));
+        for (const std::int64_t number : numbers) {
+            if (number < 0)
+                text.fail("point " + std::to_string(array.values.size()) + " has the number " + std::to_string(number));
+            array.values.push_back(static_cast<double>(number));
+        }
         for (std::size_t p = points_; p < found_.points.size(); ++p) {
             array.values.push_back(static_cast<double>(part_ + 1) * 4294967296.0 + static_cast<double>(p));
         }
@@ -445,15 +324,38 @@ private:
     NamedFiles& named_;
     MeshFile found_;
     std::size_t points_ = 0, cells_ = 0;
+    std::int64_t borders_on_ = -1;  // the last processor that is behind a patch
 };
 
+std::size_t step_of(const FoamCase& foam_case, const fs::path& path, const ReadOptions& options,
+                    std::vector<std::string>& warnings) {
+    return chosen_step(options, std::max<std::size_t>(1, foam_case.times.size()), path.string(), warnings);
+}
+
 }  // namespace
+
+std::size_t foam_parts(const fs::path& path) {
+    return find_foam_case(path).parts.size();
+}
+
+MeshFile read_foam_part(const fs::path& path, std::size_t part, const ReadOptions& options) {
+    const FoamCase foam_case = find_foam_case(path);
+    if (part >= foam_case.parts.size()) {
+        throw Error(ErrorCode::InvalidInput, "has changed while it was being read", path.string());
+    }
+    std::vector<std::string> warnings;
+    const std::size_t step = step_of(foam_case, path, options, warnings);
+    NamedFiles named;
+    MeshFile found = PartReader(foam_case, part, step, options, named).read();
+    found.warnings.insert(found.warnings.begin(), warnings.begin(), warnings.end());
+    return found;
+}
 
 ReadResult read_foam(const fs::path& path, const ReadOptions& options) {
     const FoamCase foam_case = find_foam_case(path);
     const std::string file = path.string();
     std::vector<std::string> warnings;
-    const std::size_t step = chosen_step(options, std::max<std::size_t>(1, foam_case.times.size()), file, warnings);
+    const std::size_t step = step_of(foam_case, path, options, warnings);
     NamedFiles named;
     std::vector<MeshFile> parts;
     for (std::size_t part = 0; part < foam_case.parts.size(); ++part) {

@@ -287,6 +287,7 @@ std::vector<FoamPatch> FoamText::patches() {
         if (key == "nFaces") patches.back().count = label();
         if (key == "startFace") patches.back().first = label();
         if (key == "type") patches.back().type = token();
+        if (key == "neighbProcNo") patches.back().neighbour = label();
     });
     return patches;
 }

@@ -27,9 +27,11 @@ struct FoamFaces {
 };
 
 /// A patch: type: such as wall or processor; its faces are `count` from `first` on.
+///
+/// neighbour: the processor behind a patch where the mesh was cut, else -1
 struct FoamPatch {
     std::string name, type = {};
-    std::int64_t first = 0, count = 0;
+    std::int64_t first = 0, count = 0, neighbour = -1;
 };
 
 struct FoamZone {

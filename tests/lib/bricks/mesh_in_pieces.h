@@ -115,10 +115,11 @@ protected:
                "</CellData></Piece></UnstructuredGrid></VTKFile>";
     }
 
-    void expect_same_bricks(const std::filesystem::path& pieces, const SplitOptions& options, const std::string& what) const {
-        const ReadResult whole = read_mesh(pieces);
+    void expect_same_bricks(const std::filesystem::path& pieces, const SplitOptions& options, const std::string& what,
+                            const ReadOptions& read = {}) const {
+        const ReadResult whole = read_mesh(pieces, read);
         const Bricks expected = split_mesh(path("whole.bricks"), whole.mesh, options).bricks;
-        const PiecesSplit split = split_pieces(path("parts.bricks"), pieces, {}, options);
+        const PiecesSplit split = split_pieces(path("parts.bricks"), pieces, {.read = read}, options);
         ASSERT_TRUE(split.result) << what << split.held_whole;
         const Bricks& found = split.result->bricks;
         ASSERT_EQ(found.bricks.size(), expected.bricks.size()) << what;

@@ -7,6 +7,7 @@
 #include <random>
 
 #include "lib/mesh_io/exodus_texts.h"
+#include "lib/mesh_io/foam_texts.h"
 #include "mesh_in_pieces.h"
 #include "subvol/model.h"
 
@@ -82,6 +83,36 @@ TEST_F(SplitPieces, PiecesOfExodus) {
     }
 }
 
+// Processors of a decomposed case, in folders of their own and in files of all; without the means, which need the whole.
+TEST_F(SplitPieces, ProcessorsOfOpenFoam) {
+    using namespace test::foam;
+    HexMesh mesh = test::make_box(6, 3, 2);
+    test::jitter(mesh, 0.1, 2);
+    const auto put = [&](const std::string& name, const std::string& text) {
+        std::filesystem::create_directories(path(name).parent_path());
+        (void)write(name, text);
+    };
+    put("case/a.foam", "");
+    std::map<std::string, std::string> collated;
+    for (const auto& [name, text] : case_of_processors(mesh, 3)) {
+        put("case/" + name, text);
+        std::string& file = collated[name.substr(name.find('/'))];
+        const std::string block = file.empty() ? text : text.substr(text.find("// * * //"));
+        file += std::to_string(block.size()) + "\n(" + block + ")\n";
+    }
+    expect_same_bricks(path("case/a.foam"), {.bricks = 4}, "folders", {.cell_values = CellValues::Mean});
+    EXPECT_EQ(split_pieces(path("b"), path("case/a.foam"), {}).held_whole, "its values at cells are fitted");
+    for (int k = 0; k < 3; ++k) std::filesystem::remove_all(path("case/processor" + std::to_string(k)));
+    for (const auto& [name, blocks] : collated) {
+        put("case/processors3" + name, header("decomposedBlockData", {.binary = true}) + blocks);
+    }
+    expect_same_bricks(path("case/a.foam"), {.bricks = 4}, "collated", {.cell_values = CellValues::Mean});
+    std::filesystem::remove_all(path("case/processors3/3"));
+    put("case/processors3/3/p", header("decomposedBlockData", {.binary = true}) + "3\n(bad)\n");
+    EXPECT_THAT(split_pieces(path("c.bricks"), path("case/a.foam"), {.read = {.cell_values = CellValues::Mean}}).warnings,
+                testing::Contains(HasSubstr("array \"p\" left out: ")));
+}
+
 TEST_F(SplitPieces, NumbersThatNumberNothingAreNotUsed) {
     const HexMesh mesh = ball();
     // The same numbers at places that are too far apart.
@@ -131,7 +162,7 @@ TEST_F(SplitPieces, OtherMeshesAreHeldWhole) {
     const std::filesystem::path pieces = write_pieces(mesh, {0, 0, 0, 0, 1, 1, 1, 1}, {});
     EXPECT_EQ(split_pieces(path("b"), pieces, {.read = {.weld = 0}}).held_whole, "its points are welded");
     std::string text = test::read_bytes(path("piece1.vtu"));
-    text.replace(text.find("12 12"), 5, "41 12");  // a convex set of points, which is ignored
+    text.replace(text.find("12 12"), 5, "99 12");  // a type that is ignored
     (void)write("piece1.vtu", text);
     EXPECT_TRUE(split_pieces(path("b"), pieces, {}, {.bricks = 2}).result);
 }

@@ -6,9 +6,9 @@
 
 #include <cstring>
 
+#include "foam_texts.h"
 #include "lib/temp_folder.h"
 #include "lib/test_meshes.h"
-#include "mesh_texts.h"
 #include "subvol/mesh_report.h"
 #include "subvol/mesh_series.h"
 #include "subvol/surface.h"
@@ -20,89 +20,7 @@ namespace openfoam_test {
 using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
-
-// How numbers are written.
-struct Form {
-    bool binary = false;
-    bool wide_labels = false, wide_reals = true;
-    bool gzipped = false;
-};
-
-template <class Number>
-std::string raw(const std::vector<Number>& values) {
-    return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(Number)};
-}
-
-std::string header(const std::string& type, const Form& form) {
-    return std::string("/* a comment */\nFoamFile\n{\n    version 2.0;\n    format ") + (form.binary ? "binary" : "ascii") +
-           ";\n    class " + type + ";\n    arch \"LSB;label=" + (form.wide_labels ? "64" : "32") +
-           ";scalar=" + (form.wide_reals ? "64" : "32") + "\";\n    object x;\n}\n// * * //\n\n";
-}
-
-std::string labels(const std::vector<int>& values, const Form& form) {
-    std::string text = std::to_string(values.size()) + "\n(";
-    if (form.binary) {
-        text += form.wide_labels ? raw(std::vector<std::int64_t>(values.begin(), values.end()))
-                                 : raw(std::vector<std::int32_t>(values.begin(), values.end()));
-    } else {
-        for (const int value : values) text += " " + std::to_string(value);
-    }
-    return text + ")\n";
-}
-
-std::string reals(const std::vector<double>& values, std::size_t components, const Form& form) {
-    std::string text = std::to_string(values.size() / components) + "\n(";
-    if (form.binary)
-        return text + (form.wide_reals ? raw(values) : raw(std::vector<float>(values.begin(), values.end()))) + ")\n";
-    for (std::size_t i = 0; i < values.size(); ++i) {
-        text += (components > 1 && i % components == 0 ? "(" : " ") + number(values[i]);
-        if (components > 1 && i % components == components - 1) text += ")\n";
-    }
-    return text + ")\n";
-}
-
-// Polyhedra by their faces, outward normals, as OpenFOAM orders them: faces between cells first.
-struct Polyhedra {
-    std::vector<Vec3> points;
-    std::vector<std::vector<int>> faces;
-    std::vector<int> owner, neighbour;
-};
-
-// cells: each a list of faces whose normals point out of it
-Polyhedra polyhedra(const std::vector<Vec3>& points, const std::vector<std::vector<std::vector<int>>>& cells) {
-    Polyhedra mesh{points, {}, {}, {}};
-    const auto sorted = [](std::vector<int> face) {
-        std::sort(face.begin(), face.end());
-        return face;
-    };
-    for (const bool inside : {true, false}) {
-        for (std::size_t c = 0; c < cells.size(); ++c) {
-            for (const auto& face : cells[c]) {
-                int other = -1;
-                for (std::size_t d = 0; d < cells.size(); ++d) {
-                    for (const auto& of_other : cells[d]) {
-                        if (d != c && sorted(of_other) == sorted(face)) other = static_cast<int>(d);
-                    }
-                }
-                if ((other >= 0) != inside || (inside && other < static_cast<int>(c))) continue;
-                mesh.faces.push_back(face);
-                mesh.owner.push_back(static_cast<int>(c));
-                if (inside) mesh.neighbour.push_back(other);
-            }
-        }
-    }
-    return mesh;
-}
-
-std::vector<std::vector<int>> faces_of_hex(const std::array<Index, 8>& c) {
-    std::vector<std::vector<int>> faces;
-    for (const std::array<int, 4> f : {std::array{0, 3, 2, 1}, std::array{4, 5, 6, 7}, std::array{0, 1, 5, 4},
-                                       std::array{1, 2, 6, 5}, std::array{2, 3, 7, 6}, std::array{3, 0, 4, 7}}) {
-        auto& face = faces.emplace_back();
-        for (const int k : f) face.push_back(static_cast<int>(c[static_cast<std::size_t>(k)]));
-    }
-    return faces;
-}
+using namespace foam;
 
 class OpenFoam : public TempFolder {
 protected:
@@ -118,26 +36,11 @@ protected:
     }
 
     void put_mesh(const std::string& folder, const Polyhedra& mesh, const Form& form) const {
-        put_points(folder, mesh.points, form);
-        std::vector<int> starts{0}, all;
-        std::string list = std::to_string(mesh.faces.size()) + "\n(\n";
-        for (const auto& face : mesh.faces) {
-            all.insert(all.end(), face.begin(), face.end());
-            starts.push_back(static_cast<int>(all.size()));
-            list += labels(face, {});
-        }
-        put(folder + "/faces",
-            form.binary ? header("faceCompactList", form) + labels(starts, form) + labels(all, form)
-                        : header("faceList", form) + list + ")\n",
-            form);
-        put(folder + "/owner", header("labelList", form) + labels(mesh.owner, form), form);
-        put(folder + "/neighbour", header("labelList", form) + labels(mesh.neighbour, form), form);
+        for (const auto& [name, text] : mesh_texts(mesh, form)) put(folder + "/" + name, text, form);
     }
 
     void put_points(const std::string& folder, const std::vector<Vec3>& points, const Form& form) const {
-        std::vector<double> coordinates;
-        for (const Vec3& x : points) coordinates.insert(coordinates.end(), {x.x, x.y, x.z});
-        put(folder + "/points", header("vectorField", form) + reals(coordinates, 3, form), form);
+        put(folder + "/points", points_text(points, form), form);
     }
 
     [[nodiscard]] std::string error() const {
@@ -266,7 +169,14 @@ TEST_F(OpenFoam, FilesOfSeveralProcessorsAreTakenApart) {
             EXPECT_EQ(result.fields[0].max, 7);
             EXPECT_THAT(open_series(path("a.foam")).times, ElementsAre(1));
         }
+        std::filesystem::rename(path("processors2_1-1"), path("aside"));
+        EXPECT_THAT(error(), HasSubstr("there is no folder with the files of processor 1"));
+        std::filesystem::rename(path("aside"), path("processors3_1-2"));
+        EXPECT_THAT(error(), HasSubstr("processors3_1-2: 1 block in the files of a folder for 2 processors"));
+        std::filesystem::rename(path("processors3_1-2"), path("processors2_0-1"));
+        EXPECT_THAT(error(), HasSubstr("processor 0 is in \"processors2_0-1\" and in another folder"));
         std::filesystem::remove_all(path("processors2_0-0"));
+        std::filesystem::rename(path("processors2_0-1"), path("processors2_1-1"));
         EXPECT_THAT(error(), HasSubstr("there is no folder with the files of processor 0"));
     }
     put("processors/constant/polyMesh/faces", "", {});
@@ -348,39 +258,40 @@ TEST_F(OpenFoam, PolyhedraWithHangingNodesFitToTheirNeighbours) {
 TEST_F(OpenFoam, DecomposedCasesAreJoined) {
     write("a.foam", "");
     const HexMesh whole = make_box(4, 2, 1);
-    for (int part = 0; part < 2; ++part) {
-        std::vector<std::vector<std::vector<int>>> cells;
-        std::vector<int> numbers;
-        std::vector<Vec3> points;
-        for (std::size_t c = 0; c < whole.cells.size(); ++c) {
-            const bool left = whole.points[whole.cells[c][0]].x < 2;
-            if (left != (part == 0)) continue;
-            for (const Index p : whole.cells[c]) numbers.push_back(static_cast<int>(p));
-        }
-        std::sort(numbers.begin(), numbers.end());
-        numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
-        for (const int p : numbers) points.push_back(whole.points[static_cast<std::size_t>(p)]);
-        for (const auto& cell : whole.cells) {
-            std::array<Index, 8> local;
-            bool here = true;
-            for (std::size_t k = 0; k < 8; ++k) {
-                const auto found = std::ranges::lower_bound(numbers, static_cast<int>(cell[k]));
-                here = here && found != numbers.end() && *found == static_cast<int>(cell[k]);
-                local[k] = static_cast<Index>(found - numbers.begin());
-            }
-            if (here) cells.push_back(faces_of_hex(local));
-        }
-        const std::string folder = "processor" + std::to_string(part);
-        put_mesh(folder + "/constant/polyMesh", polyhedra(points, cells), {});
-        put(folder + "/constant/polyMesh/pointProcAddressing", header("labelList", {}) + labels(numbers, {}), {});
-        put(folder + "/3/p", header("volScalarField", {}) + "internalField uniform " + std::to_string(part) + ";", {});
-    }
+    const auto put_case = [&](int count) {
+        for (const auto& [name, text] : case_of_processors(whole, count)) put(name, text, {});
+    };
+    put_case(2);
     const ReadResult result = read_mesh(path("a.foam"));
     EXPECT_EQ(result.warnings[0], "2 processors put together; 6 points joined with those of another, by \"GlobalNodeId\"");
     EXPECT_EQ(result.mesh.points, whole.points);
     EXPECT_EQ(inspect(result.mesh).boundary_faces, inspect(whole).boundary_faces);
     EXPECT_EQ(result.fields.size(), 1u);
     EXPECT_EQ(result.fields[0].max, 1);
+    // A processor that is not there is missed, whichever it is.
+    put_case(4);
+    const auto rename = [&](const char* from, const char* to) { std::filesystem::rename(path(from), path(to)); };
+    EXPECT_EQ(inspect(read_mesh(path("a.foam")).mesh).cells, 8u);
+    for (const char* gone : {"processor0", "processor2"}) {
+        rename(gone, "aside");
+        EXPECT_THAT(error(), HasSubstr("there is no mesh in the folder " + std::string(gone))) << gone;
+        std::filesystem::create_directory_symlink(gone, path(gone));  // a loop
+        EXPECT_THAT(error(), HasSubstr("there is no mesh in the folder " + std::string(gone))) << gone;
+        std::filesystem::remove(path(gone));
+        std::filesystem::create_directory_symlink("processor1", path(gone));
+        EXPECT_THAT(error(), HasSubstr("is the same folder as processor")) << gone;
+        std::filesystem::remove(path(gone));
+        rename("aside", gone);
+    }
+    rename("processor3", "aside");
+    EXPECT_THAT(error(), HasSubstr("processor 3, a neighbour, is not there (there are 3 processors)"));
+    rename("aside", "processor3");
+    const std::string numbers = "processor1/constant/polyMesh/pointProcAddressing";
+    const std::string good = read_bytes(path(numbers));
+    put(numbers, replaced(good, " 1", " -1"), {});
+    EXPECT_THAT(error(), HasSubstr("point 0 has the number -1"));
+    put(numbers, header("labelList", {}) + labels({1, 2, 3}, {}), {});
+    EXPECT_THAT(error(), HasSubstr("3 numbers of points (12 are needed)"));
 }
 
 TEST_F(OpenFoam, WrongFilesGetASentence) {

@@ -287,6 +287,34 @@ const std::vector<Vec3> kTwoBoxes{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0
                                   {1, 1, 1}, {0, 1, 1}, {2, 0, 0}, {2, 1, 0}, {2, 0, 1}, {2, 1, 1}};
 constexpr const char* kFaces = "7 4 1 2 6 5 4 1 8 9 2 4 5 6 11 10 4 1 5 10 8 4 2 9 11 6 3 8 10 9 3 9 10 11";
 
+// Convex point sets are what their hulls are: points in any order; sets that are not convex are left out.
+TEST_F(VtkIo, ConvexPointSetsAreTheirHulls) {
+    const auto file = [](const std::string& points, std::size_t count, const std::string& cells, std::size_t cell_count,
+                         std::size_t numbers) {
+        std::string types;
+        for (std::size_t c = 0; c < cell_count; ++c) types += "41\n";
+        return "# vtk DataFile Version 3.0\nt\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS " + std::to_string(count) +
+               " double\n" + points + "\nCELLS " + std::to_string(cell_count) + " " + std::to_string(numbers) + "\n" + cells +
+               "\nCELL_TYPES " + std::to_string(cell_count) + "\n" + types;
+    };
+    std::string boxes;
+    for (const Vec3& x : kTwoBoxes) boxes += number(x.x) + " " + number(x.y) + " " + number(x.z) + "\n";
+    const ReadResult two = read("two.vtk", file(boxes, 12, "8 6 1 0 3 7 2 5 4\n8 1 8 2 9 11 10 6 5", 2, 18));
+    EXPECT_EQ(two.mesh.cells.size(), 2u);
+    EXPECT_NEAR(inspect(two.mesh).volume, 2, 1e-12);
+    EXPECT_EQ(inspect(two.mesh).inverted_cells, 0u);
+    // An octahedron has the volume of its eight triangles.
+    const std::string octahedron = "1 0 0 -1 0 0 0 1 0 0 -1 0 0 0 1 0 0 -1 0 0 0";
+    EXPECT_NEAR(inspect(read("o.vtk", file(octahedron, 7, "6 0 1 2 3 4 5", 1, 7)).mesh).volume, 4.0 / 3, 1e-12);
+    // A point in the middle, points in one plane, and too few points.
+    for (const char* cell : {"7 0 1 2 3 4 5 6", "5 0 1 2 3 6", "3 0 1 4"}) {
+        const std::string text = file(octahedron, 7, cell, 1, static_cast<std::size_t>(cell[0] - '0') + 1);
+        EXPECT_THAT(error_of([&] { static_cast<void>(read("bad.vtk", text)); }),
+                    HasSubstr("no hexahedra, but 1 convex point set (VTK type 41), which are ignored"))
+            << cell;
+    }
+}
+
 TEST_F(VtkIo, PolyhedraAreSplitFromTheirMiddle) {
     std::string points, numbers;
     for (const Vec3& x : kTwoBoxes) {
