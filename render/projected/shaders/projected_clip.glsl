@@ -3,8 +3,8 @@
 // normal · place + offset > 0.
 #if CLIPPED
 layout(std430, binding = 9) readonly buffer Planes { vec4 planes[]; };  // faces, then slices
-uniform ivec2 plane_counts;
-uniform bool slices_alone;
+layout(location = 5) uniform ivec2 plane_counts;
+layout(location = 6) uniform bool slices_alone;
 
 // On the ray of a pixel the height above a plane is slope.y + slope.x · depth.
 vec2 height_along(vec4 plane, vec2 slope) {

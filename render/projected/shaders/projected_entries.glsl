@@ -47,5 +47,5 @@ bool before(Entry l, Entry r) { return l.segment.x < r.segment.x || (l.segment.x
 #endif
 
 layout(std430, binding = 12) readonly buffer Blocks { uvec2 blocks[]; };  // of kRun entries: the list, and the block's number
-uniform uint block_count;
+layout(location = 10) uniform uint block_count;
 const uint kRun = 64u;

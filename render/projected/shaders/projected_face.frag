@@ -2,16 +2,18 @@
 // SPDX-License-Identifier: Apache-2.0
 // The crossing of a pixel's ray with a face. It is counted, and stored in the pixel's list if `keep` is set: by one
 // program, so that what is stored was counted.
-flat in vec4 corner0, corner1, corner2;
-flat in uint rank;
-flat in uint cover;  // 2 + tetrahedra on the side of the face's normal − those on the other
+layout(location = 0) flat in vec4 corner0;
+layout(location = 1) flat in vec4 corner1;
+layout(location = 2) flat in vec4 corner2;
+layout(location = 3) flat in uint rank;
+layout(location = 4) flat in uint cover;  // 2 + tetrahedra on the side of the face's normal − those on the other
 
 layout(std430, binding = 3) buffer Counts { uint counts[]; };
 layout(std430, binding = 4) readonly buffer Offsets { uint offsets[]; };
 layout(std430, binding = 5) writeonly buffer Crossings { vec2 crossings[]; };  // depth, value
 layout(std430, binding = 6) writeonly buffer Marks { uint marks[]; };  // 8 · rank + 2 + tetrahedra behind the face − before it
-uniform bool keep;
-uniform ivec4 rectangle;  // whose pixels are counted or kept
+layout(location = 8) uniform bool keep;
+layout(location = 7) uniform ivec4 rectangle;  // whose pixels are counted or kept
 
 void main() {
     vec2 slope = (gl_FragCoord.xy - middle_px) * vec2(pixel, -pixel);

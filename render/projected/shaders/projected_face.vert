@@ -5,9 +5,12 @@ layout(std430, binding = 0) readonly buffer Points { vec4 points[]; };  // eye s
 layout(std430, binding = 1) readonly buffer Faces { uvec4 faces[]; };  // corners, ascending; 2 + change of cover
 layout(std430, binding = 2) readonly buffer Order { uint order[]; };
 
-flat out vec4 corner0, corner1, corner2;  // by ascending number, so that faces compute the same for an edge that they share
-flat out uint rank;                       // position in the order, from front to back
-flat out uint cover;
+// By ascending number, so that faces compute the same for an edge that they share.
+layout(location = 0) flat out vec4 corner0;
+layout(location = 1) flat out vec4 corner1;
+layout(location = 2) flat out vec4 corner2;
+layout(location = 3) flat out uint rank;  // position in the order, from front to back
+layout(location = 4) flat out uint cover;
 
 vec2 place_corner(vec3 p[3], int at) {
     vec2 q[3], result;

@@ -4,7 +4,7 @@
 // before.
 layout(local_size_x = 64) in;
 layout(std430, binding = 3) buffer Pictures { vec4 picture[]; };
-uniform float eye_value;
+layout(location = 11) uniform float eye_value;
 
 const float kTouch = 1e-5;  // for two faces that are closer the order is rounding
 

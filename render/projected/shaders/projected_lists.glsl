@@ -4,9 +4,9 @@
 // device, if one takes too long.
 layout(std430, binding = 4) readonly buffer Offsets { uint offsets[]; };
 layout(std430, binding = 11) buffer Counters { uint wrong_pixels, late_faces, unfinished; };
-uniform ivec4 rectangle;
-uniform bool resumed;
-uniform uint list_steps;  // a dispatch ends soon after so many for each pixel
+layout(location = 7) uniform ivec4 rectangle;
+layout(location = 8) uniform bool resumed;
+layout(location = 9) uniform uint list_steps;  // a dispatch ends soon after so many for each pixel
 
 const uint kListThreads = 64u;
 #if CLIPPED

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Merges pairs of sorted runs into the other buffers. Each thread writes a block; bisection finds where it begins in both runs.
 layout(local_size_x = 64) in;
-uniform uint run;  // a multiple of kRun
+layout(location = 11) uniform uint run;  // a multiple of kRun
 
 void main() {
     if (thread_number() >= block_count) return;

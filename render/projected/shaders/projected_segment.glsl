@@ -6,8 +6,8 @@ struct Knot {
     vec4 value;  // in parts of the range of the knots; the rest is not used
 };
 layout(std430, binding = 10) readonly buffer Knots { Knot knots[]; };
-uniform float per_unit;  // opacity units in the unit of length
-uint steps = 0u;         // iterations of loops that the integration has taken
+layout(location = 4) uniform float per_unit;  // opacity units in the unit of length
+uint steps = 0u;  // iterations of loops that the integration has taken
 
 // Optical depth of a panel of Gauss's rule with three points: the error of the colour is then below 1e-5 of its change. For
 // thin pieces Simpson's rule is as accurate.

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Sorts each block of a list, in at most kRun² / 2 steps. Blocks come nearly sorted, so insertion is fast.
 layout(local_size_x = 64) in;
-uniform uint moved_blocks;  // the first ones, which are moved to the other buffers
+layout(location = 11) uniform uint moved_blocks;  // the first ones, which are moved to the other buffers
 
 void main() {
     if (thread_number() >= block_count) return;

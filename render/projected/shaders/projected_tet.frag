@@ -2,8 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // The segment of a pixel's ray in a tetrahedron. FRAGMENT_COMPOSITE blends it over what was drawn before, FRAGMENT_LISTS counts
 // it, and stores it in the pixel's list if `keep` is set. Both are done by one program, so that what is stored was counted.
-flat in vec4 corner0, corner1, corner2, corner3;
-flat in uint rank;
+layout(location = 0) flat in vec4 corner0;
+layout(location = 1) flat in vec4 corner1;
+layout(location = 2) flat in vec4 corner2;
+layout(location = 3) flat in vec4 corner3;
+layout(location = 4) flat in uint rank;
 
 #if FRAGMENT_MODE == FRAGMENT_COMPOSITE
 layout(location = 0) out vec4 color;
@@ -12,9 +15,9 @@ layout(std430, binding = 3) buffer Counts { uint counts[]; };
 layout(std430, binding = 4) readonly buffer Offsets { uint offsets[]; };
 layout(std430, binding = 5) writeonly buffer Segments { vec4 segments[]; };  // depths of both ends, values there
 layout(std430, binding = 6) writeonly buffer Ranks { uint ranks[]; };
-uniform bool keep;
+layout(location = 8) uniform bool keep;
 #endif
-uniform ivec4 rectangle;  // whose pixels are counted or kept
+layout(location = 7) uniform ivec4 rectangle;  // whose pixels are counted or kept
 
 // The ends of the segment; false if the ray does not meet the tetrahedron.
 bool find_segment(vec2 slope, out vec2 front, out vec2 back) {

@@ -6,10 +6,13 @@ layout(std430, binding = 1) readonly buffer Tets { uvec4 tets[]; };  // corners,
 layout(std430, binding = 2) readonly buffer Order { uint order[]; };
 
 // By ascending number, so that tetrahedra compute the same for an edge that they share.
-flat out vec4 corner0, corner1, corner2, corner3;
-flat out uint rank;  // position in the order, from back to front
+layout(location = 0) flat out vec4 corner0;
+layout(location = 1) flat out vec4 corner1;
+layout(location = 2) flat out vec4 corner2;
+layout(location = 3) flat out vec4 corner3;
+layout(location = 4) flat out uint rank;  // position in the order, from back to front
 #if FRAGMENT_MODE != FRAGMENT_COMPOSITE
-uniform uint last_rank;  // lists are drawn from front to back, as they are sorted
+layout(location = 9) uniform uint last_rank;  // lists are drawn from front to back, as they are sorted
 #endif
 
 // The 3 or 4 corners of the silhouette in order.

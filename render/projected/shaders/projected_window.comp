@@ -3,7 +3,7 @@
 // The k-buffer of each pixel, applied to its list of faces, which is in the order in which they were drawn: at most kbuffer of
 // them wait; of those and the next one, the nearest is released. So a face moves past waiting ones only.
 layout(local_size_x = 64) in;
-uniform uint kbuffer;
+layout(location = 11) uniform uint kbuffer;
 
 void main() {
     uint id = thread_number();

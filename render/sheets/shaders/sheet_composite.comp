@@ -15,12 +15,16 @@ layout(std430, binding = 13) buffer Lasts { Last lasts[]; };
 layout(std430, binding = 14) buffer Looks { vec4 looks[]; };  // of the last sheet: second colour's value, light
 layout(std430, binding = 15) buffer Done { uint done_pixels; };
 layout(std430, binding = 6) readonly buffer Ends { vec4 ends[]; };  // of each interval: value, second value, light
-uniform ivec4 rectangle;  // two corners; the second one is outside
-uniform ivec2 size_px;
-uniform vec2 middle_px;
-uniform float pixel, front_z, back_z, near, middle_z;
-uniform vec2 offsets;  // are added to the values of both channels where sums are not normalised
-uniform bool first;
+layout(location = 5) uniform ivec4 rectangle;  // two corners; the second one is outside
+layout(location = 6) uniform ivec2 size_px;
+layout(location = 7) uniform vec2 middle_px;
+layout(location = 8) uniform float pixel;
+layout(location = 9) uniform float front_z;
+layout(location = 10) uniform float back_z;
+layout(location = 11) uniform float near;
+layout(location = 12) uniform float middle_z;
+layout(location = 13) uniform vec2 offsets;  // are added to the values of both channels where sums are not normalised
+layout(location = 14) uniform bool first;
 
 bool is_known(float weight) {
 #if NORMALIZED

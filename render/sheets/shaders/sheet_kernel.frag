@@ -1,14 +1,15 @@
 #version 450
 // SPDX-License-Identifier: Apache-2.0
 // The contribution of a kernel to the sums of a sheet.
-uniform vec2 middle_px;
-uniform float pixel, across;
+layout(location = 0) uniform vec2 middle_px;
+layout(location = 3) uniform float across;
+layout(location = 5) uniform float pixel;
 
-flat in uint splat;
-flat in vec4 place;
-flat in vec4 shape;
-flat in vec4 values;
-flat in vec3 depths;
+layout(location = 0) flat in uint splat;
+layout(location = 1) flat in vec4 place;
+layout(location = 2) flat in vec4 shape;
+layout(location = 3) flat in vec4 values;
+layout(location = 4) flat in vec3 depths;
 
 layout(location = 0) out vec2 sums;  // w, w·v
 #if SHADED || COLORED

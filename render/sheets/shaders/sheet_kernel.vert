@@ -2,14 +2,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // The section of a kernel with a sheet: a rectangle around it, as two triangles.
 layout(std430, binding = 6) readonly buffer Listed { uint listed[]; };
-uniform vec2 middle_px, size_px;
-uniform float sheet_z, across, to_pixels;  // across: world length of a unit of slope
+layout(location = 0) uniform vec2 middle_px;
+layout(location = 1) uniform vec2 size_px;
+layout(location = 2) uniform float sheet_z;
+layout(location = 3) uniform float across;  // world length of a unit of slope
+layout(location = 4) uniform float to_pixels;
 
-flat out uint splat;
-flat out vec4 place;   // middle of the section, z_s, the least e
-flat out vec4 shape;   // the root's xx, xy, yy; the moment
-flat out vec4 values;  // at the middle, and its gradient; its slope along the middle
-flat out vec3 depths;  // shear, 1 / S_zz
+layout(location = 0) flat out uint splat;
+layout(location = 1) flat out vec4 place;   // middle of the section, z_s, the least e
+layout(location = 2) flat out vec4 shape;   // the root's xx, xy, yy; the moment
+layout(location = 3) flat out vec4 values;  // at the middle, and its gradient; its slope along the middle
+layout(location = 4) flat out vec3 depths;  // shear, 1 / S_zz
 
 const float kMargin_px = 0.05;  // rasterisers round places to 1/256 px
 

@@ -16,9 +16,9 @@ struct State {
     uvec4 at;      // interval; next end, and a bit: whether there is a value on the last sheet; a word of the tile's state
 };
 layout(std430, binding = 13) buffer States { State states[]; };  // of the pixels of tiles, between dispatches
-uniform uvec2 tile_range;  // the tiles of this dispatch: first, end
-uniform uint first_state;  // the tile to which the first states belong
-uniform bool resumed;      // whether the tiles have been begun in this pass
+layout(location = 0) uniform uvec2 tile_range;  // the tiles of this dispatch: first, end
+layout(location = 1) uniform uint first_state;    // the tile to which the first states belong
+layout(location = 2) uniform bool resumed;        // whether the tiles have been begun in this pass
 
 const int kNone = 0x7fffffff;
 

@@ -24,7 +24,7 @@ const uint kStagingSteps =
 const uint kBatchSteps = uint(kBatch) * uint(kBatch + 16) + 16u;  // of choosing a batch, or of compositing its sheets
 const uint kRoundSteps = 4u * uint(kBatch) + 8u;                    // of the next ends of all rays
 const uint kMostRanged = 2048u * kPixels;
-uniform uint most_steps;
+layout(location = 3) uniform uint most_steps;
 uint steps = 0u;
 
 // Of a kernel with a sheet: middle x, y; e and value there. Or, for sums at ends, two of each kernel: middle x, y, depth and
