@@ -305,24 +305,35 @@ int sheets_needed(const SplatScene& scene, const DepthRange& depths, const Reach
 }
 
 DepthRange depth_range_of(const SplatScene& scene, const View& view) {
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    using Ends = std::array<double, 2>;
+    using Range = tbb::blocked_range<std::size_t>;
     const RbfVolume& volume = *scene.volume;
-    double z_min = std::numeric_limits<double>::infinity(), z_max = -z_min;
-    const auto add = [&](double z, double around) {
-        z_min = std::min(z_min, z - around);
-        z_max = std::max(z_max, z + around);
+    const auto joined = [](const Ends& a, const Ends& b) { return Ends{std::min(a[0], b[0]), std::max(a[1], b[1])}; };
+    const auto ends_of = [&](std::size_t count, const auto& ends_at) {
+        return tbb::parallel_reduce(
+            Range(0, count, 1 << 13), Ends{kInfinity, -kInfinity},
+            [&](const Range& range, Ends ends) {
+                for (std::size_t i = range.begin(); i < range.end(); ++i) ends = joined(ends, ends_at(i));
+                return ends;
+            },
+            joined);
     };
-    for (const auto& p : volume.boundary.points) add(view.to_eye(p).z, 0);
+    Ends ends = ends_of(volume.boundary.points.size(), [&](std::size_t i) {
+        const double z = view.to_eye(volume.boundary.points[i]).z;
+        return Ends{z, z};
+    });
     if (scene.half_weight > 0) {
         const Vec3& forward = view.axes()[2];
-        for (std::size_t i = 0; i < volume.size(); ++i) {
-            const Mat3 s = matrix(volume.frames[i]);
-            add(view.to_eye(volume.centers[i]).z, std::sqrt(std::max(0.0, glm::dot(forward, s * forward))));
-        }
+        ends = joined(ends, ends_of(volume.size(), [&](std::size_t i) {
+                          const double z = view.to_eye(volume.centers[i]).z;
+                          const double reach = std::sqrt(std::max(0.0, glm::dot(forward, matrix(volume.frames[i]) * forward)));
+                          return Ends{z - reach, z + reach};
+                      }));
     }
-    const double near = nearest_depth(view, scene.diagonal);
-    z_min = std::max(z_min, near);
-    z_max = std::max(z_max, z_min + near + std::numeric_limits<double>::min());  // all is behind the eye: the picture is empty
-    return {z_min, z_max, near};
+    const double near = nearest_depth(view, scene.diagonal), z_min = std::max(ends[0], near);
+    // Where all is behind the eye, the picture is empty.
+    return {z_min, std::max(ends[1], z_min + near + std::numeric_limits<double>::min()), near};
 }
 
 SheetStack make_sheets(const SplatScene& scene, const View& view, int count) {

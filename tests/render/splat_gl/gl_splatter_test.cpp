@@ -275,6 +275,22 @@ TEST_F(GlSplats, TilesWithTenThousandKernelsLookAsOnTheCpu) {
     }
 }
 
+TEST_F(GlSplats, AMillionKernelsLookAsOnTheCpu) {
+    HexMesh mesh = test::make_box(100, 100, 100);
+    test::add_field(mesh, "f", [](const Vec3& p) { return .5 + .4 * std::sin(.06 * p.x) * std::cos(.04 * p.y) + .001 * p.z; });
+    const RbfVolume volume = sample_rbf_points(mesh, {.correction = Correction::None}).volume;
+    ASSERT_GE(volume.size(), 1000000u);
+    const View view({.eye = {250, -200, 175}, .target = {50, 50, 50}, .up = {0, 0, 1}}, 32, 32);
+    const Optics optics({.color = {{0, {0, 0, 1}}, {1, {1, .5, 0}}}, .opacity = {{0, .05}, {1, .3}}}, 15);
+    const auto scene = detail::make_scene(volume, {});
+    const auto classification = detail::classify(scene, optics);
+    GlSplatter gpu(scene, {});
+    const Drawn cpu = draw_on_cpu(scene, view, classification, 12), gl = gpu.draw(view, classification, 12, nullptr);
+    EXPECT_GT(gpu.report().bin_entries, volume.size());
+    EXPECT_LT(largest_difference(cpu.image.rgba, gl.image.rgba), kCutRounding);
+    EXPECT_GT(std::accumulate(cpu.image.rgba.begin(), cpu.image.rgba.end(), 0.0), 300) << "the box fills the picture";
+}
+
 TEST_F(GlSplats, TheWorkOfADispatchIsReported) {
     struct Fractions : Progress {
         void report(std::string_view stage, double fraction) override {
