@@ -311,6 +311,7 @@ void GlSplatter::State::draw_tiles(std::uint32_t first, std::uint32_t end, bool 
         kept_.upload(sizeof kNone, &kNone);
         dispatch(end - first);
         ++report.dispatches;
+        report.tiles += end - first;
         kept_.read(sizeof left, &left);
         // What ended the dispatch is adapted: its steps, or else its tiles.
         const double seconds = watch.restart();

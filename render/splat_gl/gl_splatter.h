@@ -40,6 +40,7 @@ struct GlSplatReport {
     int passes = 0;
     int lists = 0;                  // of kernels by tiles that were made; 0 if the camera is that of the picture before
     std::size_t dispatches = 0;     // that draw
+    std::size_t tiles = 0;          // of all these dispatches together
     std::vector<StageTime> stages;  // measured by the device
 };
 
