@@ -119,7 +119,7 @@ Figures PictureComparison::measure(const std::string& test, const std::string& r
     for (const PictureMetric& metric : picture_metrics()) {
         if (!takes(metric)) continue;
         const std::string stage(metric.stage);
-        figures.put(std::string(metric.name), report.timed(stage.c_str(), [&] { return metric.of(pair, {}); }));
+        figures.put(std::string(metric.name), report.timed(stage.c_str(), [&] { return metric.measure(pair); }));
     }
     if (asked.contains("hdr")) {
         const HdrFlipResult& found = pair.hdr_flip();
@@ -130,6 +130,7 @@ Figures PictureComparison::measure(const std::string& test, const std::string& r
             if (metric.encoded) figures.put(kEncoded + std::string(metric.name), metric.of(pair.on_screen(), {}));
         }
     });
+    report["pixels_per_degree"] = pixels_per_degree;  // of flip
     if (edge_band_px) measure_regions(pair, figures);
     if (asked.contains("optical-depth")) warn_of_opaque(pair, report);
     if (oiio) {
@@ -171,7 +172,7 @@ void PictureComparison::measure_regions(const PicturePair& pair, Figures& figure
 void PictureComparison::draw(const PicturePair& pair, Report& report) const {
     const MetricMap map = heatmap_of == "abs"    ? difference_map(pair.test(), pair.reference())
                           : heatmap_of == "flip" ? pair.flip().map
-                                                 : dissimilarity(pair.ssim().map);
+                                                 : dissimilarity(pair.on_screen().luminance_ssim().map);
     report.timed("write", [&] { write_image(heatmap, subvol::heatmap(map, heatmap_scale.value_or(0))); });
     report["heatmap"] = heatmap;
 }

@@ -136,7 +136,8 @@ public:
                "  subvol compare points.ply mesh.vtu --iso .5 --fail-under l2=.01\n"
                "\n"
                "Pictures (any that OpenImageIO reads) are compared in linear light, peak 1: mse, rmse, mae, max, psnr (dB), "
-               "ssim, flip; under srgb8 the same for 8-bit sRGB. Fields are meshes, points or .vdb grids: l1, l2 (root mean "
+               "flip; ssim of 8-bit sRGB luminance, ssim_linear of linear RGB; under srgb8 the differences of 8-bit sRGB. "
+               "Fields are meshes, points or .vdb grids: l1, l2 (root mean "
                "square), linf, gradient_rmse, mass (relative), hausdorff (with --iso); new_vertex_rmse against a mesh: at the "
                "vertices that its first refinement adds (200,000 of them stand for more). Parts of pictures (.exr with a data "
                "window) are compared where they "
@@ -148,7 +149,7 @@ public:
         app()
             .add_option(
                 "--fail-under", demands_,
-                "exit with 1 if the metric is worse than the value (psnr and ssim: below it; all others: above); repeatable")
+                "exit with 1 if the metric is worse than the value (psnr, ssim: below it; all others: above); repeatable")
             ->type_name("METRIC=VALUE")
             ->allow_extra_args(false);
         pictures_.add_to(app());

@@ -22,9 +22,11 @@
 #include "subvol/detail/atomic_file.h"
 #include "subvol/detail/json_depth.h"
 #include "subvol/detail/read_file.h"
+#include "subvol/detail/text_codes.h"
 #include "subvol/error.h"
 #include "subvol/mesh_io.h"
 #include "subvol/study.h"
+#include "subvol/study_measures.h"
 #include "subvol/study_report.h"
 #include "subvol/study_run.h"
 #include "subvol/study_table.h"
@@ -104,8 +106,20 @@ Json table_json(const StudyTable& table) {
         for (const auto& cell : row) std::visit([&](const auto& value) { values.push_back(value); }, cell);
         rows.push_back(std::move(values));
     }
-    return {
-        {"name", table.name}, {"title", table.title}, {"caption", table.caption}, {"columns", table.columns}, {"rows", rows}};
+    Json spreads = Json::array();
+    for (const auto& [place, value] : table.spreads)
+        spreads.push_back({{"row", place.first}, {"column", place.second}, {"deviation", value}});
+    return {{"name", table.name},       {"title", table.title}, {"caption", table.caption},
+            {"columns", table.columns}, {"rows", rows},         {"spreads", spreads}};
+}
+
+/// As `sha256sum` prints it.
+std::string sha256_digits(const std::string& bytes) {
+    std::string digits;
+    for (const char byte : detail::sha256(bytes)) {
+        for (const int shift : {4, 0}) digits += "0123456789abcdef"[static_cast<unsigned char>(byte) >> shift & 15];
+    }
+    return digits;
 }
 
 class StudyVerb : public Verb {
@@ -133,7 +147,10 @@ public:
         app().add_flag("--fresh", fresh_, "run all cases again")->excludes(resume);
         app().add_flag("--pages", pages_,
                        "also a page for each input, on which it can be turned (as `page`); the report links to them");
+        app().add_flag("--exr", exr_, "also keep the pictures of all cases as .exr, with a manifest of hashes");
+        app().add_flag("--require-converged", require_converged_, "exit with 1 if a reference did not converge");
         app().add_flag("--list", list_, "list the studies");
+        app().add_flag("--keys", keys_, "print all keys, metrics and options of studies as tables (Markdown)");
         app().add_option("--print", print_, "print a built-in study's file, as a start for your own")->type_name("NAME");
         app().add_option("--case", case_)->group("");  // how the verb runs its cases, each in a process of its own
         app().add_option("--case-of", case_of_)->group("");
@@ -142,6 +159,10 @@ public:
     int run(Report& report) override {
         report.all_said();
         if (list_) return list(report);
+        if (keys_) {
+            std::cout << study_keys_markdown(study_picture_methods());
+            return 0;
+        }
         if (!print_.empty()) {
             std::cout << built_in_study_json(print_);
             return 0;
@@ -183,6 +204,11 @@ private:
             source.file = fs::absolute(name);
         } else {
             source.json = with_meshes(name, Json::parse(built_in_study_json(name))).dump();
+        }
+        if (exr_) {
+            Json json = Json::parse(source.json);
+            json["exr"] = true;
+            source.json = json.dump();
         }
         return source;
     }
@@ -227,11 +253,29 @@ private:
             keep_study(sources[i], fs::path(output_) / study.name);
             failed += all.back().failed;
             report_results(all.back(), report);
+            write_manifest(sources[i], all.back());
         }
+        const std::size_t open = report_references(all, report);
         const std::size_t unmet = report_demands(all, report);
         const ReportFacts pages = pages_ ? make_pages(studies, report) : ReportFacts{};
         write_page(std::move(all), pages, report);
-        return failed > 0 || unmet > 0 ? kCaseFailed : 0;
+        return failed > 0 || unmet > 0 || (require_converged_ && open > 0) ? kCaseFailed : 0;
+    }
+
+    /// returns: how many did not converge
+    static std::size_t report_references(const std::vector<StudyResults>& all, Report& report) {
+        std::size_t open = 0;
+        report["not_converged"] = Json::array();
+        for (const StudyResults& results : all) {
+            for (const ReferenceState& reference : reference_states(results)) {
+                if (reference.converged) continue;
+                ++open;
+                report["not_converged"].push_back({{"study", results.study.name}, {"reference", reference.name}});
+                report.warn(text(results.study.name, ": the reference of ", reference.name,
+                                 " did not converge: figures of it are bounds (reference: max_levels, tolerance)"));
+            }
+        }
+        return open;
     }
 
     /// returns: how many are not met
@@ -309,7 +353,7 @@ private:
         std::string words = "subvol study";
         for (const std::string& name : names) words += " " + name;
         for (const std::string& mesh : meshes_) words += " --mesh " + mesh;
-        return words + " -o " + output_;
+        return words + (exr_ ? " --exr -o " : " -o ") + output_;
     }
 
     static void check_names(const std::vector<Study>& studies) {
@@ -337,6 +381,33 @@ private:
                           .progress = report.progress()});
     }
 
+    /// Writes which program made which picture: a run of the same command by it gives the same hashes.
+    void write_manifest(const StudySource& source, const StudyResults& results) const {
+        const fs::path folder = fs::path(output_) / results.study.name, references = fs::path(output_) / "references";
+        Json pictures = Json::array();
+        std::set<std::string> known;
+        const auto add = [&](const fs::path& at, const std::string& name, Json about) {
+            std::error_code missing;
+            if (!fs::is_regular_file(at / name, missing)) return;
+            about["file"] = fs::relative(at / name, output_).string();
+            about["sha256"] = sha256_digits(detail::read_regular((at / name).string()));
+            pictures.push_back(std::move(about));
+        };
+        for (std::size_t i = 0; i < results.results.size(); ++i) {
+            const CaseResult& result = results.results[i];
+            const auto note = [&](const char* key) { return result.notes.contains(key) ? result.notes.at(key) : ""; };
+            if (!result.files.contains("exr")) continue;
+            add(folder, result.files.at("exr"),
+                {{"case", results.study.cases[i].name}, {"id", results.study.cases[i].id}, {"camera", note("camera_used")}});
+            if (known.insert(note("reference")).second)
+                add(references, note("reference") + ".exr", {{"reference", note("reference")}});
+        }
+        if (pictures.empty()) return;
+        Json manifest{{"command", source.command}, {"study", Json::parse(source.json)}, {"pictures", std::move(pictures)}};
+        for (const auto& [name, value] : study_versions()) manifest["versions"][name] = value;
+        detail::write_text_file(folder / "manifest.json", manifest.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+    }
+
     void report_results(const StudyResults& results, Report& report) const {
         const Study& study = results.study;
         const fs::path folder = fs::path(output_) / study.name;
@@ -357,8 +428,17 @@ private:
             detail::write_text_file(folder / (setup->name + ".tex"), as_tex(*setup));
         }
         for (const StudyPlot& plot : make_plots(results)) {
-            detail::write_text_file(folder / (plot.name + ".svg"), plot_svg_file(plot.plot));
-            detail::write_text_file(folder / (plot.name + ".pdf"), plot_pdf(plot.plot));
+            const auto write = [&](const char* ending, const std::string& content) {
+                detail::write_text_file(folder / (plot.name + ending), content);
+            };
+            write(".svg", plot_svg_file(plot.plot));
+            write(".pdf", plot_pdf(plot.plot));
+            write("_84mm.pdf", plot_pdf(plot.plot, kColumnPlot));
+            write("_84mm.svg", plot_svg_file(plot.plot, kColumnPlot));
+            write("_174mm.pdf", plot_pdf(plot.plot, kPagePlot));
+            write("_174mm.svg", plot_svg_file(plot.plot, kPagePlot));
+            write(".tex", plot_tex(plot.plot));
+            write(".csv", plot_csv(plot.plot));
         }
     }
 
@@ -370,6 +450,9 @@ private:
     bool fresh_ = false;
     bool list_ = false;
     bool pages_ = false;
+    bool exr_ = false;
+    bool require_converged_ = false;
+    bool keys_ = false;
     std::string print_;
     std::string case_;
     std::string case_of_;

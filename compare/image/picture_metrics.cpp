@@ -19,8 +19,12 @@ double difference(const PicturePair& pair, Mask mask) {
     return (mask.empty() ? pair.differences() : compare_images(pair.test(), pair.reference(), mask)).*figure;
 }
 
-double mean_ssim(const PicturePair& pair, Mask) {
-    return pair.ssim().mean;
+double mean_luminance_ssim(const PicturePair& pair, Mask) {
+    return pair.luminance_ssim().mean;
+}
+
+double mean_color_ssim(const PicturePair& pair, Mask) {
+    return pair.color_ssim().mean;
 }
 
 double mean_flip(const PicturePair& pair, Mask mask) {
@@ -35,15 +39,26 @@ double depth_error(const PicturePair& pair, Mask) {
     return optical_depth_error(pair.test(), pair.reference());
 }
 
-constexpr PictureMetric differs(std::string_view name, double (*of)(const PicturePair&, Mask)) {
-    return {.name = name, .study = name, .stage = "differences", .of = of, .masked = true, .encoded = true};
+constexpr PictureMetric differs(std::string_view name, double (*of)(const PicturePair&, Mask), std::string_view quantity,
+                                std::string_view formula) {
+    return {.name = name,
+            .study = name,
+            .stage = "differences",
+            .of = of,
+            .masked = true,
+            .encoded = true,
+            .quantity = quantity,
+            .formula = formula};
 }
 
 constexpr std::array kMetrics{
-    differs("mse", difference<&ImageMetrics::mse>),
-    differs("rmse", difference<&ImageMetrics::rmse>),
-    differs("mae", difference<&ImageMetrics::mae>),
-    differs("max", difference<&ImageMetrics::max>),
+    differs("mse", difference<&ImageMetrics::mse>, "mean square error of linear RGB",
+            "mean of (a - b)² over red, green and blue of all pixels, linear RGB, peak 1"),
+    differs("rmse", difference<&ImageMetrics::rmse>, "RMSE of linear RGB", "√mse, linear RGB, peak 1"),
+    differs("mae", difference<&ImageMetrics::mae>, "mean absolute error of linear RGB",
+            "mean of abs(a - b) over red, green and blue of all pixels, linear RGB, peak 1"),
+    differs("max", difference<&ImageMetrics::max>, "largest error of linear RGB",
+            "largest abs(a - b) of red, green and blue of all pixels, linear RGB, peak 1"),
     PictureMetric{.name = "psnr",
                   .study = "psnr",
                   .stage = "differences",
@@ -51,21 +66,47 @@ constexpr std::array kMetrics{
                   .unit = "dB",
                   .more_is_better = true,
                   .masked = true,
-                  .encoded = true},
-    PictureMetric{.name = "ssim",
-                  .study = "ssim",
-                  .stage = "ssim",
-                  .of = mean_ssim,
-                  .more_is_better = true,
                   .encoded = true,
-                  .seen = true},
-    PictureMetric{.name = "flip", .study = "flip", .stage = "flip", .of = mean_flip, .masked = true},
+                  .quantity = "PSNR of linear RGB",
+                  .formula = "-10 log10(mse), linear RGB, peak 1"},
+    PictureMetric{
+        .name = "ssim",
+        .study = "ssim",
+        .stage = "ssim",
+        .of = mean_luminance_ssim,
+        .more_is_better = true,
+        .encoded = true,
+        .seen = true,
+        .quantity = "SSIM of 8-bit sRGB luminance",
+        .formula = "mean of (2 m n + c1)(2 s + c2) / ((m² + n² + c1)(v + w + c2)) over all windows inside the picture: m, n "
+                   "the means, v, w the variances and s the covariance under a Gaussian of 11 × 11 pixels with σ = 1.5; c1 = "
+                   ".01², c2 = .03²; of .2125 R + .7154 G + .0721 B, 8-bit sRGB, peak 1",
+        .source = "ssim2004"},
+    PictureMetric{.name = "ssim_linear",
+                  .study = "ssim_linear",
+                  .stage = "ssim",
+                  .of = mean_color_ssim,
+                  .more_is_better = true,
+                  .quantity = "SSIM of linear RGB",
+                  .formula = "the formula of ssim, the mean of red, green and blue, linear RGB, peak 1",
+                  .source = "ssim2004"},
+    PictureMetric{.name = "flip",
+                  .study = "flip",
+                  .stage = "flip",
+                  .of = mean_flip,
+                  .masked = true,
+                  .quantity = "mean FLIP at 67 pixels per degree",
+                  .formula = "mean LDR-FLIP of all pixels at 67.02 pixels per degree (compare: --ppd), over black",
+                  .source = "flip2020"},
     PictureMetric{.name = "hdr_flip",
                   .study = "flip_hdr",
                   .stage = "hdr_flip",
                   .of = mean_hdr_flip,
                   .flag = "hdr",
-                  .help = "also HDR-FLIP (hdr_flip), over all exposures that the second picture needs"},
+                  .help = "also HDR-FLIP (hdr_flip), over all exposures that the second picture needs",
+                  .quantity = "mean HDR-FLIP at 67 pixels per degree",
+                  .formula = "mean over all pixels of the largest LDR-FLIP of all exposures",
+                  .source = "hdrflip2021"},
     PictureMetric{.name = "optical_depth_error",
                   .study = "optical_depth",
                   .stage = "optical_depth",
@@ -73,7 +114,9 @@ constexpr std::array kMetrics{
                   .flag = "optical-depth",
                   .help =
                       "also the relative error of the summed optical depth -ln(1-alpha), which with --ortho is the volume's "
-                      "integral (optical_depth_error)"}};
+                      "integral (optical_depth_error)",
+                  .quantity = "relative error of the optical depth",
+                  .formula = "abs(Σ ln(1 - a) / Σ ln(1 - b) - 1) over the alphas of all pixels"}};
 
 constexpr std::string_view kInterior = "_interior", kEdge = "_edge";
 
@@ -84,7 +127,7 @@ struct PicturePair::State {
     const Image& reference;
     double pixels_per_degree;
     std::optional<ImageMetrics> differences{};
-    std::optional<SsimResult> ssim{};
+    std::optional<SsimResult> luminance_ssim{}, color_ssim{};
     std::optional<FlipResult> flip{};
     std::optional<HdrFlipResult> hdr_flip{};
     std::optional<std::pair<Image, Image>> encoded{};
@@ -111,9 +154,14 @@ const ImageMetrics& PicturePair::differences() const {
     return *state_->differences;
 }
 
-const SsimResult& PicturePair::ssim() const {
-    if (!state_->ssim) state_->ssim = subvol::ssim(test(), reference());
-    return *state_->ssim;
+const SsimResult& PicturePair::luminance_ssim() const {
+    if (!state_->luminance_ssim) state_->luminance_ssim = subvol::luminance_ssim(test(), reference());
+    return *state_->luminance_ssim;
+}
+
+const SsimResult& PicturePair::color_ssim() const {
+    if (!state_->color_ssim) state_->color_ssim = subvol::ssim(test(), reference());
+    return *state_->color_ssim;
 }
 
 const FlipResult& PicturePair::flip() const {
@@ -163,8 +211,7 @@ std::map<std::string, double> measure_pictures(const Image& test, const Image& r
         const auto metric = std::ranges::find(kMetrics, plain, &PictureMetric::study);
         if (metric == kMetrics.end()) continue;
         const bool nothing = mask != nullptr && std::ranges::find(*mask, 1) == mask->end();  // it has no interior or no edge
-        if (!nothing)
-            measured[name] = metric->of(metric->seen ? pair.on_screen() : pair, mask == nullptr ? Mask() : Mask(*mask));
+        if (!nothing) measured[name] = metric->measure(pair, mask == nullptr ? Mask() : Mask(*mask));
     }
     return measured;
 }

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "subvol/ssim.h"
 
+#include <array>
+#include <span>
+
 #include "image_difference.h"
 #include "separable.h"
 
@@ -18,11 +21,22 @@ constexpr std::size_t kRadius = 5;
 constexpr double kSigma = 1.5;
 constexpr double kC1 = .01 * .01, kC2 = .03 * .03;
 
-Plane channel_rows(const Image& image, const Band& band, std::size_t channel) {
+/// The weights of red, green and blue in a channel.
+using Channel = std::array<double, 3>;
+
+constexpr std::array<Channel, 3> kColors{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+constexpr std::array<Channel, 1> kLuminance{{{.2125, .7154, .0721}}};  // of Rec. 709, as scikit-image rounds them
+
+Plane channel_rows(const Image& image, const Band& band, const Channel& weights) {
     Plane plane(image.width, band.rows());
     for (std::size_t row = 0; row < plane.height; ++row) {
         const std::size_t y = band.picture_row(row);
-        for (std::size_t x = 0; x < plane.width; ++x) plane.at(x, row) = double{image.pixel(x, y)[channel]};
+        for (std::size_t x = 0; x < plane.width; ++x) {
+            const auto pixel = image.pixel(x, y);
+            double value = 0;
+            for (std::size_t c = 0; c < 3; ++c) value += weights[c] * double{pixel[c]};
+            plane.at(x, row) = value;
+        }
     }
     return plane;
 }
@@ -54,20 +68,30 @@ PixelMask whole_windows(std::size_t width, std::size_t height) {
     return mask.values;
 }
 
-}  // namespace
-
-SsimResult ssim(const Image& a, const Image& b) {
+SsimResult similarity(const Image& a, const Image& b, std::span<const Channel> channels) {
     check_finite(a, b);
     SsimResult result{0, MetricMap(a.width, a.height)};
     const Taps window = detail::gaussian_taps(kSigma, kRadius);
     detail::for_each_band(result.map.height, kRadius, [&](const Band& band) {
         std::vector<double> sums(pixel_count(result.map.width, band.end - band.begin));
-        for (std::size_t c = 0; c < 3; ++c) add_similarity(channel_rows(a, band, c), channel_rows(b, band, c), window, sums);
+        for (const Channel& channel : channels)
+            add_similarity(channel_rows(a, band, channel), channel_rows(b, band, channel), window, sums);
         float* out = result.map.row(band.begin).data();
-        for (std::size_t i = 0; i < sums.size(); ++i) out[i] = static_cast<float>(sums[i] / 3);
+        const auto count = static_cast<double>(channels.size());
+        for (std::size_t i = 0; i < sums.size(); ++i) out[i] = static_cast<float>(sums[i] / count);
     });
     result.mean = mean_of(result.map, whole_windows(result.map.width, result.map.height));
     return result;
+}
+
+}  // namespace
+
+SsimResult ssim(const Image& a, const Image& b) {
+    return similarity(a, b, kColors);
+}
+
+SsimResult luminance_ssim(const Image& a, const Image& b) {
+    return similarity(a, b, kLuminance);
 }
 
 }  // namespace subvol

@@ -19,8 +19,10 @@ constexpr double kMarker = 3.4;
 
 class CairoPage : public PdfCanvas {
 public:
-    CairoPage(const Vec2& size, const std::string& title)
-        : surface_(cairo_pdf_surface_create_for_stream(&append, &bytes_, size.x, size.y)), cairo_(cairo_create(surface_)) {
+    CairoPage(const Vec2& size, double scale, const std::string& title)
+        : scale_(scale),
+          surface_(cairo_pdf_surface_create_for_stream(&append, &bytes_, size.x, size.y)),
+          cairo_(cairo_create(surface_)) {
         cairo_pdf_surface_restrict_to_version(surface_, CAIRO_PDF_VERSION_1_4);
         cairo_pdf_surface_set_metadata(surface_, CAIRO_PDF_METADATA_TITLE, title.c_str());
         cairo_pdf_surface_set_metadata(surface_, CAIRO_PDF_METADATA_CREATE_DATE, "");  // the same bytes in every run
@@ -40,6 +42,12 @@ public:
         cairo_stroke(cairo_);
     }
 
+    void band(const Vec2& corner, const Vec2& size) override {
+        set_gray(0.92);
+        cairo_rectangle(cairo_, corner.x, corner.y, size.x, size.y);
+        cairo_fill(cairo_);
+    }
+
     void frame(const Vec2& corner, const Vec2& size) override {
         set_gray(0.467);
         cairo_rectangle(cairo_, corner.x, corner.y, size.x, size.y);
@@ -48,20 +56,36 @@ public:
 
     void series(const Series& series) override {
         set_color(series.color);
-        cairo_set_line_width(cairo_, 1.8);
+        cairo_set_line_width(cairo_, 1.8 * scale_);
         cairo_set_line_join(cairo_, CAIRO_LINE_JOIN_ROUND);
-        constexpr std::array<double, 2> kDashes{5, 3};
-        cairo_set_dash(cairo_, kDashes.data(), series.dashed ? 2 : 0, 0);
+        const std::array<double, 2> dashes{5 * scale_, 3 * scale_};
+        cairo_set_dash(cairo_, dashes.data(), series.dashed ? 2 : 0, 0);
         for (const auto& strand : series.strands) {
             if (strand.size() < 2) continue;
             for (const Vec2& place : strand) cairo_line_to(cairo_, place.x, place.y);
             cairo_stroke(cairo_);
         }
-        cairo_set_line_width(cairo_, 1);
+        cairo_set_line_width(cairo_, scale_);
         cairo_set_dash(cairo_, nullptr, 0, 0);
+        for (const auto& [from, to] : series.bars) {
+            const auto line = [&](const Vec2& a, const Vec2& b) {
+                cairo_move_to(cairo_, a.x, a.y);
+                cairo_line_to(cairo_, b.x, b.y);
+            };
+            line(from, to);
+            for (const Vec2& place : {from, to}) line(place - Vec2(kBarEnd * scale_, 0), place + Vec2(kBarEnd * scale_, 0));
+            cairo_stroke(cairo_);
+        }
         for (const Vec2& place : series.markers) {
             add_marker(series.shape, place);
             cairo_fill_preserve(cairo_);
+            cairo_stroke(cairo_);
+        }
+        for (const Vec2& place : series.hollow) {
+            add_marker(series.shape, place);
+            cairo_set_source_rgb(cairo_, 1, 1, 1);
+            cairo_fill_preserve(cairo_);
+            set_color(series.color);
             cairo_stroke(cairo_);
         }
     }
@@ -98,7 +122,7 @@ private:
 
     void set_gray(double gray) {
         cairo_set_source_rgb(cairo_, gray, gray, gray);
-        cairo_set_line_width(cairo_, 1);
+        cairo_set_line_width(cairo_, scale_);
     }
     // "#0072b2"
     void set_color(const std::string& color) {
@@ -108,11 +132,11 @@ private:
 
     void add_marker(std::size_t shape, const Vec2& place) {
         const auto polygon = [&](std::initializer_list<Vec2> corners) {
-            for (const Vec2& corner : corners) cairo_line_to(cairo_, place.x + corner.x, place.y + corner.y);
+            for (const Vec2& corner : corners) cairo_line_to(cairo_, place.x + scale_ * corner.x, place.y + scale_ * corner.y);
             cairo_close_path(cairo_);
         };
         if (shape % 4 == 0) {
-            cairo_arc(cairo_, place.x, place.y, kMarker, 0, 2 * std::numbers::pi);
+            cairo_arc(cairo_, place.x, place.y, kMarker * scale_, 0, 2 * std::numbers::pi);
             cairo_close_path(cairo_);
         }
         if (shape % 4 == 1) polygon({{-3.2, -3.2}, {3.2, -3.2}, {3.2, 3.2}, {-3.2, 3.2}});
@@ -120,6 +144,7 @@ private:
         if (shape % 4 == 3) polygon({{0, -4.4}, {4.2, 0}, {0, 4.4}, {-4.2, 0}});
     }
 
+    double scale_;
     std::string bytes_;
     cairo_surface_t* surface_;
     cairo_t* cairo_;
@@ -136,8 +161,8 @@ const char subvol_module_version[] = SUBVOL_VERSION;
 const subvol::detail::CairoFunctions* subvol_cairo() {
     using namespace subvol::detail;
     static constexpr CairoFunctions kFunctions{
-        [](const subvol::Vec2& size, const std::string& title) -> std::unique_ptr<PdfCanvas> {
-            return std::make_unique<CairoPage>(size, title);
+        [](const subvol::Vec2& size, double scale, const std::string& title) -> std::unique_ptr<PdfCanvas> {
+            return std::make_unique<CairoPage>(size, scale, title);
         }};
     return &kFunctions;
 }

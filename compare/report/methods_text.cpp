@@ -4,6 +4,7 @@
 #include <map>
 
 #include "report_parts.h"
+#include "subvol/study_report.h"
 
 namespace subvol::detail {
 
@@ -39,6 +40,13 @@ std::string range_of(const StudyResults& results, const std::string& key, int di
     return readable(least, digits) + (least < most ? " to " + readable(most, digits) : "");
 }
 
+/// How many references there are, and how many did not converge.
+std::pair<std::size_t, std::size_t> unconverged(const StudyResults& results) {
+    const auto references = reference_states(results);
+    return {references.size(),
+            static_cast<std::size_t>(std::ranges::count_if(references, [](const auto& one) { return !one.converged; }))};
+}
+
 std::string method_names(const StudyResults& results) {
     static const std::map<std::string, std::string> kWords{{"splat", "splatting of radial basis functions"},
                                                            {"sheets", "image-aligned sheet buffers"},
@@ -63,11 +71,20 @@ std::string methods_text(const StudyResults& results, const std::string& program
                        " hexahedra) were drawn with emission and absorption by " + methods + ", at " +
                        listed(different(results, "width")) + " × " + listed(different(results, "height")) + " pixels. ";
     text +=
-        "Each picture was compared, in linear RGB with peak 1 over all pixels, with a reference: rays through the dense grid "
-        "of the "
-        "limit volume, refined level by level until the root mean square of the picture's change was small enough (levels " +
-        range_of(results, "reference_level", 2) + "; last changes " + changes +
-        "). Errors below the last change are given as upper bounds. ";
+        "Each picture was compared, in linear RGB with peak 1 over all pixels unless a metric says otherwise, with a "
+        "reference: "
+        "rays through the dense grid of the limit volume, refined level by level until the root mean square of the picture's "
+        "change was below " +
+        listed(different(results, "reference.tolerance")) + " (levels " + range_of(results, "reference_level", 2) +
+        "; last changes " + changes + "). ";
+    const auto [references, open] = unconverged(results);
+    if (open > 0) {
+        text += std::to_string(open) + " of " + std::to_string(references) +
+                " references did not converge: they still changed by more at the last level that was allowed. ";
+    }
+    text +=
+        "The floor of each metric is its value between the reference and the picture of the level before; figures beyond their "
+        "floors are given as bounds. ";
     if (results.study.timed) text += "Times are of single runs, one after the other, on " + machine + ". ";
     return text + "All figures were computed by " + program + ".";
 }

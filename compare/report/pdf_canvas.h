@@ -17,8 +17,8 @@ public:
 
 /// The functions of the module that uses cairo; they throw nothing but std::bad_alloc.
 struct CairoFunctions {
-    /// size: of the page, in PostScript points
-    std::unique_ptr<PdfCanvas> (*page)(const Vec2& size, const std::string& title);
+    /// size: of the page, in PostScript points; scale: of lines and markers
+    std::unique_ptr<PdfCanvas> (*page)(const Vec2& size, double scale, const std::string& title);
 };
 
 }  // namespace subvol::detail

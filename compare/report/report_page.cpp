@@ -6,6 +6,7 @@
 #include "report_parts.h"
 #include "report_texts.h"
 #include "subvol/detail/text_codes.h"
+#include "subvol/picture_metrics.h"
 #include "subvol/study_report.h"
 
 namespace subvol {
@@ -125,6 +126,22 @@ std::string setup_html(const StudyResults& results, const ReportOptions& options
            (methods.empty() ? "" : "<h3>Methods, for a paper</h3>\n<p class=\"methods\">" + escaped(methods) + "</p>\n");
 }
 
+/// What the metrics of a study are.
+std::string metrics_html(const StudyResults& results) {
+    std::string rows;
+    for (const PictureMetric& metric : picture_metrics()) {
+        const bool used = std::ranges::any_of(results.study.cases, [&](const StudyCase& one) {
+            return one.has("metrics") &&
+                   ("," + one.text("metrics") + ",").find("," + std::string(metric.study)) != std::string::npos;
+        });
+        if (!used) continue;
+        rows += "<dt>" + escaped(metric.study) + "</dt><dd>" + escaped(metric.quantity) +
+                (metric.unit.empty() ? "" : ", " + escaped(metric.unit)) + ": " + escaped(metric.formula) +
+                (metric.source.empty() ? "" : " [" + escaped(metric.source) + "]") + "</dd>\n";
+    }
+    return rows.empty() ? "" : "<h3>Metrics</h3>\n<dl>\n" + rows + "</dl>\n";
+}
+
 std::string citation_html(const ReportOptions& options) {
     const std::string date = fact(options.versions, "date");
     std::string entry =
@@ -144,6 +161,11 @@ std::string study_html(const StudyResults& results, const std::filesystem::path&
     std::string html = "<section id=\"" + escaped(study.name) + "\">\n<h2>" + escaped(study.title) + "</h2>\n";
     if (!study.about.empty()) html += "<p>" + escaped(study.about) + "</p>\n";
     html += demands_html(results) + failures_html(results);
+    for (const ReferenceState& one : reference_states(results)) {
+        if (!one.converged)
+            html += "<p class=\"warning\">The reference of " + escaped(one.name) +
+                    " did not converge: figures of it are bounds.</p>\n";
+    }
     for (const StudyTable& table : make_tables(results)) html += table_html(table);
     std::size_t plots = 0;
     for (const StudyPlotSpec& plot : study.plots) {
@@ -151,7 +173,7 @@ std::string study_html(const StudyResults& results, const std::filesystem::path&
         for (std::size_t i = 0; i < plot_panels(results, plot).size(); ++i) names.push_back(plot_name(study, ++plots));
         html += plots_html(results, plot, names);
     }
-    html += setup_html(results, options);
+    html += setup_html(results, options) + metrics_html(results);
     if (study.pictures) html += pictures_html(results, folder);
     return html + "<p class=\"soft\">All numbers: <code>" + escaped(study.name) + "/results.csv</code>, <code>" +
            escaped(study.name) + "/costs.csv</code>.</p>\n</section>\n";

@@ -13,10 +13,12 @@
 #include <vector>
 
 #include "canvas.h"
+#include "subvol/detail/study_strands.h"
 #include "subvol/detail/text_codes.h"
 #include "subvol/error.h"
 #include "subvol/picture_metrics.h"
 #include "subvol/plot.h"
+#include "subvol/study_measures.h"
 #include "subvol/study_run.h"
 
 namespace subvol::detail {
@@ -24,90 +26,6 @@ namespace subvol::detail {
 namespace fs = std::filesystem;
 
 namespace {
-
-/// A value of a case as text; "" if it has none.
-std::string value_of(const StudyCase& one, const std::string& key) {
-    const auto found = one.values.find(key);
-    return found == one.values.end() ? "" : as_text(found->second);
-}
-
-bool is_number(const StudyCase& one, const std::string& key) {
-    const auto found = one.values.find(key);
-    return found != one.values.end() && std::holds_alternative<double>(found->second);
-}
-
-/// The keys whose values differ among the cases; those that are only shown do not count.
-std::map<std::string, std::size_t> varying(const Study& study, std::span<const std::size_t> cases) {
-    std::map<std::string, std::set<std::string>> values;
-    for (const std::size_t c : cases) {
-        for (const auto& [key, value] : study.cases[c].values) {
-            if (key != "label" && !key.starts_with("given.")) values[key].insert(as_text(value));
-        }
-    }
-    std::map<std::string, std::size_t> counts;
-    for (const auto& [key, different] : values) {
-        const bool everywhere =
-            std::ranges::all_of(cases, [&, &name = key](std::size_t c) { return study.cases[c].has(name); });
-        if (different.size() + (everywhere ? 0 : 1) > 1) counts[key] = different.size() + (everywhere ? 0 : 1);
-    }
-    return counts;
-}
-
-/// "" if no number differs.
-std::string swept_key(const Study& study, std::span<const std::size_t> cases, const std::string& x) {
-    const auto numeric = [&](const std::string& key) {
-        return std::ranges::all_of(cases, [&](std::size_t c) { return is_number(study.cases[c], key); });
-    };
-    if (!cases.empty() && numeric(x)) return x;
-    std::string best;
-    std::size_t most = 1;
-    for (const auto& [key, count] : varying(study, cases)) {
-        if (key == "seed" || count <= most || !numeric(key)) continue;
-        best = key;
-        most = count;
-    }
-    return best;
-}
-
-/// Whether a key has one value only for each value of the sweep, as a distance that shrinks with the spacing.
-bool follows(const Study& study, std::span<const std::size_t> cases, const std::string& key, const std::string& sweep) {
-    std::map<std::string, std::string> values;
-    return std::ranges::all_of(cases, [&](std::size_t c) {
-        const std::string value = value_of(study.cases[c], key);
-        return values.try_emplace(value_of(study.cases[c], sweep), value).first->second == value;
-    });
-}
-
-/// Cases that a line joins, in its order: they differ in the option that is swept, and in what follows from it.
-///
-/// cases: indices of a study's cases, those of one series of a plot
-/// x:     the key of the horizontal axis; if it is an option of the cases it is the one that is swept, else that is the number
-///        with the most values
-std::vector<std::vector<std::size_t>> strands_of(const Study& study, std::span<const std::size_t> cases, const std::string& x) {
-    const std::string sweep = swept_key(study, cases, x);
-    std::vector<std::string> apart;
-    for (const auto& [key, count] : varying(study, cases)) {
-        if (key != sweep && (sweep.empty() || !follows(study, cases, key, sweep))) apart.push_back(key);
-    }
-    std::vector<std::string> groups;
-    std::vector<std::vector<std::size_t>> strands;
-    for (const std::size_t c : cases) {
-        std::string group;
-        for (const std::string& key : apart) group += value_of(study.cases[c], key) + '\n';
-        const auto found = std::ranges::find(groups, group);
-        if (found == groups.end()) {
-            groups.push_back(group);
-            strands.push_back({c});
-        } else {
-            strands[static_cast<std::size_t>(found - groups.begin())].push_back(c);
-        }
-    }
-    if (sweep.empty()) return strands;
-    for (auto& strand : strands) {
-        std::ranges::stable_sort(strand, {}, [&](std::size_t c) { return std::get<double>(study.cases[c].values.at(sweep)); });
-    }
-    return strands;
-}
 
 /// A PNG as a data URI.
 ///
@@ -123,12 +41,6 @@ std::string png_uri(const std::filesystem::path& file) {
     content << in.rdbuf();
     if (!in) throw Error(ErrorCode::Io, "cannot be read", file.string());
     return "data:image/png;base64," + base64(content.str());
-}
-
-std::string heading(const StudyPlotSpec& spec, const std::string& key) {
-    const auto found = spec.headings.find(key);
-    if (found != spec.headings.end()) return found->second;
-    return spaced(key);
 }
 
 std::optional<double> number_of(const StudyCase& one, const CaseResult& result, const std::string& key) {
@@ -148,23 +60,73 @@ T& named(std::vector<std::pair<std::string, T>>& all, const std::string& name) {
 
 using Series = std::vector<std::pair<std::string, std::vector<std::size_t>>>;  // names and cases
 
+/// The values of the horizontal axis, if they are few options.
+std::vector<double> option_ticks(const StudyResults& results, const std::string& key, const Series& series) {
+    constexpr std::size_t kFew = 8;
+    std::set<double> values;
+    for (const auto& [name, cases] : series) {
+        for (const std::size_t c : cases) {
+            const StudyCase& one = results.study.cases[c];
+            const auto found = one.values.find(key);
+            const double* const number = found == one.values.end() ? nullptr : std::get_if<double>(&found->second);
+            if (number == nullptr) return {};
+            values.insert(*number);
+        }
+    }
+    return values.size() <= kFew ? std::vector(values.begin(), values.end()) : std::vector<double>();
+}
+
+/// The floor that all figures of a plot have in common: the worst of those that their references have.
+void add_floor(const StudyResults& results, const std::string& key, const Series& series, Plot& plot) {
+    const PictureMetric* const metric = find_metric(key);
+    if (metric == nullptr) return;
+    plot.floor_above = metric->more_is_better;
+    for (const auto& [name, cases] : series) {
+        for (const std::size_t c : cases) {
+            const auto known = accuracy(results.results[c], key);
+            if (!known || !std::isfinite(*known)) continue;
+            const double worst = plot.floor.value_or(*known);
+            plot.floor = plot.floor_above ? std::min(worst, *known) : std::max(worst, *known);
+        }
+    }
+    plot.floor_name = "beyond the floor of a reference; hollow: bounds";
+}
+
+/// Adds the place of some cases to a line: their means, if there are several.
+void add_place(const StudyResults& results, const StudyPlotSpec& spec, std::span<const std::size_t> cases, PlotLine& line) {
+    std::vector<double> x, y;
+    bool bound = false;
+    for (const std::size_t c : cases) {
+        x.push_back(*number_of(results.study.cases[c], results.results[c], spec.x));
+        y.push_back(*number_of(results.study.cases[c], results.results[c], spec.y));
+        bound = bound || is_beyond_floor(results.results[c], spec.y);
+    }
+    const Spread mean = mean_and_spread(y);
+    if (bound) line.bounds.push_back(line.x.size());
+    line.x.push_back(mean_and_spread(x).mean);
+    line.y.push_back(mean.mean);
+    line.spreads.push_back(mean.deviation);
+}
+
 Plot plot_of(const StudyResults& results, const StudyPlotSpec& spec, const std::string& panel, const Series& series) {
+    const auto label = [&](const std::string& key) {
+        return spec.headings.contains(key) ? spec.headings.at(key) : axis_label(results.study, key);
+    };
     Plot plot{.title = spec.title + (panel.empty() ? "" : ": " + panel),
-              .x_label = heading(spec, spec.x),
-              .y_label = heading(spec, spec.y),
+              .x_label = label(spec.x),
+              .y_label = label(spec.y),
               .log_x = spec.log_x,
               .log_y = spec.log_y,
               .fit = spec.fit,
-              .lines = {}};
+              .lines = {},
+              .x_ticks = option_ticks(results, spec.x, series)};
+    add_floor(results, spec.y, series, plot);
     for (const auto& [name, cases] : series) {
         PlotLine& line = plot.lines.emplace_back();
         line.name = name;
-        for (const auto& strand : strands_of(results.study, cases, spec.x)) {
+        for (const StudyStrand& strand : strands_of(results.study, cases, spec.x, spec.average)) {
             if (!line.x.empty()) line.breaks.push_back(line.x.size());
-            for (const std::size_t c : strand) {
-                line.x.push_back(*number_of(results.study.cases[c], results.results[c], spec.x));
-                line.y.push_back(*number_of(results.study.cases[c], results.results[c], spec.y));
-            }
+            for (const auto& place : strand) add_place(results, spec, place, line);
         }
     }
     return plot;
@@ -195,6 +157,7 @@ std::string case_title(const StudyCase& study_case) {
 
 std::string figures(const CaseResult& result) {
     std::string words;
+    if (result.notes.contains("own_reference")) return result.notes.at("own_reference");
     for (const auto& [key, name] :
          {std::pair{"psnr", "PSNR"}, {"psnr_interior", "interior"}, {"flip", "FLIP"}, {"rmse", "RMSE"}}) {
         const auto found = result.metrics.find(key);
@@ -207,15 +170,18 @@ std::string figures(const CaseResult& result) {
     return words;
 }
 
-std::string triple_html(const fs::path& ours, const fs::path& reference, const fs::path& difference, const std::string& title) {
+std::string triple_html(const fs::path& ours, const fs::path& reference,
+                        const std::vector<std::pair<fs::path, std::string>>& maps, const std::string& title) {
+    std::string differences;
+    for (const auto& [file, caption] : maps)
+        differences += image_html(file, title + ", " + caption) + "<figcaption>" + caption + "</figcaption>";
     return "<div class=\"triple\">\n<figure class=\"both ours\">" + image_html(ours, title) +
            "<figcaption>ours</figcaption></figure>\n" + "<figure class=\"both reference\">" +
            image_html(reference, title + ", reference") + "<figcaption>reference</figcaption></figure>\n" +
            "<div class=\"slide\"><input type=\"range\" min=\"0\" max=\"100\" value=\"50\" "
            "aria-label=\"Part of the picture, from the left, that shows "
            "ours\"><label><span>ours</span><span>reference</span></label></div>\n" +
-           "<figure class=\"difference\">" + image_html(difference, title + ", difference") +
-           "<figcaption>difference (largest channel)</figcaption></figure>\n</div>\n";
+           "<figure class=\"difference\">" + differences + "</figure>\n</div>\n";
 }
 
 }  // namespace
@@ -267,9 +233,12 @@ std::string plots_html(const StudyResults& results, const StudyPlotSpec& spec, c
     for (std::size_t i = 0; i < panels.size(); ++i) {
         html += "<figure>" + plot_svg(panels[i].plot) + "<figcaption>";
         if (!panels[i].name.empty()) html += escaped(panels[i].name) + " · ";
-        html += "<code>" + escaped(files[i]) + ".svg</code>, <code>.pdf</code></figcaption></figure>\n";
+        html += "<code>" + escaped(files[i]) +
+                ".svg</code>, <code>.pdf</code>, <code>.tex</code>, <code>.csv</code></figcaption></figure>\n";
     }
-    return html + "</div>\n";
+    html += "</div>\n<p class=\"files\">For print: <code>_84mm.pdf</code>, <code>_174mm.pdf</code>.";
+    if (!spec.average.empty()) html += " Points are means, bars their standard deviation.";
+    return html + " Hollow points are bounds: the grey area is beyond what the reference can tell.</p>\n";
 }
 
 std::string pictures_html(const StudyResults& results, const fs::path& folder) {
@@ -289,7 +258,11 @@ std::string pictures_html(const StudyResults& results, const fs::path& folder) {
         const fs::path reference = result.files.contains("reference")
                                        ? study_folder / result.files.at("reference")
                                        : folder / "references" / (result.notes.at("reference") + ".png");
-        html += triple_html(ours, reference, study_folder / result.files.at("difference"), title);
+        std::vector<std::pair<fs::path, std::string>> maps{
+            {study_folder / result.files.at("difference"), "difference (largest channel)"}};
+        if (result.files.contains("sign"))
+            maps.emplace_back(study_folder / result.files.at("sign"), "its sign (orange: too bright, blue: too dark)");
+        html += triple_html(ours, reference, maps, title);
         html += "<p class=\"soft\">" + escaped(figures(result)) + "</p></div>\n";
     }
     return html.empty() ? html : "<h3>Pictures</h3>\n<div class=\"cases\">\n" + html + "</div>\n";

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cmath>
 #include <set>
 
+#include "subvol/study_report.h"
 #include "subvol/study_table.h"
 
 namespace subvol {
@@ -34,25 +36,56 @@ std::string light_words(const StudyCase& study_case) {
 
 }  // namespace
 
-std::optional<StudyTable> setup_table(const StudyResults& results) {
-    StudyTable table{.name = results.study.name + "_setup",
-                     .title = "Meshes, cameras and references",
-                     .caption =
-                         "Each picture is compared with its reference. The reference is refined level by level; the RMS of its "
-                         "last change says how well the figures are known: errors below it are marked ≤, a PSNR above it ≥.",
-                     .columns = {"mesh", "cells", "points", "camera", "transfer function", "pixels", "reference level",
-                                 "last change (RMS)", "known to (dB)"},
-                     .rows = {}};
+std::vector<ReferenceState> reference_states(const StudyResults& results) {
+    std::vector<ReferenceState> all;
     std::set<std::string> known;
     for (std::size_t i = 0; i < results.results.size(); ++i) {
         const StudyCase& study_case = results.study.cases[i];
         const CaseResult& result = results.results[i];
         const auto reference = result.notes.find("reference");
         if (reference == result.notes.end() || !known.insert(reference->second).second) continue;
-        const double change = metric(result, "reference_change");
-        table.rows.push_back({spaced(study_case.text("input")), metric(result, "cells"), metric(result, "points"),
-                              camera_words(study_case), light_words(study_case), size_words(study_case),
-                              metric(result, "reference_level"), change, -20 * std::log10(change)});
+        const bool converged = !result.metrics.contains("reference_converged") || metric(result, "reference_converged") == 1;
+        std::string name;
+        for (const char* key : {"input", "view", "tf"}) {
+            if (study_case.has(key)) name += (name.empty() ? "" : ", ") + spaced(as_text(study_case.values.at(key)));
+        }
+        all.push_back({name, converged});
+    }
+    return all;
+}
+
+std::optional<StudyTable> setup_table(const StudyResults& results) {
+    StudyTable table{
+        .name = results.study.name + "_setup",
+        .title = "Meshes, cameras and references",
+        .caption =
+            "Each picture is compared with its reference. The reference is refined level by level; each metric of it "
+            "and the picture of the level before is the floor of that metric: errors below it are marked ≤, a PSNR "
+            "or an SSIM above it ≥.",
+        .columns = {"mesh", "cells", "points", "camera", "eye, target, up, field of view", "transfer function", "pixels",
+                    "reference level", "converged", "last change (RMS)", "known to (dB)"},
+        .rows = {}};
+    std::vector<std::string> metrics;
+    for (const CaseResult& result : results.results) {
+        for (const auto& [key, value] : result.metrics) {
+            if (key.starts_with("floor_") && std::ranges::find(metrics, key) == metrics.end()) metrics.push_back(key);
+        }
+    }
+    for (const std::string& key : metrics) table.columns.push_back("floor of " + key.substr(6));
+    std::set<std::string> known;
+    for (std::size_t i = 0; i < results.results.size(); ++i) {
+        const StudyCase& study_case = results.study.cases[i];
+        const CaseResult& result = results.results[i];
+        const auto reference = result.notes.find("reference");
+        if (reference == result.notes.end() || !known.insert(reference->second).second) continue;
+        const bool converged = !result.metrics.contains("reference_converged") || metric(result, "reference_converged") == 1;
+        const auto camera = result.notes.find("camera_used");
+        auto& row = table.rows.emplace_back(std::vector<StudyTable::Cell>{
+            spaced(study_case.text("input")), metric(result, "cells"), metric(result, "points"), camera_words(study_case),
+            camera == result.notes.end() ? "–" : camera->second, light_words(study_case), size_words(study_case),
+            metric(result, "reference_level"), std::string(converged ? "yes" : "no"), metric(result, "reference_change"),
+            -20 * std::log10(metric(result, "reference_change"))});
+        for (const std::string& key : metrics) row.emplace_back(metric(result, key));
     }
     if (table.rows.empty()) return {};
     return table;

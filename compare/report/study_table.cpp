@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "subvol/detail/number_text.h"
+#include "subvol/picture_metrics.h"
 
 namespace subvol {
 
@@ -38,61 +40,130 @@ std::size_t place_in(std::vector<std::string>& all, const std::string& one) {
     return all.size() - 1;
 }
 
-StudyTable make_table(const StudyResults& results, const StudyTableSpec& spec) {
-    StudyTable table;
-    table.title = spec.title;
-    table.caption = spec.caption;
-    table.digits = spec.digits;
-    std::vector<std::size_t> chosen;
-    std::vector<std::string> groups, across;
-    for (std::size_t i = 0; i < results.results.size(); ++i) {
-        if (!matches(results.study.cases[i], results.results[i], spec.where)) continue;
-        chosen.push_back(i);
-        if (spec.across.empty()) continue;
-        // A failed case may have no such value.
-        if (const auto which = value_text(results.study.cases[i], results.results[i], spec.across); !which.empty()) {
-            place_in(across, which);
+/// Finds the columns of a table, and fills its cells with what one case or several have there.
+class TableMaker {
+public:
+    TableMaker(const StudyResults& results, const StudyTableSpec& spec) : results_(results), spec_(spec) {
+        table_.title = spec.title;
+        table_.caption = spec.caption;
+        table_.digits = spec.digits;
+    }
+
+    StudyTable table() {
+        const std::vector<std::size_t> chosen = chosen_cases();
+        name_columns();
+        for (const std::size_t i : chosen) add(i);
+        for (const auto& [place, cases] : cells_) fill(place, cases);
+        if (!table_.spreads.empty()) {
+            table_.caption += (table_.caption.empty() ? "" : " ") + std::string("Means, ± their standard deviation");
+            if (!spec_.average.empty()) table_.caption += " over the values of " + listed(spec_.average);
+            table_.caption += ".";
+        }
+        return std::move(table_);
+    }
+
+private:
+    using Place = std::pair<std::size_t, std::size_t>;
+
+    static std::string listed(const std::vector<std::string>& keys) {
+        std::string text;
+        for (const std::string& key : keys) text += (text.empty() ? "" : ", ") + spaced(key);
+        return text;
+    }
+
+    std::vector<std::size_t> chosen_cases() {
+        std::vector<std::size_t> chosen;
+        for (std::size_t i = 0; i < results_.results.size(); ++i) {
+            if (!matches(results_.study.cases[i], results_.results[i], spec_.where)) continue;
+            chosen.push_back(i);
+            if (spec_.across.empty()) continue;
+            // A failed case may have no such value.
+            if (const auto which = value_text(results_.study.cases[i], results_.results[i], spec_.across); !which.empty()) {
+                place_in(across_, which);
+            }
+        }
+        return chosen;
+    }
+
+    void name_columns() {
+        for (const auto* keys : {&spec_.rows, &spec_.columns}) {
+            for (const std::string& key : *keys) table_.columns.push_back(heading(spec_, key));
+        }
+        for (const std::string& which : across_) {
+            for (const std::string& value : spec_.values) {
+                const std::string label = spec_.headings.contains(which) ? spec_.headings.at(which) : which;
+                table_.columns.push_back(spec_.values.size() == 1 ? label : label + ": " + heading(spec_, value));
+            }
         }
     }
-    for (const auto* keys : {&spec.rows, &spec.columns}) {
-        for (const std::string& key : *keys) table.columns.push_back(heading(spec, key));
-    }
-    const std::size_t fixed = table.columns.size();
-    for (const std::string& which : across) {
-        for (const std::string& value : spec.values) {
-            const std::string label = spec.headings.contains(which) ? spec.headings.at(which) : which;
-            table.columns.push_back(spec.values.size() == 1 ? label : label + ": " + heading(spec, value));
-        }
-    }
-    const auto put = [&](std::size_t r, std::size_t c, std::size_t i, const std::string& key) {
-        table.rows[r][c] = cell_of(results.study.cases[i], results.results[i], key);
-        if (const auto mark = mark_of(results.results[i], key, table.digits)) table.marks[{r, c}] = *mark;
-    };
-    for (const std::size_t i : chosen) {
-        const StudyCase& study_case = results.study.cases[i];
-        const CaseResult& result = results.results[i];
+
+    void add(std::size_t i) {
+        const StudyCase& study_case = results_.study.cases[i];
+        const CaseResult& result = results_.results[i];
         std::string group;
-        for (const std::string& key : spec.rows) group += value_text(study_case, result, key) + '\t';
-        const std::size_t r = place_in(groups, group);
-        if (r == table.rows.size()) {
-            auto& row = table.rows.emplace_back(table.columns.size(), std::nan(""));
-            for (std::size_t k = 0; k < spec.rows.size(); ++k) row[k] = cell_of(study_case, result, spec.rows[k]);
+        for (const std::string& key : spec_.rows) group += value_text(study_case, result, key) + '\t';
+        const std::size_t r = place_in(groups_, group);
+        if (r == table_.rows.size()) {
+            auto& row = table_.rows.emplace_back(table_.columns.size(), std::nan(""));
+            for (std::size_t k = 0; k < spec_.rows.size(); ++k) row[k] = cell_of(study_case, result, spec_.rows[k]);
         }
-        const auto& row = table.rows[r];
-        for (std::size_t k = 0; k < spec.columns.size(); ++k) {  // from the first case that has the value
-            const auto& cell = row[spec.rows.size() + k];
-            const auto* number = std::get_if<double>(&cell);
-            if (number != nullptr && std::isnan(*number)) put(r, spec.rows.size() + k, i, spec.columns[k]);
-        }
-        const auto which = spec.across.empty() ? "" : value_text(study_case, result, spec.across);
-        if (which.empty()) continue;
-        const std::size_t a = place_in(across, which);
-        for (std::size_t v = 0; v < spec.values.size(); ++v) {
-            put(r, fixed + a * spec.values.size() + v, i, spec.values[v]);
-        }
+        const auto put = [&](std::size_t c, const std::string& key) {
+            keys_[c] = key;
+            if (find_value(study_case, result, key) || mark_of(result, key)) cells_[{r, c}].push_back(i);
+        };
+        for (std::size_t k = 0; k < spec_.columns.size(); ++k) put(spec_.rows.size() + k, spec_.columns[k]);
+        const auto which = spec_.across.empty() ? "" : value_text(study_case, result, spec_.across);
+        if (which.empty()) return;
+        const std::size_t first = spec_.rows.size() + spec_.columns.size() + place_in(across_, which) * spec_.values.size();
+        for (std::size_t v = 0; v < spec_.values.size(); ++v) put(first + v, spec_.values[v]);
     }
-    return table;
-}
+
+    void fill(const Place& place, const std::vector<std::size_t>& cases) {
+        const std::string& key = keys_.at(place.second);
+        StudyTable::Cell& cell = table_.rows[place.first][place.second];
+        cell = cell_of(results_.study.cases[cases.front()], results_.results[cases.front()], key);
+        std::vector<std::string> texts;
+        for (const std::size_t i : cases) (void)place_in(texts, value_text(results_.study.cases[i], results_.results[i], key));
+        if (texts.size() == 1) {
+            if (const auto mark = mark_of(results_.results[cases.front()], key, table_.digits)) table_.marks[place] = *mark;
+            return;
+        }
+        if (std::holds_alternative<std::string>(cell)) {
+            std::string all;
+            for (const std::string& text : texts) all += (all.empty() ? "" : ", ") + text;
+            cell = all;
+            return;
+        }
+        fill_mean(place, cases, key);
+    }
+
+    /// The mean, of floors where less is known; the mark has the standard deviation of the cases.
+    void fill_mean(const Place& place, const std::vector<std::size_t>& cases, const std::string& key) {
+        std::vector<double> values;
+        bool bounded = false;
+        for (const std::size_t i : cases) {
+            const CaseResult& result = results_.results[i];
+            const bool beyond = is_beyond_floor(result, key);
+            bounded = bounded || beyond;
+            const auto value = find_value(results_.study.cases[i], result, key);
+            const double* const number = value ? std::get_if<double>(&*value) : nullptr;
+            if (number != nullptr) values.push_back(beyond ? *accuracy(result, key) : *number);
+        }
+        const auto [mean, spread] = mean_and_spread(values);
+        table_.rows[place.first][place.second] = mean;
+        table_.spreads[place] = spread;
+        const PictureMetric* const metric = find_metric(key);
+        const std::string bound = !bounded ? "" : metric != nullptr && metric->more_is_better ? "≥ " : "≤ ";
+        table_.marks[place] = bound + readable(mean, table_.digits) + " ± " + readable(spread, 2);
+    }
+
+    const StudyResults& results_;
+    const StudyTableSpec& spec_;
+    StudyTable table_;
+    std::vector<std::string> groups_, across_;
+    std::map<std::size_t, std::string> keys_;          // of columns
+    std::map<Place, std::vector<std::size_t>> cells_;  // the cases of each
+};
 
 }  // namespace
 
@@ -124,7 +195,7 @@ bool matches(const StudyCase& study_case, const CaseResult& result, const StudyF
 std::vector<StudyTable> make_tables(const StudyResults& results) {
     std::vector<StudyTable> tables;
     for (const StudyTableSpec& spec : results.study.tables) {
-        tables.push_back(make_table(results, spec));
+        tables.push_back(TableMaker(results, spec).table());
         tables.back().name = results.study.name + (tables.size() == 1 ? "" : "_" + std::to_string(tables.size()));
     }
     return tables;
@@ -145,6 +216,7 @@ std::string shown(const StudyTable& table, std::size_t row, std::size_t column) 
 }
 
 std::optional<double> accuracy(const CaseResult& result, const std::string& metric) {
+    if (const auto floor = result.metrics.find("floor_" + metric); floor != result.metrics.end()) return floor->second;
     const auto change = result.metrics.find("reference_change");
     if (change == result.metrics.end() || !(change->second > 0)) return {};
     const double rms = change->second;
@@ -154,13 +226,30 @@ std::optional<double> accuracy(const CaseResult& result, const std::string& metr
     return {};
 }
 
-std::optional<std::string> mark_of(const CaseResult& result, const std::string& key, int digits) {
+bool is_beyond_floor(const CaseResult& result, const std::string& key) {
     const auto known = accuracy(result, key);
     const auto found = result.metrics.find(key);
-    if (!known || found == result.metrics.end()) return {};
-    const bool psnr = key == "psnr";
-    if (psnr ? found->second <= *known : found->second >= *known) return {};
-    return (psnr ? "≥ " : "≤ ") + readable(*known, std::min(digits, 2 + (psnr ? 1 : 0)));
+    const PictureMetric* const metric = find_metric(key);
+    if (!known || !std::isfinite(*known) || metric == nullptr || found == result.metrics.end()) return false;
+    return metric->more_is_better ? found->second >= *known : *known > 0 && found->second <= *known;
+}
+
+std::optional<std::string> mark_of(const CaseResult& result, const std::string& key, int digits) {
+    const bool missing = !result.metrics.contains(key) && find_metric(key) != nullptr;
+    if (missing && result.notes.contains("own_reference")) return "= reference";
+    if (!is_beyond_floor(result, key)) return {};
+    const PictureMetric* const metric = find_metric(key);
+    const int most = !metric->more_is_better ? 2 : metric->unit.empty() ? 6 : 3;  // of SSIM much is near 1
+    return (metric->more_is_better ? "≥ " : "≤ ") + readable(*accuracy(result, key), std::min(digits, most));
+}
+
+Spread mean_and_spread(std::span<const double> values) {
+    const auto count = static_cast<double>(values.size());
+    double sum = 0, squares = 0;
+    for (const double value : values) sum += value;
+    const double mean = sum / count;
+    for (const double value : values) squares += (value - mean) * (value - mean);
+    return {mean, values.size() < 2 ? 0 : std::sqrt(squares / (count - 1))};
 }
 
 std::string as_text(const StudyTable& table) {
@@ -185,15 +274,27 @@ std::string as_text(const StudyTable& table) {
 }
 
 std::string as_csv(const StudyTable& table) {
+    std::set<std::size_t> spread;  // columns with means
+    for (const auto& [place, value] : table.spreads) spread.insert(place.second);
     std::string text;
-    const auto put = [&](const std::string& field, bool last) {
+    const auto put = [&](const std::string& field) {
         std::string quoted;
         for (const char c : field) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-        text += '"' + quoted + '"' + (last ? "\n" : ",");
+        text += (text.empty() || text.back() == '\n' ? "\"" : ",\"") + quoted + '"';
     };
-    for (std::size_t c = 0; c < table.columns.size(); ++c) put(table.columns[c], c + 1 == table.columns.size());
-    for (const auto& row : table.rows) {
-        for (std::size_t c = 0; c < row.size(); ++c) put(readable(row[c], table.digits), c + 1 == row.size());
+    for (std::size_t c = 0; c < table.columns.size(); ++c) {
+        put(table.columns[c]);
+        if (spread.contains(c)) put(table.columns[c] + " ±");
+    }
+    text += '\n';
+    for (std::size_t r = 0; r < table.rows.size(); ++r) {
+        for (std::size_t c = 0; c < table.rows[r].size(); ++c) {
+            put(readable(table.rows[r][c], table.digits));
+            if (!spread.contains(c)) continue;
+            const auto found = table.spreads.find({r, c});
+            put(found == table.spreads.end() ? "–" : readable(found->second, table.digits));
+        }
+        text += '\n';
     }
     return text;
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <initializer_list>
 
 #include "canvas.h"
 #include "subvol/detail/number_text.h"
@@ -13,17 +14,22 @@ std::string at(const Vec2& place) {
     return coordinate(place.x) + " " + coordinate(place.y);
 }
 
-std::string marker(std::size_t shape, const Vec2& place) {
-    const auto path = [&](const std::string& d) { return "<path d=\"M" + at(place) + d + "z\"/>"; };
+std::string marker(std::size_t shape, const Vec2& place, double scale) {
+    const auto path = [&](std::initializer_list<Vec2> corners) {
+        std::string d;
+        for (const Vec2& corner : corners) d += (d.empty() ? "M" : "L") + at(place + scale * corner);
+        return "<path d=\"" + d + "z\"/>";
+    };
     switch (shape % 4) {
         case 0:
-            return "<circle cx=\"" + coordinate(place.x) + "\" cy=\"" + coordinate(place.y) + "\" r=\"3.4\"/>";
+            return "<circle cx=\"" + coordinate(place.x) + "\" cy=\"" + coordinate(place.y) + "\" r=\"" +
+                   coordinate(3.4 * scale) + "\"/>";
         case 1:
-            return path("m-3.2-3.2h6.4v6.4h-6.4");
+            return path({{-3.2, -3.2}, {3.2, -3.2}, {3.2, 3.2}, {-3.2, 3.2}});
         case 2:
-            return path("m0-4.2l4 7h-8");
+            return path({{0, -4.2}, {4, 2.8}, {-4, 2.8}});
         default:
-            return path("m0-4.4l4.2 4.4l-4.2 4.4l-4.2-4.4");
+            return path({{0, -4.4}, {4.2, 0}, {0, 4.4}, {-4.2, 0}});
     }
 }
 
@@ -54,25 +60,38 @@ void SvgCanvas::grid(const Vec2& from, const Vec2& to) {
             coordinate(to.x) + "\" y2=\"" + coordinate(to.y) + "\"/>\n";
 }
 
+void SvgCanvas::band(const Vec2& corner, const Vec2& size) {
+    svg_ += "<rect class=\"band\" x=\"" + coordinate(corner.x) + "\" y=\"" + coordinate(corner.y) + "\" width=\"" +
+            coordinate(size.x) + "\" height=\"" + coordinate(size.y) + "\"/>\n";
+}
+
 void SvgCanvas::frame(const Vec2& corner, const Vec2& size) {
     svg_ += "<rect class=\"frame\" x=\"" + coordinate(corner.x) + "\" y=\"" + coordinate(corner.y) + "\" width=\"" +
             coordinate(size.x) + "\" height=\"" + coordinate(size.y) + "\"/>\n";
 }
 
 void SvgCanvas::series(const Series& series) {
-    std::string path, markers;
+    std::string path, markers, hollow, bars;
     for (const auto& strand : series.strands) {
         for (std::size_t i = 0; i < strand.size(); ++i) path += (i == 0 ? "M" : "L") + at(strand[i]);
     }
-    for (const Vec2& place : series.markers) markers += marker(series.shape, place);
+    for (const auto& [from, to] : series.bars) {
+        const double end = kBarEnd * scale_;
+        bars += "M" + at(from) + "L" + at(to);
+        for (const Vec2& place : {from, to}) bars += "M" + at(place - Vec2(end, 0)) + "L" + at(place + Vec2(end, 0));
+    }
+    for (const Vec2& place : series.markers) markers += marker(series.shape, place, scale_);
+    for (const Vec2& place : series.hollow) hollow += marker(series.shape, place, scale_);
+    if (!bars.empty()) bars = "<path class=\"bars\" fill=\"none\" d=\"" + bars + "\"/>";
+    if (!hollow.empty()) hollow = "<g class=\"hollow\" fill=\"#fff\">" + hollow + "</g>";
     svg_ += "<g stroke=\"" + series.color + "\" fill=\"" + series.color + "\"><path class=\"line\" fill=\"none\" d=\"" + path +
-            "\"" + (series.dashed ? " stroke-dasharray=\"5 3\"" : "") + "/>" + markers + "</g>\n";
+            "\"" + (series.dashed ? " stroke-dasharray=\"5 3\"" : "") + "/>" + bars + markers + hollow + "</g>\n";
 }
 
 void SvgCanvas::text(const Vec2& place, Anchor anchor, const std::string& words, double size, bool upward) {
     const char* name = anchor == Anchor::Start ? "start" : anchor == Anchor::Middle ? "middle" : "end";
     svg_ += "<text x=\"" + coordinate(place.x) + "\" y=\"" + coordinate(place.y) + "\" text-anchor=\"" + name + "\"" +
-            (size == kPlotFont ? "" : " font-size=\"" + coordinate(size) + "\"") +
+            (size == font_ ? "" : " font-size=\"" + coordinate(size) + "\"") +
             (upward ? " transform=\"rotate(-90 " + at(place) + ")\"" : "") + ">" + escaped(words) + "</text>\n";
 }
 

@@ -46,7 +46,9 @@ constexpr std::array<Sign, 32> kSigns{{{"\\", "\\textbackslash{}"},
                                        {"½", "$\\frac12$"},
                                        {"…", "\\dots{}"}}};
 
-std::string tex(std::string_view text) {
+}  // namespace
+
+std::string tex_text(std::string_view text) {
     std::string out;
     while (!text.empty()) {
         const Sign* found = nullptr;
@@ -64,8 +66,6 @@ std::string tex(std::string_view text) {
     return out;
 }
 
-}  // namespace
-
 std::string as_tex(const StudyTable& table) {
     std::string columns;
     for (std::size_t c = 0; c < table.columns.size(); ++c) {
@@ -75,12 +75,13 @@ std::string as_tex(const StudyTable& table) {
     }
     std::string text =
         "% \\usepackage{booktabs}, and \\usepackage{graphicx} for wide tables\n\\begin{table}\n\\centering\n\\caption{" +
-        tex(table.title) + (table.caption.empty() ? "" : ". " + tex(table.caption)) + "}\n\\label{tab:" + table.name + "}\n";
+        tex_text(table.title) + (table.caption.empty() ? "" : ". " + tex_text(table.caption)) + "}\n\\label{tab:" + table.name +
+        "}\n";
     constexpr std::size_t kNarrow = 6;  // wider tables are scaled to the width of the text
     const bool wide = table.columns.size() > kNarrow;
     text += std::string(wide ? "\\resizebox{\\linewidth}{!}{%\n" : "") + "\\begin{tabular}{" + columns + "}\n\\toprule\n";
     const auto line = [&](const auto& cell) {
-        for (std::size_t c = 0; c < table.columns.size(); ++c) text += (c > 0 ? " & " : "") + tex(cell(c));
+        for (std::size_t c = 0; c < table.columns.size(); ++c) text += (c > 0 ? " & " : "") + tex_text(cell(c));
         text += " \\\\\n";
     };
     line([&](std::size_t c) { return table.columns[c]; });

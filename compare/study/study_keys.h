@@ -45,6 +45,9 @@ struct StudyMethod {
 [[nodiscard]] StudyMethod find_method(const std::string& name, const std::string& path,
                                       std::span<const PictureMethod> pictures);
 
+/// All methods: those of pictures, then the others.
+[[nodiscard]] std::vector<StudyMethod> all_methods(std::span<const PictureMethod> pictures);
+
 /// Refuses keys of a case that have no effect with its others. given: the object from which the case was read
 void check_needs(const StudyMethod& method, const StudyValues& values, const Json& given, const std::string& path);
 
@@ -71,6 +74,9 @@ void check_object(const Json& json, const std::string& path, std::span<const std
 
 /// Reads the parts of a study that describe the report.
 void read_presentation(const Json& json, const std::string& path, Study& study);
+
+/// Refuses tables, plots and demands of keys that no case has, and those that would merge different cases.
+void check_presentation(const Study& study, const std::string& root);
 
 /// The id of a case: a hash of its values, without those that are only shown.
 [[nodiscard]] std::string case_id(const StudyValues& values);

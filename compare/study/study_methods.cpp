@@ -122,7 +122,7 @@ StudyMethod as_study_method(const PictureMethod& method) {
     return made;
 }
 
-/// The methods that make no pictures.
+/// The methods that no renderer of meshes has: the closed form of a model, pictures made elsewhere, and those without pictures.
 const std::vector<StudyMethod>& own_methods() {
     const auto make = []() -> std::vector<StudyMethod> {
         const Keys kernels = kernel_keys();
@@ -136,7 +136,10 @@ const std::vector<StudyMethod>& own_methods() {
         const Keys fit{Key{"shape", KeyKind::Text, 0, 0, "gaussian", shapes}, described<FitOptions>("extent"),
                        described<FitOptions>("sign_slip", false), described<FitOptions>("terms"), whole("rank", 1, 16)};
         using enum StudyKind;
-        return {{"field", Fields, kernels + places + Keys{flag("every_second")}},
+        const Key repeat = whole("repeat", 1, 100, 1.0), samples = whole("samples", 1, 16, 1.0);
+        return {{"exact", Pictures, {number("step", 0, 1, 1e-3), samples, repeat}},
+                {"file", Pictures, {Key{"file"}}},
+                {"field", Fields, kernels + places + Keys{flag("every_second")}},
                 {"volume", Fields, kernels + volume},
                 {"voxels", Fields, Keys{resolution, half} + places},
                 {"values", Fields, {choice("rule", {"paper", "cubic", "samples"}), kernel("paper_bc")}},
@@ -150,6 +153,13 @@ const std::vector<StudyMethod>& own_methods() {
 }
 
 }  // namespace
+
+std::vector<StudyMethod> all_methods(std::span<const PictureMethod> pictures) {
+    std::vector<StudyMethod> all;
+    for (const PictureMethod& method : pictures) all.push_back(as_study_method(method));
+    all.insert(all.end(), own_methods().begin(), own_methods().end());
+    return all;
+}
 
 StudyMethod find_method(const std::string& name, const std::string& path, std::span<const PictureMethod> pictures) {
     std::vector<std::string> names;

@@ -24,11 +24,12 @@ namespace {
 constexpr std::uintmax_t kMaxFileBytes = 1 << 20;
 
 const std::vector<std::string> kStudyKeys{
-    "name",      "title", "about",    "inputs", "methods", "cameras", "transfer_functions", "size",   "metrics",
-    "reference", "timed", "pictures", "tables", "plots",   "demands", "headings",           "seconds"};
+    "name",    "title",    "about",     "inputs",   "methods",  "cameras", "transfer_functions",
+    "size",    "metrics",  "reference", "timed",    "pictures", "tables",  "plots",
+    "demands", "headings", "seconds",   "measured", "exr"};
 
 const std::vector<Key>& reference_keys() {
-    static const std::vector<Key> kKeys{{"method", KeyKind::Text, 0, 0, std::string("dense"), {"dense"}},
+    static const std::vector<Key> kKeys{{"method", KeyKind::Text, 0, 0, std::string("dense"), {"dense", "exact"}},
                                         {"tolerance", KeyKind::Number, 0, 1, 1e-3},
                                         {"max_levels", KeyKind::Whole, 1, 8, 6.0},
                                         {"samples", KeyKind::Whole, 1, 16, 1.0}};
@@ -55,6 +56,7 @@ public:
         if (!json_.contains("pictures") || !json_["pictures"].is_object()) result.pictures = flag("pictures");
         read_presentation(json_, root_, result);
         expand(result);
+        check_presentation(result, root_);
         return result;
     }
 
@@ -89,6 +91,7 @@ private:
         const auto read = read_values(reference == json_.end() ? none : *reference, reference_keys(), {}, path);
         if (read.size() != 1) refuse(path, "there is only one reference: lists are not allowed");
         for (const auto& [key, value] : read.front()) values["reference." + key] = value;
+        if (flag("exr")) values["exr"] = true;
         return values;
     }
 
@@ -108,10 +111,37 @@ private:
                 values["label"] = filled_in(as_text(values["label"]), values, in(path, "label"));
                 values["study"] = study.name;
                 if (method.needs_view()) values.insert(common.begin(), common.end());
+                if (method.name == "file") add_file(values, in(path, "file"));
+                check_exact(method, values, path);
                 study.cases.push_back(named_case(std::move(values), swept));
             }
         }
         check_different(study);
+    }
+
+    /// The picture that was made elsewhere, and the description of its camera beside it.
+    void add_file(StudyValues& values, const std::string& path) const {
+        if (!values.contains("file")) refuse(path, "this key is missing", "a picture such as theirs/{input}_{view}_{tf}.exr");
+        const fs::path named = filled_in(as_text(values.at("file")), values, path);
+        const fs::path file = named.is_absolute() ? named : file_.parent_path() / named;
+        for (const auto& [key, one] : {std::pair("file", file), {"file.camera", fs::path(file).replace_extension(".json")}}) {
+            values[key] = one.lexically_normal().string();
+            values[std::string(key) + ".content"] = content_of(one, path);
+            if (!as_text(values[std::string(key) + ".content"]).empty()) continue;
+            refuse(path, "'" + printable(one.string()) + "' cannot be read",
+                   "the picture, and beside it a .json file with its camera: eye, target, up, fovy_deg or ortho_height");
+        }
+    }
+
+    /// Closed forms are those of generated models, with the field that they come with.
+    void check_exact(const StudyMethod& method, const StudyValues& values, const std::string& path) const {
+        const auto reference = values.find("reference.method");
+        const bool exact_reference = reference != values.end() && as_text(reference->second) == "exact";
+        if (method.name != "exact" && !exact_reference) return;
+        const bool known = values.contains("input.model") && as_text(values.at("input.model")) != "cell";
+        if (known && !values.contains("input.density") && !values.contains("input.field")) return;
+        refuse(method.name == "exact" ? in(path, "method") : in(root_, "reference"),
+               "the input '" + as_text(values.at("input")) + "' has no closed form", "models with their own density");
     }
 
     /// The cases of one method. already: how many cases there are before

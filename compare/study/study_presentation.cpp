@@ -64,11 +64,12 @@ void read_presentation(const Json& json, const std::string& root, Study& study) 
         study.pictures = true;
         study.pictures_where = words(json, "pictures", root);
     }
+    study.measured = texts(json, "measured", root, false);
     const Json& tables = optional_list(json, "tables", root);
     for (std::size_t i = 0; i < tables.size(); ++i) {
         const std::string path = at(in(root, "tables"), i);
-        const std::vector<std::string> known{"title",  "caption",  "rows",  "columns", "across",
-                                             "values", "headings", "where", "digits"};
+        const std::vector<std::string> known{"title",  "caption", "rows",     "columns", "across",
+                                             "values", "average", "headings", "where",   "digits"};
         check_object(tables[i], path, known);
         StudyTableSpec table{.title = text_or(tables[i], "title", path, study.title),
                              .caption = text_or(tables[i], "caption", path),
@@ -76,6 +77,7 @@ void read_presentation(const Json& json, const std::string& root, Study& study) 
                              .columns = texts(tables[i], "columns", path, false),
                              .across = text_or(tables[i], "across", path),
                              .values = texts(tables[i], "values", path, tables[i].contains("across")),
+                             .average = texts(tables[i], "average", path, false),
                              .headings = with_common(words(tables[i], "headings", path), common),
                              .where = words(tables[i], "where", path)};
         if (tables[i].contains("digits")) {
@@ -88,8 +90,8 @@ void read_presentation(const Json& json, const std::string& root, Study& study) 
     const Json& plots = optional_list(json, "plots", root);
     for (std::size_t i = 0; i < plots.size(); ++i) {
         const std::string path = at(in(root, "plots"), i);
-        const std::vector<std::string> known{"title", "caption", "x",   "y",        "series", "panels",
-                                             "log_x", "log_y",   "fit", "headings", "where"};
+        const std::vector<std::string> known{"title", "caption", "x",   "y",        "series", "panels",  "average",
+                                             "log_x", "log_y",   "fit", "headings", "where",  "together"};
         check_object(plots[i], path, known);
         study.plots.push_back({.title = text_or(plots[i], "title", path, study.title),
                                .caption = text_or(plots[i], "caption", path),
@@ -97,6 +99,8 @@ void read_presentation(const Json& json, const std::string& root, Study& study) 
                                .y = texts(plots[i], "y", path, true).front(),
                                .series = texts(plots[i], "series", path, true),
                                .panels = text_or(plots[i], "panels", path),
+                               .average = texts(plots[i], "average", path, false),
+                               .together = texts(plots[i], "together", path, false),
                                .headings = with_common(words(plots[i], "headings", path), common),
                                .log_x = flag_or(plots[i], "log_x", path, true),
                                .log_y = flag_or(plots[i], "log_y", path, true),

@@ -33,18 +33,6 @@ const std::vector<Key>& light_keys() {
     return kKeys;
 }
 
-/// A hash of a file that a case depends on, as a part of the case's values: a changed file is another case.
-std::string content_of(const fs::path& file, const std::string& path) {
-    std::error_code none;
-    if (!fs::is_directory(file, none) && !not_regular(file).empty()) {
-        refuse(path, "'" + printable(file.string()) + "' is not a regular file");
-    }
-    std::ifstream in(file, std::ios::binary);
-    std::ostringstream bytes;
-    bytes << in.rdbuf();
-    return in ? hash_text(bytes.str()) : "";
-}
-
 bool is_plain(unsigned char c) {
     return std::isalnum(c) != 0 || c == '_' || c == '-';
 }
@@ -191,6 +179,17 @@ private:
 StudyScenes read_scenes(const Json& json, const fs::path& file, const std::string& root) {
     const SceneReader reader(json, file, root);
     return {reader.inputs(), reader.cameras(), reader.lights()};
+}
+
+std::string content_of(const fs::path& file, const std::string& path) {
+    std::error_code none;
+    if (!fs::is_directory(file, none) && !not_regular(file).empty()) {
+        refuse(path, "'" + printable(file.string()) + "' is not a regular file");
+    }
+    std::ifstream in(file, std::ios::binary);
+    std::ostringstream bytes;
+    bytes << in.rdbuf();
+    return in ? hash_text(bytes.str()) : "";
 }
 
 const Json& list_of(const Json& json, const std::string& root, const char* key) {

@@ -29,6 +29,12 @@ struct StudyScenes {
 /// throws: Error(InvalidInput) if it is missing or has other characters than letters, digits, _ and -
 [[nodiscard]] std::string name_of(const Json& json, const std::string& path);
 
+/// A hash of a file that a case depends on, as a part of the case's values: a changed file is another case. "": it cannot be
+/// read
+///
+/// throws: Error(InvalidInput) if it is not a regular file
+[[nodiscard]] std::string content_of(const std::filesystem::path& file, const std::string& path);
+
 /// Numbers and texts that are known from elsewhere and shown beside the results.
 void read_given(const Json& json, const std::string& path, StudyValues& values);
 

@@ -153,9 +153,16 @@ void bind_compare(py::module_& module) {
         [](const Picture& a, const Picture& b) {
             SsimResult result = [&] {
                 const py::gil_scoped_release without_gil;
-                return ssim(a.image, b.image);
+                return luminance_ssim(srgb8_image(a.image), srgb8_image(b.image));
             }();
             return as_map(result.mean, std::move(result.map));
+        },
+        py::arg("test"), py::arg("reference"));
+    module.def(
+        "ssim_linear",
+        [](const Picture& a, const Picture& b) {
+            const py::gil_scoped_release without_gil;
+            return ssim(a.image, b.image).mean;
         },
         py::arg("test"), py::arg("reference"));
     module.def(

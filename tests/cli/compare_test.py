@@ -36,8 +36,11 @@ class Pictures(InFolder):
         self.assertEqual((figures["mse"], figures["rmse"], figures["mae"], figures["max"]), (1 / 64, 0.125, 0.125, 0.125))
         self.assertAlmostEqual(figures["psnr"], 20 * math.log10(8), places=9)
         a, b = GREY, GREY + 0.125
-        self.assertAlmostEqual(figures["ssim"], (2 * a * b + 1e-4) / (a * a + b * b + 1e-4), places=6)
-        # sRGB of .25 and .375 is 137 and 165 of 255: rounded from 136.96 and 164.96.
+        self.assertAlmostEqual(figures["ssim_linear"], (2 * a * b + 1e-4) / (a * a + b * b + 1e-4), places=6)
+        # sRGB of .25 and .375 is 137 and 165 of 255: rounded from 136.96 and 164.96. ssim is of these, as in the paper.
+        seen, lighter = 137 / 255, 165 / 255
+        self.assertAlmostEqual(figures["ssim"], (2 * seen * lighter + 1e-4) / (seen ** 2 + lighter ** 2 + 1e-4), places=6)
+        self.assertEqual(figures["srgb8"]["ssim"], figures["ssim"])
         self.assertAlmostEqual(figures["srgb8"]["max"], (165 - 137) / 255, places=6)
         # The lightness L* of these greys is 57.08 and 67.65: HyAB 10.57, ^.7 and to the bend at .4 * 41.276 = 16.510.
         lightness = [116 * v ** (1 / 3) - 16 for v in (a, b)]

@@ -28,6 +28,9 @@ SMALL = {
     "pictures": True,
 }
 
+# What goes with methods that draw nothing.
+FIELDS = {"pictures": False, "tables": [{"rows": ["input", "label", "seed"], "columns": ["uncovered"]}]}
+
 
 class StudyFolder(InFolder):
     def write(self, study, name="s.json"):
@@ -55,7 +58,7 @@ class Study(StudyFolder):
         self.assertRegex(lines[0], r"^table1 +about \d+ s  \S")
 
     def test_an_unmet_demand_is_said(self):
-        few = {"methods": [{"method": "field", "seed": [1, 2], "places": 100}], "pictures": False}
+        few = FIELDS | {"methods": [{"method": "field", "seed": [1, 2], "places": 100}]}
         self.write(SMALL | few | {"demands": [{"metric": "rmse", "most": 1}, {"metric": "rmse", "most": 1e-30}]})
         done = subvol("study", "s.json", "-o", "out", "--json", folder=self.folder)
         self.assertEqual(done.code, 1)
@@ -65,7 +68,7 @@ class Study(StudyFolder):
         self.assertIn("a demand is not met", subvol("study", "s.json", "-o", "out", folder=self.folder).err)
 
     def test_a_second_study_keeps_the_first_in_the_report(self):
-        few = {"methods": [{"method": "field", "seed": [1, 2], "places": 100}], "pictures": False}
+        few = FIELDS | {"methods": [{"method": "field", "seed": [1, 2], "places": 100}]}
         self.write(SMALL | few | {"title": "The first one"})
         self.write(SMALL | few | {"name": "other", "title": "The other one"}, "o.json")
         self.run_ok("study", "s.json", "-o", "out")
@@ -81,7 +84,7 @@ class Study(StudyFolder):
         self.assertIn("leaves out the study in out/small", subvol("study", "o.json", "-o", "out", folder=self.folder).err)
 
     def test_the_report_links_to_pages_of_the_inputs(self):
-        few = {"methods": [{"method": "field", "seed": [1], "places": 100}], "pictures": False}
+        few = FIELDS | {"methods": [{"method": "field", "seed": [1], "places": 100}]}
         self.write(SMALL | few)
         said = self.run_ok("study", "s.json", "-o", "out", "--pages", "--json").json()
         self.assertEqual(len(said["pages"]), 1)
@@ -98,7 +101,7 @@ class Study(StudyFolder):
         self.assertNotIn("pages/", (self.folder / "plain/report.html").read_text())
 
     def test_figures_say_how_well_they_are_known(self):
-        self.run_ok("study", self.write(SMALL | {"plots": [{"x": "seconds", "y": "rmse", "series": "label"}]}), "-o", "out")
+        self.run_ok("study", self.write(SMALL | {"plots": [{"x": "seconds", "y": "rmse", "series": "label", "panels": "view", "where": {"method": "splat"}}]}), "-o", "out")
         for row in csv.DictReader((self.folder / "out/small/results.csv").read_text().splitlines()):
             if row["method"] != "field":
                 self.assertGreater(float(row["reference_change"]), 0)
@@ -159,7 +162,7 @@ class Study(StudyFolder):
             self.assertAlmostEqual(our_mae, mae, delta=1e-6)
 
     def test_a_case_that_fails_loses_no_other(self):
-        study = SMALL | {"methods": [{"method": "field", "seed": [1, 2], "places": 100}, {"method": "field", "every_second": True}]}
+        study = SMALL | FIELDS | {"methods": [{"method": "field", "seed": [1, 2], "places": 100}, {"method": "field", "seed": 3, "every_second": True}]}
         done = subvol("study", self.write(study), "-o", "out", "--json", folder=self.folder)
         self.assertEqual(done.code, 1, done.err)
         (ran,) = done.json()["studies"]
@@ -202,7 +205,7 @@ class Study(StudyFolder):
     def test_kernels_as_a_whole_field(self):
         methods = [{"method": "volume", "label": "{correction} {per_edge}", "correction": ["none", "second"], "per_edge": [1, 2],
                     "places": 5000, "resolution": 24}]
-        self.write(SMALL | {"methods": methods, "inputs": [{"model": "ball", "resolution": 4, "density": "2 + sin(3*x)*cos(2*y)"}]})
+        self.write(SMALL | FIELDS | {"methods": methods, "inputs": [{"model": "ball", "resolution": 4, "density": "2 + sin(3*x)*cos(2*y)"}]})
         self.run_ok("study", "s.json", "-o", "out")
         rows = csv.DictReader((self.folder / "out/small/results.csv").read_text().splitlines())
         by = {row["label"]: {k: float(v) for k, v in row.items() if k in ("l2", "linf", "gradient_rmse", "mass_error", "hausdorff")} for row in rows}
@@ -240,7 +243,7 @@ class Study(StudyFolder):
 
     def test_voxels_come_nearer_to_the_limit_as_they_shrink(self):
         methods = [{"method": "voxels", "resolution": [20, 40], "places": 3000}]
-        self.write(SMALL | {"methods": methods, "inputs": [{"model": "ball", "resolution": 4, "density": "2 + sin(3*x)*cos(2*y)"}]})
+        self.write(SMALL | FIELDS | {"tables": [{"rows": "resolution", "columns": "rmse"}], "methods": methods, "inputs": [{"model": "ball", "resolution": 4, "density": "2 + sin(3*x)*cos(2*y)"}]})
         self.run_ok("study", "s.json", "-o", "out")
         coarse, fine = csv.DictReader((self.folder / "out/small/results.csv").read_text().splitlines())
         for row in (coarse, fine):

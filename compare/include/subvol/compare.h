@@ -19,6 +19,7 @@
 #include "subvol/points_field.h"
 #include "subvol/ssim.h"
 #include "subvol/study.h"
+#include "subvol/study_measures.h"
 #include "subvol/study_report.h"
 #include "subvol/study_run.h"
 #include "subvol/study_table.h"

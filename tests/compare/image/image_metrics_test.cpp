@@ -123,5 +123,30 @@ TEST(DifferenceHeatmap, EqualAndTinyImages) {
     EXPECT_GT(luminance(tiny.pixel(0, 0)), 0.9);
 }
 
+TEST(Heatmap, OfACommonScaleHasTheSameColoursInEveryPicture) {
+    // Of two maps with other largest values the same value has the same colour, a difference of 1e-4 is black.
+    MetricMap low(64, 2), high(64, 2);
+    for (float& value : low.values) value = .01f;
+    for (float& value : high.values) value = .5f;
+    high.at(3, 0) = .01f;
+    high.at(4, 0) = 5e-5f;
+    const Image a = log_heatmap(low), b = log_heatmap(high);
+    for (std::size_t c = 0; c < 3; ++c) {
+        EXPECT_EQ(a.pixel(3, 0)[c], b.pixel(3, 0)[c]);
+        EXPECT_LT(b.pixel(4, 0)[c], .01f);
+    }
+    EXPECT_GT(b.pixel(10, 0)[0], a.pixel(10, 0)[0]);
+    EXPECT_THROW((void)log_heatmap(MetricMap()), Error);
+}
+
+TEST(Heatmap, OfSignsIsOrangeWhereItIsTooBright) {
+    const Image dark = uniform_image(40, 3, .2f), bright = uniform_image(40, 3, .7f);
+    const Image over = sign_heatmap(bright, dark), under = sign_heatmap(dark, bright), same = sign_heatmap(dark, dark);
+    EXPECT_GT(over.pixel(5, 1)[0], over.pixel(5, 1)[2]);
+    EXPECT_LT(under.pixel(5, 1)[0], under.pixel(5, 1)[2]);
+    EXPECT_EQ(same.pixel(5, 1)[1], 0.f);
+    EXPECT_THROW((void)sign_heatmap(dark, Image(4, 4)), Error);
+}
+
 }  // namespace image_metrics_test
 }  // namespace subvol

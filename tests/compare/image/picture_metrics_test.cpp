@@ -25,14 +25,15 @@ Image square(float grey) {
 
 TEST(PictureMetrics, EachIsItsCallOfTheTwoPictures) {
     const Image a = square(0.5F), b = square(0.6F);
-    const auto measured = measure_pictures(a, b, "rmse,psnr,ssim,flip,flip_hdr,optical_depth");
+    const auto measured = measure_pictures(a, b, "rmse,psnr,ssim,ssim_linear,flip,flip_hdr,optical_depth");
     EXPECT_EQ(measured.at("rmse"), compare_images(a, b).rmse);
     EXPECT_EQ(measured.at("psnr"), compare_images(a, b).psnr);
-    EXPECT_EQ(measured.at("ssim"), ssim(srgb8_image(a), srgb8_image(b)).mean);  // as it is seen
+    EXPECT_EQ(measured.at("ssim"), luminance_ssim(srgb8_image(a), srgb8_image(b)).mean);  // as [ssim2004] has it
+    EXPECT_EQ(measured.at("ssim_linear"), ssim(a, b).mean);
     EXPECT_EQ(measured.at("flip"), flip(a, b).mean);
     EXPECT_EQ(measured.at("flip_hdr"), hdr_flip(a, b).mean);
     EXPECT_EQ(measured.at("optical_depth"), optical_depth_error(a, b));
-    EXPECT_EQ(measured.size(), 6U);
+    EXPECT_EQ(measured.size(), 7U);
 }
 
 TEST(PictureMetrics, OfARegionCountItsPixelsAlone) {
@@ -55,6 +56,10 @@ TEST(PictureMetrics, AreFoundByTheirFigures) {
     const std::vector<std::string> names = study_metrics();
     EXPECT_EQ(std::set<std::string>(names.begin(), names.end()).size(), names.size());
     for (const std::string& name : names) EXPECT_NE(find_metric(name), nullptr) << name;
+    for (const PictureMetric& metric : picture_metrics()) {
+        EXPECT_FALSE(metric.quantity.empty()) << metric.name;
+        EXPECT_FALSE(metric.formula.empty()) << metric.name;
+    }
 }
 
 TEST(PictureMetrics, SayOfEqualPicturesThatTheyAreTheBest) {

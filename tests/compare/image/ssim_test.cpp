@@ -59,6 +59,19 @@ TEST(Ssim, AsTheDefinition) {
     EXPECT_NEAR(result.mean, sum / (9 * 60), kFloat);
 }
 
+TEST(Ssim, OfLuminanceIsThatOfTheGreyPictures) {
+    const Image a = random_image(23, 17, 8), b = random_image(23, 17, 9);
+    const auto grey = [](Image image) {
+        for (std::size_t i = 0; i < image.rgba.size(); i += 4) {
+            const float y = .2125f * image.rgba[i] + .7154f * image.rgba[i + 1] + .0721f * image.rgba[i + 2];
+            image.rgba[i] = image.rgba[i + 1] = image.rgba[i + 2] = y;
+        }
+        return image;
+    };
+    EXPECT_NEAR(luminance_ssim(a, b).mean, ssim(grey(a), grey(b)).mean, kFloat);
+    EXPECT_GT(std::abs(luminance_ssim(a, b).mean - ssim(a, b).mean), 1e-4);  // two metrics, so two names
+}
+
 TEST(Ssim, EqualPicturesAreOne) {
     const Image a = random_image(30, 20, 3);
     const SsimResult result = ssim(a, a);

@@ -222,6 +222,56 @@ TEST(Plot, PdfHasItsFontsAndTheSameBytesInEveryRun) {
     EXPECT_TRUE(plot_pdf(plot).starts_with("%PDF-1.4")) << "no data";
 }
 
+TEST(Plot, FloorsAreABandAndBoundsAreHollow) {
+    Plot plot{.title = "t",
+              .x_label = "x",
+              .y_label = "y",
+              .log_y = false,
+              .lines = {{.name = "l", .x = {1, 2, 4}, .y = {30, 40, 50}, .spreads = {1, 0, 2}, .bounds = {2}}},
+              .x_ticks = {1, 2, 4},
+              .floor = 45,
+              .floor_above = true,
+              .floor_name = "known to here"};
+    const std::string svg = plot_svg(plot);
+    EXPECT_EQ(count(svg, "class=\"band\""), 2U);  // and one in the legend
+    EXPECT_EQ(count(svg, "class=\"hollow\""), 1U);
+    EXPECT_EQ(count(svg, "class=\"bars\""), 1U);
+    EXPECT_EQ(x_labels(svg), (std::vector<std::string>{"1", "2", "4"}));  // those of the data
+    EXPECT_NE(svg.find("known to here"), std::string::npos);
+    // The band begins between the second point and the third, and goes up to the frame.
+    const auto ys = numbers(svg, "<rect class=\"band\"", "y"), heights = numbers(svg, "<rect class=\"band\"", "height");
+    const auto circles = numbers(svg, "<circle", "cy");
+    ASSERT_GE(circles.size(), 3U);
+    EXPECT_LT(ys[0] + heights[0], circles[1]);
+    EXPECT_GT(ys[0] + heights[0], circles[2]);
+    plot.lines[0].bounds.clear();
+    plot.floor.reset();
+    EXPECT_EQ(count(plot_svg(plot), "band"), 0U);
+}
+
+TEST(Plot, HasTheSizesOfPrint) {
+    const Plot plot{.title = "t", .x_label = "x", .y_label = "y", .lines = {{.name = "l", .x = {1, 10}, .y = {1, 10}}}};
+    constexpr double kPoints = 72 / 25.4;  // a millimetre
+    EXPECT_NEAR(kColumnPlot.width, 84 * kPoints, .01);
+    EXPECT_NEAR(kPagePlot.width, 174 * kPoints, .01);
+    EXPECT_NE(plot_svg_file(plot, kColumnPlot).find("width=\"238.11pt\""), std::string::npos);
+    EXPECT_NE(plot_pdf(plot, kPagePlot).find("/MediaBox [ 0 0 493.2"), std::string::npos);
+}
+
+TEST(Plot, NumbersAreThereForLatexAndPrograms) {
+    const Plot plot{
+        .title = "t",
+        .x_label = "50 %",
+        .y_label = "RMSE",
+        .lines = {{.name = "a_b", .x = {1, 2, 4}, .y = {.5, .25, 0}, .breaks = {1}, .spreads = {.1, 0, 0}, .bounds = {1}}}};
+    const std::string tex = plot_tex(plot);
+    for (const char* part : {"xmode=log, ymode=log", "xlabel={50 \\%}", "(1,0.5) +- (0,0.1)\n\n", "(2,0.25) +- (0,0) % a bound",
+                             "\\addlegendentry{a\\_b}", "\\end{tikzpicture}"})
+        EXPECT_NE(tex.find(part), std::string::npos) << part << tex;
+    EXPECT_EQ(tex.find("(4,0)"), std::string::npos);  // a logarithmic axis does not show 0
+    EXPECT_EQ(plot_csv(plot), "name,x,y,spread,bound\n\"a_b\",1,0.5,0.1,\n\"a_b\",2,0.25,0,yes\n\"a_b\",4,0,0,\n");
+}
+
 TEST(Plot, MarksTheStudiedPlacesButNotThoseOfACurve) {
     const auto circles = [](std::size_t count) {
         Plot plot;

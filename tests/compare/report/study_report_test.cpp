@@ -102,6 +102,42 @@ TEST(Report, MarksWhatTheReferenceCannotTell) {
     EXPECT_FALSE(accuracy({.metrics = {{"rmse", 1}}}, "rmse"));  // a reference of a fixed level
 }
 
+TEST(Report, EveryMetricHasItsFloor) {
+    CaseResult result{.metrics = {{"flip", .01},
+                                  {"floor_flip", .02},
+                                  {"ssim", .9999},
+                                  {"floor_ssim", .9995},
+                                  {"max", .5},
+                                  {"floor_max", .1},
+                                  {"psnr_edge", 50},
+                                  {"floor_psnr_edge", 49},
+                                  {"rmse", 0},
+                                  {"floor_rmse", 0}}};
+    EXPECT_EQ(mark_of(result, "flip"), "≤ 0.02");
+    EXPECT_EQ(mark_of(result, "ssim"), "≥ 0.9995");
+    EXPECT_EQ(mark_of(result, "psnr_edge"), "≥ 49");
+    EXPECT_FALSE(mark_of(result, "max"));
+    EXPECT_FALSE(mark_of(result, "rmse"));  // an exact reference
+    result.metrics.erase("flip");
+    EXPECT_FALSE(mark_of(result, "flip"));
+    result.notes["own_reference"] = "drawn by the same method";
+    EXPECT_EQ(mark_of(result, "flip"), "= reference");
+    EXPECT_FALSE(mark_of(result, "seconds"));
+}
+
+TEST(Report, SaysWhichReferencesDidNotConverge) {
+    StudyResults all = known_to_a_thousandth();
+    EXPECT_TRUE(reference_states(all).at(0).converged);
+    for (CaseResult& result : all.results) result.metrics["reference_converged"] = 0;
+    ASSERT_EQ(reference_states(all).size(), 1U);
+    EXPECT_FALSE(reference_states(all)[0].converged);
+    const std::vector<StudyResults> studies{all};
+    const std::string page = report_html(studies, "nowhere", {});
+    EXPECT_NE(page.find("The reference of ball, iso, viridis did not converge"), std::string::npos);
+    EXPECT_NE(page.find("1 of 1 references did not converge"), std::string::npos);
+    EXPECT_NE(page.find("-10 log10(mse), linear RGB, peak 1"), std::string::npos);  // what PSNR is
+}
+
 TEST(Report, SaysHowThePicturesWereMade) {
     const auto setup = setup_table(known_to_a_thousandth());
     ASSERT_TRUE(setup);
@@ -137,7 +173,7 @@ TEST(Report, LinesJoinWhatIsSwept) {
     // Finer kernels in half the time: in the order of the sweep the line goes back; it does not join other meshes.
     StudyResults all{.study = parse_study(R"({"name": "s", "inputs": [{"model": "ball"}, {"model": "pawn"}],
         "methods": [{"method": "field", "per_edge": [1, 2, 4], "label": "l"}],
-        "plots": [{"x": "seconds", "y": "rmse", "series": "label"}]})",
+        "plots": [{"x": "seconds", "y": "rmse", "series": "label", "together": "input"}]})",
                                           "s.json", picture_methods()),
                      .results = {}};
     for (const StudyCase& of : all.study.cases) {

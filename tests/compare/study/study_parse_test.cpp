@@ -49,6 +49,55 @@ TEST(StudyFile, IsExpandedIntoTheProductOfItsLists) {
     EXPECT_EQ(names.size(), study.cases.size());
 }
 
+/// A study with tables, plots or demands.
+std::string shown_as(const std::string& part) {
+    return study_with("\"size\"", part + ", \"size\"");
+}
+
+TEST(StudyFile, KeysThatNoCaseHasAreRefusedWithAList) {
+    for (const auto& [part, place] : std::vector<std::pair<std::string, std::string>>{
+             {R"("tables": [{"rows": ["view", "per_edgee"], "columns": "psnr"}])", "tables[0].rows[1]"},
+             {R"("tables": [{"rows": "view", "columns": "mae"}])", "tables[0].columns"},
+             {R"("tables": [{"rows": "view", "across": "labell", "values": "psnr"}])", "tables[0].across"},
+             {R"("tables": [{"rows": "view", "columns": "psnr", "where": {"label": "spalt"}}])", "tables[0].where.label"},
+             {R"("tables": [{"rows": "view", "columns": "psnr", "where": {"labell": "splat"}}])", "tables[0].where.labell"},
+             {R"("plots": [{"x": "kernel_count", "y": "psnr", "series": "label"}])", "plots[0].x"},
+             {R"("plots": [{"x": "kernels", "y": "flip", "series": "label"}])", "plots[0].y"},
+             {R"("plots": [{"x": "kernels", "y": "psnr", "series": "lable"}])", "plots[0].series"},
+             {R"("plots": [{"x": "kernels", "y": "psnr", "series": "label", "panels": "mesh"}])", "plots[0].panels"},
+             {R"("pictures": {"view": "top"})", "pictures.view"},
+             {R"("demands": [{"metric": "ssim", "least": 1}])", "demands[0].metric"}}) {
+        const std::string message = error_of([&] { (void)parse(shown_as(part)); });
+        EXPECT_NE(message.find("s.json: " + place + ": no case has the "), std::string::npos) << part << message;
+        EXPECT_NE(message.find('('), std::string::npos) << "no list: " << message;
+    }
+    // A key that only other cases have.
+    const std::string none = R"("tables": [{"rows": "view", "columns": "kernels", "where": {"label": "tets"}}])";
+    EXPECT_NE(error_of([&] { (void)parse(shown_as(none)); }).find("none of the cases is measured by"), std::string::npos);
+}
+
+TEST(StudyFile, CasesThatDifferDoNotMeetUnsaid) {
+    const std::string table = R"("tables": [{"rows": ["view", "label"], "columns": "psnr")";
+    const std::string message = error_of([&] { (void)parse(shown_as(table + "}]")); });
+    EXPECT_NE(message.find("they differ in per_edge, sheets"), std::string::npos) << message;
+    EXPECT_NO_THROW((void)parse(shown_as(table + R"(, "average": ["per_edge", "sheets"]}])")));
+    EXPECT_NO_THROW((void)parse(shown_as(table + R"(, "where": {"label": "tets"}}])")));
+    const std::string plot = R"("plots": [{"x": "kernels", "y": "psnr", "series": ["label", "sheets"])";
+    EXPECT_NE(error_of([&] { (void)parse(shown_as(plot + "}]")); }).find("cases of one series differ in view"),
+              std::string::npos);
+    for (const char* said : {R"("panels": "view")", R"("average": "view")", R"("together": "view")"})
+        EXPECT_NO_THROW((void)parse(shown_as(plot + ", " + said + "}]"))) << said;
+}
+
+TEST(StudyFile, ClosedFormsAreThoseOfModels) {
+    const std::string exact = R"({"method": "exact"})";
+    EXPECT_NO_THROW((void)parse(study_with(kTets, exact)));
+    EXPECT_NO_THROW((void)parse(shown_as(R"("reference": {"method": "exact"})")));
+    std::string other = study_with(kTets, exact);
+    other.insert(other.find("\"resolution\""), R"("density": "x", )");
+    EXPECT_NE(error_of([&] { (void)parse(other); }).find("has no closed form"), std::string::npos);
+}
+
 TEST(StudyFile, MethodsWithoutPicturesNeedNoCamera) {
     const Study study = parse(study_with(kTets, R"({"method": "field", "per_edge": [1, 2, 4]}, {"method": "fit"})"));
     EXPECT_EQ(study.cases.size(), 2U * 4 + 3 + 1);

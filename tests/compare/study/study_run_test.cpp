@@ -20,7 +20,7 @@ using test::read_bytes;
 
 /// Eight cases, which compute the square root of their seed.
 Study seeds() {
-    return parse_study(R"({"name": "seeds", "inputs": [{"model": "ball"}],
+    return parse_study(R"({"name": "seeds", "inputs": [{"model": "ball"}], "measured": "root",
         "methods": [{"method": "field", "seed": [0, 1, 2, 3, 4, 5, 6, 7]}],
         "tables": [{"rows": "seed", "columns": ["root", "done"]}]})",
                        "seeds.json", {});
@@ -176,6 +176,24 @@ TEST(StudyTable, GoesAcross) {
     EXPECT_EQ(as_text(tables[0]), "\ninput  known  0  one\nball       –  0    1\npawn       7  2    3\n");
     EXPECT_EQ(tables[1].rows.size(), 2U);
     EXPECT_EQ(tables[1].name, "s_2");
+}
+
+TEST(StudyTable, CellsOfSeveralCasesAreMeansWithTheirSpread) {
+    StudyResults results{.study = parse_study(R"({"name": "s", "inputs": [{"model": "ball"}],
+        "methods": [{"method": "field", "per_edge": [1, 2], "seed": [0, 1, 2]}],
+        "tables": [{"rows": "per_edge", "columns": ["rmse", "kernels"], "average": "seed"}]})",
+                                              "s.json", {}),
+                         .results = {}};
+    for (int i = 0; i < 6; ++i) results.results.push_back({.metrics = {{"rmse", i < 3 ? 1 + i : 7}, {"kernels", 27}}});
+    const StudyTable table = make_tables(results).at(0);
+    EXPECT_EQ(std::get<double>(table.rows[0][1]), 2);
+    EXPECT_EQ(table.spreads.at({0, 1}), 1);  // of 1, 2 and 3
+    EXPECT_EQ(shown(table, 0, 1), "2 ± 1");
+    EXPECT_EQ(shown(table, 1, 1), "7");  // all are the same
+    EXPECT_EQ(shown(table, 0, 2), "27");
+    EXPECT_NE(table.caption.find("over the values of seed"), std::string::npos);
+    EXPECT_EQ(as_csv(table),
+              "\"per edge\",\"rmse\",\"rmse ±\",\"kernels\"\n\"1\",\"2\",\"1\",\"27\"\n\"2\",\"7\",\"–\",\"27\"\n");
 }
 
 TEST(StudyTable, HasPointsInEveryLocale) {

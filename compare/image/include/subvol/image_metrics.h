@@ -51,6 +51,18 @@ using MetricMap = Raster<float>;
 /// throws: Error(InvalidInput) if there are no pixels or the scale is negative
 [[nodiscard]] Image heatmap(const MetricMap& map, double scale = 0);
 
+/// A map in the same colours on a logarithmic scale from 1e-4 to 1, the same in every picture: maps of several pictures can be
+/// compared. Smaller values are black.
+///
+/// throws: Error(InvalidInput) if there are no pixels
+[[nodiscard]] Image log_heatmap(const MetricMap& map);
+
+/// The mean difference of red, green and blue with its sign, on the same scale to both sides: orange where a is brighter, blue
+/// where it is darker, black where they differ by less than 1e-4.
+///
+/// throws: Error(InvalidInput) if the sizes differ or there are no pixels
+[[nodiscard]] Image sign_heatmap(const Image& a, const Image& b);
+
 /// `heatmap` of the `difference_map`.
 [[nodiscard]] Image difference_heatmap(const Image& a, const Image& b, double scale = 0);
 

@@ -26,7 +26,10 @@ public:
     [[nodiscard]] const Image& test() const;
     [[nodiscard]] const Image& reference() const;
     [[nodiscard]] const ImageMetrics& differences() const;
-    [[nodiscard]] const SsimResult& ssim() const;
+    /// `luminance_ssim` of the pictures as they are; `on_screen().luminance_ssim()` is what [ssim2004] defines.
+    [[nodiscard]] const SsimResult& luminance_ssim() const;
+    /// `ssim` of red, green and blue.
+    [[nodiscard]] const SsimResult& color_ssim() const;
     [[nodiscard]] const FlipResult& flip() const;
     [[nodiscard]] const HdrFlipResult& hdr_flip() const;
     /// The same pictures as `srgb8_image`s.
@@ -44,8 +47,10 @@ private:
 /// of:             the number. mask: the pixels that count, only if `masked`; empty: all
 /// masked:         whether it can be of a part of the pixels
 /// encoded:        whether `compare` also takes it of 8-bit sRGB
-/// seen:           whether studies take it of 8-bit sRGB instead
+/// seen:           whether it is always of 8-bit sRGB
 /// flag, help:     the option of `compare` that asks for it; empty: it is always taken
+/// quantity:       what an axis calls it; the unit is not part of it
+/// formula:        its definition, with the colour space and the peak; source: where that is from
 struct PictureMetric {
     std::string_view name;
     std::string_view study;
@@ -58,6 +63,14 @@ struct PictureMetric {
     bool seen = false;
     std::string_view flag{};
     std::string_view help{};
+    std::string_view quantity{};
+    std::string_view formula{};
+    std::string_view source{};
+
+    /// The number of a pair of pictures, in the colours that the metric is about.
+    [[nodiscard]] double measure(const PicturePair& pair, std::span<const std::uint8_t> mask = {}) const {
+        return of(seen ? pair.on_screen() : pair, mask);
+    }
 };
 
 /// All metrics of pictures. The figures of `compare` and what --fail-under takes for better, the metrics of studies and the

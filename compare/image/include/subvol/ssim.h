@@ -5,7 +5,7 @@
 
 namespace subvol {
 
-/// map:  the mean of the channels at each pixel, in [-1,1]
+/// map:  the similarity at each pixel, in [-1,1]
 /// mean: over the pixels whose window lies inside the picture, as in [ssim2004]; over all pixels if the picture is narrower or
 ///       lower than a window (11 pixels)
 struct SsimResult {
@@ -21,5 +21,12 @@ struct SsimResult {
 /// cost:   parallel, bitwise the same for any number of threads
 /// source: [ssim2004]
 [[nodiscard]] SsimResult ssim(const Image& a, const Image& b);
+
+/// The same of one channel, the luminance .2125 R + .7154 G + .0721 B of the values as given. Of `srgb8_image`s it is what
+/// scikit-image computes: structural_similarity of rgb2gray with gaussian_weights, sigma 1.5, data_range 1 and without
+/// use_sample_covariance.
+///
+/// throws: as `ssim`
+[[nodiscard]] SsimResult luminance_ssim(const Image& a, const Image& b);
 
 }  // namespace subvol

@@ -8,21 +8,42 @@
 
 namespace subvol {
 
-/// breaks: the points, by their indices, that no line joins with the one before
+/// breaks:  the points, by their indices, that no line joins with the one before
+/// spreads: half the lengths of bars through the points, along y; empty: there are none
+/// bounds:  the points, by their indices, whose values are bounds: they are drawn hollow
 struct PlotLine {
     std::string name;
     std::vector<double> x, y;
     std::vector<std::size_t> breaks{};
+    std::vector<double> spreads{};
+    std::vector<std::size_t> bounds{};
 };
+
+/// The size of a plot without its legend, and of its letters, in PostScript points. On screens a point is a unit of the view
+/// box.
+struct PlotSize {
+    double width = 480, height = 300, font = 12;
+};
+
+inline constexpr PlotSize kColumnPlot{238.11, 160, 7.5};  // 84 mm, a column of a journal
+inline constexpr PlotSize kPagePlot{493.23, 280, 9};      // 174 mm, a page
 
 /// log_x, log_y: logarithmic axes; values that are not positive are left out
 /// fit:          show the slope of each line in a log-log plot after its name
+/// x_ticks:      where the axis has its labels; empty: at round numbers
+/// floor:        values of y at this and beyond are not known better: a grey band from there to the end of the axis, downwards,
+/// or
+///               upwards if floor_above. floor_name: its words
 struct Plot {
     std::string title;
     std::string x_label, y_label;
     bool log_x = true, log_y = true;
     bool fit = false;
     std::vector<PlotLine> lines;
+    std::vector<double> x_ticks{};
+    std::optional<double> floor{};
+    bool floor_above = false;
+    std::string floor_name{};
 };
 
 /// The plot as one SVG element that fills the width of its container, without fonts, scripts or links. Points that are not
@@ -30,13 +51,19 @@ struct Plot {
 [[nodiscard]] std::string plot_svg(const Plot& plot);
 
 /// The same as a file of its own, with its size and styles.
-[[nodiscard]] std::string plot_svg_file(const Plot& plot);
+[[nodiscard]] std::string plot_svg_file(const Plot& plot, const PlotSize& size = {});
 
 /// The same as a page of PDF of the plot's size, with its fonts embedded and without a date: the same bytes in every run with
 /// the same fonts and the same version of cairo.
 ///
 /// throws: Error(MissingCapability) if the module of cairo is not installed
-[[nodiscard]] std::string plot_pdf(const Plot& plot);
+[[nodiscard]] std::string plot_pdf(const Plot& plot, const PlotSize& size = {});
+
+/// The same for LaTeX: a tikzpicture of the package pgfplots, with the numbers in it, as wide as a column.
+[[nodiscard]] std::string plot_tex(const Plot& plot);
+
+/// The numbers of the plot, a line each: name, x, y, spread, bound ("yes" or "").
+[[nodiscard]] std::string plot_csv(const Plot& plot);
 
 /// The slope of log y over log x by least squares: the order of convergence. Nothing with fewer than two positive points at
 /// different x.

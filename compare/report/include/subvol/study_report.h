@@ -37,6 +37,15 @@ struct Judgement {
 
 [[nodiscard]] std::vector<Judgement> judge(const StudyResults& results);
 
+/// A reference that cases were compared with. name: of its mesh, camera and transfer function
+struct ReferenceState {
+    std::string name;
+    bool converged = true;
+};
+
+/// The references of a study, in the order of the cases that they are of.
+[[nodiscard]] std::vector<ReferenceState> reference_states(const StudyResults& results);
+
 /// name: of its files, without ending
 struct StudyPlot {
     std::string name;

@@ -3,7 +3,9 @@
 
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -14,7 +16,8 @@ namespace subvol {
 
 /// A table: rows of texts and numbers under headings. An unknown number is NaN.
 ///
-/// marks: for people, instead of numbers that are below what the reference can tell: "≤ 0.0002", by row and column
+/// marks:   for people, instead of numbers that are below what the reference can tell: "≤ 0.0002", by row and column
+/// spreads: standard deviations of numbers that are means of several cases
 struct StudyTable {
     using Cell = std::variant<std::string, double>;
 
@@ -25,10 +28,11 @@ struct StudyTable {
     std::vector<std::vector<Cell>> rows;
     int digits = 4;
     std::map<std::pair<std::size_t, std::size_t>, std::string> marks{};
+    std::map<std::pair<std::size_t, std::size_t>, double> spreads{};
 };
 
-/// How well a figure of a picture is known: the change of the reference at its last refinement, in the figure's unit. Nothing
-/// for figures without such a bound, or if the reference had a fixed level.
+/// How well a figure of a picture is known: its floor, which is the same metric of the reference and the picture of the level
+/// before. Nothing for figures without such a bound, or if the reference is exact.
 [[nodiscard]] std::optional<double> accuracy(const CaseResult& result, const std::string& metric);
 
 /// A value, metric, cost or note of a case by its key; the key "done" gives "yes" or the failure.
@@ -38,8 +42,19 @@ struct StudyTable {
 /// The same as text; "" if there is no such value.
 [[nodiscard]] std::string value_text(const StudyCase& study_case, const CaseResult& result, const std::string& key);
 
-/// "≤ 0.0002" for an error below what is known, "≥ 73.9" for such a PSNR; nothing for other figures.
+/// The values of a metric for which less is known than they say: at the floor or below it; of those for which more is better,
+/// at it or above.
+[[nodiscard]] bool is_beyond_floor(const CaseResult& result, const std::string& key);
+
+/// "≤ 0.0002" for an error below what is known, "≥ 73.9" for such a PSNR, "= reference" for a picture that is drawn as its
+/// reference is; nothing for other figures.
 [[nodiscard]] std::optional<std::string> mark_of(const CaseResult& result, const std::string& key, int digits = 4);
+
+/// The mean of some numbers, and their standard deviation (0 of one number).
+struct Spread {
+    double mean = 0, deviation = 0;
+};
+[[nodiscard]] Spread mean_and_spread(std::span<const double> values);
 
 /// A name with spaces instead of underscores, for people.
 [[nodiscard]] std::string spaced(std::string name);
@@ -65,5 +80,8 @@ struct StudyTable {
 [[nodiscard]] std::string as_text(const StudyTable& table);
 [[nodiscard]] std::string as_csv(const StudyTable& table);
 [[nodiscard]] std::string as_tex(const StudyTable& table);
+
+/// Text with the special characters of LaTeX escaped.
+[[nodiscard]] std::string tex_text(std::string_view text);
 
 }  // namespace subvol

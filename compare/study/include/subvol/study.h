@@ -44,6 +44,7 @@ using StudyFilter = std::map<std::string, std::string>;
 /// A table of the report: a row for each combination of the values of `rows`; after these come `columns`, then, for each value
 /// of `across`, a column for each of `values`. Keys are names of values, metrics and costs.
 ///
+/// average:  keys over which cells have means with their standard deviations
 /// headings: the names of keys in the report
 /// digits:   of numbers that are not counts
 struct StudyTableSpec {
@@ -53,6 +54,7 @@ struct StudyTableSpec {
     std::vector<std::string> columns;
     std::string across;
     std::vector<std::string> values;
+    std::vector<std::string> average{};
     std::map<std::string, std::string> headings;
     StudyFilter where;
     int digits = 4;
@@ -61,13 +63,16 @@ struct StudyTableSpec {
 /// A plot of the report: metric `y` over `x`, with a line for each combination of the values of `series`, and a plot for each
 /// value of `panels`.
 ///
-/// fit: show the slope of each line
+/// average:  keys over which points are means, with bars of their standard deviations
+/// together: keys in which the cases of a series may differ; lines join only those that do not
+/// fit:      show the slope of each line
 struct StudyPlotSpec {
     std::string title;
     std::string caption;
     std::string x, y;
     std::vector<std::string> series;
     std::string panels;
+    std::vector<std::string> average{}, together{};
     std::map<std::string, std::string> headings;
     bool log_x = true, log_y = true;
     bool fit = false;
@@ -84,6 +89,7 @@ struct StudyDemand {
 /// timed:    costs are measured, so cases run one after the other
 /// seconds:  about how long it takes on two cores; 0: not known
 /// pictures: the report shows pictures beside their reference, for the cases of `pictures_where`
+/// measured: what a function of the caller gives besides what the methods do
 struct Study {
     std::string name;
     std::string title;
@@ -92,6 +98,7 @@ struct Study {
     double seconds = 0;
     bool pictures = false;
     StudyFilter pictures_where;
+    std::vector<std::string> measured{};
     std::vector<StudyCase> cases;
     std::vector<StudyTableSpec> tables;
     std::vector<StudyPlotSpec> plots;
@@ -120,7 +127,8 @@ inline constexpr std::size_t kMaxStudyCases = 10'000;
 /// file:    for error messages, and as the folder that relative paths start from
 /// methods: of pictures, besides those of this component
 /// throws: Error(InvalidInput), with the path of the place in the JSON, for an unknown key, a wrong type, an empty list, a
-///         value out of range, more than kMaxStudyCases cases, or two equal cases; Error(Io)
+///         value out of range, more than kMaxStudyCases cases, two equal cases, a table or a plot of what no case has, or one
+///         that would merge cases without saying so; Error(Io)
 [[nodiscard]] Study parse_study(std::string_view json, const std::filesystem::path& file,
                                 std::span<const PictureMethod> methods);
 [[nodiscard]] Study read_study(const std::filesystem::path& file, std::span<const PictureMethod> methods);

@@ -26,6 +26,12 @@ struct ModelInfo {
 /// throws:     Error(InvalidInput) for an unknown name (lists the known ones) or a resolution out of range
 [[nodiscard]] HexMesh make_model(const std::string& name, int resolution = 0);
 
+/// The exact field of a model, which its meshes sample: the value at a place; nothing outside.
+using ModelField = std::optional<double> (*)(const Vec3& x);
+
+/// throws: Error(InvalidInput) for an unknown name
+[[nodiscard]] ModelField model_field(const std::string& name);
+
 /// The exact field of the `twist` model. The map of its block has an inverse in closed form, so the field is known everywhere.
 struct TwistField {
     /// The parameter in [-1,1]³ that maps to x, unclipped.

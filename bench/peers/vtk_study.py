@@ -1,0 +1,69 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""The picture of a study's case by VTK, for the method `file` of studies (docs/studies.md).
+
+    vtk_study.py mesh.vtu FIELD camera.json WIDTHxHEIGHT map.json UNIT picture.pfm [--rays]
+
+The camera is that of references/cameras, the map a ParaView colour map that the study names as its transfer function, UNIT its
+opacity_unit. Tetrahedra are projected; with --rays Bunyk's ray caster integrates them. Beside the picture its camera is written. VTK
+blends colours as they stand, in 8 bits a channel: they are given as linear ones, and the picture is a file of linear floats. Needs what
+vtk_window needs.
+"""
+import json
+import shutil
+import sys
+from pathlib import Path
+
+import numpy
+import vtk
+from vtk.util.numpy_support import vtk_to_numpy
+from vtk_window import tetrahedra, volume_of, window_of
+
+
+def linear(channel):
+    return channel / 12.92 if channel <= .04045 else ((channel + .055) / 1.055) ** 2.4
+
+
+def functions_of(file):
+    """Colours and opacities of the first map in a file of ParaView's."""
+    first = json.loads(Path(file).read_text())
+    first = first[0] if isinstance(first, list) else first
+    rgb, points = first["RGBPoints"], first["Points"]
+    return ([(rgb[i], [linear(c) for c in rgb[i + 1:i + 4]]) for i in range(0, len(rgb), 4)],
+            [(points[i], points[i + 1]) for i in range(0, len(points), 4)])
+
+
+def mapper_of(rays):
+    if not rays:
+        return vtk.vtkProjectedTetrahedraMapper()
+    mapper = vtk.vtkUnstructuredGridVolumeRayCastMapper()
+    mapper.SetRayCastFunction(vtk.vtkUnstructuredGridBunykRayCastFunction())
+    mapper.SetRayIntegrator(vtk.vtkUnstructuredGridPreIntegration())
+    mapper.SetAutoAdjustSampleDistances(0)
+    mapper.SetImageSampleDistance(1)
+    return mapper
+
+
+def main(mesh, field, camera_file, size, colors, unit, picture, rays=None):
+    width, height = map(int, size.split("x"))
+    eye = json.loads(Path(camera_file).read_text())
+    mapper = mapper_of(rays == "--rays")
+    mapper.SetInputData(tetrahedra(mesh, field))
+    window, camera = window_of(volume_of(mapper, *functions_of(colors), float(unit)), max(width, height), eye["eye"], eye["target"],
+                               eye.get("fovy_deg", 30))
+    window.SetSize(width, height)
+    camera.SetViewUp(eye["up"])
+    if "ortho_height" in eye:
+        camera.ParallelProjectionOn()
+        camera.SetParallelScale(eye["ortho_height"] / 2)
+    window.GetRenderers().GetFirstRenderer().ResetCameraClippingRange()
+    window.Render()
+    pixels = vtk.vtkUnsignedCharArray()
+    window.GetPixelData(0, 0, width - 1, height - 1, 0, pixels)
+    values = vtk_to_numpy(pixels).reshape(height, width, 3).astype("<f4") / 255  # rows from the bottom, as .pfm has them
+    Path(picture).write_bytes(f"PF\n{width} {height}\n-1.0\n".encode() + values.tobytes())
+    shutil.copyfile(camera_file, Path(picture).with_suffix(".json"))
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])
