@@ -10,9 +10,10 @@ namespace subvol::detail {
 
 /// A storage buffer of the current context that shaders read and write. It only grows, so that frames can share it.
 ///
-/// `upload`, `read` and `clear` see what shaders wrote before; between two shaders the caller sets a barrier.
-/// Every member throws Error(MissingCapability) if the device has no room or refuses the call; failures of `upload` and `clear`
-/// are noticed by the next one that makes room or reads, as asking the driver each time would cost more than the call.
+/// `upload`, `read` and `clear` see what shaders wrote before; between two shaders the caller sets a barrier. What draws under
+/// way read is uploaded into another buffer: NVIDIA's driver overwrites one that is not bound at once. Every member throws
+/// Error(MissingCapability) if the device has no room or refuses the call; failures of `upload` and `clear` are noticed by the
+/// next one that makes room or reads, as asking the driver each time would cost more than the call.
 class GlBuffer {
 public:
     GlBuffer() = default;
@@ -38,7 +39,7 @@ public:
 
     void upload(std::size_t bytes, const void* from, std::size_t at_byte = 0);
 
-    /// Waits for the device. Much at a time comes through memory that the device writes directly, which is kept.
+    /// Waits for the device. What a large buffer holds comes through memory that the device writes directly, which is kept.
     void read(std::size_t bytes, void* to, std::size_t at_byte = 0) const;
 
     /// Sets all of it to zero.

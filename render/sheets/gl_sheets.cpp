@@ -201,8 +201,7 @@ Drawn GlSheets::draw(const SplatFrame& frame, Progress* progress) {
     for (int first = 0; first < frame.sheets.count && !window.empty(); first += kListed) {
         const int end = std::min(first + kListed, frame.sheets.count);
         const SheetLists lists = list_sheets(frame, window, first, end);
-        ids_.grow(lists.splats.size() * sizeof(std::uint32_t));
-        ids_.upload(lists.splats.size() * sizeof(std::uint32_t), lists.splats.data());
+        ids_ = GlBuffer(kListBinding, lists.splats.size() * sizeof(std::uint32_t), lists.splats.data());
         for (int sheet = first; sheet < end; ++sheet) {
             const auto k = static_cast<std::size_t>(sheet - first);
             // Where neither this sheet nor the last one has kernels, there is no value, unless an empty sum counts as 0, or a
@@ -300,7 +299,7 @@ void GlSheets::composite(const SplatFrame& frame, const GlProgram& program, int 
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
 }
 
-// Waits for the device: without that, pictures of an NVIDIA H200 were wrong (docs/adr/0032).
+// Waits for the device: sheets that nobody sees need not be listed.
 std::uint32_t GlSheets::done_pixels() const {
     std::uint32_t count = 0;
     done_.read(sizeof count, &count);

@@ -341,12 +341,12 @@ PixelIntervals joined(const std::vector<Band>& bands) {
 
 }  // namespace
 
-bool needs_clipping(const Surface& surface, const View& view, double near) {
+bool needs_clipping(std::span<const Vec3> points, const View& view, double near) {
     const auto planes = clip_planes(view, near);
     std::atomic<bool> needed = false;
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, surface.points.size(), 4096), [&](const auto& range) {
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, points.size(), 4096), [&](const auto& range) {
         for (std::size_t i = range.begin(); i < range.end() && !needed; ++i) {
-            const Vec3 p = view.to_eye(surface.points[i]);
+            const Vec3 p = view.to_eye(points[i]);
             if (std::any_of(planes.begin(), planes.end(), [&](const auto& plane) { return is_outside(plane, p); }))
                 needed = true;
         }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "subvol/camera.h"
@@ -42,7 +43,7 @@ inline constexpr std::uint32_t kMostGlIntervals = 4096;
 /// throws: Error(MissingCapability) if a ray has more of them
 void check_for_gl(const PixelIntervals& intervals);
 
-/// Whether any point of the surface lies before the near depth, or so far beside the picture that triangles are clipped.
-[[nodiscard]] bool needs_clipping(const Surface& surface, const View& view, double near);
+/// Whether any of the points lies before the near depth, or so far beside the picture that triangles are clipped.
+[[nodiscard]] bool needs_clipping(std::span<const Vec3> points, const View& view, double near);
 
 }  // namespace subvol::detail

@@ -32,23 +32,29 @@ constexpr double kRounding = 0x1p-24;  // of a 32-bit float, relative
                 std::string(what) + number_text(amount) + ", beyond what kernels hold in 32-bit floats", {}, allowed);
 }
 
-void check_channel(const RbfVolume& volume, std::size_t channel) {
+/// Returns the largest absolute value.
+float check_channel(const RbfVolume& volume, std::size_t channel) {
     if (channel >= volume.channels.size()) {
         throw Error(ErrorCode::InvalidInput, "there is no channel " + std::to_string(channel), {},
                     "the volume has " + std::to_string(volume.channels.size()));
     }
+    float largest = 0;
     for (const float v : volume.channels[channel].values) {
         if (!std::isfinite(v)) refuse("a value is ", static_cast<double>(v), "up to 3e38");
+        largest = std::max(largest, std::abs(v));
     }
+    return largest;
 }
 
-void check_range(const RbfChannel& channel, double min, double max) {
+/// largest: the largest absolute value of the channel
+void check_range(const RbfChannel& channel, float largest, double min, double max) {
     const double range = max - min;
     if (!(range >= kLeastRange && range <= kMostRange)) refuse("the transfer function's range is ", range, "1e-30 to 1e37");
+    const double most_rounding = 0.1 * range;  // if it is more, the field is noise
+    if (double{largest} * kRounding <= most_rounding) return;
     for (const float v : channel.values) {
         const double value = static_cast<double>(v), rounding = std::abs(value) * kRounding;
-        // If rounding is more than a tenth of the range, the field is noise.
-        if (rounding > 0.1 * range && value + rounding >= min && value - rounding <= max) {
+        if (rounding > most_rounding && value + rounding >= min && value - rounding <= max) {
             refuse("beside a value of " + number_text(value) + " the transfer function's range is ", range,
                    "a wider range, or the field less its mean");
         }
@@ -205,8 +211,8 @@ SplatScene make_scene(const RbfVolume& volume, const SplatOptions& options) {
         throw Error(ErrorCode::InvalidInput, "the tolerance of the picture is " + number_text(options.image_tolerance), {},
                     "more than 0");
     }
-    check_channel(volume, options.channel);
-    if (options.color_channel) check_channel(volume, *options.color_channel);
+    const float largest_value = check_channel(volume, options.channel);
+    const float largest_color = options.color_channel ? check_channel(volume, *options.color_channel) : 0;
     const Box box = box_of(volume);
     const double size = box.diagonal();
     if (!(size >= kLeastSize_world && size <= kMostSize_world)) refuse("the volume's diagonal is ", size, "1e-12 to 1e18");
@@ -215,6 +221,8 @@ SplatScene make_scene(const RbfVolume& volume, const SplatOptions& options) {
     SplatScene scene{.volume = &volume,
                      .channel = options.channel,
                      .color_channel = options.color_channel,
+                     .largest_value = largest_value,
+                     .largest_color = largest_color,
                      .form = form,
                      .kernel_table = kernel_table,
                      .normalized = options.normalized,
@@ -241,8 +249,9 @@ void set_kernels(SplatScene& scene, const RbfVolume& volume, const Clip& clip) {
         throw Error(ErrorCode::InvalidInput, "the kernels are those of another volume", {},
                     "the same channels, kernel and boundary as before");
     }
-    check_channel(volume, scene.channel);
-    if (scene.color_channel) check_channel(volume, *scene.color_channel);
+    const float largest_value = check_channel(volume, scene.channel);
+    scene.largest_color = scene.color_channel ? check_channel(volume, *scene.color_channel) : 0;
+    scene.largest_value = largest_value;
     scene.volume = &volume;
     scene.reach = {};
     set_clip(scene, clip);
@@ -265,14 +274,14 @@ Classification classify(const SplatScene& scene, const Optics& optics) {
     for (const auto& row : classification.table.rows) {
         classification.most_extinction = std::max(classification.most_extinction, row.mean[0] + std::abs(row.bend[0]));
     }
-    check_range(scene.opacity_values(), classification.table.min, classification.table.max);
+    check_range(scene.opacity_values(), scene.largest_value, classification.table.min, classification.table.max);
     if (!finite(classification.table)) {
         throw Error(ErrorCode::InvalidInput, "the extinction is beyond 32-bit floats", {}, "a larger opacity unit");
     }
     if (scene.color_channel) {
         const auto& knots = optics.function().color;
         classification.colors = color_table(optics, knots.front().value, knots.back().value);
-        check_range(scene.color_values(), classification.colors.min, classification.colors.max);
+        check_range(scene.color_values(), scene.largest_color, classification.colors.min, classification.colors.max);
     } else if (scene.clip.has_slices() || is_solid(scene, optics)) {
         classification.colors = color_table(optics, classification.table.min, classification.table.max);
     }

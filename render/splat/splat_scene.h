@@ -57,6 +57,7 @@ struct SplatScene {
     const RbfVolume* volume = nullptr;
     std::size_t channel = 0;  // whose values give the opacity, and the colour too unless there is a
     std::optional<std::size_t> color_channel{};
+    float largest_value = 0, largest_color = 0;  // absolute, of the kernels in both channels
     KernelForm form = KernelForm::Compact;
     std::vector<float> kernel_table{};  // equally spaced over e or |ξ| / radius in [0,1]; the last is 0
     bool bent = false;                  // channels have Hessians

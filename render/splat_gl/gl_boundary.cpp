@@ -30,6 +30,14 @@ GlProgram boundary_program(const char* file, const char* source, const char* def
             {{"gl_groups.glsl", kShader_gl_groups_glsl}, {"boundary_frame.glsl", kShader_boundary_frame_glsl}}};
 }
 
+std::array<Vec3, 8> corners(const Box& box) {
+    std::array<Vec3, 8> result;
+    for (std::size_t i = 0; i < 8; ++i) {
+        for (int axis = 0; axis < 3; ++axis) result[i][axis] = ((i >> axis & 1) == 0 ? box.lower : box.upper)[axis];
+    }
+    return result;
+}
+
 }  // namespace
 
 /// The same as in shaders/boundary_frame.glsl.
@@ -95,9 +103,12 @@ std::size_t GlBoundary::room() const {
 void GlBoundary::find(const Surface& surface, const View& view, double near, double middle, GlStages& stages) {
     pixels_ = pixel_count(view.width(), view.height());
     ranges_.grow(pixels_ * kPair_bytes);
+    if (box_.empty()) {
+        for (const Vec3& point : surface.points) box_.add(point);
+    }
     on_device_now_ = on_device_ && GlBuffer::fits(surface.points.size() * kEyePoint_bytes) &&
                      GlBuffer::fits(surface.triangles.size() * kBox_bytes) && pixels_ <= kMostPixels &&
-                     !needs_clipping(surface, view, near);
+                     !(needs_clipping(corners(box_), view, near) && needs_clipping(surface.points, view, near));
     if (!on_device_now_) return upload_intervals(boundary_intervals(surface, view, near, middle));
 
     stages.begin("boundary");

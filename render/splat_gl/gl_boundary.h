@@ -50,6 +50,7 @@ private:
     bool on_device_, on_device_now_ = false;
     GlProgram points_program_, strips_program_, plan_program_, count_program_, fill_program_, resolve_program_;
     GlScan scan_;
+    Box box_;  // of the surface
     std::size_t points_ = 0, triangles_ = 0, pixels_ = 0, hits_ = 0, room_ = 0;
     GlBuffer camera_, positions_, corners_, eye_points_, boxes_, strips_, strip_total_, plan_, hit_offsets_, counts_,
         intervals_, ranges_;

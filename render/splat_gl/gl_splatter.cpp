@@ -17,6 +17,7 @@
 #include "gl_splatter.h"
 
 #include <tbb/parallel_for.h>
+#include <tbb/task_group.h>
 
 #include <algorithm>
 #include <cassert>
@@ -199,7 +200,7 @@ private:
     [[nodiscard]] const GlProgram& program();
     /// Whether rays have intervals: there is a boundary, or a clip.
     [[nodiscard]] bool has_intervals() const { return scene_.half_weight == 0 || !scene_.clip.empty(); }
-    [[nodiscard]] Drawn read(const View& view);
+    void read(Drawn& drawn);
 
     const SplatScene& scene_;
     GlTuning tuning_;
@@ -325,6 +326,12 @@ Drawn GlSplatter::State::draw(const View& view, const Classification& classifica
     report_progress(progress, "splat", 0);
     report = {};
     sheets_ = make_sheets(scene_, view, sheets);
+    Drawn drawn;
+    tbb::task_group making;  // while the device draws: to set so much memory to zero takes longer than to fill it
+    making.run([&] {
+        drawn.image = Image(view.width(), view.height());
+        drawn.depth.resize(pixel_count(view.width(), view.height()));
+    });
     report.sheets = sheets_.count;
     prepare(view, classification);
     if (!draw_at_once(progress)) draw_in_passes(view, 0, frame_.batches, progress);
@@ -335,7 +342,8 @@ Drawn GlSplatter::State::draw(const View& view, const Classification& classifica
         draw_in_passes(view, 0, frame_.batches, progress);
     }
     report.boundary_hits = has_intervals() ? boundary_.hits() : 0;
-    Drawn drawn = read(view);
+    making.wait();
+    read(drawn);
     report.stages = stages_.times();
     report_progress(progress, "splat", 1);
     return drawn;
@@ -388,12 +396,9 @@ bool GlSplatter::State::fits_bins(int first, int end) const {
     return static_cast<std::size_t>(frame_.tiles()) * static_cast<std::size_t>(end - first) <= most_bins_;
 }
 
-Drawn GlSplatter::State::read(const View& view) {
-    Drawn drawn{Image(view.width(), view.height()), {}};
+void GlSplatter::State::read(Drawn& drawn) {
     picture_.read(drawn.image.rgba.size() * sizeof(float), drawn.image.rgba.data());
-    drawn.depth.resize(drawn.image.rgba.size() / 4);
     kept_.read(drawn.depth.size() * sizeof(float), drawn.depth.data(), sizeof(std::uint32_t));
-    return drawn;
 }
 
 GlSplatter::GlSplatter(const SplatScene& scene, std::optional<int> device, const GlTuning& tuning) {

@@ -90,8 +90,8 @@ TEST_F(GlBoundaries, EdgesThroughPixelCentresAreOwnedOnce) {
 TEST_F(GlBoundaries, WhatHasToBeClippedComesFromTheCpu) {
     const Surface surface = surface_of(test::make_nested_cubes(2), 1, {0, 0, 0});
     const View inside({.eye = {.1, 0, 0}, .target = {1, .2, .1}, .up = {0, 0, 1}, .fovy_deg = 70}, 40, 40);
-    EXPECT_TRUE(detail::needs_clipping(surface, inside, kNear));
-    EXPECT_FALSE(detail::needs_clipping(surface, view_of(true), kNear));
+    EXPECT_TRUE(detail::needs_clipping(surface.points, inside, kNear));
+    EXPECT_FALSE(detail::needs_clipping(surface.points, view_of(true), kNear));
     expect_like_cpu(surface, inside);
 }
 
