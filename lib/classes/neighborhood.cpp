@@ -29,7 +29,10 @@ namespace subvol::detail {
 
 namespace {
 
-constexpr std::size_t kMostPoints = 1500, kMostCells = 1000;  // a vertex with 60 cells around it; more is left to refinement
+constexpr std::size_t kMostPoints = 1500, kMostCells = 1000;  // more is left to refinement
+// Cells around a point, as around an axis of 32 faces: rows of classes would have all of them, where those of a refinement have
+// sums (ring_sums.h).
+constexpr std::size_t kMostAround = 64;
 
 }  // namespace
 
@@ -170,9 +173,12 @@ void NeighborhoodWalk::add_tags(Neighborhood& found) const {
 bool NeighborhoodWalk::find(Index cell, int layers, Neighborhood& found) {
     start(found);
     add_first(cell, found);
+    const auto many_at = [&](Index p) { return links_.cells_at[p] > kMostAround; };
+    if (std::ranges::any_of(found.points, many_at)) return false;
     if (!walk_layer(8, found) || !is_complete(8, found)) return false;
     found.code[0] = static_cast<std::uint16_t>(visited_.size());
     const std::size_t near = found.points.size();
+    if (layers > 1 && std::ranges::any_of(found.points, many_at)) return false;
     if (layers > 1 && (!walk_layer(near, found) || !is_complete(near, found))) return false;
     add_tags(found);
     return true;

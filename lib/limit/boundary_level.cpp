@@ -84,7 +84,8 @@ HullFlags hull_points_of_child(const Topology& parent, const HullFlags& on_hull)
 
 Surface boundary_of_child(const HexMesh& mesh, const Topology& topology, const HullFlags& on_hull,
                           const SchemeOptions& scheme) {
-    const SchemeRows rows(topology, scheme);
+    const SchemeRows rows(topology, scheme, SchemeRows::Columns::WithSums);
+    const RowInput input(rows, mesh);
     const ChildNumbering first(topology);
     SurfaceBuilder builder(first.cells);  // no cell point is on the boundary
     each_hull_face(topology, on_hull, [&](Index face) {
@@ -109,7 +110,10 @@ Surface boundary_of_child(const HexMesh& mesh, const Topology& topology, const H
         std::size_t next = 0;
         for (const auto& [weight, count] : stencil.runs) {
             Vec3 sum(0.0);
-            for (std::uint32_t i = 0; i < count; ++i) sum += mesh.points[stencil.points[next++]];
+            for (std::uint32_t i = 0; i < count; ++i) {
+                const double* const x = input.points() + 3 * std::size_t{stencil.points[next++]};
+                sum += Vec3(x[0], x[1], x[2]);
+            }
             position += weight * sum;
         }
         return position;

@@ -155,6 +155,7 @@ void refine_data(const HexMesh& parent, const SchemeRows& rows, std::span<const 
         child.attributes.push_back({attribute.name, attribute.channels, std::vector<double>(points.size() * channels)});
     }
     constexpr std::size_t kRows = 512;
+    const RowInput input(rows, parent);
     tbb::parallel_for(std::size_t{0}, (points.size() + kRows - 1) / kRows, [&](std::size_t b) {
         const std::size_t begin = b * kRows, end = std::min(points.size(), begin + kRows);
         StencilBuilder row;
@@ -165,11 +166,10 @@ void refine_data(const HexMesh& parent, const SchemeRows& rows, std::span<const 
             points[i] < rows.kept() ? row.add(points[i], 1) : rows.write_row(points[i], row);
             block.push(row.finish());
         }
-        apply_block(block.block(), &parent.points[0].x, 3, &child.points[begin].x);
+        apply_block(block.block(), input.points(), 3, &child.points[begin].x);
         for (std::size_t a = 0; a < parent.attributes.size(); ++a) {
             const auto channels = static_cast<std::size_t>(parent.attributes[a].channels);
-            apply_block(block.block(), parent.attributes[a].values.data(), channels,
-                        child.attributes[a].values.data() + begin * channels);
+            apply_block(block.block(), input.values(a), channels, child.attributes[a].values.data() + begin * channels);
         }
     });
 }
@@ -202,12 +202,14 @@ PatchSource::PatchSource(const HexMesh& mesh, Faces faces)
 }
 
 std::vector<Index> PatchSource::cells_about(std::span<const Index> cells) const {
+    // Each point once, since very many cells may share an axis.
+    std::vector<std::array<Index, 8>> corners;
+    for (const Index c : cells) corners.push_back(mesh_.cells[c]);
+    const PointSelection selection(corners, mesh_.points.size());
     std::vector<Index> found;
     const auto for_each_found = [&](const auto& take) {
-        for (const Index c : cells) {
-            for (const Index p : mesh_.cells[c]) {
-                for (std::size_t i = offsets_[p]; i < offsets_[p + 1]; ++i) take(cells_[i]);
-            }
+        for (const Index p : selection.points()) {
+            for (std::size_t i = offsets_[p]; i < offsets_[p + 1]; ++i) take(cells_[i]);
         }
     };
     if (mesh_.cells.size() > 64 * cells.size()) {  // a few cells of a large mesh
@@ -255,7 +257,7 @@ Patch refine_patch(const Patch& patch, const SchemeOptions& scheme, int layers) 
 }
 
 HexMesh refine_cells(const Patch& patch, const Topology& topology, const SchemeOptions& scheme, std::span<const Index> cells) {
-    const SchemeRows rows(topology, scheme);
+    const SchemeRows rows(topology, scheme, SchemeRows::Columns::WithSums);
     HexMesh child;
     child.cells.reserve(8 * cells.size());
     for (const Index c : cells) {
@@ -269,7 +271,7 @@ HexMesh refine_cells(const Patch& patch, const Topology& topology, const SchemeO
 }
 
 Patch refine_patch(const Patch& patch, const Topology& topology, const SchemeOptions& scheme, int layers) {
-    const SchemeRows rows(topology, scheme);
+    const SchemeRows rows(topology, scheme, SchemeRows::Columns::WithSums);
     const std::size_t parents = layers == 0 ? patch.wanted : patch.first_layer;
     std::vector<std::array<Index, 8>> cells;
     cells.reserve(8 * parents);

@@ -35,11 +35,12 @@ HexMesh child_data(const HexMesh& parent, const SchemeRows& rows, Progress* prog
         values.resize(rows.rows() * channels);
         std::copy_n(attribute.values.begin(), rows.kept() * channels, values.begin());
     }
+    const detail::RowInput input(rows, parent);
     rows.for_each_block(progress, stage_of(level), [&](std::size_t, const StencilTable::Block& block) {
-        detail::apply_block(block, &parent.points[0].x, 3, &child.points[block.first_row].x);
+        detail::apply_block(block, input.points(), 3, &child.points[block.first_row].x);
         for (std::size_t a = 0; a < parent.attributes.size(); ++a) {
             const auto channels = static_cast<std::size_t>(parent.attributes[a].channels);
-            detail::apply_block(block, parent.attributes[a].values.data(), channels,
+            detail::apply_block(block, input.values(a), channels,
                                 child.attributes[a].values.data() + block.first_row * channels);
         }
     });
@@ -116,7 +117,8 @@ detail::RefinedPoints detail::refine_points(HexMesh control, Topology topology, 
     RefinedPoints refined{std::move(control), std::move(topology)};
     for (int level = 1; level <= options.levels; ++level) {
         if (level > 1) refined.parent = child_topology(refined.parent);
-        HexMesh child = child_data(refined.mesh, SchemeRows(refined.parent, options.scheme), options.progress, level);
+        HexMesh child = child_data(refined.mesh, SchemeRows(refined.parent, options.scheme, SchemeRows::Columns::WithSums),
+                                   options.progress, level);
         child.creases = child_creases(refined.parent);
         child.sharp_faces = child_sharp_faces(refined.parent);
         refined.mesh = std::move(child);

@@ -6,10 +6,11 @@
 
 namespace subvol::detail {
 
-SchemeRows::SchemeRows(const Topology& topology, const SchemeOptions& scheme)
+SchemeRows::SchemeRows(const Topology& topology, const SchemeOptions& scheme, Columns columns)
     : topology_(topology),
       first_(topology),
       rules_(make_rules(topology, scheme)),
+      sums_(columns == Columns::WithSums ? rules_->use_ring_sums() : nullptr),
       kept_(rules_->interpolates() ? topology.point_count : 0),
       cell_of_rank_(topology.cells.size()) {
     if (first_.end >= kNone) {
@@ -18,6 +19,14 @@ SchemeRows::SchemeRows(const Topology& topology, const SchemeOptions& scheme)
     }
     parallel_each(topology.cells.size(),
                   [&](std::size_t c) { cell_of_rank_[topology.cell_ordinal[c]] = static_cast<Index>(c); });
+}
+
+RowInput::RowInput(const SchemeRows& rows, const HexMesh& mesh) : mesh_(mesh) {
+    if (rows.sums() == nullptr) return;
+    columns_.push_back(rows.sums()->with_sums(&mesh.points[0].x, 3));
+    for (const Attribute& attribute : mesh.attributes) {
+        columns_.push_back(rows.sums()->with_sums(attribute.values.data(), static_cast<std::size_t>(attribute.channels)));
+    }
 }
 
 void SchemeRows::write_row(std::size_t point, StencilBuilder& row) const {

@@ -17,8 +17,15 @@ namespace subvol::detail {
 /// The rows of one refinement step, in blocks.
 class SchemeRows {
 public:
+    /// OfPoints: all terms are points. WithSums: rows about long rings have sums (`RingSums`) as columns behind the points, as
+    /// in `RowInput`
+    enum class Columns : std::uint8_t { OfPoints, WithSums };
+
     /// Keeps a reference to the topology.
-    SchemeRows(const Topology& topology, const SchemeOptions& scheme);
+    SchemeRows(const Topology& topology, const SchemeOptions& scheme, Columns columns = Columns::OfPoints);
+
+    /// The sums that rows have as columns; null if there are none.
+    [[nodiscard]] const RingSums* sums() const { return sums_; }
 
     [[nodiscard]] std::size_t columns() const { return topology_.point_count; }
     [[nodiscard]] std::size_t rows() const { return first_.end; }
@@ -38,8 +45,26 @@ private:
     const Topology& topology_;
     ChildNumbering first_;
     std::unique_ptr<SchemeRules> rules_;
+    const RingSums* sums_;  // null: there are none
     std::size_t kept_;
     std::vector<Index> cell_of_rank_;
+};
+
+/// What rows are applied to: the values of a mesh as they are, or copies with the sums behind them.
+class RowInput {
+public:
+    /// The mesh is kept by reference.
+    RowInput(const SchemeRows& rows, const HexMesh& mesh);
+
+    /// Returns three coordinates for each column.
+    [[nodiscard]] const double* points() const { return columns_.empty() ? &mesh_.points[0].x : columns_[0].data(); }
+    [[nodiscard]] const double* values(std::size_t attribute) const {
+        return columns_.empty() ? mesh_.attributes[attribute].values.data() : columns_[1 + attribute].data();
+    }
+
+private:
+    const HexMesh& mesh_;
+    std::vector<std::vector<double>> columns_;  // of the points, then of each attribute; empty without sums
 };
 
 template <class Visit>

@@ -10,13 +10,14 @@
 //
 // Points of faces and cells follow the same pattern (`regular_face`, `regular_cell`). Elsewhere "one step further" has no
 // unique meaning. Across an edge with a ring of m faces it is the antipodal term: the sum over the ring with the weights c_j of
-// antipode.h, which for m = 4 is the face opposite. Beyond a boundary it is a ghost: the quadratic extrapolation from the
-// points on this side and the term at the opposite end of the line.
+// antipode.h, which for m = 4 is the face opposite; for large m it is two sums over the ring (ring_sums.h). Beyond a boundary
+// it is a ghost: the quadratic extrapolation from the points on this side and the term at the opposite end of the line.
 #include <algorithm>
 
 #include "antipode.h"
 #include "incident.h"
 #include "opposites.h"
+#include "ring_sums.h"
 #include "schemes.h"
 
 namespace subvol::detail {
@@ -26,7 +27,36 @@ namespace {
 class McqRules final : public SchemeRules {
 public:
     McqRules(const Topology& topology, double tension, std::vector<PointKind> kinds)
-        : topology_(topology), omega_(tension), kinds_(std::move(kinds)), regular_(regular_points(topology)) {}
+        : topology_(topology),
+          omega_(tension),
+          kinds_(std::move(kinds)),
+          regular_(regular_points(topology)),
+          sums_(topology.point_count) {}
+
+    const RingSums* use_ring_sums() override {
+        for (Index e = 0; e < topology_.edges.size(); ++e) {
+            const auto ring = topology_.edge_faces[e];
+            if (ring.size() < RingSums::kLong || !topology_.edge_has_ring[e]) continue;
+            std::array<std::vector<Index>, 2> points;
+            for (const Index face : ring) {
+                const Pair at_ends = far_side(topology_, face, e);
+                for (std::size_t end = 0; end < 2; ++end) points[end].push_back(at_ends[end]);
+            }
+            sums_.add(about_edge(e), ring, points);
+        }
+        std::vector<Index> ring;
+        for (Index p = 0; p < topology_.point_count; ++p) {
+            if (kinds_[p] != PointKind::Smooth || topology_.point_edges[p].size() < RingSums::kLong) continue;
+            const auto edges = topology_.point_edges[p];
+            ring_of_spokes(topology_, p, *std::ranges::find_if(edges, [&](Index e) { return topology_.edge_on_boundary[e]; }),
+                           ring);
+            if (ring.size() < RingSums::kLong) continue;
+            std::vector<Index> ends;
+            for (const Index e : ring) ends.push_back(other_end(topology_, e, p));
+            sums_.add(about_point(p), ring, std::span(&ends, 1));
+        }
+        return sums_.empty() ? nullptr : &sums_;
+    }
 
     void edge_point(Index edge, StencilBuilder& row) const override {
         const auto [a, b] = topology_.edges[edge];
@@ -164,6 +194,11 @@ private:
             const Index edge = edge_in_face(topology_, face, a, d);
             if (!topology_.edge_has_ring[edge]) return false;
             const auto ring = topology_.edge_faces[edge];
+            if (has_sums(edge)) {
+                row.add(beside(topology_, face, d, a), weight);
+                sums_.add_terms(about_edge(edge), face, topology_.edges[edge][0] == d ? 0 : 1, weight, row);
+                return true;
+            }
             const std::size_t m = ring.size(), start = slot_of(ring, face);
             for (std::size_t j = 0; j < m; ++j) {
                 const double c = antipodal_(m, j);
@@ -178,6 +213,11 @@ private:
         return [=, this](StencilBuilder& row, double weight) {
             if (!topology_.edge_has_ring[edge]) return false;
             const auto ring = topology_.edge_faces[edge];
+            if (has_sums(edge)) {
+                add(row, far_side(topology_, face, edge), weight);
+                for (std::size_t end = 0; end < 2; ++end) sums_.add_terms(about_edge(edge), face, end, weight, row);
+                return true;
+            }
             const std::size_t m = ring.size(), start = slot_of(ring, face);
             for (std::size_t j = 0; j < m; ++j) {
                 const double c = antipodal_(m, j);
@@ -195,7 +235,8 @@ private:
             if (!topology_.edge_has_ring[edge]) return false;
             const auto faces = topology_.edge_faces[edge];
             const auto cells = topology_.edge_cells[edge];
-            const std::size_t m = faces.size(), start = slot_of(faces, face);
+            const std::size_t m = faces.size();
+            const std::size_t start = has_sums(edge) ? sums_.slot(about_edge(edge), face) : slot_of(faces, face);
             for (const std::size_t j : {std::size_t{1}, m - 2}) {
                 for (const Index p : opposite_edge(topology_, cells[(start + j) % m], edge)) row.add(p, weight);
             }
@@ -230,6 +271,11 @@ private:
     [[nodiscard]] auto across_spokes(Index edge, Index a) const {
         return [=, this](StencilBuilder& row, double weight) {
             if (kinds_[a] != PointKind::Smooth) return false;
+            if (!sums_.empty() && sums_.has(about_point(a))) {
+                row.add(other_end(topology_, edge, a), weight);
+                sums_.add_terms(about_point(a), edge, 0, weight, row);
+                return true;
+            }
             std::vector<Index> ring;
             ring_of_spokes(topology_, a, edge, ring);
             if (ring.size() < 3) return false;
@@ -326,11 +372,19 @@ private:
         }
     }
 
+    static RingSums::Center about_edge(Index edge) { return {RingSums::Center::Edge, edge}; }
+    static RingSums::Center about_point(Index point) { return {RingSums::Center::Point, point}; }
+    /// Whether an edge with a ring has sums over it.
+    [[nodiscard]] bool has_sums(Index edge) const {
+        return !sums_.empty() && topology_.edge_faces[edge].size() >= RingSums::kLong;
+    }
+
     const Topology& topology_;
     double omega_;
     std::vector<PointKind> kinds_;
     std::vector<std::uint8_t> regular_;
     AntipodalWeights antipodal_;
+    RingSums sums_;  // empty: rows have all members of their rings
 };
 
 }  // namespace

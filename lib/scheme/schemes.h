@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "boundary_rings.h"
+#include "ring_sums.h"
 #include "stencil_row.h"
 #include "subvol/scheme.h"
 #include "subvol/topology.h"
@@ -13,7 +14,7 @@ namespace subvol::detail {
 
 /// The rules of a scheme over one topology: each writes the terms of one point of the next level.
 ///
-/// Thread-safe: the rules only read.
+/// Thread-safe, apart from use_ring_sums: the rules only read.
 class SchemeRules {
 public:
     virtual ~SchemeRules() = default;
@@ -24,6 +25,9 @@ public:
     virtual void edge_point(Index edge, StencilBuilder& row) const = 0;
     virtual void face_point(Index face, StencilBuilder& row) const = 0;
     virtual void cell_point(Index cell, StencilBuilder& row) const = 0;
+
+    /// From now on rows have columns of sums over long rings, if the scheme has any. The result is part of the rules.
+    virtual const RingSums* use_ring_sums() { return nullptr; }
 };
 
 /// All keep a reference to the topology. kinds: of its points

@@ -14,7 +14,11 @@ class RingWalk {
 public:
     /// faces: kept by reference
     RingWalk(const Topology& topology, std::span<const Index> faces)
-        : topology_(topology), all_(faces), more_taken_(faces.size() / 64) {}
+        : topology_(topology), all_(faces), more_taken_(faces.size() / 64) {
+        if (faces.size() < 64) return;
+        for (std::size_t i = 0; i < faces.size(); ++i) sorted_.emplace_back(faces[i], i);
+        std::ranges::sort(sorted_);
+    }
 
     /// Walks fans from hull face to hull face, then closed rings; appends to `faces` and `cells`. Returns the number of closed
     /// rings.
@@ -29,6 +33,13 @@ public:
     }
 
 private:
+    /// The place of a face, or the number of all if it is not at the edge. Long rings are searched by halves.
+    [[nodiscard]] std::size_t place_of(Index face) const {
+        if (sorted_.empty()) return static_cast<std::size_t>(std::find(all_.begin(), all_.end(), face) - all_.begin());
+        const auto found = std::ranges::lower_bound(sorted_, face, {}, &std::pair<Index, std::size_t>::first);
+        return found != sorted_.end() && found->first == face ? found->second : all_.size();
+    }
+
     [[nodiscard]] std::optional<Index> next_start(bool on_hull) {
         for (std::size_t i = 0; i < all_.size(); ++i) {
             if ((word(i) >> i % 64 & 1) == 0 && topology_.face_on_hull(all_[i]) == on_hull) return all_[i];
@@ -39,7 +50,7 @@ private:
     /// The other face of `cell` at this edge; a cell has exactly two.
     [[nodiscard]] Index other_face(Index cell, Index face) const {
         for (const Index f : topology_.cell_faces[cell]) {
-            if (f != face && std::find(all_.begin(), all_.end(), f) != all_.end()) return f;
+            if (f != face && place_of(f) != all_.size()) return f;
         }
         return kNone;
     }
@@ -54,7 +65,7 @@ private:
     [[nodiscard]] std::uint64_t& word(std::size_t face) { return face < 64 ? taken_ : more_taken_[face / 64 - 1]; }
 
     void take(Index face) {
-        const auto i = static_cast<std::size_t>(std::find(all_.begin(), all_.end(), face) - all_.begin());
+        const std::size_t i = place_of(face);
         word(i) |= std::uint64_t{1} << i % 64;
     }
 
@@ -76,6 +87,7 @@ private:
     std::span<const Index> all_;
     std::uint64_t taken_ = 0;                // a bit for each face; no memory is allocated for an edge of less than 64 faces
     std::vector<std::uint64_t> more_taken_;  // of the faces beyond
+    std::vector<std::pair<Index, std::size_t>> sorted_;  // the faces of a long ring with their places
 };
 
 }  // namespace

@@ -69,8 +69,8 @@ struct RefinementTables {
     [[nodiscard]] std::size_t bytes() const;
 };
 
-/// The tables of `refine`, in the same numbering; applied, they give the same bits as `refine`. scheme.crease_angle_deg is not
-/// used: tag creases before.
+/// The tables of `refine`, in the same numbering; applied, they give the same bits as `refine`, but roundings about edges of 32
+/// or more cells, where `refine` uses sums over the ring. scheme.crease_angle_deg is not used: tag creases before.
 [[nodiscard]] RefinementTables refinement_tables(const Topology& control, const RefineOptions& options = {});
 
 }  // namespace subvol
