@@ -86,7 +86,7 @@ void GlBuffer::read(std::size_t bytes, void* to, std::size_t at_byte) const {
     check_range(bytes, at_byte);
     if (bytes == 0) return;
     glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
-    if (bytes_ >= kMuch_bytes) {  // a little of much, too: NVIDIA's driver takes long for that otherwise
+    if (bytes_ >= kMuch_bytes) {  // a few bytes of it, too: NVIDIA's driver takes long for them otherwise
         read_mapped(bytes, to, at_byte);
     } else {
         glGetNamedBufferSubData(id_, static_cast<GLintptr>(at_byte), size(bytes), to);
