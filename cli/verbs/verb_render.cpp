@@ -19,6 +19,7 @@
 #include "shell_scene.h"
 #include "steps.h"
 #include "subvol/detail/number_text.h"
+#include "subvol/detail/points_frame.h"
 #include "subvol/error.h"
 #include "text.h"
 #include "verb.h"
@@ -361,7 +362,7 @@ private:
         const std::size_t last = volume.channels.size() - 1;
         const ShownField field{volume.channels.front().name, channel_range(volume, 0)};
         const ShownField colors{volume.channels.back().name, channel_range(volume, last)};
-        show(volume.bounds, field, colors, output, report,
+        show(detail::frame_of(volume), field, colors, output, report,
              [&](const ShownColors& shown) { write({.kernels = &volume}, shown, output, report); });
     }
 

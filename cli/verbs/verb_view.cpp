@@ -18,6 +18,7 @@
 #include "sampled_points.h"
 #include "splat_arguments.h"
 #include "steps.h"
+#include "subvol/detail/points_frame.h"
 #include "subvol/detail/read_file.h"
 #include "subvol/error.h"
 #include "subvol/image_io.h"
@@ -118,7 +119,7 @@ private:
         report["input"] = input_;
         const auto volume = std::make_shared<const RbfVolume>(report.unpack(load_all_points(input_, app(), report.progress())));
         if (common().field) (void)find_channel(*volume, *common().field, input_);
-        return {.volume = volume, .box = volume->bounds};
+        return {.volume = volume, .box = detail::frame_of(*volume)};
     }
 
     [[nodiscard]] ViewPoints voxels_of_file(Report& report) {
@@ -200,8 +201,10 @@ private:
     /// What `render` would show: the same camera, colours and light.
     [[nodiscard]] ViewState start_state(const ViewBody& body, const std::optional<std::string>& field) const {
         const Optics optics = picture_.make_optics(body.box, body.range, body.range);
-        const std::vector<Vec3> framed =  // of kernels and voxels it is their box, as in `render`
-            body.points.volume ? std::vector<Vec3>{} : framed_points(body.mesh, picture_.look, optics);
+        const RbfVolume* const kernels = body.points.volume.get();  // framed as in `render`
+        const std::vector<Vec3> framed = kernels == nullptr             ? framed_points(body.mesh, picture_.look, optics)
+                                         : picture_.look == Look::Solid ? detail::outline_of(*kernels)
+                                                                        : std::vector<Vec3>{};
         const View view = picture_.make_views(body.box, framed).front();
         ViewState state{.camera = view.camera(), .width = view.width(), .height = view.height(), .field = field.value_or("")};
         const bool one_state = !may_have_steps(input_) || body.points.volume;

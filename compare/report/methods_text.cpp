@@ -54,7 +54,9 @@ std::string method_names(const StudyResults& results) {
                                                            {"tets", "rays through tetrahedra"},
                                                            {"pt", "projected tetrahedra"},
                                                            {"dense", "rays through dense grids of the cells"},
-                                                           {"grid", "rays through a voxel grid"}};
+                                                           {"grid", "rays through a voxel grid"},
+                                                           {"exact", "rays through the closed form of the field"},
+                                                           {"file", "other programs"}};
     std::vector<std::string> all;
     for (const std::string& name : different(results, "method")) {
         if (const auto found = kWords.find(name); found != kWords.end()) all.push_back(found->second);
@@ -72,11 +74,13 @@ std::string methods_text(const StudyResults& results, const std::string& program
                        listed(different(results, "width")) + " × " + listed(different(results, "height")) + " pixels. ";
     text +=
         "Each picture was compared, in linear RGB with peak 1 over all pixels unless a metric says otherwise, with a "
-        "reference: "
-        "rays through the dense grid of the limit volume, refined level by level until the root mean square of the picture's "
-        "change was below " +
-        listed(different(results, "reference.tolerance")) + " (levels " + range_of(results, "reference_level", 2) +
-        "; last changes " + changes + "). ";
+        "reference: ";
+    const std::string levels = range_of(results, "reference_level", 2);  // none of a closed form
+    text += levels.empty() ? "rays through the closed form of the field, with steps that were halved"
+                           : "rays through the dense grid of the limit volume, refined level by level";
+    text += " until the root mean square of the picture's change was below " +
+            listed(different(results, "reference.tolerance")) + " (" + (levels.empty() ? "" : "levels " + levels + "; ") +
+            "last changes " + changes + "). ";
     const auto [references, open] = unconverged(results);
     if (open > 0) {
         text += std::to_string(open) + " of " + std::to_string(references) +

@@ -6,6 +6,7 @@
 #include "picture.h"
 #include "subvol/camera_fit.h"
 #include "subvol/detail/picture_size.h"
+#include "subvol/detail/points_frame.h"
 #include "subvol/image_io.h"
 #include "subvol/legend.h"
 #include "subvol/picture_look.h"
@@ -119,6 +120,17 @@ void bind_default_looks(py::module_& module) {
             return knots;
         },
         py::arg("knots"), py::arg("keep_opacity"), py::arg("plain"));
+    module.def(
+        "frame_of", [](const RbfVolume& volume) { return as_array(detail::frame_of(volume)); }, py::arg("volume"));
+    module.def(
+        "outline_of",
+        [](const RbfVolume& volume) {
+            std::vector<double> rows;
+            for (const Vec3& p : detail::outline_of(volume)) rows.insert(rows.end(), {p.x, p.y, p.z});
+            const std::size_t count = rows.size() / 3;
+            return owned(std::move(rows), {length(count), 3});
+        },
+        py::arg("volume"));
     module.def(
         "framed_points",
         [](const HexMesh& mesh, Look look, const TransferFunction& knots, double opacity_unit) {

@@ -64,6 +64,8 @@ def render(what: Drawable, *, method: str = "splat", view: str = "iso", camera: 
         knots = _core.Knots(_knots_of(tf, kind, *colors).color, knots.opacity)
     unit = opacity_unit or _core.look_opacity_unit(kind, bounds)
     framed = _core.framed_points(mesh, kind, knots, unit) if mesh is not None else None
+    if isinstance(what, RbfVolume) and kind == _core.Look.solid:
+        framed = _core.outline_of(what)
     eye = _camera_of(view, camera, bounds, framed, size, ortho)
     own_opacity = opacity_unit is not None or (isinstance(tf, TransferFunction) and tf.opacity is not None)
     with listening(progress) as listener:
@@ -92,7 +94,7 @@ def _body_of(what: Drawable, colors: Optional[HexMesh], field: Optional[str],
         if color_field is not None:
             channels.append(_channel(names, color_field))
         ranges = [_range_of(what.values[names[channel]]) for channel in channels]
-        return _core.DrawnBody(points=what, channels=channels), ranges[0], ranges[1] if len(ranges) > 1 else None, what.bounds
+        return _core.DrawnBody(points=what, channels=channels), ranges[0], ranges[1] if len(ranges) > 1 else None, _core.frame_of(what)
     about = what.report
     half = about["voxel_size"] / 2
     return _core.DrawnBody(voxels=what.voxels()), (about["min"], about["max"]), None, np.array(what.bounds) + [[-half], [half]]

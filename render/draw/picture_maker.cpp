@@ -9,6 +9,7 @@
 #include "kernel_levels.h"
 #include "picture_facts.h"
 #include "subvol/boundary_shading.h"
+#include "subvol/detail/points_frame.h"
 #include "subvol/limit.h"
 #include "subvol/progressive.h"
 #include "subvol/render_dense.h"
@@ -478,7 +479,10 @@ Picture PictureMaker::draw(const View& view, const Optics& optics, Progress* pro
 std::vector<Vec3> PictureMaker::framed_points(const Optics& optics, Progress* progress, Facts& facts) {
     const Look look = state_->options.style.look.look;
     if (const HexMesh* mesh = state_->mesh()) return subvol::framed_points(*mesh, look, optics);
-    if (!state_->is_in_pieces() || look != Look::Solid) return {};
+    if (look != Look::Solid) return {};
+    if (const RbfVolume* kernels = state_->body.kernels) return detail::outline_of(*kernels);
+    if (KernelFile* file = state_->body.file) return file->boundary().points;
+    if (!state_->is_in_pieces()) return {};
     return state_->hull_of_pieces(progress, facts).mesh.points;
 }
 

@@ -150,7 +150,8 @@ class Study(StudyFolder):
 
         solid = result["tables"][1]["rows"]
         self.assertEqual(len(solid), 4)
-        for name, papers, ours in solid:
+        for name, papers, ours, why in solid:
+            self.assertRegex(why, "paper|steep")
             if papers is not None:  # the paper has none for the nozzle
                 self.assertTrue(papers / 2 <= ours <= papers * 2, name)  # similar, as the models only resemble the paper's
 

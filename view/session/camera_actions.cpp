@@ -3,6 +3,7 @@
 #include "camera_motion.h"
 #include "seen_view.h"
 #include "subvol/camera_fit.h"
+#include "subvol/detail/points_frame.h"
 #include "view_actions.h"
 
 namespace subvol::detail {
@@ -21,7 +22,8 @@ double aspect_of(const Session& session) {
 
 /// What a camera is fitted to; empty: the box of the body.
 std::vector<Vec3> points_in_view(const Session& session, const Optics& optics) {
-    if (session.body->points.volume) return {};
+    const RbfVolume* const kernels = session.body->points.volume.get();
+    if (kernels != nullptr) return session.state.look.look == Look::Solid ? detail::outline_of(*kernels) : std::vector<Vec3>{};
     return framed_points(session.body->mesh, session.state.look.look, optics);
 }
 

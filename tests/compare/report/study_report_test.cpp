@@ -138,6 +138,15 @@ TEST(Report, SaysWhichReferencesDidNotConverge) {
     EXPECT_NE(page.find("-10 log10(mse), linear RGB, peak 1"), std::string::npos);  // what PSNR is
 }
 
+TEST(Report, SaysThatAClosedFormIsTheReference) {
+    StudyResults all = known_to_a_thousandth();
+    for (CaseResult& result : all.results) result.metrics.erase("reference_level");
+    const std::vector<StudyResults> studies{all};
+    const std::string page = report_html(studies, "nowhere", {});
+    EXPECT_NE(page.find("rays through the closed form of the field, with steps that were halved"), std::string::npos);
+    EXPECT_EQ(page.find("dense grid"), std::string::npos);
+}
+
 TEST(Report, SaysHowThePicturesWereMade) {
     const auto setup = setup_table(known_to_a_thousandth());
     ASSERT_TRUE(setup);
