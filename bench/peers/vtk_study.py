@@ -59,7 +59,7 @@ def main(mesh, field, camera_file, size, colors, unit, picture, rays=None):
     window.GetRenderers().GetFirstRenderer().ResetCameraClippingRange()
     window.Render()
     pixels = vtk.vtkUnsignedCharArray()
-    window.GetPixelData(0, 0, width - 1, height - 1, 0, pixels)
+    window.GetPixelData(0, 0, width - 1, height - 1, 1, pixels, 0)
     values = vtk_to_numpy(pixels).reshape(height, width, 3).astype("<f4") / 255  # rows from the bottom, as .pfm has them
     Path(picture).write_bytes(f"PF\n{width} {height}\n-1.0\n".encode() + values.tobytes())
     shutil.copyfile(camera_file, Path(picture).with_suffix(".json"))
