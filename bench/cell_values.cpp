@@ -245,9 +245,12 @@ void file_fields(const char* path) {
     const Topology topology = build_topology(read.mesh);
     HexMesh bare = read.mesh;
     bare.attributes.clear();
-    for (const std::string method : kMethods) {
+    for (const std::string method : {"mean", "exact", "fit", "meet", "normal"}) {
         double seconds = 0;
-        const HexMesh mesh = with_values(bare, method, read.cell_means, read.cell_parts, seconds);
+        const bool of_patches = method == "meet" || method == "normal";
+        HexMesh mesh = with_values(bare, of_patches ? "fit" : method, read.cell_means, read.cell_parts, seconds);
+        if (of_patches)
+            meet_patch_values(mesh, read.on_patches, method == "meet" ? PatchValuesUse::Meet : PatchValuesUse::Normal);
         std::printf("%-6s %zu cells, %.2f us a cell\n", method.c_str(), mesh.cells.size(),
                     1e6 * seconds / static_cast<double>(mesh.cells.size()));
         const LimitEvaluator limit(mesh, {.tolerance = 1e-4, .max_levels = 3});

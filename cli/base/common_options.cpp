@@ -31,6 +31,7 @@ void add_mesh_options(CLI::App& app, CommonOptions& options) {
         ->type_name("T|corners")
         ->transform(number_or("corners", positive_number()));
     add("cell-values");
+    add("patch-values");
     auto* step =
         app.add_option("--step", options.step,
                        "a step of a series, from 0, or last (the default); of verbs that write a file a step also all or A-B");
@@ -105,8 +106,8 @@ void refuse_mesh_options(const CLI::App& app, const std::string& reason) {
 void refuse_file_options(const CLI::App* app, const std::string& reason) {
     if (app == nullptr) return;
     refuse_options(*app,
-                   {"--other-cells", "--curved", "--cell-values", "--step", "--time", "--interpolate-time", "--blocks",
-                    "--weld", "--weld-distance", "--sharp"},
+                   {"--other-cells", "--curved", "--cell-values", "--patch-values", "--step", "--time", "--interpolate-time",
+                    "--blocks", "--weld", "--weld-distance", "--sharp"},
                    reason);
 }
 

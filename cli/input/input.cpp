@@ -233,6 +233,13 @@ WithFacts<ReadResult> read_input(const std::string& input, const CommonOptions& 
         means["rms_of_range"] = read.cell_values->rms_of_range;
         means["max_of_range"] = read.cell_values->most_of_range;
     }
+    if (read.patch_values) {
+        Facts& values = facts.group("patch_values");
+        values["fields"] = read.patch_values->fields;
+        values["points"] = read.patch_values->points;
+        values["change_of_integral"] = read.patch_values->most_of_mean;
+        values["most_changed"] = read.patch_values->most_changed;
+    }
     if (read.curved) {
         Facts& curved = facts.group("curved");
         curved["cells"] = read.curved->curved;

@@ -113,6 +113,7 @@ public:
             result_.warnings.push_back(in_quotes(array.name) + " has negative values");
         }
         Attribute attribute{unused_name(array.name), array.components, {}};
+        if (array.at_cells && !array.on_patches.empty()) take_on_patches(attribute.name, array);
         if (array.at_cells && fits_) {
             attribute.values.assign(result_.mesh.points.size() * static_cast<std::size_t>(array.components), 0);
             result_.cell_means.push_back({attribute.name, array.components, of_cells(array)});
@@ -207,6 +208,21 @@ private:
         return mean_over_cells(result_.mesh, of_cells(array), static_cast<std::size_t>(array.components));
     }
 
+    void take_on_patches(const std::string& name, const FileArray& array) {
+        ValuesOnPatches& faces = result_.on_patches;
+        const auto components = static_cast<std::size_t>(array.components);
+        FieldOnPatches& field = faces.fields.emplace_back(FieldOnPatches{name, array.components, {}, {}});
+        field.values.assign(faces.patches.size() * components, std::nan(""));
+        field.along.assign(faces.patches.size(), 0);
+        for (const FileOnPatch& patch : array.on_patches) {
+            const auto some = std::ranges::equal_range(faces.patches, static_cast<Index>(patch.patch));
+            const auto first = static_cast<std::size_t>(some.begin() - faces.patches.begin());
+            if (patch.values.size() > some.size() * components) continue;  // the patches are of another file
+            std::ranges::copy(patch.values, field.values.data() + first * components);
+            std::fill_n(field.along.data() + first, some.size(), patch.along);
+        }
+    }
+
     // The name itself, or with the first number that makes it a name of no other array.
     std::string unused_name(const std::string& name) {
         Taken& taken = names_taken_[name];
@@ -238,6 +254,16 @@ private:
     std::vector<std::string> averaged_, repeated_;
     std::vector<UnreadField> unread_;
 };
+
+/// The faces of all patches, if an array has values there.
+void take_faces(const MeshFile& found, std::vector<ValuesOnPatches::Side>&& sides, ValuesOnPatches& faces) {
+    if (std::ranges::all_of(found.arrays, [](const FileArray& array) { return array.on_patches.empty(); })) return;
+    faces.sides = std::move(sides);
+    for (std::size_t k = 0; k < found.patches.size(); ++k) {
+        faces.patches.insert(faces.patches.end(), found.patches[k].size(), static_cast<Index>(k));
+        faces.roles.insert(faces.roles.end(), found.patches[k].size(), found.patches[k].role);
+    }
+}
 
 MixedCells take_others(MeshFile& found) {
     return {std::move(found.tets.corners), std::move(found.prisms.corners), std::move(found.pyramids.corners)};
@@ -433,8 +459,10 @@ ReadResult assemble(MeshFile&& found, std::string_view file, const EntityNames& 
     try {
         if (!others.empty()) split_all(result, std::move(others), cut, origin);
         warn_of_folded(result);
-        result.sets =
+        FileSetsOfMesh sets =
             sets_of_mesh(result.mesh, found, origin.cell_numbers, origin.sources ? &*origin.sources : nullptr, result.warnings);
+        result.sets = std::move(sets.sets);
+        take_faces(found, std::move(sets.sides), result.on_patches);
         ArrayConversion conversion(result, origin, file, names, are_means(options.cell_values));
         for (auto& array : found.arrays) conversion.take(std::move(array));
         conversion.finish(std::move(found.unread));

@@ -43,17 +43,19 @@ public:
 
     [[nodiscard]] bool has(Index p) const { return p + std::size_t{1} < starts_.size() && starts_[p] < starts_[p + 1]; }
 
-    /// Calls call(patch) once for each patch with a face that has all these points.
+    /// Calls call(patch, number of the face among those of all patches) once for each patch with a face that has all these
+    /// points. Looks at the faces of the point that has the fewest: thousands may meet on an axis.
     template <class Call>
     void each_patch_with(std::span<const Index> points, const Call& call) const {
+        const Index point = *std::ranges::min_element(points, {}, [&](Index p) { return starts_[p + 1] - starts_[p]; });
         std::size_t last = patches_.size();  // faces at a point come in the order of their patches
-        for (std::size_t i = starts_[points[0]]; i < starts_[points[0] + 1]; ++i) {
+        for (std::size_t i = starts_[point]; i < starts_[point + 1]; ++i) {
             const Face& face = faces_[at_point_[i]];
             if (face.patch == last) continue;
             const auto of_face = points_of(face);
             if (!std::ranges::all_of(points, [&](Index p) { return std::ranges::find(of_face, p) != of_face.end(); })) continue;
             last = face.patch;
-            call(face.patch);
+            call(face.patch, static_cast<Index>(at_point_[i]));
         }
     }
 
@@ -85,7 +87,7 @@ struct Carriers {
 };
 
 std::vector<Patch> patches_of_mesh(const HexMesh& mesh, const MeshFile& found, const IndexRows* sources,
-                                   std::vector<std::string>& warnings) {
+                                   std::vector<ValuesOnPatches::Side>& on_faces, std::vector<std::string>& warnings) {
     if (found.patches.empty()) return {};
     const PatchFaces faces(found.patches, found.points.size());
     const Carriers carriers{sources, found.carriers};
@@ -98,6 +100,7 @@ std::vector<Patch> patches_of_mesh(const HexMesh& mesh, const MeshFile& found, c
     struct Side {
         CellSide side;
         std::vector<std::size_t> patches;
+        Index face = 0;
         bool inside = false;
     };
     std::map<std::array<Index, 4>, Side> sides;
@@ -112,10 +115,14 @@ std::vector<Patch> patches_of_mesh(const HexMesh& mesh, const MeshFile& found, c
             std::ranges::sort(points);
             points.erase(std::unique(points.begin(), points.end()), points.end());
             std::vector<std::size_t> patches;
-            faces.each_patch_with(points, [&](std::size_t patch) { patches.push_back(patch); });
+            Index first = kNone;
+            faces.each_patch_with(points, [&](std::size_t patch, Index face) {
+                patches.push_back(patch);
+                first = std::min(first, face);
+            });
             if (patches.empty()) continue;
             std::ranges::sort(key);
-            const auto [at, is_new] = sides.try_emplace(key, Side{{c, side}, std::move(patches)});
+            const auto [at, is_new] = sides.try_emplace(key, Side{{c, side}, std::move(patches), first});
             at->second.inside = !is_new;
         }
     }
@@ -126,7 +133,9 @@ std::vector<Patch> patches_of_mesh(const HexMesh& mesh, const MeshFile& found, c
         for (const std::size_t patch : side.patches) inside[patch] |= side.inside ? 1 : 0;
         if (side.inside) continue;
         for (const std::size_t patch : side.patches) result[patch].sides.push_back(side.side);
+        on_faces.push_back({side.side, side.face});
     }
+    std::ranges::sort(on_faces, {}, [](const auto& on) { return std::pair(on.side.cell, on.side.side); });
     for (Patch& patch : result) {
         std::ranges::sort(patch.sides, {}, [](const CellSide& side) { return std::pair(side.cell, side.side); });
     }
@@ -141,10 +150,12 @@ std::vector<Patch> patches_of_mesh(const HexMesh& mesh, const MeshFile& found, c
 
 }  // namespace
 
-MeshSets sets_of_mesh(const HexMesh& mesh, const MeshFile& found, std::span<const Index> cell_numbers, const IndexRows* sources,
-                      std::vector<std::string>& warnings) {
-    MeshSets sets{patches_of_mesh(mesh, found, sources, warnings), {}};
-    if (found.sets.empty()) return sets;
+FileSetsOfMesh sets_of_mesh(const HexMesh& mesh, const MeshFile& found, std::span<const Index> cell_numbers,
+                            const IndexRows* sources, std::vector<std::string>& warnings) {
+    FileSetsOfMesh result;
+    MeshSets& sets = result.sets;
+    sets.patches = patches_of_mesh(mesh, found, sources, result.sides, warnings);
+    if (found.sets.empty()) return result;
     const auto number = [&](Index c) { return cell_numbers.empty() ? c : cell_numbers[c]; };
     std::vector<Index> by_number(mesh.cells.size());
     std::iota(by_number.begin(), by_number.end(), Index{0});
@@ -160,7 +171,7 @@ MeshSets sets_of_mesh(const HexMesh& mesh, const MeshFile& found, std::span<cons
         of_mesh.cells.erase(std::unique(of_mesh.cells.begin(), of_mesh.cells.end()), of_mesh.cells.end());
         if (!of_mesh.cells.empty()) sets.sets.push_back(std::move(of_mesh));
     }
-    return sets;
+    return result;
 }
 
 }  // namespace subvol::detail

@@ -216,9 +216,12 @@ private:
         append(all_.tets, piece.tets);
         append(all_.prisms, piece.prisms);
         append(all_.pyramids, piece.pyramids);
+        auto& places = patch_places_.emplace_back();
         for (FilePatch& patch : piece.patches) {
             for (Index& p : patch.corners) p = points[p];
             FilePatch& whole = patches_[patch.name];
+            whole.role = patch.role;
+            places.push_back({static_cast<std::size_t>(&whole - all_.patches.data()), whole.size()});
             for (std::size_t f = 0; f < patch.size(); ++f) whole.add(patch.face(f));
         }
         for (const FileSet& set : piece.sets) {
@@ -345,7 +348,25 @@ private:
             if (parts[k] == nullptr) continue;
             std::ranges::copy(parts[k]->values, array.values.data() + first_cells_[k] * components);
         }
+        add_patch_values(array, parts);
         return array;
+    }
+
+    void add_patch_values(FileArray& array, const std::vector<const FileArray*>& parts) const {
+        const auto components = static_cast<std::size_t>(array.components);
+        std::map<std::size_t, FileOnPatch> whole;
+        for (std::size_t k = 0; k < parts.size(); ++k) {
+            if (parts[k] == nullptr) continue;
+            for (const FileOnPatch& part : parts[k]->on_patches) {
+                const auto [patch, first] = patch_places_[k][part.patch];
+                FileOnPatch& values = whole[patch];
+                values.patch = patch;
+                values.along = values.along || part.along;
+                values.values.resize(all_.patches[patch].size() * components, std::nan(""));
+                std::ranges::copy(part.values, values.values.data() + first * components);
+            }
+        }
+        for (auto& [patch, values] : whole) array.on_patches.push_back(std::move(values));
     }
 
     std::vector<MeshFile> pieces_;
@@ -353,6 +374,11 @@ private:
     MeshFile all_;
     ByName<FilePatch> patches_{all_.patches};
     ByName<FileSet> sets_{all_.sets};
+    /// Of a piece's patch: its number in the whole, and that of its first face there.
+    struct PatchPlace {
+        std::size_t patch, first;
+    };
+    std::vector<std::vector<PatchPlace>> patch_places_;         // of each piece
     std::vector<std::vector<Index>> places_;                    // of each piece's points in the whole
     std::vector<std::pair<std::size_t, std::size_t>> sources_;  // of each point of the whole: piece and point
     std::vector<std::size_t> first_cells_;

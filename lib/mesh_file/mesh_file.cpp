@@ -252,6 +252,10 @@ std::vector<Option> options_of(ReadOptions& options) {
                   "values at cells become values at points: fit (the volume follows the cells' means without waves; the "
                   "default for OpenFOAM), mean (of the cells around each point; the default for all others), exact (the "
                   "volume has the cells' means), auto"),
+        Option("patch-values", options.patch_values)
+            .help("HOW",
+                  "what OpenFOAM has on patches of the boundary: meet (points there get it; not with --cell-values exact), "
+                  "normal (vectors at walls only along the normal: integrals over the volume stay), ignore"),
         Option("step", options.step).between(0, kMostSteps).help("N", "a step of a series, from 0 (default: the last one)"),
         Option("blocks", options.blocks).help("A,B", "the named parts of the mesh to read (info lists them; default: all)"),
         Option("sharp", options.sharp)

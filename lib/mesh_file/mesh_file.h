@@ -13,11 +13,22 @@
 #include "curved_cells.h"
 #include "subvol/detail/flat_array.h"
 #include "subvol/index.h"
+#include "subvol/patch_values.h"
 #include "subvol/read_options.h"
 #include "subvol/vec.h"
 #include "text_scanner.h"
 
 namespace subvol::detail {
+
+/// What a file says of an array on the faces of one of its patches.
+///
+/// along:  vectors have no component along the normal, and nothing else is known
+/// values: a tuple for each face; not a number: unknown
+struct FileOnPatch {
+    std::size_t patch = 0;
+    bool along = false;
+    std::vector<double> values = {};
+};
 
 /// An array of a file. at_cells: one tuple for each cell of the file, of any kind; else one for each point; unit: such as m/s
 struct FileArray {
@@ -26,6 +37,7 @@ struct FileArray {
     bool at_cells = false;
     std::vector<double> values;
     std::string unit = {};
+    std::vector<FileOnPatch> on_patches = {};
 };
 
 /// Symmetric tensors have their components in the order xx, yy, zz, xy, yz, xz. The place of each in files that list the upper
@@ -76,8 +88,9 @@ struct FileTags {
 /// A named part of the surface of cells: faces by their corners, each a cycle of points.
 struct FilePatch {
     std::string name;
-    std::vector<std::size_t> ends;
-    std::vector<Index> corners;
+    std::vector<std::size_t> ends = {};
+    std::vector<Index> corners = {};
+    PatchRole role = PatchRole::Open;
 
     [[nodiscard]] std::size_t size() const { return ends.size(); }
     [[nodiscard]] std::span<const Index> face(std::size_t f) const {

@@ -162,6 +162,20 @@ void fit_fields(ReadResult& result, CellValues method) {
                               percent(report.most_off) + ")");
 }
 
+// Points on patches get the values that the file has there.
+void take_patch_values(ReadResult& result, PatchValuesUse use) {
+    const PatchValuesReport report = meet_patch_values(result.mesh, result.on_patches, use);
+    if (report.fields == 0) return;
+    result.patch_values = report;
+    std::string change;
+    if (report.most_of_mean >= .001) {
+        change = "; the integral of " + in_quotes(report.most_changed) + " over the volume changed by about " +
+                 number_text(100 * report.most_of_mean, 2) + " % (not with --patch-values normal or ignore)";
+    }
+    result.warnings.push_back(counted(report.points, "point", "points") + " on patches got the values that " +
+                              counted(report.fields, "field has", "fields have") + " there" + change);
+}
+
 // The extension of the format whose files begin as this one does. certain: an ending that says something else is wrong
 struct Contents {
     std::string_view extension;
@@ -322,6 +336,8 @@ ReadResult read_mesh(const std::filesystem::path& path, const ReadOptions& optio
                                                             " (" + std::string(named->name) + ")");
     }
     if (!result.cell_means.empty()) fit_fields(result, resolved.cell_values);
+    const bool meets = resolved.patch_values != PatchValuesUse::Ignore && resolved.cell_values != CellValues::Exact;
+    if (meets && !result.on_patches.fields.empty()) take_patch_values(result, resolved.patch_values);
     if (format.times) {
         const std::vector<double> times = format.times(path);
         result.steps = std::max<std::size_t>(times.size(), 1);

@@ -341,6 +341,86 @@ class Patches(InFolder):
             self.assertIn(f">{unit}<", (self.folder / "a.svg").read_text())
 
 
+class Values(InFolder):
+    """What OpenFOAM has on patches: points there get it."""
+
+    def case(self, name, boundary, flow=(2, 0, 0)):
+        write_foam(self.folder / name, flow=flow)
+        file = self.folder / name / "0" / "U"
+        file.write_text(file.read_text().replace("boundaryField {}", f"boundaryField {{ {boundary} }}"))
+        return name
+
+    def flows(self, case, *more):
+        found = self.run_ok("probe", case, "--patch", "all", "--flux", "U", "--json", *more).json()
+        return {p["name"]: p["flux"] / p["area"] for p in found["patches"]}
+
+    def at_walls(self, case, *more):
+        found = self.run_ok("probe", case, "--at", "1.5,0,.5", "--field", "U.x", "--json", *more).json()
+        return found["values"][0]["value"]
+
+    def test_walls_rest_and_inlets_have_their_speed(self):
+        for means in ((), ("--cell-values", "mean")):
+            name = self.case("case" + str(len(means)), "left { type fixedValue; value uniform (3 0 0); } "
+                             "right { type zeroGradient; } walls { type noSlip; }")
+            flows = self.flows(name, *means)
+            self.assertAlmostEqual(flows["left"], -3, 9)  # its own value also where it meets the walls
+            self.assertAlmostEqual(flows["right"], 2, 9)  # says nothing: the cells decide, also where it meets the walls
+            self.assertAlmostEqual(flows["walls"], 0, 9)
+            self.assertAlmostEqual(self.at_walls(name, *means), 0, 9)
+            self.assertAlmostEqual(self.at_walls(name, *means, "--patch-values", "ignore"), 2, 9)
+            self.assertAlmostEqual(self.at_walls(name, *means, "--patch-values", "normal"), 2, 9)
+        self.assertAlmostEqual(self.at_walls(name, "--cell-values", "exact"), 2, 9)
+        said = self.run_ok("info", name, "--json").json()
+        self.assertTrue(any("points on patches" in warning for warning in said["warnings"]))
+
+    def test_walls_let_nothing_through(self):
+        """The cells flow towards a wall, and the outlet beside it says nothing."""
+        name = self.case("case", "left { type zeroGradient; } right { type zeroGradient; } walls { type noSlip; }", (2, 1, .5))
+        self.assertAlmostEqual(self.flows(name)["walls"], 0, 9)
+        self.assertAlmostEqual(self.flows(name, "--patch-values", "normal")["walls"], 0, 9)
+        slip = self.case("slip", "left { type zeroGradient; } right { type zeroGradient; } walls { type slip; }", (2, 1, .5))
+        self.assertAlmostEqual(self.flows(slip)["walls"], 0, 9)
+        self.assertAlmostEqual(self.at_walls(slip), 2, 9)
+
+    def test_groups_patterns_and_names_of_values(self):
+        """The last pattern that fits, before it a group, before that the name itself."""
+        pattern = self.case("a", '"(left|rig.*)" { type fixedValue; value uniform (1 0 0); } ".*l.*" { type noSlip; } '
+                                 'left { type fixedValue; value $internalField; }')
+        self.assertAlmostEqual(self.flows(pattern)["left"], -2, 9)
+        self.assertAlmostEqual(self.flows(pattern)["right"], 1, 9)
+        self.assertAlmostEqual(self.at_walls(pattern), 0, 9)
+        group = self.case("b", 'out { type fixedValue; value uniform (5 0 0); } "r.*" { type noSlip; }')
+        self.assertAlmostEqual(self.flows(group)["right"], 5, 9)
+        wild = self.case("c", '"(((((.*)+)+)+)+)+x" { type noSlip; } "(" { type noSlip; }')
+        self.assertAlmostEqual(self.at_walls(wild), 2, 9)
+
+    def test_values_that_say_nothing_about_the_field(self):
+        for number, kind in enumerate(("zeroGradient", "nutkWallFunction", "cyclic", "empty")):
+            name = self.case(f"c{number}", f"walls {{ type {kind}; value uniform (9 9 9); }}")
+            self.assertAlmostEqual(self.at_walls(name), 2, 9)
+        name = self.case("other", "walls { type anything; table ((0 1) (2 3)); code #{ a; } #}; d { e f; } value uniform (9 0 0); }")
+        self.assertAlmostEqual(self.at_walls(name), 9, 9)
+
+    def test_lists_of_values(self):
+        values = " ".join(f"({k} 0 0)" for k in range(12))
+        name = self.case("a", f"walls {{ type calculated; value nonuniform List<vector> 12({values}); }} "
+                              "left { type fixedValue; value nonuniform List<vector> 1((4 0 0)); }")
+        self.assertAlmostEqual(self.flows(name)["left"], -4, 9)
+        found = self.run_ok("probe", name, "--patch", "walls", "--field", "U.x", "--json").json()
+        self.assertGreater(found["patches"][0]["fields"][0]["max"], 4)
+
+    def test_what_is_wrong_is_left_out(self):
+        for number, entry in enumerate(("left { type fixedValue; }", "left { type fixedValue; value uniform (1 2); }",
+                                        "left { type fixedValue; value nonuniform List<vector> 2((1 0 0) (1 0 0)); }",
+                                        "left { type fixedValue; value nonuniform List<vector> 999999999999((1 0 0)); }",
+                                        "left { type fixedValue; value uniform (nan 0 0); }", "left { type", "left {", "left", "{",
+                                        "left { type a; code #{ ", "left { a { b c }", "left { value $nowhere; }")):
+            name = self.case(f"c{number}", entry)
+            done = self.run_ok("probe", name, "--at", "1.5,.5,.5", "--field", "U.x", "--json")
+            self.assertEqual(sum("1 boundaryField left out" in warning for warning in done.json()["warnings"]), 1, entry)
+            self.assertAlmostEqual(done.json()["values"][0]["value"], 2, 9)
+
+
 class Times(InFolder):
     def setUp(self):
         super().setUp()

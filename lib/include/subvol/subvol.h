@@ -55,6 +55,7 @@
 #include "subvol/option.h"
 #include "subvol/overlay.h"
 #include "subvol/patch_measure.h"
+#include "subvol/patch_values.h"
 #include "subvol/picture_look.h"
 #include "subvol/points_error.h"
 #include "subvol/points_io.h"

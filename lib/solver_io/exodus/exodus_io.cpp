@@ -390,7 +390,7 @@ private:
             if (sides == 0) continue;
             const auto elements = elements_in("elem_ss" + number, sides);
             const auto places = exodus_.integers("side_ss" + number, sides);
-            FilePatch patch{names[k], {}, {}};
+            FilePatch patch{.name = names[k]};
             for (std::size_t s = 0; s < sides; ++s) {
                 // Blocks have elements, one behind the other.
                 const auto block = std::ranges::upper_bound(blocks_, elements[s], {}, &Block::first) - 1;

@@ -139,6 +139,12 @@ std::size_t components_of_class(std::string_view type) {
                                           : 0;
 }
 
+PatchRole role_of(std::string_view type) {
+    if (type == "wall") return PatchRole::Wall;
+    const bool plane = type.starts_with("symmetry") || type.starts_with("cyclic") || type == "empty" || type == "wedge";
+    return plane ? PatchRole::Plane : PatchRole::Open;
+}
+
 // The files of a folder that may be fields: each once, without .gz.
 std::set<std::string> names_in(const fs::path& folder) {
     std::set<std::string> names;
@@ -172,6 +178,7 @@ public:
                 }
             }
         }
+        without_values_.report("boundaryField", "boundaryFields", found_.warnings);
         return std::move(found_);
     }
 
@@ -254,7 +261,8 @@ private:
                 borders_on_ = std::max(borders_on_, patch.neighbour);
                 continue;
             }
-            FilePatch& taken = patches.emplace_back(FilePatch{patch.name, {}, {}});
+            patches_.push_back(patch);
+            FilePatch& taken = patches.emplace_back(FilePatch{.name = patch.name, .role = role_of(patch.type)});
             for (std::int64_t f = patch.first; f < patch.first + patch.count; ++f) {
                 const auto face = faces[static_cast<std::size_t>(f)];
                 corners.assign(face.begin(), face.end());
@@ -310,8 +318,24 @@ private:
         if (components == 0) return;
         take(path, text, cells_ * components * sizeof(double));  // "uniform" is one value for all cells
         found_.arrays.push_back({name, static_cast<int>(components), true, text.internal_field(components, cells_)});
-        found_.arrays.back().unit = text.unit();
-        if (components == kSymmetricByRows.size()) order_symmetric(found_.arrays.back().values, kSymmetricByRows);
+        FileArray& array = found_.arrays.back();
+        array.unit = text.unit();
+        if (options_.patch_values != PatchValuesUse::Ignore) read_on_patches(text, array);
+        if (components != kSymmetricByRows.size()) return;
+        order_symmetric(array.values, kSymmetricByRows);
+        for (FileOnPatch& patch : array.on_patches) order_symmetric(patch.values, kSymmetricByRows);
+    }
+
+    void read_on_patches(FoamText& text, FileArray& array) {
+        try {
+            const auto on_patches = text.boundary_field(static_cast<std::size_t>(array.components), patches_);
+            for (std::size_t k = 0; k < on_patches.size(); ++k) {
+                if (!on_patches[k].along && on_patches[k].values.empty()) continue;
+                array.on_patches.push_back({k, on_patches[k].along, on_patches[k].values});
+            }
+        } catch (const Error& error) {
+            without_values_.add(array.name, error.what());
+        }
     }
 
     void take(const fs::path& path, const FoamText& text, std::size_t made) {
@@ -323,6 +347,8 @@ private:
     ReadOptions options_;
     NamedFiles& named_;
     MeshFile found_;
+    std::vector<FoamPatch> patches_;  // as found_.patches
+    LeftOut without_values_;
     std::size_t points_ = 0, cells_ = 0;
     std::int64_t borders_on_ = -1;  // the last processor that is behind a patch
 };

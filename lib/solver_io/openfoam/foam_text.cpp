@@ -288,6 +288,13 @@ std::vector<FoamPatch> FoamText::patches() {
         if (key == "startFace") patches.back().first = label();
         if (key == "type") patches.back().type = token();
         if (key == "neighbProcNo") patches.back().neighbour = label();
+        if (key == "inGroups") {
+            const std::size_t begin = next_;  // read again as an entry
+            for (std::string_view word = token(); word != ")" && word != ";" && !word.empty(); word = token()) {
+                if (kMarks.find(word.front()) == std::string_view::npos) patches.back().groups.emplace_back(word);
+            }
+            next_ = begin;
+        }
     });
     return patches;
 }
@@ -377,6 +384,7 @@ std::vector<double> FoamText::uniform_value(std::size_t components) {
     const std::size_t begin = next_;
     const std::size_t end = std::min(text_.find(';', begin), text_.size());
     std::string value = expanded(std::string_view(text_).substr(begin, end - begin));
+    next_ = end;
     std::ranges::replace_if(
         value, [](char c) { return c == '(' || c == ')'; }, ' ');
     TextScanner words(value, file_, TextScanner::Comments::None);
@@ -439,15 +447,15 @@ std::string FoamText::unit() const {
 std::vector<double> FoamText::internal_field(std::size_t components, std::size_t cells) {
     find_internal_field(0);
     std::string_view kind = token();
-    std::string named;
     if (kind.starts_with('$')) {
-        named = expanded(std::string(kind) + text_.substr(next_, std::min(text_.find(';', next_), text_.size()) - next_)) + ";";
-        text_ = std::move(named);
+        const std::size_t end = std::min(text_.find(';', next_), text_.size());
+        text_ = expanded(std::string(kind) + text_.substr(next_, end - next_)) + text_.substr(end) + ";";
         next_ = 0;
         kind = token();
     }
     std::vector<double> values;
     if (kind == "uniform") {
+        entries_["internalField"] = "uniform " + text_.substr(next_, std::min(text_.find(';', next_), text_.size()) - next_);
         const std::vector<double> one = uniform_value(components);
         for (std::size_t c = 0; c < cells; ++c) values.insert(values.end(), one.begin(), one.end());
         return values;

@@ -26,12 +26,22 @@ struct FoamFaces {
     }
 };
 
-/// A patch: type: such as wall or processor; its faces are `count` from `first` on.
+/// A patch: type: such as wall or processor; groups: that it belongs to; its faces are `count` from `first` on.
 ///
 /// neighbour: the processor behind a patch where the mesh was cut, else -1
 struct FoamPatch {
     std::string name, type = {};
     std::int64_t first = 0, count = 0, neighbour = -1;
+    std::vector<std::string> groups = {};
+};
+
+/// What a field is on a patch.
+///
+/// along:  a vector has no component along the normal
+/// values: for each face; empty: unknown
+struct FoamOnPatch {
+    bool along = false;
+    std::vector<double> values = {};
 };
 
 struct FoamZone {
@@ -74,6 +84,9 @@ public:
     /// its value stand for; what has to be computed (#calc) is refused.
     [[nodiscard]] std::vector<double> internal_field(std::size_t components, std::size_t cells);
 
+    /// The boundaryField that follows, for each of the patches. After internal_field
+    [[nodiscard]] std::vector<FoamOnPatch> boundary_field(std::size_t components, std::span<const FoamPatch> patches);
+
     /// The unit that the `dimensions` before the internalField say, such as "m/s"; empty if there are none. After
     /// internal_field
     [[nodiscard]] std::string unit() const;
@@ -99,7 +112,13 @@ private:
     /// Goes to the internalField, and keeps the entries before it.
     void find_internal_field(int depth);
     void include(const std::filesystem::path& path, int depth);
+    /// Of the text up to the next semicolon, where it goes.
     std::vector<double> uniform_value(std::size_t components);
+    /// The rest of an entry; lists in binary are passed by their size.
+    void skip_entry();
+    struct PatchEntry;
+    PatchEntry patch_entry(std::string key, std::size_t components);
+    std::vector<double> patch_value(std::size_t components, bool& uniform);
     [[nodiscard]] std::string expanded(std::string_view text) const;
     /// left: how many names may still be replaced
     [[nodiscard]] std::string expanded(std::string_view text, int depth, std::size_t& left) const;

@@ -326,6 +326,58 @@ TEST(CellMeans, FlowsOfFiniteVolumesHaveNoRipples) {
     EXPECT_LT(by_fit, 1.15 * raw);
 }
 
+// All sides of a mesh as faces of one patch, with values of a field at the centres of the straight sides.
+ValuesOnPatches all_sides(const HexMesh& mesh, double (*field)(const Vec3&)) {
+    ValuesOnPatches on_patches;
+    const Topology topology = build_topology(mesh);
+    FieldOnPatches values{"f", 1, {}, {}};
+    for (Index c = 0; c < mesh.cells.size(); ++c) {
+        for (std::uint8_t side = 0; side < 6; ++side) {
+            if (!topology.face_on_boundary(topology.cell_faces[c][side])) continue;
+            std::array<Vec3, 4> x;
+            for (std::size_t k = 0; k < 4; ++k) x[k] = mesh.points[mesh.cells[c][kCellFaces[side][k]]];
+            const double a = glm::length(glm::cross(x[1] - x[0], x[2] - x[0])),
+                         b = glm::length(glm::cross(x[2] - x[0], x[3] - x[0]));
+            const Vec3 centre = (a * (x[0] + x[1] + x[2]) + b * (x[0] + x[2] + x[3])) / (3 * (a + b));
+            on_patches.sides.push_back({{c, side}, static_cast<Index>(on_patches.sides.size())});
+            values.values.push_back(field(centre));
+        }
+    }
+    on_patches.patches.assign(on_patches.sides.size(), 0);
+    on_patches.roles.assign(on_patches.sides.size(), PatchRole::Wall);
+    values.along.assign(on_patches.sides.size(), 0);
+    on_patches.fields = {values};
+    return on_patches;
+}
+
+TEST(PatchValues, LinearFieldsAreExactOnDistortedPatches) {
+    HexMesh mesh = distorted_box(6, .15);
+    mesh.attributes = {{"f", 1, std::vector<double>(mesh.points.size(), 0)}};
+    const PatchValuesReport report = meet_patch_values(mesh, all_sides(mesh, linear));
+    EXPECT_EQ(report.fields, 1u);
+    EXPECT_EQ(report.points, 7u * 7 * 7 - 5 * 5 * 5);
+    for (Index p = 0; p < mesh.points.size(); ++p) {
+        const Vec3& x = mesh.points[p];
+        const bool inside = x.x > 0 && x.x < 1 && x.y > 0 && x.y < 1 && x.z > 0 && x.z < 1;
+        EXPECT_NEAR(mesh.attributes[0].values[p], inside ? 0 : linear(x), 1e-9) << p;
+    }
+}
+
+TEST(PatchValues, SmoothFieldsAreOfSecondOrder) {
+    std::array<double, 2> errors{};
+    for (std::size_t k = 0; k < errors.size(); ++k) {
+        HexMesh mesh = distorted_box(k == 0 ? 8 : 16, .15);
+        mesh.attributes = {{"f", 1, {}}};
+        for (const Vec3& x : mesh.points) mesh.attributes[0].values.push_back(smooth(x));
+        const std::vector<double> truth = mesh.attributes[0].values;
+        static_cast<void>(meet_patch_values(mesh, all_sides(mesh, smooth)));
+        double squares = 0;
+        for (std::size_t p = 0; p < truth.size(); ++p) squares += std::pow(mesh.attributes[0].values[p] - truth[p], 2);
+        errors[k] = std::sqrt(squares / static_cast<double>(truth.size()));
+    }
+    EXPECT_LT(errors[1], errors[0] / 3.5) << errors[0];
+}
+
 TEST(CellMeans, AreTheSameForAnyNumberOfThreads) {
     const HexMesh mesh = irregular();
     const std::vector<Attribute> of_cells{{"f", 1, means(mesh, smooth)}};

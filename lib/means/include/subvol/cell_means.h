@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "subvol/patch_values.h"
 #include "subvol/refine.h"
 
 namespace subvol {
@@ -76,5 +77,18 @@ struct ExactMeansFit {
 /// cost:   parallel; bitwise the same for any number of threads. About 5 kB and 40 µs of CPU time a cell
 [[nodiscard]] ExactMeansFit fit_exact_cell_means(const HexMesh& mesh, std::span<const Attribute> means,
                                                  std::span<const Index> parts = {}, const ExactMeansOptions& options = {});
+
+/// Gives fields at the points of patches the values that the file has on the faces there.
+///
+/// A point gets the mean over its faces, by area, each with a gradient along its patch: exact for linear fields, of second
+/// order. Points inside the mesh keep their values, so no waves arise, but cells beside a wall lose their means where the layer
+/// along it is thinner than they are, and the volume its whole integral. Where patches meet at a point, those that something
+/// flows through (PatchRole::Open) decide; if they say nothing, the value there stays. A vector keeps the walls' component
+/// along their normals, and on planes of symmetry it has none.
+///
+/// use: Meet or Normal
+/// cost: linear in the sides on patches; the same for any number of threads
+PatchValuesReport meet_patch_values(HexMesh& mesh, const ValuesOnPatches& on_patches,
+                                    PatchValuesUse use = PatchValuesUse::Meet);
 
 }  // namespace subvol

@@ -9,6 +9,7 @@
 #include "subvol/mesh_sets.h"
 #include "subvol/names.h"
 #include "subvol/option.h"
+#include "subvol/patch_values.h"
 #include "subvol/shells.h"
 
 namespace subvol {
@@ -77,10 +78,11 @@ struct ReadOptions {
     std::optional<std::size_t> step = {};
     std::vector<std::string> blocks = {};
     CellValues cell_values = CellValues::Auto;
+    PatchValuesUse patch_values = PatchValuesUse::Meet;
     bool shells_alone = false;
 };
 
-/// other-cells, weld-distance, cell-values, step, blocks, sharp
+/// other-cells, weld-distance, cell-values, patch-values, step, blocks, sharp
 [[nodiscard]] std::vector<Option> options_of(ReadOptions& options);
 
 /// A named part of a mesh. cells: of all kinds, as the file has them
@@ -126,6 +128,8 @@ struct UnreadField {
 /// cell_means: only if values at cells were fitted: the values of these fields in the file, for each cell of the mesh
 /// cell_parts: for each cell of the mesh the number of the file's cell that it is a part of; empty if there are no such fields
 /// cell_values: how well the means are met; nothing if there are no such fields
+/// on_patches:  what the file has on faces of patches, of the fields at cells; empty for most formats
+/// patch_values: what became of it; nothing if there is none, or it was not used
 /// curved:      nothing if there are no curved hexahedra, or only their corners are used
 /// steps, step: how many the file has, and which one this is; its time is `mesh.time`
 /// shells:     the quads and lines of VTK and Gmsh files beside hexahedra that were not split, but for those that are faces and
@@ -138,6 +142,8 @@ struct ReadResult {
     std::vector<Attribute> cell_means = {};
     std::vector<Index> cell_parts = {};
     std::optional<CellValuesReport> cell_values = {};
+    ValuesOnPatches on_patches = {};
+    std::optional<PatchValuesReport> patch_values = {};
     std::size_t steps = 1, step = 0;
     std::optional<CurvedReport> curved = {};
     Shells shells = {};

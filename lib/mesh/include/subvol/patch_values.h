@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "subvol/mesh_sets.h"
+#include "subvol/names.h"
+
+namespace subvol {
+
+/// What lies beyond a patch, which decides where patches with different values meet.
+///
+/// Open:  something flows through it: inlets and outlets
+/// Wall:  nothing flows through it
+/// Plane: the body goes on: symmetry, a period, the third dimension of a flat case
+enum class PatchRole : std::uint8_t { Open, Wall, Plane };
+
+/// A field on faces of the boundary.
+///
+/// values: `channels` for each face; not a number: unknown
+/// along:  of each face: vectors have no component along its normal, and nothing else is known
+struct FieldOnPatches {
+    std::string name;
+    int channels = 1;
+    std::vector<double> values;
+    std::vector<std::uint8_t> along;
+};
+
+/// What a file of finite volumes says of fields on the faces of its patches.
+///
+/// sides:   the sides of the mesh's cells, each with the face that it is a part of
+/// patches, roles: of each face: the number of its patch in the file, and that patch's role
+struct ValuesOnPatches {
+    struct Side {
+        CellSide side;
+        Index face = 0;
+    };
+    std::vector<Side> sides;
+    std::vector<Index> patches;
+    std::vector<PatchRole> roles;
+    std::vector<FieldOnPatches> fields;
+};
+
+/// What becomes of the values that a file has on patches of its boundary, where those at cells become values at points.
+///
+/// Meet:   points on the patches get them
+/// Normal: vectors at points of walls get only the component along the normal, so that nothing flows through, and a layer that
+///         is thinner than a cell leaves the cells' means; else as Meet
+/// Ignore: points on the boundary have what cells say
+enum class PatchValuesUse { Meet, Normal, Ignore };
+
+template <>
+struct NameTable<PatchValuesUse> {
+    static constexpr Name<PatchValuesUse> rows[] = {
+        {PatchValuesUse::Meet, "meet"}, {PatchValuesUse::Normal, "normal"}, {PatchValuesUse::Ignore, "ignore"}};
+};
+
+/// What `meet_patch_values` changed.
+///
+/// fields:        how many got values on patches
+/// points:        how many got one, of the field with the most
+/// most_of_mean:  the largest change of a channel's integral over the volume (by an eighth of each cell's volume at its
+/// corners),
+///                as a part of the integral of its absolute value; most_changed: that field
+struct PatchValuesReport {
+    std::size_t fields = 0, points = 0;
+    double most_of_mean = 0;
+    std::string most_changed;
+};
+
+}  // namespace subvol
