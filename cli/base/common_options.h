@@ -25,6 +25,7 @@ struct CommonOptions {
     std::optional<std::string> density;  // an expression in x, y, z
     std::optional<std::string> warp;     // "DISPL*20"
     std::vector<std::string> only;       // regions
+    std::vector<std::string> patches;    // drawn alone
     std::vector<std::string> at_rest;    // quantities that are computed before --warp and --only, besides that of --field
     ReadOptions read{};                  // what the library describes of them
     bool weld = false;                   // join points at the same place

@@ -123,7 +123,7 @@ ReadResult read_between(const std::string& input, const BetweenSteps& between, d
 /// What --only and --warp make of a mesh. Quantities are computed before, in the whole mesh at rest.
 void reshape(ReadResult& read, const CommonOptions& options, Facts& facts) {
     const std::vector<Region> regions = regions_of(options);
-    if (regions.empty() && !options.warp) return;
+    if (regions.empty() && !options.warp && options.patches.empty()) return;
     HexMesh mesh = used_mesh(std::move(read.mesh), options);
     if (options.field && mesh.find_attribute(*options.field) == nullptr) {
         mesh.attributes.push_back(select_field(mesh, options.field, options.listener).scalar);
@@ -134,7 +134,7 @@ void reshape(ReadResult& read, const CommonOptions& options, Facts& facts) {
             mesh.attributes.push_back(field_of(mesh, quantity, quantity, options.listener));
     }
     if (!read.shells.empty()) {
-        facts.warn("shells and beams are left out with --only and --warp");
+        facts.warn("shells and beams are left out with --only, --warp and --patch");
         read.shells = {};
     }
     if (!regions.empty()) {
@@ -154,6 +154,14 @@ void reshape(ReadResult& read, const CommonOptions& options, Facts& facts) {
         said["field"] = warp.field;
         said["factor"] = factor;
         facts.note(text("moved by ", factor, " × ", warp.field));
+    }
+    if (!options.patches.empty()) {
+        const std::vector<Patch> patches = chosen_patches(read.sets, options.patches);
+        read.shells = patch_shells(mesh, patches);
+        mesh.cells.clear();
+        std::vector<std::string> names;
+        for (const Patch& patch : patches) names.push_back(text(names.size() + 1, " ", patch.name));
+        facts.note("patches: " + join(names));
     }
     read.mesh = std::move(mesh);
 }

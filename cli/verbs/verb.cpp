@@ -14,6 +14,10 @@ Verb::Verb(CLI::App& program, const std::string& name, const std::string& descri
     common_.draws = name == "render" || name == "view" || name == "page";
 }
 
+void Verb::add_patches(const std::string& help) {
+    app_.add_option("--patch", common_.patches, help)->type_name("NAME")->allow_extra_args(false);
+}
+
 void Verb::group(const std::string& heading, std::initializer_list<const char*> options) {
     for (const char* option : options) app_.get_option(option)->group(heading);
 }

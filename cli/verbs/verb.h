@@ -48,6 +48,8 @@ public:
 
 protected:
     [[nodiscard]] CLI::App& app() { return app_; }
+    /// Adds --patch, by which nothing but patches of the mesh is read. help: what becomes of them
+    void add_patches(const std::string& help);
 
     /// Null: this process is alone.
     [[nodiscard]] Ranks* ranks() const { return ranks_; }

@@ -61,7 +61,8 @@ WithFacts<ShownBody> load_shown_body(const std::string& input, const CommonOptio
     CommonOptions reading = options;
     if (arguments.splat.color_field) reading.at_rest.push_back(*arguments.splat.color_field);
     BodyInput body = facts.unpack(open_body(input, reading, app, progress, !refined, alone));
-    const std::string field = facts.unpack(body.select(options, OtherFields::Drop, arguments.splat.color_field));
+    if (!reading.patches.empty() && !reading.field && !reading.density) reading.field = "patch";
+    const std::string field = facts.unpack(body.select(reading, OtherFields::Drop, arguments.splat.color_field));
     facts.merge(body.refine(arguments.tets, default_tet_level(arguments.method), progress));
     ShownBody shown{std::move(body), {field, {}}, {field, {}}};
     shown.field.range = shown.body.range(field);
@@ -118,6 +119,8 @@ public:
             ->type_name("IMAGE")
             ->required();
         arguments_.add_to(app());
+        add_patches(
+            "draw this patch of the boundary alone, as info lists them (repeatable; all); coloured by patch, or by --field");
         app().add_option("--title", picture_.title, "a line of text in the upper left corner")->type_name("TEXT");
         app().add_flag("--time-label", picture_.time_label, "draw the time of the step in the upper left corner");
         share_.add_to(app(), "rows of the picture, or some of the frames");
@@ -136,6 +139,7 @@ public:
                        : draws_kernels(method) ? "a smaller --size, a larger --spacing, or fewer --sheets"
                                                : "a smaller --size, fewer --samples, or --method splat");
         if (asks_for_steps(common()) && arguments_.body != BodyKind::Bricks) {
+            if (!common().patches.empty()) throw Error(ErrorCode::InvalidInput, "are drawn at one step", "--patch", "--step N");
             draw_steps(report);
             return 0;
         }

@@ -5,7 +5,9 @@
 #include <cmath>
 #include <map>
 #include <string>
+#include <unordered_map>
 
+#include "subvol/cell.h"
 #include "subvol/error.h"
 
 namespace subvol {
@@ -97,6 +99,36 @@ Shells make_shells(const HexMesh& mesh, std::span<const std::array<Index, 4>> qu
         }
     }
     return shells;
+}
+
+Shells patch_shells(const HexMesh& mesh, std::span<const Patch> patches) {
+    HexMesh points;
+    for (const Attribute& attribute : mesh.attributes) points.attributes.push_back({attribute.name, attribute.channels, {}});
+    points.attributes.push_back({"patch", 1, {}});
+    std::vector<std::array<Index, 4>> quads;
+    for (std::size_t k = 0; k < patches.size(); ++k) {
+        std::unordered_map<Index, Index> numbers;  // of this patch's points
+        for (const CellSide& side : patches[k].sides) {
+            if (side.cell >= mesh.cells.size() || side.side >= kCellFaces.size())
+                throw Error(ErrorCode::InvalidInput, "has a side that is not of the mesh", "patch \"" + patches[k].name + "\"");
+            auto& quad = quads.emplace_back();
+            for (std::size_t c = 0; c < quad.size(); ++c) {
+                const Index p = mesh.cells[side.cell][kCellFaces[side.side][c]];
+                const auto [at, is_new] = numbers.try_emplace(p, static_cast<Index>(points.points.size()));
+                quad[c] = at->second;
+                if (!is_new) continue;
+                points.points.push_back(mesh.points[p]);
+                for (std::size_t a = 0; a < mesh.attributes.size(); ++a) {
+                    const auto channels = static_cast<std::size_t>(mesh.attributes[a].channels);
+                    const auto of_point = std::span(mesh.attributes[a].values).subspan(p * channels, channels);
+                    auto& values = points.attributes[a].values;
+                    values.insert(values.end(), of_point.begin(), of_point.end());
+                }
+                points.attributes.back().values.push_back(static_cast<double>(k + 1));
+            }
+        }
+    }
+    return make_shells(points, quads, {});
 }
 
 void validate(const Shells& shells, const HexMesh& mesh) {

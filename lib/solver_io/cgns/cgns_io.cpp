@@ -11,6 +11,8 @@
 #include <vector>
 
 #include "assemble.h"
+#include "cgns_patches.h"
+#include "cgns_tree.h"
 #include "hdf5_file.h"
 #include "join_pieces.h"
 #include "mesh_file.h"
@@ -23,85 +25,6 @@
 namespace subvol::detail {
 
 namespace {
-
-/// The nodes of a CGNS file: groups of HDF5 with a label, and data in a dataset of theirs.
-class CgnsTree {
-public:
-    explicit CgnsTree(const Hdf5File& file) : file_(file) {}
-
-    /// The paths of the children with this label, in the order of their names.
-    [[nodiscard]] std::vector<std::string> children(const std::string& node, const std::string& label) const;
-    /// The first of them.
-    [[nodiscard]] std::optional<std::string> child(const std::string& node, const std::string& label) const;
-
-    [[nodiscard]] bool has_data(const std::string& node) const { return file_.has(node + kData); }
-    [[nodiscard]] std::vector<double> reals(const std::string& node) const;
-    [[nodiscard]] std::vector<std::int64_t> integers(const std::string& node) const;
-    /// A text; empty if the node has none.
-    [[nodiscard]] std::string text(const std::string& node) const;
-    /// Texts of 32 characters each.
-    [[nodiscard]] std::vector<std::string> texts(const std::string& node) const;
-
-    [[nodiscard]] static std::string name_of(const std::string& node) { return node.substr(node.rfind('/') + 1); }
-    [[nodiscard]] const Hdf5File& file() const { return file_; }
-
-private:
-    static constexpr const char* kData = "/ data";
-    [[nodiscard]] std::size_t all_rows(const std::string& node) const;
-
-    const Hdf5File& file_;
-};
-
-std::string without_padding(const std::string& text) {
-    const std::string whole = text.substr(0, text.find('\0'));
-    const std::size_t last = whole.find_last_not_of(' ');
-    return last == std::string::npos ? std::string() : whole.substr(0, last + 1);
-}
-
-std::vector<std::string> CgnsTree::children(const std::string& node, const std::string& label) const {
-    std::vector<std::string> found;
-    for (const std::string& name : file_.names(node.empty() ? "/" : node)) {
-        if (name.empty() || name.front() == ' ') continue;  // the node's own data
-        const std::string path = node + "/" + name;
-        if (without_padding(file_.text(path, "label").value_or("")) == label) found.push_back(path);
-    }
-    return found;
-}
-
-std::optional<std::string> CgnsTree::child(const std::string& node, const std::string& label) const {
-    const auto all = children(node, label);
-    return all.empty() ? std::nullopt : std::optional(all.front());
-}
-
-std::size_t CgnsTree::all_rows(const std::string& node) const {
-    if (!has_data(node)) file_.fail("node " + in_quotes(node) + " has no data of numbers");
-    return file_.rows(node + kData);
-}
-
-std::vector<double> CgnsTree::reals(const std::string& node) const {
-    return file_.reals(node + kData, 0, all_rows(node));
-}
-
-std::vector<std::int64_t> CgnsTree::integers(const std::string& node) const {
-    return file_.integers(node + kData, 0, all_rows(node));
-}
-
-std::string CgnsTree::text(const std::string& node) const {
-    if (!has_data(node)) return {};
-    std::string text;
-    for (const std::int64_t character : integers(node)) text += static_cast<char>(character);
-    return without_padding(text);
-}
-
-std::vector<std::string> CgnsTree::texts(const std::string& node) const {
-    constexpr std::size_t kOfName = 32;
-    std::string all;
-    for (const std::int64_t character : integers(node)) all += static_cast<char>(character);
-    std::vector<std::string> texts;
-    for (std::size_t at = 0; at + kOfName <= all.size(); at += kOfName)
-        texts.push_back(without_padding(all.substr(at, kOfName)));
-    return texts;
-}
 
 constexpr EntityNames kCgnsNames{"vertex", "element", 1};
 constexpr std::int64_t kMixed = 20, kPolygons = 22, kPolyhedra = 23;
@@ -185,6 +108,7 @@ public:
             found.warnings.push_back(counted(curved_, "element has", "elements have") +
                                      " more nodes than corners: only the corners are used");
         }
+        conditions_.report("boundary condition", "boundary conditions", found.warnings);
         if (!left_out_.empty()) found.warnings.push_back(left_out().substr(6));
         return assemble(std::move(found), tree_.file().name(), kCgnsNames, options_);
     }
@@ -270,6 +194,8 @@ private:
             read_sections(zone, found);
         }
         refuse_not_finite(found, in_, kCgnsNames);
+        read_boundary_conditions(tree_, path, zone.structured ? &zone.grid : nullptr, faces_, found, conditions_);
+        faces_ = {};
         for (const std::string& solution : solutions_of(zone, found)) {
             try {
                 read_solution(zone, solution, found);
@@ -380,7 +306,8 @@ private:
             if (!sections.try_emplace(range[0], section).second) tree_.file().fail("two sections have the same numbers");
         }
         std::size_t cells = 0;
-        std::unordered_map<std::int64_t, std::vector<std::int64_t>> polygons;  // by their numbers
+        CgnsFaces polygons;
+        keeps_faces_ = has_boundary_conditions(tree_, zone.path);
         std::vector<std::pair<std::size_t, std::vector<std::int64_t>>> polyhedra;
         for (const auto& [first, section] : sections) {
             const auto data = tree_.integers(section);
@@ -415,6 +342,7 @@ private:
         cells_of_sections_ = cells;
         if (polyhedra.empty() && !polygons.empty()) left_out_["NGON_n"] += polygons.size();
         for (const auto& [cell, faces] : polyhedra) add_polyhedron(cell, faces, polygons, found);
+        if (keeps_faces_) faces_.merge(polygons);
     }
 
     using Lists = std::vector<std::vector<std::int64_t>>;
@@ -441,8 +369,8 @@ private:
     }
 
     // A face has a sign where the cell sees it from the other side.
-    void add_polyhedron(std::size_t cell, const std::vector<std::int64_t>& numbers,
-                        const std::unordered_map<std::int64_t, std::vector<std::int64_t>>& polygons, const MeshFile& found) {
+    void add_polyhedron(std::size_t cell, const std::vector<std::int64_t>& numbers, const CgnsFaces& polygons,
+                        const MeshFile& found) {
         CellFaces faces;
         for (const std::int64_t number : numbers) {
             const auto polygon = polygons.find(number < 0 ? -number : number);
@@ -471,6 +399,11 @@ private:
         const bool others = options_.other_cells != OtherCells::Ignore;
         const bool hex = type.name.starts_with("HEXA");
         if (!is_volume(type) || (!hex && !others)) {
+            const std::size_t corners = type.name.starts_with("TRI") ? 3 : type.name.starts_with("QUAD") ? 4 : 0;
+            if (keeps_faces_ && corners > 0) {
+                faces_[number].assign(nodes.begin(), nodes.begin() + static_cast<std::ptrdiff_t>(corners));
+                return;
+            }
             ++left_out_[type.name];
             return;
         }
@@ -550,6 +483,9 @@ private:
     ReadOptions options_;
     TextScanner in_;
     Polyhedra polyhedra_;  // of the zone at hand
+    CgnsFaces faces_;      // of the zone at hand, if it has boundary conditions
+    bool keeps_faces_ = false;
+    LeftOut conditions_;
     std::string base_;
     std::map<std::string_view, std::size_t> left_out_;
     std::size_t step_ = 0, curved_ = 0, cells_of_sections_ = 0;

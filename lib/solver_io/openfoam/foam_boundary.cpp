@@ -12,6 +12,7 @@
 #include <cmath>
 #include <regex>
 #include <tuple>
+#include <utility>
 
 #include "foam_text.h"
 

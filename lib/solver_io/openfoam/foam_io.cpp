@@ -247,6 +247,7 @@ private:
     void read_patches(const fs::path& path, const FoamFaces& faces) {
         FoamText text(path, kNoLimit, block());
         std::vector<FilePatch> patches;
+        std::vector<FoamPatch> taken_patches;
         std::vector<Index> corners;
         const auto all = static_cast<std::int64_t>(faces.size());
         std::int64_t left = all;  // patches have no face in common
@@ -261,7 +262,7 @@ private:
                 borders_on_ = std::max(borders_on_, patch.neighbour);
                 continue;
             }
-            patches_.push_back(patch);
+            taken_patches.push_back(patch);
             FilePatch& taken = patches.emplace_back(FilePatch{.name = patch.name, .role = role_of(patch.type)});
             for (std::int64_t f = patch.first; f < patch.first + patch.count; ++f) {
                 const auto face = faces[static_cast<std::size_t>(f)];
@@ -271,6 +272,7 @@ private:
         }
         take(path, text, 0);
         found_.patches = std::move(patches);
+        patches_ = std::move(taken_patches);
     }
 
     void read_zones(const fs::path& path) {

@@ -4,11 +4,13 @@
 #include <gmock/gmock.h>
 
 #include <functional>
+#include <map>
 #include <numbers>
 
 #include "hdf5_texts.h"
 #include "lib/temp_folder.h"
 #include "lib/test_meshes.h"
+#include "subvol/cell.h"
 #include "subvol/mesh_report.h"
 #include "subvol/mesh_series.h"
 
@@ -124,6 +126,83 @@ TEST_F(Cgns, StructuredZonesAreBlocksThatAreJoined) {
     const ReadResult right = read_mesh(path("a.cgns"), {.blocks = {"right"}});
     EXPECT_EQ(right.mesh.cells.size(), 6u);
     EXPECT_EQ(right.mesh.points[0].x, 3);
+}
+
+std::map<std::string, std::size_t> faces_of_patches(const ReadResult& result) {
+    std::map<std::string, std::size_t> faces;
+    for (const Patch& patch : result.sets.patches) faces[patch.name] = patch.sides.size();
+    return faces;
+}
+
+using Faces = std::map<std::string, std::size_t>;
+
+TEST_F(Cgns, BoundaryConditionsOfStructuredZonesArePatches) {
+    {
+        CgnsWriter file(path("a.cgns"));
+        file.block("left", 0);
+        file.block("right", 3);
+        const std::string left = "/Base/left/ZoneBC", right = "/Base/right/ZoneBC";
+        file.node(left, "ZoneBC_t");
+        file.node(right, "ZoneBC_t");
+        file.node(left + "/in", "BC_t", "BCInflow");
+        file.node(left + "/in/PointRange", "IndexRange_t", Numbers{1, 1, 1, 1, 3, 2});
+        file.node(left + "/bottom", "BC_t", "BCWall");
+        file.node(left + "/bottom/Location", "GridLocation_t", "KFaceCenter");
+        file.node(left + "/bottom/PointList", "IndexArray_t", Numbers{1, 1, 1, 3, 2, 1});
+        file.node(left + "/bottom/Family", "FamilyName_t", "Walls");
+        file.node(right + "/top", "BC_t", "BCWall");
+        file.node(right + "/top/Location", "GridLocation_t", "FaceCenter");
+        file.node(right + "/top/PointRange", "IndexRange_t", Numbers{1, 1, 2, 3, 2, 2});
+        file.node(right + "/top/Family", "FamilyName_t", "Walls");
+        file.node(right + "/far", "BC_t", "BCOutflow");
+        file.node(right + "/far/PointRange", "IndexRange_t", Numbers{9, 1, 1, 9, 3, 2});
+        file.node(right + "/cells", "BC_t", "BCOutflow");
+        file.node(right + "/cells/Location", "GridLocation_t", "CellCenter");
+    }
+    const ReadResult result = read_mesh(path("a.cgns"));
+    EXPECT_EQ(faces_of_patches(result), (Faces{{"in", 2}, {"Walls", 8}}));
+    EXPECT_THAT(result.warnings, Contains(HasSubstr("2 boundary conditions left out (\"cells\", \"far\")")));
+    for (const CellSide& side : find_patch(result.sets, "in").sides) {
+        for (const std::size_t k : kCellFaces[side.side]) EXPECT_EQ(result.mesh.points[result.mesh.cells[side.cell][k]].x, 0);
+    }
+}
+
+TEST_F(Cgns, BoundaryConditionsOfUnstructuredZonesArePatches) {
+    const HexMesh mesh = make_box(2, 1, 1);
+    {
+        CgnsWriter file(path("a.cgns"));
+        file.zone(mesh.points, 2);
+        Numbers hexes, quads;
+        for (const auto& cell : mesh.cells) {
+            for (const Index p : cell) hexes.push_back(p + 1);
+        }
+        for (const std::size_t k : kCellFaces[0]) quads.push_back(mesh.cells[0][k] + 1);
+        for (const std::size_t k : kCellFaces[1]) quads.push_back(mesh.cells[1][k] + 1);
+        file.section("Hexes", 17, {1, 2}, hexes);
+        file.section("Quads", 7, {3, 4}, quads);
+        const std::string all = "/Base/Zone/ZoneBC";
+        file.node(all, "ZoneBC_t");
+        file.node(all + "/in", "BC_t", "BCInflow");
+        file.node(all + "/in/Location", "GridLocation_t", "FaceCenter");
+        file.node(all + "/in/PointRange", "IndexRange_t", Numbers{3, 3});
+        file.node(all + "/out", "BC_t", "BCOutflow");
+        file.node(all + "/out/ElementList", "IndexArray_t", Numbers{4});
+        Numbers bottom;
+        for (std::size_t p = 0; p < mesh.points.size(); ++p) {
+            if (mesh.points[p].z == 0) bottom.push_back(static_cast<std::int64_t>(p) + 1);
+        }
+        file.node(all + "/bottom", "BC_t", "BCWall");
+        file.node(all + "/bottom/PointList", "IndexArray_t", bottom);
+        file.node(all + "/wrong", "BC_t", "BCWall");
+        file.node(all + "/wrong/ElementList", "IndexArray_t", Numbers{2});
+        file.node(all + "/long", "BC_t", "BCWall");
+        file.node(all + "/long/ElementRange", "IndexRange_t", Numbers{1, std::int64_t{1} << 39});
+    }
+    const ReadResult result = read_mesh(path("a.cgns"));
+    EXPECT_EQ(faces_of_patches(result), (Faces{{"in", 1}, {"out", 1}, {"bottom", 2}}));
+    EXPECT_THAT(result.warnings, Contains(HasSubstr("2 boundary conditions left out")));
+    for (const std::size_t k : kCellFaces[find_patch(result.sets, "out").sides[0].side])
+        EXPECT_EQ(result.mesh.points[result.mesh.cells[1][k]].x, 2);
 }
 
 TEST_F(Cgns, StepsNameTheirSolutions) {

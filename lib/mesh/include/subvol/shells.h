@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "subvol/hex_mesh.h"
+#include "subvol/mesh_sets.h"
 
 namespace subvol {
 
@@ -43,6 +44,11 @@ struct Shells {
 /// throws:  Error(InvalidInput) if a quad or a line has a point that does not exist, or one twice
 [[nodiscard]] Shells make_shells(const HexMesh& mesh, std::span<const std::array<Index, 4>> quads,
                                  std::span<const std::array<Index, 2>> lines);
+
+/// The sides of patches as shells, each patch with its own points. The last attribute, "patch", counts the patches from 1.
+///
+/// throws: Error(InvalidInput) if a side is not of the mesh
+[[nodiscard]] Shells patch_shells(const HexMesh& mesh, std::span<const Patch> patches);
 
 /// throws: Error(InvalidInput) if a point of a quad or a line does not exist or occurs twice in it, a point is not finite, a
 ///         corner of a cell does not exist, or the attributes are not those of the mesh with one finite value for each point
