@@ -94,7 +94,8 @@ WithFacts<BodyInput> open_body(const std::string& input, const CommonOptions& op
         auto [bricks, facts] = open_bricks_input(input, app);
         return {{input, std::move(bricks)}, std::move(facts)};
     }
-    auto [read, facts] = read_input(input, options, progress, alone);
+    std::optional<Warp> moved;
+    auto [read, facts] = read_input(input, options, progress, alone, &moved);
     std::vector<MeshBlock> blocks = std::move(read.blocks);
     MeshSets sets = std::move(read.sets);
     std::vector<FieldInfo> fields = std::move(read.fields);
@@ -105,6 +106,7 @@ WithFacts<BodyInput> open_body(const std::string& input, const CommonOptions& op
     body.value.sets = std::move(sets);
     body.value.of_file = std::move(fields);
     body.value.shells = std::move(taken);
+    body.value.moved = std::move(moved);
     return body;
 }
 

@@ -54,6 +54,7 @@ public:
     std::vector<MeshBlock> blocks{};   // of a mesh in memory
     MeshSets sets{};                   // of a mesh in memory
     std::vector<FieldInfo> of_file{};  // of its file
+    std::optional<Warp> moved{};       // by --warp, with its factor
 
 private:
     std::string input_;

@@ -121,9 +121,10 @@ ReadResult read_between(const std::string& input, const BetweenSteps& between, d
 }
 
 /// What --only and --warp make of a mesh. Quantities are computed before, in the whole mesh at rest.
-void reshape(ReadResult& read, const CommonOptions& options, Facts& facts) {
+std::optional<Warp> reshape(ReadResult& read, const CommonOptions& options, Facts& facts) {
     const std::vector<Region> regions = regions_of(options);
-    if (regions.empty() && !options.warp && options.patches.empty()) return;
+    if (regions.empty() && !options.warp && options.patches.empty()) return std::nullopt;
+    std::optional<Warp> moved;
     HexMesh mesh = used_mesh(std::move(read.mesh), options);
     if (options.field && mesh.find_attribute(*options.field) == nullptr) {
         mesh.attributes.push_back(select_field(mesh, options.field, options.listener).scalar);
@@ -148,12 +149,12 @@ void reshape(ReadResult& read, const CommonOptions& options, Facts& facts) {
         read.cell_parts.clear();
     }
     if (options.warp) {
-        const Warp warp = of_option("--warp", [&] { return parse_warp(*options.warp); });
-        const double factor = of_option("--warp", [&] { return move_points(mesh, warp); });
+        moved = of_option("--warp", [&] { return parse_warp(*options.warp); });
+        moved->factor = of_option("--warp", [&] { return move_points(mesh, *moved); });
         Facts& said = facts.group("warp");
-        said["field"] = warp.field;
-        said["factor"] = factor;
-        facts.note(text("moved by ", factor, " × ", warp.field));
+        said["field"] = moved->field;
+        said["factor"] = *moved->factor;
+        facts.note(text("moved by ", *moved->factor, " × ", moved->field));
     }
     if (!options.patches.empty()) {
         const std::vector<Patch> patches = chosen_patches(read.sets, options.patches);
@@ -164,6 +165,7 @@ void reshape(ReadResult& read, const CommonOptions& options, Facts& facts) {
         facts.note("patches: " + join(names));
     }
     read.mesh = std::move(mesh);
+    return moved;
 }
 
 }  // namespace
@@ -205,8 +207,8 @@ ReadOptions read_options(const std::string& input, const CommonOptions& options)
     return read;
 }
 
-WithFacts<ReadResult> read_input(const std::string& input, const CommonOptions& options, Progress* progress,
-                                 ShellsAlone alone) {
+WithFacts<ReadResult> read_input(const std::string& input, const CommonOptions& options, Progress* progress, ShellsAlone alone,
+                                 std::optional<Warp>* moved) {
     Facts facts;
     facts["input"] = input;
     if (kind_of(input) == InputKind::Bricks) {
@@ -258,7 +260,8 @@ WithFacts<ReadResult> read_input(const std::string& input, const CommonOptions& 
         curved["fields_error"] = read.curved->fields_error;
         curved["limited"] = read.curved->limited;
     }
-    reshape(read, options, facts);
+    const std::optional<Warp> warp = reshape(read, options, facts);
+    if (moved != nullptr) *moved = warp;
     return {std::move(read), std::move(facts)};
 }
 

@@ -11,6 +11,7 @@
 #include "subvol/hex_mesh.h"
 #include "subvol/mesh_io.h"
 #include "subvol/region.h"
+#include "subvol/warp.h"
 
 namespace subvol::cli {
 
@@ -37,8 +38,10 @@ enum class InputKind { Picture, Mesh, Bricks, Points, Grid };
 enum class ShellsAlone { Refuse, Take };
 
 /// Reads a mesh file, or generates "model:NAME[:RESOLUTION]". The reader's warnings are facts.
+///
+/// moved: gets the displacement of --warp with its factor, nothing without it
 [[nodiscard]] WithFacts<ReadResult> read_input(const std::string& input, const CommonOptions& options, Progress* progress,
-                                               ShellsAlone alone = ShellsAlone::Refuse);
+                                               ShellsAlone alone = ShellsAlone::Refuse, std::optional<Warp>* moved = nullptr);
 
 /// `read_input` without the unused points; --density becomes the first attribute.
 ///

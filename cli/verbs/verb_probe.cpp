@@ -291,12 +291,9 @@ private:
     }
 
     /// The options that read the mesh as it was read: with the factor that --warp FIELD*auto has found.
-    [[nodiscard]] static CommonOptions reading_again(const CommonOptions& options, const Report& report) {
+    [[nodiscard]] static CommonOptions reading_again(const CommonOptions& options, const BodyInput& body) {
         CommonOptions again = options;
-        if (options.warp) {
-            const Json& warp = report.json().at("warp");
-            again.warp = warp.at("field").get<std::string>() + "*" + detail::exact_text(warp.at("factor").get<double>());
-        }
+        if (body.moved) again.warp = body.moved->field + "*" + detail::exact_text(*body.moved->factor);
         return again;
     }
 
@@ -305,9 +302,8 @@ private:
         const MeshSource source = body.source();
         BlockCells parts;
         if (source.mesh() != nullptr) {
-            parts = report.unpack(report.timed("blocks", [&] {
-                return cells_of_blocks(input_, body.blocks, *source.mesh(), reading_again(options, report));
-            }));
+            parts = report.unpack(report.timed(
+                "blocks", [&] { return cells_of_blocks(input_, body.blocks, *source.mesh(), reading_again(options, body)); }));
         }
         const MeasureOptions asked{.scheme = scheme,
                                    .bins = measured_.bins,

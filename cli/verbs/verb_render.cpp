@@ -228,10 +228,7 @@ private:
               const Draw& draw) {
         box_ = box;
         range_ = field.range;
-        if (const auto warp = report.json().find("warp"); warp != report.json().end()) {
-            picture_.legend_note = text("moved by ", detail::number_text(warp->at("factor").get<double>(), 3), " × ",
-                                        warp->at("field").get<std::string>());
-        }
+        if (moved_) picture_.legend_note = text("moved by ", detail::number_text(*moved_->factor, 3), " × ", moved_->field);
         const ShownColors shown{picture_.make_optics(box, field.range, colors.range), picture_.legend_options(field, colors)};
         draw(shown);
         output.set_notes({});  // what they refer to is gone
@@ -266,7 +263,9 @@ private:
 
     [[nodiscard]] ShownBody load_shown(const CommonOptions& options, Report& report, ShellsAlone alone = ShellsAlone::Refuse) {
         report["input"] = input_;  // for errors
-        return report.unpack(load_shown_body(input_, options, arguments_, app(), report.progress(), alone));
+        ShownBody shown = report.unpack(load_shown_body(input_, options, arguments_, app(), report.progress(), alone));
+        moved_ = shown.body.moved;
+        return shown;
     }
 
     [[nodiscard]] PictureBody body_of(const ShownBody& shown) const {
@@ -387,6 +386,7 @@ private:
     ShareArgument share_;
     std::optional<PictureShares> rows_{};  // this process draws some rows only
     Box box_{};                            // of what is shown, with its range
+    std::optional<Warp> moved_;            // by --warp
     Range range_{};
 };
 

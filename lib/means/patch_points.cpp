@@ -314,6 +314,9 @@ private:
     // patch.
     void correct(std::vector<double>& values) {
         constexpr int kTimes = 2;
+        constexpr double kNear = 1e-6;
+        double range = 0;
+        for (const double value : field_->values) range = std::max(range, std::isfinite(value) ? std::abs(value) : 0);
         std::vector<std::array<double, 2>> limits;
         for (std::size_t k = 0; k < points_.size(); ++k) {
             for (std::size_t c = 0; c < channels_; ++c) limits.push_back(is_decided(k) ? limits_at(k, c) : std::array{0., 0.});
@@ -321,6 +324,8 @@ private:
         const std::vector<Vec3> slopes = gradients_;
         for (int round = 0; round <= kTimes; ++round) {
             std::vector<double> lacks = means_.lacks(*field_, values, counts_, faces_, slopes);
+            const bool met = std::ranges::all_of(lacks, [&](double lack) { return std::abs(lack) <= kNear * range; });
+            if (met) return;  // as of walls that turn and move, whose velocity is linear
             if (round == kTimes) spread(lacks);
             find_gradients(lacks);
             for (std::size_t k = 0; k < points_.size(); ++k) {
@@ -400,7 +405,7 @@ private:
     std::vector<Vec3> gradients_;
 };
 
-/// Of each point an eighth of the volumes of its cells.
+/// Returns for each point an eighth of the volumes of its cells.
 std::vector<double> volumes_at(const HexMesh& mesh) {
     std::vector<double> volumes(mesh.points.size(), 0);
     for (const auto& cell : mesh.cells) {

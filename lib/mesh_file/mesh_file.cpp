@@ -255,7 +255,8 @@ std::vector<Option> options_of(ReadOptions& options) {
         Option("patch-values", options.patch_values)
             .help("HOW",
                   "what OpenFOAM has on patches of the boundary: meet (points there get it; not with --cell-values exact), "
-                  "normal (vectors at walls only along the normal: integrals over the volume stay), ignore"),
+                  "normal (vectors at walls get only the component along the normal: integrals over the volume hardly "
+                  "change), ignore"),
         Option("step", options.step).between(0, kMostSteps).help("N", "a step of a series, from 0 (default: the last one)"),
         Option("blocks", options.blocks).help("A,B", "the named parts of the mesh to read (info lists them; default: all)"),
         Option("sharp", options.sharp)

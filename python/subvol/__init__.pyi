@@ -112,7 +112,7 @@ def probe(
 
 def read_mesh(
     path: Path, *, other_cells: str = 'split', weld: Optional[float] = None, cell_values: str = 'auto',
-    step: Optional[int] = None, blocks: Sequence[str] = (), sharp: Sequence[str] = ()
+    patch_values: str = 'meet', step: Optional[int] = None, blocks: Sequence[str] = (), sharp: Sequence[str] = ()
 ) -> HexMesh:
     """Reads a mesh. The contents and the extension decide the format; docs/formats.md has the list. Formats that the library does not
     read but meshio does (MED, Nastran, SU2, FLAC3D and others) are read by meshio, without their sets and steps.
@@ -126,6 +126,9 @@ def read_mesh(
     cell_values: values at cells become values at points: fit (the volume follows the cells' means without waves; the
                  default for OpenFOAM), mean (of the cells around each point; the default for all others), exact (the volume
                  has the cells' means), auto [auto, fit, mean, exact]
+    patch_values: what OpenFOAM has on patches of the boundary: meet (points there get it; not with cell_values exact),
+                 normal (vectors at walls get only the component along the normal: integrals over the volume hardly change),
+                 ignore [meet, normal, ignore]
     step:        a step of a series, from 0 (default: the last one) [0 to 1000000000]
     blocks:      the named parts of the mesh to read (info lists them; default: all)
     sharp:       a group of the file whose faces inside the mesh and edges are kept sharp: a physical group of Gmsh by its

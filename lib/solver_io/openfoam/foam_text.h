@@ -112,7 +112,7 @@ private:
     /// Goes to the internalField, and keeps the entries before it.
     void find_internal_field(int depth);
     void include(const std::filesystem::path& path, int depth);
-    /// Of the text up to the next semicolon, where it goes.
+    /// Reads the text up to the next semicolon, and goes there.
     std::vector<double> uniform_value(std::size_t components);
     /// The rest of an entry; lists in binary are passed by their size.
     void skip_entry();
