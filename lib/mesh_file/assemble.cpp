@@ -215,11 +215,13 @@ private:
         field.values.assign(faces.patches.size() * components, std::nan(""));
         field.along.assign(faces.patches.size(), 0);
         for (const FileOnPatch& patch : array.on_patches) {
-            const auto some = std::ranges::equal_range(faces.patches, static_cast<Index>(patch.patch));
-            const auto first = static_cast<std::size_t>(some.begin() - faces.patches.begin());
-            if (patch.values.size() > some.size() * components) continue;  // the patches are of another file
-            std::ranges::copy(patch.values, field.values.data() + first * components);
-            std::fill_n(field.along.data() + first, some.size(), patch.along);
+            const auto first = std::ranges::lower_bound(faces.patches, static_cast<Index>(patch.patch));
+            const auto last = std::ranges::upper_bound(faces.patches, static_cast<Index>(patch.patch));
+            const auto begin = static_cast<std::size_t>(first - faces.patches.begin());
+            const auto count = static_cast<std::size_t>(last - first);
+            if (patch.values.size() > count * components) continue;  // the patches are of another file
+            std::ranges::copy(patch.values, field.values.data() + begin * components);
+            std::fill_n(field.along.data() + begin, count, patch.along);
         }
     }
 
