@@ -191,7 +191,7 @@ private:
     void set_pass(int first, int end);
     void draw_pass(Progress* progress);
     void draw_tiles(std::uint32_t first, std::uint32_t end, bool whole, Progress* progress);
-    [[nodiscard]] std::size_t tile_pixels() const { return static_cast<std::size_t>(tuning_.tile_px) * tuning_.tile_px; }
+    [[nodiscard]] std::size_t tile_pixels() const { return static_cast<std::size_t>(tuning_.tile_px * tuning_.tile_px); }
     /// The bytes of a pixel's sums on the sheets of a batch.
     [[nodiscard]] std::size_t sums_bytes() const {
         const std::size_t sums = 2 + (scene_.color_channel ? 1 : 0) + (scene_.shading ? 3 : 0);
