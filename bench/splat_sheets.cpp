@@ -8,6 +8,7 @@
 #include <ctime>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <sstream>
@@ -61,6 +62,17 @@ HexMesh mesh_named(const std::string& name) {
     return mesh;
 }
 
+/// The number of pixels of which a colour is off by more than `most`.
+std::size_t pixels_beyond(float most, const Image& image, const Image& reference) {
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < reference.rgba.size(); i += 4) {
+        float off = 0;
+        for (std::size_t c = 0; c < 3; ++c) off = std::max(off, std::abs(image.rgba[i + c] - reference.rgba[i + c]));
+        if (off > most) ++count;
+    }
+    return count;
+}
+
 void measure(const std::string& name, const std::vector<Choice>& choices, int frames, const std::string& folder) {
     const HexMesh mesh = mesh_named(name);
     if (!folder.empty()) {
@@ -94,8 +106,9 @@ void measure(const std::string& name, const std::vector<Choice>& choices, int fr
             if (i == 1) kept = std::move(drawn);
         }
         const auto metrics = compare_images(kept.image, reference);
-        std::printf("  %-16s %5d sheets  %.3f CPU s (prepare %.3f wall)  %6.1f dB  most %.2e\n", choice.name.c_str(),
-                    kept.report.sheets, best, prepare, metrics.psnr, metrics.max);
+        std::printf("  %-16s %5d sheets  %.3f CPU s (prepare %.3f wall)  %6.1f dB  most %.2e  beyond .001: %zu\n",
+                    choice.name.c_str(), kept.report.sheets, best, prepare, metrics.psnr, metrics.max,
+                    pixels_beyond(1e-3F, kept.image, reference));
         std::fflush(stdout);
     }
 }

@@ -166,7 +166,7 @@ bool needs_all(const RbfVolume& volume, const SplatOptions& options) {
 /// options: get the number of sheets of the whole picture
 RbfVolume kernels_of_rows(RbfVolume volume, const Share& share, const View& view, const Optics& optics, SplatOptions& options) {
     if (needs_all(volume, options) || volume.size() == 0) return volume;
-    options.sheets = sheets_of_picture(volume, view, options);
+    options.needed_sheets = sheets_of_picture(volume, view, options);
     RbfVolume chosen =
         detail::chosen_kernels(volume, touching(rows_of_kernels(volume, view, optics, options), rows_of(share, view.height())));
     chosen.boundary = std::move(volume.boundary);
@@ -184,7 +184,7 @@ RbfVolume ship_kernels(const RbfVolume& own, const View& view, const Optics& opt
     const bool all = needs_all(own, options);
     std::vector<PixelRows> touched;
     if (!all) {
-        options.sheets = sheets_of_picture(own, view, options, [&](auto& counts) { ranks.sum(counts); });
+        options.needed_sheets = sheets_of_picture(own, view, options, [&](auto& counts) { ranks.sum(counts); });
         if (own.size() > 0) touched = rows_of_kernels(own, view, optics, options);
     }
     std::vector<std::string> to;

@@ -102,7 +102,7 @@ SplatResult BrickPicture::draw(const SumCounts& sum) {
     auto& [drawn, view, optics, splat, memory_bytes, empty, regions, counted] = *state_;
     ReachCounts reaches = counted;
     reaches.add_up(sum);
-    if (splat.sheets == 0) splat.sheets = sheets_needed(empty, depth_range_of(empty, view), reaches);
+    if (splat.sheets == 0) splat.needed_sheets = sheets_needed(empty, depth_range_of(empty, view), reaches);
     SplatResult result{Image(view.width(), view.height()), {}, {}};
     result.depth.resize(result.image.rgba.size() / 4);
     const auto most = std::max<std::uint64_t>(memory_bytes / kBytesOfKernel, 1);
@@ -136,6 +136,7 @@ SplatResult BrickPicture::draw(const SumCounts& sum) {
                 result.report.boundary_hits = some.report.boundary_hits;
             }
             first = false;
+            result.report.sheets_finest = std::max(result.report.sheets_finest, some.report.sheets_finest);
             for (const std::size_t g : group) copy(some, regions.region(g), result);
         }
         group.clear();

@@ -189,6 +189,7 @@ struct Splatter::State {
         detail::prepare_frame(frame, scene, view, classification, options.sheets, progress);
         detail::find_interval_ends(frame);
         report.sheets = frame.sheets.count;
+        report.sheets_finest = sheets ? report.sheets : frame.finer.sheets_finest(report.sheets);
         report.seconds_prepare += watch.seconds();
         report.backend = sheets ? "gl" : "cpu";
         report.device = sheets ? sheets->renderer() : cpu_threads();
@@ -212,6 +213,7 @@ struct Splatter::State {
         report.backend = "gl";
         report.device = gpu->renderer();
         report.sheets = gpu->report().sheets;
+        report.sheets_finest = gpu->report().sheets_finest;
         report.bin_entries = gpu->report().bin_entries;
         report.boundary_hits = gpu->report().boundary_hits;
         report.stages = gpu->report().stages;

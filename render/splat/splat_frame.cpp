@@ -18,7 +18,7 @@ namespace {
 constexpr std::size_t kChunksOfSplats = 64;
 
 /// The first batch of sheets and the last that a kernel may touch.
-std::array<std::uint16_t, 2> batches_of(const EyeSplat& s, const SheetStack& sheets) {
+std::array<std::uint16_t, 2> batches_of(const EyeSplat& s, const SheetStack& sheets, float behind) {
     const float reach = 1.0f / std::sqrt(s.inv_szz), per_sheet = 1.0f / sheets.distance;
     const auto sheet = [&](float z) {
         return std::clamp((z - sheets.first) * per_sheet, -1.0f, static_cast<float>(sheets.count));
@@ -26,7 +26,7 @@ std::array<std::uint16_t, 2> batches_of(const EyeSplat& s, const SheetStack& she
     // Half a sheet more on each side, so that rounding does not lose one.
     constexpr float kMore = 0.5f;
     const int first = std::max(static_cast<int>(sheet(s.depth - reach) - kMore), 0);
-    const int last = std::min(static_cast<int>(sheet(s.depth + reach) + kMore), sheets.count - 1);
+    const int last = std::min(static_cast<int>(sheet(s.depth + reach) + kMore + behind), sheets.count - 1);
     return {static_cast<std::uint16_t>(first / kBatch), static_cast<std::uint16_t>(last / kBatch)};
 }
 
@@ -35,6 +35,8 @@ void list_tiles(SplatFrame& frame) {
     const auto& splats = frame.kernels.splats;
     const auto tiles = static_cast<std::size_t>(frame.tiles_x) * static_cast<std::size_t>(frame.tiles_y);
     const TileFinder finder(frame);
+    // What is behind a sheet belongs to the next one where there are more between them.
+    const float behind = frame.finer.any() ? 1.0f : 0.0f;
     std::vector<TileRect> rects(splats.size());
     frame.batches.resize(splats.size());
     const std::size_t chunks = std::clamp<std::size_t>(splats.size() / 4096, 1, kChunksOfSplats);
@@ -55,7 +57,7 @@ void list_tiles(SplatFrame& frame) {
     };
     each([&](std::size_t i, const auto& each_slot) {
         rects[i] = finder.find(splats[i]);
-        frame.batches[i] = batches_of(splats[i], frame.sheets);
+        frame.batches[i] = batches_of(splats[i], frame.sheets, behind);
         each_slot([](std::size_t& slot) { ++slot; });
     });
     frame.tile_offsets.resize(tiles + 1);
@@ -93,6 +95,7 @@ void prepare_kernels(SplatFrame& frame, const SplatScene& scene, const View& vie
     frame.tiles_y = (view.height() + SplatFrame::kTile_px - 1) / SplatFrame::kTile_px;
     report_progress(progress, "prepare splats", 0);
     eye_splats(frame.kernels, scene, view, classification);
+    frame.finer = sheets == 0 ? finer_sheets(frame) : FinerSheets{};
     report_progress(progress, "prepare splats", 0.3);
     list_tiles(frame);
     report_progress(progress, "prepare splats", 0.6);

@@ -8,6 +8,7 @@
 #include "boundary_intervals.h"
 #include "boundary_light.h"
 #include "eye_splats.h"
+#include "finer_sheets.h"
 #include "splat_scene.h"
 
 namespace subvol::detail {
@@ -37,6 +38,7 @@ struct SplatFrame {
     EyeToNodes to_light{};                    // of the scene's light volume
     float* optical_depths = nullptr;          // of each pixel on each sheet: these are wanted instead of a picture
     EyeSplats kernels;
+    FinerSheets finer;
     std::vector<std::array<std::uint16_t, 2>> batches;  // of each kernel: the first and the last that it may touch
     int tiles_x = 0, tiles_y = 0;
     std::vector<std::size_t> tile_offsets;

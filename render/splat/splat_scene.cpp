@@ -227,6 +227,7 @@ SplatScene make_scene(const RbfVolume& volume, const SplatOptions& options) {
                      .kernel_table = kernel_table,
                      .normalized = options.normalized,
                      .image_tolerance = options.image_tolerance,
+                     .needed_sheets = options.needed_sheets,
                      .shading = options.shading,
                      .kind = kind_of(volume),
                      .middle = 0.5 * (box.lower + box.upper),
@@ -348,6 +349,7 @@ DepthRange depth_range_of(const SplatScene& scene, const View& view) {
 SheetStack make_sheets(const SplatScene& scene, const View& view, int count) {
     const double middle = view.to_eye(scene.middle).z;
     const auto [z_min, z_max, near] = depth_range_of(scene, view);
+    if (count == 0) count = scene.needed_sheets;
     if (count == 0) {
         using Range = tbb::blocked_range<std::size_t>;
         const ReachCounts counts = tbb::parallel_reduce(

@@ -63,6 +63,7 @@ struct SplatScene {
     bool bent = false;                  // channels have Hessians
     bool normalized = true;
     double image_tolerance = 1e-3;
+    int needed_sheets = 0;  // 0: as many as these kernels need
     float half_weight = 0;  // > 0: there is no boundary; the volume ends where the sum of weights falls below it
     std::optional<Shading> shading{};
     std::vector<CornerNormals> boundary_normals{};  // of the boundary's triangles; empty without shading
@@ -143,11 +144,13 @@ struct SheetStack {
     float middle = 0;
     float near = 0;  // relative too; nothing before it is seen
 
-    [[nodiscard]] float depth(int sheet) const { return first + static_cast<float>(sheet) * distance; }
+    /// place: between two sheets, too
+    [[nodiscard]] float depth(float place) const { return first + place * distance; }
+    [[nodiscard]] float depth(int sheet) const { return depth(static_cast<float>(sheet)); }
     [[nodiscard]] int batches() const { return (count + kBatch - 1) / kBatch; }
 };
 
-/// count: 0: as many as the kernels need
+/// count: 0: as many as the kernels need, or as the scene says
 [[nodiscard]] SheetStack make_sheets(const SplatScene& scene, const View& view, int count);
 
 /// A picture and the mean depth of what is seen in each pixel, weighted by opacity (eye depth; infinity where nothing is seen).

@@ -12,6 +12,9 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <cstdint>
+#include <span>
+#include <vector>
 
 #include "splat_frame.h"
 
@@ -34,6 +37,19 @@ constexpr std::size_t kColumns = kTile / kBlockWidth, kRows = kTile / kBlockHeig
 
 /// The sums for each pixel and sheet: Σw, Σwv, and if needed Σwv of the colour's channel and Σw∇v.
 constexpr std::size_t kWeight = 0, kValue = 1, kColor = 2, kGradient = 3, kSums = kGradient + 3;
+
+/// Lists kernels by the groups that `each_group` visits for a kernel, in their order: a counting sort. offsets: of each group's
+/// list in `lists`, and the end
+inline void list_by(std::size_t groups, std::span<const std::uint32_t> kernels, std::vector<std::size_t>& offsets,
+                    std::vector<std::uint32_t>& lists, const auto& each_group) {
+    offsets.assign(groups + 1, 0);
+    for (const std::uint32_t id : kernels) each_group(id, [&](std::size_t g) { ++offsets[g + 1]; });
+    for (std::size_t g = 1; g < offsets.size(); ++g) offsets[g] += offsets[g - 1];
+    lists.resize(offsets.back());
+    for (const std::uint32_t id : kernels) each_group(id, [&](std::size_t g) { lists[offsets[g]++] = id; });
+    std::rotate(offsets.begin(), offsets.end() - 1, offsets.end());  // each offset has become that of the next group
+    offsets.front() = 0;
+}
 
 /// The places of the pixels of a tile: the slopes of their rays, which do not depend on the division into tiles.
 struct TilePixels {

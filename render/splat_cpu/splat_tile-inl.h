@@ -27,6 +27,8 @@
 #include <algorithm>
 #include <array>
 #include <new>
+#include <span>
+#include <utility>
 #include <vector>
 
 #include "splat_composite-inl.h"
@@ -65,18 +67,16 @@ public:
             }
             if (passed_over) look_back(batch - 1);
             passed_over = false;
-            const int sheets = std::min(kBatch, sheets_.count - batch * kBatch);
-            if (!find_needed(batch, sheets)) continue;
-            sum(batch, 0, sheets);
-            for (std::size_t block = 0; block < kBlocks; ++block) {
-                if (scratch().needed[block] != 0) composite(block, batch);
-            }
+            if (find_needed(batch)) go_through(batch);
         }
         write(drawn);
     }
 
 private:
     static constexpr std::size_t kStride = kPlain ? 2 : kSums;  // sums for each pixel
+    // The cells of FinerSheets along a side of a tile, and the blocks of each.
+    static constexpr std::size_t kCells = kTile / FinerSheets::kSide_px, kCellRows = kRows / kCells,
+                                 kCellColumns = kColumns / kCells;
 
     /// Memory that each thread keeps from tile to tile.
     struct Scratch {
@@ -85,11 +85,13 @@ private:
         hwy::AlignedFreeUniquePtr<BlockState[]> blocks;
         std::vector<std::size_t> offsets;
         std::vector<std::uint32_t> splats;
+        std::vector<std::size_t> part_offsets;  // of a batch that has more sheets
+        std::vector<std::uint32_t> part_splats;
         std::vector<std::uint8_t> wanted;
         // One bit for each sheet of a batch on which a block is needed: of all batches and blocks, as far as intervals of rays
         // are there; and of the blocks of one batch, less those whose rays are done.
         std::vector<std::uint8_t> sheets;
-        std::array<std::uint8_t, kBlocks> needed;
+        std::array<std::uint8_t, kBlocks> of_stack, needed;
 
         void resize() {
             if (blocks) return;
@@ -175,28 +177,18 @@ private:
 
     /// Lists the tile's kernels by batches; within a batch they keep their order.
     void list_batches(int tile) {
-        auto& offsets = scratch().offsets;
-        auto& splats = scratch().splats;
         const auto& wanted = scratch().wanted;
         const auto begin =
             frame_.tile_splats.begin() + static_cast<std::ptrdiff_t>(frame_.tile_offsets[static_cast<std::size_t>(tile)]);
         const auto end =
             frame_.tile_splats.begin() + static_cast<std::ptrdiff_t>(frame_.tile_offsets[static_cast<std::size_t>(tile) + 1]);
-        offsets.assign(static_cast<std::size_t>(sheets_.batches()) + 1, 0);
-        const auto each = [&](const auto& visit) {
-            for (auto id = begin; id != end; ++id) {
-                const auto [first, last] = frame_.batches[*id];
-                for (std::size_t b = first; b <= last; ++b) {
-                    if (wanted[b]) visit(*id, b);
-                }
-            }
-        };
-        each([&](std::uint32_t, std::size_t b) { ++offsets[b + 1]; });
-        for (std::size_t b = 1; b < offsets.size(); ++b) offsets[b] += offsets[b - 1];
-        splats.resize(offsets.back());
-        each([&](std::uint32_t id, std::size_t b) { splats[offsets[b]++] = id; });
-        std::rotate(offsets.begin(), offsets.end() - 1, offsets.end());  // each offset has become that of the next batch
-        offsets.front() = 0;
+        list_by(static_cast<std::size_t>(sheets_.batches()), std::span(begin, end), scratch().offsets, scratch().splats,
+                [&](std::uint32_t id, const auto& visit) {
+                    const auto [first, last] = frame_.batches[id];
+                    for (std::size_t b = first; b <= last; ++b) {
+                        if (wanted[b]) visit(b);
+                    }
+                });
     }
 
     [[nodiscard]] bool done() const {
@@ -226,24 +218,129 @@ private:
 
     /// Finds the sheets of a batch that its blocks need: none if all rays are done or enter the volume later. Returns whether
     /// there are any.
-    HWY_ATTR bool find_needed(int batch, int sheets) {
+    HWY_ATTR bool find_needed(int batch) {
         const Lanes d;
-        const auto limit = hn::Set(d, sheets_.depth(batch * kBatch + sheets - 1) + 1.5f * sheets_.distance);
-        auto& needed = scratch().needed;
+        const int last = std::min(batch * kBatch + kBatch, sheets_.count) - 1;
+        const auto limit = hn::Set(d, sheets_.depth(last) + 1.5f * sheets_.distance);
+        auto& needed = scratch().of_stack;
         std::uint32_t any = 0;
         for (std::size_t block = 0; block < kBlocks; ++block) {
             const bool reached = !hn::AllFalse(d, hn::Lt(hn::Load(d, scratch().blocks[block].enter), limit));
             needed[block] = reached ? scratch().sheets[static_cast<std::size_t>(batch) * kBlocks + block] : std::uint8_t{0};
             any |= needed[block];
         }
-        for (std::size_t row = 0; row < kRows; ++row) batch_.need(row, needed.data() + row * kColumns);
         return any != 0;
+    }
+
+    /// Sums and composites a batch with as many sheets in place of each as its finest block needs, kBatch of them at a time.
+    HWY_ATTR void go_through(int batch) {
+        find_levels(batch);
+        const int sheets = std::min(kBatch, sheets_.count - batch * kBatch) << level_;
+        if (level_ > 0) list_parts(batch);
+        for (int first = 0; first < sheets; first += kBatch) {
+            place_sheets(batch, first);
+            if (!choose_blocks(first)) continue;
+            sum(level_ > 0 ? kernels_of_part(first / kBatch) : kernels_of(batch), 0, std::min(kBatch, sheets - first));
+            for (std::size_t block = 0; block < kBlocks; ++block) {
+                if (scratch().needed[block] != 0) composite(block, batch);
+            }
+        }
+    }
+
+    [[nodiscard]] static std::span<const std::uint32_t> kernels_of(int batch) {
+        const auto& offsets = scratch().offsets;
+        const auto b = static_cast<std::size_t>(batch);
+        return std::span(scratch().splats).subspan(offsets[b], offsets[b + 1] - offsets[b]);
+    }
+    [[nodiscard]] static std::span<const std::uint32_t> kernels_of_part(int part) {
+        const auto& offsets = scratch().part_offsets;
+        const auto p = static_cast<std::size_t>(part);
+        return std::span(scratch().part_splats).subspan(offsets[p], offsets[p + 1] - offsets[p]);
+    }
+
+    /// Lists a batch's kernels by parts, of kBatch sheets each; within a part they keep their order.
+    void list_parts(int batch) {
+        const auto parts = std::size_t{1} << level_;
+        const float first = sheets_.depth(batch * kBatch - 1),
+                    per_part = static_cast<float>(parts) / (kBatch * sheets_.distance);
+        // A little more on each side, so that rounding does not lose a kernel.
+        constexpr float kMore = 1e-2f;
+        const auto part_of = [&](float z) {
+            return static_cast<std::size_t>(std::clamp((z - first) * per_part, 0.0f, static_cast<float>(parts - 1)));
+        };
+        list_by(parts, kernels_of(batch), scratch().part_offsets, scratch().part_splats,
+                [&](std::uint32_t id, const auto& visit) {
+                    const EyeSplat& s = frame_.kernels.splats[id];
+                    const float reach = 1.0f / std::sqrt(s.inv_szz) + kMore / per_part;
+                    for (std::size_t p = part_of(s.depth - reach); p <= part_of(s.depth + reach); ++p) visit(p);
+                });
+    }
+
+    /// Finds the levels of a batch's cells, and the most of them.
+    void find_levels(int batch) {
+        static_assert(FinerSheets::kSheets == kBatch);
+        level_ = 0;
+        if (!frame_.finer.any()) return;
+        for (std::size_t cell = 0; cell < kCells * kCells; ++cell) {
+            constexpr int kSide = FinerSheets::kSide_px;
+            const int x = x0_ + static_cast<int>(cell % kCells) * kSide, y = y0_ + static_cast<int>(cell / kCells) * kSide;
+            levels_[cell] = frame_.finer.level(x, y, batch * kBatch);
+            if (levels_[cell] > 0) levels_[cell] = level_in_light(levels_[cell], light_left(cell));
+            level_ = std::max(level_, levels_[cell]);
+        }
+    }
+
+    /// The most light that is left of any ray in a cell that is not done.
+    [[nodiscard]] float light_left(std::size_t cell) const {
+        float most = 0;
+        for (std::size_t i = 0; i < kCellRows * kCellColumns; ++i) {
+            const std::size_t row = cell / kCells * kCellRows + i / kCellColumns;
+            const BlockState& b = scratch().blocks[row * kColumns + cell % kCells * kCellColumns + i % kCellColumns];
+            for (std::size_t lane = 0; lane < kBlock; ++lane) {
+                if (b.enter[lane] != kNever) most = std::max(most, 1 - b.opacity[lane]);
+            }
+        }
+        return most;
+    }
+    [[nodiscard]] int level_of(std::size_t block) const {
+        return level_ == 0 ? 0 : levels_[block / kColumns / kCellRows * kCells + block % kColumns / kCellColumns];
+    }
+
+    /// Places the sheets that are summed next: the first-th and those behind it, with 2^level_ in place of each of a batch.
+    void place_sheets(int batch, int first) {
+        step_ = 1.0f / static_cast<float>(1 << level_);
+        before_ = static_cast<float>(batch * kBatch - 1) + static_cast<float>(first) * step_;
+    }
+    /// The place in the stack of the k-th of these sheets.
+    [[nodiscard]] float place_of(int k) const { return before_ + static_cast<float>(k + 1) * step_; }
+
+    /// Finds which of these sheets each block needs: those of its level in place of a sheet that it needs. Returns whether any
+    /// block needs one.
+    bool choose_blocks(int first) {
+        const auto& of_stack = scratch().of_stack;
+        auto& needed = scratch().needed;
+        if (level_ == 0) {
+            needed = of_stack;
+        } else {
+            needed.fill(0);
+            for (std::size_t block = 0; block < kBlocks; ++block) {
+                const int stride = 1 << (level_ - level_of(block));
+                for (int k = (stride - 1) & (stride - 1 - first); k < kBatch; k += stride) {
+                    if ((of_stack[block] >> ((first + k) >> level_) & 1) != 0 && place_of(k) >= 0)
+                        needed[block] |= static_cast<std::uint8_t>(1u << k);
+                }
+            }
+        }
+        for (std::size_t row = 0; row < kRows; ++row) batch_.need(row, needed.data() + row * kColumns);
+        return std::ranges::any_of(needed, [](std::uint8_t sheets) { return sheets != 0; });
     }
 
     /// Takes the values of the last sheet of a batch that was passed over.
     HWY_ATTR void look_back(int batch) {
         batch_.need_all();
-        sum(batch, kBatch - 1, kBatch);
+        level_ = 0;
+        place_sheets(batch, 0);
+        sum(kernels_of(batch), kBatch - 1, kBatch);
         for (std::size_t block = 0; block < kBlocks; ++block) {
             BlockWalk<kPlain> walk(frame_, classifier_, scratch().blocks[block]);
             walk.skip_to(values(block, kBatch - 1));
@@ -251,11 +348,11 @@ private:
         }
     }
 
-    /// Sums the sheets [begin, end) of a batch.
-    HWY_ATTR void sum(int batch, int begin, int end) {
+    /// Sums kernels on the placed sheets [begin, end).
+    HWY_ATTR void sum(std::span<const std::uint32_t> kernels, int begin, int end) {
         for (int k = 0; k < kBatch; ++k) {
             const auto i = static_cast<std::size_t>(k);
-            batch_.depth[i] = sheets_.depth(batch * kBatch + k);
+            batch_.depth[i] = sheets_.depth(place_of(k));
             batch_.across[i] = view_.perspective() ? sheets_.middle + batch_.depth[i] : 1.0f;
             batch_.to_pixels[i] = 1.0f / (batch_.across[i] * static_cast<float>(view_.pixel()));
         }
@@ -271,9 +368,7 @@ private:
                 std::fill_n(to, count * kStride * kBlock, 0.0f);
             }
         }
-        const auto& offsets = scratch().offsets;
-        for (std::size_t i = offsets[static_cast<std::size_t>(batch)]; i < offsets[static_cast<std::size_t>(batch) + 1]; ++i) {
-            const std::uint32_t id = scratch().splats[i];
+        for (const std::uint32_t id : kernels) {
             if constexpr (kPlain) {
                 add_plain(frame_.kernels.splats[id], batch_, tile_, cuts_, sums);
             } else {
@@ -284,16 +379,16 @@ private:
 
     HWY_ATTR void composite(std::size_t block, int batch) {
         BlockWalk<kPlain> walk(frame_, classifier_, scratch().blocks[block]);
+        const float step = 1.0f / static_cast<float>(1 << level_of(block));
         for (int k = 0; k < batch_.end; ++k) {
             if ((scratch().needed[block] >> k & 1) == 0) continue;
-            const int sheet = batch * kBatch + k;
             const SheetValues at_sheet = values(block, k);
-            if (sheet > 0) {
-                walk.go(sheets_.depth(sheet - 1), sheets_.depth(sheet), at_sheet);
+            if (place_of(k) > 0) {
+                walk.go(sheets_.depth(place_of(k) - step), sheets_.depth(place_of(k)), at_sheet);
             } else {
                 walk.skip_to(at_sheet);
             }
-            if (frame_.optical_depths) keep_depths(block, sheet, walk.optical_depth());
+            if (frame_.optical_depths) keep_depths(block, batch * kBatch + k, walk.optical_depth());
         }
         walk.store();
     }
@@ -386,6 +481,11 @@ private:
     std::pair<std::size_t, std::size_t> marked_;  // sheets of a block, the last one included
     float x_offset_ = 0, color_offset_ = 0, least_gradient_ = 0;
     int x0_ = 0, y0_ = 0;
+    // The sheets that are summed: the place in the stack of the one before them, and their distance there. Levels: the most of
+    // those of the batch, and of its cells.
+    float before_ = -1, step_ = 1;
+    int level_ = 0;
+    std::array<int, kCells * kCells> levels_{};
 };
 
 }  // namespace subvol::detail::HWY_NAMESPACE

@@ -201,7 +201,7 @@ std::vector<double> list_key(const GlSplatFrame& f) {
                             static_cast<double>(f.pixel),          static_cast<double>(f.kernels),
                             static_cast<double>(f.most_entries)};
     for (const auto* axis : {&f.right, &f.up, &f.forward}) key.insert(key.end(), axis->begin(), axis->end());
-    for (const int n : {f.width, f.height, f.tiles_x, f.tiles_y, f.sheets, f.batches, f.first_batch, f.end_batch})
+    for (const int n : {f.width, f.height, f.tiles_x, f.tiles_y, f.sheets, f.batches, f.first_batch, f.end_batch, f.finer})
         key.push_back(n);
     return key;
 }

@@ -25,7 +25,8 @@ struct alignas(32) GlSplatFrame {
     float first_depth = 0, sheet_distance = 0, middle_depth = 0, near_depth = 0;
     float pixel = 0, value_offset = 0, color_offset = 0, half_weight = 0;
     float least_gradient = 0, kernel_cells = 0;
-    float unlit_ambient = 0, unused = 0;
+    float unlit_ambient = 0;
+    std::int32_t finer = 0;
     std::array<std::array<float, 4>, 3> to_light{};
     std::array<std::int32_t, 4> light_nodes{};
 

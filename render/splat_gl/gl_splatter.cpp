@@ -41,6 +41,7 @@
 #include "shader_splat_shadow_glsl.h"
 #include "shader_splat_sums_glsl.h"
 #include "shader_splat_walk_glsl.h"
+#include "splat_frame.h"
 #include "subvol/detail/stopwatch.h"
 #include "subvol/error.h"
 #include "subvol/raster.h"
@@ -71,7 +72,8 @@ std::string common_defines(const SplatScene& scene, const GlTuning& tuning) {
            line("kSplatCutoff", decimal(kSplatCutoff)) + line("kFarCells", decimal(kFarCells)) +
            line("kMostOfKernel", decimal(kMostOfKernel)) + line("kThickDepth", decimal(kThickDepth)) +
            line("kAimedDepth", decimal(kAimedDepth)) + line("kOpaqueDepth", decimal(kOpaqueDepth)) +
-           line("kSkin_px", decimal(kSkin_px));
+           line("kSkin_px", decimal(kSkin_px)) + line("kFinerSide", std::to_string(FinerSheets::kSide_px)) +
+           line("kFinerSheets", std::to_string(FinerSheets::kSheets));
 }
 
 template <class T>
@@ -106,6 +108,16 @@ GlTuning tuned(GlTuning tuning, bool hardware) {
 const SplatScene& checked(const SplatScene& scene) {
     check_storage({.compute = scene.shadowed() ? 16 : 15, .bindings = 16}, GlStorage::available(), "use the CPU backend");
     return scene;
+}
+
+/// Counts of visible rows, and levels behind them, four in a word.
+std::vector<std::int32_t> with_levels(std::vector<std::int32_t> visible, const FinerSheets& finer) {
+    const std::size_t first = visible.size();
+    visible.resize(first + (finer.levels.size() + 3) / 4, 0);
+    for (std::size_t i = 0; i < finer.levels.size(); ++i) {
+        visible[first + i / 4] |= static_cast<std::int32_t>(std::uint32_t{finer.levels[i]} << (i % 4 * 8));
+    }
+    return visible;
 }
 
 /// The kernels that may meet some sheets, with a sheet more on each side, so that rounding does not lose one.
@@ -182,7 +194,9 @@ public:
     bool failed = false;
 
 private:
-    void prepare(const View& view, const Classification& classification);
+    /// by_tolerance: whether nobody has chosen the number of sheets
+    void prepare(const View& view, const Classification& classification, bool by_tolerance);
+    [[nodiscard]] FinerSheets finer_sheets(const View& view, const Classification& classification);
     void find_intervals(const View& view);
     [[nodiscard]] bool draw_at_once(Progress* progress);
     [[nodiscard]] bool fits_bins(int first, int end) const;
@@ -211,6 +225,7 @@ private:
     std::size_t room_ = 0;                                    // for so many entries
     SheetStack sheets_;
     GlSplatFrame frame_;
+    SplatFrame host_;  // its kernels, as far as the host needs them
     GlSplatBins bins_;
     GlBoundary boundary_;
     GlProgram draw_;
@@ -219,16 +234,29 @@ private:
     GlBuffer frame_buffer_, kernel_table_, rows_, visible_, color_rows_, picture_, kept_, states_, ends_, light_;
 };
 
-void GlSplatter::State::prepare(const View& view, const Classification& classification) {
+void GlSplatter::State::prepare(const View& view, const Classification& classification, bool by_tolerance) {
     stages_.clear();
     frame_ = gl_splat_frame(scene_, view, classification, sheets_, tuning_.tile_px, tuning_.batch);
     upload(rows_, classification.table.rows);
-    upload(visible_, classification.table.visible);
+    const FinerSheets finer = by_tolerance ? finer_sheets(view, classification) : FinerSheets{};
+    frame_.finer = finer.any();
+    report.sheets_finest = finer.sheets_finest(sheets_.count);
+    upload(visible_, with_levels(classification.table.visible, finer));
     upload(color_rows_, classification.colors.rows);
     if (scene_.light) upload(light_, scene_.light->nodes);
     const std::size_t pixels = pixel_count(view.width(), view.height());
     picture_.grow(pixels * kPixel_bytes);
     find_intervals(view);
+}
+
+/// On the host, which thereby chooses as for its own pictures.
+FinerSheets GlSplatter::State::finer_sheets(const View& view, const Classification& classification) {
+    host_.scene = &scene_;
+    host_.view = &view;
+    host_.classification = &classification;
+    host_.sheets = sheets_;
+    eye_splats(host_.kernels, scene_, view, classification);
+    return detail::finer_sheets(host_);
 }
 
 void GlSplatter::State::find_intervals(const View& view) {
@@ -333,11 +361,11 @@ Drawn GlSplatter::State::draw(const View& view, const Classification& classifica
         drawn.depth.resize(pixel_count(view.width(), view.height()));
     });
     report.sheets = sheets_.count;
-    prepare(view, classification);
+    prepare(view, classification, sheets == 0);
     if (!draw_at_once(progress)) draw_in_passes(view, 0, frame_.batches, progress);
     // Likewise for the boundary's hits.
     if (has_intervals() && !boundary_.found_all()) {
-        report = {.sheets = sheets_.count, .stages = {}};
+        report = {.sheets = sheets_.count, .sheets_finest = report.sheets_finest, .stages = {}};
         find_intervals(view);
         draw_in_passes(view, 0, frame_.batches, progress);
     }

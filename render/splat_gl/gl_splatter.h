@@ -14,7 +14,9 @@ namespace subvol::detail {
 /// How the work is divided. The picture does not depend on it.
 ///
 /// tile_px:            8 or 16; 0: 8 on hardware, where small groups wait less for each other, else 16
-/// batch:              sheets, 1..16; 0: 4 on hardware, where more of fewer sums fit at a time, else 8
+/// batch:              sheets, 1..16; 0: 4 on hardware, where more of fewer sums fit at a time, else 8. Where a picture has
+/// more
+///                     sheets than its stack it depends on batches that do not divide 8
 /// most_buffer_bytes:  limit for a buffer, if the device has no lower one
 /// memory_bytes:       limit for kernels and lists together; 0: memory_budget()
 /// most_entries:       limit for the pairs of a bin and a kernel
@@ -34,9 +36,9 @@ struct GlTuning {
 };
 
 struct GlSplatReport {
-    int sheets = 0;
-    std::size_t bin_entries = 0;    // (tile, batch, kernel)
-    std::size_t boundary_hits = 0;  // entries and exits over all pixels
+    int sheets = 0, sheets_finest = 0;  // as in SplatReport
+    std::size_t bin_entries = 0;        // (tile, batch, kernel)
+    std::size_t boundary_hits = 0;      // entries and exits over all pixels
     int passes = 0;
     int lists = 0;                  // of kernels by tiles that were made; 0 if the camera is that of the picture before
     std::size_t dispatches = 0;     // that draw

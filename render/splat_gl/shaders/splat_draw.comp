@@ -13,7 +13,8 @@ struct State {
     vec4 color;    // opacity in the last component
     vec4 going;    // depth, enter, exit; weight on the last sheet
     vec4 on_last;  // x, color, light
-    uvec4 at;      // interval; next end, and a bit: whether there is a value on the last sheet; a word of the tile's state
+    uvec4 at;      // interval; next end, and a bit: whether there is a value on the last sheet; a word of the tile's state;
+                   // levels
 };
 layout(std430, binding = 13) buffer States { State states[]; };  // of the pixels of tiles, between dispatches
 layout(location = 0) uniform uvec2 tile_range;  // the tiles of this dispatch: first, end
@@ -31,9 +32,13 @@ shared int range_high[3];
 const int kChoose = 0, kLookBack = 1, kGoThrough = 2, kDone = 3;
 
 uint pixel_id, state_id;
+ivec2 own_px;
 bool in_picture;
 int next_batch_id, job = kChoose;
 bool ends_found = false, passed_over = false;
+// Of FinerSheets: the level of the pixel's cell, the most of those of the tile, and one more than the layer they are of; and
+// how many of the sheets of a batch have been composited.
+int own_level = 0, tile_level = 0, leveled = 0, first_of_part = 0;
 uint step_number = 0u;
 uint next_end = 0u, last_end = 0u;  // the ends of the pixel's intervals that have no values yet
 int ranged = -2;  // the batch to which `range` belongs
@@ -52,6 +57,7 @@ void start_pixel(uint tile) {
     block = thread / 32u;
     tile_px = ivec2(int(tile) % tiles.x, int(tile) / tiles.x) * kTile;
     ivec2 at = tile_px + ivec2(int(block) % kBlocksX * 8 + int(lane % 8u), int(block) / kBlocksX * 4 + int(lane / 8u));
+    own_px = at;
     in_picture = at.x < size.x && at.y < size.y;
     pixel_id = in_picture ? uint(at.y) * uint(size.x) + uint(at.x) : 0u;
     precise vec2 slopes = vec2(float(at.x) + 0.5 - 0.5 * float(size.x), 0.5 * float(size.y) - (float(at.y) + 0.5)) * pixel;
@@ -84,6 +90,9 @@ void load_state() {
     next_batch_id = first_batch;
     if (first_batch == 0 && !resumed) return;
     State s = states[state_id];
+    own_level = int(s.at.w & 0xffu);
+    tile_level = int(s.at.w >> 8 & 0xffu);
+    leveled = int(s.at.w >> 16);
     beam = Beam(s.color.rgb, s.color.w, s.going.x);
     enter_z = s.going.y;
     exit_z = s.going.z;
@@ -91,7 +100,8 @@ void load_state() {
     next_end = s.at.y >> 1;
     last = Sheet(s.on_last.x, (s.at.y & 1u) != 0u, s.going.w, s.on_last.y, s.on_last.zw);
     if (!resumed) return;
-    job = int(tile_word(0u));
+    job = int(tile_word(0u) & 3u);
+    first_of_part = int(tile_word(0u) >> 2);
     next_batch_id = int(tile_word(1u));
     entry = tile_word(2u);
     ends_found = tile_word(3u) != 0u;
@@ -103,11 +113,12 @@ void load_state() {
 
 void store_state() {
     if (entry > 0u) keep_sums();
-    uint words[8] = uint[](uint(job), uint(next_batch_id), entry, uint(ends_found), uint(passed_over), uint(ranged),
-                           floatBitsToUint(range.x), floatBitsToUint(range.y));
+    uint words[8] = uint[](uint(job) | uint(first_of_part) << 2, uint(next_batch_id), entry, uint(ends_found), uint(passed_over),
+                           uint(ranged), floatBitsToUint(range.x), floatBitsToUint(range.y));
     states[state_id] = State(vec4(beam.color, beam.opacity), vec4(beam.depth, enter_z, exit_z, last.weight),
                              vec4(last.x, last.color, last.light),
-                             uvec4(interval, next_end << 1 | uint(last.known), words[gl_LocalInvocationIndex & 7u], 0u));
+                             uvec4(interval, next_end << 1 | uint(last.known), words[gl_LocalInvocationIndex & 7u],
+                                   uint(own_level) | uint(tile_level) << 8 | uint(leveled) << 16));
 }
 
 void write_pixel() {
@@ -115,6 +126,42 @@ void write_pixel() {
     precise float mean_depth = middle_depth + beam.depth / (beam.opacity > 0.0 ? beam.opacity : 1.0);
     picture[pixel_id] = vec4(beam.color, beam.opacity);
     kept[pixel_id] = beam.opacity > 0.0 ? mean_depth : uintBitsToFloat(0x7f800000u);
+}
+
+// The levels are behind the counts of visible rows, four in a word.
+const int kFinerAt = kCells + 3, kCellsOfTile = kTile / kFinerSide;
+shared uint light_left[kCellsOfTile * kCellsOfTile];
+
+int stored_level(ivec2 cell, int layer) {
+    ivec2 cells = (size + kFinerSide - 1) / kFinerSide;
+    if (cell.x >= cells.x || cell.y >= cells.y) return 0;
+    int at = (cell.y * cells.x + cell.x) * ((sheets + kFinerSheets - 1) / kFinerSheets) + layer;
+    return visible[kFinerAt + at / 4] >> (at % 4 * 8) & 0xff;
+}
+
+// Finds the levels of the tile's cells for the stretches that end at a sheet, as FinerSheets and level_in_light do.
+void find_levels(int sheet) {
+    int layer = sheet / kFinerSheets, most = 0;
+    if (leveled == layer + 1) return;
+    leveled = layer + 1;
+    own_level = tile_level = 0;
+    ivec2 first = tile_px / kFinerSide;
+    for (int i = 0; i < kCellsOfTile * kCellsOfTile; ++i)
+        most = max(most, stored_level(first + ivec2(i % kCellsOfTile, i / kCellsOfTile), layer));
+    if (most == 0) return;
+    ivec2 in_tile = own_px / kFinerSide - first;
+    int own = in_tile.y * kCellsOfTile + in_tile.x;
+    barrier();
+    if (gl_LocalInvocationIndex < uint(light_left.length())) light_left[gl_LocalInvocationIndex] = 0u;
+    barrier();
+    if (enter_z != kNever) atomicMax(light_left[own], floatBitsToUint(max(1.0 - beam.opacity, 0.0)));
+    barrier();
+    for (int i = 0; i < kCellsOfTile * kCellsOfTile; ++i) {
+        int level = stored_level(first + ivec2(i % kCellsOfTile, i / kCellsOfTile), layer);
+        level = clamp(level + int(light_left[i] >> 23) - 127 + 1, 0, level);
+        tile_level = max(tile_level, level);
+        if (i == own) own_level = level;
+    }
 }
 
 // The first batch of which the pixel needs a sheet: with the sheet before its interval, and a little for rounding.
@@ -305,13 +352,18 @@ void look_back(int batch) {
     skip_to(first_sum());
 }
 
-void go_through(int batch, bool awake) {
-    int first_sheet = batch * kBatch, end_sheet = min(first_sheet + kBatch, sheets);
-    for (int sheet = first_sheet; awake && sheet < end_sheet; ++sheet) {
-        sum_depth = sheet_depth(sheet);
-        Sheet here = first_sum();
-        if (sheet == 0) skip_to(here);
-        else go(sheet_depth(sheet - 1), sheet_depth(sheet), here);
+// Composites the placed sheets: those of the pixel's level, and none before the first of the stack.
+void go_through(int count, bool awake) {
+    int stride = 1 << (tile_level - own_level);
+    float step = place_step * float(stride);
+    for (int k = 0; awake && k < count; ++k) {
+        float place = place_of(k);
+        if ((first_of_part + k + 1) % stride == 0 && place >= 0.0) {
+            sum_depth = depth_at(place);
+            Sheet here = first_sum();
+            if (place == 0.0) skip_to(here);
+            else go(depth_at(place - step), sum_depth, here);
+        }
         shift_sums();
     }
 }
@@ -326,9 +378,19 @@ void work(uint first_bin) {
     if (!ends_found) return;
 #endif
     bool awake = back || enter_z < sheet_depth(end_sheet - 1) + 1.5 * sheet_distance;
-    if (!sum_kernels(bin, first_sheet, back ? 1u << (kBatch - 1) : 0xffffffffu, awake)) return;
-    if (back) look_back(batch);
-    else go_through(batch, awake);
+    if (finer && !back) find_levels(first_sheet);
+    int level = back ? 0 : tile_level, count = (end_sheet - first_sheet) << level;
+    place_step = 1.0 / float(1 << level);
+    place_before = float(first_sheet - 1) + float(first_of_part) * place_step;
+    if (!sum_kernels(bin, back ? 1u << (kBatch - 1) : 0xffffffffu, awake)) return;
+    if (back) {
+        look_back(batch);
+    } else {
+        go_through(min(kBatch, count - first_of_part), awake);
+        first_of_part += kBatch;
+        if (first_of_part < count) return;
+        first_of_part = 0;
+    }
     job = back ? kGoThrough : kChoose;
     ends_found = false;
 }

@@ -110,18 +110,19 @@ ivec2 tile_range(vec2 reach, int count, int pixels) {
     return ivec2(clamp((reach + vec2(-1.0, 1.0)) / float(kTile), 0.0, float(count - 1)));
 }
 
-// First and last batch, with half a sheet more on each side.
+// First and last batch, with half a sheet more on each side; and one behind if there may be more sheets before that.
 ivec2 batch_range(float depth, float reach) {
     vec2 sheet = clamp((vec2(depth - reach, depth + reach) - first_depth) * (1.0 / sheet_distance), -1.0, float(sheets));
-    ivec2 of_sheet = ivec2(max(int(sheet.x - 0.5), 0), min(int(sheet.y + 0.5), sheets - 1));
+    ivec2 of_sheet = ivec2(max(int(sheet.x - 0.5), 0), min(int(sheet.y + (finer ? 1.5 : 0.5)), sheets - 1));
     return ivec2(max(of_sheet.x / kBatch, first_batch), min(of_sheet.y / kBatch, end_batch - 1));
 }
 
 uint find_bins(uint id, Splat s) {
     rects[id] = uvec4(0u);
     float reach = 1.0 / sqrt(s.place.w);
-    float front = max(s.place.z - reach, sheet_depth(first_batch * kBatch));
-    float back = min(s.place.z + reach, sheet_depth(min(end_batch * kBatch, sheets) - 1));
+    // Between the sheets of two passes rays may enter the volume, or more sheets lie: there both have all kernels.
+    float front = max(s.place.z - reach, sheet_depth(first_batch * kBatch - (finer ? 1 : 0)));
+    float back = min(s.place.z + reach, sheet_depth(min(end_batch * kBatch, sheets - 1)));
     if (!(front <= back + 1e-3 * sheet_distance)) return 0u;
     vec2 across = s.shape.xy * reach, half_size = sqrt(s.rest.zw * s.rest.zw + across * across);
     vec2 x_px = pixels(s.place.x - half_size.x, s.place.x + half_size.x, front, back);

@@ -14,7 +14,8 @@ layout(std140, binding = 0) uniform Frame {
     float first_depth, sheet_distance, middle_depth, near_depth;
     float pixel, value_offset, color_offset, half_weight;
     float least_gradient, kernel_cells;
-    float unlit_ambient, unused;
+    float unlit_ambient;
+    bool finer;                // whether cells of pixels and sheets have more sheets
     vec4 to_light[3];  // from eye space to the nodes of the light volume
     ivec4 light_nodes;
 };
@@ -32,4 +33,6 @@ struct Splat {
     vec4 rest;    // value slope, moment, extent x, y
 };
 
-float sheet_depth(int sheet) { return fma(float(sheet), sheet_distance, first_depth); }
+// place: between two sheets, too
+float depth_at(float place) { return fma(place, sheet_distance, first_depth); }
+float sheet_depth(int sheet) { return depth_at(float(sheet)); }

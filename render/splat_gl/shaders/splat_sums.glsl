@@ -59,7 +59,11 @@ precise float colors[kBatch];
 precise vec3 gradient_sums[kBatch];
 #endif
 
-float across_at(int sheet) { return perspective ? middle_depth + sheet_depth(sheet) : 1.0; }
+// The sheets that are summed: the place in the stack of the one before them, and their distance there.
+float place_before = 0.0, place_step = 1.0;
+
+float place_of(int k) { return place_before + float(k + 1) * place_step; }
+float across_at(int k) { return perspective ? middle_depth + depth_at(place_of(k)) : 1.0; }
 
 // The blocks that a section with its middle at px may meet, a bit for each, with a margin of half a pixel and a little for
 // rounding.
@@ -73,14 +77,14 @@ uint blocks_at(vec2 px, vec2 half_size) {
     return met;
 }
 
-void cut(uint j, uint k, uint id, int sheet, bool wanted) {
+void cut(uint j, uint k, uint id, bool wanted) {
     Splat s = splats[id];
-    float zs = sheet_depth(sheet) - s.place.z, e = zs * zs * s.place.w, left = 1.0 - e;
+    float zs = depth_at(place_of(int(k))) - s.place.z, e = zs * zs * s.place.w, left = 1.0 - e;
     vec2 middle = fma(s.shape.xy, vec2(zs), s.place.xy);
     cuts[j * kBatch + k] = vec4(middle, e, fma(zs, s.rest.x, s.slope.y));
     uint met = 0u;
     if (left > 0.0 && wanted) {
-        float scale = 1.0 / (across_at(sheet) * pixel);
+        float scale = 1.0 / (across_at(int(k)) * pixel);
         vec2 px = vec2(middle.x, -middle.y) * scale + (0.5 * vec2(size) - vec2(tile_px));
         met = blocks_at(px, s.rest.zw * (sqrt(left) * scale) + 0.55);
     }
@@ -108,12 +112,12 @@ void mark(uint j, uint at) {
 }
 
 // Puts kernels `first` to `end` into shared memory.
-void stage(uint first, uint end, int first_sheet, uint wanted_sheets) {
+void stage(uint first, uint end, uint wanted_sheets) {
     barrier();  // until the last chunk is not used any more
     for (uint i = gl_LocalInvocationIndex; i < kWords * kBlocks; i += kPixels) met_kernels[i] = 0u;
     for (uint i = gl_LocalInvocationIndex; i < (end - first) * kBatch; i += kPixels) {
         uint j = i / kBatch, k = i % kBatch;
-        cut(j, k, bin_splats[first + j], first_sheet + int(k), (wanted_sheets & (1u << k)) != 0u);
+        cut(j, k, bin_splats[first + j], (wanted_sheets & (1u << k)) != 0u);
     }
     barrier();
     for (uint i = gl_LocalInvocationIndex; i < (end - first) * kBlocks; i += kPixels) mark(i / kBlocks, i % kBlocks);
@@ -219,13 +223,13 @@ void add_at(int k, uint j, vec2 d, float zs, float e_here, float v_here) {
 #endif
 }
 
-void add_kernel(uint j, uint met, int first_sheet) {
+void add_kernel(uint j, uint met) {
     for (int k = 0; k < kBatch; ++k) {
         if ((met & (1u << k)) == 0u) continue;
         vec4 at = cuts[j * kBatch + k];
         precise vec2 d = fma(ray, vec2(across[k]), -at.xy);
 #if GENERAL
-        float zs = sheet_depth(first_sheet + k) - rests[j].x;
+        float zs = depth_at(place_of(k)) - rests[j].x;
 #else
         const float zs = 0.0;
 #endif
@@ -344,19 +348,19 @@ bool sum_kernels_at(uint bin, float depth, bool awake) {
 }
 #endif
 
-// Sums the wanted sheets of a batch, false if it has to be continued; the sums of pixels that are not awake stay 0.
-bool sum_kernels(uint bin, int first_sheet, uint wanted_sheets, bool awake) {
-    for (int k = 0; k < kBatch; ++k) across[k] = across_at(first_sheet + k);
+// Sums the wanted ones of the placed sheets, false if it has to be continued; the sums of pixels that are not awake stay 0.
+bool sum_kernels(uint bin, uint wanted_sheets, bool awake) {
+    for (int k = 0; k < kBatch; ++k) across[k] = across_at(k);
     begin_sums();
     uint begin = bin_offsets[bin], end = bin_offsets[bin + 1u];
     for (; begin + entry < end && steps < most_steps; entry += kChunk) {
         uint first = begin + entry, chunk_end = min(first + kChunk, end);
         steps += (chunk_end - first) * kKernelSteps + kStagingSteps;
-        stage(first, chunk_end, first_sheet, wanted_sheets);
+        stage(first, chunk_end, wanted_sheets);
         for (uint word = 0u; word < kWords; ++word) {
             for (uint left = awake ? met_kernels[block * kWords + word] : 0u; left != 0u; left &= left - 1u) {
                 uint j = word * 32u + uint(findLSB(left));
-                add_kernel(j, met_sheets[j * kBlocks + block], first_sheet);
+                add_kernel(j, met_sheets[j * kBlocks + block]);
             }
         }
     }

@@ -12,9 +12,11 @@
 #include <vector>
 
 #include "splat_scenes.h"
+#include "subvol/detail/points_range.h"
 #include "subvol/error.h"
 #include "subvol/sample.h"
 #include "subvol/splat.h"
+#include "subvol/splat_shares.h"
 
 namespace subvol::test {
 namespace sheet_count_test {
@@ -126,6 +128,61 @@ TEST(SheetCount, PicturesAreAsExactAsIsAskedFor) {
     // The error falls with the square of the number.
     EXPECT_NEAR(draw(volume, 0, 2.5e-5).report.sheets, 2 * draw(volume, 0, 1e-4).report.sheets, 2);
     for (const double tolerance : {0.0, -1.0, std::nan("")}) EXPECT_THROW((void)draw(volume, 0, tolerance), Error);
+}
+
+float largest_difference(const Image& a, const Image& b) {
+    float largest = 0;
+    for (std::size_t i = 0; i < a.rgba.size(); ++i) largest = std::max(largest, std::abs(a.rgba[i] - b.rgba[i]));
+    return largest;
+}
+
+const View kOnLayer({.eye = {-3, .9, 1.1}, .target = {0, .5, .5}, .up = {0, 0, 1}}, 96, 96);
+
+Optics steep() {
+    return {{.color = {{0, {.1, .2, .9}}, {1, {.9, .8, .1}}}, .opacity = {{0, 0}, {1, .5}}}, .05};
+}
+
+SplatResult draw_layer(const RbfVolume& volume, int sheets, double tolerance = 1e-3) {
+    return render_splats(volume, kOnLayer, steep(),
+                         {.method = SplatMethod::Cpu, .sheets = sheets, .image_tolerance = tolerance});
+}
+
+TEST(SheetCount, NoPixelOfAFineLayerIsOffByMoreThanIsAskedFor) {
+    const RbfVolume volume = sample_rbf_points(cube_with_layer()).volume;
+    const Image exact = draw_layer(volume, 20000).image;
+    const SplatResult drawn = draw_layer(volume, 0);
+    EXPECT_LT(largest_difference(drawn.image, exact), 1e-3f);
+    EXPECT_GT(largest_difference(draw_layer(volume, drawn.report.sheets).image, exact), 5e-3f) << "these sheets alone";
+    EXPECT_GT(drawn.report.sheets_finest, 2 * drawn.report.sheets);
+    const SplatResult better = draw_layer(volume, 0, 1e-4);
+    EXPECT_LT(largest_difference(better.image, exact), 2e-4f);
+    EXPECT_GT(better.report.sheets_finest, drawn.report.sheets_finest);
+}
+
+TEST(SheetCount, WhereNoKernelIsThinThePictureIsThatOfTheNumber) {
+    const RbfVolume volume = cube(false);
+    const SplatResult drawn = draw(volume, 0, 1e-3), same = draw(volume, drawn.report.sheets, 1e-3);
+    EXPECT_EQ(drawn.report.sheets_finest, drawn.report.sheets);
+    EXPECT_EQ(drawn.image.rgba, same.image.rgba);
+}
+
+TEST(SheetCount, PartsOfAPictureHaveTheSheetsOfTheWholeInAFineLayer) {
+    const RbfVolume volume = sample_rbf_points(cube_with_layer()).volume;
+    SplatOptions options{.method = SplatMethod::Cpu};
+    const Image whole = render_splats(volume, kOnLayer, steep(), options).image;
+    options.needed_sheets = sheets_of_picture(volume, kOnLayer, options);
+    const std::vector<PixelRows> touched = rows_of_kernels(volume, kOnLayer, steep(), options);
+    for (int first = 0; first < kOnLayer.height(); first += kRowsOfTile) {
+        const PixelRows rows{first, std::min(first + kRowsOfTile, kOnLayer.height())};
+        RbfVolume some = detail::chosen_kernels(volume, touching(touched, rows));
+        some.boundary = volume.boundary;
+        const Image part = render_splats(some, kOnLayer, steep(), options).image;
+        const auto row = [&](const Image& image, int y) {
+            const auto begin = image.rgba.begin() + static_cast<std::ptrdiff_t>(4) * y * image.width;
+            return std::vector<float>(begin, begin + static_cast<std::ptrdiff_t>(4) * image.width);
+        };
+        for (int y = rows.first; y < rows.end; ++y) EXPECT_EQ(row(part, y), row(whole, y)) << y;
+    }
 }
 
 }  // namespace sheet_count_test

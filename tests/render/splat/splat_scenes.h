@@ -37,6 +37,17 @@ inline HexMesh jittered_box_about_origin() {
     return mesh;
 }
 
+/// A cube from 0 to 1 with a layer of thin cells at its face x = 0, in which the field rises steeply from 0.3 to 0.8.
+inline HexMesh cube_with_layer() {
+    HexMesh mesh = box(20);
+    for (Vec3& p : mesh.points) {
+        const double k = std::round(20 * p.x);
+        p.x = k <= 12 ? .02 * k / 12 : .02 + .98 * (k - 12) / 8;
+    }
+    add_field(mesh, "f", [](const Vec3& p) { return .3 + .1 * std::sin(3 * p.y + p.z) + .5 * (1 - std::exp(-p.x / .005)); });
+    return mesh;
+}
+
 /// Knots lie on the cells of the table: multiples of 1/4096 of the range.
 inline Optics smooth_optics() {
     return Optics({.color = {{0, {.1, .2, .9}}, {.5, {.9, .9, .3}}, {1, {.9, .2, .1}}}, .opacity = {{0, 0}, {1, .5}}}, .5);

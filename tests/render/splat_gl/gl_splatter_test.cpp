@@ -10,6 +10,7 @@
 #include <random>
 
 #include "lib/test_meshes.h"
+#include "render/splat/splat_scenes.h"
 #include "splat_cpu.h"
 #include "subvol/error.h"
 #include "subvol/sample.h"
@@ -186,6 +187,28 @@ TEST_F(GlSplats, TilesBatchesAndRepeatsChangeNoBit) {
                 EXPECT_EQ(drawn.depth, expected.depth);
             }
         }
+    }
+}
+
+TEST_F(GlSplats, AFineLayerHasTheSheetsThatItHasOnTheCpu) {
+    const RbfVolume volume = sample_rbf_points(test::cube_with_layer()).volume;
+    const View view({.eye = {-3, .9, 1.1}, .target = {0, .5, .5}, .up = {0, 0, 1}}, 72, 70);
+    const auto scene = detail::make_scene(volume, {});
+    const auto classification =
+        detail::classify(scene, {{.color = {{0, {.1, .2, .9}}, {1, {.9, .8, .1}}}, .opacity = {{0, 0}, {1, .5}}}, .05});
+    const Drawn cpu = draw_on_cpu(scene, view, classification, 0);
+    GlSplatter reference(scene, {});
+    const Drawn expected = reference.draw(view, classification, 0, nullptr);
+    EXPECT_LT(largest_difference(cpu.image.rgba, expected.image.rgba), kPlainRounding);
+    const Drawn without = reference.draw(view, classification, reference.report().sheets, nullptr);
+    EXPECT_GT(largest_difference(without.image.rgba, expected.image.rgba), 1e-3f) << "there are more sheets";
+    for (const GlTuning& tuning :
+         {GlTuning{.tile_px = 8}, GlTuning{.tile_px = 8, .batch = 4}, GlTuning{.batch = 2},
+          GlTuning{.batch = 4, .most_tiles = 3, .most_steps = 512},
+          GlTuning{.batch = 4, .most_entries = reference.report().bin_entries / 3, .most_steps = 1024}}) {
+        const Drawn drawn = GlSplatter(scene, {}, tuning).draw(view, classification, 0, nullptr);
+        EXPECT_EQ(drawn.image.rgba, expected.image.rgba) << tuning.tile_px << " " << tuning.batch;
+        EXPECT_EQ(drawn.depth, expected.depth);
     }
 }
 

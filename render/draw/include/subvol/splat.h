@@ -22,6 +22,7 @@ struct SplatReport {
     std::string device;   // name of the GL device, or the number of CPU threads
     std::size_t points = 0;
     int sheets = 0;                 // planes over the volume's depth
+    int sheets_finest = 0;          // that there would be if all were as close as where most are needed
     std::size_t bin_entries = 0;    // pairs of a tile and a kernel; on a GPU, triples with a batch of sheets
     std::size_t boundary_hits = 0;  // entries and exits over all pixels
     double seconds_light = 0;       // of the light volume, for shadows and ambient occlusion; a part of seconds_prepare

@@ -27,7 +27,7 @@ inline constexpr int kRowsOfTile = 32;
 [[nodiscard]] PixelRows rows_of(const Share& share, int height);
 
 /// The number of sheets of the picture: SplatOptions::sheets if that is not 0, else as many as the kernels of all processes
-/// need.
+/// need; to be given to them as SplatOptions::needed_sheets.
 ///
 /// volume: some of the kernels, and the whole boundary
 /// sum:    adds counts up over all processes; empty: the volume has all kernels
@@ -37,7 +37,7 @@ inline constexpr int kRowsOfTile = 32;
 /// The rows of tiles that each kernel touches; none if `end` is not behind `first`.
 ///
 /// volume:  some of the kernels, and the whole boundary
-/// options: with the sheets of the whole picture
+/// options: with the sheets of the whole picture, chosen or needed
 /// throws:  Error(InvalidInput) as `Splatter`
 [[nodiscard]] std::vector<PixelRows> rows_of_kernels(const RbfVolume& volume, const View& view, const Optics& optics,
                                                      const SplatOptions& options);

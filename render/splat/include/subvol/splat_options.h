@@ -13,7 +13,7 @@
 
 namespace subvol {
 
-/// How kernels are drawn; the pictures of the first four are the same.
+/// How kernels are drawn; for a number of sheets the pictures of the first four are the same.
 ///
 /// Auto:   Gl where there is a hardware GPU, else Cpu; Cpu, too, as soon as the GPU refuses the shaders, has no memory left or
 /// is
@@ -21,7 +21,7 @@ namespace subvol {
 /// Cpu:    tiles of the picture, batches of sheets, on all threads
 /// Gl:     the same by OpenGL compute shaders
 /// Sheets: one sheet buffer after the other, drawn and composited by OpenGL, also by software: the method of the EuroVis 2007
-///         paper, for comparison
+///         paper, for comparison. Without a number of sheets it has no more of them where kernels are thin
 /// Footprints: the method of [westover1990], for comparison: kernels are coloured first, by the value at their centre, and
 ///         composited one by one by the integrals of their weights along rays. Another picture: blurred, and not cut off at
 ///         the boundary. By the CPU, for radial kernels, without cuts and shadows
@@ -54,7 +54,10 @@ struct Shading {
 /// sheets:        planes of constant eye depth over the volume's depth range, 2..65536; 0: as many as the kernels need for the
 ///                tolerance. Where rays enter and leave the volume it is sampled besides, so bodies thinner than a sheet are
 ///                not lost
-/// image_tolerance: > 0: without a number of sheets, the RMS by which colours may differ from those of very many
+/// image_tolerance: > 0: without a number of sheets, the RMS by which colours may differ from those of very many; single pixels
+///                may by about as much, as kernels that are thin for the sheets get more of them (SplatReport::sheets_finest)
+/// needed_sheets: > 0: without a number of sheets, what `sheets_of_picture` has found for a picture of which this volume has
+///                some of the kernels
 /// channel:       the channel of the volume that is shown
 /// device:        the OpenGL device's number in gl_devices(); none: the first hardware, else software
 /// color_channel: a channel for the colours that is not that of the opacities; its colours are not pre-integrated
@@ -70,6 +73,7 @@ struct SplatOptions {
     int samples = 1;
     int sheets = 0;
     double image_tolerance = 1e-3;
+    int needed_sheets = 0;
     std::size_t channel = 0;
     std::optional<std::size_t> color_channel{};
     bool normalized = true;
