@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "bind.h"
+#include "subvol/certificate.h"
 #include "subvol/limit_slice.h"
 #include "subvol/limit_surface.h"
 #include "subvol/measure.h"
@@ -32,6 +33,10 @@ std::vector<Option> keywords_of(PointsErrorOptions& options) {
 }
 
 std::vector<Option> keywords_of(MeasureOptions& options) {
+    return scheme_and(options.scheme, options_of(options));
+}
+
+std::vector<Option> keywords_of(FoldOptions& options) {
     return scheme_and(options.scheme, options_of(options));
 }
 
@@ -260,7 +265,39 @@ py::dict surface(const HexMesh& mesh, const std::string& field, std::vector<doub
 
 }  // namespace
 
+py::dict check_folds_of(const HexMesh& mesh, const py::object& progress, const py::kwargs& keywords) {
+    FoldOptions options;
+    set_options(keywords_of(options), keywords);
+    FoldCheck found = result_of(progress, [&](Progress* listener) {
+        options.progress = listener;
+        return check_folds(mesh, options);
+    });
+    std::vector<std::uint8_t> verdicts;
+    for (const FoldVerdict verdict : found.verdicts) verdicts.push_back(static_cast<std::uint8_t>(verdict));
+    std::vector<Vec3> parameters, positions;
+    std::vector<std::int64_t> cells;
+    std::vector<double> determinants;
+    for (const FoldPlace& at : found.places) {
+        cells.push_back(static_cast<std::int64_t>(at.cell));
+        parameters.push_back(at.uvw);
+        positions.push_back(at.position);
+        determinants.push_back(at.determinant);
+    }
+    py::dict result;
+    const py::ssize_t all = length(verdicts.size()), folded = length(cells.size());
+    result["verdicts"] = owned(std::move(verdicts), {all});
+    result["open"] = owned(std::move(found.open), {all});
+    result["cells"] = owned(std::move(cells), {folded});
+    result["parameters"] = owned(std::move(parameters));
+    result["positions"] = owned(std::move(positions));
+    result["determinants"] = owned(std::move(determinants), {folded});
+    result["tests"] = found.report.tests;
+    return result;
+}
+
 void bind_measure(py::module_& module) {
+    module.def("check_folds", &check_folds_of, py::arg("mesh"), py::arg("progress"));
+    describe_call<FoldOptions>(module, "check_folds");
     module.def("probe", &probe, py::arg("mesh"), py::arg("places"), py::arg("levels"), py::arg("progress"));
     module.def("points_error", &error_of_points, py::arg("volume"), py::arg("mesh"), py::arg("field"), py::arg("channel"),
                py::arg("progress"));

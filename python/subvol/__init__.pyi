@@ -10,7 +10,7 @@ from ._core import Camera, Field, HexMesh, Image, RbfVolume, Refinement, Study, 
 from ._errors import Cancelled, Error, FileError, InvalidInput, MissingCapability, SubvolWarning
 from ._exchange import from_meshio, from_pyvista, to_meshio, to_pyvista
 from ._fields import LimitSamples, as_field, evaluate
-from ._measure import PointsError, ProbeSamples, Slice, SurfaceMesh
+from ._measure import FoldCheck, PointsError, ProbeSamples, Slice, SurfaceMesh
 from ._mesh import Series, model, models, only, open_series, quantity, warp, write_mesh, write_wavelets
 from ._page import Page, page
 from ._pictures import FieldComparison, ImageComparison, compare, compare_fields, compare_images, read_image, write_image
@@ -22,6 +22,21 @@ from ._pictures import Drawable
 from ._progress import Progress
 
 __version__: str
+
+def check_folds(
+    mesh: HexMesh, *, scheme: str = 'mcq', tension: float = 0.0625, crease_angle: Optional[float] = None,
+    levels: int = 5, irregular_levels: int = 2, tests: int = 1000, progress: Progress = None
+) -> FoldCheck:
+    """Decides for the limit of each cell whether it folds: with a proof that it does not, or a place where it does.
+
+    scheme:      mcq (smooth, through the control points), cc (Catmull-Clark), bsxw (Bajaj-Schaefer-Warren-Xu), linear [mcq,
+                 cc, bsxw, linear]
+    tension:     of mcq: 0 is linear; 1/16 reproduces cubics [0 to 0.125; with scheme='mcq']
+    crease_angle: keep boundary edges sharp that bend by more than this, in degrees (tetoct, boxspline: 60) [0 to 180]
+    levels:      cut a cell into eight parts up to L times where a test does not decide [0 to 8]
+    irregular_levels: refine cells near irregular edges up to L times [0 to 6]
+    tests:       the most tests of a cell [1 to 1000000]
+    """
 
 def evaluate_limit(
     mesh: HexMesh, cells: npt.ArrayLike, uvw: npt.ArrayLike, *, scheme: str = 'mcq', tension: float = 0.0625,
@@ -333,9 +348,9 @@ def write_points(
     """
 
 __all__ = [
-    "Camera", "Cancelled", "Error", "Field", "FieldComparison", "FileError", "Grid", "HexMesh", "Image", "ImageComparison",
+    "Camera", "Cancelled", "Error", "Field", "FieldComparison", "FileError", "FoldCheck", "Grid", "HexMesh", "Image", "ImageComparison",
     "InvalidInput", "LimitSamples", "MissingCapability", "Page", "PointsError", "ProbeSamples", "RbfVolume", "Refinement", "Series",
-    "Slice", "Study", "StudyCase", "StudyResults", "SubvolWarning", "SurfaceMesh", "TransferFunction", "as_field", "compare",
+    "Slice", "Study", "StudyCase", "StudyResults", "SubvolWarning", "SurfaceMesh", "TransferFunction", "as_field", "check_folds", "compare",
     "compare_fields", "compare_images", "evaluate", "evaluate_limit", "fit", "from_meshio", "from_pyvista", "gl_devices", "kernels",
     "measure", "model", "models", "only", "open_series", "page", "points_error", "probe", "quantity", "rasterize", "read_image", "read_mesh", "read_points",
     "read_vdb", "reduce", "render", "run_study", "sample", "sample_grid", "set_threads", "slice", "studies", "study", "subdivide",

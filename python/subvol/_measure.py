@@ -108,6 +108,35 @@ def measure(mesh: HexMesh, *, only: Union[str, Sequence[str]] = (), patch: Union
 
 
 @dataclass(frozen=True)
+class FoldCheck:
+    """verdicts: (cells,) 0 proved, 1 folded, 2 open, 3 irregular; open: (cells,), the part of each cell that is not decided; of the
+    folded cells, in their order: cells, parameters (n,3), positions (n,3) and determinants (n,); tests: in all"""
+
+    verdicts: npt.NDArray[np.uint8]
+    open: npt.NDArray[np.float64]
+    cells: npt.NDArray[np.int64]
+    parameters: npt.NDArray[np.float64]
+    positions: npt.NDArray[np.float64]
+    determinants: npt.NDArray[np.float64]
+    tests: int
+
+    @property
+    def verdict(self) -> str:
+        """ "sound", "folded" or "undecided"."""
+        return "folded" if self.cells.size else "undecided" if np.any(self.verdicts) else "sound"
+
+
+@described
+def check_folds(mesh: HexMesh, *, progress: Progress = None, **options: Any) -> FoldCheck:
+    """Decides for the limit of each cell whether it folds: with a proof that it does not, or a place where it does.
+
+    {keywords}
+    """
+    with listening(progress) as listener:
+        return FoldCheck(**_core.check_folds(mesh, listener, **options))
+
+
+@dataclass(frozen=True)
 class Slice:
     """field: its name; values: (height,width), nan outside; gradients: (height,width,3); cells: (height,width), -1 outside; the place of
     values[row, column] is origin + column * right + row * down"""

@@ -10,7 +10,7 @@ import unittest
 
 from command import COMMAND, CUBE, HANGS_AFTER, SANITIZED, InFolder, Run, start_and_wait_for_progress, subvol
 
-VERBS = ["model", "info", "subdivide", "fit", "points", "vdb", "render", "view", "page", "probe", "slice", "surface", "split", "compare", "demo"]
+VERBS = ["model", "info", "subdivide", "fit", "points", "vdb", "render", "view", "page", "probe", "check", "slice", "surface", "split", "compare", "demo"]
 
 
 class Help(unittest.TestCase):

@@ -138,3 +138,17 @@ def test_tetrahedra_are_those_of_the_command(tetrahedra, command, tmp_path):
     ours = subvol.probe(mesh, [[.3, .4, 1.2]], scheme="tetoct", levels=3)
     assert (theirs["value"], theirs["cell"]) == (ours.fields["density"][0], ours.cells[0])
     assert theirs["gradient"] == ours.gradients["density"][0].tolist()
+
+
+def test_folds_are_proved_or_placed():
+    sound = subvol.check_folds(subvol.model("twist", 6))
+    assert sound.verdict == "sound" and not sound.verdicts.any() and not sound.open.any()
+    assert sound.cells.size == 0 and sound.positions.shape == (0, 3)
+    ball = subvol.check_folds(subvol.model("ball", 3), irregular_levels=1)
+    assert ball.verdict == "undecided" and set(ball.verdicts) == {0, 3} and 0 < ball.open.max() <= 1
+    twist = subvol.model("twist", 4)
+    points = twist.points.copy()
+    points[:, 0] *= -1
+    mirrored = subvol.check_folds(subvol.HexMesh(points, twist.cells), levels=1)
+    assert mirrored.verdict == "folded" and (mirrored.determinants < 0).all()
+    np.testing.assert_array_equal(mirrored.cells, np.arange(len(twist.cells)))

@@ -10,7 +10,7 @@ import pytest
 import subvol
 from subvol import _core, _options
 
-CALLS = ["evaluate_limit", "fit", "measure", "points_error", "probe", "read_mesh", "reduce", "render", "sample", "slice", "subdivide", "surface", "write_points"]
+CALLS = ["check_folds", "evaluate_limit", "fit", "measure", "points_error", "probe", "read_mesh", "reduce", "render", "sample", "slice", "subdivide", "surface", "write_points"]
 
 
 def test_the_stubs_are_current():

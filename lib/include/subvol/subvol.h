@@ -11,6 +11,7 @@
 #include "subvol/camera_fit.h"
 #include "subvol/cell.h"
 #include "subvol/cell_means.h"
+#include "subvol/certificate.h"
 #include "subvol/clamp_channel.h"
 #include "subvol/clamped.h"
 #include "subvol/clip.h"

@@ -1,0 +1,245 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cell_parts.h"
+
+#include <Eigen/Sparse>
+#include <algorithm>
+#include <map>
+#include <mutex>
+#include <numeric>
+
+namespace subvol::detail {
+
+namespace {
+
+using SparseRows = Eigen::SparseMatrix<double, Eigen::RowMajor>;
+using Rows = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;
+
+// The rules of a type, without their zeros.
+const std::array<SparseRows, 8>& rules_of(const BoxType& type) {
+    static std::mutex mutex;
+    static std::map<BoxType, std::array<SparseRows, 8>> all;
+    const std::scoped_lock lock(mutex);
+    const auto found = all.find(type);
+    if (found != all.end()) return found->second;
+    const BoxRules rules = box_rules(type);
+    std::array<SparseRows, 8> sparse;
+    for (std::size_t s = 0; s < 8; ++s) sparse[s] = rules.children[s].sparseView();
+    return all.emplace(type, std::move(sparse)).first->second;
+}
+
+Eigen::Map<const Rows> rows_of(const std::vector<Vec3>& vectors) {
+    return {&vectors.front().x, static_cast<Eigen::Index>(vectors.size()), 3};
+}
+
+std::vector<Vec3> vectors_of(const Rows& rows) {
+    std::vector<Vec3> vectors(static_cast<std::size_t>(rows.rows()));
+    Eigen::Map<Rows>(&vectors.front().x, rows.rows(), 3) = rows;
+    return vectors;
+}
+
+bool is_in_order(const BoxType& type) {
+    return type[0] >= type[1] && type[1] >= type[2] &&
+           std::ranges::all_of(type, [](const AxisType& a) { return a.low <= a.high; });
+}
+
+// The entries of a polynomial whose axes are given in another order: axis k of the result is axes[k] of `values`.
+template <class Value>
+std::vector<Value> reordered(const std::vector<Value>& values, const std::array<std::size_t, 3>& size,
+                             const std::array<std::size_t, 3>& axes) {
+    std::vector<Value> result;
+    result.reserve(values.size());
+    std::array<std::size_t, 3> stride{};
+    const std::array<std::size_t, 3> strides{size[1] * size[2], size[2], 1};
+    for (std::size_t k = 0; k < 3; ++k) stride[k] = strides[axes[k]];
+    for (std::size_t i = 0; i < size[axes[0]]; ++i) {
+        for (std::size_t j = 0; j < size[axes[1]]; ++j) {
+            for (std::size_t k = 0; k < size[axes[2]]; ++k) {
+                result.push_back(values[i * stride[0] + j * stride[1] + k * stride[2]]);
+            }
+        }
+    }
+    return result;
+}
+
+}  // namespace
+
+Vec3 PartFrame::corner(std::size_t corner) const {
+    Vec3 place = low;
+    for (std::size_t a = 0; a < 3; ++a) {
+        const bool upper = ((corner >> (2 - a) & 1) != 0) != (turned[a] != 0);
+        if (upper) place[axes[a]] += size;
+    }
+    return place;
+}
+
+PartFrame PartFrame::child(std::size_t child) const {
+    PartFrame frame = *this;
+    frame.size = size / 2;
+    frame.low = frame.corner(child);
+    return frame;
+}
+
+bool has_bounds(BoxType type) {
+    for (AxisType& axis : type) {
+        if (axis.low > axis.high) std::swap(axis.low, axis.high);
+    }
+    std::ranges::sort(type, std::greater());
+    return derivative_bound(type).has_value();
+}
+
+GridPart::GridPart(const BoxType& type, std::vector<Vec3> points, const PartFrame& frame)
+    : type_(type), points_(std::move(points)), frame_(frame) {
+    if (!is_in_order(type_)) put_in_order();
+}
+
+// Turns axes round and exchanges them, so that the type is the one that the bounds are of. Where that makes the cell
+// left-handed its mirror image is taken.
+void GridPart::put_in_order() {
+    bool mirrored = false;
+    std::array<std::size_t, 3> size{type_[0].points(), type_[1].points(), type_[2].points()};
+    for (std::size_t a = 0; a < 3; ++a) {
+        if (type_[a].low <= type_[a].high) continue;
+        std::swap(type_[a].low, type_[a].high);
+        frame_.turned[a] ^= 1;
+        mirrored = !mirrored;
+        std::vector<Vec3> turned(points_.size());
+        const std::size_t stride = a == 0 ? size[1] * size[2] : a == 1 ? size[2] : 1;
+        for (std::size_t p = 0; p < points_.size(); ++p) {
+            const std::size_t at = p / stride % size[a];
+            turned[p + (size[a] - 1 - at) * stride - at * stride] = points_[p];
+        }
+        points_ = std::move(turned);
+    }
+    std::array<std::size_t, 3> axes{0, 1, 2};
+    std::ranges::stable_sort(axes, std::greater(), [&](std::size_t a) { return type_[a]; });
+    if (axes != std::array<std::size_t, 3>{0, 1, 2}) {
+        points_ = reordered(points_, size, axes);
+        const BoxType type = type_;
+        const PartFrame frame = frame_;
+        int inversions = 0;
+        for (std::size_t a = 0; a < 3; ++a) {
+            type_[a] = type[axes[a]];
+            frame_.axes[a] = frame.axes[axes[a]];
+            frame_.turned[a] = frame.turned[axes[a]];
+            for (std::size_t b = 0; b < a; ++b) inversions += axes[b] > axes[a] ? 1 : 0;
+        }
+        if (inversions % 2 != 0) mirrored = !mirrored;
+    }
+    if (mirrored) {
+        for (Vec3& x : points_) x.x = -x.x;
+    }
+}
+
+PartDerivatives GridPart::derivatives() const {
+    PartDerivatives part;
+    const std::array<std::size_t, 3> size{type_[0].points(), type_[1].points(), type_[2].points()};
+    for (std::size_t c = 0; c < 3; ++c) {
+        const std::array<std::size_t, 3> axes = c == 0   ? std::array<std::size_t, 3>{0, 1, 2}
+                                                : c == 1 ? std::array<std::size_t, 3>{1, 0, 2}
+                                                         : std::array<std::size_t, 3>{2, 0, 1};
+        const BoxType type{type_[axes[0]], type_[axes[1]], type_[axes[2]]};
+        const DerivativeForm& form = derivative_form(type);
+        const std::vector<Vec3> points = reordered(points_, size, axes);
+        const std::size_t across = size[axes[1]] * size[axes[2]];
+        std::vector<Vec3> differences(points.size() - across);
+        for (std::size_t d = 0; d < differences.size(); ++d) {
+            differences[d] = points[d + across] - points[d];
+            part.size = glm::max(part.size, glm::abs(differences[d]));
+        }
+        const auto d = rows_of(differences);
+        // Axis k of the form is axes[k] of the part: 0 1 2, 1 0 2 or 2 0 1; back it is 0 1 2, 1 0 2 or 1 2 0.
+        const std::array<std::size_t, 3> back = c == 2 ? std::array<std::size_t, 3>{1, 2, 0} : axes;
+        part.columns[c] = {{2, 2, 2}, reordered(vectors_of(form.bernstein * d), {3, 3, 3}, back)};
+        const auto corners = reordered(vectors_of(form.corners * d), {2, 2, 2}, back);
+        for (std::size_t k = 0; k < 8; ++k) part.corners[k][static_cast<int>(c)] = corners[k];
+        part.rest[c] = {*derivative_bound(type), vectors_of(d - form.kept * (form.weights * d))};
+    }
+    return part;
+}
+
+std::vector<GridPart> GridPart::children() const {
+    const auto& rules = rules_of(type_);
+    std::vector<GridPart> parts;
+    for (std::size_t s = 0; s < 8; ++s) {
+        parts.emplace_back(child_type(type_, s), vectors_of(rules[s] * rows_of(points_)), frame_.child(s));
+    }
+    return parts;
+}
+
+PolynomialPart PolynomialPart::trilinear(std::span<const Vec3, 8> corners, const PartFrame& frame) {
+    BernsteinColumns columns;
+    const auto at = [&](std::size_t u, std::size_t v, std::size_t w) {  // 0, 1, 3, 2 go round the bottom
+        return corners[4 * w + (v == 0 ? u : 3 - u)];
+    };
+    for (std::size_t c = 0; c < 3; ++c) {
+        columns[c].degree = {1, 1, 1};
+        columns[c].degree[c] = 0;
+        for (std::size_t k = 0; k < 8; ++k) {
+            const std::array<std::size_t, 3> low{k >> 2 & 1, k >> 1 & 1, k & 1};
+            if (low[c] != 0) continue;
+            std::array<std::size_t, 3> high = low;
+            high[c] = 1;
+            columns[c].values.push_back(at(high[0], high[1], high[2]) - at(low[0], low[1], low[2]));
+        }
+    }
+    return {std::move(columns), frame};
+}
+
+PolynomialPart PolynomialPart::tricubic(std::span<const Vec3, 64> points, const PartFrame& frame) {
+    // Bézier points of a uniform cubic spline along each axis.
+    constexpr std::array<std::array<double, 4>, 4> kBezier{
+        {{1.0 / 6, 4.0 / 6, 1.0 / 6, 0}, {0, 4.0 / 6, 2.0 / 6, 0}, {0, 2.0 / 6, 4.0 / 6, 0}, {0, 1.0 / 6, 4.0 / 6, 1.0 / 6}}};
+    std::vector<Vec3> bezier;
+    for (std::size_t i = 0; i < 4; ++i) {
+        for (std::size_t j = 0; j < 4; ++j) {
+            for (std::size_t k = 0; k < 4; ++k) bezier.push_back(points[i + 4 * j + 16 * k]);
+        }
+    }
+    for (const std::size_t stride : {std::size_t{16}, std::size_t{4}, std::size_t{1}}) {
+        std::vector<Vec3> along(64, Vec3(0.0));
+        for (std::size_t p = 0; p < 64; ++p) {
+            const std::size_t at = p / stride % 4;
+            for (std::size_t k = 0; k < 4; ++k) along[p] += bezier[p - at * stride + k * stride] * kBezier[at][k];
+        }
+        bezier = std::move(along);
+    }
+    BernsteinColumns columns;
+    const std::array<std::size_t, 3> strides{16, 4, 1};
+    for (std::size_t c = 0; c < 3; ++c) {
+        columns[c].degree = {3, 3, 3};
+        columns[c].degree[c] = 2;
+        for (std::size_t p = 0; p < 64; ++p) {
+            if (p / strides[c] % 4 != 3) columns[c].values.push_back((bezier[p + strides[c]] - bezier[p]) * 3.0);
+        }
+    }
+    return {std::move(columns), frame};
+}
+
+PartDerivatives PolynomialPart::derivatives() const {
+    PartDerivatives part;
+    part.columns = columns_;
+    for (std::size_t c = 0; c < 3; ++c) {
+        for (const Vec3& value : columns_[c].values) {
+            part.size = glm::max(part.size, glm::abs(value));
+        }
+        for (std::size_t k = 0; k < 8; ++k) {
+            part.corners[k][static_cast<int>(c)] = columns_[c].corner(k >> 2 & 1, k >> 1 & 1, k & 1);
+        }
+    }
+    return part;
+}
+
+std::vector<PolynomialPart> PolynomialPart::children() const {
+    std::vector<PolynomialPart> parts;
+    for (std::size_t s = 0; s < 8; ++s) {
+        BernsteinColumns columns = columns_;
+        for (auto& column : columns) {
+            for (std::size_t axis = 0; axis < 3; ++axis) column = half(column, axis, (s >> (2 - axis) & 1) != 0);
+            for (Vec3& value : column.values) value *= 0.5;  // by the child's parameters
+        }
+        parts.emplace_back(std::move(columns), frame_.child(s));
+    }
+    return parts;
+}
+
+}  // namespace subvol::detail

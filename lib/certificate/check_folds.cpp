@@ -1,0 +1,365 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <optional>
+
+#include "cell_parts.h"
+#include "regular_grid.h"
+#include "subvol/cell.h"
+#include "subvol/certificate.h"
+#include "subvol/detail/parallel_each.h"
+#include "subvol/error.h"
+#include "subvol/limit.h"
+#include "subvol/refine.h"
+#include "subvol/topology.h"
+
+// A cell whose surroundings are a grid is tested, cut into eight parts where that does not decide, and so on. Around an
+// irregular edge the rules of the grid do not hold, but most children of the cells there are in a grid again:
+//
+//      ┌───┬───┬───────┐      refined with the cells around them, cells at irregular edges leave
+//      │ × │ × │       │      those of their children open that touch the edge, or are one further:
+//      ├───╋───┤       │      a tube whose volume is a quarter after each level.
+//      │ × │ × │       │
+//      └───┴───┴───────┘
+
+namespace subvol {
+
+using namespace detail;
+
+namespace {
+
+/// What became of a part of a cell. open: its volume that is left, in cells
+struct PartResult {
+    std::optional<FoldPlace> fold;
+    double open = 0;
+    std::size_t tests = 0;
+    int deepest = 0;
+};
+
+/// limits of the search in a part. error: of the points' coordinates
+struct Limits {
+    int levels;
+    std::size_t tests;
+    double error;
+};
+
+double volume_of(const PartFrame& frame) {
+    return frame.size * frame.size * frame.size;
+}
+
+// Level by level, so that large folds are found before small parts are proved.
+template <class Part>
+PartResult decide_part(Part part, const Limits& limits) {
+    PartResult result;
+    std::vector<Part> open;
+    open.push_back(std::move(part));
+    for (int level = 0; !open.empty(); ++level) {
+        std::vector<Part> next;
+        for (const Part& at : open) {
+            if (result.tests == limits.tests) {
+                result.open += volume_of(at.frame());
+                continue;
+            }
+            ++result.tests;
+            result.deepest = level;
+            const PartDecision decision = decide(at.derivatives(), limits.error);
+            if (decision.verdict == PartVerdict::Folded) {
+                result.fold =
+                    FoldPlace{0, at.frame().corner(decision.corner), {}, decision.determinant / volume_of(at.frame())};
+                return result;
+            }
+            if (decision.verdict == PartVerdict::Proved) continue;
+            if (level == limits.levels) {
+                result.open += volume_of(at.frame());
+            } else {
+                std::ranges::move(at.children(), std::back_inserter(next));
+            }
+        }
+        open = std::move(next);
+    }
+    return result;
+}
+
+/// The cells of a level whose surroundings are grids.
+class Grids {
+public:
+    Grids(const HexMesh& mesh, Scheme scheme) : mesh_(mesh), scheme_(scheme) {
+        if (scheme_ == Scheme::Linear) return;
+        topology_ = build_topology(mesh);
+        is_grid_.resize(mesh.points.size());
+        parallel_each(is_grid_.size(), [&](std::size_t p) { is_grid_[p] = is_grid_point(topology_, static_cast<Index>(p)); });
+    }
+
+    /// Decides a cell of the level; nothing if it has no grid.
+    [[nodiscard]] std::optional<PartResult> decide(Index cell, const PartFrame& frame, const Limits& limits) const {
+        if (scheme_ == Scheme::Linear) {
+            std::array<Vec3, 8> corners;
+            for (std::size_t k = 0; k < 8; ++k) corners[k] = place(cell, mesh_.cells[cell][k]);
+            return decide_part(PolynomialPart::trilinear(corners, frame), limits);
+        }
+        return scheme_ == Scheme::Mcq ? decide_window(cell, frame, limits) : decide_spline(cell, frame, limits);
+    }
+
+private:
+    // About the cell's first corner: differences of near coordinates are exact, or nearly so.
+    [[nodiscard]] Vec3 place(Index cell, Index point) const { return mesh_.points[point] - mesh_.points[mesh_.cells[cell][0]]; }
+
+    [[nodiscard]] std::optional<PartResult> decide_window(Index cell, const PartFrame& frame, const Limits& limits) const {
+        WidePoints grid;
+        if (!wide_grid(topology_, is_grid_, cell, grid)) return std::nullopt;
+        // Layers that are there, along the lines through the cell's first corner.
+        BoxType type;
+        std::array<std::size_t, 3> low{};
+        constexpr std::array<std::size_t, 3> kStrides{1, 6, 36};
+        constexpr std::size_t kCorner = 2 * (1 + 6 + 36);
+        for (std::size_t a = 0; a < 3; ++a) {
+            const auto is_there = [&](std::size_t layer) {
+                return grid[kCorner + layer * kStrides[a] - 2 * kStrides[a]] != kNone;
+            };
+            type[a].low = static_cast<std::uint8_t>(is_there(0) ? 2 : is_there(1) ? 1 : 0);
+            type[a].high = static_cast<std::uint8_t>(is_there(5) ? 2 : is_there(4) ? 1 : 0);
+            low[a] = std::size_t{2} - type[a].low;
+        }
+        if (!has_bounds(type)) return std::nullopt;
+        std::vector<Vec3> points;
+        points.reserve(window_points(type));
+        for (std::size_t i = 0; i < type[0].points(); ++i) {
+            for (std::size_t j = 0; j < type[1].points(); ++j) {
+                for (std::size_t k = 0; k < type[2].points(); ++k) {
+                    points.push_back(place(cell, grid[(low[0] + i) + 6 * (low[1] + j) + 36 * (low[2] + k)]));
+                }
+            }
+        }
+        return decide_part(GridPart(type, std::move(points), frame), limits);
+    }
+
+    [[nodiscard]] std::optional<PartResult> decide_spline(Index cell, const PartFrame& frame, const Limits& limits) const {
+        GridPoints grid;
+        if (!regular_grid(topology_, cell, grid)) return std::nullopt;
+        std::array<Vec3, 64> points{};
+        for (std::size_t n = 0; n < 64; ++n) {
+            if (grid[n] != kNone) points[n] = place(cell, grid[n]);
+        }
+        // Beyond the boundary the spline goes on straight: then its edge is the spline of the boundary alone.
+        for (const std::size_t stride : {std::size_t{1}, std::size_t{4}, std::size_t{16}}) {
+            constexpr std::size_t kCorner = 1 + 4 + 16;
+            const bool low = grid[kCorner - stride] == kNone, high = grid[kCorner + 2 * stride] == kNone;
+            for (std::size_t n = 0; n < 64; ++n) {
+                const std::size_t at = n / stride % 4;
+                if (low && at == 0) points[n] = points[n + stride] * 2.0 - points[n + 2 * stride];
+                if (high && at == 3) points[n] = points[n - stride] * 2.0 - points[n - 2 * stride];
+            }
+        }
+        return decide_part(PolynomialPart::tricubic(points, frame), limits);
+    }
+
+    const HexMesh& mesh_;
+    Scheme scheme_;
+    Topology topology_;
+    std::vector<std::uint8_t> is_grid_;
+};
+
+/// A descendant of a control cell that is not decided: its number in its level.
+struct OpenCell {
+    Index cell, control;
+    PartFrame frame;
+};
+
+double largest_coordinate(const HexMesh& mesh) {
+    double largest = 0;
+    for (const Vec3& x : mesh.points) largest = std::max({largest, std::abs(x.x), std::abs(x.y), std::abs(x.z)});
+    return largest;
+}
+
+// The cells of `open`, in their order, and then those of two layers around them.
+std::vector<Index> with_neighbors(const HexMesh& mesh, const std::vector<OpenCell>& open) {
+    std::vector<Index> cells;
+    std::vector<std::uint8_t> taken(mesh.cells.size(), 0), met(mesh.points.size(), 0);
+    const auto take = [&](Index c) {
+        taken[c] = 1;
+        cells.push_back(c);
+    };
+    for (const OpenCell& at : open) take(at.cell);
+    std::size_t begin = 0;
+    for (int layer = 0; layer < 2; ++layer) {
+        for (; begin < cells.size(); ++begin) {
+            for (const Index p : mesh.cells[cells[begin]]) met[p] = 1;
+        }
+        for (Index c = 0; c < mesh.cells.size(); ++c) {
+            if (taken[c] == 0 && std::ranges::any_of(mesh.cells[c], [&](Index p) { return met[p] != 0; })) take(c);
+        }
+    }
+    return cells;
+}
+
+class FoldChecker {
+public:
+    FoldChecker(const HexMesh& mesh, const FoldOptions& options) : mesh_(mesh), options_(options) {
+        mesh_.attributes.clear();
+        scheme_ = options.scheme;
+        if (scheme_.crease_angle_deg) tag_creases(mesh_, *scheme_.crease_angle_deg);
+        scheme_.crease_angle_deg.reset();
+        if (scheme_.kind == Scheme::Mcq && scheme_.tension == 0) scheme_.kind = Scheme::Linear;
+        cells_.resize(mesh_.cells.size());
+    }
+
+    FoldCheck run() {
+        std::vector<OpenCell> irregular;
+        {
+            const Grids grids(mesh_, scheme_.kind);
+            const Limits limits{options_.levels, static_cast<std::size_t>(options_.tests), 0};
+            constexpr std::size_t kRun = std::size_t{1} << 13;
+            std::vector<std::optional<PartResult>> results;
+            for (std::size_t begin = 0; begin < cells_.size(); begin += kRun) {
+                report_progress(options_.progress, "check", begin, cells_.size());
+                results.assign(std::min(kRun, cells_.size() - begin), {});
+                tbb::parallel_for(std::size_t{0}, results.size(),
+                                  [&](std::size_t k) { results[k] = grids.decide(static_cast<Index>(begin + k), {}, limits); });
+                for (std::size_t k = 0; k < results.size(); ++k) {
+                    const auto cell = static_cast<Index>(begin + k);
+                    if (results[k]) {
+                        add(cell, *results[k]);
+                    } else {
+                        irregular.push_back({cell, cell, {}});
+                    }
+                }
+            }
+        }
+        constexpr std::size_t kTogether = std::size_t{1} << 12;
+        for (std::size_t begin = 0; begin < irregular.size(); begin += kTogether) {
+            report_progress(options_.progress, "refine", begin, irregular.size());
+            const auto first = irregular.begin() + static_cast<std::ptrdiff_t>(begin);
+            descend(mesh_, {first, first + static_cast<std::ptrdiff_t>(std::min(kTogether, irregular.size() - begin))}, 0);
+        }
+        return found();
+    }
+
+private:
+    /// irregular: the volume that touches irregular edges and is not decided
+    struct CellState {
+        std::optional<FoldPlace> fold;
+        double open = 0, irregular = 0;
+    };
+
+    void add(Index control, const PartResult& result, int level = 0) {
+        CellState& cell = cells_[control];
+        cell.open += result.open;
+        report_.tests += result.tests;
+        report_.deepest = std::max(report_.deepest, level + result.deepest);
+        if (result.fold && !cell.fold) {
+            cell.fold = result.fold;
+            cell.fold->cell = control;
+        }
+    }
+
+    // open: cells of a level, all of which are descendants of cells at irregular edges
+    void descend(const HexMesh& mesh, const std::vector<OpenCell>& open, int level) {
+        if (level == options_.irregular_levels || open.empty()) {
+            for (const OpenCell& at : open) cells_[at.control].irregular += volume_of(at.frame);
+            return;
+        }
+        const HexMesh fine = refine_cells(mesh, with_neighbors(mesh, open), {.scheme = scheme_, .levels = 1});
+        // Each level sums up to some tens of products of coordinates.
+        constexpr double kOfLevel = 256 * std::numeric_limits<double>::epsilon();
+        const Limits limits{std::max(0, options_.levels - level - 1), static_cast<std::size_t>(std::max(1, options_.tests / 8)),
+                            kOfLevel * (level + 1) * largest_coordinate(fine)};
+        const Grids grids(fine, scheme_.kind);
+        std::vector<std::optional<PartResult>> results(8 * open.size());
+        const auto child_of = [&](std::size_t n) {
+            const auto& [u, v, w] = kCornerParameters[n % 8];
+            const OpenCell& parent = open[n / 8];
+            return OpenCell{static_cast<Index>(n), parent.control,
+                            parent.frame.child(static_cast<std::size_t>(4 * u + 2 * v + w))};
+        };
+        tbb::parallel_for(std::size_t{0}, results.size(), [&](std::size_t n) {
+            const OpenCell child = child_of(n);
+            results[n] = grids.decide(child.cell, child.frame, limits);
+        });
+        std::vector<OpenCell> next;
+        for (std::size_t n = 0; n < results.size(); ++n) {
+            const OpenCell child = child_of(n);
+            if (results[n]) {
+                add(child.control, *results[n], level + 1);
+            } else {
+                next.push_back(child);
+            }
+        }
+        std::erase_if(next, [&](const OpenCell& at) { return cells_[at.control].fold.has_value(); });
+        descend(fine, next, level + 1);
+    }
+
+    FoldCheck found() {
+        FoldCheck check;
+        check.verdicts.reserve(cells_.size());
+        check.open.reserve(cells_.size());
+        for (const CellState& cell : cells_) {
+            const FoldVerdict verdict = cell.fold            ? FoldVerdict::Folded
+                                        : cell.irregular > 0 ? FoldVerdict::Irregular
+                                        : cell.open > 0      ? FoldVerdict::Open
+                                                             : FoldVerdict::Proved;
+            check.verdicts.push_back(verdict);
+            check.open.push_back(cell.fold ? 0 : cell.open + cell.irregular);
+            switch (verdict) {
+                case FoldVerdict::Folded:
+                    ++report_.folded;
+                    check.places.push_back(*cell.fold);
+                    break;
+                case FoldVerdict::Irregular:
+                    ++report_.irregular;
+                    break;
+                case FoldVerdict::Open:
+                    ++report_.open;
+                    break;
+                case FoldVerdict::Proved:
+                    ++report_.proved;
+                    break;
+            }
+            if (cell.fold) continue;
+            report_.open_volume += cell.open;
+            report_.irregular_volume += cell.irregular;
+        }
+        place(check.places);
+        check.report = std::move(report_);
+        return check;
+    }
+
+    void place(std::vector<FoldPlace>& places) const {
+        std::vector<LimitQuery> queries;
+        for (const FoldPlace& at : places) queries.push_back({at.cell, at.uvw});
+        if (queries.empty()) return;
+        const LimitSamples samples = evaluate_limit(mesh_, queries, {.scheme = scheme_, .progress = options_.progress});
+        for (std::size_t k = 0; k < places.size(); ++k) places[k].position = samples.positions[k];
+    }
+
+    HexMesh mesh_;
+    const FoldOptions& options_;
+    SchemeOptions scheme_;
+    std::vector<CellState> cells_;
+    FoldReport report_;
+};
+
+}  // namespace
+
+std::vector<Option> options_of(FoldOptions& options) {
+    return {Option("levels", options.levels)
+                .between(0, 8)
+                .help("L", "cut a cell into eight parts up to L times where a test does not decide"),
+            Option("irregular-levels", options.irregular_levels)
+                .between(0, 6)
+                .help("L", "refine cells near irregular edges up to L times"),
+            Option("tests", options.tests).between(1, 1000000).help("N", "the most tests of a cell")};
+}
+
+FoldCheck check_folds(const HexMesh& mesh, const FoldOptions& options) {
+    check_options(options);
+    check_options(options.scheme);
+    validate(mesh);
+    if (options.scheme.kind == Scheme::Mcq && options.scheme.tension != 1.0 / 16 && options.scheme.tension != 0) {
+        throw Error(ErrorCode::InvalidInput, "folds of mcq cannot be excluded with this tension", "tension", "1/16, or 0");
+    }
+    return FoldChecker(mesh, options).run();
+}
+
+}  // namespace subvol

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "fold_test.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace subvol::detail {
+
+namespace {
+
+// Rounding: each component of a derivative is a sum of at most 180 products with weights of a sum of magnitudes below 4.5, so
+// that it is within 1e-12 of the largest difference in this component; the rest is to spare. H need not be an exact inverse:
+// any matrix will do whose determinant is certainly positive, as it is where the condition is not extreme.
+constexpr double kRounding = 3e-12;
+constexpr double kMostCondition = 1e8;
+constexpr double kOfDeterminants = 1e-9;
+// An error of points changes differences by twice, and derivatives by at most eight times as much.
+constexpr double kOfPoints = 8;
+
+double largest_row(const Mat3& m) {
+    const Vec3 sums = glm::abs(m[0]) + glm::abs(m[1]) + glm::abs(m[2]);
+    return std::max({sums.x, sums.y, sums.z});
+}
+
+double permanent(const Mat3& m) {
+    const auto minor = [&](int r, int s) { return m[1][r] * m[2][s] + m[2][r] * m[1][s]; };
+    return m[0][0] * minor(1, 2) + m[0][1] * minor(0, 2) + m[0][2] * minor(0, 1);
+}
+
+PartDecision witness(const PartDerivatives& part, double error) {
+    PartDecision decision;
+    for (std::size_t k = 0; k < 8; ++k) {
+        const Mat3& j = part.corners[k];
+        const double det = glm::determinant(j), a = glm::length(j[0]), b = glm::length(j[1]), c = glm::length(j[2]);
+        const double each = kOfPoints * error + kRounding * std::max({part.size.x, part.size.y, part.size.z});  // of a column
+        const double margin = each * (a * b + b * c + c * a) + each * each * (a + b + c) + each * each * each;
+        if (!(det < -2 * margin) || (decision.verdict == PartVerdict::Folded && det >= decision.determinant)) continue;
+        decision = {PartVerdict::Folded, k, det};
+    }
+    return decision;
+}
+
+// Σ_c |Y_ac − δ_ac| + R_ac over all coefficients, the largest of all rows a. Columns of one degree are taken coefficient by
+// coefficient.
+double norm_of(const BernsteinColumns& y, const Mat3& rest) {
+    const bool alike = y[0].degree == y[1].degree && y[1].degree == y[2].degree;
+    Vec3 most(0.0), separate(0.0);
+    const auto away = [&](int c, std::size_t k) {
+        Vec3 value = y[static_cast<std::size_t>(c)].values[k];
+        value[c] -= 1;
+        return glm::abs(value);
+    };
+    for (int c = 0; c < 3; ++c) {
+        Vec3 largest(0.0);
+        for (std::size_t k = 0; k < y[static_cast<std::size_t>(c)].values.size(); ++k) largest = glm::max(largest, away(c, k));
+        separate += largest;
+    }
+    for (std::size_t k = 0; alike && k < y[0].values.size(); ++k) most = glm::max(most, away(0, k) + away(1, k) + away(2, k));
+    const Vec3 sums = (alike ? most : separate) + rest[0] + rest[1] + rest[2];
+    return std::max({sums.x, sums.y, sums.z});
+}
+
+bool has_positive_determinant(const BernsteinColumns& y, const Mat3& rest) {
+    Mat3 largest(0.0);
+    for (int c = 0; c < 3; ++c) {
+        for (const Vec3& value : y[static_cast<std::size_t>(c)].values) largest[c] = glm::max(largest[c], glm::abs(value));
+    }
+    const double all = permanent(largest + rest);
+    const double change = all - permanent(largest) + kOfDeterminants * all;
+    const Bernstein<double> det = determinant(y);
+    return *std::ranges::min_element(det.values) > change;
+}
+
+}  // namespace
+
+PartDecision decide(const PartDerivatives& part, double error) {
+    const PartDecision folded = witness(part, error);
+    if (folded.verdict == PartVerdict::Folded) return folded;
+    Mat3 center;
+    for (int c = 0; c < 3; ++c) center[c] = value_at(part.columns[static_cast<std::size_t>(c)], Vec3(0.5));
+    if (!(glm::determinant(center) > 0)) return {};
+    const Mat3 inverse = glm::inverse(center);
+    const double condition = largest_row(center) * largest_row(inverse);
+    if (!(condition < kMostCondition)) return {};
+    const Vec3 of_points(2 * kOfPoints * error + std::numeric_limits<double>::min());
+    Vec3 slack(kRounding);
+    for (int k = 0; k < 3; ++k) slack += glm::abs(inverse[k]) * (kRounding * part.size[k] + of_points[k]);
+    BernsteinColumns y = part.columns;
+    Mat3 rest(0.0);
+    for (int c = 0; c < 3; ++c) {
+        const auto column = static_cast<std::size_t>(c);
+        for (Vec3& value : y[column].values) value = inverse * value;
+        Vec3 most(0.0);
+        for (const Vec3& d : part.rest[column].differences) most = glm::max(most, glm::abs(inverse * d));
+        rest[c] = most * part.rest[column].kappa + slack;
+    }
+    const bool proved = norm_of(y, rest) < 1 || has_positive_determinant(y, rest);
+    return {proved ? PartVerdict::Proved : PartVerdict::Undecided};
+}
+
+}  // namespace subvol::detail

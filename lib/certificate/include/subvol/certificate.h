@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "subvol/hex_mesh.h"
+#include "subvol/option.h"
+#include "subvol/progress.h"
+#include "subvol/scheme.h"
+
+namespace subvol {
+
+/// What is known of the limit of a control cell.
+///
+/// Proved:    det ∂x/∂u > 0 everywhere in the closed cell
+/// Folded:    det ∂x/∂u < 0 at a place that is known
+/// Open:      neither was found within the tests that are allowed
+/// Irregular: the same, near an irregular edge or point, where the derivatives of the limit have no bounds
+enum class FoldVerdict : std::uint8_t { Proved, Folded, Open, Irregular };
+
+template <>
+struct NameTable<FoldVerdict> {
+    static constexpr Name<FoldVerdict> rows[] = {{FoldVerdict::Proved, "proved", "the limit does not fold"},
+                                                 {FoldVerdict::Folded, "folded", "the limit folds at a known place"},
+                                                 {FoldVerdict::Open, "open", "undecided within the tests allowed"},
+                                                 {FoldVerdict::Irregular, "irregular", "undecided near an irregular edge"}};
+};
+
+/// scheme: as for all calls; MCQ is certified with its tension of 1/16 alone
+/// levels: how often a cell is cut into eight where one test does not decide
+/// irregular_levels: how often a cell near an irregular edge is refined for the same
+/// tests:  the most tests of a cell
+struct FoldOptions {
+    SchemeOptions scheme{};
+    int levels = 5;
+    int irregular_levels = 2;
+    int tests = 1000;
+    Progress* progress = nullptr;
+};
+
+/// The options without those of the scheme.
+[[nodiscard]] std::vector<Option> options_of(FoldOptions& options);
+
+/// A place where the limit is folded: uvw in the cell, its position, and det ∂x/∂u there.
+struct FoldPlace {
+    Index cell = 0;
+    Vec3 uvw{0.0};
+    Vec3 position{0.0};
+    double determinant = 0;
+};
+
+/// proved, folded, open, irregular: numbers of cells
+/// open_volume, irregular_volume: of the cells that are not decided, the part that stays open, in cells
+/// tests:   in all
+/// deepest: the level of the smallest part that was tested
+struct FoldReport {
+    std::size_t proved = 0, folded = 0, open = 0, irregular = 0;
+    double open_volume = 0, irregular_volume = 0;
+    std::size_t tests = 0;
+    int deepest = 0;
+    std::vector<std::string> warnings;
+};
+
+/// verdicts: of the cells; open: the part of each that is not decided, 0 to 1; places: of the folded cells, in their order
+struct FoldCheck {
+    std::vector<FoldVerdict> verdicts;
+    std::vector<double> open;
+    std::vector<FoldPlace> places;
+    FoldReport report;
+};
+
+/// Decides for the limit of each cell whether it folds: with a proof that its Jacobian is positive, or a place where it is not.
+///
+/// Where the cells around are a grid, the derivatives are a polynomial and a rest with a proved bound (docs/science.md); those
+/// of Catmull-Clark, BSXW and the linear scheme are polynomials. Cells at irregular edges are refined: what lies farther from
+/// the edge is decided, a tube around it is not. Positive Jacobians exclude folds inside the volume; that no two parts of it
+/// overlap also needs a boundary that does not meet itself.
+///
+/// throws: Error(InvalidInput) as `refine`, or if an option is out of range
+/// cost:   parallel, about 40 µs a test; the same result for any number of threads
+[[nodiscard]] FoldCheck check_folds(const HexMesh& mesh, const FoldOptions& options = {});
+
+}  // namespace subvol

@@ -1,0 +1,66 @@
+# SPDX-License-Identifier: Apache-2.0
+"""check: its verdicts, JSON and exit codes."""
+
+import unittest
+
+from command import InFolder, subvol
+
+CORNERS = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1)]
+
+
+def box(side, move):
+    """A box of side³ unit cells as MEDIT; move(x, y, z): where a point is."""
+    number = lambda i, j, k: 1 + i + (side + 1) * (j + (side + 1) * k)
+    steps = range(side + 1)
+    points = [move(i, j, k) for k in steps for j in steps for i in steps]
+    cells = [[number(i + u, j + v, k + w) for u, v, w in CORNERS] for k in range(side) for j in range(side) for i in range(side)]
+    line = lambda row: " ".join(map(str, row)) + " 0\n"
+    return (f"MeshVersionFormatted 2\nDimension 3\nVertices\n{len(points)}\n" + "".join(map(line, points)) +
+            f"Hexahedra\n{len(cells)}\n" + "".join(map(line, cells)) + "End\n")
+
+
+class Check(InFolder):
+    def check(self, *arguments):
+        done = subvol("check", *arguments, "--json", folder=self.folder)
+        return done.code, done.json()
+
+    def test_sound_meshes(self):
+        code, found = self.check("model:twist:6")
+        self.assertEqual((code, found["verdict"]), (0, "sound"))
+        self.assertEqual(found["cells"], {"proved": 216, "folded": 0, "undecided": 0, "irregular": 0})
+        self.assertEqual((found["places"], found["open_volume"]), ([], 0))
+
+    def test_a_fold_between_sound_cells_has_a_place(self):
+        # Two planes beside a third: the cells are sound, and the limit overshoots.
+        (self.folder / "a.mesh").write_text(box(7, lambda x, y, z: (x + {3: .85, 5: -.85}.get(x, 0), y, z)))
+        code, found = self.check("a.mesh")
+        self.assertEqual((code, found["verdict"]), (1, "folded"))
+        self.assertEqual(len(found["places"]), found["cells"]["folded"])
+        place = found["places"][0]
+        self.assertLess(place["determinant"], 0)
+        at = self.run_ok("probe", "a.mesh", "--at=" + ",".join(map(str, place["at"])), "--density", "x", "--json").json()["values"][0]
+        self.assertTrue(at["inside"])
+        for scheme in ("linear", "cc"):
+            code, found = self.check("a.mesh", "--scheme", scheme)
+            self.assertEqual((code, found["verdict"]), (0, "sound"))
+
+    def test_irregular_edges_stay_open(self):
+        code, found = self.check("model:ball:3")
+        self.assertEqual((code, found["verdict"]), (0, "undecided"))
+        self.assertEqual(found["cells"]["undecided"], found["cells"]["irregular"])
+        self.assertGreater(found["open_volume"], 0)
+        done = self.run_ok("check", "model:ball:3")
+        said = done.out + done.err
+        for word in ("proved", "irregular", "verdict"):
+            self.assertIn(word, said)
+
+    def test_what_has_no_proof_is_refused(self):
+        for arguments, naming in ((["--tension", ".05"], "tension"), (["--levels", "9"], "levels"), (["--tests", "0"], "tests"),
+                                  (["--scheme", "tetoct"], "scheme")):
+            done = subvol("check", "model:twist:2", *arguments, folder=self.folder)
+            self.assertEqual(done.code, 2, done.err)
+            self.assertIn(naming, done.err)
+
+
+if __name__ == "__main__":
+    unittest.main()
