@@ -60,7 +60,8 @@ public:
         : sheets_(frame.sheets),
           variation_(frame.classification->table),
           perspective_(frame.view->perspective()),
-          most_(static_cast<float>(kMostOfEstimate * frame.scene->image_tolerance)) {}
+          most_(static_cast<float>(kMostOfEstimate * frame.scene->image_tolerance)),
+          enough_(static_cast<float>(std::sqrt(frame.scene->image_tolerance / 1e-3) / 3)) {}
 
     /// The level that a kernel needs.
     [[nodiscard]] int level(const EyeSplat& s) const {
@@ -80,13 +81,14 @@ public:
 
 private:
     [[nodiscard]] bool exceeds(float change, float distance, float reach) const {
-        return change * distance * std::min(1.0f, distance / reach) > most_;
+        return distance > enough_ * reach && change * distance * std::min(1.0f, distance / reach) > most_;
     }
 
     const SheetStack& sheets_;
     Variation variation_;
     bool perspective_;
     float most_;
+    float enough_;  // the distance of sheets, in reaches, below which no kernel is thin: about that of `sheets_needed`
 };
 
 /// Raises a cell to a level.
