@@ -22,44 +22,6 @@
 
 namespace subvol::cli {
 
-PictureSize parse_size(const std::string& option, const std::string& text) {
-    using detail::kMostPixels, detail::kMostSide;
-    const std::size_t cross = text.find('x');
-    const auto side = [&](std::string_view digits) -> std::int64_t {
-        std::int64_t number = 0;
-        const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
-        const bool digits_only = !digits.empty() && digits.find_first_not_of("0123456789") == std::string_view::npos;
-        if (!digits_only || number == 0) {
-            throw Error(ErrorCode::InvalidInput, "'" + detail::shortened(text) + "' is not a picture size", option,
-                        "write it as 640x480 or 512");
-        }
-        return error == std::errc() ? number : std::numeric_limits<std::int64_t>::max();
-    };
-    const std::int64_t width = side(std::string_view(text).substr(0, cross));
-    const std::int64_t height = cross == std::string::npos ? width : side(std::string_view(text).substr(cross + 1));
-    if (width > kMostSide || height > kMostSide || width * height > kMostPixels) {
-        throw Error(ErrorCode::InvalidInput, "'" + detail::shortened(text) + "' is too large a picture", option,
-                    subvol::cli::text("1 to ", kMostSide, " pixels a side, ", kMostPixels, " in all"));
-    }
-    return {static_cast<int>(width), static_cast<int>(height)};
-}
-
-double parse_value(const std::string& option, const std::string& text, const Range& range) {
-    if (!text.ends_with('%')) return parse_number(option, text);
-    return range.min + parse_number(option, text.substr(0, text.size() - 1)) / 100 * (range.max - range.min);
-}
-
-Range parse_range(const std::string& option, const std::string& text, const Range& whole) {
-    const char* const allowed = "MIN,MAX, or per cents such as 10%,90%";
-    const std::size_t comma = text.find(',');
-    if (comma == std::string::npos) throw Error(ErrorCode::InvalidInput, "'" + text + "' is not a range", option, allowed);
-    const Range range{parse_value(option, text.substr(0, comma), whole), parse_value(option, text.substr(comma + 1), whole)};
-    if (!(range.min < range.max)) {
-        throw Error(ErrorCode::InvalidInput, "'" + text + "' is not ascending", option, allowed);
-    }
-    return range;
-}
-
 Vec3 parse_background(const std::string& text) {
     struct Named {
         const char* name;
@@ -127,51 +89,17 @@ void PictureArguments::add_some_to(CLI::App& app, std::initializer_list<std::str
 }
 
 void PictureArguments::add_camera_to(CLI::App& app) {
-    app.add_option("--size", size, "width and height of the picture in pixels (default 512x512)")->type_name("WxH");
-    auto* place = app.add_option("--camera", camera,
-                                 "ex,ey,ez,tx,ty,tz,ux,uy,uz,fovy (eye, target, up, vertical field of view in degrees), or a "
-                                 "JSON file with eye, target, up, fovy_deg or ortho_height");
-    place->type_name("CAMERA");
-    app.add_option("--view", view, "the side to look from: +x -x +y -y +z -z iso (default iso)")
-        ->type_name("SIDE")
-        ->check(offered({"+x", "-x", "+y", "-y", "+z", "-z", "iso"}))
-        ->excludes(place);
-    app.add_option("--views", views, "4: one picture of four, from the front, the side, above and iso")
-        ->type_name("N")
-        ->transform(whole_number(4, 4))
-        ->excludes("--view")
-        ->excludes(place);
-    app.add_flag("--fit", fit, "move the camera along its line of sight until the whole box is in the picture");
-    app.add_flag("--ortho", orthographic,
-                 "use an orthographic camera, as high as the box needs or as the JSON file's ortho_height");
-    app.add_option("--turntable", turntable_frames,
-                   "N pictures of one turn about the camera's up axis; -o NAME.png (or .exr) writes NAME_0000.png and so on, "
-                   ".mp4, .webm and .gif write a video (with the program ffmpeg)")
-        ->type_name("N")
-        ->transform(whole_number(1, 100000));
-    app.add_option("--fps", frames_per_second, "pictures per second of a video (default 30)")
-        ->type_name("N")
-        ->transform(whole_number(1, 240));
+    constexpr int kSides = 4, kMostPerSecond = 240;
+    add_options(app, options_of(eye));
+    add_option(app, Option("views", views)
+                        .between(kSides, kSides)
+                        .help("N", "4: one picture of four, from the front, the side, above and iso")
+                        .instead_of({"view", "camera"}));
+    add_option(app, Option("fps", frames_per_second).between(1, kMostPerSecond).help("N", "pictures per second of a video"));
 }
 
 void PictureArguments::add_light_to(CLI::App& app) {
-    LookOptions any;
-    std::vector<Option> described = options_of(any);  // of which it counts whether they were given
-    described[0].value = &look_name;
-    described[1].value = &transfer_function;
-    described[2].value = &opacity_unit_world;
-    described[3].value = &clamp;
-    add_options(app, described);
-    app.add_option("--range,--tf-range", transfer_range,
-                   "the range that the colour map and the percentages of --opacity cover: MIN,MAX, per cents of the field's "
-                   "range such as 10%,90%, or field (default: the field's "
-                   "range; a map from a file keeps its own values)")
-        ->type_name("MIN,MAX|field");
-    app.add_option(
-           "--opacity", opacity,
-           "opacities instead of those of --tf, linear in between: at values of the field or per cent of its range, such "
-           "as 0%:0,50%:.2,100%:.9")
-        ->type_name("V:A,V:A,…");
+    add_options(app, options_of(choices));
     app.add_option("--legend", legend,
                    "a colour bar with the opacities and the field's name, at the right of the picture, or in a file of its own")
         ->type_name("[FILE.svg]")
@@ -187,9 +115,7 @@ void PictureArguments::add_light_to(CLI::App& app) {
 }
 
 void PictureArguments::settle_look(bool has_boundary) {
-    const std::string name = look_name.value_or(
-        has_boundary && !transfer_function && !opacity && !opacity_unit_world && !transfer_range ? "solid" : "volume");
-    look = named<Look>(name, "--look");
+    look = chosen_look(choices, has_boundary, OptionNames::Flags);
 }
 
 Vec3 PictureArguments::background_color() const {
@@ -197,66 +123,25 @@ Vec3 PictureArguments::background_color() const {
     return background_of(look);
 }
 
-Camera camera_of_option(const std::string& option, const std::string& text, const Box& box, double aspect) {
-    try {
-        return parse_camera(text, box, aspect);
-    } catch (const Error& error) {
-        const std::string where = error.where().empty() ? "" : error.where() + ": ";
-        throw Error(error.code(), where + error.message(), option, error.allowed());
-    }
-}
-
-Camera PictureArguments::make_camera(const Box& box, std::span<const Vec3> points, double aspect) const {
-    Camera given = camera_of_option(camera ? "--camera" : "--view", camera.value_or(view), box, aspect);
-    const bool made_orthographic = orthographic && given.ortho_height == 0;
-    if (made_orthographic) given = orthographic_camera(given, box, aspect);
-    // A named view shows the whole box, so all pictures of its turntable do.
-    if (turntable_frames && (fit || !camera || made_orthographic)) return fit_turntable(given, box, *turntable_frames, aspect);
-    if (!camera && !points.empty()) return fit_camera_to_points(given, points, aspect);
-    return fit ? fit_camera(given, box, aspect) : given;
-}
-
 std::vector<View> PictureArguments::make_views(const Box& box, std::span<const Vec3> points) const {
-    const PictureSize whole = parse_size("--size", size);
-    const int width = whole.width - legend_px, height = whole.height;
-    const Camera first = make_camera(box, points, static_cast<double>(width) / height);
+    const int width = eye.size.width - legend_px, height = eye.size.height;
     if (views) return make_sheet(box, points, width / 2, height / 2);
-    if (!turntable_frames) return {View(first, width, height)};
+    const Camera first = find_camera(eye, box, points, static_cast<double>(width) / height, OptionNames::Flags);
+    if (!eye.turntable) return {View(first, width, height)};
     std::vector<View> frames;
-    for (const Camera& frame : turntable(first, box.center(), *turntable_frames)) frames.emplace_back(frame, width, height);
+    for (const Camera& frame : turntable(first, box.center(), *eye.turntable)) frames.emplace_back(frame, width, height);
     return frames;
 }
 
 std::vector<View> PictureArguments::make_sheet(const Box& box, std::span<const Vec3> points, int width, int height) const {
     std::vector<View> sheet;
     for (const char* side : {"-y", "+x", "+z", "iso"}) {
-        PictureArguments one = *this;
+        ViewOptions one = eye;
         one.view = side;
-        sheet.emplace_back(one.make_camera(box, points, static_cast<double>(width) / height), width, height);
+        sheet.emplace_back(find_camera(one, box, points, static_cast<double>(width) / height, OptionNames::Flags), width,
+                           height);
     }
     return sheet;
-}
-
-Range PictureArguments::shown_range(const Range& field) const {
-    if (!transfer_range || *transfer_range == "field") return field;
-    return parse_range("--range", *transfer_range, field);
-}
-
-LookOptions PictureArguments::look_options(const Range& field) const {
-    LookOptions options{.look = look,
-                        .colors = transfer_function.value_or(""),
-                        .stretch = transfer_range.has_value(),
-                        .opacity_unit_world = opacity_unit_world,
-                        .clamp = clamp};
-    const Range range = shown_range(field);
-    if (transfer_range && *transfer_range != "field") options.range = range;
-    if (!opacity) return options;
-    try {
-        options.opacity = parse_opacity(*opacity, range.min, range.max);
-    } catch (const Error& error) {
-        throw Error(error.code(), error.where() + ": " + error.message(), "--opacity", error.allowed());
-    }
-    return options;
 }
 
 Optics PictureArguments::make_optics(const Box& box, const Range& field, const Range& colors) const {
@@ -265,25 +150,25 @@ Optics PictureArguments::make_optics(const Box& box, const Range& field, const R
 
 void PictureArguments::check() const {
     const Box any{{0, 0, 0}, {1, 1, 1}};
-    const auto [width, height] = parse_size("--size", size);
-    (void)camera_of_option(camera ? "--camera" : "--view", camera.value_or(view), any, static_cast<double>(width) / height);
-    (void)find_transfer_function(colors_of({.look = look, .colors = transfer_function.value_or("")}), {0, 1}, false);
+    const auto [width, height] = eye.size;
+    (void)find_camera(eye, any, {}, static_cast<double>(width) / height, OptionNames::Flags);
+    (void)find_transfer_function(colors_of({.look = look, .colors = choices.colors.value_or("")}), {0, 1}, false);
     (void)background_color();
     if (views && (width % 2 != 0 || height % 2 != 0)) {
-        throw Error(ErrorCode::InvalidInput, "a sheet of four views has quarters of whole pixels", "--size " + size,
-                    "an even width and height");
+        throw Error(ErrorCode::InvalidInput, "a sheet of four views has quarters of whole pixels",
+                    text("--size ", width, "x", height), "an even width and height");
     }
     if (legend && !legend_inside()) check_output(*legend, {".svg"});
     if (!unit.empty() && !legend) throw Error(ErrorCode::InvalidInput, "is shown by a legend only", "--unit", "--legend");
 }
 
 LegendOptions PictureArguments::legend_options(const ShownField& field, const ShownField& colors) const {
-    const Range range = shown_range(colors.range);
+    const Range range = shown_range(choices, colors.range, OptionNames::Flags);
     const std::string& known = unit.empty() ? colors.unit : unit;
     LegendOptions options{.title = colors.name + (known.empty() ? "" : " [" + known + "]"), .min = range.min, .max = range.max};
     options.note = legend_note;
     if (field.name != colors.name) {
-        const Range opacities = shown_range(field.range);
+        const Range opacities = shown_range(choices, field.range, OptionNames::Flags);
         options.opacity_title = field.name;
         options.opacity_min = opacities.min;
         options.opacity_max = opacities.max;

@@ -14,6 +14,7 @@
 #include "subvol/legend.h"
 #include "subvol/optics.h"
 #include "subvol/picture_look.h"
+#include "subvol/view_options.h"
 
 namespace CLI {
 class App;
@@ -31,26 +32,6 @@ struct ShownField {
     std::string unit = {};
 };
 
-struct PictureSize {
-    int width = 512;
-    int height = 512;
-};
-
-/// "512x384", or "512" for a square.
-///
-/// throws: Error(InvalidInput)
-[[nodiscard]] PictureSize parse_size(const std::string& option, const std::string& text);
-
-/// As `parse_camera`; what is wrong names the option.
-[[nodiscard]] Camera camera_of_option(const std::string& option, const std::string& text, const Box& box, double aspect);
-
-/// A value of a field, or a part of its range: "293", "20%".
-///
-/// throws: Error(InvalidInput) if it is neither
-[[nodiscard]] double parse_value(const std::string& option, const std::string& text, const Range& range);
-/// "293,913" or "10%,90%". throws: Error(InvalidInput) if it is not two ascending values
-[[nodiscard]] Range parse_range(const std::string& option, const std::string& text, const Range& whole);
-
 /// The box of the points that are not transparent; the pawn, for example, fills only a small part of its block.
 [[nodiscard]] Box visible_bounds(const HexMesh& mesh, const Optics& optics);
 
@@ -61,20 +42,11 @@ struct PictureSize {
 
 /// What a picture shows and how.
 struct PictureArguments {
-    std::string size = "512x512";
-    std::optional<std::string> camera;
-    std::string view = "iso";
+    ViewOptions eye;
     std::optional<int> views;  // 4: a sheet of front, side, top and iso
-    bool fit = false;
-    bool orthographic = false;
-    std::optional<int> turntable_frames;
     int frames_per_second = 30;
-    std::optional<std::string> look_name;
-    Look look = Look::Volume;  // as settled
-    std::optional<std::string> transfer_function;
-    std::optional<std::string> transfer_range;
-    std::optional<std::string> opacity;
-    std::optional<double> opacity_unit_world;
+    LookChoices choices;
+    Look look = Look::Volume;           // as settled
     std::optional<std::string> legend;  // the file; empty: inside the picture
     int legend_px = 0;                  // the width of a legend inside the picture, as settled
     std::string unit;                   // of the field that the legend shows
@@ -82,16 +54,13 @@ struct PictureArguments {
     std::string title;                  // above the picture
     bool time_label = false;            // the time of the step below it
     bool axes = false, edges = false;
-    bool clamp = false;  // values beyond the field's range look like its ends
     std::optional<std::string> background;
 
     void add_to(CLI::App& app);
     /// Only these options, such as "--camera".
     void add_some_to(CLI::App& app, std::initializer_list<std::string_view> names);
 
-    /// Decides on the look: the one asked for; else solid for bodies with a boundary, unless colours or opacities are given.
-    ///
-    /// throws: Error(InvalidInput) for an unknown look
+    /// Decides on the look, as `chosen_look`.
     void settle_look(bool has_boundary);
     [[nodiscard]] bool lit() const { return is_lit(look); }
     [[nodiscard]] Vec3 background_color() const;
@@ -100,7 +69,9 @@ struct PictureArguments {
     /// named view is fitted to them; none: to the box
     [[nodiscard]] std::vector<View> make_views(const Box& box, std::span<const Vec3> points = {}) const;
     /// field: the range of the field that gives the opacities
-    [[nodiscard]] LookOptions look_options(const Range& field) const;
+    [[nodiscard]] LookOptions look_options(const Range& field) const {
+        return subvol::look_options(choices, look, field, OptionNames::Flags);
+    }
     /// field, colors: the ranges of the field that gives the opacities and of the one that gives the colours, often the same
     [[nodiscard]] Optics make_optics(const Box& box, const Range& field, const Range& colors) const;
 
@@ -116,11 +87,8 @@ struct PictureArguments {
     [[nodiscard]] Facts write_legend(const Optics& optics, const LegendOptions& options) const;
 
 private:
-    /// The range of --tf-range; without it the field's range.
-    [[nodiscard]] Range shown_range(const Range& field) const;
     void add_camera_to(CLI::App& app);
     void add_light_to(CLI::App& app);
-    [[nodiscard]] Camera make_camera(const Box& box, std::span<const Vec3> points, double aspect) const;
     [[nodiscard]] std::vector<View> make_sheet(const Box& box, std::span<const Vec3> points, int width, int height) const;
 };
 

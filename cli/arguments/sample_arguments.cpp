@@ -79,7 +79,7 @@ bool SampleArguments::drops_invisible() const {
 }
 
 Footprint SampleArguments::footprint_of(const Box& box) const {
-    const PictureSize size = parse_size("--footprint-size", footprint_size);
+    const PictureSize size = parse_size(footprint_size, "--footprint-size");
     const double aspect = static_cast<double>(size.width) / size.height;
     return {
         .camera = camera_of_option("--footprint", footprint, box, aspect), .width_px = size.width, .height_px = size.height};

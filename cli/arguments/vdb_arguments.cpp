@@ -46,14 +46,10 @@ void VdbArguments::add_grids_to(CLI::App& app) {
     }
     app.add_flag("--error", error,
                  "also write for each field a grid NAME_error: an upper bound of |value - limit| at each voxel");
-    level_set_option = app.add_option("--sdf", level_set_asked.name,
-                                      "also write a level set, named NAME or sdf: the distance to the boundary, negative "
-                                      "inside, in a narrow band");
-    level_set_option->type_name("[NAME]")->expected(0, 1);
-    add_option(app, Option("half-width", level_set_asked.half_width_voxels)
-                        .between(1, 1000)
-                        .help("N", "the band's reach to either side, in voxels")
-                        .only_with("sdf"));
+    const std::vector<Option> level_set = options_of(level_set_asked);
+    level_set_option = app.add_option("--sdf", level_set_asked.name, level_set.front().sentence);
+    level_set_option->type_name(level_set.front().about)->expected(0, 1);
+    add_option(app, level_set.back());
     add_option(app, Option("from", from)
                         .offer({"mesh", "points"})
                         .help("WHAT",

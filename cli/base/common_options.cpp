@@ -23,24 +23,14 @@ void add_mesh_options(CLI::App& app, CommonOptions& options) {
     add("other-cells");
     app.add_flag("--weld", options.weld, "join points of a file that are at the same place")->group(group);
     add("weld-distance");
-    app.add_option(
-           "--curved,--curved-tolerance", options.curved,
-           "split curved hexahedra into smaller ones, to within this part T of the mesh's size from their true shape, and "
-           "400 T of the fields' ranges (default 5e-6); corners: use nothing but their corners")
-        ->group(group)
-        ->type_name("T|corners")
-        ->transform(number_or("corners", positive_number()));
+    add("curved");
     add("cell-values");
     add("patch-values");
-    auto* step =
-        app.add_option("--step", options.step,
-                       "a step of a series, from 0, or last (the default); of verbs that write a file a step also all or A-B");
-    step->group(group)->type_name("N|last|all|A-B");
-    app.add_option("--time", options.time, "the step of a series whose time is nearest to this")
-        ->group(group)
-        ->type_name("T")
-        ->transform(any_number())
-        ->excludes(step);
+    Option step = *std::ranges::find(described, "step", &Option::name);
+    step.value = &options.step;
+    step.help("N|last|all|A-B", step.sentence + ", or last; of verbs that write a file a step also all or A-B");
+    add_option(app, step)->group(group);
+    add("time");
     app.add_flag("--interpolate-time", options.interpolate_time, "points and values between the two steps around --time")
         ->group(group)
         ->needs("--time");

@@ -29,10 +29,8 @@ struct CommonOptions {
     std::vector<std::string> at_rest;    // quantities that are computed before --warp and --only, besides that of --field
     ReadOptions read{};                  // what the library describes of them
     bool weld = false;                   // join points at the same place
-    std::string curved = "5e-6";         // of the mesh's size, or "corners"
     std::optional<std::string> step;     // a number from 0, "last", "all" or a range
-    std::optional<double> time;          // the step nearest to it
-    bool interpolate_time = false;       // between the two steps around it
+    bool interpolate_time = false;       // between the two steps around read.time
     int threads = 0;                     // 0: all
     bool json = false;
     bool quiet = false;

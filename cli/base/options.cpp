@@ -77,19 +77,19 @@ GivenOptions given_options(const CLI::App& app) {
 }
 
 CLI::Option* add_option(CLI::App& app, const Option& option) {
-    const std::string name = "--" + option.name;
+    const std::string first = "--" + option.name, name = option.alias.empty() ? first : first + ",--" + option.alias;
     CLI::Option* added = nullptr;
     if (auto* const* on = std::get_if<bool*>(&option.value)) {
         added = app.add_flag(name, **on, option.sentence);
     } else if (auto* const* list = std::get_if<std::vector<std::string>*>(&option.value)) {
         added = app.add_option(name, **list, option.sentence)->type_name(option.about);
     } else if (const auto* const rows = std::get_if<NumbersValue>(&option.value)) {
-        added = add_numbers(app, name, *rows, option);
+        added = add_numbers(app, first, *rows, option);
     } else {
         const bool said = option.sentence.find("(default") != std::string::npos;
         const bool has_default = !said && !option.is_optional() && !option.text().empty() && option.text() != "0";
         const std::string help = option.sentence + (has_default ? " (default " + option.text() + ")" : "");
-        const auto read = [option, name](const std::string& given) { option.read(given, name); };
+        const auto read = [option, first](const std::string& given) { option.read(given, first); };
         added = app.add_option_function<std::string>(name, read, help)->type_name(option.about)->default_str(option.text());
     }
     if (const std::string description = description_of(option); !description.empty()) added->check(described(description));

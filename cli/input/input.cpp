@@ -49,13 +49,6 @@ ReadResult generate(const std::string& description) {
     return result;
 }
 
-std::optional<double> curved_tolerance(const CommonOptions& options) {
-    if (options.curved == "corners") return std::nullopt;
-    double tolerance = 0;
-    std::from_chars(options.curved.data(), options.curved.data() + options.curved.size(), tolerance);
-    return tolerance;
-}
-
 /// For what is not done brick by brick.
 HexMesh mesh_of_bricks(const std::string& input, const CommonOptions& options, Progress* progress, Facts& facts) {
     refuse_file_options(options.app, "is settled when a mesh is split; this is a folder of bricks");
@@ -202,7 +195,6 @@ ReadOptions read_options(const std::string& input, const CommonOptions& options)
     const std::vector<std::string> blocks = blocks_of(options);
     read.blocks.insert(read.blocks.end(), blocks.begin(), blocks.end());
     if (options.weld && !read.weld) read.weld = 0;
-    read.curved_tolerance = curved_tolerance(options);
     read.step = one_step(input, options);
     return read;
 }
@@ -219,7 +211,8 @@ WithFacts<ReadResult> read_input(const std::string& input, const CommonOptions& 
     const bool model = is_model(input);
     if (model) refuse_file_options(options.app, "says how a file is read; this is a model");
     if (model && !options.read.sharp.empty()) throw Error(ErrorCode::InvalidInput, "a model has no groups", "--sharp");
-    if (model && (options.step || options.time)) throw Error(ErrorCode::InvalidInput, "a model has no steps", "--step, --time");
+    if (model && (options.step || options.read.time))
+        throw Error(ErrorCode::InvalidInput, "a model has no steps", "--step, --time");
     if (model && !(options.read.blocks.empty() && blocks_of(options).empty()))
         throw Error(ErrorCode::InvalidInput, "a model has no blocks", "--blocks");
     ReadResult read = facts.timed(progress, "read", [&] {
@@ -228,14 +221,14 @@ WithFacts<ReadResult> read_input(const std::string& input, const CommonOptions& 
         file_options.shells_alone = alone == ShellsAlone::Take;
         const auto between = between_steps(input, options);
         if (!between) return read_mesh(input, file_options);
-        return read_between(input, *between, *options.time, file_options, facts);
+        return read_between(input, *between, *options.read.time, file_options, facts);
     });
     for (const std::string& warning : read.warnings) facts.warn(warning);
     for (const UnreadField& field : read.unread) {
         if (options.field == field.name)
             throw Error(ErrorCode::InvalidInput, field.why, text(input, ", field '", field.name, "'"));
     }
-    say_step(read, options, facts);
+    say_step(read, facts);
     if (read.cell_values) {
         Facts& means = facts.group("cell_values");
         means["method"] = std::string(name_of(read.cell_values->method));

@@ -46,7 +46,7 @@ bool asks_for_steps(const CommonOptions& options) {
 }
 
 std::optional<std::size_t> one_step(const std::string& input, const CommonOptions& options) {
-    if (options.time) return nearest_step(open_series(input), *options.time);
+    if (options.read.time) return nearest_step(open_series(input), *options.read.time);
     if (!options.step) return std::nullopt;
     if (asks_for_steps(options)) {
         throw Error(ErrorCode::InvalidInput, "only one step can be read here, not " + *options.step, "--step",
@@ -58,18 +58,12 @@ std::optional<std::size_t> one_step(const std::string& input, const CommonOption
     return step;
 }
 
-void say_step(const ReadResult& read, const CommonOptions& options, Facts& facts) {
+void say_step(const ReadResult& read, Facts& facts) {
     if (read.steps < 2 || !read.mesh.time) return;
     const double time = *read.mesh.time;
     facts["step"] = read.step;
     facts["time"] = time;
-    const std::string taken = text("step ", read.step, " of 0 to ", read.steps - 1, ", time ", time);
-    const bool end = read.step == 0 || read.step == read.steps - 1;
-    if (options.time && end && (read.step == 0 ? *options.time < time : *options.time > time)) {
-        facts.warn(text("time ", *options.time, " is beyond the steps of the file: it is ", taken));
-    } else {
-        facts.note(taken);
-    }
+    facts.note(text("step ", read.step, " of 0 to ", read.steps - 1, ", time ", time));
 }
 
 FrameRange chosen_steps(const MeshSeries& series, const CommonOptions& options) {
@@ -116,17 +110,17 @@ WithFacts<CommonOptions> for_steps(const std::string& input, const CommonOptions
 }
 
 std::optional<BetweenSteps> between_steps(const std::string& input, const CommonOptions& options) {
-    if (!options.interpolate_time || !options.time) return std::nullopt;
+    if (!options.interpolate_time || !options.read.time) return std::nullopt;
     const MeshSeries series = open_series(input);
     std::optional<std::size_t> before, after;
     for (std::size_t k = 0; k < series.size(); ++k) {
         const double time = series.times[k];
-        if (time <= *options.time && (!before || time > series.times[*before])) before = k;
-        if (time >= *options.time && (!after || time < series.times[*after])) after = k;
+        if (time <= *options.read.time && (!before || time > series.times[*before])) before = k;
+        if (time >= *options.read.time && (!after || time < series.times[*after])) after = k;
     }
     if (!before || !after || series.times[*before] == series.times[*after]) return std::nullopt;
     const double from = series.times[*before], to = series.times[*after];
-    return BetweenSteps{*before, *after, (*options.time - from) / (to - from)};
+    return BetweenSteps{*before, *after, (*options.read.time - from) / (to - from)};
 }
 
 void check_numbered(const std::string& output) {

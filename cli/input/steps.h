@@ -23,7 +23,7 @@ namespace subvol::cli {
 [[nodiscard]] std::optional<std::size_t> one_step(const std::string& input, const CommonOptions& options);
 
 /// The step that was read, and its time, if there are several.
-void say_step(const ReadResult& read, const CommonOptions& options, Facts& facts);
+void say_step(const ReadResult& read, Facts& facts);
 
 /// The first and the last step that --step asks for.
 ///

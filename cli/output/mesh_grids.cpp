@@ -112,8 +112,7 @@ double MeshGrids::voxel_size_world(const HexMesh& mesh) const {
         return std::cbrt(std::abs(measure_cells(mesh).volume) * kBytesOfChannel * channels /
                          static_cast<double>(asked_.budget_bytes));
     }
-    const Vec3 size = bounds(mesh).size();
-    return std::max({size.x, size.y, size.z}) / asked_.grids.resolution;
+    return voxel_size_of(bounds(mesh), asked_.grids);
 }
 
 WithFacts<RasterizeOptions> MeshGrids::set_up(const HexMesh& mesh, Progress* progress, bool once) {

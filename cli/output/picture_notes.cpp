@@ -74,7 +74,7 @@ PictureNotes make_notes(PictureArguments& arguments, const ShownColors& colors, 
     }
     if (arguments.legend_inside()) {
         notes.legend = legend;
-        const auto [width, height] = parse_size("--size", arguments.size);
+        const auto [width, height] = arguments.eye.size;
         const int parts = arguments.views ? 2 : 1;  // each side by side gets as many columns
         notes.legend_px = legend_width_px(notes.function, legend, height);
         notes.legend_px += (width - notes.legend_px) % parts;

@@ -67,7 +67,7 @@ PictureOutput::PictureOutput(const std::string& path, std::optional<int> frames,
         throw Error(ErrorCode::InvalidInput, "only a turntable or steps make a video", path,
                     "--turntable N, --step all, or .png or .exr");
     } else {
-        video_.emplace(path_, parse_size("--size", arguments.size), arguments.frames_per_second);
+        video_.emplace(path_, arguments.eye.size, arguments.frames_per_second);
     }
 }
 

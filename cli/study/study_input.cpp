@@ -82,12 +82,12 @@ View study_view(const StudyCase& item, const HexMesh& mesh, const Optics& optics
 }
 
 Optics study_optics(const StudyCase& item, const HexMesh& mesh) {
-    PictureArguments arguments;
-    if (item.has("tf.colors")) arguments.transfer_function = item.text("tf.colors");
-    if (item.has("tf.opacity")) arguments.opacity = item.text("tf.opacity");
-    if (item.has("tf.opacity_unit")) arguments.opacity_unit_world = item.number("tf.opacity_unit");
+    LookChoices choices;
+    if (item.has("tf.colors")) choices.colors = item.text("tf.colors");
+    if (item.has("tf.opacity")) choices.opacity = item.text("tf.opacity");
+    if (item.has("tf.opacity_unit")) choices.opacity_unit_world = item.number("tf.opacity_unit");
     const Range range = field_range(mesh);
-    return arguments.make_optics(bounds(mesh), range, range);
+    return picture_optics(look_options(choices, Look::Volume, range, OptionNames::Flags), bounds(mesh), range, range);
 }
 
 }  // namespace subvol::cli

@@ -98,11 +98,11 @@ public:
         add_option(app(), Option("resolution", resolution_)
                               .between(2, 512)
                               .help("N", "cells along a model's main direction (default: the model's own)"));
-        app().add_option("--size", size_, "size of the pictures (default 512x512)")->type_name("WxH");
+        add_option(app(), options_of(eye_).front());
     }
 
     int run(Report& report) override {
-        const PictureSize size = parse_size("--size", size_);
+        const PictureSize size = eye_.size;
         make_folder(folder_);
         report.say("model     points  equivalent cells    splat s  reference s  PSNR dB");
         report["cases"] = Json::array();
@@ -177,7 +177,7 @@ private:
 
     std::filesystem::path folder_;
     int resolution_ = 0;
-    std::string size_ = "512x512";
+    ViewOptions eye_;
 };
 
 }  // namespace

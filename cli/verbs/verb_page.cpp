@@ -172,9 +172,10 @@ private:
             PageField& field = options.fields[f];
             const Range range{field.min, field.max};
             PictureArguments of_field = volume;
-            const bool in_file = picture_.transfer_function && picture_.transfer_function->find('.') != std::string::npos;
-            if (f > 0 && in_file) of_field.transfer_range = "field";  // the values of the file's map are those of the first
-            if (f > 0 && picture_.opacity && picture_.opacity->find('%') == std::string::npos) of_field.opacity.reset();
+            const bool in_file = picture_.choices.colors && picture_.choices.colors->find('.') != std::string::npos;
+            if (f > 0 && in_file) of_field.choices.range = "field";  // the values of the file's map are those of the first
+            if (f > 0 && picture_.choices.opacity && picture_.choices.opacity->find('%') == std::string::npos)
+                of_field.choices.opacity.reset();
             const Optics optics = of_field.make_optics(box_, range, range);
             field.function = optics.function();
             if (solid) field.function.color = picture_.make_optics(box_, range, range).function().color;

@@ -143,8 +143,8 @@ public:
             draw_steps(report);
             return 0;
         }
-        PictureOutput output(output_, picture_.turntable_frames, picture_);
-        set_share(output, picture_.turntable_frames.has_value());
+        PictureOutput output(output_, picture_.eye.turntable, picture_);
+        set_share(output, picture_.eye.turntable.has_value());
         switch (arguments_.body) {
             case BodyKind::Mesh:
             case BodyKind::Tets:
@@ -274,9 +274,9 @@ private:
 
     /// A picture of each step, in one box and with one range of colours: all are read once for these.
     void draw_steps(Report& report) {
-        if (picture_.turntable_frames || arguments_.chosen.seconds || arguments_.method == Method::Grid) {
+        if (picture_.eye.turntable || arguments_.chosen.seconds || arguments_.method == Method::Grid) {
             throw Error(ErrorCode::InvalidInput, "steps are drawn without it",
-                        picture_.turntable_frames   ? "--turntable"
+                        picture_.eye.turntable      ? "--turntable"
                         : arguments_.chosen.seconds ? "--seconds"
                                                     : "--method grid");
         }
@@ -355,7 +355,7 @@ private:
     void draw_points(PictureOutput& output, Report& report) {
         report["input"] = input_;
         if (arguments_.body == BodyKind::KernelFile) {
-            const std::uint64_t kept = picture_.turntable_frames ? arguments_.chosen.memory_bytes : 0;
+            const std::uint64_t kept = picture_.eye.turntable ? arguments_.chosen.memory_bytes : 0;
             LevelsInput levels =
                 report.unpack(open_levels(input_, common(), arguments_.splat.color_field, kept, app(), report.progress()));
             if (levels.file.contents().boundary_triangles > 0) return draw_levels(levels, output, report);

@@ -43,10 +43,12 @@ public:
                               .between(1, 1000)
                               .help("N", "lines at this many values between the least and the largest on the plane"));
         add_option(app(), Option("tf", function_).help("FILE|NAME", "the colours: a preset, or a colour map of ParaView"));
-        app()
-            .add_option("--range,--tf-range", range_,
-                        "the values of the first and of the last colour, or per cents of those on the plane (default: these)")
-            ->type_name("MIN,MAX");
+        add_option(
+            app(),
+            Option("range", range_)
+                .also("tf-range")
+                .help("MIN,MAX",
+                      "the values of the first and of the last colour, or per cents of those on the plane (default: these)"));
         add_option(app(), Option("background", background_).help("COLOR", "the colour outside the volume, of a .png"));
         app().add_flag("--no-legend", no_legend_, "the picture alone");
         add_option(app(), Option("unit", unit_).help("TEXT", "of the field, for the legend").instead_of({"no-legend"}));
@@ -57,7 +59,7 @@ public:
     int run(Report& report) override {
         check_output(output_, {".png", ".exr", ".vtp", ".csv"});
         const Vec3 background = parse_background(background_);
-        if (range_) (void)parse_range("--range", *range_, {0, 1});
+        if (range_) (void)parse_range(*range_, {.min = 0, .max = 1}, "--range");
         std::vector<double> plane;
         if (!plane_.empty()) plane = parse_numbers("--plane", plane_, 6, "0,0,0,0,0,1");
         report.if_long("a lower --resolution");
@@ -68,8 +70,8 @@ public:
         if (output_.ends_with(".vtp") || output_.ends_with(".csv")) {
             write_slice(output_, slice, lines);
         } else {
-            const Range whole{slice.min, slice.max};
-            write_picture(slice, lines, range_ ? parse_range("--range", *range_, whole) : whole, background, report);
+            const Range whole{.min = slice.min, .max = slice.max};
+            write_picture(slice, lines, range_ ? parse_range(*range_, whole, "--range") : whole, background, report);
         }
         report["output"] = output_;
         report["plane"] = plane;

@@ -107,7 +107,7 @@ public:
                         "one process, or mpirun");
         }
         SurfaceOutput output{.field = field, .range = body.range(field), .isos = isos_.size()};
-        for (const std::string& iso : isos_) options.isos.push_back(parse_value("--iso", iso, output.range));
+        for (const std::string& iso : isos_) options.isos.push_back(parse_value(iso, output.range, "--iso"));
         if (!origin_.empty()) output.file.origin = parse_vector("--origin", origin_);
         if (!color_field_.empty()) {
             const std::size_t number = body.add_scalar(color_field_);

@@ -132,12 +132,8 @@ private:
         maker.tets().refuse_bricks(input_);
         report["input"] = input_;
         const Bricks bricks = report.unpack(open_bricks_input(input_, app()));
-        const Vec3 size = bricks.bounds.size();
         RasterizeOptions options = maker.options(report.progress());
-        options.voxel_size_world = options.like ? options.like->report().voxel_size_world
-                                   : asked_.grids.voxel_size_world > 0
-                                       ? asked_.grids.voxel_size_world
-                                       : std::max({size.x, size.y, size.z}) / asked_.grids.resolution;
+        options.voxel_size_world = voxel_size_of(bricks.bounds, options);
         options.refine = refine_.options(0, report.progress());
         options.on_limit = !interpolates(options.refine.scheme.kind);
         options.metadata.emplace_back("subvol_scheme", refine_.scheme);

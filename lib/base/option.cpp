@@ -186,6 +186,11 @@ Option& Option::called(std::string other) {
     return *this;
 }
 
+Option& Option::also(std::string flag) {
+    alias = std::move(flag);
+    return *this;
+}
+
 Option& Option::or_with(std::string option) {
     needs.back().instead = std::move(option);
     return *this;

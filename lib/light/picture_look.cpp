@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "subvol/clamped.h"
+#include "subvol/error.h"
 #include "subvol/srgb.h"
 
 namespace subvol {
@@ -56,24 +57,79 @@ TransferFunction find_transfer_function(const std::string& name, const ValueRang
     return stretch ? stretched(function, range.min, range.max) : function;
 }
 
-std::vector<Option> options_of(LookOptions& options) {
-    return {Option("look", options.look)
-                .help("NAME",
-                      "solid (opaque and lit; the default for meshes without --tf, --opacity and --opacity-unit), volume "
-                      "(opacity 0 to .5 over the range, black behind; otherwise the default), xray (on white) or isosurface "
-                      "(five lit surfaces)"),
-            Option("tf", options.colors)
-                .offer({"viridis", "plasma", "inferno", "cividis", "turbo", "coolwarm", "grey", "bone", "xray", "isosurface",
-                        "surface", "constant"})
-                .help("FILE|NAME",
-                      "colour map: viridis (default), plasma, inferno, cividis, turbo, coolwarm, grey, bone, xray, isosurface, "
-                      "surface or constant over the field's range, or a ParaView colour-map JSON file (FILE.json:NAME for one "
-                      "of several in it)"),
-            Option("opacity-unit", options.opacity_unit_world)
-                .positive()
-                .help("D", "the world distance over which an opacity acts (default: 1/100 of the bounding box's diagonal)"),
-            Option("clamp", options.clamp)
-                .help("show values beyond the field's range, where interpolating schemes overshoot, as its ends")};
+std::vector<Option> options_of(LookChoices& choices) {
+    return {
+        Option("look", choices.look)
+            .offer(names_of<Look>())
+            .help("NAME",
+                  "solid (opaque and lit; the default for meshes without --tf, --range, --opacity and --opacity-unit), volume "
+                  "(opacity 0 to .5 over the range, black behind; otherwise the default), xray (on white) or isosurface "
+                  "(five lit surfaces)"),
+        Option("tf", choices.colors)
+            .offer({"viridis", "plasma", "inferno", "cividis", "turbo", "coolwarm", "grey", "bone", "xray", "isosurface",
+                    "surface", "constant"})
+            .help("FILE|NAME",
+                  "colour map: viridis (default), plasma, inferno, cividis, turbo, coolwarm, grey, bone, xray, isosurface, "
+                  "surface or constant over the field's range, or a ParaView colour-map JSON file (FILE.json:NAME for one "
+                  "of several in it)"),
+        Option("opacity-unit", choices.opacity_unit_world)
+            .positive()
+            .help("D", "the world distance over which an opacity acts (default: 1/100 of the bounding box's diagonal)"),
+        Option("clamp", choices.clamp)
+            .help("show values beyond the field's range, where interpolating schemes overshoot, as its ends"),
+        Option("range", choices.range)
+            .also("tf-range")
+            .help("MIN,MAX|field",
+                  "the range that the colour map and the percentages of --opacity cover: MIN,MAX, per cents of the field's "
+                  "range such as 10%,90%, or field (default: the field's range; a map from a file keeps its own values)"),
+        Option("opacity", choices.opacity)
+            .help("V:A,V:A,…",
+                  "opacities instead of those of --tf, linear in between: at values of the field or per cent of its range, "
+                  "such as 0%:0,50%:.2,100%:.9")};
+}
+
+Look chosen_look(const LookChoices& choices, bool has_boundary, OptionNames names) {
+    if (choices.look) return named<Look>(*choices.look, option_name("look", names));
+    const bool settled = choices.colors || choices.opacity || choices.opacity_unit_world || choices.range;
+    return has_boundary && !settled ? Look::Solid : Look::Volume;
+}
+
+double parse_value(const std::string& text, const ValueRange& whole, const std::string& where) {
+    const bool part = text.ends_with('%');
+    double value = 0;
+    Option("value", value).read(part ? text.substr(0, text.size() - 1) : text, where);
+    return part ? whole.min + value / 100 * (whole.max - whole.min) : value;
+}
+
+ValueRange parse_range(const std::string& text, const ValueRange& whole, const std::string& where) {
+    const char* const allowed = "MIN,MAX, or per cents such as 10%,90%";
+    const std::size_t comma = text.find(',');
+    if (comma == std::string::npos) throw Error(ErrorCode::InvalidInput, "'" + text + "' is not a range", where, allowed);
+    const ValueRange range{parse_value(text.substr(0, comma), whole, where), parse_value(text.substr(comma + 1), whole, where)};
+    if (!(range.min < range.max)) throw Error(ErrorCode::InvalidInput, "'" + text + "' is not ascending", where, allowed);
+    return range;
+}
+
+ValueRange shown_range(const LookChoices& choices, const ValueRange& field, OptionNames names) {
+    if (!choices.range || *choices.range == "field") return field;
+    return parse_range(*choices.range, field, option_name("range", names));
+}
+
+LookOptions look_options(const LookChoices& choices, Look look, const ValueRange& field, OptionNames names) {
+    LookOptions options{.look = look,
+                        .colors = choices.colors.value_or(""),
+                        .stretch = choices.range.has_value(),
+                        .opacity_unit_world = choices.opacity_unit_world,
+                        .clamp = choices.clamp};
+    const ValueRange range = shown_range(choices, field, names);
+    if (choices.range && *choices.range != "field") options.range = range;
+    if (!choices.opacity) return options;
+    try {
+        options.opacity = parse_opacity(*choices.opacity, range.min, range.max);
+    } catch (const Error& error) {
+        throw Error(error.code(), error.where() + ": " + error.message(), option_name("opacity", names), error.allowed());
+    }
+    return options;
 }
 
 std::string colors_of(const LookOptions& options) {
@@ -85,7 +141,12 @@ Optics picture_optics(const LookOptions& options, const Box& box, const ValueRan
     const std::string map = colors_of(options);
     TransferFunction function = find_transfer_function(map, options.range.value_or(field), options.stretch);
     function.color = find_transfer_function(map, options.range.value_or(colors), options.stretch).color;
-    if (options.look == Look::Solid) make_solid(function, !(colors.min < colors.max) && options.colors.empty());
+    return picture_optics(std::move(function), options, box, field, colors, options.colors.empty());
+}
+
+Optics picture_optics(TransferFunction function, const LookOptions& options, const Box& box, const ValueRange& field,
+                      const ValueRange& colors, bool plain) {
+    if (options.look == Look::Solid) make_solid(function, plain && !(colors.min < colors.max));
     if (!options.opacity.empty()) function.opacity = options.opacity;
     if (options.clamp || field.bounded || colors.bounded) {
         TransferFunction kept = function;

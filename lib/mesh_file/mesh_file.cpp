@@ -7,10 +7,12 @@
 #include <cstdint>
 #include <iterator>
 #include <span>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "subvol/cell.h"
+#include "subvol/detail/number_text.h"
 #include "subvol/detail/printable.h"
 #include "subvol/error.h"
 #include "subvol/index.h"
@@ -238,6 +240,32 @@ void order_symmetric(std::vector<double>& values, const std::array<std::size_t, 
 
 namespace subvol {
 
+namespace {
+
+constexpr const char* kCorners = "corners";
+
+/// The word "corners" stands for no tolerance.
+WordValue curved_value(std::optional<double>& tolerance) {
+    return {.get = [&tolerance] { return tolerance ? detail::exact_text(*tolerance) : std::string(kCorners); },
+            .set =
+                [&tolerance](const std::string& text, const std::string& where) {
+                    if (text == kCorners) {
+                        tolerance.reset();
+                        return;
+                    }
+                    double part = 0;
+                    try {
+                        Option("curved", part).positive().read(text, where);
+                    } catch (const Error& error) {
+                        throw Error(error.code(), error.message(), error.where(), error.allowed() + ", or corners");
+                    }
+                    tolerance = part;
+                },
+            .numbers = true};
+}
+
+}  // namespace
+
 std::vector<Option> options_of(ReadOptions& options) {
     constexpr double kMostSteps = 1e9;
     return {
@@ -247,6 +275,13 @@ std::vector<Option> options_of(ReadOptions& options) {
             .called("weld")
             .not_negative()
             .help("D", "join points of a file whose distance is at most D; 0: those at the same place"),
+        Option("curved", curved_value(options.curved_tolerance))
+            .also("curved-tolerance")
+            .offer({kCorners})
+            .help(
+                "T|corners",
+                "split curved hexahedra into smaller ones, to within this part T of the mesh's size from their true shape, and "
+                "400 T of the fields' ranges; corners: use nothing but their corners"),
         Option("cell-values", options.cell_values)
             .help("HOW",
                   "values at cells become values at points: fit (the volume follows the cells' means without waves; the "
@@ -258,6 +293,7 @@ std::vector<Option> options_of(ReadOptions& options) {
                   "normal (vectors at walls get only the component along the normal: integrals over the volume hardly "
                   "change), ignore"),
         Option("step", options.step).between(0, kMostSteps).help("N", "a step of a series, from 0 (default: the last one)"),
+        Option("time", options.time).help("T", "the step of a series whose time is nearest to this").instead_of({"step"}),
         Option("blocks", options.blocks).help("A,B", "the named parts of the mesh to read (info lists them; default: all)"),
         Option("sharp", options.sharp)
             .help("NAME",

@@ -273,6 +273,15 @@ const MeshFormat* format_with(std::string_view extension) {
     return found == kFormats.end() ? nullptr : &*found;
 }
 
+void warn_of_time_beyond(const std::optional<double>& asked, const std::vector<double>& times, ReadResult& result) {
+    if (!asked || times.size() < 2) return;
+    const auto [first, last] = std::ranges::minmax(times);
+    if (*asked >= first && *asked <= last) return;
+    result.warnings.push_back("time " + number_text(*asked) + " is beyond the steps of the file: it is step " +
+                              std::to_string(result.step) + " of 0 to " + std::to_string(times.size() - 1) + ", time " +
+                              number_text(times[result.step]));
+}
+
 [[noreturn]] void refuse_format(const std::filesystem::path& path, const std::string& verb, const std::string& allowed) {
     throw Error(ErrorCode::InvalidInput, in_quotes(path.extension().string()) + " files cannot be " + verb, path.string(),
                 allowed);
@@ -329,6 +338,7 @@ ReadResult read_mesh(const std::filesystem::path& path, const ReadOptions& optio
     if (!format.times) std::ignore = chosen_step(options, 1, path.string(), none);
     ReadOptions resolved = options;
     resolved.cell_values = resolved_cell_values(format, options.cell_values);
+    if (options.time && !options.step && format.times) resolved.step = nearest_step(open_series(path), *options.time);
     ReadResult result = format.read(path, resolved);
     if (const MeshFormat* named = format_with(path.extension().string()); named && named != &format) {
         result.warnings.insert(result.warnings.begin(), "the contents are those of " + std::string(format.name) +
@@ -341,8 +351,9 @@ ReadResult read_mesh(const std::filesystem::path& path, const ReadOptions& optio
     if (format.times) {
         const std::vector<double> times = format.times(path);
         result.steps = std::max<std::size_t>(times.size(), 1);
-        result.step = options.step.value_or(result.steps - 1);
+        result.step = resolved.step.value_or(result.steps - 1);
         if (result.steps > 1) result.mesh.time = times[result.step];
+        warn_of_time_beyond(options.time, times, result);
     }
     return result;
 }

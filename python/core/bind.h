@@ -19,6 +19,7 @@
 #include "subvol/mesh_sets.h"
 #include "subvol/optics.h"
 #include "subvol/option.h"
+#include "subvol/picture_look.h"
 #include "subvol/progress.h"
 #include "subvol/refine.h"
 #include "subvol/refine_mixed.h"
@@ -114,6 +115,12 @@ void describe(py::module_& module, const char* call, const std::vector<Option>& 
               const std::vector<std::string>& besides = {});
 /// The options of a scheme and others; the error for a scheme of tetrahedra says what to do.
 [[nodiscard]] std::vector<Option> scheme_and(SchemeOptions& scheme, std::vector<Option> others = {});
+
+/// The look of a picture and its colours.
+struct PictureLight {
+    LookOptions options;
+    Optics optics;
+};
 
 /// A scheme of hexahedra, or of tetrahedra. rules: all but its kind
 struct GivenScheme {

@@ -11,6 +11,7 @@
 #include "subvol/legend.h"
 #include "subvol/picture_look.h"
 #include "subvol/transfer_function.h"
+#include "subvol/view_options.h"
 
 namespace subvol::python {
 namespace {
@@ -57,7 +58,7 @@ Box box_of(const py::object& bounds) {
     return {corners[0], corners[1]};
 }
 
-std::string camera_text(const Camera& camera) {
+std::string repr_of(const Camera& camera) {
     return py::str("<subvol.Camera: eye {}, target {}, {}>")
         .format(as_tuple(camera.eye), as_tuple(camera.target),
                 camera.ortho_height > 0 ? py::str("{} high").format(camera.ortho_height)
@@ -95,51 +96,59 @@ py::bytes png_of(const Picture& picture, const py::object& background) {
     return py::module_::import("subvol._png").attr("encode")(bytes, picture.image.width, picture.image.height);
 }
 
-/// What pictures of a look are without options, as the command has it.
-void bind_default_looks(py::module_& module) {
-    py::enum_<Look>(module, "Look")
-        .value("solid", Look::Solid)
-        .value("volume", Look::Volume)
-        .value("xray", Look::Xray)
-        .value("isosurface", Look::Isosurface);
-    module.def(
-        "look_named", [](const std::string& name) { return named<Look>(name, "look"); }, py::arg("name"));
-    module.def(
-        "look_colors", [](Look look) { return subvol::colors_of(LookOptions{.look = look}); }, py::arg("look"));
-    module.def(
-        "look_background", [](Look look) { return as_tuple(subvol::background_of(look)); }, py::arg("look"));
-    module.def(
-        "look_opacity_unit", [](Look look, const py::object& bounds) { return opacity_unit_of(look, box_of(bounds)); },
-        py::arg("look"), py::arg("bounds"));
-    module.def(
-        "solid",
-        [](TransferFunction knots, bool keep_opacity, bool plain) {
-            const auto opacity = knots.opacity;
-            make_solid(knots, plain);
-            if (keep_opacity) knots.opacity = opacity;
-            return knots;
-        },
-        py::arg("knots"), py::arg("keep_opacity"), py::arg("plain"));
+using Pair = std::pair<double, double>;
+
+/// The look and the colours of a picture, as the command has them.
+///
+/// given:  the keywords of `LookChoices`
+/// map:    None, or a function of the ends of a range: the Knots of a TransferFunction
+/// shown:  the range of the field that gives the opacities; colors: of the one that gives the colours
+PictureLight light_of(const py::dict& given, const py::object& map, bool own_opacity, bool has_boundary, const Pair& shown,
+                      const Pair& colors, const py::object& bounds) {
+    LookChoices choices;
+    set_options(options_of(choices), given);
+    const ValueRange field{.min = shown.first, .max = shown.second}, of_colors{.min = colors.first, .max = colors.second};
+    const Box box = box_of(bounds);
+    if (!map.is_none() && (choices.range || choices.opacity)) {
+        throw Error(ErrorCode::InvalidInput, "has no effect with a TransferFunction, which has its own",
+                    choices.range ? "range" : "opacity", "the name of a colour map for tf");
+    }
+    const bool plain_body = has_boundary && map.is_none();
+    LookOptions options = look_options(choices, chosen_look(choices, plain_body), field);
+    if (map.is_none()) return {options, picture_optics(options, box, field, of_colors)};
+    auto knots = map(field.min, field.max).cast<TransferFunction>();
+    knots.color = map(of_colors.min, of_colors.max).cast<TransferFunction>().color;
+    if (own_opacity) options.opacity = knots.opacity;
+    return {options, picture_optics(std::move(knots), options, box, field, of_colors)};
+}
+
+/// The camera of the keywords of `ViewOptions`; a named view frames what is visible of the body.
+///
+/// mesh, kernels: what is drawn; null: something else, whose bounds are framed
+Camera camera_for(const PictureLight& light, const py::dict& given, const std::pair<int, int>& size, const HexMesh* mesh,
+                  const RbfVolume* kernels, const py::object& bounds) {
+    ViewOptions options;
+    set_options(options_of(options), given);
+    std::vector<Vec3> points;
+    if (mesh != nullptr) points = framed_points(*mesh, light.options.look, light.optics);
+    if (kernels != nullptr && light.options.look == Look::Solid) points = detail::outline_of(*kernels);
+    return find_camera(options, box_of(bounds), points, static_cast<double>(size.first) / size.second);
+}
+
+/// The look and the camera of a picture.
+void bind_light(py::module_& module) {
+    py::class_<PictureLight>(module, "PictureLight", "The look of a picture and its colours.")
+        .def(py::init(&light_of), py::arg("given"), py::arg("map"), py::arg("own_opacity"), py::arg("has_boundary"),
+             py::arg("shown"), py::arg("colors"), py::arg("bounds"))
+        .def_property_readonly("knots", [](const PictureLight& light) { return light.optics.function(); })
+        .def_property_readonly("opacity_unit", [](const PictureLight& light) { return light.optics.opacity_unit(); })
+        .def_property_readonly("look", [](const PictureLight& light) { return std::string(name_of(light.options.look)); })
+        .def_property_readonly("background",
+                               [](const PictureLight& light) { return as_tuple(subvol::background_of(light.options.look)); })
+        .def("camera", &camera_for, py::arg("given"), py::arg("size"), py::arg("mesh").none(true),
+             py::arg("kernels").none(true), py::arg("bounds"));
     module.def(
         "frame_of", [](const RbfVolume& volume) { return as_array(detail::frame_of(volume)); }, py::arg("volume"));
-    module.def(
-        "outline_of",
-        [](const RbfVolume& volume) {
-            std::vector<double> rows;
-            for (const Vec3& p : detail::outline_of(volume)) rows.insert(rows.end(), {p.x, p.y, p.z});
-            const std::size_t count = rows.size() / 3;
-            return owned(std::move(rows), {length(count), 3});
-        },
-        py::arg("volume"));
-    module.def(
-        "framed_points",
-        [](const HexMesh& mesh, Look look, const TransferFunction& knots, double opacity_unit) {
-            const std::vector<Vec3> points = framed_points(mesh, look, Optics(knots, opacity_unit));
-            std::vector<double> rows;
-            for (const Vec3& p : points) rows.insert(rows.end(), {p.x, p.y, p.z});
-            return owned(std::move(rows), {length(points.size()), 3});
-        },
-        py::arg("mesh"), py::arg("look"), py::arg("knots"), py::arg("opacity_unit"));
 }
 
 py::tuple window_tuple(const PixelWindow& window) {
@@ -297,14 +306,15 @@ void bind_look(py::module_& module) {
                 return turntable(c, vector_of(center, "center"), frames);
             },
             py::arg("center"), py::arg("frames"))
-        .def("__repr__", &camera_text)
+        .def_property_readonly("text", &subvol::camera_text)
+        .def("__repr__", &repr_of)
         .def(py::pickle(
             [](const Camera& c) {
                 return py::make_tuple(as_tuple(c.eye), as_tuple(c.target), as_tuple(c.up), c.fovy_deg, c.ortho_height);
             },
             [](const py::tuple& s) { return camera_of(s[0], s[1], s[2], s[3].cast<double>(), s[4].cast<double>()); }));
     module.attr("largest_side") = detail::kMostSide;
-    bind_default_looks(module);
+    bind_light(module);
     bind_image(module);
 }
 

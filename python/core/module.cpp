@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "bind.h"
+#include "given_grids.h"
 #include "subvol/scheme.h"
 #include "subvol/version.h"
 #include "uninitialised.h"
@@ -58,14 +59,6 @@ void set_threads(int threads) {
 
 }  // namespace
 
-Scheme scheme_named(const std::string& name) {
-    if (!find_named<Scheme>(name) && find_named<TetScheme>(name)) {
-        throw Error(ErrorCode::InvalidInput, "'" + name + "' refines tetrahedra, and this call has hexahedra only", "scheme",
-                    "scheme='linear' of subdivide(mesh, 2, '" + name + "', on_limit=True)");
-    }
-    return named<Scheme>(name, "scheme");
-}
-
 RefineOptions refine_options(const std::string& scheme, int levels, double tension, const std::optional<double>& crease_angle) {
     const SchemeOptions rules{.kind = scheme_named(scheme), .tension = tension, .crease_angle_deg = crease_angle};
     check_options(rules);
@@ -89,5 +82,7 @@ PYBIND11_MODULE(_core, module) {
     bind_compare(module);
     bind_page(module);
     bind_studies(module);
+    GivenGrids given;
+    for (const char* call : {"rasterize", "write_vdb"}) describe(module, call, options_of(given));
     refuse_uninitialised(module);
 }

@@ -5,6 +5,7 @@
 #include <set>
 
 #include "bind.h"
+#include "subvol/detail/number_text.h"
 #include "subvol/option.h"
 
 namespace subvol::python {
@@ -34,6 +35,9 @@ struct SetValue {
     void operator()(std::optional<std::string>* words) const { *words = value_as<std::string>(given, key, "text"); }
     /// A dictionary is the definition of a kernel.
     void operator()(const WordValue& word) const {
+        if (word.numbers && !py::isinstance<py::str>(given)) {
+            return word.set(detail::exact_text(value_as<double>(given, key, "a number or text")), key);
+        }
         const bool defines = py::hasattr(given, "keys");
         const py::object text = defines ? py::module_::import("json").attr("dumps")(py::dict(given.attr("items")()))
                                         : py::reinterpret_borrow<py::object>(given);
@@ -65,7 +69,9 @@ struct TypeName {
     std::string operator()(const std::string*) const { return "str"; }
     std::string operator()(const std::vector<std::string>*) const { return "Sequence[str]"; }
     std::string operator()(const std::optional<std::string>*) const { return "Optional[str]"; }
-    std::string operator()(const WordValue&) const { return option.words.empty() ? "Kernel" : "str"; }
+    std::string operator()(const WordValue& word) const {
+        return word.numbers ? "Union[float, str]" : option.words.empty() ? "Kernel" : "str";
+    }
     std::string operator()(const NumbersValue&) const { return "Optional[npt.ArrayLike]"; }
     template <class Number>
     std::string operator()(const Number*) const {
@@ -136,6 +142,14 @@ void describe(py::module_& module, const char* call, const std::vector<Option>& 
                                   option.meaning(OptionNames::Keywords), conditions_of(option, has)));
     }
     module.attr("keywords")[call] = all;
+}
+
+Scheme scheme_named(const std::string& name) {
+    if (!find_named<Scheme>(name) && find_named<TetScheme>(name)) {
+        throw Error(ErrorCode::InvalidInput, "'" + name + "' refines tetrahedra, and this call has hexahedra only", "scheme",
+                    "scheme='linear' of subdivide(mesh, 2, '" + name + "', on_limit=True)");
+    }
+    return named<Scheme>(name, "scheme");
 }
 
 std::vector<Option> scheme_and(SchemeOptions& scheme, std::vector<Option> others) {

@@ -3,8 +3,12 @@
 
 #include <pybind11/stl/filesystem.h>
 
+#include <algorithm>
+#include <iterator>
+
 #include "bind.h"
 #include "subvol/detail/atomic_file.h"
+#include "subvol/view_options.h"
 
 namespace subvol::python {
 namespace {
@@ -37,9 +41,24 @@ py::tuple page(const RbfVolume& volume, const BoundaryValues& skin, const Transf
     return py::make_tuple(made.html, report);
 }
 
+/// The keywords of page() that the library describes.
+struct GivenPage {
+    LookChoices look{};
+    ViewOptions eye{};
+};
+
+std::vector<Option> options_of(GivenPage& given) {
+    std::vector<Option> all = options_of(given.look);
+    std::ranges::move(options_of(given.eye), std::back_inserter(all));
+    std::erase_if(all, [](const Option& option) { return option.name == "size" || option.name == "turntable"; });
+    return all;
+}
+
 }  // namespace
 
 void bind_page(py::module_& module) {
+    GivenPage given;
+    describe(module, "page", options_of(given));
     module.def("page", &page, py::arg("volume"), py::arg("skin"), py::arg("function"), py::arg("unit"), py::arg("low"),
                py::arg("high"), py::arg("look"), py::arg("camera"), py::arg("opacity_unit"), py::arg("background"),
                py::arg("title"), py::arg("source"), py::arg("max_bytes"), py::arg("progress"));

@@ -7,22 +7,22 @@
 #include "subvol/boundary_values.h"
 #include "subvol/gl_device.h"
 #include "subvol/picture_maker.h"
+#include "subvol/view_options.h"
 #include "subvol/voxels.h"
 
 namespace subvol::python {
 namespace {
 
-/// The look of a picture, its colours, and whether the opacities are those that the look has by itself.
-struct PictureLight {
-    Look look;
-    Optics optics;
-    bool own_opacity;
+/// What the keywords of render() choose; light and camera have been made of theirs.
+struct GivenPicture : PictureSettings {
+    LookChoices look{};
+    ViewOptions eye{};
 };
 
-/// What the keywords of render() choose. look: as Python has settled it; here for what has no effect with it
-struct GivenPicture : PictureSettings {
-    LookOptions look{};
-};
+/// Python has sizes as pairs, and turntables as lists of cameras.
+bool of_one_picture(const std::string& option) {
+    return option != "size" && option != "turntable";
+}
 
 std::vector<Option> options_of(GivenPicture& given) {
     std::vector<Option> all = options_of(static_cast<PictureSettings&>(given));
@@ -32,9 +32,8 @@ std::vector<Option> options_of(GivenPicture& given) {
         const auto use = std::ranges::find(uses, option.name, &OptionUse::name);
         return use == uses.end() || use->keyword.empty();
     });
-    for (const Option& option : options_of(given.look)) {
-        if (option.name == "look" || option.name == "opacity-unit") all.push_back(option);
-    }
+    std::ranges::move(options_of(given.look), std::back_inserter(all));
+    std::ranges::copy_if(options_of(given.eye), std::back_inserter(all), &of_one_picture, &Option::name);
     return all;
 }
 
@@ -43,8 +42,7 @@ MethodOptions method_options(Method method, const PictureLight& light, const py:
     set_options(options_of(given), keywords);
     MethodOptions options = given.chosen();
     options.style.method = method;
-    options.style.look.look = light.look;
-    if (light.own_opacity) options.style.look.opacity = light.optics.function().opacity;
+    options.style.look = light.options;
     return options;
 }
 
@@ -136,11 +134,6 @@ void bind_render(py::module_& module) {
              py::arg("points").none(true) = py::none(), py::arg("channels") = std::vector<std::size_t>{},
              py::arg("voxels").none(true) = py::none(), py::keep_alive<1, 2>(), py::keep_alive<1, 3>(), py::keep_alive<1, 4>(),
              py::keep_alive<1, 6>());
-    py::class_<PictureLight>(module, "PictureLight", "The look of a picture and its colours.")
-        .def(py::init([](Look look, const TransferFunction& knots, double unit_world, bool own_opacity) {
-                 return PictureLight{look, Optics(knots, unit_world), own_opacity};
-             }),
-             py::arg("look"), py::arg("knots"), py::arg("opacity_unit"), py::arg("own_opacity"));
     module.def(
         "render",
         [](const DrawnBody& body, const std::string& method, const Camera& camera, const std::pair<int, int>& size,

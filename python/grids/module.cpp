@@ -3,9 +3,11 @@
 // subvol._core, which pybind11 knows by the names of their C++ types.
 #include <algorithm>
 #include <limits>
+#include <numeric>
 #include <set>
 
 #include "bind.h"
+#include "given_grids.h"
 #include "subvol/nanovdb.h"
 #include "subvol/rasterize.h"
 #include "subvol/vdb_grid.h"
@@ -68,50 +70,46 @@ py::object written_or_made(std::vector<VdbGrid> grids, const std::optional<std::
 
 /// Grids of a mesh: of its limit, or of a level.
 ///
-/// levels: None: the limit
-/// path:   None: the grids are returned; else they are written, and their reports are returned
-py::tuple rasterize_mesh(const HexMesh& mesh, const std::vector<std::string>& fields, double voxel_size,
-                         const std::string& scheme, double tension, const std::optional<double>& crease_angle,
-                         const std::optional<int>& levels, bool half, bool mask, const std::optional<std::string>& sdf,
-                         const std::optional<std::string>& path, bool nano, const py::object& progress) {
-    RefineOptions refinement{
-        .scheme = {.kind = named<Scheme>(scheme, "scheme"), .tension = tension, .crease_angle_deg = crease_angle},
-        .levels = levels.value_or(0)};
+/// path: None: the grids are returned; else they are written, and their reports are returned
+py::tuple rasterize_mesh(const HexMesh& mesh, const std::vector<std::string>& fields, const std::optional<std::string>& path,
+                         bool nano, const py::object& progress, const py::kwargs& keywords) {
+    GivenGrids given;
+    set_options(options_of(given), keywords);
+    RasterizeOptions options = given.chosen();
+    options.on_limit = !interpolates(given.scheme.kind);
     LimitCells limit;
     std::vector<VdbGrid> grids = result_of(progress, [&](Progress* listener) {
-        refinement.progress = listener;
-        check_voxels(mesh, {.voxel_size_world = voxel_size});
-        if (!levels) limit = limit_for_voxels(mesh, refinement, voxel_size);
-        RasterizeOptions options{.voxel_size_world = voxel_size,
-                                 .refine = refinement,
-                                 .on_limit = !interpolates(refinement.scheme.kind),
-                                 .limit = levels ? nullptr : &limit,
-                                 .half = half,
-                                 .mask = mask,
-                                 .metadata = {{"subvol_from", "mesh"},
-                                              {"subvol_version", SUBVOL_VERSION},
-                                              {"subvol_scheme", scheme},
-                                              {"subvol_level", std::to_string(levels ? *levels : finest_level(limit))}},
-                                 .progress = listener};
-        if (sdf) options.level_set = LevelSetOptions{.name = *sdf};
+        options.progress = options.refine.progress = listener;
+        check_voxels(mesh, options);
+        options.voxel_size_world = voxel_size_of(bounds(mesh), options);
+        if (!given.levels) {
+            limit = limit_for_voxels(mesh, options.refine, options.voxel_size_world);
+            options.limit = &limit;
+        }
+        options.metadata = {{"subvol_from", "mesh"},
+                            {"subvol_version", SUBVOL_VERSION},
+                            {"subvol_scheme", std::string(name_of(given.scheme.kind))},
+                            {"subvol_level", std::to_string(given.levels ? *given.levels : finest_level(limit))}};
         std::vector<VdbGrid> made = rasterize(mesh, fields, options);
         if (path) write_files(*path, made, nano);
         return made;
     });
     return py::make_tuple(written_or_made(std::move(grids), path),
-                          levels ? py::object(py::none()) : py::object(py::float_(limit.value_of_range)),
-                          levels || limit.converged);
+                          given.levels ? py::object(py::none()) : py::object(py::float_(limit.value_of_range)),
+                          given.levels || limit.converged);
 }
 
-py::object rasterize_volume(const RbfVolume& volume, double voxel_size, bool half, const std::optional<std::string>& path,
-                            bool nano, const py::object& progress) {
+py::object rasterize_volume(const RbfVolume& volume, const std::optional<std::string>& path, bool nano,
+                            const py::object& progress, const py::kwargs& keywords) {
+    GivenGrids given;
+    set_options(options_of(given), keywords);
+    RasterizeOptions options = given.chosen();
+    options.metadata = {{"subvol_from", "points"}, {"subvol_version", SUBVOL_VERSION}};
     std::vector<std::size_t> channels(volume.channels.size());
-    for (std::size_t c = 0; c < channels.size(); ++c) channels[c] = c;
+    std::iota(channels.begin(), channels.end(), std::size_t{0});
     std::vector<VdbGrid> grids = result_of(progress, [&](Progress* listener) {
-        const RasterizeOptions options{.voxel_size_world = voxel_size,
-                                       .half = half,
-                                       .metadata = {{"subvol_from", "points"}, {"subvol_version", SUBVOL_VERSION}},
-                                       .progress = listener};
+        options.progress = listener;
+        options.voxel_size_world = voxel_size_of(volume.bounds, options);
         std::vector<VdbGrid> made = rasterize_points(volume, channels, options);
         if (path) write_files(*path, made, nano);
         return made;
@@ -179,11 +177,9 @@ PYBIND11_MODULE(_grids, module) {
             return "<subvol.Grid: " + grid.report().name + ", " + std::to_string(grid.report().active_voxels) +
                    " active voxels>";
         });
-    module.def("rasterize", &rasterize_mesh, py::arg("mesh"), py::arg("fields"), py::arg("voxel_size"), py::arg("scheme"),
-               py::arg("tension"), py::arg("crease_angle"), py::arg("levels"), py::arg("half"), py::arg("mask"), py::arg("sdf"),
-               py::arg("path"), py::arg("nano"), py::arg("progress"));
-    module.def("rasterize_points", &rasterize_volume, py::arg("volume"), py::arg("voxel_size"), py::arg("half"),
-               py::arg("path"), py::arg("nano"), py::arg("progress"));
+    module.def("rasterize", &rasterize_mesh, py::arg("mesh"), py::arg("fields"), py::arg("path"), py::arg("nano"),
+               py::arg("progress"));
+    module.def("rasterize_points", &rasterize_volume, py::arg("volume"), py::arg("path"), py::arg("nano"), py::arg("progress"));
     module.def("write", &write_grids, py::arg("path"), py::arg("grids"), py::arg("nano"));
     module.def(
         "read_vdb", [](const std::string& path) { return shared(read_vdb(path)); }, py::arg("path"),

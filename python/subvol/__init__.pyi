@@ -12,11 +12,11 @@ from ._exchange import from_meshio, from_pyvista, to_meshio, to_pyvista
 from ._fields import LimitSamples, as_field, evaluate
 from ._measure import FoldCheck, PointsError, ProbeSamples, Slice, SurfaceMesh
 from ._mesh import Series, model, models, only, open_series, quantity, warp, write_mesh, write_wavelets
-from ._page import Page, page
+from ._page import Page
 from ._pictures import FieldComparison, ImageComparison, compare, compare_fields, compare_images, read_image, write_image
 from ._points import kernels, read_points
 from ._studies import run_study, studies, study
-from ._vdb import Grid, rasterize, read_vdb, sample_grid, write_vdb
+from ._vdb import Grid, read_vdb, sample_grid
 from ._arguments import Kernel, Path
 from ._pictures import Drawable
 from ._progress import Progress
@@ -94,6 +94,39 @@ def measure(
     bins:        intervals of the histogram [1 to 100000]
     """
 
+def page(
+    mesh: HexMesh, field: Optional[str] = None, *, per_edge: int = 1, camera: Union[None, str, Camera] = None,
+    tf: Union[None, str, TransferFunction] = None, title: str = '', unit: str = '', max_bytes: int = 24000000,
+    scheme: str = 'mcq', look: Optional[str] = None, opacity_unit: Optional[float] = None, clamp: bool = False,
+    range: Optional[str] = None, opacity: Optional[str] = None, view: str = 'iso', fit: bool = False,
+    ortho: bool = False, progress: Progress = None
+) -> Page:
+    """A page of a field of a mesh: as `subvol page`.
+
+    unit:        of the field, for the legend
+    max_bytes:   kernels are rounded, then merged, until the page fits
+    tf may also be a TransferFunction, camera a Camera. The look isosurface is not drawn in pages.
+    look:        solid (opaque and lit; the default for meshes without tf, range, opacity and opacity_unit), volume (opacity
+                 0 to .5 over the range, black behind; otherwise the default), xray (on white) or isosurface (five lit
+                 surfaces) [solid, volume, xray, isosurface]
+    tf:          colour map: viridis (default), plasma, inferno, cividis, turbo, coolwarm, grey, bone, xray, isosurface,
+                 surface or constant over the field's range, or a ParaView colour-map JSON file (FILE.json:NAME for one of
+                 several in it) [viridis, plasma, inferno, cividis, turbo, coolwarm, grey, bone, xray, isosurface, surface,
+                 constant]
+    opacity_unit: the world distance over which an opacity acts (default: 1/100 of the bounding box's diagonal) [more than
+                 0]
+    clamp:       show values beyond the field's range, where interpolating schemes overshoot, as its ends
+    range:       the range that the colour map and the percentages of opacity cover: MIN,MAX, per cents of the field's range
+                 such as 10%,90%, or field (default: the field's range; a map from a file keeps its own values)
+    opacity:     opacities instead of those of tf, linear in between: at values of the field or per cent of its range, such
+                 as 0%:0,50%:.2,100%:.9
+    camera:      ex,ey,ez,tx,ty,tz,ux,uy,uz,fovy (eye, target, up, vertical field of view in degrees), or a JSON file with
+                 eye, target, up, fovy_deg or ortho_height
+    view:        the side to look from: +x -x +y -y +z -z iso [+x, -x, +y, -y, +z, -z, iso; not with camera]
+    fit:         move the camera along its line of sight until the whole box is in the picture
+    ortho:       use an orthographic camera, as high as the box needs or as the JSON file's ortho_height
+    """
+
 def points_error(
     volume: RbfVolume, mesh: HexMesh, field: Optional[str] = None, *, channel: int = 0, scheme: str = 'mcq',
     tension: float = 0.0625, crease_angle: Optional[float] = None, progress: Progress = None
@@ -125,9 +158,34 @@ def probe(
     reach:       places outside, at most this far from the boundary, get the values of its nearest point [0 or more]
     """
 
+def rasterize(
+    what: Union[HexMesh, RbfVolume], *, fields: Optional[Sequence[str]] = None, scheme: str = 'mcq',
+    tension: float = 0.0625, crease_angle: Optional[float] = None, voxel_size: Optional[float] = None,
+    resolution: int = 200, half: bool = False, cell_ids: bool = False, mask: bool = False, coverage: bool = False,
+    levels: Optional[int] = None, sdf: Optional[str] = None, half_width: float = 3.0, progress: Progress = None
+) -> list[Grid]:
+    """The grids that `write_vdb` writes, in memory.
+
+    fields:      scalars become grids of floats, vectors grids of vectors; None: the most sensible scalar, said in a warning
+    scheme:      mcq (smooth, through the control points), cc (Catmull-Clark), bsxw (Bajaj-Schaefer-Warren-Xu), linear [mcq,
+                 cc, bsxw, linear]
+    tension:     of mcq: 0 is linear; 1/16 reproduces cubics [0 to 0.125; with scheme='mcq']
+    crease_angle: keep boundary edges sharp that bend by more than this, in degrees (tetoct, boxspline: 60) [0 to 180]
+    voxel_size:  edge of a voxel in world units [more than 0]
+    resolution:  voxels along the longest side of the bounding box [1 to 1048576; not with voxel_size]
+    half:        store floats in 16 bits
+    cell_ids:    also write a grid: the number of the control cell
+    mask:        also write a grid: a mask of the volume
+    coverage:    also write a grid: the part of each voxel that the volume fills
+    levels:      the trilinear cells of this level instead of the limit [0 to 10]
+    sdf:         also write a level set, named NAME or sdf: the distance to the boundary, negative inside, in a narrow band
+    half_width:  the band's reach to either side, in voxels [1 to 1000; with sdf]
+    """
+
 def read_mesh(
-    path: Path, *, other_cells: str = 'split', weld: Optional[float] = None, cell_values: str = 'auto',
-    patch_values: str = 'meet', step: Optional[int] = None, blocks: Sequence[str] = (), sharp: Sequence[str] = ()
+    path: Path, *, other_cells: str = 'split', weld: Optional[float] = None, curved: Union[float, str] = '5e-06',
+    cell_values: str = 'auto', step: Optional[int] = None, time: Optional[float] = None, blocks: Sequence[str] = (),
+    sharp: Sequence[str] = ()
 ) -> HexMesh:
     """Reads a mesh. The contents and the extension decide the format; docs/formats.md has the list. Formats that the library does not
     read but meshio does (MED, Nastran, SU2, FLAC3D and others) are read by meshio, without their sets and steps.
@@ -138,6 +196,8 @@ def read_mesh(
     other_cells: what to do with tetrahedra, prisms and pyramids: split (all cells, into hexahedra), ignore, refuse [split,
                  ignore, refuse]
     weld:        join points of a file whose distance is at most D; 0: those at the same place [0 or more]
+    curved:      split curved hexahedra into smaller ones, to within this part T of the mesh's size from their true shape,
+                 and 400 T of the fields' ranges; corners: use nothing but their corners [corners]
     cell_values: values at cells become values at points: fit (the volume follows the cells' means without waves; the
                  default for OpenFOAM), mean (of the cells around each point; the default for all others), exact (the volume
                  has the cells' means), auto [auto, fit, mean, exact]
@@ -145,6 +205,7 @@ def read_mesh(
                  normal (vectors at walls get only the component along the normal: integrals over the volume hardly change),
                  ignore [meet, normal, ignore]
     step:        a step of a series, from 0 (default: the last one) [0 to 1000000000]
+    time:        the step of a series whose time is nearest to this [not with step]
     blocks:      the named parts of the mesh to read (info lists them; default: all)
     sharp:       a group of the file whose faces inside the mesh and edges are kept sharp: a physical group of Gmsh by its
                  name or number, a reference of MEDIT, or Ridges (repeatable)
@@ -172,9 +233,8 @@ def reduce(
     """
 
 def render(
-    what: Drawable, *, method: str = 'splat', view: str = 'iso', camera: Union[None, str, Camera] = None,
-    ortho: bool = False, size: tuple[int, int] = (512, 512), field: Optional[str] = None,
-    tf: Union[None, str, TransferFunction] = None, look: Optional[str] = None, opacity_unit: Optional[float] = None,
+    what: Drawable, *, method: str = 'splat', camera: Union[None, str, Camera] = None,
+    size: tuple[int, int] = (512, 512), field: Optional[str] = None, tf: Union[None, str, TransferFunction] = None,
     scheme: str = 'mcq', tension: float = 0.0625, crease_angle: Optional[float] = None, levels: Optional[int] = None,
     per_edge: int = 1, spacing: float = 0.0, tolerance: float = 0.0, centers: bool = False, values: str = 'scheme',
     kernel: Kernel = 'compact', value_kernel: Kernel = 'paper_bc', correction: str = 'second', backend: str = 'auto',
@@ -182,7 +242,9 @@ def render(
     samples: Optional[int] = None, image_tolerance: Optional[float] = None, order: str = 'topological',
     kbuffer: int = 6, lod: Optional[float] = None, seconds: Optional[float] = None, shade: bool = False,
     color_field: Optional[str] = None, clip: Optional[npt.ArrayLike] = None, clip_box: Optional[npt.ArrayLike] = None,
-    slice: Optional[npt.ArrayLike] = None, around: bool = False, progress: Progress = None
+    slice: Optional[npt.ArrayLike] = None, around: bool = False, look: Optional[str] = None,
+    opacity_unit: Optional[float] = None, clamp: bool = False, range: Optional[str] = None,
+    opacity: Optional[str] = None, view: str = 'iso', fit: bool = False, ortho: bool = False, progress: Progress = None
 ) -> Image:
     """Draws a mesh, points or a grid: the picture of `subvol render` with the same options, bit for bit.
 
@@ -191,10 +253,8 @@ def render(
     method:      "splat" (kernels), "sheets" (the same by OpenGL sheet buffers), "footprints" (kernels coloured first, as
                  Westover did), "tets" (rays through tetrahedra), "pt" (tetrahedra projected by OpenGL), "dense" (rays through the
                  limit's cells), "grid" (rays through voxels)
-    view:        the side to look from: +x -x +y -y +z -z iso
-    camera:      instead: a Camera, or text as of --camera
     size:        width and height in pixels
-    tf:          a TransferFunction or its name; None: viridis over the field's range
+    field:       what is drawn; tf may also be a TransferFunction, camera a Camera
     scheme:      mcq (smooth, through the control points), cc (Catmull-Clark), bsxw (Bajaj-Schaefer-Warren-Xu), linear [mcq,
                  cc, bsxw, linear]
     tension:     of mcq: 0 is linear; 1/16 reproduces cubics [0 to 0.125; with scheme='mcq']
@@ -240,11 +300,25 @@ def render(
     slice:       draw the volume on this plane alone, opaque and in the colours of its values: a point and the normal
                  (repeatable)
     around:      draw the volume around the slices too, as look says [with slice]
-    look:        solid (opaque and lit; the default for meshes without tf, opacity and opacity_unit), volume (opacity 0 to
-                 .5 over the range, black behind; otherwise the default), xray (on white) or isosurface (five lit surfaces)
-                 [solid, volume, xray, isosurface]
+    look:        solid (opaque and lit; the default for meshes without tf, range, opacity and opacity_unit), volume (opacity
+                 0 to .5 over the range, black behind; otherwise the default), xray (on white) or isosurface (five lit
+                 surfaces) [solid, volume, xray, isosurface]
+    tf:          colour map: viridis (default), plasma, inferno, cividis, turbo, coolwarm, grey, bone, xray, isosurface,
+                 surface or constant over the field's range, or a ParaView colour-map JSON file (FILE.json:NAME for one of
+                 several in it) [viridis, plasma, inferno, cividis, turbo, coolwarm, grey, bone, xray, isosurface, surface,
+                 constant]
     opacity_unit: the world distance over which an opacity acts (default: 1/100 of the bounding box's diagonal) [more than
                  0]
+    clamp:       show values beyond the field's range, where interpolating schemes overshoot, as its ends
+    range:       the range that the colour map and the percentages of opacity cover: MIN,MAX, per cents of the field's range
+                 such as 10%,90%, or field (default: the field's range; a map from a file keeps its own values)
+    opacity:     opacities instead of those of tf, linear in between: at values of the field or per cent of its range, such
+                 as 0%:0,50%:.2,100%:.9
+    camera:      ex,ey,ez,tx,ty,tz,ux,uy,uz,fovy (eye, target, up, vertical field of view in degrees), or a JSON file with
+                 eye, target, up, fovy_deg or ortho_height
+    view:        the side to look from: +x -x +y -y +z -z iso [+x, -x, +y, -y, +z, -z, iso; not with camera]
+    fit:         move the camera along its line of sight until the whole box is in the picture
+    ortho:       use an orthographic camera, as high as the box needs or as the JSON file's ortho_height
 
     Cuts are rows of six numbers, each a list or an array. Returns an Image: `numpy.asarray(image)` is (height, width, 4) float32,
     linear, premultiplied, without a copy. Its `report` has counts and seconds.
@@ -345,6 +419,34 @@ def write_points(
     ascii:       .ply: write text instead of binary numbers
     splats:      .ply: also for viewers of Gaussian splats; the boundary is then in a file beside it
     up:          with splats: the axis that these viewers show at the top: x, y or z [x, y, z; with splats]
+    """
+
+def write_vdb(
+    what: Union[HexMesh, RbfVolume, Grid, Sequence[Grid]], path: Path, *, fields: Optional[Sequence[str]] = None,
+    nano: bool = False, scheme: str = 'mcq', tension: float = 0.0625, crease_angle: Optional[float] = None,
+    voxel_size: Optional[float] = None, resolution: int = 200, half: bool = False, cell_ids: bool = False,
+    mask: bool = False, coverage: bool = False, levels: Optional[int] = None, sdf: Optional[str] = None,
+    half_width: float = 3.0, progress: Progress = None
+) -> list[dict[str, Any]]:
+    """Writes the limit of a mesh, sums of kernels, or grids as `.vdb`: cubic voxels, values at their centres, active inside the volume.
+
+    fields:      scalars become grids of floats, vectors grids of vectors; None: the most sensible scalar, said in a warning
+    nano:        also writes `.nvdb`
+    scheme:      mcq (smooth, through the control points), cc (Catmull-Clark), bsxw (Bajaj-Schaefer-Warren-Xu), linear [mcq,
+                 cc, bsxw, linear]
+    tension:     of mcq: 0 is linear; 1/16 reproduces cubics [0 to 0.125; with scheme='mcq']
+    crease_angle: keep boundary edges sharp that bend by more than this, in degrees (tetoct, boxspline: 60) [0 to 180]
+    voxel_size:  edge of a voxel in world units [more than 0]
+    resolution:  voxels along the longest side of the bounding box [1 to 1048576; not with voxel_size]
+    half:        store floats in 16 bits
+    cell_ids:    also write a grid: the number of the control cell
+    mask:        also write a grid: a mask of the volume
+    coverage:    also write a grid: the part of each voxel that the volume fills
+    levels:      the trilinear cells of this level instead of the limit [0 to 10]
+    sdf:         also write a level set, named NAME or sdf: the distance to the boundary, negative inside, in a narrow band
+    half_width:  the band's reach to either side, in voxels [1 to 1000; with sdf]
+
+    Returns the grids' reports: name, kind, active_voxels, voxel_size, min, max, bytes. The file appears whole or not at all.
     """
 
 __all__ = [

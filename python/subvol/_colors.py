@@ -10,8 +10,7 @@ import numpy.typing as npt
 
 from . import _core
 from ._arguments import Path, path_bytes
-from ._core import Camera
-from ._errors import InvalidInput
+from ._core import Camera, HexMesh, RbfVolume
 
 
 class TransferFunction:
@@ -84,38 +83,21 @@ def _range_of(values: npt.NDArray[Any]) -> tuple[float, float]:
     return float(values.min()), float(values.max())
 
 
-def _look_of(look: Optional[str], body: bool, tf: Any, opacity_unit: Optional[float]) -> _core.Look:
-    """The look that is asked for; without one that of a body, or of a volume. body: it has a boundary, and nothing says otherwise"""
-    if look is None:
-        look = "solid" if body and tf is None and opacity_unit is None else "volume"
-    return _core.look_named(look)
+def _light_of(given: dict[str, Any], tf: Union[None, str, TransferFunction], has_boundary: bool, shown: tuple[float, float],
+              colors: tuple[float, float], bounds: npt.NDArray[Any]) -> _core.PictureLight:
+    """The look and the colours of a picture. given: keywords of all kinds; shown, colors: the ranges of the fields of both"""
+    chosen = {name: given.get(name) for name in ("look", "opacity_unit", "clamp", "range", "opacity")}
+    if isinstance(tf, TransferFunction):
+        return _core.PictureLight(chosen, tf.knots, tf.opacity is not None, has_boundary, shown, colors, bounds)
+    return _core.PictureLight({**chosen, "tf": tf}, None, False, has_boundary, shown, colors, bounds)
 
 
-def _is_lit(look: _core.Look) -> bool:
-    return look in (_core.Look.solid, _core.Look.isosurface)
-
-
-def _knots_of(tf: Union[None, str, TransferFunction], look: _core.Look, low: float, high: float) -> _core.Knots:
-    """The map over a range, as pictures of the look have it."""
-    given = _core.look_colors(look) if tf is None else tf
-    function = given if isinstance(given, TransferFunction) else TransferFunction(given)
-    knots = function.knots(low, high)
-    if look != _core.Look.solid:
-        return knots
-    return _core.solid(knots, function.opacity is not None, tf is None and not low < high)
-
-
-def _camera_of(view: str, camera: Union[None, str, Camera], bounds: npt.NDArray[Any], points: Optional[npt.NDArray[Any]],
-               size: tuple[int, int], ortho: bool) -> Camera:
-    """points: those that a named view frames; none: the box"""
-    aspect = size[0] / size[1]
-    if isinstance(camera, Camera):
-        return camera
-    if not isinstance(camera, (str, type(None))):
+def _camera_of(light: _core.PictureLight, given: dict[str, Any], camera: Union[None, str, Camera], size: tuple[int, int],
+               body: object, bounds: npt.NDArray[Any]) -> Camera:
+    """body: what is visible of a mesh or of points is framed by a named view; of others the box"""
+    if not isinstance(camera, (str, type(None), Camera)):
         raise TypeError(f"camera: a Camera or text is needed, not {type(camera).__name__}")
-    given = Camera.parse(view if camera is None else camera, bounds, aspect)
-    if ortho and given.ortho_height == 0:
-        given = given.orthographic(bounds, aspect)
-    if camera is None and points is not None and len(points) > 0:
-        return given.fit(points, aspect)
-    return given
+    chosen = {name: given.get(name) for name in ("view", "fit", "ortho")}
+    text = camera.text if isinstance(camera, Camera) else camera
+    mesh = body if isinstance(body, HexMesh) else None
+    return light.camera({**chosen, "camera": text}, size, mesh, body if isinstance(body, RbfVolume) else None, bounds)

@@ -8,9 +8,10 @@ from typing import Any, Optional, Union
 
 from . import _core
 from ._arguments import Path
-from ._colors import TransferFunction, _camera_of, _knots_of, _look_of, _range_of
+from ._colors import TransferFunction, _camera_of, _light_of, _range_of
 from ._core import Camera, HexMesh
 from ._errors import InvalidInput
+from ._options import described
 from ._points import _selected, sample
 from ._progress import Progress, listening
 
@@ -41,32 +42,29 @@ class Page:
         return f"<subvol.Page: {self.report['bytes']:,} bytes, {self.report['kept']:,} kernels>"
 
 
-def page(mesh: HexMesh, field: Optional[str] = None, *, per_edge: int = 1, look: Optional[str] = None,
-         tf: Union[None, str, TransferFunction] = None, view: str = "iso", camera: Union[None, str, Camera] = None,
-         opacity_unit: Optional[float] = None, title: str = "", unit: str = "", max_bytes: int = 24_000_000, scheme: str = "mcq",
-         progress: Progress = None) -> Page:
+@described
+def page(mesh: HexMesh, field: Optional[str] = None, *, per_edge: int = 1, camera: Union[None, str, Camera] = None,
+         tf: Union[None, str, TransferFunction] = None, title: str = "", unit: str = "", max_bytes: int = 24_000_000, scheme: str = "mcq",
+         progress: Progress = None, **options: Any) -> Page:
     """A page of a field of a mesh: as `subvol page`.
 
-    look:      "solid", "volume" or "xray"; None: solid, unless tf or opacity_unit is given
-    unit:      of the field, for the legend
-    max_bytes: kernels are rounded, then merged, until the page fits
+    unit:        of the field, for the legend
+    max_bytes:   kernels are rounded, then merged, until the page fits
+    tf may also be a TransferFunction, camera a Camera. The look isosurface is not drawn in pages.
+    {keywords}
     """
-    kind = _look_of(look, True, tf, opacity_unit)
     chosen = _selected(mesh, field)
     name = next(iter(chosen.fields))
-    low, high = _range_of(chosen.fields[name])
+    low, high = shown = _range_of(chosen.fields[name])
     bounds = chosen.bounds
-    solid = kind == _core.Look.solid
-    of_volume = _core.Look.volume if solid else kind  # opacities are those of the look volume, which readers can choose
-    knots = _knots_of(tf, of_volume, low, high)
-    if solid:  # a body whose values are all the same is plain
-        knots = _core.Knots(_knots_of(tf, kind, low, high).color, knots.opacity)
-    unit_world = opacity_unit or _core.look_opacity_unit(of_volume, bounds)
-    shown = _core.framed_points(chosen, kind, knots, unit_world)
-    eye = _camera_of(view, camera, bounds, shown, (512, 512), False)
+    light = of_volume = _light_of(options, tf, True, shown, shown, bounds)
+    if light.look == "solid":  # opacities are those of the look volume, which readers can choose
+        of_volume = _light_of({**options, "look": "volume"}, tf, True, shown, shown, bounds)
+    knots = _core.Knots(light.knots.color, of_volume.knots.opacity)  # a body whose values are all the same is plain
+    eye = _camera_of(light, options, camera, (512, 512), chosen, bounds)
     volume = sample(chosen, name, per_edge, scheme=scheme, progress=progress)
     skin = _core.skin(chosen, scheme, 1 / 16, None, None)
     with listening(progress) as listener:
-        text, report = _core.page(volume, skin, knots, unit, low, high, kind.name, eye, unit_world,
-                                  _core.look_background(kind), title or name, "a mesh in Python", max_bytes, listener)
+        text, report = _core.page(volume, skin, knots, unit, low, high, light.look, eye, of_volume.opacity_unit, light.background,
+                                  title or name, "a mesh in Python", max_bytes, listener)
     return Page(text, report)

@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from . import _core
 from ._arguments import Path, path_bytes, warn
-from ._colors import TransferFunction, _camera_of, _is_lit, _knots_of, _look_of, _range_of
+from ._colors import TransferFunction, _camera_of, _light_of, _range_of
 from ._core import Camera, Field, HexMesh, Image, RbfVolume
 from ._errors import InvalidInput
 from ._options import described
@@ -24,9 +24,8 @@ Drawable = Union[HexMesh, RbfVolume, Grid]
 
 
 @described
-def render(what: Drawable, *, method: str = "splat", view: str = "iso", camera: Union[None, str, Camera] = None, ortho: bool = False,
-           size: tuple[int, int] = (512, 512), field: Optional[str] = None, tf: Union[None, str, TransferFunction] = None,
-           look: Optional[str] = None, opacity_unit: Optional[float] = None, progress: Progress = None, **options: Any) -> Image:
+def render(what: Drawable, *, method: str = "splat", camera: Union[None, str, Camera] = None, size: tuple[int, int] = (512, 512),
+           field: Optional[str] = None, tf: Union[None, str, TransferFunction] = None, progress: Progress = None, **options: Any) -> Image:
     """Draws a mesh, points or a grid: the picture of `subvol render` with the same options, bit for bit.
 
     A keyword that has no effect with the method is refused; docs/pictures.md has the table. None leaves the default.
@@ -34,10 +33,8 @@ def render(what: Drawable, *, method: str = "splat", view: str = "iso", camera: 
     method:      "splat" (kernels), "sheets" (the same by OpenGL sheet buffers), "footprints" (kernels coloured first, as
                  Westover did), "tets" (rays through tetrahedra), "pt" (tetrahedra projected by OpenGL), "dense" (rays through the
                  limit's cells), "grid" (rays through voxels)
-    view:        the side to look from: +x -x +y -y +z -z iso
-    camera:      instead: a Camera, or text as of --camera
     size:        width and height in pixels
-    tf:          a TransferFunction or its name; None: viridis over the field's range
+    field:       what is drawn; tf may also be a TransferFunction, camera a Camera
     {keywords}
 
     Cuts are rows of six numbers, each a list or an array. Returns an Image: `numpy.asarray(image)` is (height, width, 4) float32,
@@ -51,27 +48,16 @@ def render(what: Drawable, *, method: str = "splat", view: str = "iso", camera: 
         what = sample_grid(what)
     if not isinstance(what, (HexMesh, RbfVolume, Grid)):
         raise TypeError(f"render() takes a HexMesh, RbfVolume or Grid, not {type(what).__name__}")
-    keywords = {**options, "look": look, "opacity_unit": opacity_unit}
-    given = {name: value for name, value in keywords.items() if value is not None and value is not False}
+    given = {name: value for name, value in options.items() if value is not None and value is not False}
     color_field = options.get("color_field")
-    kind = _look_of(look, isinstance(what, HexMesh) and not options.get("shade"), tf, opacity_unit)
-
     mesh = _selected(what, field) if isinstance(what, HexMesh) else None
     other = _selected(what, color_field) if isinstance(what, HexMesh) and color_field is not None else None
     body, shown, colors, bounds = _body_of(what if mesh is None else mesh, other, field, color_field)
-    knots = _knots_of(tf, kind, *shown)
-    if colors is not None:
-        knots = _core.Knots(_knots_of(tf, kind, *colors).color, knots.opacity)
-    unit = opacity_unit or _core.look_opacity_unit(kind, bounds)
-    framed = _core.framed_points(mesh, kind, knots, unit) if mesh is not None else None
-    if isinstance(what, RbfVolume) and kind == _core.Look.solid:
-        framed = _core.outline_of(what)
-    eye = _camera_of(view, camera, bounds, framed, size, ortho)
-    own_opacity = opacity_unit is not None or (isinstance(tf, TransferFunction) and tf.opacity is not None)
+    light = _light_of(given, tf, mesh is not None and not options.get("shade"), shown, colors or shown, bounds)
+    eye = _camera_of(light, given, camera, size, what if mesh is None else mesh, bounds)
     with listening(progress) as listener:
-        image = _core.render(body, method, eye, (int(size[0]), int(size[1])), _core.PictureLight(kind, knots, unit, own_opacity), given,
-                             listener)
-    image.report["background"] = _core.look_background(kind)
+        image = _core.render(body, method, eye, (int(size[0]), int(size[1])), light, given, listener)
+    image.report["background"] = light.background
     for warning in image.report.get("warnings", []):
         warn(warning)
     return image

@@ -5,11 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, Optional, Union
 
-import numpy as np
-
 from ._arguments import Path, extension, path_bytes, warn
 from ._core import HexMesh, RbfVolume
 from ._errors import InvalidInput
+from ._options import described
 from ._progress import Progress, listening
 
 if TYPE_CHECKING:
@@ -51,53 +50,48 @@ def _with_fields(mesh: HexMesh, fields: Optional[Sequence[str]]) -> HexMesh:
     return HexMesh(mesh.points, mesh.cells, arrays, mesh.creases, mesh.sharp_faces)
 
 
-def _make(what: Union[HexMesh, RbfVolume], path: Optional[bytes], resolution: int, voxel_size: Optional[float],
-          fields: Optional[Sequence[str]], levels: Optional[int], scheme: str, tension: float, crease_angle: Optional[float], half: bool,
-          mask: bool, sdf: Optional[str], nano: bool, progress: Progress) -> Any:
+_OF_POINTS = ("resolution", "voxel_size", "half")
+
+
+def _make(what: Union[HexMesh, RbfVolume], path: Optional[bytes], fields: Optional[Sequence[str]], nano: bool, progress: Progress,
+          options: dict[str, Any]) -> Any:
     from . import _grids
 
     if not isinstance(what, (HexMesh, RbfVolume)):
         raise TypeError(f"a HexMesh or an RbfVolume is needed, not {type(what).__name__}")
-    low, high = what.bounds
-    if voxel_size is None:
-        if not 1 <= resolution <= 1_000_000:
-            raise InvalidInput(f"resolution: {resolution} voxels along the longest side", "resolution", "1 to a million")
-        voxel_size = float(np.max(high - low)) / resolution
-    if not (voxel_size > 0 and np.isfinite(voxel_size)):
-        raise InvalidInput(f"voxel_size: {voxel_size} is not a length", "voxel_size", "above 0")
     with listening(progress) as listener:
         if isinstance(what, RbfVolume):
-            if fields is not None or levels is not None or mask or sdf is not None:
-                raise InvalidInput("points: fields, levels, mask and sdf are of meshes", "points", "all channels of points are summed")
-            return _grids.rasterize_points(what, voxel_size, half, path, nano, listener)
+            of_meshes = [name for name, value in {**options, "fields": fields}.items() if value and name not in _OF_POINTS]
+            if of_meshes:
+                raise InvalidInput(f"points: {', '.join(of_meshes)} are of meshes", "points", "all channels of points are summed")
+            return _grids.rasterize_points(what, path, nano, listener, **options)
         mesh = _with_fields(what, fields)
-        made, change, converged = _grids.rasterize(mesh, list(mesh.fields), voxel_size, scheme, tension, crease_angle, levels, half, mask,
-                                                   sdf, path, nano, listener)
+        made, change, converged = _grids.rasterize(mesh, list(mesh.fields), path, nano, listener, **options)
     if not converged:
         warn(f"the finest level within limits still changed values by {change:.2g} of their range", 4)
     return made
 
 
-def rasterize(what: Union[HexMesh, RbfVolume], *, resolution: int = 200, voxel_size: Optional[float] = None,
-              fields: Optional[Sequence[str]] = None, levels: Optional[int] = None, scheme: str = "mcq", tension: float = 1 / 16,
-              crease_angle: Optional[float] = None, half: bool = False, mask: bool = False, sdf: Optional[str] = None,
-              progress: Progress = None) -> list[Grid]:
-    """The grids that `write_vdb` writes, in memory."""
-    made: list[Grid] = _make(what, None, resolution, voxel_size, fields, levels, scheme, tension, crease_angle, half, mask, sdf, False,
-                             progress)
+@described
+def rasterize(what: Union[HexMesh, RbfVolume], *, fields: Optional[Sequence[str]] = None, progress: Progress = None,
+              **options: Any) -> list[Grid]:
+    """The grids that `write_vdb` writes, in memory.
+
+    fields:      scalars become grids of floats, vectors grids of vectors; None: the most sensible scalar, said in a warning
+    {keywords}
+    """
+    made: list[Grid] = _make(what, None, fields, False, progress, options)
     return made
 
 
-def write_vdb(what: Union[HexMesh, RbfVolume, Grid, Sequence[Grid]], path: Path, *, resolution: int = 200,
-              voxel_size: Optional[float] = None, fields: Optional[Sequence[str]] = None, levels: Optional[int] = None,
-              scheme: str = "mcq", tension: float = 1 / 16, crease_angle: Optional[float] = None, half: bool = False,
-              mask: bool = False, sdf: Optional[str] = None, nano: bool = False, progress: Progress = None) -> list[dict[str, Any]]:
-    """Writes the limit of a mesh, or sums of kernels, as `.vdb`: cubic voxels, values at their centres, active inside the volume.
+@described
+def write_vdb(what: Union[HexMesh, RbfVolume, Grid, Sequence[Grid]], path: Path, *, fields: Optional[Sequence[str]] = None,
+              nano: bool = False, progress: Progress = None, **options: Any) -> list[dict[str, Any]]:
+    """Writes the limit of a mesh, sums of kernels, or grids as `.vdb`: cubic voxels, values at their centres, active inside the volume.
 
-    resolution: voxels along the longest side; voxel_size: instead, a world length
-    fields:     scalars become grids of floats, vectors grids of vectors; None: the most sensible scalar, said in a warning
-    levels:     the trilinear cells of this level instead of the limit
-    half:       floats in 16 bits; mask: adds the grid "mask"; sdf: adds a level set of this name; nano: also writes `.nvdb`
+    fields:      scalars become grids of floats, vectors grids of vectors; None: the most sensible scalar, said in a warning
+    nano:        also writes `.nvdb`
+    {keywords}
 
     Returns the grids' reports: name, kind, active_voxels, voxel_size, min, max, bytes. The file appears whole or not at all.
     """
@@ -106,11 +100,12 @@ def write_vdb(what: Union[HexMesh, RbfVolume, Grid, Sequence[Grid]], path: Path,
     if extension(path) != ".vdb":
         raise InvalidInput(f"{path!s}: has an unknown extension (.vdb)", str(path), ".vdb")
     if not isinstance(what, (HexMesh, RbfVolume)):
+        if options or fields is not None:
+            raise InvalidInput("what: grids are written as they are", "what", "a mesh or points")
         grids = [what] if isinstance(what, Grid) else list(what)
         _grids.write(path_bytes(path), grids, nano)
         return [grid.report for grid in grids]
-    made: list[dict[str, Any]] = _make(what, path_bytes(path), resolution, voxel_size, fields, levels, scheme, tension, crease_angle, half,
-                                       mask, sdf, nano, progress)
+    made: list[dict[str, Any]] = _make(what, path_bytes(path), fields, nano, progress, options)
     if made[0]["active_voxels"] == 0:
         warn(f'the grid "{made[0]["name"]}" is empty: no voxel centre lies inside')
     return made

@@ -236,3 +236,20 @@ def test_a_file_with_steps(tmp_path, cube):
 def test_models():
     assert {"pawn", "ball", "twist"} <= set(subvol.models())
     assert subvol.model("twist", 4).report()["cells"] == 64
+
+
+def test_a_time_takes_the_nearest_step(tmp_path, cube):
+    for k in range(3):
+        subvol.write_mesh(subvol.HexMesh(cube.points, cube.cells, {"x": cube.fields["x"] + k}), tmp_path / f"{k}.vtu")
+    sets = "".join(f'<DataSet timestep="{k / 4}" file="{k}.vtu"/>' for k in range(3))
+    pvd = tmp_path / "run.pvd"
+    pvd.write_text(f'<VTKFile type="Collection"><Collection>{sets}</Collection></VTKFile>')
+    assert subvol.read_mesh(pvd, time=.3).fields["x"].min() == 1
+    with pytest.warns(UserWarning, match="time 7 is beyond the steps"):
+        assert subvol.read_mesh(pvd, time=7).fields["x"].min() == 2
+    with pytest.raises(subvol.InvalidInput, match="time"):
+        subvol.read_mesh(pvd, time=.3, step=1)
+    with pytest.raises(subvol.InvalidInput, match="corners"):
+        subvol.read_mesh(tmp_path / "0.vtu", curved="sharp")
+    for curved in ("corners", 1e-3, "1e-3"):
+        assert len(subvol.read_mesh(tmp_path / "0.vtu", curved=curved).cells) == len(cube.cells)

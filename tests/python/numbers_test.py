@@ -26,7 +26,7 @@ CALLS = {
     "write_vdb": lambda mesh, points, folder, **more: subvol.write_vdb(mesh, folder / "out.vdb", **{"resolution": 8, **more}),
 }
 SEVERAL = {"point": 3, "normal": 3, "clip_box": 6, "background": 3}  # how many numbers
-ANY_SIGN = {"tension", "iso", "point", "normal", "clip_box"}
+ANY_SIGN = {"tension", "time", "iso", "point", "normal", "clip_box"}
 NEEDS = {"image_tolerance": {"method": "dense"}, "seconds": {"method": "splat"}}
 
 

@@ -10,7 +10,8 @@ import pytest
 import subvol
 from subvol import _core, _options
 
-CALLS = ["check_folds", "evaluate_limit", "fit", "measure", "points_error", "probe", "read_mesh", "reduce", "render", "sample", "slice", "subdivide", "surface", "write_points"]
+CALLS = ["check_folds", "evaluate_limit", "fit", "measure", "page", "points_error", "probe", "rasterize", "read_mesh", "reduce", "render", "sample",
+         "slice", "subdivide", "surface", "write_points", "write_vdb"]
 
 
 def test_the_stubs_are_current():

@@ -218,3 +218,23 @@ def test_what_cannot_be_drawn(ball, ball_points, cube):
             subvol.render(what, **options)
     with pytest.raises(TypeError):
         subvol.render("ball.vtu")
+
+
+def test_colours_by_keywords_are_those_of_a_transfer_function(ball):
+    named = np.asarray(subvol.render(ball, size=(32, 32), tf="plasma", range="-.5,.5", opacity="0%:0,100%:.6", backend="cpu"))
+    tf = subvol.TransferFunction("plasma", range=(-.5, .5), opacity="0%:0,100%:.6")
+    assert np.array_equal(named, np.asarray(subvol.render(ball, size=(32, 32), tf=tf, backend="cpu")))
+    with pytest.raises(subvol.InvalidInput, match="range: has no effect with a TransferFunction"):
+        subvol.render(ball, size=(8, 8), tf=tf, range="0,1")
+    with pytest.raises(subvol.InvalidInput, match="range: '5,3' is not ascending"):
+        subvol.render(ball, size=(8, 8), range="5,3")
+
+
+def test_a_camera_object_is_its_text(ball):
+    camera = subvol.Camera((5.2, -8.4, 4.2), (0, .1, 0), (0, 0, 1), 33.3)
+    drawn = np.asarray(subvol.render(ball, size=(32, 24), camera=camera, backend="cpu"))
+    assert np.array_equal(drawn, np.asarray(subvol.render(ball, size=(32, 24), camera=camera.text, backend="cpu")))
+    near = np.asarray(subvol.render(ball, size=(32, 24), camera=camera, fit=True, backend="cpu"))
+    assert (near[..., 3] > 0).sum() > (drawn[..., 3] > 0).sum()  # the ball fills more of the picture
+    with pytest.raises(subvol.InvalidInput, match="view: cannot be given with camera|camera"):
+        subvol.render(ball, size=(8, 8), camera=camera, view="+x")

@@ -94,3 +94,16 @@ def test_what_makes_no_grid(tmp_path, ball):
     assert grid.report["active_voxels"] > 0
     with pytest.raises(TypeError):
         subvol.rasterize("ball")
+
+
+def test_rasterize_takes_what_the_library_describes(ball, ball_points):
+    grids = {g.name: g for g in subvol.rasterize(ball, resolution=16, cell_ids=True, coverage=True, sdf="band", half_width=2)}
+    assert {"density", "cell", "coverage", "band"} <= set(grids)
+    size = grids["band"].report["voxel_size"]
+    assert grids["band"].report["max"] == pytest.approx(2 * size, rel=.1)  # the band ends there
+    with pytest.raises(subvol.InvalidInput, match="half_width: has no effect without sdf"):
+        subvol.rasterize(ball, resolution=8, half_width=2)
+    with pytest.raises(subvol.InvalidInput, match="voxel_size"):
+        subvol.rasterize(ball, resolution=8, voxel_size=.5)
+    with pytest.raises(subvol.InvalidInput, match="scheme, mask are of meshes"):
+        subvol.rasterize(ball_points, resolution=8, scheme="cc", mask=True)

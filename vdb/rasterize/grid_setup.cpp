@@ -15,15 +15,14 @@ namespace {
 
 constexpr double kLeastVoxel_world = 1.45e-5;  // OpenVDB treats a transform as singular if its determinant is below 3e-15
 
-double voxel_size_of(const Box& box, const RasterizeOptions& options) {
+double checked_voxel_size(const Box& box, const RasterizeOptions& options) {
     if (!(options.voxel_size_world >= 0) || !std::isfinite(options.voxel_size_world)) {
         throw Error(ErrorCode::InvalidInput, "the voxel size is not positive");
     }
-    if (options.voxel_size_world > 0) return options.voxel_size_world;
     if (options.resolution < 1) throw Error(ErrorCode::InvalidInput, "the resolution is below one voxel");
-    const double side = std::max({box.size().x, box.size().y, box.size().z});
-    if (!(side > 0)) throw Error(ErrorCode::InvalidInput, "the mesh is a single point");
-    return side / options.resolution;
+    const double size = voxel_size_of(box, options);
+    if (!(size > 0)) throw Error(ErrorCode::InvalidInput, "the mesh is a single point");
+    return size;
 }
 
 /// Refuses a transform of a file whose voxels have no volume, or one that no grid has.
@@ -77,7 +76,7 @@ void check_representable(double voxel_size) {
 
 ToVoxels to_voxels_of(const Box& box, const RasterizeOptions& options) {
     if (options.like) return to_voxels_of(*VdbData::of(*options.like).grid);
-    return {.voxel_size = voxel_size_of(box, options)};
+    return {.voxel_size = checked_voxel_size(box, options)};
 }
 
 void check_level_set(const RasterizeOptions& options) {

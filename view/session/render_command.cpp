@@ -3,6 +3,7 @@
 
 #include "session_state.h"
 #include "subvol/detail/number_text.h"
+#include "subvol/view_options.h"
 
 namespace subvol::detail {
 
@@ -21,12 +22,6 @@ std::string quoted(const std::string& word) {
     std::string text = "'";
     for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
     return text + "'";
-}
-
-std::string camera_text(const Camera& camera) {
-    const auto& [eye, target, up, fovy, height] = camera;
-    std::string text = comma_separated({eye.x, eye.y, eye.z, target.x, target.y, target.z, up.x, up.y, up.z, fovy});
-    return height > 0 ? text + "," + exact_text(height) : text;
 }
 
 std::string opacity_text(const std::vector<TransferFunction::OpacityKnot>& knots) {

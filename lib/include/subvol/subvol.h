@@ -87,6 +87,7 @@
 #include "subvol/transfer_function.h"
 #include "subvol/vec.h"
 #include "subvol/version.h"
+#include "subvol/view_options.h"
 #include "subvol/visible_points.h"
 #include "subvol/voxels.h"
 #include "subvol/warp.h"

@@ -28,10 +28,12 @@ struct NumberRange {
 
 /// A value that is written as a word, or as a text with a meaning.
 ///
-/// set: where is named in its error
+/// set:     where is named in its error
+/// numbers: is a number or a word
 struct WordValue {
     std::function<std::string()> get;
     std::function<void(const std::string& word, const std::string& where)> set;
+    bool numbers = false;
 };
 
 /// Rows of numbers, as of planes and boxes.
@@ -116,6 +118,8 @@ public:
     Option& only_with(std::string option, std::vector<std::string> values = {});
     /// The name in Python and studies, if it is another word.
     Option& called(std::string keyword);
+    /// Another name, which the command takes too.
+    Option& also(std::string flag);
     /// The last condition is also met if this option is given.
     Option& or_with(std::string option);
     /// The option has no effect with another one, or with one of these values of it.
@@ -147,7 +151,7 @@ public:
     /// throws: Error(InvalidInput) if the value, which code has set, is not allowed
     void check() const;
 
-    std::string name, keyword{};
+    std::string name, alias{}, keyword{};
     Value value;
     NumberRange range{};
     bool in_bytes = false;

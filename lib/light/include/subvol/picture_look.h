@@ -47,8 +47,40 @@ struct LookOptions {
     bool clamp = false;
 };
 
-/// look, tf, opacity-unit, clamp
-[[nodiscard]] std::vector<Option> options_of(LookOptions& options);
+/// What users choose of it, before the body and the range of its field are known.
+///
+/// look:    none: solid for bodies with a boundary, unless colours or opacities are chosen; else volume
+/// range:   "MIN,MAX", parts of the field's range such as "10%,90%", or "field"
+/// opacity: as `parse_opacity` reads it
+struct LookChoices {
+    std::optional<std::string> look{}, colors{}, range{}, opacity{};
+    std::optional<double> opacity_unit_world{};
+    bool clamp = false;
+};
+
+/// look, tf, opacity-unit, clamp, range, opacity
+[[nodiscard]] std::vector<Option> options_of(LookChoices& choices);
+
+/// throws: Error(InvalidInput) for an unknown look
+[[nodiscard]] Look chosen_look(const LookChoices& choices, bool has_boundary, OptionNames names = OptionNames::Keywords);
+
+/// A value of a field, or a part of its range: "293", "20%".
+///
+/// where:  is named in the error
+/// throws: Error(InvalidInput) if it is neither
+[[nodiscard]] double parse_value(const std::string& text, const ValueRange& whole, const std::string& where);
+
+/// "293,913" or "10%,90%". throws: Error(InvalidInput) if it is not two ascending values
+[[nodiscard]] ValueRange parse_range(const std::string& text, const ValueRange& whole, const std::string& where);
+
+/// The range that the colours cover: the one that is chosen, else the field's.
+[[nodiscard]] ValueRange shown_range(const LookChoices& choices, const ValueRange& field,
+                                     OptionNames names = OptionNames::Keywords);
+
+/// field:  the range of the field that gives the opacities
+/// throws: Error(InvalidInput) that names the option
+[[nodiscard]] LookOptions look_options(const LookChoices& choices, Look look, const ValueRange& field,
+                                       OptionNames names = OptionNames::Keywords);
 
 /// Whether pictures of this look are lit.
 [[nodiscard]] inline bool is_lit(Look look) {
@@ -82,6 +114,9 @@ void make_solid(TransferFunction& function, bool plain);
 /// throws: as `find_transfer_function` and `Optics`
 [[nodiscard]] Optics picture_optics(const LookOptions& options, const Box& box, const ValueRange& field,
                                     const ValueRange& colors);
+/// The same with this colour map instead of `options.colors` and its range. plain: the map was not chosen
+[[nodiscard]] Optics picture_optics(TransferFunction map, const LookOptions& options, const Box& box, const ValueRange& field,
+                                    const ValueRange& colors, bool plain = false);
 
 /// The points to which a camera is fitted: those of a solid; of other bodies those of the cells that can be seen, or nothing if
 /// these are most of the body.

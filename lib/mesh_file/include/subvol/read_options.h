@@ -67,7 +67,8 @@ struct NameTable<CellValues> {
 ///       within this part of the mesh's diagonal from the shape, and fields within 400 times this part of their ranges; in at
 ///       most 65,536 hexahedra, or twice as many as there are between the nodes, p · q · r for a cell of degrees p, q and r.
 ///       Arrays of whole numbers do not count. Greater than 0. Nothing: only their corners are used
-/// step: of a series (`open_series`), from 0. Nothing: the last one
+/// step: of a series (`open_series`), from 0. Nothing: that of `time`, or the last one
+/// time: takes the step whose time is nearest to it, if no step is given
 /// blocks: the names of the parts of the mesh that are read (`ReadResult::blocks`). None: all
 /// shells_alone: a file of shells and beams without any cell is read too. Its mesh has no cells, so most calls refuse it
 struct ReadOptions {
@@ -76,13 +77,14 @@ struct ReadOptions {
     std::vector<std::string> sharp = {};
     std::optional<double> curved_tolerance = 5e-6;
     std::optional<std::size_t> step = {};
+    std::optional<double> time = {};
     std::vector<std::string> blocks = {};
     CellValues cell_values = CellValues::Auto;
     PatchValuesUse patch_values = PatchValuesUse::Meet;
     bool shells_alone = false;
 };
 
-/// other-cells, weld-distance, cell-values, patch-values, step, blocks, sharp
+/// other-cells, weld-distance, curved, cell-values, patch-values, step, time, blocks, sharp
 [[nodiscard]] std::vector<Option> options_of(ReadOptions& options);
 
 /// A named part of a mesh. cells: of all kinds, as the file has them

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <functional>
 #include <optional>
 #include <span>
@@ -79,6 +80,27 @@ struct RasterizeOptions {
             Option("cell-ids", options.cell_numbers).help("also write a grid: the number of the control cell"),
             Option("mask", options.mask).help("also write a grid: a mask of the volume"),
             Option("coverage", options.coverage).help("also write a grid: the part of each voxel that the volume fills")};
+}
+
+/// sdf, half-width
+[[nodiscard]] inline std::vector<Option> options_of(LevelSetOptions& options) {
+    constexpr double kMostWidth = 1000;
+    return {
+        Option("sdf", options.name)
+            .help("[NAME]",
+                  "also write a level set, named NAME or sdf: the distance to the boundary, negative inside, in a narrow band"),
+        Option("half-width", options.half_width_voxels)
+            .between(1, kMostWidth)
+            .help("N", "the band's reach to either side, in voxels")
+            .only_with("sdf")};
+}
+
+/// The edge of a voxel: of `like`, the one that is given, or as the resolution says for this box.
+[[nodiscard]] inline double voxel_size_of(const Box& box, const RasterizeOptions& options) {
+    if (options.like != nullptr) return options.like->report().voxel_size_world;
+    if (options.voxel_size_world > 0) return options.voxel_size_world;
+    const Vec3 size = box.size();
+    return std::max({size.x, size.y, size.z}) / options.resolution;
 }
 
 /// Rasterizes attributes of a hexahedral mesh: cubic voxels, values at voxel centres, active where the centre lies inside the

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "subvol/camera.h"
+#include "subvol/option.h"
+
+namespace subvol {
+
+/// In pixels.
+struct PictureSize {
+    int width = 512, height = 512;
+};
+
+/// "512x384", or "512" for a square.
+///
+/// where:  is named in the error
+/// throws: Error(InvalidInput)
+[[nodiscard]] PictureSize parse_size(const std::string& text, const std::string& where);
+
+/// The size and the camera of a picture.
+///
+/// camera:       text as `parse_camera` reads it; nothing: the named view
+/// view:         the side to look from; the camera is fitted to what is visible
+/// fit:          moves the camera until the whole box is in the picture
+/// orthographic: makes a perspective camera an orthographic one, as high as the box needs
+/// turntable:    the pictures of one turn, all of which see what is visible; nothing: one picture
+struct ViewOptions {
+    PictureSize size{};
+    std::optional<std::string> camera{};
+    std::string view = "iso";
+    bool fit = false, orthographic = false;
+    std::optional<int> turntable{};
+};
+
+/// size, camera, view, fit, ortho, turntable
+[[nodiscard]] std::vector<Option> options_of(ViewOptions& options);
+
+/// As `parse_camera`; the error names the option.
+[[nodiscard]] Camera camera_of_option(const std::string& option, const std::string& text, const Box& box, double aspect = 1);
+
+/// The numbers of a camera, as `parse_camera` reads them: exact.
+[[nodiscard]] std::string camera_text(const Camera& camera);
+
+/// The camera of the options; of a turntable its first one.
+///
+/// points: those that a named view is fitted to (`framed_points`); none: the box
+/// aspect: width / height of the picture
+/// throws: Error(InvalidInput) that names the option, Error(Io)
+[[nodiscard]] Camera find_camera(const ViewOptions& options, const Box& box, std::span<const Vec3> points, double aspect,
+                                 OptionNames names = OptionNames::Keywords);
+
+}  // namespace subvol
