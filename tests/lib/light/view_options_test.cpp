@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "expect_error.h"
+#include "lib/expect_error.h"
 #include "subvol/picture_look.h"
 
 namespace subvol {
