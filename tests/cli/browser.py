@@ -62,7 +62,7 @@ class Browser:
         self._session = None
         target = self.send("Target.createTarget", url="about:blank")["targetId"]
         self._session = self.send("Target.attachToTarget", targetId=target, flatten=True)["sessionId"]
-        for domain in ("Page", "Runtime", "Network", "Log"):
+        for domain in ("Page", "Runtime", "Network", "Log", "Inspector"):
             self.send(f"{domain}.enable")
 
     def close(self):
@@ -99,7 +99,10 @@ class Browser:
                 raise RuntimeError("the browser has ended")
             self._rest += more
         message, self._rest = self._rest.split(b"\0", 1)
-        return json.loads(message)
+        answer = json.loads(message)
+        if answer.get("method") == "Inspector.targetCrashed":
+            raise RuntimeError("the page's process has crashed")  # it would not answer any more
+        return answer
 
     def open(self, url):
         self.events.clear()

@@ -57,12 +57,34 @@ def captioned(document):
             yield picture, words[1:]
 
 
+WALKS = {"docs/first-hour.md": "docs/first-hour", "docs/subdivision-volumes.md": "docs/subdivision-volumes"}
+
+
+def walked(document):
+    """The commands of a page that shows one after the other, and its pictures, which they draw."""
+    text = (TOP / document).read_text()
+    blocks = re.findall(r"^```sh\n(.*?)^```", text, re.M | re.S)
+    commands = [shlex.split(line) for block in blocks for line in block.splitlines()]
+    return commands, [TOP / "docs" / name for name in re.findall(r"!\[[^]]*\]\(([^)]*)\)", text)]
+
+
 class Captions(InFolder):
     """Pictures are what their captions draw, exactly but for what machines differ in."""
 
     def check(self, picture, words):
         self.run_ok(*words)
         self.run_ok("compare", picture.name, picture, "--fail-under", "psnr=50")
+
+    def test_of_pages_that_are_walked_through(self):
+        for document, folder in WALKS.items():
+            commands, pictures = walked(document)
+            self.assertGreater(len(commands), 7, document)
+            self.assertEqual(set(pictures), set((TOP / folder).glob("*.png")), document)
+            for words in commands:
+                self.assertEqual(words[0], "subvol", document)
+                self.run_ok(*words[1:])
+            for picture in pictures:
+                self.run_ok("compare", picture.name, picture, "--fail-under", "psnr=50")
 
     def test_of_the_readme(self):
         pictures = list(captioned("README.md"))
