@@ -13,6 +13,7 @@
 #include "subvol/image_io.h"
 #include "subvol/image_metrics.h"
 #include "subvol/model.h"
+#include "subvol/picture_maker.h"
 #include "subvol/rasterize.h"
 #include "subvol/render_tets.h"
 #include "subvol/sample.h"
@@ -69,6 +70,62 @@ DemoCase make_demo_case(const std::string& name, int resolution, double aspect) 
     return {name, std::move(mesh), camera, std::move(optics), sheets, 1};
 }
 
+/// The picture of a model that people look at first: lit, framed and on a light ground, as `subvol render` draws it.
+///
+/// pawn: its surface; ball: cut open; twist: surfaces of equal values
+Image lit_picture(const DemoCase& shown, const PictureSize& size, Progress* progress) {
+    MethodOptions options;
+    if (shown.name == "ball") {
+        options.style.look.look = Look::Solid;
+        options.style.clip.planes.push_back({.point = bounds(shown.mesh).center(), .normal = {0, -1, 0}});
+    } else if (shown.name == "twist") {
+        options.style.look.look = Look::Isosurface;
+        options.splat.shading = Shading{};
+    } else {
+        options.style.look.colors = "surface";
+        options.splat.shading = Shading{};
+    }
+    const Range range = field_range(shown.mesh);
+    const Optics optics = picture_optics(options.style.look, bounds(shown.mesh), range, range);
+    const double aspect = static_cast<double>(size.width) / size.height;
+    const std::vector<Vec3> framed = framed_points(shown.mesh, options.style.look.look, optics);
+    const Camera camera = find_camera({}, bounds(shown.mesh), framed, aspect, OptionNames::Flags);
+    return PictureMaker({.mesh = shown.mesh}, options).draw(View(camera, size.width, size.height), optics, progress).image;
+}
+
+/// A page with the pictures and the figures of all models, for a browser.
+std::string index_page(const Json& cases) {
+    std::string html =
+        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+        "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>subvol demo</title>\n<style>\n"
+        "body { font: 16px/1.5 sans-serif; max-width: 1060px; margin: 2em auto; padding: 0 1em; color: #222; background: #fff; "
+        "}\n"
+        "img { max-width: 100%; height: auto; display: block; } figure { margin: 0; } figcaption { color: #555; }\n"
+        ".row { display: grid; grid-template-columns: 2fr 1fr 1fr 1fr; gap: 1em; align-items: end; }\n"
+        "@media (max-width: 640px) { .row { grid-template-columns: 1fr 1fr; } }\n</style>\n</head>\n<body>\n"
+        "<h1>Three volumes, from a few cells to an image</h1>\n"
+        "<p>Each row shows one model: how <code>subvol render</code> draws it, the image of its kernels, the reference by rays "
+        "through tetrahedra, and where these two differ (brighter: more).</p>\n";
+    for (const Json& shown : cases) {
+        const Json& files = shown["files"];
+        const auto figure = [&](const char* key, const std::string& caption) {
+            const auto file = files[key].get<std::string>();
+            return "<figure><a href=\"" + file + "\"><img src=\"" + file + "\" alt=\"" + caption + "\"></a><figcaption>" +
+                   caption + "</figcaption></figure>\n";
+        };
+        const auto name = shown["name"].get<std::string>(), grid = files["vdb"].get<std::string>();
+        html += "<h2>" + name + "</h2>\n<div class=\"row\">\n" + figure("picture", name) +
+                figure("splat", counted(shown["points"].get<std::size_t>(), "kernel")) +
+                figure("reference", counted(shown["equivalent_cells"].get<std::size_t>(), "cell")) +
+                figure("difference", text("PSNR ", std::fixed, std::setprecision(1), shown["psnr"].get<double>(), " dB")) +
+                "</div>\n<p>OpenVDB grid for Blender, Houdini and ParaView: <a href=\"" + grid + "\">" + grid + "</a></p>\n";
+    }
+    return html +
+           "<h2>Next</h2>\n<p>With a mesh of your own: <code>subvol info part.vtk</code>, <code>subvol render part.vtk -o "
+           "part.png</code>, <code>subvol vdb part.vtk -o part.vdb</code>. All figures are in <a "
+           "href=\"summary.json\">summary.json</a>.</p>\n</body>\n</html>\n";
+}
+
 /// The finest level whose cells the reference can march.
 int reference_level(std::size_t cells) {
     int level = 0;
@@ -114,7 +171,8 @@ public:
         report["version"] = SUBVOL_VERSION;
         report["host"] = host();
         detail::write_text_file(folder_ / "summary.json", report.json().dump(2) + "\n");
-        report.say(text("Everything is in ", folder_.string()));
+        detail::write_text_file(folder_ / "index.html", index_page(report["cases"]));
+        report.say(text("Everything is in ", folder_.string(), "; ", (folder_ / "index.html").string(), " shows it"));
         report.all_said();
         return 0;
     }
@@ -139,6 +197,9 @@ private:
                 .image;
         });
         write_image(file("splat", "_splat.png"), splat);
+
+        const Image picture = stages.timed("picture", [&] { return lit_picture(shown, size, stages.progress()); });
+        write_image(file("picture", ".png"), picture, background_of(Look::Solid));
 
         const int level = reference_level(shown.mesh.cells.size());
         const HexMesh fine =

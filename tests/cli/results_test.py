@@ -3,6 +3,7 @@
 
 import json
 import math
+import re
 import unittest
 
 from command import InFolder, subvol
@@ -117,9 +118,12 @@ class Results(InFolder):
         self.assertEqual([case["name"] for case in summary["cases"]], ["pawn", "ball", "twist"])
         for case in summary["cases"]:
             self.assert_keys(case, "points", "equivalent_cells", "psnr", "seconds")
-            self.assertEqual(set(case["files"]), {"vdb", "splat", "reference", "difference"})
+            self.assertEqual(set(case["files"]), {"picture", "vdb", "splat", "reference", "difference"})
             for name in case["files"].values():
                 self.assertGreater((self.folder / "out" / name).stat().st_size, 0)
+        index = (self.folder / "out" / "index.html").read_text()
+        linked = set(re.findall(r'(?:src|href)="([^"]*)"', index))
+        self.assertEqual(linked, {name for case in summary["cases"] for name in case["files"].values()} | {"summary.json"})
 
     def test_json_is_all_there_is_on_standard_output(self):
         done = self.run_ok("render", "model:ball:2", "-o", "a.png", "--size", "16", "--json", "--progress", "on")
