@@ -9,6 +9,7 @@
 #include "options.h"
 #include "outputs.h"
 #include "picture_arguments.h"
+#include "quantities.h"
 #include "subvol/detail/atomic_file.h"
 #include "subvol/image_io.h"
 #include "subvol/image_metrics.h"
