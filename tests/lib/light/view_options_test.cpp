@@ -9,6 +9,8 @@
 namespace subvol {
 namespace {
 
+using test::expect_error;
+
 constexpr ErrorCode kInvalid = ErrorCode::InvalidInput;
 const Box kBox{{-1, -1, -1}, {1, 1, 1}};
 
