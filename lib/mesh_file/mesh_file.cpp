@@ -289,9 +289,9 @@ std::vector<Option> options_of(ReadOptions& options) {
                   "volume has the cells' means), auto"),
         Option("patch-values", options.patch_values)
             .help("HOW",
-                  "what OpenFOAM has on patches of the boundary: meet (points there get it; not with --cell-values exact), "
-                  "normal (vectors at walls get only the component along the normal: integrals over the volume hardly "
-                  "change), ignore"),
+                  "what OpenFOAM has on patches of the boundary: normal (points there get it, but of vectors at walls only the "
+                  "component along the normal: integrals over the volume hardly change; not with --cell-values exact), meet "
+                  "(vectors at walls get all of it, such as a velocity of 0), ignore"),
         Option("step", options.step).between(0, kMostSteps).help("N", "a step of a series, from 0 (default: the last one)"),
         Option("time", options.time).help("T", "the step of a series whose time is nearest to this").instead_of({"step"}),
         Option("blocks", options.blocks).help("A,B", "the named parts of the mesh to read (info lists them; default: all)"),

@@ -170,7 +170,7 @@ void take_patch_values(ReadResult& result, PatchValuesUse use) {
     std::string change;
     if (report.most_of_mean >= .001) {
         change = "; the integral of " + in_quotes(report.most_changed) + " over the volume changed by about " +
-                 number_text(100 * report.most_of_mean, 2) + " % (not with --patch-values normal or ignore)";
+                 number_text(100 * report.most_of_mean, 2) + " %";
     }
     result.warnings.push_back(counted(report.points, "point", "points") + " on patches got the values that " +
                               counted(report.fields, "field has", "fields have") + " there" + change);

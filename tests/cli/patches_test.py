@@ -380,9 +380,9 @@ class Values(InFolder):
             self.assertAlmostEqual(flows["left"], -3, 9)  # its own value also where it meets the walls
             self.assertAlmostEqual(flows["right"], 2, 9)  # says nothing: the cells decide, also where it meets the walls
             self.assertAlmostEqual(flows["walls"], 0, 9)
-            self.assertAlmostEqual(self.at_walls(name, *means), 0, 9)
+            self.assertAlmostEqual(self.at_walls(name, *means), 2, 9)  # along the wall the cells' means are kept
+            self.assertAlmostEqual(self.at_walls(name, *means, "--patch-values", "meet"), 0, 9)
             self.assertAlmostEqual(self.at_walls(name, *means, "--patch-values", "ignore"), 2, 9)
-            self.assertAlmostEqual(self.at_walls(name, *means, "--patch-values", "normal"), 2, 9)
         self.assertAlmostEqual(self.at_walls(name, "--cell-values", "exact"), 2, 9)
         said = self.run_ok("info", name, "--json").json()
         self.assertTrue(any("points on patches" in warning for warning in said["warnings"]))
@@ -391,7 +391,7 @@ class Values(InFolder):
         """The cells flow towards a wall, and the outlet beside it says nothing."""
         name = self.case("case", "left { type zeroGradient; } right { type zeroGradient; } walls { type noSlip; }", (2, 1, .5))
         self.assertAlmostEqual(self.flows(name)["walls"], 0, 9)
-        self.assertAlmostEqual(self.flows(name, "--patch-values", "normal")["walls"], 0, 9)
+        self.assertAlmostEqual(self.flows(name, "--patch-values", "meet")["walls"], 0, 9)
         slip = self.case("slip", "left { type zeroGradient; } right { type zeroGradient; } walls { type slip; }", (2, 1, .5))
         self.assertAlmostEqual(self.flows(slip)["walls"], 0, 9)
         self.assertAlmostEqual(self.at_walls(slip), 2, 9)

@@ -46,8 +46,8 @@ struct ValuesOnPatches {
 /// What becomes of the values that a file has on patches of its boundary, where those at cells become values at points.
 ///
 /// Meet:   points on the patches get them
-/// Normal: vectors at points of walls get only the component along the normal, so that little flows through (at concave
-///         edges), and a layer that is thinner than a cell leaves the cells' means; else as Meet
+/// Normal: the same, but vectors at points of walls get only the component along the normal, so that little flows through (at
+///         concave edges), and a layer that is thinner than a cell leaves the cells' means
 /// Ignore: points on the boundary have what cells say
 enum class PatchValuesUse { Meet, Normal, Ignore };
 

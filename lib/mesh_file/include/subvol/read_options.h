@@ -80,7 +80,7 @@ struct ReadOptions {
     std::optional<double> time = {};
     std::vector<std::string> blocks = {};
     CellValues cell_values = CellValues::Auto;
-    PatchValuesUse patch_values = PatchValuesUse::Meet;
+    PatchValuesUse patch_values = PatchValuesUse::Normal;
     bool shells_alone = false;
 };
 
