@@ -29,6 +29,11 @@ namespace {
 /// hardly a pixel of the meshes in docs/adr/0030 is off by more than one.
 constexpr double kMostOfEstimate = 25;
 
+/// The distance of sheets, in reaches, below which no kernel is thin: about that of `sheets_needed`.
+float enough_reaches(const SplatScene& scene) {
+    return static_cast<float>(std::sqrt(scene.image_tolerance / 1e-3) / 3);
+}
+
 /// How much extinction and emission (the one of the four that changes most) change between values.
 class Variation {
 public:
@@ -61,7 +66,7 @@ public:
           variation_(frame.classification->table),
           perspective_(frame.view->perspective()),
           most_(static_cast<float>(kMostOfEstimate * frame.scene->image_tolerance)),
-          enough_(static_cast<float>(std::sqrt(frame.scene->image_tolerance / 1e-3) / 3)) {}
+          enough_(enough_reaches(*frame.scene)) {}
 
     /// The level that a kernel needs.
     [[nodiscard]] int level(const EyeSplat& s) const {
@@ -88,7 +93,7 @@ private:
     Variation variation_;
     bool perspective_;
     float most_;
-    float enough_;  // the distance of sheets, in reaches, below which no kernel is thin: about that of `sheets_needed`
+    float enough_;
 };
 
 /// Raises a cell to a level.
@@ -100,8 +105,13 @@ void raise(std::atomic<std::uint8_t>& cell, std::uint8_t level) {
 
 }  // namespace
 
+bool may_be_thin(const SplatScene& scene, const SheetStack& sheets) {
+    return sheets.distance > enough_reaches(scene) * scene.thinnest;
+}
+
 FinerSheets finer_sheets(const SplatFrame& frame) {
     const SheetStack& sheets = frame.sheets;
+    if (!may_be_thin(*frame.scene, sheets)) return {};
     const auto cells_in = [](int count, int size) { return (count + size - 1) / size; };
     FinerSheets finer{.columns = cells_in(frame.view->width(), FinerSheets::kSide_px),
                       .rows = cells_in(frame.view->height(), FinerSheets::kSide_px),

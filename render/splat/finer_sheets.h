@@ -9,7 +9,9 @@
 
 namespace subvol::detail {
 
+struct SheetStack;
 struct SplatFrame;
+struct SplatScene;
 
 /// Where a picture has more sheets than its stack. A cell is a square of pixels and some sheets; each stretch that ends at one
 /// of these sheets is cut into 2^level equal ones.
@@ -37,6 +39,9 @@ struct FinerSheets {
     const int exponent = static_cast<int>(std::bit_cast<std::uint32_t>(light) >> 23) - 127;  // of light ≥ 0; −127 for 0
     return std::clamp(level + exponent + 1, 0, level);
 }
+
+/// Whether the scene may have kernels that are thin beside the sheets; otherwise no cell needs more of them.
+[[nodiscard]] bool may_be_thin(const SplatScene& scene, const SheetStack& sheets);
 
 /// Finds the cells that need more sheets for the scene's tolerance, from an estimate of the error that each kernel causes.
 ///

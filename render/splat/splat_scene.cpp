@@ -205,6 +205,27 @@ std::array<float, 3> Classification::color_at(float x) const {
     return {row.color[0] + s * row.step[0], row.color[1] + s * row.step[1], row.color[2] + s * row.step[2]};
 }
 
+namespace {
+
+/// A bound of the least semi-axis: λ1 = det / (λ2 λ3), and λ2 λ3 ≤ (trace / 2)².
+float thinnest_of(const RbfVolume& volume) {
+    const auto least = [](float a, float b) { return std::min(a, b); };
+    return tbb::parallel_reduce(
+        tbb::blocked_range<std::size_t>(0, volume.size(), 1 << 16), std::numeric_limits<float>::infinity(),
+        [&](const auto& kernels, float thinnest) {
+            for (std::size_t i = kernels.begin(); i < kernels.end(); ++i) {
+                const Mat3 s = matrix(volume.frames[i]);
+                const double half_trace = (s[0][0] + s[1][1] + s[2][2]) / 2;
+                const double reach = std::sqrt(std::max(0.0, glm::determinant(s))) / half_trace;
+                thinnest = reach > 0 ? std::min(thinnest, static_cast<float>(reach)) : 0;
+            }
+            return thinnest;
+        },
+        least);
+}
+
+}  // namespace
+
 SplatScene make_scene(const RbfVolume& volume, const SplatOptions& options) {
     check_options(options);
     if (!(options.image_tolerance > 0) || !std::isfinite(options.image_tolerance)) {
@@ -231,7 +252,8 @@ SplatScene make_scene(const RbfVolume& volume, const SplatOptions& options) {
                      .shading = options.shading,
                      .kind = kind_of(volume),
                      .middle = 0.5 * (box.lower + box.upper),
-                     .diagonal = size};
+                     .diagonal = size,
+                     .thinnest = thinnest_of(volume)};
     if (scene.color_channel == scene.channel) scene.color_channel.reset();
     scene.bent = !scene.opacity_values().hessians.empty() || !scene.color_values().hessians.empty();
     if (volume.boundary.triangles.empty()) scene.half_weight = static_cast<float>(0.5 * weight_inside(volume));
@@ -254,6 +276,7 @@ void set_kernels(SplatScene& scene, const RbfVolume& volume, const Clip& clip) {
     scene.largest_color = scene.color_channel ? check_channel(volume, *scene.color_channel) : 0;
     scene.largest_value = largest_value;
     scene.volume = &volume;
+    scene.thinnest = thinnest_of(volume);
     scene.reach = {};
     set_clip(scene, clip);
 }

@@ -70,6 +70,7 @@ struct SplatScene {
     std::string kind{};                             // of its volumes: what kernels that replace others must have in common
     Vec3 middle{0.0};                               // of the bounds; depths are relative to its depth
     double diagonal = 0;
+    float thinnest = 0;  // no kernel reaches less far in any direction
     Box reach{};         // of the kernels and of the boundary
     RayClip clip{};      // as set_clip
     bool solid = false;  // of the picture, as is_solid

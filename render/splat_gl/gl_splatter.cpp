@@ -238,7 +238,8 @@ void GlSplatter::State::prepare(const View& view, const Classification& classifi
     stages_.clear();
     frame_ = gl_splat_frame(scene_, view, classification, sheets_, tuning_.tile_px, tuning_.batch);
     upload(rows_, classification.table.rows);
-    const FinerSheets finer = by_tolerance ? finer_sheets(view, classification) : FinerSheets{};
+    const bool may_be_finer = by_tolerance && may_be_thin(scene_, sheets_);
+    const FinerSheets finer = may_be_finer ? finer_sheets(view, classification) : FinerSheets{};
     frame_.finer = finer.any();
     report.sheets_finest = finer.sheets_finest(sheets_.count);
     upload(visible_, with_levels(classification.table.visible, finer));
