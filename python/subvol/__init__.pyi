@@ -184,8 +184,8 @@ def rasterize(
 
 def read_mesh(
     path: Path, *, other_cells: str = 'split', weld: Optional[float] = None, curved: Union[float, str] = '5e-06',
-    cell_values: str = 'auto', step: Optional[int] = None, time: Optional[float] = None, blocks: Sequence[str] = (),
-    sharp: Sequence[str] = ()
+    cell_values: str = 'auto', patch_values: str = 'normal', step: Optional[int] = None, time: Optional[float] = None,
+    blocks: Sequence[str] = (), sharp: Sequence[str] = ()
 ) -> HexMesh:
     """Reads a mesh. The contents and the extension decide the format; docs/formats.md has the list. Formats that the library does not
     read but meshio does (MED, Nastran, SU2, FLAC3D and others) are read by meshio, without their sets and steps.
@@ -201,9 +201,9 @@ def read_mesh(
     cell_values: values at cells become values at points: fit (the volume follows the cells' means without waves; the
                  default for OpenFOAM), mean (of the cells around each point; the default for all others), exact (the volume
                  has the cells' means), auto [auto, fit, mean, exact]
-    patch_values: what OpenFOAM has on patches of the boundary: meet (points there get it; not with cell_values exact),
-                 normal (vectors at walls get only the component along the normal: integrals over the volume hardly change),
-                 ignore [meet, normal, ignore]
+    patch_values: what OpenFOAM has on patches of the boundary: normal (points there get it, but of vectors at walls only
+                 the component along the normal: integrals over the volume hardly change; not with cell_values exact), meet
+                 (vectors at walls get all of it, such as a velocity of 0), ignore [meet, normal, ignore]
     step:        a step of a series, from 0 (default: the last one) [0 to 1000000000]
     time:        the step of a series whose time is nearest to this [not with step]
     blocks:      the named parts of the mesh to read (info lists them; default: all)
