@@ -65,7 +65,7 @@ private:
             }
             return report.timed("split", [&] { return split_twist(output_, resolution, options_); });
         }
-        if (!is_model(input_)) {
+        if (!is_model(input_) && kind_of(input_) != InputKind::Bricks) {
             report["input"] = input_;  // for errors
             if (common().density) std::ignore = evaluate_expression(*common().density, {});
             const ReadOptions read = read_options(input_, common());

@@ -133,6 +133,8 @@ private:
         report["input"] = input_;
         const Bricks bricks = report.unpack(open_bricks_input(input_, app()));
         RasterizeOptions options = maker.options(report.progress());
+        options.voxel_size_world = asked_.grids.voxel_size_world;
+        options.resolution = asked_.grids.resolution;
         options.voxel_size_world = voxel_size_of(bricks.bounds, options);
         options.refine = refine_.options(0, report.progress());
         options.on_limit = !interpolates(options.refine.scheme.kind);

@@ -374,7 +374,7 @@ private:
     MeshFile all_;
     ByName<FilePatch> patches_{all_.patches};
     ByName<FileSet> sets_{all_.sets};
-    /// Of a piece's patch: its number in the whole, and that of its first face there.
+    /// The number of a piece's patch in the whole, and that of its first face there.
     struct PatchPlace {
         std::size_t patch, first;
     };

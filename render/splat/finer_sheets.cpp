@@ -45,7 +45,7 @@ public:
             sums_[i] = sums_[i - 1] + most;
         }
     }
-    /// Of values from low to high, in cells.
+    /// The change between values from low to high, in cells.
     [[nodiscard]] float between(float low, float high) const { return at(high) - at(low); }
     [[nodiscard]] float all() const { return sums_.back(); }
 
