@@ -73,15 +73,14 @@ DemoCase make_demo_case(const std::string& name, int resolution, double aspect) 
 
 /// The picture of a model that people look at first: lit, framed and on a light ground, as `subvol render` draws it.
 ///
-/// pawn: its surface; ball: cut open; twist: surfaces of equal values
+/// pawn: its surface; ball: cut open; twist: solid
 Image lit_picture(const DemoCase& shown, const PictureSize& size, Progress* progress) {
     MethodOptions options;
     if (shown.name == "ball") {
         options.style.look.look = Look::Solid;
         options.style.clip.planes.push_back({.point = bounds(shown.mesh).center(), .normal = {0, -1, 0}});
     } else if (shown.name == "twist") {
-        options.style.look.look = Look::Isosurface;
-        options.splat.shading = Shading{};
+        options.style.look.look = Look::Solid;
     } else {
         options.style.look.colors = "surface";
         options.splat.shading = Shading{};
