@@ -34,23 +34,30 @@ std::string light_words(const StudyCase& study_case) {
     return words;
 }
 
-}  // namespace
-
-std::vector<ReferenceState> reference_states(const StudyResults& results) {
-    std::vector<ReferenceState> all;
+/// Calls call(case, its result, whether the reference converged) for the first case of each reference.
+template <class Call>
+void each_reference(const StudyResults& results, const Call& call) {
     std::set<std::string> known;
     for (std::size_t i = 0; i < results.results.size(); ++i) {
-        const StudyCase& study_case = results.study.cases[i];
         const CaseResult& result = results.results[i];
         const auto reference = result.notes.find("reference");
         if (reference == result.notes.end() || !known.insert(reference->second).second) continue;
         const bool converged = !result.metrics.contains("reference_converged") || metric(result, "reference_converged") == 1;
+        call(results.study.cases[i], result, converged);
+    }
+}
+
+}  // namespace
+
+std::vector<ReferenceState> reference_states(const StudyResults& results) {
+    std::vector<ReferenceState> all;
+    each_reference(results, [&](const StudyCase& study_case, const CaseResult&, bool converged) {
         std::string name;
         for (const char* key : {"input", "view", "tf"}) {
             if (study_case.has(key)) name += (name.empty() ? "" : ", ") + spaced(as_text(study_case.values.at(key)));
         }
         all.push_back({name, converged});
-    }
+    });
     return all;
 }
 
@@ -72,13 +79,7 @@ std::optional<StudyTable> setup_table(const StudyResults& results) {
         }
     }
     for (const std::string& key : metrics) table.columns.push_back("floor of " + key.substr(6));
-    std::set<std::string> known;
-    for (std::size_t i = 0; i < results.results.size(); ++i) {
-        const StudyCase& study_case = results.study.cases[i];
-        const CaseResult& result = results.results[i];
-        const auto reference = result.notes.find("reference");
-        if (reference == result.notes.end() || !known.insert(reference->second).second) continue;
-        const bool converged = !result.metrics.contains("reference_converged") || metric(result, "reference_converged") == 1;
+    each_reference(results, [&](const StudyCase& study_case, const CaseResult& result, bool converged) {
         const auto camera = result.notes.find("camera_used");
         auto& row = table.rows.emplace_back(std::vector<StudyTable::Cell>{
             spaced(study_case.text("input")), metric(result, "cells"), metric(result, "points"), camera_words(study_case),
@@ -86,7 +87,7 @@ std::optional<StudyTable> setup_table(const StudyResults& results) {
             metric(result, "reference_level"), std::string(converged ? "yes" : "no"), metric(result, "reference_change"),
             -20 * std::log10(metric(result, "reference_change"))});
         for (const std::string& key : metrics) row.emplace_back(metric(result, key));
-    }
+    });
     if (table.rows.empty()) return {};
     return table;
 }
