@@ -13,6 +13,8 @@
 #include "subvol/quantity.h"
 #include "subvol/rasterize.h"
 #include "subvol/refine.h"
+#include "subvol/region.h"
+#include "subvol/warp.h"
 #include "vdb_functions.h"
 
 namespace subvol::cli {
@@ -38,26 +40,43 @@ std::vector<double> smooth_density(const HexMesh& mesh) {
     return values;
 }
 
-HexMesh load(const StudyCase& item) {
-    if (item.has("input.file")) return without_unused_points(read_mesh(item.text("input.file")).mesh);
+/// sets: of the file's cells
+HexMesh load(const StudyCase& item, MeshSets& sets) {
+    if (item.has("input.file")) {
+        ReadResult read = read_mesh(item.text("input.file"));
+        sets = std::move(read.sets);
+        return without_unused_points(std::move(read.mesh));
+    }
     if (item.text("input.model") == "cell") return one_cell();
     return make_model(item.text("input.model"), item.whole("input.resolution"));
+}
+
+/// The scalar that the case is about.
+Attribute scalar_of(const StudyCase& item, const HexMesh& mesh) {
+    const std::string& density = item.text("input.density");
+    if (density == "smooth") return {"density", 1, smooth_density(mesh)};
+    if (!density.empty()) return {"density", 1, evaluate_expression(density, mesh.points)};
+    const auto field = item.has("input.field") ? std::optional(item.text("input.field")) : std::nullopt;
+    return select_field(mesh, field).scalar;
 }
 
 }  // namespace
 
 HexMesh study_mesh(const StudyCase& item) {
-    HexMesh mesh = load(item);
-    if (item.whole("input.refine") > 0) mesh = refine(mesh, {.levels = item.whole("input.refine")});
-    const std::string& density = item.text("input.density");
-    if (density == "smooth") {
-        mesh.attributes = {{"density", 1, smooth_density(mesh)}};
-    } else if (!density.empty()) {
-        mesh.attributes = {{"density", 1, evaluate_expression(density, mesh.points)}};
-    } else {
-        const auto field = item.has("input.field") ? std::optional(item.text("input.field")) : std::nullopt;
-        mesh.attributes = {select_field(mesh, field).scalar};
+    MeshSets sets;
+    HexMesh mesh = load(item, sets);
+    if (item.whole("input.refine") > 0) {
+        mesh = refine(mesh, {.levels = item.whole("input.refine")});
+        sets = {};  // of the file's cells
     }
+    // As with --only and --warp of the command, the field is that of the whole mesh at rest.
+    mesh.attributes.push_back(scalar_of(item, mesh));
+    if (item.has("input.only")) {
+        const std::vector<std::string> region{item.text("input.only")};
+        mesh = only_cells(mesh, cells_in(mesh, parse_regions(region), sets));
+    }
+    if (item.has("input.warp")) move_points(mesh, parse_warp(item.text("input.warp")));
+    mesh.attributes = {Attribute(std::move(mesh.attributes.back()))};
     validate(mesh);
     return mesh;
 }

@@ -25,7 +25,7 @@ std::vector<Key> input_keys() {
     std::vector<std::string> models{"cell"};
     for (const ModelInfo& model : list_models()) models.push_back(model.name);
     return {{"model", Text, 0, 0, {}, models}, {"file"},  {"resolution", Whole, 2, 512},
-            {"refine", Whole, 0, 4},           {"field"}, {"density"}};
+            {"refine", Whole, 0, 4},           {"field"}, {"density"}, {"only"}, {"warp"}};
 }
 
 const std::vector<Key>& light_keys() {

@@ -53,6 +53,25 @@ class Honest(InFolder):
         self.assertIn('class="band"', (self.folder / "out/small/small_plot.svg").read_text())
         self.assertIn("floor of each metric", page)
 
+    def test_regions_and_displacements_of_inputs(self):
+        vectors = "VECTORS D double\n" + "".join(f"{.5 * z} 0 0\n" for z in (0, 1, 2) for _ in range(4))
+        corners = "".join(f"{x} {y} {z}\n" for z in (0, 1, 2) for y in (0, 1) for x in (0, 1))
+        cells = "".join("8 " + " ".join(str(4 * k + i) for i in (0, 1, 3, 2, 4, 5, 7, 6)) + "\n" for k in (0, 1))
+        (self.folder / "a.vtk").write_text(
+            f"# vtk DataFile Version 3.0\na\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 12 double\n{corners}CELLS 2 18\n{cells}"
+            f"CELL_TYPES 2\n12\n12\nPOINT_DATA 12\n{vectors}")
+        whole = {"file": "a.vtk", "name": "whole", "field": "D.x"}
+        inputs = [whole, whole | {"name": "half", "only": "half:0,0,1,0,0,-1"}, whole | {"name": "moved", "warp": "D*2"}]
+        self.ran(inputs=inputs, cameras=["+y"], methods=[{"method": "tets", "levels": [0]}], metrics=["rmse"], pictures=False,
+                 tables=[{"rows": ["input"], "columns": ["rmse"]}])
+        rows = {row["input"]: row for row in self.rows()}
+        self.assertEqual({name: int(row["cells"]) for name, row in rows.items()}, {"whole": 2, "half": 1, "moved": 2})
+        used = {json.loads(case.read_text())["values"]["input"]: json.loads(case.read_text())["notes"]["camera_used"]
+                for case in (self.folder / "out/small/cases").glob("*.json")}
+        self.assertNotEqual(used["whole"], used["moved"])  # another box
+        self.ran(inputs=[whole | {"only": "half:0,0,9,0,0,1"}], code=1)
+        self.assertIn("no cell", self.page())
+
     def test_a_reference_that_did_not_converge_is_said(self):
         never = {"tolerance": 1e-9, "max_levels": 2}
         result = self.ran(reference=never)
