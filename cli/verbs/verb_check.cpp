@@ -35,6 +35,7 @@ public:
         FoldOptions options = options_;
         options.scheme = scheme_.options(0, report.progress()).scheme;
         options.progress = report.progress();
+        options.names = OptionNames::Flags;
         report["input"] = input_;
         report.if_long("fewer --irregular-levels");
         const HexMesh mesh = report.unpack(load_mesh(input_, common(), report.progress()));

@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <array>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "body_input.h"
 #include "grid_input.h"
 #include "input.h"
+#include "options.h"
 #include "part_note.h"
 #include "picture_notes.h"
 #include "picture_output.h"
@@ -314,8 +317,21 @@ private:
         report["times"] = std::vector(series.times.begin() + steps.first, series.times.begin() + steps.last + 1);
     }
 
+    /// Refuses what is read by volumes only, where there are shells alone, as of patches.
+    void refuse_options_of_volumes() {
+        constexpr std::array<std::string_view, 10> kOfShells{"scheme", "tension",  "crease-angle", "levels", "samples",
+                                                             "clip",   "clip-box", "shade",        "edges",  "color-field"};
+        const GivenOptions given = given_options(app());
+        for (const OptionUse& use : option_uses()) {
+            if (std::ranges::find(kOfShells, use.name) != kOfShells.end() || !given(use.name)) continue;
+            throw Error(ErrorCode::InvalidInput, "has no effect on shells and patches: no volume is drawn",
+                        option_name(use.name, OptionNames::Flags));
+        }
+    }
+
     void draw_mesh(PictureOutput& output, Report& report) {
         const ShownBody mesh = load_shown(common(), report, ShellsAlone::Take);
+        if (mesh.body.source().cells() == 0) refuse_options_of_volumes();
         show(mesh.box, mesh.field, mesh.colors, output, report, [&](const ShownColors& shown) {
             const std::vector<Vec3>& shells = mesh.body.shells.points;
             set_notes(mesh, shown, output, report);

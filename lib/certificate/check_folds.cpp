@@ -357,7 +357,8 @@ FoldCheck check_folds(const HexMesh& mesh, const FoldOptions& options) {
     check_options(options.scheme);
     validate(mesh);
     if (options.scheme.kind == Scheme::Mcq && options.scheme.tension != 1.0 / 16 && options.scheme.tension != 0) {
-        throw Error(ErrorCode::InvalidInput, "folds of mcq cannot be excluded with this tension", "tension", "1/16, or 0");
+        throw Error(ErrorCode::InvalidInput, "folds of mcq cannot be excluded with this tension",
+                    option_name("tension", options.names), "1/16, or 0");
     }
     return FoldChecker(mesh, options).run();
 }

@@ -273,8 +273,12 @@ const MeshFormat* format_with(std::string_view extension) {
     return found == kFormats.end() ? nullptr : &*found;
 }
 
-void warn_of_time_beyond(const std::optional<double>& asked, const std::vector<double>& times, ReadResult& result) {
-    if (!asked || times.size() < 2) return;
+void warn_of_time(const std::optional<double>& asked, const std::vector<double>& times, ReadResult& result) {
+    if (!asked) return;
+    if (times.size() < 2) {
+        result.warnings.emplace_back("the file has one step, so there is no time to choose");
+        return;
+    }
     const auto [first, last] = std::ranges::minmax(times);
     if (*asked >= first && *asked <= last) return;
     result.warnings.push_back("time " + number_text(*asked) + " is beyond the steps of the file: it is step " +
@@ -353,7 +357,9 @@ ReadResult read_mesh(const std::filesystem::path& path, const ReadOptions& optio
         result.steps = std::max<std::size_t>(times.size(), 1);
         result.step = resolved.step.value_or(result.steps - 1);
         if (result.steps > 1) result.mesh.time = times[result.step];
-        warn_of_time_beyond(options.time, times, result);
+        warn_of_time(options.time, times, result);
+    } else {
+        warn_of_time(options.time, {}, result);
     }
     return result;
 }

@@ -55,7 +55,7 @@ class Check(InFolder):
             self.assertIn(word, said)
 
     def test_what_has_no_proof_is_refused(self):
-        for arguments, naming in ((["--tension", ".05"], "tension"), (["--levels", "9"], "levels"), (["--tests", "0"], "tests"),
+        for arguments, naming in ((["--tension", ".05"], "--tension: "), (["--levels", "9"], "levels"), (["--tests", "0"], "tests"),
                                   (["--scheme", "tetoct"], "scheme")):
             done = subvol("check", "model:twist:2", *arguments, folder=self.folder)
             self.assertEqual(done.code, 2, done.err)

@@ -295,6 +295,9 @@ class Patches(InFolder):
 
     def test_names_that_are_not_there(self):
         (self.folder / "a.inp").write_text(INP)
+        for option in ["--sheets", "20"], ["--per-edge", "2"], ["--slice", "0,0,1,0,0,1"], ["--shadows"], ["--lod", "2"]:
+            self.refused([option[0], "no volume is drawn"], "render", "a.inp", "-o", "d.png", "--patch", "left", *option)
+        self.assertFalse((self.folder / "d.png").exists())
         self.refused(["no patch \"inlet\"", "left, right, tips, free"], "probe", "a.inp", "--patch", "inlet")
         self.refused(["no patch \"inlet\"", "left, right, tips, free"], "surface", "a.inp", "-o", "a.ply", "--patch", "inlet")
         self.refused(["has no patches"], "probe", "model:ball:2", "--patch", "all")

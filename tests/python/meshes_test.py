@@ -249,6 +249,8 @@ def test_a_time_takes_the_nearest_step(tmp_path, cube):
         assert subvol.read_mesh(pvd, time=7).fields["x"].min() == 2
     with pytest.raises(subvol.InvalidInput, match="time"):
         subvol.read_mesh(pvd, time=.3, step=1)
+    with pytest.warns(UserWarning, match="one step"):
+        subvol.read_mesh(tmp_path / "0.vtu", time=.3)
     with pytest.raises(subvol.InvalidInput, match="corners"):
         subvol.read_mesh(tmp_path / "0.vtu", curved="sharp")
     for curved in ("corners", 1e-3, "1e-3"):

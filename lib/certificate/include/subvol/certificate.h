@@ -33,11 +33,13 @@ struct NameTable<FoldVerdict> {
 /// levels: how often a cell is cut into eight where one test does not decide
 /// irregular_levels: how often a cell near an irregular edge is refined for the same
 /// tests:  the most tests of a cell
+/// names:  how errors call the options
 struct FoldOptions {
     SchemeOptions scheme{};
     int levels = 5;
     int irregular_levels = 2;
     int tests = 1000;
+    OptionNames names = OptionNames::Keywords;
     Progress* progress = nullptr;
 };
 
