@@ -27,7 +27,9 @@ struct GivenGrids {
         RasterizeOptions options = grids;
         options.voxel_size_world = voxel_size.value_or(0);
         options.refine = {.scheme = scheme, .levels = levels.value_or(0)};
-        if (sdf) options.level_set = LevelSetOptions{.name = *sdf, .half_width_voxels = level_set.half_width_voxels};
+        if (!sdf) return options;
+        options.level_set = level_set;
+        if (!sdf->empty()) options.level_set->name = *sdf;
         return options;
     }
 };

@@ -101,6 +101,7 @@ def test_rasterize_takes_what_the_library_describes(ball, ball_points):
     assert {"density", "cell", "coverage", "band"} <= set(grids)
     size = grids["band"].report["voxel_size"]
     assert grids["band"].report["max"] == pytest.approx(2 * size, rel=.1)  # the band ends there
+    assert "sdf" in {g.name for g in subvol.rasterize(ball, resolution=8, sdf="")}  # as --sdf without a name
     with pytest.raises(subvol.InvalidInput, match="half_width: has no effect without sdf"):
         subvol.rasterize(ball, resolution=8, half_width=2)
     with pytest.raises(subvol.InvalidInput, match="voxel_size"):
