@@ -24,8 +24,14 @@ std::vector<Key> input_keys() {
     using enum KeyKind;
     std::vector<std::string> models{"cell"};
     for (const ModelInfo& model : list_models()) models.push_back(model.name);
-    return {{"model", Text, 0, 0, {}, models}, {"file"},  {"resolution", Whole, 2, 512},
-            {"refine", Whole, 0, 4},           {"field"}, {"density"}, {"only"}, {"warp"}};
+    return {{"model", Text, 0, 0, {}, models},
+            {"file"},
+            {"resolution", Whole, 2, 512},
+            {"refine", Whole, 0, 4},
+            {"field"},
+            {"density"},
+            {"only"},
+            {"warp"}};
 }
 
 const std::vector<Key>& light_keys() {
