@@ -23,6 +23,7 @@
 #include "subvol/error.h"
 #include "subvol/image_io.h"
 #include "subvol/mesh_series.h"
+#include "subvol/picture_metrics.h"
 #include "subvol/view_session.h"
 #include "subvol/view_window.h"
 #include "tet_refinement.h"
@@ -169,6 +170,8 @@ private:
                         alone ? picture->depth : std::vector<float>{});
             report["output"] = screenshot_;
         }
+        session.measure();
+        if (const auto& figures = session.compared()) report["comparison"] = {{"psnr", figures->psnr}, {"flip", figures->flip}};
         report["method"] = name_of(session.state().method);
         report["backend"] = picture->backend;
         report["points"] = picture->points;
@@ -234,6 +237,11 @@ private:
                 .times = times(),
                 .write_picture = [](const std::filesystem::path& path, const Image& image,
                                     const Vec3& background) { write_image(path, image, background); },
+                .measure =
+                    [](const Image& test, const Image& reference) {
+                        const PicturePair pair(test, reference);
+                        return PictureFigures{pair.differences().psnr, pair.flip().mean};
+                    },
                 .more_words = more_words()};
     }
 

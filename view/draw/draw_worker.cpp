@@ -42,7 +42,9 @@ struct DrawWorker::State {
         while (changed.wait(lock, stop, [&] { return next.has_value(); })) {
             const Request request = std::move(*next);
             next.reset();
-            abandon = false;
+            abandon = given_up = stopped = false;
+            doing = {"draw", 0};
+            since = request.since;
             drawing = true;
             lock.unlock();
             run(request);
@@ -53,11 +55,16 @@ struct DrawWorker::State {
     }
 
     void run(const Request& request) {
-        CancelFlag at_end(quit), when_newer(abandon);
+        const auto listen = [this](std::string_view stage, double fraction) {
+            const std::scoped_lock lock(mutex);
+            doing.stage = stage;
+            doing.fraction = fraction;
+        };
+        CancelFlag when_given_up(given_up, listen), when_newer(abandon, listen);
         try {
             DrawTimes taken{.coarse_scale = coarse_scale};
             const double before = request.since.seconds();
-            auto coarse = drawer.draw(request.state, request.body, coarse_scale, &at_end);  // not given up: things move
+            auto coarse = drawer.draw(request.state, request.body, coarse_scale, &when_given_up);  // not given up: things move
             taken.first = request.since.seconds();
             taken.boundary = coarse.seconds_boundary;
             taken.kernels = coarse.seconds_kernels;
@@ -70,7 +77,7 @@ struct DrawWorker::State {
             taken.full = request.since.seconds();
             publish(std::move(whole), taken, request.serial);
         } catch (const Error& thrown) {
-            if (thrown.code() != ErrorCode::Cancelled) fail(thrown.what());
+            if (thrown.code() != ErrorCode::Cancelled || was_stopped()) fail(thrown.what());
         } catch (const std::exception& thrown) {
             fail(thrown.what());
         }
@@ -81,6 +88,11 @@ struct DrawWorker::State {
     [[nodiscard]] bool moves_on() {
         std::unique_lock lock(mutex);
         return changed.wait_for(lock, kPause, [&] { return next.has_value() || quit; });
+    }
+
+    [[nodiscard]] bool was_stopped() {
+        const std::scoped_lock lock(mutex);
+        return stopped && !next;
     }
 
     /// Coarse pictures get coarser while they take too long, and finer while there is much time left.
@@ -119,8 +131,10 @@ struct DrawWorker::State {
     std::mutex mutex{};  // guards what follows
     std::condition_variable_any changed{}, done{};
     std::optional<Request> next{};
-    bool drawing = false;
-    std::atomic<bool> abandon = false, quit = false;
+    bool drawing = false, stopped = false;
+    std::atomic<bool> abandon = false, given_up = false, quit = false;
+    Work doing{};
+    Stopwatch since{};
     std::shared_ptr<const DrawnPicture> latest{}, full{};
     std::uint64_t count = 0, asked = 0, shown = 0;
     std::optional<std::string> error{};
@@ -138,7 +152,7 @@ DrawWorker::~DrawWorker() {
     {
         const std::scoped_lock lock(state_->mutex);
         state_->next.reset();
-        state_->abandon = state_->quit = true;
+        state_->abandon = state_->given_up = state_->quit = true;
         state_->changed.notify_all();
     }
     state_->thread.request_stop();
@@ -153,6 +167,21 @@ void DrawWorker::show(const ViewState& state, std::shared_ptr<const ViewBody> bo
     state_->failure = nullptr;
     state_->full.reset();
     state_->changed.notify_all();
+}
+
+DrawWorker::Work DrawWorker::work() const {
+    const std::scoped_lock lock(state_->mutex);
+    if (!state_->drawing) return {};
+    Work work = state_->doing;
+    work.seconds = state_->since.seconds();
+    return work;
+}
+
+void DrawWorker::stop() {
+    const std::scoped_lock lock(state_->mutex);
+    if (!state_->drawing) return;
+    state_->next.reset();
+    state_->abandon = state_->given_up = state_->stopped = true;
 }
 
 std::shared_ptr<const DrawnPicture> DrawWorker::latest() const {

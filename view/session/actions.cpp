@@ -14,26 +14,32 @@ namespace {
 
 using Session = ViewSession::State;
 
+/// Not:    undo does not take it back
+/// Step:   undo takes it back
+/// Motion: the same, together with the same actions right before it, as of a wheel or a key that is held
+enum class Undo { Not, Step, Motion };
+
 struct Action {
     const char* name;
     void (*run)(Session&, const Json&);
+    Undo undo = Undo::Step;
 };
 
-constexpr std::array kActions{Action{"orbit", orbit},
-                              Action{"pan", pan},
-                              Action{"zoom", zoom},
+constexpr std::array kActions{Action{"orbit", orbit, Undo::Motion},
+                              Action{"pan", pan, Undo::Motion},
+                              Action{"zoom", zoom, Undo::Motion},
                               Action{"fit", fit},
                               Action{"view", view},
                               Action{"ortho", ortho},
                               Action{"camera", camera},
-                              Action{"size", size},
+                              Action{"size", size, Undo::Not},
                               Action{"field", field},
-                              Action{"step", step},
+                              Action{"step", step, Undo::Motion},
                               Action{"method", method},
                               Action{"look", look},
                               Action{"tf", tf},
-                              Action{"range", range},
-                              Action{"opacity", opacity},
+                              Action{"range", range, Undo::Motion},
+                              Action{"opacity", opacity, Undo::Motion},
                               Action{"opacity_unit", opacity_unit},
                               Action{"clamp", clamp},
                               Action{"background", background},
@@ -45,16 +51,17 @@ constexpr std::array kActions{Action{"orbit", orbit},
                               Action{"slice", slice},
                               Action{"around", around},
                               Action{"add_cut", add_cut},
+                              Action{"set_cut", set_cut, Undo::Motion},
                               Action{"remove_cut", remove_cut},
-                              Action{"move_cut", move_cut},
-                              Action{"turn_cut", turn_cut},
+                              Action{"move_cut", move_cut, Undo::Motion},
+                              Action{"turn_cut", turn_cut, Undo::Motion},
                               Action{"compare", compare},
-                              Action{"slider", slider},
+                              Action{"slider", slider, Undo::Motion},
                               Action{"difference", difference},
-                              Action{"window", window},
-                              Action{"edit_level", edit_level},
-                              Action{"select", select},
-                              Action{"grab", grab},
+                              Action{"window", window, Undo::Not},
+                              Action{"edit_level", edit_level, Undo::Not},
+                              Action{"select", select, Undo::Not},
+                              Action{"grab", grab, Undo::Not},
                               Action{"move", move},
                               Action{"drag", drag},
                               Action{"rotate", rotate},
@@ -62,14 +69,16 @@ constexpr std::array kActions{Action{"orbit", orbit},
                               Action{"twist", twist},
                               Action{"bend", bend},
                               Action{"paint", paint},
-                              Action{"undo", undo},
-                              Action{"redo", redo},
-                              Action{"save_mesh", save_mesh},
-                              Action{"pick", pick_place},
-                              Action{"wait", wait},
-                              Action{"screenshot", screenshot},
-                              Action{"save_tf", save_tf},
-                              Action{"save_state", save_state},
+                              Action{"undo", undo, Undo::Not},
+                              Action{"redo", redo, Undo::Not},
+                              Action{"save_mesh", save_mesh, Undo::Not},
+                              Action{"pick", pick_place, Undo::Not},
+                              Action{"focus", focus},
+                              Action{"wait", wait, Undo::Not},
+                              Action{"stop", stop, Undo::Not},
+                              Action{"screenshot", screenshot, Undo::Not},
+                              Action{"save_tf", save_tf, Undo::Not},
+                              Action{"save_state", save_state, Undo::Not},
                               Action{"load_state", load_state}};
 
 }  // namespace
@@ -87,7 +96,9 @@ void change(ViewSession::State& session, ViewState next) {
     session.show();
 }
 
-void run_action(ViewSession::State& session, const std::string& name, const Json& argument) {
+namespace {
+
+const Action& find_action(const std::string& name) {
     const auto found = std::ranges::find_if(kActions, [&](const Action& action) { return name == action.name; });
     if (found == kActions.end()) {
         std::vector<std::string> names;
@@ -98,12 +109,27 @@ void run_action(ViewSession::State& session, const std::string& name, const Json
         }
         throw Error(ErrorCode::InvalidInput, in_quotes(name) + " is not an action" + did_you_mean(name, names), {}, all);
     }
+    return *found;
+}
+
+}  // namespace
+
+void run_part(ViewSession::State& session, const std::string& name, const Json& argument) {
+    const Action& found = find_action(name);
     try {
-        found->run(session, argument);
+        found.run(session, argument);
     } catch (const Error& error) {
         if (!error.where().empty()) throw;
         throw Error(error.code(), error.message(), name, error.allowed());
     }
+}
+
+void run_action(ViewSession::State& session, const std::string& name, const Json& argument) {
+    const Undo undo = find_action(name).undo;
+    if (undo == Undo::Not) return run_part(session, name, argument);
+    Session::Moment before = session.moment();
+    run_part(session, name, argument);
+    session.remember(std::move(before), undo == Undo::Motion ? name : "");
 }
 
 }  // namespace subvol::detail

@@ -53,8 +53,13 @@ void pan(Session& session, const Json& by) {
     set_camera(session, panned(session.state.camera, parts[0], parts[1]));
 }
 
+/// By a factor about the middle of the picture, or `[factor, column, row]`: about a pixel.
 void zoom(Session& session, const Json& by) {
-    set_camera(session, zoomed(session.state.camera, number(by, 1e-3, 1e3)));
+    if (!by.is_array()) return set_camera(session, zoomed(session.state.camera, number(by, 1e-3, 1e3)));
+    const auto n = numbers(by, 3);
+    const View seen = seen_view(session.state, *session.body);
+    const Vec2 about((n[1] - 0.5 * seen.width()) / seen.height(), (0.5 * seen.height() - n[2]) / seen.height());
+    set_camera(session, zoomed(session.state.camera, number(by[0], 1e-3, 1e3), about));
 }
 
 void fit(Session& session, const Json& wanted) {

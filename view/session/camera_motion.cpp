@@ -43,13 +43,18 @@ Camera panned(Camera camera, double right, double up) {
     const double height = height_at_target(camera);
     const Vec3 forward = glm::normalize(camera.target - camera.eye);
     const Vec3 to_right = glm::normalize(glm::cross(forward, camera.up)), to_top = glm::cross(to_right, forward);
-    const Vec3 move = -height * (right * to_right + up * to_top);
-    camera.eye += move;
-    camera.target += move;
+    return aimed(camera, camera.target - height * (right * to_right + up * to_top));
+}
+
+Camera aimed(Camera camera, const Vec3& place) {
+    camera.eye += place - camera.target;
+    camera.target = place;
     return camera;
 }
 
-Camera zoomed(Camera camera, double factor) {
+Camera zoomed(Camera camera, double factor, const Vec2& about) {
+    const double stays = 1 - 1 / factor;  // the part of the way to the place that the target goes
+    camera = panned(camera, -stays * about.x, -stays * about.y);
     camera.eye = camera.target + (camera.eye - camera.target) / factor;
     camera.ortho_height /= factor;
     return camera;

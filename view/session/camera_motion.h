@@ -15,8 +15,13 @@ namespace subvol::detail {
 /// the picture.
 [[nodiscard]] Camera panned(Camera camera, double right, double up);
 
-/// Makes what is at the target larger by a factor.
-[[nodiscard]] Camera zoomed(Camera camera, double factor);
+/// Makes what is at the target larger by a factor, about a place of the picture, which stays where it is.
+///
+/// about: right and up from the middle of the picture, in heights of it
+[[nodiscard]] Camera zoomed(Camera camera, double factor, const Vec2& about = Vec2(0.0));
+
+/// Moves a camera without turning it, so that it looks at a place.
+[[nodiscard]] Camera aimed(Camera camera, const Vec3& place);
 
 /// The same camera with parallel rays, or with perspective: what is at the target keeps its size.
 [[nodiscard]] Camera with_parallel_rays(Camera camera, bool parallel);

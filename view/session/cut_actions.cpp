@@ -114,6 +114,14 @@ void add_cut(Session& session, const Json& value) {
     edit_clip(session, [&](Clip& next) { (slice ? next.slices : next.planes).push_back(plane); });
 }
 
+void set_cut(Session& session, const Json& value) {
+    check_keys(value, {"clip", "slice", "plane"});
+    const auto n = numbers(member(value, "plane"), 6);
+    edit_planes(session, value, [&](std::vector<CutPlane>& planes, std::size_t chosen) {
+        planes[chosen] = {{n[0], n[1], n[2]}, {n[3], n[4], n[5]}};
+    });
+}
+
 void remove_cut(Session& session, const Json& value) {
     check_keys(value, {"clip", "slice"});
     edit_planes(session, value, [](std::vector<CutPlane>& planes, std::size_t chosen) {

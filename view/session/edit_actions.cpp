@@ -19,7 +19,6 @@ namespace {
 
 using Session = ViewSession::State;
 
-constexpr std::size_t kMostSteps = 50;  // that can be undone
 constexpr double kMost = 1e18;
 
 void check_cells(const Session& session) {
@@ -45,14 +44,7 @@ void edit(Session& session, const Edit& change) {
         if (!(glm::dot(p, p) < kMost * kMost))
             throw Error(ErrorCode::InvalidInput, "moves a point too far", {}, "at most 1e18");
     }
-    if (!session.grabbed) session.remember();
     session.replace(session.coarse ? session.coarse->change(std::move(next)) : std::move(next));
-}
-
-/// Shows a mesh from before or after; the level that is edited is then that of this mesh.
-void restore(Session& session, HexMesh mesh) {
-    session.replace(std::move(mesh));
-    if (session.coarse) session.coarse->take(session.body->mesh);
 }
 
 /// The points around the place that the picture shows at a pixel.
@@ -137,9 +129,9 @@ void select(Session& session, const Json& value) {
 void grab(Session& session, const Json& value) {
     const bool on = flag(value);
     if (on == session.grabbed) return;
-    if (on) session.remember();
     session.grabbed = on;
-    if (!on) session.replace(session.body->mesh);  // the last picture is as exact as any
+    session.kept_grab = false;
+    if (!on && session.body->moved) session.replace(session.body->mesh);  // the last picture is as exact as any
 }
 
 void move(Session& session, const Json& value) {
@@ -194,19 +186,11 @@ void paint(Session& session, const Json& value) {
 }
 
 void undo(Session& session, const Json& value) {
-    if (!flag(value) || session.before.empty()) return;
-    session.after.push_back(session.body->mesh);
-    HexMesh mesh = std::move(session.before.back());
-    session.before.pop_back();
-    restore(session, std::move(mesh));
+    if (flag(value)) session.go_back(session.before, session.after);
 }
 
 void redo(Session& session, const Json& value) {
-    if (!flag(value) || session.after.empty()) return;
-    session.before.push_back(session.body->mesh);
-    HexMesh mesh = std::move(session.after.back());
-    session.after.pop_back();
-    restore(session, std::move(mesh));
+    if (flag(value)) session.go_back(session.after, session.before);
 }
 
 void save_mesh(Session& session, const Json& value) {
@@ -218,22 +202,14 @@ void save_mesh(Session& session, const Json& value) {
 
 namespace subvol {
 
-void ViewSession::State::remember() {
-    before.push_back(body->mesh);
-    if (before.size() > detail::kMostSteps) before.erase(before.begin());
-    after.clear();
-}
-
 void ViewSession::State::replace(HexMesh next) {
     const std::string field = next.attributes.front().name;
-    mesh.points = next.points;  // for the other fields
-    for (Attribute& of_mesh : mesh.attributes) {
-        if (of_mesh.name == field && of_mesh.channels == 1) of_mesh.values = next.attributes.front().values;
-    }
-    auto edited = std::make_shared<ViewBody>(view_body(std::move(next), field));
-    edited->shape = shape;
-    edited->moved = grabbed;
-    body = std::move(edited);
+    auto changed = std::make_shared<ViewBody>(view_body(std::move(next), field));
+    changed->shape = shape;
+    changed->moved = grabbed;
+    body = std::move(changed);
+    take_values_of_body();
+    edited = true;
     picked_field.reset();
     show();
 }

@@ -2,6 +2,7 @@
 // Actions that wait, pick, and write or read files.
 #include <filesystem>
 
+#include "camera_motion.h"
 #include "seen_view.h"
 #include "subvol/color_map_file.h"
 #include "subvol/detail/atomic_file.h"
@@ -19,7 +20,7 @@ using Session = ViewSession::State;
 void restore(Session& session, const Json& json, const Json& known, const std::string& path) {
     for (const auto& [key, value] : json.items()) {
         if (!known.contains(key)) throw Error(ErrorCode::InvalidInput, "the key " + in_quotes(key) + " is not known", path);
-        run_action(session, key, value);
+        run_part(session, key, value);
     }
 }
 
@@ -40,6 +41,27 @@ auto picker(Session& session, const Json& value) {
 
 void pick_place(Session& session, const Json& value) {
     session.picked = picker(session, value)();
+}
+
+namespace {
+
+/// Looks at a place that was picked; where nothing was, the camera stays.
+void look_at(Session& session, const std::optional<Picked>& found) {
+    session.picked = found;
+    if (found) edit_state(session, [&](ViewState& next) { next.camera = aimed(next.camera, found->place); });
+}
+
+}  // namespace
+
+void focus(Session& session, const Json& value) {
+    look_at(session, picker(session, value)());
+}
+
+/// Gives up the pictures that are being drawn.
+void stop(Session& session, const Json& value) {
+    if (!flag(value)) return;
+    session.worker.stop();
+    if (session.reference) session.reference->stop();
 }
 
 void wait(Session& session, const Json& wanted) {
@@ -85,17 +107,11 @@ void load_state(Session& session, const Json& file) {
     const Json json = parsed(text, path);
     if (!json.is_object()) throw Error(ErrorCode::InvalidInput, "is not the state of a session", path);
     const Json known = json_of(session.state);
-    const ViewState before = session.state;
-    const auto body = session.body;
-    HexMesh mesh = session.mesh;
+    const Session::Moment before = session.moment();
     try {
         restore(session, json, known, path);
     } catch (...) {
-        session.state = before;
-        session.body = body;
-        session.mesh = std::move(mesh);
-        session.picked_field.reset();
-        session.show();
+        session.restore(before);
         throw;
     }
 }
@@ -121,6 +137,14 @@ void start_action(ViewSession::State& session, const std::string& name, const Js
     if (name == "pick") {
         session.later.push_back(std::async(std::launch::async, [find = picker(session, argument)]() -> Done {
             return [picked = find()](Session& now) { now.picked = picked; };
+        }));
+    } else if (name == "focus") {
+        session.later.push_back(std::async(std::launch::async, [find = picker(session, argument)]() -> Done {
+            return [found = find()](Session& now) {
+                Session::Moment was = now.moment();
+                look_at(now, found);
+                now.remember(std::move(was), {});
+            };
         }));
     } else if (name == "step") {
         const auto steps = static_cast<int>(session.source.times.size());

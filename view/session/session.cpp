@@ -64,12 +64,32 @@ using namespace detail;
 
 namespace {
 
-/// The picture beside that of another method, or their difference.
+bool same_camera(const Camera& a, const Camera& b) {
+    return a.eye == b.eye && a.target == b.target && a.up == b.up && a.fovy_deg == b.fovy_deg &&
+           a.ortho_height == b.ortho_height;
+}
+
+/// The same picture with more pixels: each is the one that lies there.
+Image enlarged(const Image& image, int width, int height) {
+    if (image.width == width && image.height == height) return image;
+    Image larger(width, height);
+    for (int y = 0; y < height; ++y) {
+        const int from = std::min(image.height - 1, y * image.height / height);
+        for (int x = 0; x < width; ++x)
+            std::ranges::copy(image.pixel(std::min(image.width - 1, x * image.width / width), from),
+                              larger.pixel(x, y).begin());
+    }
+    return larger;
+}
+
+/// The picture beside that of another method, or their difference. A coarse one is enlarged; one of another camera is left out.
 Image composed_of(const DrawnPicture& picture, const DrawnPicture& other, const ViewState& state) {
-    if (other.image.width != picture.image.width || other.image.height != picture.image.height) return picture.image;
+    if (!same_camera(picture.state.camera, other.state.camera)) return picture.image;
+    const int width = std::max(picture.image.width, other.image.width);
+    const int height = std::max(picture.image.height, other.image.height);
+    const Image left = enlarged(picture.image, width, height), right = enlarged(other.image, width, height);
     const Vec3 behind = background_of(state);
-    return state.difference ? difference_of(picture.image, other.image, behind)
-                            : side_by_side(picture.image, other.image, state.slider, ink_on(behind));
+    return state.difference ? difference_of(left, right, behind) : side_by_side(left, right, state.slider, ink_on(behind));
 }
 
 /// The one key and value of an action.
@@ -101,7 +121,7 @@ ViewSession::State::State(ViewSource from, HexMesh read, const ViewState& start,
                           std::function<void()> wake)
     : source(std::move(from)),
       settings(drawn),
-      mesh(std::move(read)),
+      mesh(std::make_shared<HexMesh>(std::move(read))),
       state(start),
       on_picture(std::move(wake)),
       worker(settings, on_picture) {
@@ -111,8 +131,8 @@ ViewSession::State::State(ViewSource from, HexMesh read, const ViewState& start,
 
 void ViewSession::State::choose_body() {
     const auto field = state.field.empty() ? std::nullopt : std::optional(state.field);
-    std::shared_ptr<const ViewBody> chosen =
-        std::make_shared<const ViewBody>(source.points.volume ? view_body(mesh, source.points, field) : view_body(mesh, field));
+    std::shared_ptr<const ViewBody> chosen = std::make_shared<const ViewBody>(
+        source.points.volume ? view_body(*mesh, source.points, field) : view_body(*mesh, field));
     decltype(tet_levels) levels;
     if (source.tets) {
         chosen = tet_body(source, chosen->mesh, chosen->field(), state.method);
@@ -124,9 +144,7 @@ void ViewSession::State::choose_body() {
     picked_field.reset();
     coarse.reset();
     edit_level = 0;
-    selection.clear();  // points, and what was done to them, are those of the mesh before
-    before.clear();
-    after.clear();
+    selection.clear();  // of the points before
     ++shape;
     grabbed = false;
 }
@@ -134,7 +152,7 @@ void ViewSession::State::choose_body() {
 std::shared_ptr<const ViewBody> ViewSession::State::body_for(Method method) {
     if (!source.tets) return body;
     auto& level = tet_levels[static_cast<std::size_t>(default_tet_level(method)) - 1];
-    if (!level) level = tet_body(source, view_body(mesh, state.field).mesh, state.field, method);
+    if (!level) level = tet_body(source, view_body(*mesh, state.field).mesh, state.field, method);
     return level;
 }
 
@@ -144,15 +162,17 @@ std::shared_ptr<const PickedField> ViewSession::State::field() {
 }
 
 void ViewSession::State::take_step(std::size_t number, HexMesh read) {
-    std::swap(mesh, read);
+    auto of_step = std::make_shared<HexMesh>(std::move(read));
+    std::swap(mesh, of_step);
     const std::size_t shown = std::exchange(state.step, number);
     try {
         choose_body();
     } catch (...) {  // a step may lack the field
-        std::swap(mesh, read);
+        std::swap(mesh, of_step);
         state.step = shown;
         throw;
     }
+    edited = false;
     show();
 }
 
@@ -175,7 +195,9 @@ void ViewSession::State::read_later(std::size_t number) {
             const auto next = std::exchange(session.wanted, std::nullopt);
             if (next && *next != number) session.read_later(*next);
             if (wrong) std::rethrow_exception(wrong);
+            Moment was = session.moment();
             session.take_step(number, std::move(*found));
+            session.remember(std::move(was), "step");
         };
     }));
 }
@@ -189,7 +211,30 @@ std::function<void()> ViewSession::State::writer(const std::string& path) const 
     };
 }
 
+std::array<std::shared_ptr<const DrawnPicture>, 2> ViewSession::State::compared_pictures() const {
+    if (!state.compare || !reference || !source.measure || worker.busy() || reference->busy()) return {};
+    auto left = worker.latest(), right = reference->latest();
+    const bool alike = left && right && left->scale == 1 && right->scale == 1 && left->image.width == right->image.width &&
+                       left->image.height == right->image.height;
+    if (!alike) return {};
+    return {std::move(left), std::move(right)};
+}
+
+void ViewSession::State::measure_later(std::uint64_t number) {
+    if (number == measured_number) return;
+    compared.reset();
+    auto [left, right] = compared_pictures();
+    if (!left || !right) return;
+    measured_number = number;
+    later.push_back(std::async(std::launch::async, [number, left, right, measure = source.measure]() -> Done {
+        return [number, figures = measure(left->image, right->image)](State& session) {
+            if (session.measured_number == number && session.state.compare) session.compared = figures;
+        };
+    }));
+}
+
 void ViewSession::State::show() {
+    compared.reset();
     worker.show(state, body);
     if (!state.compare) return;
     if (!reference) reference = std::make_unique<DrawWorker>(settings, on_picture);
@@ -243,7 +288,7 @@ const std::vector<WaitReport>& ViewSession::waits() const {
 
 std::vector<std::string> ViewSession::fields() const {
     std::vector<std::string> names;
-    for (const Attribute& field : state_->mesh.attributes) names.push_back(field.name);
+    for (const Attribute& field : state_->mesh->attributes) names.push_back(field.name);
     return names;
 }
 
@@ -257,7 +302,26 @@ void ViewSession::start(std::string_view action) {
     start_action(*state_, name, argument);
 }
 
+const std::optional<PictureFigures>& ViewSession::compared() const {
+    return state_->compared;
+}
+
+void ViewSession::measure() {
+    const auto [left, right] = state_->compared_pictures();
+    state_->measured_number = pictures();
+    state_->compared = left && right ? std::optional(state_->source.measure(left->image, right->image)) : std::nullopt;
+}
+
+DrawWorker::Work ViewSession::work() const {
+    DrawWorker::Work work = state_->worker.work();
+    if (!work.stage.empty() || !state_->reference || !state_->state.compare) return work;
+    work = state_->reference->work();
+    if (!work.stage.empty()) work.stage = "reference: " + work.stage;
+    return work;
+}
+
 void ViewSession::settle() {
+    state_->measure_later(pictures());
     auto& later = state_->later;
     for (std::size_t k = 0; k < later.size();) {
         if (later[k].wait_for(std::chrono::seconds(0)) != std::future_status::ready) {

@@ -28,6 +28,8 @@ void start_action(ViewSession::State& session, const std::string& name, const Js
 ///
 /// throws: Error(InvalidInput), where() the name of the action
 void run_action(ViewSession::State& session, const std::string& name, const Json& argument);
+/// The same for an action that is a part of another one, with which it is undone.
+void run_part(ViewSession::State& session, const std::string& name, const Json& argument);
 
 /// The state as an object whose keys are names of actions: running them one by one restores it.
 [[nodiscard]] Json json_of(const ViewState& state);
@@ -85,16 +87,37 @@ struct ViewSession::State {
     void note_wait();
     /// The mesh whose control points are edited.
     [[nodiscard]] const HexMesh& handles() const { return coarse ? coarse->coarse() : body->mesh; }
-    /// Keeps the mesh for `undo`.
-    void remember();
+
+    /// What undo goes back to: all that actions change. mesh: of the step, with all fields
+    struct Moment {
+        ViewState state{};
+        std::shared_ptr<const ViewBody> body{};
+        std::shared_ptr<HexMesh> mesh{};
+        bool edited = false;
+    };
+    [[nodiscard]] Moment moment() const { return {state, body, mesh, edited}; }
+    /// Keeps for `undo` what was there before an action, unless the action changed nothing.
+    ///
+    /// motion: not empty: equal actions one after the other are undone as one
+    void remember(Moment was, const std::string& motion);
+    void restore(const Moment& moment);
+    /// Takes the newest moment of one list for the state, which the other one keeps.
+    void go_back(std::vector<Moment>& from, std::vector<Moment>& to);
+    /// Gives the mesh the points of the body, and the values of its field.
+    void take_values_of_body();
     /// Shows another shape of the body's mesh.
     void replace(HexMesh next);
     /// The picture beside that of the other method, if two are compared and the other one is there.
     [[nodiscard]] Image composed(const DrawnPicture& picture) const;
+    /// The two pictures that are compared, once both are full; else null.
+    [[nodiscard]] std::array<std::shared_ptr<const DrawnPicture>, 2> compared_pictures() const;
+    /// Measures them on another thread, if there are more pictures now.
+    void measure_later(std::uint64_t number);
 
     ViewSource source;
     MethodOptions settings;
-    HexMesh mesh;  // all fields of the step
+    std::shared_ptr<HexMesh> mesh;  // all fields of the step; its points are those of the body
+    bool edited = false;            // the points or values are no longer those of the input
     ViewState state;
     std::shared_ptr<const ViewBody> body;
     std::array<std::shared_ptr<const ViewBody>, 2> tet_levels;  // of the field and step, as far as they were needed
@@ -102,10 +125,13 @@ struct ViewSession::State {
     std::optional<CoarseEdit> coarse;                           // the level that is edited; none: the mesh itself
     int edit_level = 0;                                         // how much coarser it is
     Selection selection;                                        // of `handles`; empty: nothing
-    std::vector<HexMesh> before, after;                         // for undo and redo
+    std::vector<Moment> before, after;                          // for undo and redo
+    std::string last_motion;                                    // that is not undone by itself; empty: none
     std::uint64_t shape = 0;                                    // of the cells that are edited; 0: none yet
-    bool grabbed = false;                                       // a motion in many small edits, which are undone as one
+    bool grabbed = false, kept_grab = false;                    // a motion in many small steps, which are undone as one
     std::optional<Picked> picked;
+    std::optional<PictureFigures> compared;  // of the two pictures that are compared
+    std::uint64_t measured_number = 0;       // how many pictures there were then
     std::size_t action = 0;
     std::vector<WaitReport> waits;
     detail::WindowLook look;

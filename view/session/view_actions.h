@@ -64,6 +64,7 @@ void clip_box(ViewSession::State& session, const Json& value);
 void slice(ViewSession::State& session, const Json& value);
 void around(ViewSession::State& session, const Json& value);
 void add_cut(ViewSession::State& session, const Json& value);
+void set_cut(ViewSession::State& session, const Json& value);
 void remove_cut(ViewSession::State& session, const Json& value);
 void move_cut(ViewSession::State& session, const Json& value);
 void turn_cut(ViewSession::State& session, const Json& value);
@@ -74,6 +75,8 @@ void difference(ViewSession::State& session, const Json& value);
 // Waiting, picking, files, and the window's own look.
 void wait(ViewSession::State& session, const Json& value);
 void pick_place(ViewSession::State& session, const Json& value);
+void focus(ViewSession::State& session, const Json& value);
+void stop(ViewSession::State& session, const Json& value);
 void screenshot(ViewSession::State& session, const Json& value);
 void save_tf(ViewSession::State& session, const Json& value);
 void save_state(ViewSession::State& session, const Json& value);

@@ -50,5 +50,24 @@ TEST(CameraMotion, ZoomScalesWhatIsAtTheTarget) {
     EXPECT_NEAR(after, 2 * before, 1e-9);
 }
 
+TEST(CameraMotion, ZoomKeepsThePlaceUnderThePointer) {
+    const Vec2 pointer(0.3, -0.2);  // right and up of the middle, in heights
+    for (const Camera& camera : {kFront, detail::with_parallel_rays(kFront, true)}) {
+        const View before(camera, 200, 100), after(detail::zoomed(camera, 3, pointer), 200, 100);
+        const double height = 2 * 5 * std::tan(15 * 3.14159265358979323846 / 180);  // of the picture at the target
+        const Vec3 place(height * pointer.x, 0, height * pointer.y);
+        EXPECT_NEAR(before.to_pixels(before.to_eye(place)).x, 100 + 30, 1e-9);
+        EXPECT_NEAR(glm::distance(before.to_pixels(before.to_eye(place)), after.to_pixels(after.to_eye(place))), 0, 1e-9);
+    }
+}
+
+TEST(CameraMotion, AimedPutsAPlaceInTheMiddleWithoutTurning) {
+    const Vec3 place(0.4, -0.3, 0.2);
+    const Camera aimed = detail::aimed(kFront, place);
+    const View view(aimed, 200, 100);
+    EXPECT_NEAR(glm::distance(view.to_pixels(view.to_eye(place)), Vec2(100, 50)), 0, 1e-9);
+    EXPECT_NEAR(glm::distance(aimed.target - aimed.eye, kFront.target - kFront.eye), 0, kRounding);
+}
+
 }  // namespace camera_motion_test
 }  // namespace subvol

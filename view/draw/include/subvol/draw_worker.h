@@ -28,6 +28,16 @@ public:
     DrawWorker(const DrawWorker&) = delete;
     DrawWorker& operator=(const DrawWorker&) = delete;
 
+    /// What is being done, as of Progress; empty: nothing. seconds: since it was asked for
+    struct Work {
+        std::string stage{};
+        double fraction = 0, seconds = 0;
+    };
+    [[nodiscard]] Work work() const;
+
+    /// Gives up what is being drawn; the last picture stays, and `error` says so.
+    void stop();
+
     /// Returns at once.
     void show(const ViewState& state, std::shared_ptr<const ViewBody> body);
 

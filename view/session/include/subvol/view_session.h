@@ -17,12 +17,19 @@
 
 namespace subvol {
 
+/// How far two pictures are apart: as of `compare_images` and `flip`.
+struct PictureFigures {
+    double psnr = 0, flip = 0;
+};
+
 /// Where a session gets its meshes from.
 ///
 /// input:         its name, for the render command
 /// read:          a mesh with all its fields; step: of a series, from 0
 /// times:         one for each step; at least one
 /// write_picture: writes a picture over a background; empty: the action `screenshot` is refused
+/// measure:       compares two pictures of one size; empty: comparisons have no figures
+/// notes:         warnings of reading the input
 /// more_words:    further words of the render command: options that no action changes
 /// points:        shown instead of a mesh: kernels or voxels, which have one step and are not edited; without a volume: a
 ///                mesh is
@@ -34,6 +41,8 @@ struct ViewSource {
     std::function<HexMesh(std::size_t step)> read{};
     std::vector<double> times{0.0};
     std::function<void(const std::filesystem::path& path, const Image& image, const Vec3& background)> write_picture{};
+    std::function<PictureFigures(const Image& test, const Image& reference)> measure{};
+    std::vector<std::string> notes{};
     std::vector<std::string> more_words{};
     ViewPoints points{};
     std::function<HexMesh(HexMesh mesh, int level)> tets{};
@@ -126,6 +135,12 @@ public:
     [[nodiscard]] Image composed(const DrawnPicture& picture) const;
     /// Whether a picture is still being drawn, or something goes on that was started.
     [[nodiscard]] bool busy() const;
+    /// What the workers are at; of the reference, if the picture is done.
+    [[nodiscard]] DrawWorker::Work work() const;
+    /// The figures of a comparison; none: no two pictures are compared, or they are not done yet.
+    [[nodiscard]] const std::optional<PictureFigures>& compared() const;
+    /// Measures them now, if the pictures are there.
+    void measure();
     /// How many pictures were drawn, coarse and full ones.
     [[nodiscard]] std::uint64_t pictures() const;
     [[nodiscard]] detail::WindowLook& look();
