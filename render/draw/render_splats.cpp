@@ -114,23 +114,53 @@ void take_means(SplatResult& drawn, int n) {
     drawn.depth = std::move(depth);
 }
 
-/// What the light in a volume depends on besides its kernels: the view's axes, to which the key light is fixed, the opacities,
-/// and what is cut away. Moving along these axes and coming nearer changes none of them.
-std::vector<double> light_key(const View& view, const Optics& optics, const Clip& clip) {
-    std::vector<double> key{optics.opacity_unit(), static_cast<double>(clip.planes.size()), clip.slices_alone() ? 1.0 : 0.0};
-    const auto add = [&](const Vec3& v) { key.insert(key.end(), {v.x, v.y, v.z}); };
-    for (const Vec3& axis : view.axes()) add(axis);
-    for (const CutPlane& plane : clip.planes) {
-        add(plane.point);
-        add(plane.normal);
+/// Numbers that a part of a picture depends on: as long as they are the same, the part is that of the picture before.
+using Key = std::vector<double>;
+
+void add(Key& key, const Vec3& v) {
+    key.insert(key.end(), {v.x, v.y, v.z});
+}
+
+void add(Key& key, const std::vector<CutPlane>& planes) {
+    key.push_back(static_cast<double>(planes.size()));
+    for (const CutPlane& plane : planes) {
+        add(key, plane.point);
+        add(key, plane.normal);
     }
-    if (clip.box) {
-        add(clip.box->lower);
-        add(clip.box->upper);
-    }
+}
+
+void add(Key& key, const std::optional<Box>& box) {
+    if (!box) return;
+    add(key, box->lower);
+    add(key, box->upper);
+}
+
+/// Of the light in a volume, besides its kernels: the view's axes, to which the key light is fixed, the opacities, and what is
+/// cut away. Moving along these axes and coming nearer changes none of them.
+Key light_key(const View& view, const Optics& optics, const Clip& clip) {
+    Key key{optics.opacity_unit(), clip.slices_alone() ? 1.0 : 0.0};
+    for (const Vec3& axis : view.axes()) add(key, axis);
+    add(key, clip.planes);
+    add(key, clip.box);
     // The knots of the colours, too: tables of opacities are made between all knots.
     for (const double knot : optics.knots()) key.push_back(knot);
     for (const auto& knot : optics.function().opacity) key.insert(key.end(), {knot.value, knot.alpha});
+    return key;
+}
+
+/// Of a prepared frame, besides its kernels: the view, what is cut away, and the range of the transfer function, in whose cells
+/// values are counted.
+Key frame_key(const View& view, const detail::SplatScene& scene, const detail::Classification& classification,
+              const Clip& clip) {
+    Key key{static_cast<double>(view.width()), static_cast<double>(view.height()), view.pixel(),
+            view.perspective() ? 1.0 : 0.0,    classification.table.min,           classification.table.max,
+            classification.colors.min,         classification.colors.max,          scene.solid ? 1.0 : 0.0,
+            clip.around_slices ? 1.0 : 0.0};
+    add(key, view.eye());
+    for (const Vec3& axis : view.axes()) add(key, axis);
+    add(key, clip.planes);
+    add(key, clip.slices);
+    add(key, clip.box);
     return key;
 }
 
@@ -186,8 +216,7 @@ struct Splatter::State {
     [[nodiscard]] detail::Drawn draw_frame(const View& view, const detail::Classification& classification, Progress* progress,
                                            SplatReport& report) {
         const detail::Stopwatch watch;
-        detail::prepare_frame(frame, scene, view, classification, options.sheets, progress);
-        detail::find_interval_ends(frame);
+        report.kept = prepare(view, classification, progress);
         report.sheets = frame.sheets.count;
         report.sheets_finest = sheets ? report.sheets : frame.finer.sheets_finest(report.sheets);
         report.seconds_prepare += watch.seconds();
@@ -196,6 +225,21 @@ struct Splatter::State {
         report.bin_entries = frame.tile_splats.size();
         report.boundary_hits = frame.intervals.hits;
         return sheets ? sheets->draw(frame, progress) : detail::draw_splats_cpu(frame, progress);
+    }
+
+    /// Prepares the frame. Returns whether only colours and opacities are others than in the picture before, so that most of it
+    /// stays as it is.
+    bool prepare(const View& view, const detail::Classification& classification, Progress* progress) {
+        Key key = frame_key(view, scene, classification, options.clip);
+        const bool kept = std::exchange(made_of, {}) == key;
+        if (kept)
+            detail::set_transfer_function(frame, view, classification, options.sheets);
+        else
+            detail::prepare_frame(frame, scene, view, classification, options.sheets, progress);
+        // The light at the ends depends on opacities.
+        if (!kept || scene.shading || scene.light) detail::find_interval_ends(frame);
+        made_of = std::move(key);
+        return kept;
     }
 
     [[nodiscard]] detail::Drawn draw_footprints(const View& view, const detail::Classification& classification,
@@ -226,12 +270,13 @@ struct Splatter::State {
     detail::SplatScene scene;
     const Surface* boundary = nullptr;  // whose values give the colours; null: kernels do
     std::span<const double> values{};
-    detail::LightVolume light{};      // of the last picture
-    std::vector<double> light_key{};  // what it was made of, besides the kernels
+    detail::LightVolume light{};  // of the last picture
+    Key light_key{};              // what it was made of, besides the kernels
     std::optional<detail::GlSplatter> gpu;
     std::unique_ptr<SheetDrawer> sheets;
     std::optional<detail::Footprints> footprints;
     detail::SplatFrame frame{};  // its memory is used for every picture
+    Key made_of{};               // the frame, besides the kernels; empty: it has to be made anew
 };
 
 Splatter::Splatter(const RbfVolume& volume, const SplatOptions& options) {
@@ -259,6 +304,7 @@ void Splatter::set_kernels(const RbfVolume& volume) {
     State& state = *state_;
     detail::set_kernels(state.scene, volume, state.options.clip);
     state.light_key.clear();  // the light in the volume is made of kernels
+    state.made_of.clear();
     try {
         if (state.gpu) state.gpu->upload_kernels();
     } catch (const Error& error) {
@@ -275,7 +321,7 @@ SplatResult Splatter::draw(const View& view, const Optics& optics, Progress* pro
     const auto classification = detail::classify(state.scene, optics);
     state.scene.solid = detail::is_solid(state.scene, optics);
     if (state.scene.shadowed()) {
-        if (std::vector<double> key = light_key(view, optics, state.options.clip); key != state.light_key) {
+        if (Key key = light_key(view, optics, state.options.clip); key != state.light_key) {
             state.light = detail::make_light_volume(state.scene, view, classification);
             state.light_key = std::move(key);
         }

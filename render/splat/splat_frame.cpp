@@ -73,6 +73,12 @@ void list_tiles(SplatFrame& frame) {
     });
 }
 
+/// Places the light volume of the scene, if there is one.
+void set_light(SplatFrame& frame) {
+    const SplatScene& scene = *frame.scene;
+    if (scene.light) frame.to_light = eye_to_nodes(*scene.light, *frame.view, frame.view->to_eye(scene.middle).z);
+}
+
 }  // namespace
 
 bool SplatFrame::meets_intervals(int x0, int y0) const {
@@ -101,12 +107,21 @@ void prepare_kernels(SplatFrame& frame, const SplatScene& scene, const View& vie
     report_progress(progress, "prepare splats", 0.6);
 }
 
+void set_transfer_function(SplatFrame& frame, const View& view, const Classification& classification, int sheets) {
+    frame.view = &view;
+    frame.classification = &classification;
+    const bool finer = frame.finer.any();
+    frame.finer = sheets == 0 ? finer_sheets(frame) : FinerSheets{};
+    if (frame.finer.any() != finer) list_tiles(frame);
+    set_light(frame);
+}
+
 void prepare_frame(SplatFrame& frame, const SplatScene& scene, const View& view, const Classification& classification,
                    int sheets, Progress* progress) {
     prepare_kernels(frame, scene, view, classification, sheets, progress);
     frame.intervals = scene_intervals(scene, view, frame.sheets);
     if (scene.shading && !frame.intervals.offsets.empty()) frame.entry_lights = entry_lights(frame.intervals, scene, view);
-    if (scene.light) frame.to_light = eye_to_nodes(*scene.light, view, view.to_eye(scene.middle).z);
+    set_light(frame);
     report_progress(progress, "prepare splats", 1);
 }
 

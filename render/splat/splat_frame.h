@@ -56,4 +56,7 @@ void prepare_kernels(SplatFrame& frame, const SplatScene& scene, const View& vie
 void prepare_frame(SplatFrame& frame, const SplatScene& scene, const View& view, const Classification& classification,
                    int sheets, Progress* progress);
 
+/// Sets a transfer function with the same range for a filled frame. Kernels, tiles and intervals stay as they are.
+void set_transfer_function(SplatFrame& frame, const View& view, const Classification& classification, int sheets);
+
 }  // namespace subvol::detail

@@ -228,6 +228,52 @@ TEST(RenderSplats, RefusesNumbersBeyondFloats) {
     EXPECT_THROW((void)draw(2e11, 2e11 + 1, 1), Error);  // floats there are 16384 apart
 }
 
+Optics ramp(double low, double high, double alpha) {
+    return Optics({.color = {{low, {.1, .2, .9}}, {high, {.9, .8, .1}}}, .opacity = {{low, 0}, {high, alpha}}}, .2);
+}
+
+TEST(RenderSplats, ColoursAreChangedWithoutPreparingTheViewAgain) {
+    HexMesh ball = make_ball(3);
+    test::add_field(ball, "f", [](const Vec3& p) { return p.x + .3 * std::sin(4 * p.y); });
+    test::add_field(ball, "g", [](const Vec3& p) { return p.z; });
+    const RbfVolume volume = sample(ball);
+    const View front(orthographic(2.4, {0.1, -10, 0.2}), 60, 45);
+    const View side({.eye = {4, -3, 1}, .target = {}, .up = {0, 0, 1}}, 60, 45);
+    const Clip half{.planes = {{.point = {0, 0, .2}, .normal = {0, 0, 1}}}}, slice{.slices = {{.normal = {0, 1, 0}}}};
+    struct Step {
+        View view;
+        Optics optics;
+        Clip clip;
+        bool kept;
+    };
+    const std::vector<Step> steps{
+        {front, ramp(-1, 1, .5), {}, false},    {front, ramp(-1, 1, .1), {}, true},   {front, ramp(-1, 1, .999), {}, true},
+        {front, ramp(-.5, 1, .999), {}, false}, {side, ramp(-.5, 1, .2), {}, false},  {side, ramp(-.5, 1, .7), {}, true},
+        {side, ramp(-.5, 1, .7), half, false},  {side, ramp(-.5, 1, .3), half, true}, {side, ramp(-.5, 1, .3), slice, false}};
+    const std::vector<SplatOptions> kinds{{.method = SplatMethod::Cpu},
+                                          {.method = SplatMethod::Cpu, .shading = Shading{}},
+                                          {.method = SplatMethod::Cpu, .color_channel = 1, .shadows = true},
+                                          {.method = SplatMethod::Cpu, .samples = 2, .image_tolerance = 1e-5}};
+    for (const SplatOptions& kind : kinds) {
+        Splatter splatter(volume, kind);
+        for (const Step& step : steps) {
+            splatter.set_clip(step.clip);
+            const SplatResult drawn = splatter.draw(step.view, step.optics);
+            SplatOptions options = kind;
+            options.clip = step.clip;
+            const SplatResult anew = render_splats(volume, step.view, step.optics, options);
+            EXPECT_EQ(drawn.image.rgba, anew.image.rgba);
+            EXPECT_EQ(drawn.depth, anew.depth);
+            EXPECT_EQ(drawn.report.kept, step.kept);
+        }
+        RbfVolume other = volume;
+        for (float& value : other.channels[0].values) value = -value;
+        splatter.set_kernels(other);
+        const Step& last = steps.back();
+        EXPECT_FALSE(splatter.draw(last.view, last.optics).report.kept) << "these kernels are others";
+    }
+}
+
 TEST(RenderSplats, SamplesAreTheMeanOfAFinerPicture) {
     HexMesh ball = make_ball(3);
     test::add_field(ball, "f", [](const Vec3& p) { return p.x; });

@@ -25,7 +25,8 @@ struct SplatReport {
     int sheets_finest = 0;          // that there would be if all were as close as where most are needed
     std::size_t bin_entries = 0;    // pairs of a tile and a kernel; on a GPU, triples with a batch of sheets
     std::size_t boundary_hits = 0;  // entries and exits over all pixels
-    double seconds_light = 0;       // of the light volume, for shadows and ambient occlusion; a part of seconds_prepare
+    bool kept = false;         // whether kernels, tiles and boundary were those of the picture before: the CPU's, same view
+    double seconds_light = 0;  // of the light volume, for shadows and ambient occlusion; a part of seconds_prepare
     double seconds_prepare = 0, seconds_draw = 0;
     double seconds_colors = 0;        // of the boundary's own colours
     std::vector<StageTime> stages{};  // of the GPU
@@ -44,9 +45,10 @@ struct SplatResult {
 /// composited from front to back. Without a boundary the volume ends where the sum of weights falls to half of its value
 /// inside.
 ///
-/// Keeps data that does not depend on the view, and its memory, from picture to picture. The volume is referred to, not copied.
-/// Pictures are bitwise the same for any number of threads. Not for several threads at once.
-/// throws: Error(InvalidInput) for options out of range, or sizes, values and extinctions beyond 32-bit floats;
+/// Keeps data that does not depend on the view, and its memory, from picture to picture. With the CPU, pictures from the same
+/// view with another transfer function of the same range also share kernels in eye space, tiles and the boundary. The volume is
+/// referred to, not copied. Pictures are bitwise the same for any number of threads. Not for several threads at once. throws:
+/// Error(InvalidInput) for options out of range, or sizes, values and extinctions beyond 32-bit floats;
 ///         Error(MissingCapability) if SplatMethod::Gl or Sheets finds no OpenGL 4.5
 /// source: docs/science.md
 class Splatter {
