@@ -11,8 +11,21 @@ foreach(component IN LISTS SUBVOL_COMPONENTS) # one file per component: a user o
 endforeach()
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/subvolConfig.cmake ${CMAKE_CURRENT_BINARY_DIR}/subvolConfigVersion.cmake
   cmake/SubvolDependencies.cmake DESTINATION ${config_dir} COMPONENT development)
-install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME copyright COMPONENT command)
-install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/libsubvol-dev RENAME copyright COMPONENT development)
+
+# What Debian asks of each package: its licence, its changelog. The date of the latter is that of the changelog of this project.
+set(CPACK_PACKAGE_CONTACT "OpenSubVol maintainers <maintainers@opensubvol.example>")
+file(STRINGS CHANGELOG.md SUBVOL_DATE REGEX "^## \\[${PROJECT_VERSION}\\]")
+string(REGEX MATCH "20[0-9-]+$" SUBVOL_DATE "${SUBVOL_DATE}")
+execute_process(COMMAND date --rfc-email --utc --date=${SUBVOL_DATE} OUTPUT_VARIABLE SUBVOL_DATE OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
+configure_file(packaging/debian/changelog.in ${CMAKE_CURRENT_BINARY_DIR}/packaging/changelog @ONLY)
+execute_process(COMMAND gzip -9nkf ${CMAKE_CURRENT_BINARY_DIR}/packaging/changelog)
+set(packages command:subvol development:libsubvol-dev)
 if(SUBVOL_PYTHON_FOUND)
-  install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/python3-subvol RENAME copyright COMPONENT python)
+  list(APPEND packages python:python3-subvol)
 endif()
+foreach(package IN LISTS packages)
+  string(REPLACE ":" ";" package ${package})
+  list(POP_FRONT package component)
+  install(FILES packaging/debian/copyright ${CMAKE_CURRENT_BINARY_DIR}/packaging/changelog.gz
+    DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/${package} COMPONENT ${component} OPTIONAL)
+endforeach()

@@ -113,6 +113,12 @@ class Documents(unittest.TestCase):
                 if not target.startswith("http"):
                     self.assertTrue((document.parent / target).exists(), f"{document}: {target}")
 
+    def test_every_page_is_on_the_site(self):
+        shown = re.findall(r": ([\w/-]+\.md)$", (TOP / "mkdocs.yml").read_text(), re.M)
+        made = {"index.md", "examples.md", "python-examples.md", "options.md", "CONTRIBUTING.md", "CHANGELOG.md"}
+        pages = {page.relative_to(TOP / "docs").as_posix() for page in (TOP / "docs").glob("*.md")} | {"adr/README.md"}
+        self.assertEqual(set(shown), pages | made)
+
     def test_files_that_are_named_exist(self):
         for document in DOCUMENTS:
             for name in re.findall(r"`([\w.-]+/[\w./-]+\.(?:cpp|h|glsl|comp|py|cmake))`", document.read_text()):
