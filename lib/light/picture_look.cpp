@@ -61,17 +61,18 @@ std::vector<Option> options_of(LookChoices& choices) {
     return {
         Option("look", choices.look)
             .offer(names_of<Look>())
-            .help("NAME",
-                  "solid (opaque and lit; the default for meshes without --tf, --range, --opacity and --opacity-unit), volume "
-                  "(opacity 0 to .5 over the range, black behind; otherwise the default), xray (on white) or isosurface "
-                  "(five lit surfaces)"),
+            .help(
+                "NAME",
+                "solid (opaque and lit; the default for meshes without --opacity and --opacity-unit), volume (opacity 0 to .5 "
+                "over the range, black behind; otherwise the default), xray (on white) or isosurface "
+                "(five lit surfaces)"),
         Option("tf", choices.colors)
             .offer({"viridis", "plasma", "inferno", "cividis", "turbo", "coolwarm", "grey", "bone", "xray", "isosurface",
-                    "surface", "constant"})
+                    "surface", "constant", "categories"})
             .help("FILE|NAME",
                   "colour map: viridis (default), plasma, inferno, cividis, turbo, coolwarm, grey, bone, xray, isosurface, "
-                  "surface or constant over the field's range, or a ParaView colour-map JSON file (FILE.json:NAME for one "
-                  "of several in it)"),
+                  "surface, constant or categories (integers) over the field's range, or a ParaView colour-map JSON file "
+                  "(FILE.json:NAME for one of several in it)"),
         Option("opacity-unit", choices.opacity_unit_world)
             .positive()
             .help("D", "the world distance over which an opacity acts (default: 1/100 of the bounding box's diagonal)"),
@@ -90,8 +91,8 @@ std::vector<Option> options_of(LookChoices& choices) {
 
 Look chosen_look(const LookChoices& choices, bool has_boundary, OptionNames names) {
     if (choices.look) return named<Look>(*choices.look, option_name("look", names));
-    const bool settled = choices.colors || choices.opacity || choices.opacity_unit_world || choices.range;
-    return has_boundary && !settled ? Look::Solid : Look::Volume;
+    const bool transparent = choices.opacity || choices.opacity_unit_world;
+    return has_boundary && !transparent ? Look::Solid : Look::Volume;
 }
 
 double parse_value(const std::string& text, const ValueRange& whole, const std::string& where) {
@@ -158,7 +159,7 @@ Optics picture_optics(TransferFunction function, const LookOptions& options, con
 }
 
 std::vector<Vec3> framed_points(const HexMesh& mesh, Look look, const Optics& optics) {
-    if (look == Look::Solid) return mesh.points;
+    if (look == Look::Solid || mesh.cells.empty()) return mesh.points;
     const TransferFunction& function = optics.function();
     double most = 0;
     for (const auto& knot : function.opacity) most = std::max(most, knot.alpha);

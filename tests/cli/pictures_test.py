@@ -129,8 +129,8 @@ class Cameras(Pictures):
         self.assertEqual(self.bytes_of("both.png"), self.bytes_of("one.png"))
 
     def test_fit_brings_the_whole_box_in(self):
-        far = ["--camera", "300,-400,200,0,0,0,0,0,1,35", "--tf", "constant"]
-        near = ["--camera", "0.3,-0.4,0.2,0,0,0,0,0,1,35", "--tf", "constant"]
+        far = ["--camera", "300,-400,200,0,0,0,0,0,1,35", "--look", "volume", "--tf", "constant"]
+        near = ["--camera", "0.3,-0.4,0.2,0,0,0,0,0,1,35", "--look", "volume", "--tf", "constant"]
         self.assertLess(self.pixels_that_are_not_black(*far)[0], 4)
         fitted = self.pixels_that_are_not_black(*far, "--fit")
         self.assertGreater(fitted[0], 200)
@@ -140,11 +140,11 @@ class Cameras(Pictures):
 
     def test_an_orthographic_ball_has_its_height(self):
         # 32 / 1.05 = 30.5 rows; one pixel more or less, depending on where the centres are.
-        _, left, right, top, bottom = self.pixels_that_are_not_black("--view", "-y", "--ortho", "--tf", "constant")
+        _, left, right, top, bottom = self.pixels_that_are_not_black("--view", "-y", "--ortho", "--look", "volume", "--tf", "constant")
         self.assertIn(bottom - top + 1, (30, 31, 32))
         self.assertEqual(right - left, bottom - top)
         (self.folder / "camera.json").write_text('{"eye": [0, -9, 0], "target": [0, 0, 0], "ortho_height": 50}')
-        given = self.pixels_that_are_not_black("--camera", "camera.json", "--ortho", "--tf", "constant")
+        given = self.pixels_that_are_not_black("--camera", "camera.json", "--ortho", "--look", "volume", "--tf", "constant")
         self.assertLess(given[0], 30)
 
 
@@ -159,13 +159,18 @@ class Looks(Pictures):
             at += size + 12
         return tuple(zlib.decompress(packed)[1:4])
 
-    def test_a_mesh_is_a_solid_on_grey_unless_colours_are_given(self):
+    def test_a_mesh_is_a_solid_on_grey_unless_opacities_are_given(self):
         self.assertEqual(self.render("-o", "solid.png").code, 0)
         self.assertEqual(self.render("-o", "same.png", "--look", "solid").code, 0)
         self.assertEqual(self.bytes_of("solid.png"), self.bytes_of("same.png"))
         self.assertGreater(min(self.corner("solid.png")), 200)
-        self.assertEqual(self.render("-o", "volume.png", "--tf", "viridis").code, 0)
-        self.assertEqual(self.corner("volume.png"), (0, 0, 0))
+        for option in ["--opacity", "0%:0,100%:.9"], ["--opacity-unit", ".1"], ["--look", "volume"]:
+            self.assertEqual(self.render("-o", "volume.png", *option).code, 0)
+            self.assertEqual(self.corner("volume.png"), (0, 0, 0), option)
+        for option in ["--tf", "turbo"], ["--range", "0,2"]:  # these only colour it
+            self.assertEqual(self.render("-o", "colored.png", *option).code, 0)
+            self.assertEqual(self.corner("colored.png"), self.corner("solid.png"), option)
+            self.assertNotEqual(self.bytes_of("colored.png"), self.bytes_of("solid.png"))
         self.assertEqual(self.render("-o", "xray.png", "--look", "xray").code, 0)
         self.assertEqual(self.corner("xray.png"), (255, 255, 255))
 

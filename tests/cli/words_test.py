@@ -145,9 +145,9 @@ class Lines(InFolder):
         self.assertRegex(lines[0], r"^l2 +")
 
     def test_a_blank_picture_is_not_left_without_a_word(self):
-        done = self.run_ok("render", "model:ball:4", "-o", "a.png", "--size", 32, "--tf", "constant", "--background", "white")
+        done = self.run_ok("render", "model:ball:4", "-o", "a.png", "--size", 32, "--look", "volume", "--tf", "constant", "--background", "white")
         self.assertIn("the picture is blank", done.err)
-        done = self.run_ok("render", "model:ball:4", "-o", "a.png", "--size", 32, "--tf", "constant", "--background", "black")
+        done = self.run_ok("render", "model:ball:4", "-o", "a.png", "--size", 32, "--look", "volume", "--tf", "constant", "--background", "black")
         self.assertNotIn("blank", done.err)
 
     def test_the_field_that_is_drawn_is_a_sensible_one_and_is_said(self):

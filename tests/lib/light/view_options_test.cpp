@@ -50,7 +50,9 @@ TEST(ViewOptions, NamedViewsFrameThePointsAndGivenCamerasStay) {
 TEST(LookChoices, ABodyIsSolidUnlessColoursAreChosen) {
     EXPECT_EQ(chosen_look({}, true), Look::Solid);
     EXPECT_EQ(chosen_look({}, false), Look::Volume);
-    EXPECT_EQ(chosen_look({.range = "0,1"}, true), Look::Volume);
+    EXPECT_EQ(chosen_look({.colors = "turbo", .range = "0,1"}, true), Look::Solid);
+    EXPECT_EQ(chosen_look({.opacity = "0:0,1:1"}, true), Look::Volume);
+    EXPECT_EQ(chosen_look({.opacity_unit_world = 1.0}, true), Look::Volume);
     EXPECT_EQ(chosen_look({.look = "xray", .colors = "grey"}, true), Look::Xray);
     expect_error(kInvalid, "look", [] { (void)chosen_look({.look = "glass"}, true); });
 }

@@ -49,7 +49,7 @@ struct LookOptions {
 
 /// What users choose of it, before the body and the range of its field are known.
 ///
-/// look:    none: solid for bodies with a boundary, unless colours or opacities are chosen; else volume
+/// look:    none: solid for bodies with a boundary, unless opacities are chosen; else volume
 /// range:   "MIN,MAX", parts of the field's range such as "10%,90%", or "field"
 /// opacity: as `parse_opacity` reads it
 struct LookChoices {
@@ -118,8 +118,8 @@ void make_solid(TransferFunction& function, bool plain);
 [[nodiscard]] Optics picture_optics(TransferFunction map, const LookOptions& options, const Box& box, const ValueRange& field,
                                     const ValueRange& colors, bool plain = false);
 
-/// The points to which a camera is fitted: those of a solid; of other bodies those of the cells that can be seen, or nothing if
-/// these are most of the body.
+/// The points to which a camera is fitted: those of a solid, and those of a mesh without cells; of other bodies those of the
+/// cells that can be seen, or nothing if these are most of the body.
 ///
 /// mesh: its first attribute is the field
 [[nodiscard]] std::vector<Vec3> framed_points(const HexMesh& mesh, Look look, const Optics& optics);
