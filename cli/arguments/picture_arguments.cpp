@@ -167,6 +167,7 @@ LegendOptions PictureArguments::legend_options(const ShownField& field, const Sh
     const std::string& known = unit.empty() ? colors.unit : unit;
     LegendOptions options{.title = colors.name + (known.empty() ? "" : " [" + known + "]"), .min = range.min, .max = range.max};
     options.note = legend_note;
+    options.names = legend_names;
     if (field.name != colors.name) {
         const Range opacities = shown_range(choices, field.range, OptionNames::Flags);
         options.opacity_title = field.name;

@@ -46,13 +46,14 @@ struct PictureArguments {
     std::optional<int> views;  // 4: a sheet of front, side, top and iso
     int frames_per_second = 30;
     LookChoices choices;
-    Look look = Look::Volume;           // as settled
-    std::optional<std::string> legend;  // the file; empty: inside the picture
-    int legend_px = 0;                  // the width of a legend inside the picture, as settled
-    std::string unit;                   // of the field that the legend shows
-    std::string legend_note;            // what the legend says besides, as settled
-    std::string title;                  // above the picture
-    bool time_label = false;            // the time of the step below it
+    Look look = Look::Volume;               // as settled
+    std::optional<std::string> legend;      // the file; empty: inside the picture
+    int legend_px = 0;                      // the width of a legend inside the picture, as settled
+    std::string unit;                       // of the field that the legend shows
+    std::string legend_note;                // what the legend says besides, as settled
+    std::vector<std::string> legend_names;  // of the values 1, 2, …, as settled; empty: the legend has a colour bar
+    std::string title;                      // above the picture
+    bool time_label = false;                // the time of the step below it
     bool axes = false, edges = false;
     std::optional<std::string> background;
 

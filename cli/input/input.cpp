@@ -77,17 +77,6 @@ std::vector<std::string> blocks_of(const CommonOptions& options) {
     return names;
 }
 
-/// What a call returns; its errors name the option.
-template <class Call>
-decltype(auto) of_option(const std::string& option, const Call& call) {
-    try {
-        return call();
-    } catch (const Error& error) {
-        throw Error(error.code(), (error.where().empty() ? "" : error.where() + ": ") + error.message(), option,
-                    error.allowed());
-    }
-}
-
 /// What lies between two steps: points and values linearly, the rest as in the step before.
 ReadResult read_between(const std::string& input, const BetweenSteps& between, double time, ReadOptions options, Facts& facts) {
     options.step = between.after;
@@ -150,7 +139,7 @@ std::optional<Warp> reshape(ReadResult& read, const CommonOptions& options, Fact
         facts.note(text("moved by ", *moved->factor, " × ", moved->field));
     }
     if (!options.patches.empty()) {
-        const std::vector<Patch> patches = chosen_patches(read.sets, options.patches);
+        const std::vector<Patch> patches = patches_of_option(read.sets, options.patches);
         read.shells = patch_shells(mesh, patches);
         mesh.cells.clear();
         std::vector<std::string> names;
@@ -324,22 +313,6 @@ Shells with_density(Shells shells, const CommonOptions& options) {
     return shells;
 }
 
-Shells with_fields_of(Shells shells, const HexMesh& mesh) {
-    HexMesh points;
-    points.points = shells.points;
-    points.attributes = std::move(shells.attributes);
-    shells.attributes.clear();
-    for (const Attribute& wanted : mesh.attributes) {
-        // Without a field the volume has density 1 everywhere, and so have they.
-        const bool made = wanted.name == "density" && points.find_attribute("density") == nullptr;
-        Attribute field = made ? Attribute{wanted.name, 1, std::vector<double>(points.points.size(), 1.0)}
-                               : select_field(points, wanted.name).scalar;
-        field.name = wanted.name;
-        shells.attributes.push_back(std::move(field));
-    }
-    return shells;
-}
-
 std::string unit_of(const std::vector<FieldInfo>& fields, const std::string& quantity) {
     for (const FieldInfo& field : fields) {
         const bool component = quantity.starts_with(field.name + ".");
@@ -348,20 +321,8 @@ std::string unit_of(const std::vector<FieldInfo>& fields, const std::string& qua
     return {};
 }
 
-std::vector<Patch> chosen_patches(const MeshSets& sets, const std::vector<std::string>& names) {
-    std::vector<Patch> patches;
-    for (const std::string& name : names) {
-        if (name == "all" && !sets.patches.empty() &&
-            std::ranges::find(sets.patches, name, &Patch::name) == sets.patches.end()) {
-            std::ranges::copy_if(sets.patches, std::back_inserter(patches), [](const Patch& p) { return !p.sides.empty(); });
-            continue;
-        }
-        const Patch& patch = of_option("--patch", [&]() -> const Patch& { return find_patch(sets, name); });
-        if (patch.sides.empty())
-            throw Error(ErrorCode::InvalidInput, text("no face of '", name, "' is left"), "--patch", "another --only");
-        patches.push_back(patch);
-    }
-    return patches;
+std::vector<Patch> patches_of_option(const MeshSets& sets, const std::vector<std::string>& names) {
+    return of_option("--patch", [&] { return chosen_patches(sets, names); });
 }
 
 HexMesh used_mesh(HexMesh read, const CommonOptions& options) {

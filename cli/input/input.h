@@ -7,6 +7,7 @@
 
 #include "common_options.h"
 #include "picture_arguments.h"
+#include "subvol/error.h"
 #include "subvol/facts.h"
 #include "subvol/hex_mesh.h"
 #include "subvol/mesh_io.h"
@@ -64,16 +65,22 @@ enum class ShellsAlone { Refuse, Take };
 /// The shells with --density as their first attribute.
 [[nodiscard]] Shells with_density(Shells shells, const CommonOptions& options);
 
-/// The shells with the fields that the mesh has, which were selected from the same ones.
-[[nodiscard]] Shells with_fields_of(Shells shells, const HexMesh& mesh);
-
 /// The unit of a field of a file, of a component of it, or of its length, such as "U", "U.x", "length(U)"; empty: not known.
 [[nodiscard]] std::string unit_of(const std::vector<FieldInfo>& fields, const std::string& quantity);
 
-/// The patches of these names; all of the mesh for "all", unless one is called so.
-///
-/// throws: Error(InvalidInput) if there is none of a name, or if it has lost all its faces
-[[nodiscard]] std::vector<Patch> chosen_patches(const MeshSets& sets, const std::vector<std::string>& names);
+/// `chosen_patches` of --patch, which errors name.
+[[nodiscard]] std::vector<Patch> patches_of_option(const MeshSets& sets, const std::vector<std::string>& names);
+
+/// What a call returns; its errors name the option.
+template <class Call>
+decltype(auto) of_option(const std::string& option, const Call& call) {
+    try {
+        return call();
+    } catch (const Error& error) {
+        throw Error(error.code(), (error.where().empty() ? "" : error.where() + ": ") + error.message(), option,
+                    error.allowed());
+    }
+}
 
 /// A mesh that was read, without the unused points; --density becomes the first attribute.
 [[nodiscard]] HexMesh used_mesh(HexMesh read, const CommonOptions& options);

@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <limits>
 
-#include "shell_scene.h"
 #include "subvol/detail/number_text.h"
 #include "subvol/error.h"
 #include "subvol/overlay.h"
+#include "subvol/shell_scene.h"
 
 namespace subvol::cli {
 namespace {
@@ -31,7 +31,7 @@ Picture widened(const Picture& from, int width) {
 }  // namespace
 
 void PictureNotes::draw_shells(Picture& picture, const View& view) const {
-    if (shells) shells->draw_into(picture, view);
+    if (shells) shells->draw_into(picture.image, picture.depth, view);
 }
 
 void PictureNotes::draw_over(Picture& picture, const View& view) const {

@@ -9,9 +9,11 @@
 #include "subvol/legend.h"
 #include "subvol/picture_maker.h"
 
-namespace subvol::cli {
-
+namespace subvol {
 struct ShellScene;
+}
+
+namespace subvol::cli {
 
 /// The colours of the pictures of a run, and the legend that explains them.
 struct ShownColors {

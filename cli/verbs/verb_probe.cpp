@@ -211,7 +211,7 @@ private:
     /// The body with the field of --field first.
     [[nodiscard]] BodyInput open(const CommonOptions& options, const std::vector<Vec3>& places, Report& report) {
         BodyInput body = report.unpack(open_body(input_, options, app(), report.progress()));
-        if (!flux_.empty()) flux_vectors_ = vectors_of(body);
+        if (!flux_.empty()) flux_vectors_ = flow_of(body);
         // Places have all fields; a field that is named for statistics is measured alone.
         const bool alone = places.empty() && (common().field || common().density);
         (void)report.unpack(body.select(options, alone ? OtherFields::Drop : OtherFields::Keep));
@@ -242,21 +242,17 @@ private:
     }
 
     /// The field whose flow is asked for, before others take its name.
-    [[nodiscard]] std::vector<double> vectors_of(const BodyInput& body) const {
+    [[nodiscard]] std::vector<double> flow_of(const BodyInput& body) const {
         const HexMesh* mesh = body.source().mesh();
         if (mesh == nullptr) throw Error(ErrorCode::InvalidInput, "bricks have no patches", "--flux", "the mesh itself");
-        Attribute field = field_of(*mesh, flux_, flux_, common().listener);
-        if (field.channels == 3) return std::move(field.values);
-        throw Error(ErrorCode::InvalidInput,
-                    text("'", flux_, "' has ", counted(static_cast<std::size_t>(field.channels), "component")), "--flux",
-                    "a vector, such as U or grad(T)");
+        return of_option("--flux", [&] { return vectors_of(*mesh, flux_, common().listener); });
     }
 
     [[nodiscard]] std::vector<PatchMeasure> patches_of(const BodyInput& body, const SchemeOptions& scheme,
                                                        Report& report) const {
         const HexMesh* mesh = body.source().mesh();
         if (mesh == nullptr) throw Error(ErrorCode::InvalidInput, "bricks have no patches", "--patch", "the mesh itself");
-        const std::vector<Patch> patches = chosen_patches(body.sets, patches_);
+        const std::vector<Patch> patches = patches_of_option(body.sets, patches_);
         return report.timed("patches", [&] {
             return measure_patches(*mesh, patches, {.scheme = scheme, .flux = flux_vectors_, .progress = report.progress()});
         });

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <array>
+#include <limits>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -19,11 +20,12 @@
 #include "render_arguments.h"
 #include "sampled_points.h"
 #include "share.h"
-#include "shell_scene.h"
 #include "steps.h"
 #include "subvol/detail/number_text.h"
 #include "subvol/detail/points_frame.h"
 #include "subvol/error.h"
+#include "subvol/method.h"
+#include "subvol/shell_scene.h"
 #include "text.h"
 #include "verb.h"
 #include "video_file.h"
@@ -39,6 +41,18 @@ struct ShownBody {
     ShownField field, colors;
     Box box{};
 };
+
+/// Whether patches are coloured by their numbers.
+bool draws_categories(const CommonOptions& options) {
+    return !options.patches.empty() && !options.field && !options.density;
+}
+
+/// The picture without cells, into which shells are drawn.
+Picture empty_picture(const View& view) {
+    Picture picture{Image(view.width(), view.height()), {}};
+    picture.depth.assign(picture.image.rgba.size() / 4, std::numeric_limits<float>::infinity());
+    return picture;
+}
 
 void check_points(const std::vector<Vec3>& points) {
     constexpr double kMost_world = 1e18;  // as of splats; far beyond it, squares and volumes overflow
@@ -64,7 +78,7 @@ WithFacts<ShownBody> load_shown_body(const std::string& input, const CommonOptio
     CommonOptions reading = options;
     if (arguments.splat.color_field) reading.at_rest.push_back(*arguments.splat.color_field);
     BodyInput body = facts.unpack(open_body(input, reading, app, progress, !refined, alone));
-    if (!reading.patches.empty() && !reading.field && !reading.density) reading.field = "patch";
+    if (draws_categories(reading)) reading.field = "patch";
     const std::string field = facts.unpack(body.select(reading, OtherFields::Drop, arguments.splat.color_field));
     facts.merge(body.refine(arguments.tets, default_tet_level(arguments.method), progress));
     ShownBody shown{std::move(body), {field, {}}, {field, {}}};
@@ -93,8 +107,11 @@ PictureNotes make_notes(const ShownBody& shown, const ShownColors& colors, Rende
     if (!shown.body.shells.empty()) {
         const int samples =
             PictureStyle{.look = {.look = arguments.picture.look}, .samples = arguments.chosen.style.samples}.sample_count();
-        notes.shells = make_shell_scene(*source.mesh(), shown.body.shells, arguments.refine.options(0, progress),
-                                        arguments.refine.levels, colors.optics, samples, arguments.clip, facts);
+        notes.shells = facts.timed(progress, "sheets", [&] {
+            return std::make_shared<const ShellScene>(
+                make_shell_scene(*source.mesh(), shown.body.shells, arguments.refine.options(0, progress),
+                                 arguments.refine.levels, colors.optics, samples, arguments.clip));
+        });
     }
     return notes;
 }
@@ -317,21 +334,14 @@ private:
         report["times"] = std::vector(series.times.begin() + steps.first, series.times.begin() + steps.last + 1);
     }
 
-    /// Refuses what is read by volumes only, where there are shells alone, as of patches.
-    void refuse_options_of_volumes() {
-        constexpr std::array<std::string_view, 10> kOfShells{"scheme", "tension",  "crease-angle", "levels", "samples",
-                                                             "clip",   "clip-box", "shade",        "edges",  "color-field"};
-        const GivenOptions given = given_options(app());
-        for (const OptionUse& use : option_uses()) {
-            if (std::ranges::find(kOfShells, use.name) != kOfShells.end() || !given(use.name)) continue;
-            throw Error(ErrorCode::InvalidInput, "has no effect on shells and patches: no volume is drawn",
-                        option_name(use.name, OptionNames::Flags));
-        }
-    }
-
     void draw_mesh(PictureOutput& output, Report& report) {
         const ShownBody mesh = load_shown(common(), report, ShellsAlone::Take);
-        if (mesh.body.source().cells() == 0) refuse_options_of_volumes();
+        if (draws_categories(common())) {
+            if (!picture_.choices.colors) picture_.choices.colors = "categories";
+            for (const Patch& patch : patches_of_option(mesh.body.sets, common().patches))
+                picture_.legend_names.push_back(patch.name);
+        }
+        if (mesh.body.source().cells() == 0) check_options_of_shells(given_options(app()));
         show(mesh.box, mesh.field, mesh.colors, output, report, [&](const ShownColors& shown) {
             const std::vector<Vec3>& shells = mesh.body.shells.points;
             set_notes(mesh, shown, output, report);

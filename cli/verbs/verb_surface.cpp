@@ -16,6 +16,7 @@
 #include "subvol/error.h"
 #include "subvol/limit_shells.h"
 #include "subvol/limit_surface.h"
+#include "subvol/quantity.h"
 #include "surface_output.h"
 #include "tet_refinement.h"
 #include "text.h"
@@ -117,7 +118,7 @@ public:
         const MeshSource source = body.source();
         std::vector<CellSide> sides;
         if (!patches_.empty()) {
-            for (const Patch& patch : chosen_patches(body.sets, patches_))
+            for (const Patch& patch : patches_of_option(body.sets, patches_))
                 sides.insert(sides.end(), patch.sides.begin(), patch.sides.end());
         }
         options.sides = sides;

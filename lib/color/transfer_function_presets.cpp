@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <span>
 #include <string>
 #include <utility>
@@ -82,8 +83,13 @@ constexpr Polynomials kTurbo{{{0, 14825.05 / 255, -38394.49 / 255, 33300.12 / 25
                               {0, 6838.66 / 255, -22569.18 / 255, 27814.0 / 255, -15327.97 / 255, 3211.1 / 255, 27.2 / 255}}};
 constexpr int kPolynomialKnots = 48;  // straight lines between so many are right to 1/255
 
-const std::vector<std::string> kPresets{"viridis", "plasma", "inferno", "cividis",    "turbo",   "coolwarm",
-                                        "grey",    "bone",   "xray",    "isosurface", "surface", "constant"};
+// Tableau's ten colours, sRGB, for categories.
+constexpr std::array<int, 10> kCategories{0x1f77b4, 0xff7f0e, 0x2ca02c, 0xd62728, 0x9467bd,
+                                          0x8c564b, 0xe377c2, 0x7f7f7f, 0xbcbd22, 0x17becf};
+constexpr double kMostCategories = 1000;
+
+const std::vector<std::string> kPresets{"viridis", "plasma", "inferno",    "cividis", "turbo",    "coolwarm",  "grey",
+                                        "bone",    "xray",   "isosurface", "surface", "constant", "categories"};
 constexpr double kDefaultOpacity = 0.5;
 constexpr double kSurfaceOpacity = 0.9;
 constexpr double kSurfaceRamp = 0.05;  // of the range
@@ -149,6 +155,32 @@ TransferFunction constant(KnotRange range) {
     return {{{range.min, Vec3(1)}, {range.max, Vec3(1)}}, {{range.min, kDefaultOpacity}, {range.max, kDefaultOpacity}}};
 }
 
+/// The colour of an integer. Each ten repeat those of the ten before, lighter, then darker.
+Vec3 category_color(double number) {
+    const auto index = static_cast<std::size_t>(std::fmod(std::fmod(number - 1, 30) + 30, 30));
+    const int rgb = kCategories[index % kCategories.size()];
+    const Vec3 color = Vec3(rgb >> 16, rgb >> 8 & 255, rgb & 255) / 255.0;
+    const Vec3 toward(index < 20 ? 1.0 : 0.0);
+    return linear_from_srgb(index < 10 ? color : (color + toward) / 2.0);
+}
+
+/// Another colour for each integer, from half below it to half above it.
+TransferFunction categories(KnotRange range) {
+    const double first = std::round(range.min), last = std::round(range.max);
+    if (last - first >= kMostCategories) {
+        throw Error(ErrorCode::InvalidInput, "categories: the range has too many integers", "transfer function",
+                    "at most 1000");
+    }
+    TransferFunction function = constant(range);
+    function.color.clear();
+    for (double number = first; number <= last; ++number) {
+        function.color.push_back({number - 0.5, category_color(number)});
+        function.color.push_back({number + 0.5, category_color(number)});
+    }
+    part_equal_values(function.color);
+    return function;
+}
+
 }  // namespace
 
 TransferFunction transfer_function_preset(const std::string& name, double min, double max) {
@@ -165,6 +197,7 @@ TransferFunction transfer_function_preset(const std::string& name, double min, d
     if (name == "isosurface") return isosurfaces(range);
     if (name == "surface") return surface(range);
     if (name == "constant") return constant(range);
+    if (name == "categories") return categories(range);
     std::string list;
     for (const std::string& preset : kPresets) list += (list.empty() ? "" : ", ") + preset;
     throw Error(ErrorCode::InvalidInput, "there is no transfer function '" + name + "'" + detail::did_you_mean(name, kPresets),

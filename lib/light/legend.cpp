@@ -26,6 +26,7 @@ namespace {
 // Pixels, with room for half a label on either side of the bar, and for the labels of the opacity on its left.
 constexpr int kLeft = 56, kRight = 36, kTop = 34, kCurve = 64, kGap = 6, kBar = 18, kBottom = 30;
 constexpr int kBarTop = kTop + kCurve + kGap, kBarEnd = kBarTop + kBar;
+constexpr int kRow = 21;      // of a category
 constexpr int kApart = 130;   // from the bar down to the plot of the opacities of another field
 constexpr int kColors = 128;  // along the bar, besides the knots
 constexpr const char* kInk = "#222";
@@ -66,8 +67,9 @@ public:
     }
 
     [[nodiscard]] std::string svg() const {
-        const std::string width = std::to_string(end_ + kRight),
-                          height = std::to_string(kBarEnd + kBottom + (apart() ? kApart : 0));
+        const int below =
+            named() ? kTop + kRow * static_cast<int>(options_.names.size()) + kGap : kBarEnd + kBottom + (apart() ? kApart : 0);
+        const std::string width = std::to_string(end_ + kRight), height = std::to_string(below);
         pugi::xml_document document;
         const pugi::xml_node svg = append(document, "svg",
                                           {{"xmlns", "http://www.w3.org/2000/svg"},
@@ -78,13 +80,17 @@ public:
                                            {"font-size", "12"},
                                            {"fill", kInk}});
         append(svg, "rect", {{"width", "100%"}, {"height", "100%"}, {"fill", "#fff"}});
-        append_colors(svg);
         append_text(svg, 0.5 * (kLeft + end_), 20, "middle",
                     options_.note.empty() ? options_.title : options_.title + ", " + options_.note)
             .append_attribute("style")
             .set_value("font-size:14px;font-weight:bold");
-        append_opacity(svg);
-        append_bar(svg);
+        if (named()) {
+            append_names(svg);
+        } else {
+            append_colors(svg);
+            append_opacity(svg);
+            append_bar(svg);
+        }
         std::ostringstream text;
         document.save(text, " ", pugi::format_default | pugi::format_no_declaration);
         return text.str();
@@ -92,6 +98,7 @@ public:
 
 private:
     [[nodiscard]] bool apart() const { return !options_.opacity_title.empty(); }
+    [[nodiscard]] bool named() const { return !options_.names.empty(); }
     [[nodiscard]] static double part(const KnotRange& range, double value) {
         return (value - range.min) / (range.max - range.min);
     }
@@ -121,6 +128,20 @@ private:
         pugi::xml_node node = append(svg, "text", {{"x", number(x)}, {"y", number(y)}, {"text-anchor", anchor}});
         node.text().set(detail::printable(text).c_str());
         return node;
+    }
+
+    void append_names(pugi::xml_node svg) const {
+        for (std::size_t i = 0; i < options_.names.size(); ++i) {
+            const int top = kTop + kRow * static_cast<int>(i);
+            append(svg, "rect",
+                   {{"x", number(kLeft)},
+                    {"y", number(top)},
+                    {"width", "14"},
+                    {"height", "14"},
+                    {"fill", hex(color_at(function_, options_.min + static_cast<double>(i)))},
+                    {"stroke", kInk}});
+            append_text(svg, kLeft + 22, top + 12, "start", options_.names[i]);
+        }
     }
 
     void append_opacity(pugi::xml_node svg) const {

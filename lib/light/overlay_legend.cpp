@@ -16,6 +16,7 @@ using namespace detail;
 namespace {
 
 constexpr double kMostOfHeight = 0.45;  // a longer title is cut off
+constexpr double kNameRow = 1.7;        // of a category, in letters
 
 double part_of(const KnotRange& range, double value) {
     return (value - range.min) / (range.max - range.min);
@@ -41,6 +42,7 @@ public:
 
     [[nodiscard]] int width() const {
         const double most = kMostOfHeight * height_;
+        if (!options_.names.empty()) return static_cast<int>(std::ceil(std::min(names_width(), most) + 2 * margin()));
         const double titles = std::max(
             {title_width(options_.title), title_width(options_.note), apart() ? title_width(options_.opacity_title) : 0.0});
         const double bars = curve_width() + bar_width() + 0.9 * letter_ +
@@ -54,6 +56,7 @@ public:
         left_ = image.width - width() + margin();
         const double bottom = height_ - (options_.note.empty() ? 2.2 : 4) * letter_;
         if (!options_.note.empty()) draw_title(options_.note, height_ - 0.7 * letter_);
+        if (!options_.names.empty()) return draw_names(bottom);
         const double middle = apart() ? 0.56 * height_ : bottom;
         draw_bar(2.2 * letter_, middle);
         if (apart()) {
@@ -83,14 +86,51 @@ private:
         draw_text(*image_, place, text, {.size_px = size * letter_, .color = ink_, .anchor = anchor});
     }
 
-    void draw_title(std::string title, double base) const {
-        const double room = image_->width - left_ - 0.3 * margin();
-        if (title_width(title) > room) {
-            while (!title.empty() && title_width(title + "…") > room) title.pop_back();
-            while (!title.empty() && (static_cast<unsigned char>(title.back()) & 0xc0U) == 0x80) title.pop_back();
-            title += "…";
+    void draw_title(const std::string& title, double base) const { write_within({left_, base}, title, 1.08); }
+
+    /// Writes a text up to the picture's edge.
+    void write_within(const Vec2& place, std::string text, double size) const {
+        const double room = image_->width - place.x - 0.3 * margin();
+        const auto width = [&](const std::string& t) { return text_width_px(t, size * letter_); };
+        if (width(text) > room) {
+            while (!text.empty() && width(text + "…") > room) text.pop_back();
+            while (!text.empty() && (static_cast<unsigned char>(text.back()) & 0xc0U) == 0x80) text.pop_back();
+            text += "…";
         }
-        write({left_, base}, title, TextAnchor::Start, 1.08);
+        write(place, text, TextAnchor::Start, size);
+    }
+
+    [[nodiscard]] double names_width() const {
+        double width = std::max(title_width(options_.title), title_width(options_.note));
+        for (const std::string& name : options_.names)
+            width = std::max(width, kNameRow * letter_ + text_width_px(name, letter_));
+        return width;
+    }
+
+    /// A row for each category. Where there are too many, the last row says how many more there are.
+    void draw_names(double bottom) const {
+        draw_title(options_.title, 2.2 * letter_);
+        const double top = 3.4 * letter_, row = kNameRow * letter_;
+        const auto rows = static_cast<std::size_t>(std::max(1.0, std::floor((bottom - top) / row)));
+        const std::size_t count = options_.names.size(), shown = count <= rows ? count : rows - 1;
+        for (std::size_t i = 0; i < shown; ++i) {
+            const double y = top + static_cast<double>(i) * row;
+            const Vec3 color = color_at(function_, options_.min + static_cast<double>(i));
+            const int x0 = static_cast<int>(left_), y0 = static_cast<int>(y), side = static_cast<int>(1.1 * letter_);
+            for (int dy = 0; dy < side; ++dy) {
+                for (int dx = 0; dx < side; ++dx) put_inside(x0 + dx, y0 + dy, color);
+            }
+            draw_frame(x0, y0, x0 + side, y0 + side);
+            write_within({left_ + row, y + 0.92 * letter_}, options_.names[i], 1);
+        }
+        if (shown < count) {
+            const double y = top + static_cast<double>(shown) * row;
+            write_within({left_ + row, y + 0.92 * letter_}, "and " + std::to_string(count - shown) + " more", 1);
+        }
+    }
+
+    void put_inside(int x, int y, const Vec3& color) const {
+        if (x >= 0 && y >= 0 && x < image_->width && y < image_->height) put_over(*image_, x, y, color, 1);
     }
 
     void draw_bar(double title_base, double bottom) const {
@@ -100,9 +140,7 @@ private:
         const int x0 = static_cast<int>(start), x1 = static_cast<int>(end);
         for (int y = static_cast<int>(top); y < static_cast<int>(bottom); ++y) {
             const Vec3 color = color_at(function_, colors_.at((bottom - y - 0.5) / (bottom - top)));
-            for (int x = x0; x < x1; ++x) {
-                if (x >= 0 && y >= 0 && x < image_->width && y < image_->height) put_over(*image_, x, y, color, 1);
-            }
+            for (int x = x0; x < x1; ++x) put_inside(x, y, color);
         }
         draw_frame(x0, static_cast<int>(top), x1, static_cast<int>(bottom));
         draw_ticks(x1, static_cast<int>(top), static_cast<int>(bottom), colors_);

@@ -2,6 +2,7 @@
 #include "subvol/mesh_sets.h"
 
 #include <algorithm>
+#include <iterator>
 
 #include "subvol/cell.h"
 #include "subvol/error.h"
@@ -27,6 +28,22 @@ const Patch& find_patch(const MeshSets& sets, std::string_view name) {
 
 const CellSet& find_set(const MeshSets& sets, std::string_view name) {
     return find(sets.sets, name, "set", "sets of cells");
+}
+
+std::vector<Patch> chosen_patches(const MeshSets& sets, std::span<const std::string> names) {
+    std::vector<Patch> patches;
+    for (const std::string& name : names) {
+        const bool all =
+            name == "all" && !sets.patches.empty() && std::ranges::find(sets.patches, name, &Patch::name) == sets.patches.end();
+        if (all) {
+            std::ranges::copy_if(sets.patches, std::back_inserter(patches), [](const Patch& p) { return !p.sides.empty(); });
+            continue;
+        }
+        patches.push_back(find_patch(sets, name));
+        if (patches.back().sides.empty())
+            throw Error(ErrorCode::InvalidInput, "no face of patch \"" + name + "\" is left", {}, "a patch with faces");
+    }
+    return patches;
 }
 
 MeshSets sets_of_cells(MeshSets sets, std::span<const std::uint8_t> kept) {

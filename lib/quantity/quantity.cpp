@@ -410,4 +410,12 @@ Attribute field_of(const HexMesh& mesh, const std::string& name, const std::stri
     return result;
 }
 
+std::vector<double> vectors_of(const HexMesh& mesh, const std::string& source, Progress* progress) {
+    Attribute field = field_of(mesh, source, source, progress);
+    if (field.channels == 3) return std::move(field.values);
+    throw Error(ErrorCode::InvalidInput,
+                "'" + source + "' has " + std::to_string(field.channels) + (field.channels == 1 ? " component" : " components"),
+                {}, "a vector, such as U or grad(T)");
+}
+
 }  // namespace subvol

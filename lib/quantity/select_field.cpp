@@ -119,4 +119,20 @@ SelectedField select_field(const HexMesh& mesh, const std::optional<std::string>
     return density(mesh, "the only fields are identifiers and flags (" + detail::list_of(mesh) + "): density 1 everywhere");
 }
 
+Shells with_fields_of(Shells shells, const HexMesh& mesh) {
+    HexMesh points;
+    points.points = shells.points;
+    points.attributes = std::move(shells.attributes);
+    shells.attributes.clear();
+    for (const Attribute& wanted : mesh.attributes) {
+        // Without a field the volume has density 1 everywhere, and so have they.
+        const bool made = wanted.name == "density" && points.find_attribute("density") == nullptr;
+        Attribute field = made ? Attribute{wanted.name, 1, std::vector<double>(points.points.size(), 1.0)}
+                               : select_field(points, wanted.name).scalar;
+        field.name = wanted.name;
+        shells.attributes.push_back(std::move(field));
+    }
+    return shells;
+}
+
 }  // namespace subvol

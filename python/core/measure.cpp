@@ -168,15 +168,11 @@ py::list measure_patches_of(const py::object& self, const std::vector<std::strin
     const auto& mesh = self.cast<const HexMesh&>();
     PatchOptions options;
     set_options(keywords_of(options), keywords);
-    std::vector<Patch> patches;
-    for (const std::string& name : names) patches.push_back(find_patch(sets_of(self), name));
+    const std::vector<Patch> patches = chosen_patches(sets_of(self), names);
     const std::vector<PatchMeasure> found = result_of(progress, [&](Progress* listener) {
-        Attribute vectors;
-        if (flux) vectors = field_of(mesh, *flux, *flux);
-        if (flux && vectors.channels != 3) {
-            throw Error(ErrorCode::InvalidInput, "\"" + *flux + "\" is not a vector", "flux", "a vector, such as U or grad(T)");
-        }
-        options.flux = vectors.values;
+        std::vector<double> vectors;
+        if (flux) vectors = vectors_of(mesh, *flux, listener);
+        options.flux = vectors;
         options.progress = listener;
         return measure_patches(mesh, patches, options);
     });

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <iterator>
+#include <limits>
 
 #include "bind.h"
 #include "picture.h"
 #include "subvol/boundary_values.h"
 #include "subvol/gl_device.h"
 #include "subvol/picture_maker.h"
+#include "subvol/shell_scene.h"
 #include "subvol/view_options.h"
 #include "subvol/voxels.h"
 
@@ -69,14 +71,34 @@ py::dict report_of(const Facts& facts) {
 /// What is drawn, as Python has it: one of them.
 ///
 /// colors:   a mesh whose field gives the colours; null: the one that is shown
+/// patches:  shells to which the points of `mesh`, which has no cells, belong; null: a volume is drawn
 /// channels: of the points
 struct DrawnBody {
     const HexMesh* mesh = nullptr;
     const HexMesh* colors = nullptr;
+    const Shells* patches = nullptr;
     const RbfVolume* points = nullptr;
     std::vector<std::size_t> channels{};
     const Voxels* voxels = nullptr;
 };
+
+/// The patches of a mesh, alone.
+Picture render_patches(const HexMesh& mesh, const Shells& patches, const View& view, const PictureLight& light,
+                       const py::dict& given, const py::object& progress) {
+    check_options_of_shells([&](std::string_view name) { return text_of(given, name); }, OptionNames::Keywords);
+    GivenPicture chosen;
+    set_options(options_of(chosen), given);
+    const PictureStyle style{.look = light.options, .samples = chosen.options.style.samples};
+    Picture picture{Image(view.width(), view.height())};
+    picture.depth.assign(picture.image.rgba.size() / 4, std::numeric_limits<float>::infinity());
+    run(progress, [&](Progress* listener) {
+        RefineOptions refine = chosen.refinement;
+        refine.progress = listener;
+        make_shell_scene(mesh, patches, refine, chosen.levels, light.optics, style.sample_count(), chosen.options.style.clip)
+            .draw_into(picture.image, picture.depth, view);
+    });
+    return picture;
+}
 
 Picture render(const DrawnBody& drawn, const std::string& method_name, const View& view, const PictureLight& light,
                const py::dict& given, const py::object& progress) {
@@ -84,14 +106,16 @@ Picture render(const DrawnBody& drawn, const std::string& method_name, const Vie
     HexMesh two_fields;
     PictureBody body{.kernels = drawn.points, .voxels = drawn.voxels, .channels = drawn.channels};
     if (drawn.mesh != nullptr) body.mesh = *drawn.mesh;
-    check_method(method, body.kind(), OptionNames::Keywords);
-    check_options(
-        bit(method), body.kind(), [&](std::string_view name) { return text_of(given, name); }, OptionNames::Keywords);
     if (drawn.colors != nullptr) {
         two_fields = *drawn.mesh;
         two_fields.attributes.push_back(drawn.colors->attributes.front());
         body.mesh = two_fields;
     }
+    if (drawn.patches != nullptr)
+        return render_patches(drawn.colors != nullptr ? two_fields : *drawn.mesh, *drawn.patches, view, light, given, progress);
+    check_method(method, body.kind(), OptionNames::Keywords);
+    check_options(
+        bit(method), body.kind(), [&](std::string_view name) { return text_of(given, name); }, OptionNames::Keywords);
     PictureMaker maker(std::move(body), method_options(method, light, given));
     subvol::Picture picture = result_of(progress, [&](Progress* listener) { return maker.draw(view, light.optics, listener); });
     return {std::move(picture.image), std::move(picture.depth), report_of(picture.facts)};
@@ -126,14 +150,27 @@ void bind_render(py::module_& module) {
     py::class_<Voxels>(module, "Voxels", "The voxels of a grid, for the renderer.");
     py::class_<BoundaryValues>(module, "BoundaryValues", "A boundary with the limit's values on it.");
     py::class_<DrawnBody>(module, "DrawnBody", "What render() draws.")
-        .def(py::init([](const HexMesh* mesh, const HexMesh* colors, const RbfVolume* points,
-                         const std::vector<std::size_t>& channels, const Voxels* voxels) {
-                 return DrawnBody{mesh, colors, points, channels, voxels};
-             }),
+        .def(py::init([](const HexMesh* mesh, const HexMesh* colors, const Shells* patches, const RbfVolume* points,
+                         const std::vector<std::size_t>& channels,
+                         const Voxels* voxels) { return DrawnBody{mesh, colors, patches, points, channels, voxels}; }),
              py::arg("mesh").none(true) = py::none(), py::arg("colors").none(true) = py::none(),
-             py::arg("points").none(true) = py::none(), py::arg("channels") = std::vector<std::size_t>{},
-             py::arg("voxels").none(true) = py::none(), py::keep_alive<1, 2>(), py::keep_alive<1, 3>(), py::keep_alive<1, 4>(),
-             py::keep_alive<1, 6>());
+             py::arg("patches").none(true) = py::none(), py::arg("points").none(true) = py::none(),
+             py::arg("channels") = std::vector<std::size_t>{}, py::arg("voxels").none(true) = py::none(),
+             py::keep_alive<1, 2>(), py::keep_alive<1, 3>(), py::keep_alive<1, 4>(), py::keep_alive<1, 5>(),
+             py::keep_alive<1, 7>());
+    py::class_<Shells>(module, "Patches", "Patches of a mesh as faces, each patch with its own points.")
+        .def_property_readonly(
+            "mesh",
+            [](const Shells& shells) {
+                return HexMesh{shells.points, {}, shells.attributes};
+            },
+            "The points, without cells, with the fields and, last, \"patch\": the number of each.");
+    module.def(
+        "choose_patches",
+        [](const py::object& mesh, const std::vector<std::string>& names) {
+            return patch_shells(mesh.cast<const HexMesh&>(), chosen_patches(sets_of(mesh), names));
+        },
+        py::arg("mesh"), py::arg("names"));
     module.def(
         "render",
         [](const DrawnBody& body, const std::string& method, const Camera& camera, const std::pair<int, int>& size,

@@ -106,13 +106,13 @@ def page(
     unit:        of the field, for the legend
     max_bytes:   kernels are rounded, then merged, until the page fits
     tf may also be a TransferFunction, camera a Camera. The look isosurface is not drawn in pages.
-    look:        solid (opaque and lit; the default for meshes without tf, range, opacity and opacity_unit), volume (opacity
-                 0 to .5 over the range, black behind; otherwise the default), xray (on white) or isosurface (five lit
-                 surfaces) [solid, volume, xray, isosurface]
+    look:        solid (opaque and lit; the default for meshes without opacity and opacity_unit), volume (opacity 0 to .5
+                 over the range, black behind; otherwise the default), xray (on white) or isosurface (five lit surfaces)
+                 [solid, volume, xray, isosurface]
     tf:          colour map: viridis (default), plasma, inferno, cividis, turbo, coolwarm, grey, bone, xray, isosurface,
-                 surface or constant over the field's range, or a ParaView colour-map JSON file (FILE.json:NAME for one of
-                 several in it) [viridis, plasma, inferno, cividis, turbo, coolwarm, grey, bone, xray, isosurface, surface,
-                 constant]
+                 surface, constant or categories (integers) over the field's range, or a ParaView colour-map JSON file
+                 (FILE.json:NAME for one of several in it) [viridis, plasma, inferno, cividis, turbo, coolwarm, grey, bone,
+                 xray, isosurface, surface, constant, categories]
     opacity_unit: the world distance over which an opacity acts (default: 1/100 of the bounding box's diagonal) [more than
                  0]
     clamp:       show values beyond the field's range, where interpolating schemes overshoot, as its ends
@@ -235,13 +235,14 @@ def reduce(
 def render(
     what: Drawable, *, method: str = 'splat', camera: Union[None, str, Camera] = None,
     size: tuple[int, int] = (512, 512), field: Optional[str] = None, tf: Union[None, str, TransferFunction] = None,
-    scheme: str = 'mcq', tension: float = 0.0625, crease_angle: Optional[float] = None, levels: Optional[int] = None,
-    per_edge: int = 1, spacing: float = 0.0, tolerance: float = 0.0, centers: bool = False, values: str = 'scheme',
-    kernel: Kernel = 'compact', value_kernel: Kernel = 'paper_bc', correction: str = 'second', backend: str = 'auto',
-    device: Optional[int] = None, sheets: int = 0, shadows: bool = False, ambient_occlusion: float = 0.0,
-    samples: Optional[int] = None, image_tolerance: Optional[float] = None, order: str = 'topological',
-    kbuffer: int = 6, lod: Optional[float] = None, seconds: Optional[float] = None, shade: bool = False,
-    color_field: Optional[str] = None, clip: Optional[npt.ArrayLike] = None, clip_box: Optional[npt.ArrayLike] = None,
+    patch: Union[None, str, Sequence[str]] = None, scheme: str = 'mcq', tension: float = 0.0625,
+    crease_angle: Optional[float] = None, levels: Optional[int] = None, per_edge: int = 1, spacing: float = 0.0,
+    tolerance: float = 0.0, centers: bool = False, values: str = 'scheme', kernel: Kernel = 'compact',
+    value_kernel: Kernel = 'paper_bc', correction: str = 'second', backend: str = 'auto', device: Optional[int] = None,
+    sheets: int = 0, shadows: bool = False, ambient_occlusion: float = 0.0, samples: Optional[int] = None,
+    image_tolerance: Optional[float] = None, order: str = 'topological', kbuffer: int = 6, lod: Optional[float] = None,
+    seconds: Optional[float] = None, shade: bool = False, color_field: Optional[str] = None,
+    clip: Optional[npt.ArrayLike] = None, clip_box: Optional[npt.ArrayLike] = None,
     slice: Optional[npt.ArrayLike] = None, around: bool = False, look: Optional[str] = None,
     opacity_unit: Optional[float] = None, clamp: bool = False, range: Optional[str] = None,
     opacity: Optional[str] = None, view: str = 'iso', fit: bool = False, ortho: bool = False, progress: Progress = None
@@ -255,6 +256,7 @@ def render(
                  limit's cells), "grid" (rays through voxels)
     size:        width and height in pixels
     field:       what is drawn; tf may also be a TransferFunction, camera a Camera
+    patch:       patches of `mesh.patches` that are drawn alone, or "all"; coloured by patch, or by `field`
     scheme:      mcq (smooth, through the control points), cc (Catmull-Clark), bsxw (Bajaj-Schaefer-Warren-Xu), linear [mcq,
                  cc, bsxw, linear]
     tension:     of mcq: 0 is linear; 1/16 reproduces cubics [0 to 0.125; with scheme='mcq']
@@ -300,13 +302,13 @@ def render(
     slice:       draw the volume on this plane alone, opaque and in the colours of its values: a point and the normal
                  (repeatable)
     around:      draw the volume around the slices too, as look says [with slice]
-    look:        solid (opaque and lit; the default for meshes without tf, range, opacity and opacity_unit), volume (opacity
-                 0 to .5 over the range, black behind; otherwise the default), xray (on white) or isosurface (five lit
-                 surfaces) [solid, volume, xray, isosurface]
+    look:        solid (opaque and lit; the default for meshes without opacity and opacity_unit), volume (opacity 0 to .5
+                 over the range, black behind; otherwise the default), xray (on white) or isosurface (five lit surfaces)
+                 [solid, volume, xray, isosurface]
     tf:          colour map: viridis (default), plasma, inferno, cividis, turbo, coolwarm, grey, bone, xray, isosurface,
-                 surface or constant over the field's range, or a ParaView colour-map JSON file (FILE.json:NAME for one of
-                 several in it) [viridis, plasma, inferno, cividis, turbo, coolwarm, grey, bone, xray, isosurface, surface,
-                 constant]
+                 surface, constant or categories (integers) over the field's range, or a ParaView colour-map JSON file
+                 (FILE.json:NAME for one of several in it) [viridis, plasma, inferno, cividis, turbo, coolwarm, grey, bone,
+                 xray, isosurface, surface, constant, categories]
     opacity_unit: the world distance over which an opacity acts (default: 1/100 of the bounding box's diagonal) [more than
                  0]
     clamp:       show values beyond the field's range, where interpolating schemes overshoot, as its ends

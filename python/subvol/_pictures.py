@@ -25,7 +25,8 @@ Drawable = Union[HexMesh, RbfVolume, Grid]
 
 @described
 def render(what: Drawable, *, method: str = "splat", camera: Union[None, str, Camera] = None, size: tuple[int, int] = (512, 512),
-           field: Optional[str] = None, tf: Union[None, str, TransferFunction] = None, progress: Progress = None, **options: Any) -> Image:
+           field: Optional[str] = None, tf: Union[None, str, TransferFunction] = None,
+           patch: Union[None, str, Sequence[str]] = None, progress: Progress = None, **options: Any) -> Image:
     """Draws a mesh, points or a grid: the picture of `subvol render` with the same options, bit for bit.
 
     A keyword that has no effect with the method is refused; docs/pictures.md has the table. None leaves the default.
@@ -35,6 +36,7 @@ def render(what: Drawable, *, method: str = "splat", camera: Union[None, str, Ca
                  limit's cells), "grid" (rays through voxels)
     size:        width and height in pixels
     field:       what is drawn; tf may also be a TransferFunction, camera a Camera
+    patch:       patches of `mesh.patches` that are drawn alone, or "all"; coloured by patch, or by `field`
     {keywords}
 
     Cuts are rows of six numbers, each a list or an array. Returns an Image: `numpy.asarray(image)` is (height, width, 4) float32,
@@ -50,9 +52,17 @@ def render(what: Drawable, *, method: str = "splat", camera: Union[None, str, Ca
         raise TypeError(f"render() takes a HexMesh, RbfVolume or Grid, not {type(what).__name__}")
     given = {name: value for name, value in options.items() if value is not None and value is not False}
     color_field = options.get("color_field")
+    patches = None
+    if patch is not None:
+        if not isinstance(what, HexMesh):
+            raise InvalidInput("patch: points and grids have no patches", "patch", "a mesh that was read from a file with patches")
+        patches = _core.choose_patches(what, [patch] if isinstance(patch, str) else list(patch))
+        what = patches.mesh
+        if field is None:
+            field, tf = "patch", tf or "categories"
     mesh = _selected(what, field) if isinstance(what, HexMesh) else None
     other = _selected(what, color_field) if isinstance(what, HexMesh) and color_field is not None else None
-    body, shown, colors, bounds = _body_of(what if mesh is None else mesh, other, field, color_field)
+    body, shown, colors, bounds = _body_of(what if mesh is None else mesh, other, patches, field, color_field)
     light = _light_of(given, tf, mesh is not None and not options.get("shade"), shown, colors or shown, bounds)
     eye = _camera_of(light, given, camera, size, what if mesh is None else mesh, bounds)
     with listening(progress) as listener:
@@ -66,14 +76,15 @@ def render(what: Drawable, *, method: str = "splat", camera: Union[None, str, Ca
 _Range = tuple[float, float]
 
 
-def _body_of(what: Drawable, colors: Optional[HexMesh], field: Optional[str],
+def _body_of(what: Drawable, colors: Optional[HexMesh], patches: Optional[_core.Patches], field: Optional[str],
              color_field: Optional[str]) -> tuple[_core.DrawnBody, _Range, Optional[_Range], npt.NDArray[Any]]:
     """What is drawn, the range of its field, that of the field of the colours if it is another, and its bounds."""
     if isinstance(what, HexMesh):
         if colors is not None and list(colors.fields) == list(what.fields):
             colors = None
         of_colors = None if colors is None else _range_of(next(iter(colors.fields.values())))
-        return _core.DrawnBody(mesh=what, colors=colors), _range_of(next(iter(what.fields.values()))), of_colors, what.bounds
+        bounds = what.bounds if patches is None else np.stack([what.points.min(0), what.points.max(0)])
+        return _core.DrawnBody(mesh=what, colors=colors, patches=patches), _range_of(next(iter(what.fields.values()))), of_colors, bounds
     if isinstance(what, RbfVolume):
         names = list(what.values)
         channels = [_channel(names, field)]

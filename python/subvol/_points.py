@@ -16,7 +16,7 @@ from ._progress import Progress, listening
 
 def _selected(mesh: HexMesh, field: Optional[str]) -> HexMesh:
     """The mesh with the one field that is sampled or drawn, and without unused points: as the command has it."""
-    chosen, said = _core.select_field(mesh.without_unused_points(), field)
+    chosen, said = _core.select_field(mesh.without_unused_points() if len(mesh.cells) else mesh, field)
     warn(said, 4)
     return chosen
 

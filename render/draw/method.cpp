@@ -204,4 +204,14 @@ void check_options(Methods methods, BodyKind body, const GivenOptions& given, Op
     }
 }
 
+void check_options_of_shells(const GivenOptions& given, OptionNames names) {
+    constexpr std::array<std::string_view, 10> kOfShells{"scheme", "tension",  "crease-angle", "levels", "samples",
+                                                         "clip",   "clip-box", "shade",        "edges",  "color-field"};
+    for (const OptionUse& use : kUses) {
+        if (names == OptionNames::Keywords && use.keyword.empty()) continue;
+        if (std::ranges::find(kOfShells, use.name) != kOfShells.end() || !given(use.name)) continue;
+        throw Error(ErrorCode::InvalidInput, "has no effect on shells and patches: no volume is drawn", shown(use, names));
+    }
+}
+
 }  // namespace subvol

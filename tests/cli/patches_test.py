@@ -328,6 +328,17 @@ class Patches(InFolder):
         self.assertEqual(picture("--patch", "left", "--json").json()["field"], "density")
         self.refused(["no patch \"inlet\"", "left, right, tips, free"], "render", "a.inp", "-o", "a.png", "--patch", "inlet")
 
+    def test_the_legend_names_patches(self):
+        (self.folder / "a.inp").write_text(INP)
+        def legend(*words):
+            self.run_ok("render", "a.inp", "-o", "a.png", "--size", "96x64", "--legend", "a.svg", *words)
+            return (self.folder / "a.svg").read_text()
+        named = legend("--patch", "right", "--patch", "left")
+        self.assertLess(named.index(">right<"), named.index(">left<"))
+        self.assertNotIn("linearGradient", named)
+        self.assertIn("linearGradient", legend("--patch", "right", "--density", "x"))
+        self.run_ok("render", "a.inp", "-o", "b.png", "--size", "96x64", "--legend", "--patch", "all")
+
     def test_a_table_over_steps(self):
         write_foam(self.folder / "case")
         later = self.folder / "case" / "0.5"

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Quantities computed from fields, displacement, and regions."""
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -101,5 +102,26 @@ def test_patches_and_sets_follow_the_cells(tmp_path: Path) -> None:
         subvol.measure(mesh, patch="side")
     with pytest.raises(subvol.InvalidInput, match="no set"):
         subvol.only(mesh, "set:middle")
+    with pytest.raises(subvol.InvalidInput, match="1 component"):
+        subvol.measure(subvol.HexMesh(mesh.points, mesh.cells, {"T": mesh.points[:, 0]}), patch=[], flux="T")
     with pytest.raises(subvol.InvalidInput, match="patch"):
         subvol.measure(mesh, flux="U")
+
+
+def test_pictures_of_patches_are_those_of_the_command(tmp_path: Path, command: Callable[..., str]) -> None:
+    (tmp_path / "a.inp").write_text(DECK)
+    mesh = subvol.read_mesh(tmp_path / "a.inp")
+
+    def shown(*words: str) -> subvol.Image:
+        command("render", tmp_path / "a.inp", "-o", tmp_path / "a.exr", "--size", "48x40", *words)
+        return subvol.read_image(tmp_path / "a.exr")
+
+    top, both = shown("--patch", "top"), shown("--patch", "top", "--patch", "bottom", "--view", "+x", "--levels", "2")
+    np.testing.assert_array_equal(subvol.render(mesh, patch="top", size=(48, 40)), top)
+    np.testing.assert_array_equal(subvol.render(mesh, patch=["top", "bottom"], size=(48, 40), view="+x", levels=2), both)
+    np.testing.assert_array_equal(subvol.render(mesh, patch="all", tf="grey", size=(48, 40)), shown("--patch", "all", "--tf", "grey"))
+    for wrong, words in (({"patch": "side"}, "bottom, top"), ({"patch": "top", "sheets": 20}, "no volume"), ({"patch": "top", "shadows": True}, "no volume")):
+        with pytest.raises(subvol.InvalidInput, match=words):
+            subvol.render(mesh, size=(8, 8), **wrong)
+    with pytest.raises(subvol.InvalidInput, match="no patches"):
+        subvol.render(subvol.sample(subvol.model("ball", 2)), patch="top", size=(8, 8))

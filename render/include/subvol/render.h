@@ -17,6 +17,7 @@
 #include "subvol/render_grid.h"
 #include "subvol/render_projected.h"
 #include "subvol/render_tets.h"
+#include "subvol/shell_scene.h"
 #include "subvol/splat.h"
 #include "subvol/splat_options.h"
 #include "subvol/splat_shares.h"

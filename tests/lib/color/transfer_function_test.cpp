@@ -47,6 +47,16 @@ TEST(Preset, EachIsValidOverAnyRange) {
     }
 }
 
+TEST(Preset, CategoriesHaveOneColourForEachInteger) {
+    const TransferFunction f = transfer_function_preset("categories", 1, 12);
+    for (int a = 1; a <= 12; ++a) {
+        for (const double off : {-0.4, 0.4}) EXPECT_LT(glm::length(color_at(f, a + off) - color_at(f, a)), 1e-12) << a;
+        for (int b = 1; b < a; ++b) EXPECT_GT(glm::length(color_at(f, a) - color_at(f, b)), 0.05) << a << " " << b;
+    }
+    EXPECT_LT(glm::length(color_at(transfer_function_preset("categories", 3, 3), 3) - color_at(f, 3)), 1e-12);
+    expect_error(kInvalid, "too many", [] { (void)transfer_function_preset("categories", 0, 1e7); });
+}
+
 TEST(Preset, ViridisSpansTheRangeInLinearLight) {
     const Optics optics(transfer_function_preset("viridis", 2, 4), 0.1);
     const Vec3 low = optics.color(2), high = optics.color(4);

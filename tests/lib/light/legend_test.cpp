@@ -136,6 +136,17 @@ TEST_F(Legend, TakesAnyTitleAndAConstantField) {
     expect_error(ErrorCode::InvalidInput, "no colour knot", [] { (void)legend_svg({}); });
 }
 
+TEST_F(Legend, NamesCategories) {
+    const TransferFunction f = transfer_function_preset("categories", 1, 3);
+    const auto document = parsed(legend_svg(f, {.title = "patch", .min = 1, .max = 3, .names = {"inlet", "wall", "a < b"}}));
+    std::vector<std::string> texts, fills;
+    for (const pugi::xml_node text : document.child("svg").children("text")) texts.emplace_back(text.text().get());
+    for (const pugi::xml_node rect : document.child("svg").children("rect")) fills.emplace_back(rect.attribute("fill").value());
+    EXPECT_EQ(texts, (std::vector<std::string>{"patch", "inlet", "wall", "a < b"}));
+    EXPECT_EQ(fills, (std::vector<std::string>{"#fff", "#1f77b4", "#ff7f0e", "#2ca02c"}));
+    EXPECT_FALSE(document.child("svg").child("linearGradient")) << "there is no bar";
+}
+
 TEST_F(Legend, IsWrittenWhole) {
     const TransferFunction f = transfer_function_preset("bone", 0, 1);
     const auto path = write("a.svg", "before");

@@ -173,5 +173,27 @@ TEST(Overlay, LegendOfTwoFieldsHasBothTitles) {
     test::expect_error(ErrorCode::InvalidInput, "not finite", [&] { draw_legend(two, function, options, Vec3(0.0)); });
 }
 
+TEST(Legends, HaveASwatchForEachCategoryThatFits) {
+    const TransferFunction f = transfer_function_preset("categories", 1, 200);
+    const auto swatches = [&](std::size_t count) {
+        const LegendOptions options{.title = "", .min = 1, .max = 200, .names = std::vector<std::string>(count, "a")};
+        Image image(legend_width_px(f, options, 400), 400);
+        draw_legend(image, f, options, Vec3(0));
+        std::size_t found = 0;
+        bool inside = false;
+        for (int y = 0; y < 400; ++y) {  // down the middle of the swatches
+            const auto pixel = image.pixel(14, y);
+            const bool colored = pixel[3] == 1 && pixel[0] + pixel[1] + pixel[2] > 0.05f;
+            found += colored && !inside;
+            inside = colored;
+        }
+        return found;
+    };
+    EXPECT_EQ(swatches(3), 3u);
+    EXPECT_EQ(swatches(12), 12u);
+    EXPECT_GE(swatches(200), 15u);
+    EXPECT_LE(swatches(200), 24u) << "the last row says how many more there are";
+}
+
 }  // namespace overlay_test
 }  // namespace subvol

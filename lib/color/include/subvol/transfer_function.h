@@ -39,6 +39,7 @@ struct TransferFunction {
 /// isosurface: viridis, transparent except for five evenly spaced narrow peaks of opacity .9
 /// surface:    the positive side of a signed density, opaque
 /// constant:   white, opacity .5
+/// categories: another colour for each integer, from half below it to half above it; opacity .5
 ///
 /// min, max: the field's range; that of a constant field is widened by .5 on either side
 /// throws:   Error(InvalidInput) for an unknown name (lists those that exist), or if the range is not finite or min > max

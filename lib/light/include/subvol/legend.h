@@ -15,6 +15,8 @@ namespace subvol {
 /// opacity_title, opacity_min, opacity_max: where the opacities are of another field than the colours, its name and range: they
 ///           get a plot of their own; an empty title: they are of the same field
 /// note:     a line below the legend
+/// names:    of categories, whose values are min, min + 1, …: the legend has a swatch and the name for each, in place of the
+/// bar
 struct LegendOptions {
     std::string title{};
     double min = 0;
@@ -24,9 +26,11 @@ struct LegendOptions {
     double opacity_min = 0;
     double opacity_max = 1;
     std::string note{};
+    std::vector<std::string> names{};
 };
 
-/// A colour bar with ticks at round values and the opacity curve above it, as a self-contained SVG picture in sRGB on white.
+/// A colour bar with ticks at round values and the opacity curve above it, or the names of categories, as a self-contained SVG
+/// picture in sRGB on white.
 ///
 /// throws: Error(InvalidInput) as validate(function), if the range is not finite or min > max, or if the width
 ///         is out of range

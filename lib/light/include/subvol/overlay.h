@@ -63,7 +63,7 @@ void draw_axes(Image& image, const View& view, const Vec3& ink);
 [[nodiscard]] int legend_width_px(const TransferFunction& function, const LegendOptions& options, int height);
 
 /// Draws an upright colour bar with ticks at round values, its title above it, and the curve of the opacities where they
-/// differ, at the right edge of the picture.
+/// differ, at the right edge of the picture; of categories a swatch and a name for each, as many as there is room for.
 ///
 /// ink:    of text and lines
 /// throws: Error(InvalidInput) as `legend_svg`

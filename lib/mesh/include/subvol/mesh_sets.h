@@ -46,6 +46,11 @@ struct MeshSets {
 /// throws: Error(InvalidInput) if there is no set of that name; lists those that exist
 [[nodiscard]] const CellSet& find_set(const MeshSets& sets, std::string_view name);
 
+/// The patches of these names, in their order; all that have sides for "all", unless one is called so.
+///
+/// throws: Error(InvalidInput) as `find_patch`, or if a named patch has no sides
+[[nodiscard]] std::vector<Patch> chosen_patches(const MeshSets& sets, std::span<const std::string> names);
+
 /// The sets of a mesh of which some cells are left, in their order. Patches and sets that have lost all cells stay, empty.
 ///
 /// kept: a flag for each cell

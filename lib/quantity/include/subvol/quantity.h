@@ -9,6 +9,7 @@
 
 #include "subvol/hex_mesh.h"
 #include "subvol/progress.h"
+#include "subvol/shells.h"
 
 namespace subvol {
 
@@ -45,6 +46,17 @@ struct SelectedField {
 /// cost:   a few nanoseconds a point and operation; derivatives 15 to 150 µs a cell
 [[nodiscard]] Attribute field_of(const HexMesh& mesh, const std::string& name, const std::string& source,
                                  Progress* progress = nullptr);
+
+/// A quantity that is a vector, such as U or grad(T), whose flow is asked for.
+///
+/// returns: x, y, z at each point of the mesh
+/// throws:  Error(InvalidInput) as `field_of`, or if it has another number of components
+[[nodiscard]] std::vector<double> vectors_of(const HexMesh& mesh, const std::string& source, Progress* progress = nullptr);
+
+/// The shells with the fields that the mesh has, which were selected from the same ones.
+///
+/// throws: Error(InvalidInput) as `select_field`
+[[nodiscard]] Shells with_fields_of(Shells shells, const HexMesh& mesh);
 
 /// Whether a quantity needs more than the values at a point: the cells around it.
 [[nodiscard]] bool has_derivatives(std::string_view source);

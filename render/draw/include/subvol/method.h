@@ -88,6 +88,11 @@ struct OptionUse {
 /// throws:  Error(InvalidInput) that names the option and the method or the body
 void check_options(Methods methods, BodyKind body, const GivenOptions& given, OptionNames names = OptionNames::Flags);
 
+/// Refuses every option that was given and that only volumes read: shells and patches alone are drawn.
+///
+/// throws: Error(InvalidInput) that names the option
+void check_options_of_shells(const GivenOptions& given, OptionNames names = OptionNames::Flags);
+
 /// The table as Markdown: for each option the methods and the bodies that read it, and what else it needs.
 ///
 /// described: all options of pictures

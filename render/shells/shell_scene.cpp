@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "subvol/shell_scene.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "subvol/boundary_values.h"
+#include "subvol/limit_shells.h"
+#include "subvol/quantity.h"
+
+namespace subvol {
+namespace {
+
+constexpr double kTubeRadius = 0.004;        // of the diagonal
+constexpr std::size_t kMostQuads = 200'000;  // that a level more may make
+
+int levels_of(const Shells& shells, std::optional<int> most) {
+    int levels = 1;
+    for (std::size_t quads = 16 * shells.quads.size() + 8 * shells.lines.size(); levels < 4 && quads <= kMostQuads; quads *= 4)
+        ++levels;
+    return most ? std::min(levels, *most) : levels;
+}
+
+}  // namespace
+
+void ShellScene::draw_into(Image& image, std::span<float> depth, const View& view) const {
+    draw_shells(image, depth, drawn, boundary, view, optics, {.samples = samples, .clip = clip});
+}
+
+ShellScene make_shell_scene(const HexMesh& mesh, const Shells& shells, RefineOptions refine, std::optional<int> most,
+                            const Optics& optics, int samples, const Clip& clip) {
+    Shells control = with_fields_of(shells, mesh);
+    refine.levels = levels_of(control, most);
+    const Shells fine = limit_shells(mesh, control, refine);
+    Box box = bounds(mesh);
+    for (const Vec3& p : fine.points) box.add(p);
+    ShellSurface drawn = shell_surface(fine, kTubeRadius * box.diagonal());
+    ColoredSurface colored;
+    const std::vector<double>& values = fine.attributes.back().values;
+    for (const Index p : drawn.sources) colored.values.push_back(values[p]);
+    colored.surface = std::move(drawn.surface);
+    Surface boundary;
+    if (!mesh.cells.empty()) {
+        refine.levels = picture_levels(mesh, most);
+        boundary = boundary_values(mesh, refine).surface;
+    }
+    return {std::move(colored), std::move(boundary), std::move(control), optics, std::max(1, samples), clip};
+}
+
+}  // namespace subvol
