@@ -2,6 +2,9 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
+#include <cstdlib>
+#include <filesystem>
+#include <mutex>
 #include <utility>
 
 #include "bricks_input.h"
@@ -22,6 +25,7 @@
 #include "subvol/detail/read_file.h"
 #include "subvol/error.h"
 #include "subvol/image_io.h"
+#include "subvol/mesh_io.h"
 #include "subvol/mesh_series.h"
 #include "subvol/picture_metrics.h"
 #include "subvol/view_session.h"
@@ -38,11 +42,11 @@ constexpr std::array kNotHere{"--views",  "--turntable", "--fps",       "--legen
                               "--reduce", "--refine",    "--footprint", "--footprint-size", "--color-field", "--shade"};
 
 /// Options whose values actions change, so that the render command has them from the state; and those that only the window has.
-constexpr std::array kOfTheState{"--clip",    "--clip-box", "--slice", "--around",  "--size",         "--camera",
-                                 "--view",    "--fit",      "--ortho", "--look",    "--tf",           "--tf-range",
-                                 "--opacity", "--clamp",    "--axes",  "--edges",   "--opacity-unit", "--background",
-                                 "--method",  "--field",    "--step",  "--time",    "--script",       "--screenshot",
-                                 "--state",   "--json",     "--quiet", "--progress"};
+constexpr std::array kOfTheState{"--clip", "--clip-box", "--slice",        "--around",     "--size",     "--camera",  "--view",
+                                 "--fit",  "--ortho",    "--look",         "--tf",         "--tf-range", "--opacity", "--clamp",
+                                 "--axes", "--edges",    "--opacity-unit", "--background", "--method",   "--field",   "--step",
+                                 "--time", "--script",   "--screenshot",   "--only",       "--warp",     "--window",  "--state",
+                                 "--json", "--quiet",    "--progress"};
 
 std::string text_of(const std::string& file) {
     std::string text = detail::read_text(file);
@@ -55,11 +59,13 @@ public:
     explicit ViewVerb(CLI::App& program)
         : Verb(program, "view", "Show a mesh in an interactive window, or run a script of actions.",
                "  subvol view part.vtk\n"
+               "  subvol view\n"
                "  subvol view run.pvd --field T --tf coolwarm\n"
                "  subvol view model:pawn --script turn.json --screenshot pawn.png") {
-        app()
-            .add_option("FILE", input_, text(input_help(), "; or points (.ply, .vtp, .svk, .vdb), or a .vdb grid of floats"))
-            ->required();
+        app().add_option("FILE", input_,
+                         text(input_help(),
+                              "; or points (.ply, .vtp, .svk, .vdb), or a .vdb grid of floats. Without a "
+                              "file the window begins with a page that opens one"));
         app().add_option("--script", script_, "run a script of actions without a window, then quit")->type_name("FILE.json");
         app().add_option("--screenshot", screenshot_, "write the last picture (.png or .exr), then quit")->type_name("FILE");
         app().add_flag("--window", window_, "play the --script in the window; --screenshot is then of the whole window");
@@ -89,57 +95,57 @@ public:
 
     int run(Report& report) override {
         method_ = named<Method>(method_name_, "--method");
-        const bool voxels = !holds_points(input_) && is_vdb_file(input_);
-        const bool points = voxels || holds_points(input_);
-        picture_.settle_look(!points);
-        picture_.check();
-        const SplatOptions splat = splat_.options();
-        if (!screenshot_.empty()) check_output(screenshot_, {".png", ".exr"});
         const bool headless = !window_ && (!script_.empty() || !screenshot_.empty());
+        if (input_.empty() && (headless || !script_.empty() || !saved_.empty()))
+            throw Error(ErrorCode::InvalidInput, "is missing", "FILE", "the window alone opens without one");
+        if (!screenshot_.empty()) check_output(screenshot_, {".png", ".exr"});
         const std::string script = script_.empty() ? "[]" : text_of(script_);
-        ViewSource from = source(report);
-        if (!points) tets_ = TetRefinement(refine_);
-        if (tets_.asked())
-            from.tets = [this, &report](HexMesh mesh, int level) {
-                return report.unpack(tets_.hexes(std::move(mesh), level, report.progress()));
-            };
-        const BodyKind kind = voxels          ? BodyKind::Voxels
-                              : points        ? BodyKind::Kernels
-                              : tets_.asked() ? BodyKind::Tets
-                                              : BodyKind::Mesh;
-        const bool method_may_change = !headless || !script_.empty();
-        const Methods methods = method_may_change ? methods_of(kind) : bit(method_);
-        check_options(methods, kind, given_options(app()));
-        if (points) from.points = voxels ? voxels_of_file(report) : points_of_file(report);
-        play(std::move(from), script, splat, headless, report);
+        std::unique_ptr<ViewSession> session;
+        if (!input_.empty()) {
+            report["input"] = input_;
+            session = session_of({input_, common()}, !headless || !script_.empty(), report, report.progress());
+            report["field"] = session->body().field();
+            if (!saved_.empty()) session->run(Json{{"load_state", saved_}}.dump());
+        }
+        if (headless) {
+            play(*session, script, report);
+        } else {
+            session = open_window(std::move(session), script, report);
+            if (session) report["state"] = Json::parse(session->state_json());
+        }
         return 0;
     }
 
 private:
-    [[nodiscard]] ViewPoints points_of_file(Report& report) {
-        report["input"] = input_;
-        const auto volume = std::make_shared<const RbfVolume>(report.unpack(load_all_points(input_, app(), report.progress())));
-        if (common().field) (void)find_channel(*volume, *common().field, input_);
-        return {.volume = volume, .box = detail::frame_of(*volume)};
-    }
+    /// A file, and how it is read.
+    struct Input {
+        std::string file;
+        CommonOptions options;
+    };
 
-    [[nodiscard]] ViewPoints voxels_of_file(Report& report) {
-        report["input"] = input_;
-        const VdbGrid grid = report.unpack(load_grid(input_, common(), report.progress()));
-        RbfVolume volume = report.unpack(sample_reported(grid, sample_, std::nullopt, app(), report.progress()));
-        volume.channels.front().name = grid.report().name;
-        return {.volume = std::make_shared<const RbfVolume>(std::move(volume)),
-                .voxels = grid.voxels(),
-                .box = box_of(grid.report()),
-                .range = ValueRange{grid.report().min, grid.report().max}};
-    }
-
-    void play(ViewSource from, const std::string& script, const SplatOptions& splat, bool headless, Report& report) {
-        const bool points = from.points.volume != nullptr;
-        report["input"] = input_;
+    /// Reads a file and begins to draw it. method_may_change: options of other methods are not refused
+    [[nodiscard]] std::unique_ptr<ViewSession> session_of(const Input& input, bool method_may_change, Report& report,
+                                                          Progress* progress) {
+        const bool voxels = !holds_points(input.file) && is_vdb_file(input.file);
+        const bool points = voxels || holds_points(input.file);
+        picture_.settle_look(!points);
+        picture_.check();
+        const std::size_t warnings_before = report.json().value("warnings", Json::array()).size();
+        ViewSource from = source(input, report);
+        if (!points && !tets_.asked()) tets_ = TetRefinement(refine_);
+        if (!points && tets_.asked())
+            from.tets = [this, &report](HexMesh mesh, int level) {
+                return report.unpack(tets_.hexes(std::move(mesh), level, report.progress()));
+            };
+        const BodyKind kind = voxels      ? BodyKind::Voxels
+                              : points    ? BodyKind::Kernels
+                              : from.tets ? BodyKind::Tets
+                                          : BodyKind::Mesh;
+        check_options(method_may_change ? methods_of(kind) : bit(method_), kind, given_options(app()));
+        if (points) from.points = voxels ? voxels_of_file(input, report, progress) : points_of_file(input, report, progress);
         HexMesh mesh =
-            points ? mesh_of_points(*from.points.volume) : report.unpack(load_mesh(input_, common(), report.progress()));
-        std::optional<std::string> field = common().density ? std::optional<std::string>("density") : common().field;
+            points ? mesh_of_points(*from.points.volume) : report.unpack(load_mesh(input.file, input.options, progress));
+        std::optional<std::string> field = input.options.density ? std::optional<std::string>("density") : input.options.field;
         if (points && !field) field = from.points.volume->channels.front().name;
         ViewBody body = points ? view_body(mesh, from.points, field) : view_body(mesh, field);
         if (from.tets) {
@@ -151,17 +157,33 @@ private:
             throw Error(ErrorCode::InvalidInput, points ? "points and voxels have no cells" : "a mesh has no voxels",
                         "--method " + method_name_, join(methods));
         }
-        report["field"] = body.field();
         MethodOptions settings = settings_;
         settings.kernels = sample_.kernel_options(body.box, refine_.options(0, nullptr), refine_.levels);
-        settings.splat = splat;
-        ViewSession session(std::move(from), std::move(mesh), start_state(body, field), settings);
-        if (!saved_.empty()) session.run(Json{{"load_state", saved_}}.dump());
-        if (!headless) {
-            open_window(session, script);
-            report["state"] = Json::parse(session.state_json());
-            return;
-        }
+        settings.splat = splat_.options();
+        const Json warnings = report.json().value("warnings", Json::array());
+        for (std::size_t k = warnings_before; k < warnings.size(); ++k) from.notes.push_back(warnings[k]);
+        const ViewState start = start_state(body, field, from, input);
+        return std::make_unique<ViewSession>(std::move(from), std::move(mesh), start, settings);
+    }
+
+    [[nodiscard]] ViewPoints points_of_file(const Input& input, Report& report, Progress* progress) {
+        const auto volume = std::make_shared<const RbfVolume>(report.unpack(load_all_points(input.file, app(), progress)));
+        if (input.options.field) (void)find_channel(*volume, *input.options.field, input.file);
+        return {.volume = volume, .box = detail::frame_of(*volume)};
+    }
+
+    [[nodiscard]] ViewPoints voxels_of_file(const Input& input, Report& report, Progress* progress) {
+        const VdbGrid grid = report.unpack(load_grid(input.file, input.options, progress));
+        RbfVolume volume = report.unpack(sample_reported(grid, sample_, std::nullopt, app(), progress));
+        volume.channels.front().name = grid.report().name;
+        return {.volume = std::make_shared<const RbfVolume>(std::move(volume)),
+                .voxels = grid.voxels(),
+                .box = box_of(grid.report()),
+                .range = ValueRange{grid.report().min, grid.report().max}};
+    }
+
+    /// Plays the script without a window.
+    void play(ViewSession& session, const std::string& script, Report& report) {
         report.timed("play", [&] { session.run_script(script, script_, report.progress()); });
         const auto picture = report.timed("draw", [&] { return session.wait(); });
         if (!screenshot_.empty()) {
@@ -195,14 +217,52 @@ private:
         }
     }
 
-    void open_window(ViewSession& session, const std::string& script) const {
-        WindowOptions options{.title = "subvol - " + input_, .script = script_.empty() ? "" : script, .script_file = script_};
+    /// Shows the window. returns: what it showed last
+    [[nodiscard]] std::unique_ptr<ViewSession> open_window(std::unique_ptr<ViewSession> session, const std::string& script,
+                                                           Report& report) {
+        WindowOptions options{.script = script_.empty() ? "" : script, .script_file = script_};
         if (!screenshot_.empty()) options.window_shot = [this](const Image& window) { write_image(screenshot_, window); };
-        open_view_window(session, options);
+        options.first = {input_, common().only, common().warp};
+        options.extensions = readable_mesh_extensions();
+        options.extensions.insert(options.extensions.end(), {".ply", ".vtp", ".svk", ".vdb"});
+        for (const char* model : {"model:pawn", "model:nozzle", "model:ball"}) options.models.emplace_back(model);
+        options.recent_list = recent_list();
+        options.open = [this, &report](const OpenedFile& file, Progress* progress) {
+            const std::scoped_lock lock(reading_);
+            Input input{file.name, common()};
+            input.options.only = file.only;
+            input.options.warp = file.warp;
+            if (file.name != input_) forget_first(input.options);
+            return session_of(input, true, report, progress);
+        };
+        return open_view_window(std::move(session), options);
+    }
+
+    /// Drops the options that were about the file of the command line.
+    void forget_first(CommonOptions& options) {
+        options.field.reset();
+        options.density.reset();
+        options.step.reset();
+        options.read.step.reset();
+        options.read.time.reset();
+        options.read.blocks.clear();
+        picture_.choices.range.reset();
+        picture_.choices.opacity.reset();
+        picture_.eye.camera.reset();
+        clip_ = {};
+    }
+
+    /// Where the names of files that were opened are kept.
+    [[nodiscard]] static std::filesystem::path recent_list() {
+        const char *state = std::getenv("XDG_STATE_HOME"), *home = std::getenv("HOME");
+        if (state != nullptr && *state != '\0') return std::filesystem::path(state) / "subvol" / "recent";
+        if (home != nullptr && *home != '\0') return std::filesystem::path(home) / ".local" / "state" / "subvol" / "recent";
+        return {};
     }
 
     /// What `render` would show: the same camera, colours and light.
-    [[nodiscard]] ViewState start_state(const ViewBody& body, const std::optional<std::string>& field) const {
+    [[nodiscard]] ViewState start_state(const ViewBody& body, const std::optional<std::string>& field, const ViewSource& from,
+                                        const Input& input) const {
         const Optics optics = picture_.make_optics(body.box, body.range, body.range);
         const RbfVolume* const kernels = body.points.volume.get();  // framed as in `render`
         const std::vector<Vec3> framed = kernels == nullptr             ? framed_points(body.mesh, picture_.look, optics)
@@ -210,9 +270,9 @@ private:
                                                                         : std::vector<Vec3>{};
         const View view = picture_.make_views(body.box, framed).front();
         ViewState state{.camera = view.camera(), .width = view.width(), .height = view.height(), .field = field.value_or("")};
-        const bool one_state = !may_have_steps(input_) || body.points.volume;
-        const auto series_step = one_state ? std::nullopt : one_step(input_, common());
-        state.step = series_step.value_or(times().size() - 1);
+        const bool one_state = !may_have_steps(input.file) || body.points.volume;
+        const auto series_step = one_state ? std::nullopt : one_step(input.file, input.options);
+        state.step = series_step.value_or(from.times.size() - 1);
         state.method = method_;
         state.look = picture_.look_options(body.range);
         if (picture_.background) state.background = picture_.background_color();
@@ -222,41 +282,54 @@ private:
         return state;
     }
 
-    [[nodiscard]] std::vector<double> times() const {
-        return may_have_steps(input_) ? open_series(input_).times : std::vector<double>{0};
+    [[nodiscard]] ViewSource source(const Input& input, Report& report) {
+        const std::string& file = input.file;
+        const std::vector<double> times = may_have_steps(file) ? open_series(file).times : std::vector<double>{0};
+        const int last = static_cast<int>(times.size()) - 1;
+        const CommonOptions all = report.unpack(for_steps(file, input.options, {0, last}, report.progress()));
+        const auto read = [this, &report, all, file](std::size_t step) {
+            const std::scoped_lock lock(reading_);
+            return report.unpack(load_mesh(file, of_step(all, static_cast<int>(step)), report.progress()));
+        };
+        const auto write = [](const std::filesystem::path& path, const Image& image, const Vec3& background) {
+            write_image(path, image, background);
+        };
+        const auto measure = [](const Image& test, const Image& reference) {
+            const PicturePair pair(test, reference);
+            return PictureFigures{pair.differences().psnr, pair.flip().mean};
+        };
+        return {.input = file,
+                .read = read,
+                .times = times,
+                .write_picture = write,
+                .measure = measure,
+                .more_words = given_words(false, input.options),
+                .read_words = given_words(true, input.options)};
     }
 
-    [[nodiscard]] ViewSource source(Report& report) {
-        const int steps = static_cast<int>(times().size());
-        const CommonOptions all = report.unpack(for_steps(input_, common(), {0, steps - 1}, report.progress()));
-        return {.input = input_,
-                .read =
-                    [this, &report, all](std::size_t step) {
-                        return report.unpack(load_mesh(input_, of_step(all, static_cast<int>(step)), report.progress()));
-                    },
-                .times = times(),
-                .write_picture = [](const std::filesystem::path& path, const Image& image,
-                                    const Vec3& background) { write_image(path, image, background); },
-                .measure =
-                    [](const Image& test, const Image& reference) {
-                        const PicturePair pair(test, reference);
-                        return PictureFigures{pair.differences().psnr, pair.flip().mean};
-                    },
-                .more_words = more_words()};
+    /// Whether an option is about reading a file.
+    [[nodiscard]] static bool is_of_reading(const std::string& name) {
+        ReadOptions any;
+        const auto described = options_of(any);
+        const auto same = [&](const Option& option) { return "--" + option.name == name; };
+        return std::ranges::any_of(described, same) || name == "--density" || name == "--weld" || name == "--interpolate-time";
     }
 
-    /// The options that were given and that no action changes, as words.
-    [[nodiscard]] std::vector<std::string> more_words() {
+    /// The options that were given and that no action changes, as words. reading: those for reading the input, else the others
+    [[nodiscard]] std::vector<std::string> given_words(bool reading, const CommonOptions& options) {
         std::vector<std::string> words;
         for (const CLI::Option* option : app().get_options()) {
             const std::string name = option->get_name();
-            if (option->count() == 0 || option->get_positional()) continue;
+            if (option->count() == 0 || option->get_positional() || is_of_reading(name) != reading) continue;
             if (std::ranges::any_of(kOfTheState, [&](const char* known) { return name == known; })) continue;
             for (const std::string& value : option->results()) {
                 words.push_back(name);
                 if (option->get_items_expected_max() > 0) words.push_back(value);
             }
         }
+        if (!reading) return words;
+        for (const std::string& region : options.only) words.insert(words.end(), {"--only", region});
+        if (options.warp) words.insert(words.end(), {"--warp", *options.warp});
         return words;
     }
 
@@ -271,6 +344,7 @@ private:
     SplatArguments splat_;
     RefineArguments refine_;
     TetRefinement tets_;
+    std::mutex reading_;  // one file at a time
 };
 
 }  // namespace

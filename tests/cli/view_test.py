@@ -3,11 +3,13 @@
 
 import json
 import os
+import pathlib
 import shlex
 import shutil
+import struct
 import subprocess
-import time
 import unittest
+import zlib
 
 from command import COMMAND, HANGS_AFTER, InFolder, Run, on_cpu, subvol
 
@@ -75,6 +77,40 @@ class WithoutWindow(InSession):
         self.view({"orbit": [70, 20]}, {"look": "volume"}, {"save_state": "state.json"})
         self.run_ok("view", BALL, *SMALL, "--state", "state.json", "--screenshot", "again.png", "--quiet")
         self.assertEqual(self.bytes_of("view.png"), self.bytes_of("again.png"))
+
+    def test_edits_are_in_the_state_and_the_command(self):
+        edit = [{"select": "all"}, {"twist": {"angle": 40}}]
+        said = self.view(*edit, {"save_state": "state.json"})
+        self.run_ok("view", BALL, *SMALL, "--state", "state.json", "--screenshot", "again.png", "--quiet")
+        self.assertEqual(self.bytes_of("view.png"), self.bytes_of("again.png"))
+        self.run_ok(*shlex.split(said["render"])[1:], "--quiet")  # of the mesh that was saved with the state
+        self.assertEqual(self.bytes_of("view.png"), self.bytes_of("picture.png"), said["render"])
+        self.assertIn("# without the edits", self.view(*edit)["render"])
+        (self.folder / "state.vtu").unlink()
+        self.run_ok("model", "ball", "--resolution", 4, "-o", "state.vtu")
+        done = subvol("view", BALL, *SMALL, "--state", "state.json", "--screenshot", "no.png", folder=self.folder)
+        self.assertEqual(done.code, 2, done.err)
+        self.assertIn("state.vtu", done.err)
+
+    def test_regions_and_expressions_are_in_the_command(self):
+        said = self.view({"field": "2*density"}, options=["--only", "half:0,0,0,1,0,0", "--look", "volume"])
+        self.run_ok(*shlex.split(said["render"])[1:], "--quiet")
+        self.assertEqual(self.bytes_of("view.png"), self.bytes_of("picture.png"), said["render"])
+
+    def test_a_comparison_has_the_figures_of_compare(self):
+        said = self.view({"compare": "tets"}, options=["--look", "volume"])
+        for method in ("splat", "tets"):
+            self.run_ok("render", BALL, *SIZE, *(["--backend", "cpu"] if method == "splat" else []), "--look", "volume", "--method", method, "-o", f"{method}.exr", "--quiet")
+        figures = self.run_ok("compare", "splat.exr", "tets.exr", "--json").json()
+        self.assertAlmostEqual(said["comparison"]["psnr"], figures["psnr"], delta=.01)  # files of pictures have half floats
+        self.assertAlmostEqual(said["comparison"]["flip"], figures["flip"], delta=1e-3)
+        self.assertNotIn("comparison", self.view())
+
+    def test_only_the_window_opens_without_a_file(self):
+        for words in (["--screenshot", "x.png"], ["--script", self.script({"wait": True})]):
+            done = subvol("view", *words, folder=self.folder)
+            self.assertEqual(done.code, 2, done.err)
+            self.assertIn("FILE", done.err)
 
     def test_writes_pictures_on_the_way_and_says_what_is_there(self):
         said = self.view({"screenshot": "first.png"}, {"orbit": [50, 0]}, {"wait": True}, {"pick": [32, 24]})
@@ -150,31 +186,167 @@ class InWindow(InSession):
         self.run_ok("render", BALL, "--backend", "cpu", "--size", f"{width}x{height}", "--camera", camera, "-o", "r.png", "--quiet")
         self.assertEqual(self.bytes_of("middle.png"), self.bytes_of("r.png"))
 
-    def test_mouse_and_keys(self):
+    def by_hand(self, steps, arguments, size=(1280, 800)):
+        """Steps of xdotool at a window. `save FILE` waits for a saved state, `shot NAME` keeps the pixels of the screen, `idle` waits."""
         if not shutil.which("xdotool"):
             print("skipped: xdotool is not installed")
             self.skipTest("xdotool is not installed")
-        steps = f"""
-            {shlex.quote(COMMAND)} view {BALL} --backend cpu & subvol=$!
-            xdotool search --sync --onlyvisible --name 'subvol - ' >/dev/null
+        script = f"""
+            save() {{ rm -f state.json; xdotool key ctrl+s; for i in $(seq 100); do [ -s state.json ] && break; sleep .1; done; sleep .2; mv state.json $1; }}
+            enter() {{ xdotool keydown Return sleep .3 keyup Return sleep .3; }}  # held, as by a hand: fields of text see keys once a frame
+            shot() {{ cp screen/Xvfb_screen0 $1.xwd; }}
+            drag() {{ xdotool mousemove $1 $2 sleep .3 mousedown ${{5:-1}} sleep .3 mousemove $((($1 + $3) / 2)) $((($2 + $4) / 2)) sleep .3 mousemove $3 $4 sleep .3 mouseup ${{5:-1}} sleep .5; }}
+            for i in $(seq 100); do window=$(xdotool search --onlyvisible --name subvol | head -1); [ -n "$window" ] && break; sleep .1; done
+            xdotool windowsize $window {size[0]} {size[1]} mousemove 300 300
             sleep 3
-            xdotool mousemove 300 300 key ctrl+s
-            for i in $(seq 100); do [ -s state.json ] && break; sleep .1; done
-            mv state.json before.json
-            xdotool mousemove 300 300 sleep 1 mousedown 1 sleep 1 mousemove 340 300 sleep 1 mousemove 400 300 sleep 1 mouseup 1 sleep 1
-            xdotool key k key a key ctrl+s
-            for i in $(seq 100); do [ -s state.json ] && break; sleep .1; done
-            mv state.json after.json
-            xdotool key q
-            wait $subvol
+            {steps}
+            xdotool mousemove 300 300 key Escape key Escape key q
         """
-        done = self.in_xvfb("bash", "-c", steps)
+        (self.folder / "steps.sh").write_text(f"""{shlex.join([COMMAND, "view", *map(str, arguments)])} >out.txt 2>err.txt & subvol=$!
+            ({script})
+            for i in $(seq 100); do kill -0 $subvol 2>/dev/null || break; sleep .1; done
+            kill -0 $subvol 2>/dev/null && {{ kill $subvol; echo "the window did not close" >&2; }}
+            wait $subvol; code=$?; cat err.txt >&2; exit $code""")
+        (self.folder / "screen").mkdir(exist_ok=True)
+        done = subprocess.run(["xvfb-run", "-a", "-s", f"-screen 0 {size[0]}x{size[1]}x24 -fbdir screen", "bash", "steps.sh"], cwd=self.folder,
+                              capture_output=True, text=True, timeout=HANGS_AFTER, env=os.environ | {"XDG_STATE_HOME": str(self.folder / "home")})
         self.assertEqual(done.returncode, 0, done.stderr)
-        before, after = (json.loads((self.folder / name).read_text()) for name in ("before.json", "after.json"))
+        kept = os.environ.get("SUBVOL_SHOTS")  # a folder for people who want to look
+        for shot in self.folder.glob("*.xwd"):
+            if kept:
+                write_png(pixels_of(shot), pathlib.Path(kept) / f"{self._testMethodName}_{shot.stem}.png")
+
+    def state(self, name):
+        return json.loads((self.folder / name).read_text())
+
+    def test_mouse_and_keys(self):
+        self.by_hand("""
+            save before.json
+            drag 300 300 400 300
+            xdotool key k key a
+            save after.json
+            xdotool key ctrl+z key ctrl+z key ctrl+z sleep .5
+            save undone.json
+        """, [BALL, "--backend", "cpu"])
+        before, after = self.state("before.json"), self.state("after.json")
         self.assertEqual((before["look"], after["look"]), ("solid", "volume"))
         self.assertEqual((before["axes"], after["axes"]), (False, True))
         self.assertNotEqual(before["camera"]["eye"], after["camera"]["eye"])
         self.assertAlmostEqual(before["camera"]["eye"][2], after["camera"]["eye"][2])  # the drag was level
+        self.assertEqual(self.state("undone.json"), before)  # a drag is one step
+
+    def test_wheel_and_double_click(self):
+        self.by_hand("""
+            xdotool mousemove 570 290 sleep .3 click --repeat 4 --delay 100 4 sleep .5
+            save near.json
+            xdotool click 1 sleep .1 click 1 sleep 2
+            save middle.json
+            xdotool key Return sleep .5
+            save fit.json
+            shot middle
+        """, [BALL, "--backend", "cpu"])
+        near, middle = self.state("near.json"), self.state("middle.json")
+        distance = lambda state: sum((a - b) ** 2 for a, b in zip(state["camera"]["eye"], state["camera"]["target"])) ** .5
+        self.assertAlmostEqual(distance(near), distance(middle))  # only the wheel goes nearer
+        self.assertNotEqual(near["camera"]["target"], [0, 0, 0])  # about the pointer, which is beside the middle
+        self.assertAlmostEqual(sum(x * x for x in middle["camera"]["target"]) ** .5, 1, delta=.02)  # on the ball
+        self.assertGreater(distance(self.state("fit.json")), distance(near))
+
+    def test_menu_tools_and_escape(self):
+        self.by_hand("""
+            xdotool mousemove 400 300 click 3 sleep .5
+            shot menu
+            xdotool mousemove 450 505 sleep .3 click 1 sleep .5
+            save axes.json
+            xdotool mousemove 400 300 click 3 sleep .5 key Escape sleep .5 key e sleep .5
+            shot tool
+            drag 470 390 520 390
+            save edited.json
+            xdotool key Escape sleep .5
+            drag 470 390 520 390
+            save turned.json
+        """, [BALL, "--backend", "cpu"])
+        axes, edited, turned = (self.state(name) for name in ("axes.json", "edited.json", "turned.json"))
+        self.assertTrue(axes["axes"])  # an item of the menu
+        self.assertEqual(axes["camera"], edited["camera"])  # the brush worked, and the camera stayed
+        self.assertIn("mesh", edited)
+        self.assertNotEqual(edited["camera"], turned["camera"])  # Escape has left the tool
+
+    def test_border_and_typed_planes(self):
+        self.by_hand("""
+            xdotool key r sleep 2
+            drag 470 384 235 384
+            save moved.json
+            shot border
+            xdotool key r sleep .3 mousemove 1000 174 click 1 sleep .5 mousemove 983 204 click 1 sleep 1
+            shot plane
+            xdotool mousemove 985 294 click --repeat 2 --delay 60 1 sleep .3 type .25
+            enter
+            save plane.json
+            shot typed
+        """, [BALL, "--backend", "cpu"])
+        self.assertAlmostEqual(self.state("moved.json")["slider"], .25, delta=.01)
+        self.assertEqual(self.state("moved.json")["camera"], self.state("plane.json")["camera"])
+        [plane] = self.state("plane.json")["clip"]
+        self.assertEqual((plane[0], plane[3:]), (.25, [1, 0, 0]))
+
+    def test_a_window_without_a_file_opens_one(self):
+        self.run_ok("model", "ball", "--resolution", 3, "-o", "ball.vtu")
+        (self.folder / "home" / "subvol").mkdir(parents=True)
+        (self.folder / "home" / "subvol" / "recent").write_text(f"{self.folder}/gone.vtu\n")
+        self.by_hand("""
+            shot start
+            xdotool key ctrl+o sleep .7 mousemove 640 587 click 1 sleep .3 type ball.vtu
+            shot dialog
+            enter
+            sleep 3
+            shot opened
+            xdotool mousemove 300 300
+            save opened.json
+        """, ["--backend", "cpu"])
+        self.assertEqual(self.state("opened.json")["field"], "density")
+        self.assertEqual((self.folder / "home" / "subvol" / "recent").read_text(), f"{self.folder}/ball.vtu\n")
+        self.assertNotEqual(pixels_of(self.folder / "start.xwd"), pixels_of(self.folder / "opened.xwd"))
+
+    def test_nothing_overlaps_in_a_small_window(self):
+        self.by_hand("""
+            shot start
+            xdotool key question sleep .5
+            shot keys
+            xdotool key Escape key b sleep .5
+            shot light
+            xdotool key Tab sleep 1
+            shot wide
+            save wide.json
+        """, [BALL, "--backend", "cpu"], size=(520, 400))
+        width, height = self.state("wide.json")["size"]
+        self.assertEqual(width, 520)  # without the panel
+        self.assertLess(height, 400)  # the line below it stays
+
+
+def pixels_of(path):
+    """The pixels of a screen as Xvfb keeps it: width, height, and rows of RGB."""
+    data = path.read_bytes()
+    header, _, _, _, width, height, _, order, _, _, _, bits, line, *_, colors = struct.unpack(">20I", data[:80])
+    if (order, bits) != (0, 32):
+        raise ValueError(f"{path}: not the pixels that are expected")
+    rows = []
+    for y in range(height):
+        start = header + 12 * colors + y * line
+        row, rgb = data[start:start + 4 * width], bytearray(3 * width)
+        rgb[0::3], rgb[1::3], rgb[2::3] = row[2::4], row[1::4], row[0::4]
+        rows.append(bytes(rgb))
+    return width, height, rows
+
+
+def write_png(pixels, path):
+    width, height, rows = pixels
+
+    def part(name, data):
+        return struct.pack(">I", len(data)) + name + data + struct.pack(">I", zlib.crc32(name + data))
+
+    path.write_bytes(b"\x89PNG\r\n\x1a\n" + part(b"IHDR", struct.pack(">2I5B", width, height, 8, 2, 0, 0, 0)) +
+                     part(b"IDAT", zlib.compress(b"".join(b"\0" + row for row in rows))) + part(b"IEND", b""))
 
 
 if __name__ == "__main__":

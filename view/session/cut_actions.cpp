@@ -151,7 +151,7 @@ void turn_cut(Session& session, const Json& value) {
     }
     const auto angles = numbers(member(value, "by"), 2);
     const View view = seen_view(session.state, *session.body);
-    const auto& [right, up, forward] = view.axes();
+    const Vec3 &right = view.axes()[0], &up = view.axes()[1];
     edit_plane(session, value, [&](CutPlane& plane) {
         plane.normal = glm::normalize(turned(turned(plane.normal, up, angles[0]), right, -angles[1]));
     });

@@ -195,7 +195,9 @@ void redo(Session& session, const Json& value) {
 
 void save_mesh(Session& session, const Json& value) {
     check_cells(session);
-    (void)write_mesh(word(value), session.body->mesh);
+    const std::string file = word(value);
+    (void)write_mesh(file, session.body->mesh);
+    session.saved_edit = {file, session.body};
 }
 
 }  // namespace subvol::detail

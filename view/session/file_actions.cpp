@@ -9,6 +9,7 @@
 #include "subvol/detail/printable.h"
 #include "subvol/detail/read_file.h"
 #include "subvol/error.h"
+#include "subvol/mesh_io.h"
 #include "view_actions.h"
 
 namespace subvol::detail {
@@ -19,6 +20,7 @@ using Session = ViewSession::State;
 
 void restore(Session& session, const Json& json, const Json& known, const std::string& path) {
     for (const auto& [key, value] : json.items()) {
+        if (key == "mesh") continue;
         if (!known.contains(key)) throw Error(ErrorCode::InvalidInput, "the key " + in_quotes(key) + " is not known", path);
         run_part(session, key, value);
     }
@@ -97,9 +99,36 @@ void save_tf(Session& session, const Json& file) {
     write_text_file(path, color_map_json(optics.function(), path.stem().string()));
 }
 
+/// An edited mesh is saved beside the state, under its name.
 void save_state(Session& session, const Json& file) {
-    write_text_file(word(file), json_of(session.state).dump(2) + "\n");
+    const std::filesystem::path path = word(file);
+    Json json = json_of(session.state);
+    if (session.edited) {
+        std::filesystem::path mesh = path;
+        mesh.replace_extension(".vtu");
+        run_part(session, "save_mesh", mesh.string());
+        json["mesh"] = mesh.filename().string();
+    }
+    write_text_file(path, json.dump(2) + "\n");
 }
+
+namespace {
+
+/// Takes points and values from a file that has the same cells.
+void take_edits(Session& session, const std::filesystem::path& file) {
+    HexMesh read = read_mesh(file.string(), {}).mesh;
+    HexMesh next = session.body->mesh;
+    const Attribute* values = read.find_attribute(session.body->field());
+    if (read.cells != next.cells || read.points.size() != next.points.size() || values == nullptr) {
+        throw Error(ErrorCode::InvalidInput, "does not have the cells or the field of this mesh", file.string(),
+                    "the mesh that was saved with the state");
+    }
+    next.points = std::move(read.points);
+    next.attributes.front().values = values->values;
+    session.replace(std::move(next));
+}
+
+}  // namespace
 
 void load_state(Session& session, const Json& file) {
     const std::string path = word(file);
@@ -110,6 +139,7 @@ void load_state(Session& session, const Json& file) {
     const Session::Moment before = session.moment();
     try {
         restore(session, json, known, path);
+        if (json.contains("mesh")) take_edits(session, std::filesystem::path(path).parent_path() / word(json["mesh"]));
     } catch (...) {
         session.restore(before);
         throw;
@@ -118,16 +148,19 @@ void load_state(Session& session, const Json& file) {
 
 /// Changes the settings of the window; without a window it has no effect.
 void window(Session& session, const Json& value) {
-    check_keys(value, {"dark", "help", "log_counts", "log_opacity", "play", "section", "tool", "brush"});
+    check_keys(value, {"dark", "help", "log_counts", "log_opacity", "panel", "play", "section", "tool", "brush"});
     WindowLook next = session.look;
     if (value.contains("dark")) next.dark = flag(value["dark"]);
     if (value.contains("help")) next.help = flag(value["help"]);
     if (value.contains("log_counts")) next.log_counts = flag(value["log_counts"]);
     if (value.contains("log_opacity")) next.log_opacity = flag(value["log_opacity"]);
+    if (value.contains("panel")) next.panel = flag(value["panel"]);
     if (value.contains("play")) next.play = flag(value["play"]);
     if (value.contains("section")) next.section = word(value["section"]);
-    if (value.contains("tool"))
+    if (value.contains("tool")) {
         next.tool = word_of(value["tool"], {"turn", "brush", "move", "rotate", "scale", "twist", "bend", "paint"});
+        next.section = "sculpt";  // a tool is seen where it is chosen
+    }
     if (value.contains("brush")) next.brush_px = number(value["brush"], 1, 1000);
     session.look = next;
 }

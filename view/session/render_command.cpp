@@ -43,7 +43,8 @@ std::vector<std::string> words_of_method(const std::vector<std::string>& words, 
 
 }  // namespace
 
-std::string render_command(const ViewState& state, const ViewBody& body, const ViewSource& source) {
+std::string render_command(const ViewState& state, const ViewBody& body, const ViewSource& source,
+                           const std::vector<std::string>& read_words) {
     const LookOptions& look = state.look;
     std::vector<std::string> words{"subvol", "render", source.input, "-o", "picture.png"};
     const auto add = [&](const char* option, const std::string& value) {
@@ -64,8 +65,7 @@ std::string render_command(const ViewState& state, const ViewBody& body, const V
     if (look.clamp) words.emplace_back("--clamp");
     if (state.background) add("--background", comma_separated({state.background->x, state.background->y, state.background->z}));
     if (state.method != Method::Splat) add("--method", std::string(name_of(state.method)));
-    const bool computed =
-        body.field() == "density" && std::ranges::find(source.more_words, "--density") != source.more_words.end();
+    const bool computed = body.field() == "density" && std::ranges::find(read_words, "--density") != read_words.end();
     if (!computed) add("--field", body.field());  // --density says which field, and excludes --field
     if (source.times.size() > 1) add("--step", std::to_string(state.step));
     const auto plane_text = [](const CutPlane& plane) {
@@ -83,6 +83,7 @@ std::string render_command(const ViewState& state, const ViewBody& body, const V
     const Method method = state.method;
     if (state.edges && reads(method, kind_of(body), "edges")) words.emplace_back("--edges");
     if (state.legend) words.emplace_back("--legend");
+    words.insert(words.end(), read_words.begin(), read_words.end());
     const std::vector<std::string> more = words_of_method(source.more_words, method, kind_of(body));
     words.insert(words.end(), more.begin(), more.end());
     std::string line;

@@ -223,11 +223,11 @@ std::array<std::shared_ptr<const DrawnPicture>, 2> ViewSession::State::compared_
 void ViewSession::State::measure_later(std::uint64_t number) {
     if (number == measured_number) return;
     compared.reset();
-    auto [left, right] = compared_pictures();
-    if (!left || !right) return;
+    const auto pictures = compared_pictures();
+    if (!pictures[0]) return;
     measured_number = number;
-    later.push_back(std::async(std::launch::async, [number, left, right, measure = source.measure]() -> Done {
-        return [number, figures = measure(left->image, right->image)](State& session) {
+    later.push_back(std::async(std::launch::async, [number, pictures, measure = source.measure]() -> Done {
+        return [number, figures = measure(pictures[0]->image, pictures[1]->image)](State& session) {
             if (session.measured_number == number && session.state.compare) session.compared = figures;
         };
     }));
@@ -307,9 +307,9 @@ const std::optional<PictureFigures>& ViewSession::compared() const {
 }
 
 void ViewSession::measure() {
-    const auto [left, right] = state_->compared_pictures();
+    const auto drawn = state_->compared_pictures();
     state_->measured_number = pictures();
-    state_->compared = left && right ? std::optional(state_->source.measure(left->image, right->image)) : std::nullopt;
+    state_->compared = drawn[0] ? std::optional(state_->source.measure(drawn[0]->image, drawn[1]->image)) : std::nullopt;
 }
 
 DrawWorker::Work ViewSession::work() const {
@@ -387,6 +387,11 @@ int ViewSession::edit_level() const {
     return state_->edit_level;
 }
 
+bool ViewSession::shows_reference() const {
+    const auto picture = state_->worker.latest(), other = state_->reference ? state_->reference->latest() : nullptr;
+    return state_->state.compare && picture && other && same_camera(picture->state.camera, other->state.camera);
+}
+
 bool ViewSession::busy() const {
     return !state_->later.empty() || state_->worker.busy() ||
            (state_->reference && state_->state.compare && state_->reference->busy());
@@ -404,12 +409,32 @@ std::vector<detail::CutHandle> ViewSession::cut_handles() const {
     return detail::cut_handles(state_->state, *state_->body);
 }
 
+void ViewSession::take_state(const ViewSession& other) {
+    const Json shown = json_of(other.state_->state);
+    for (const auto& [name, value] : shown.items()) {
+        try {
+            run_part(*state_, name, value);
+        } catch (const Error&) {  // such as a field that this mesh does not have: stays as it is
+        }
+    }
+}
+
 std::string ViewSession::state_json() const {
     return json_of(state_->state).dump(2) + "\n";
 }
 
 std::string ViewSession::render_command() const {
-    return detail::render_command(state_->state, *state_->body, state_->source);
+    const ViewSource& source = state_->source;
+    const auto& saved = state_->saved_edit;
+    if (!state_->edited) return detail::render_command(state_->state, *state_->body, source, source.read_words);
+    if (saved && saved->body == state_->body) {
+        ViewSource of_file = source;
+        of_file.input = saved->file;
+        of_file.times = {0.0};
+        return detail::render_command(state_->state, *state_->body, of_file, {});
+    }
+    return detail::render_command(state_->state, *state_->body, source, source.read_words) +
+           "  # without the edits of the mesh, which is not saved";
 }
 
 }  // namespace subvol

@@ -35,7 +35,10 @@ void run_part(ViewSession::State& session, const std::string& name, const Json& 
 [[nodiscard]] Json json_of(const ViewState& state);
 
 /// The word-by-word command that draws the state.
-[[nodiscard]] std::string render_command(const ViewState& state, const ViewBody& body, const ViewSource& source);
+///
+/// read_words: options for reading the input
+[[nodiscard]] std::string render_command(const ViewState& state, const ViewBody& body, const ViewSource& source,
+                                         const std::vector<std::string>& read_words);
 
 /// The field of a body that can be picked: the limit of its mesh, or the sum of its kernels. It is made ready by the first
 /// call; several threads may call it.
@@ -122,13 +125,19 @@ struct ViewSession::State {
     std::shared_ptr<const ViewBody> body;
     std::array<std::shared_ptr<const ViewBody>, 2> tet_levels;  // of the field and step, as far as they were needed
     std::shared_ptr<const detail::PickedField> picked_field;    // of `body`
-    std::optional<CoarseEdit> coarse;                           // the level that is edited; none: the mesh itself
-    int edit_level = 0;                                         // how much coarser it is
-    Selection selection;                                        // of `handles`; empty: nothing
-    std::vector<Moment> before, after;                          // for undo and redo
-    std::string last_motion;                                    // that is not undone by itself; empty: none
-    std::uint64_t shape = 0;                                    // of the cells that are edited; 0: none yet
-    bool grabbed = false, kept_grab = false;                    // a motion in many small steps, which are undone as one
+    /// The file that an edited body was saved in.
+    struct SavedEdit {
+        std::string file{};
+        std::shared_ptr<const ViewBody> body{};
+    };
+    std::optional<SavedEdit> saved_edit;
+    std::optional<CoarseEdit> coarse;         // the level that is edited; none: the mesh itself
+    int edit_level = 0;                       // how much coarser it is
+    Selection selection;                      // of `handles`; empty: nothing
+    std::vector<Moment> before, after;        // for undo and redo
+    std::string last_motion;                  // that is not undone by itself; empty: none
+    std::uint64_t shape = 0;                  // of the cells that are edited; 0: none yet
+    bool grabbed = false, kept_grab = false;  // a motion in many small steps, which are undone as one
     std::optional<Picked> picked;
     std::optional<PictureFigures> compared;  // of the two pictures that are compared
     std::uint64_t measured_number = 0;       // how many pictures there were then

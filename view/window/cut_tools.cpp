@@ -36,6 +36,27 @@ void add_button(WindowHost& host, WindowMemory& memory, const char* kind, const 
         run(host, memory, "add_cut", "{\"" + std::string(kind) + "\": " + normal + "}");
 }
 
+/// The point and the normal of a plane, which can be typed.
+void type_plane(WindowHost& host, WindowMemory& memory, const CutPlane& plane, const std::string& which) {
+    CutPlane typed = plane;
+    ImGui::PushID(which.c_str());
+    const float label = -0.24F * ImGui::GetContentRegionAvail().x;
+    ImGui::SetNextItemWidth(label);
+    bool changed = ImGui::InputScalarN("point", ImGuiDataType_Double, &typed.point.x, 3, nullptr, nullptr, "%.4g",
+                                       ImGuiInputTextFlags_EnterReturnsTrue);
+    tip(memory, "a point of the plane: x, y, z; Enter sets it");
+    ImGui::SetNextItemWidth(label);
+    changed |= ImGui::InputScalarN("normal", ImGuiDataType_Double, &typed.normal.x, 3, nullptr, nullptr, "%.4g",
+                                   ImGuiInputTextFlags_EnterReturnsTrue);
+    tip(memory, "the normal of the plane: x, y, z; Enter sets it");
+    ImGui::PopID();
+    if (!changed) return;
+    const Vec3 &p = typed.point, &n = typed.normal;
+    std::string numbers;
+    for (const double number : {p.x, p.y, p.z, n.x, n.y, n.z}) numbers += (numbers.empty() ? "" : ", ") + json_text(number);
+    run(host, memory, "set_cut", which + ", \"plane\": [" + numbers + "]}");
+}
+
 }  // namespace
 
 bool take_cut(WindowHost& host, WindowMemory& memory) {
@@ -101,16 +122,16 @@ void draw_cuts(WindowHost& host, WindowMemory& memory) {
     }
     const auto list = [&](const std::vector<CutPlane>& planes, const char* kind) {
         for (std::size_t k = 0; k < planes.size(); ++k) {
-            const Vec3 n = glm::normalize(planes[k].normal);
             const std::string which = "{\"" + std::string(kind) + "\": " + std::to_string(k);
             ImGui::AlignTextToFramePadding();
-            ImGui::Text("%s %zu   %.2f  %.2f  %.2f", kind, k, n.x, n.y, n.z);
+            ImGui::Text("%s %zu", kind, k);
             ImGui::SameLine(ImGui::GetContentRegionMax().x - 1.9F * width);
             const std::string turn = "flip##" + std::string(kind) + std::to_string(k), drop = "remove##" + turn;
             if (ImGui::Button(turn.c_str(), {0.8F * width, 0})) run(host, memory, "turn_cut", which + ", \"flip\": true}");
             ImGui::SameLine();
             if (ImGui::Button(drop.c_str(), {ImGui::GetContentRegionAvail().x, 0}))
                 run(host, memory, "remove_cut", which + "}");
+            type_plane(host, memory, planes[k], which);
         }
     };
     const Clip clip = host.state().clip;  // the buttons change it
@@ -119,7 +140,7 @@ void draw_cuts(WindowHost& host, WindowMemory& memory) {
     bool around = clip.around_slices;
     if (!clip.slices.empty() && ImGui::Checkbox("the volume around slices", &around))
         run(host, memory, "around", around ? "true" : "false");
-    ImGui::TextDisabled("drag a handle's foot: move; its tip: turn");
+    ImGui::TextDisabled("drag a handle: its foot moves,\nits tip turns the plane");
 }
 
 }  // namespace subvol::detail

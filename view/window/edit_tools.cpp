@@ -114,9 +114,11 @@ void draw_selection(WindowHost& host, const WindowMemory& memory) {
 
 void draw_sculpt(WindowHost& host, WindowMemory& memory) {
     constexpr std::array kTools{"turn", "brush", "move", "rotate", "scale", "twist", "bend", "paint"};
-    const float width = (ImGui::GetContentRegionAvail().x - 3 * ImGui::GetStyle().ItemSpacing.x) / 4;
+    const float all = ImGui::GetContentRegionAvail().x, between = ImGui::GetStyle().ItemSpacing.x;
+    const std::size_t columns = all > 280 * memory.scale ? 4 : 3;
+    const float width = (all - static_cast<float>(columns - 1) * between) / static_cast<float>(columns);
     for (std::size_t k = 0; k < kTools.size(); ++k) {
-        if (k % 4 != 0) ImGui::SameLine();
+        if (k % columns != 0) ImGui::SameLine();
         const bool now = host.look().tool == kTools[k];
         if (now) ImGui::PushStyleColor(ImGuiCol_Button, ImGui::GetStyleColorVec4(ImGuiCol_ButtonActive));
         if (ImGui::Button(kTools[k], {width, 0})) host.look().tool = kTools[k];
@@ -138,7 +140,7 @@ void draw_sculpt(WindowHost& host, WindowMemory& memory) {
     };
     button("select all", "select", "\"all\"");
     ImGui::SameLine();
-    button("nothing", "select", "null");
+    button("select none", "select", "null");
     button("undo", "undo", "true");
     ImGui::SameLine();
     button("redo", "redo", "true");

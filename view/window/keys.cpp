@@ -17,14 +17,15 @@ struct Line {
     const char *keys, *effect;
 };
 
-constexpr std::array kLines{Line{"drag", "turn"},
+constexpr std::array kLines{Line{"drag, arrows", "turn"},
                             Line{"shift + drag, middle button", "move"},
-                            Line{"wheel, right button", "larger, smaller"},
+                            Line{"wheel, right button", "larger, smaller, about the pointer"},
                             Line{"click", "value, place and cell under the pointer"},
-                            Line{"arrows, shift + arrows", "turn, move"},
-                            Line{"+  -  f", "larger, smaller, fit"},
-                            Line{"1 ... 6  7", "views +x -x +y -y +z -z iso"},
-                            Line{"o", "parallel rays"},
+                            Line{"double click", "brings the place to the middle"},
+                            Line{"right click", "menu"},
+                            Line{"+  -  f, Enter", "larger, smaller, fit"},
+                            Line{"1 ... 6  7, 9", "views +x -x +y -y +z -z iso"},
+                            Line{"o", "orthographic or perspective"},
                             Line{"k", "next look"},
                             Line{"s  t  p  d  v", "method: splat, tets, pt, dense, grid"},
                             Line{"n", "next field"},
@@ -33,11 +34,13 @@ constexpr std::array kLines{Line{"drag", "turn"},
                             Line{"r  [  ]  x", "reference beside it, its border, difference"},
                             Line{"e", "next tool for the mesh; shift + drag selects"},
                             Line{"ctrl + z, ctrl + y", "undo, redo"},
-                            Line{"ctrl + p", "write the picture"},
-                            Line{"ctrl + s, ctrl + o", "save the state, load it"},
+                            Line{"ctrl + o", "open a file"},
+                            Line{"ctrl + p, F12", "write the picture"},
+                            Line{"ctrl + s, ctrl + l", "save the state, load it"},
                             Line{"ctrl + c", "copy as render command"},
-                            Line{"b", "dark or light panels"},
-                            Line{"?  q", "these keys, quit"}};
+                            Line{"Tab, b", "hide the panel; dark or light"},
+                            Line{"Esc", "leaves menus, tools, what is at work"},
+                            Line{"?, h, F1;  q", "these keys; quit"}};
 
 void next_look(WindowHost& host, WindowMemory& memory) {
     const std::vector<std::string> names = names_of<Look>();
@@ -62,10 +65,10 @@ void with_control(WindowHost& host, WindowMemory& memory, int key) {
     const std::string picture = memory.picture_file, state = memory.state_file;
     if (key == GLFW_KEY_P) run_and_tell(host, memory, "screenshot", json_text(picture), "wrote " + picture);
     if (key == GLFW_KEY_S) run_and_tell(host, memory, "save_state", json_text(state), "wrote " + state);
-    if (key == GLFW_KEY_O) run_and_tell(host, memory, "load_state", json_text(state), "read " + state);
+    if (key == GLFW_KEY_L) run_and_tell(host, memory, "load_state", json_text(state), "read " + state);
     if (key == GLFW_KEY_Z) run(host, memory, "undo", "true");
     if (key == GLFW_KEY_Y) run(host, memory, "redo", "true");
-    if (key == GLFW_KEY_C) ImGui::SetClipboardText(host.render_command().c_str());
+    if (key == GLFW_KEY_C) copy_command(host, memory);
 }
 
 void next_tool(WindowHost& host) {
@@ -73,6 +76,7 @@ void next_tool(WindowHost& host) {
     const auto now = std::ranges::find(kTools, host.look().tool);
     const std::size_t next = now == kTools.end() ? 0 : static_cast<std::size_t>(now - kTools.begin()) + 1;
     host.look().tool = kTools[next % kTools.size()];
+    host.look().section = "sculpt";
 }
 
 const char* toggled(bool now) {
@@ -84,7 +88,11 @@ void take_letter(WindowHost& host, WindowMemory& memory, unsigned letter) {
     constexpr std::array kSides{"+x", "-x", "+y", "-y", "+z", "-z", "iso"};
     if (letter >= '1' && letter <= '7') run(host, memory, "view", json_text(std::string(kSides[letter - '1'])));
     switch (letter) {
+        case '9':
+            run(host, memory, "view", "\"iso\"");
+            break;
         case '?':
+        case 'h':
             host.look().help = !host.look().help;
             break;
         case 'q':
@@ -143,6 +151,7 @@ void take_letter(WindowHost& host, WindowMemory& memory, unsigned letter) {
             run(host, memory, "legend", toggled(state.legend));
             break;
         case 'r':
+            host.look().section = "compare";
             run(host, memory, "compare", !state.compare ? json_text(host.methods()[2 % host.methods().size()]) : "null");
             break;
         case '[':
@@ -168,8 +177,22 @@ void take_letter(WindowHost& host, WindowMemory& memory, unsigned letter) {
 }  // namespace
 
 void take_key(WindowHost& host, WindowMemory& memory, unsigned character, int key, bool control, bool shift) {
+    if (key == GLFW_KEY_ESCAPE) return leave(host, memory);
+    if (control && key == GLFW_KEY_O) {
+        memory.dialog.open = true;
+        return;
+    }
+    if (memory.dialog.open) return;
+    if (key == GLFW_KEY_F1) host.look().help = !host.look().help;
+    if (!host.has_session()) {
+        if (character == '?' || character == 'q' || character == 'b' || character == 'h') take_letter(host, memory, character);
+        return;
+    }
     if (character != 0) return take_letter(host, memory, character);
     if (control) return with_control(host, memory, key);
+    if (key == GLFW_KEY_TAB) host.look().panel = !host.look().panel;
+    if (key == GLFW_KEY_F12) with_control(host, memory, GLFW_KEY_P);
+    if (key == GLFW_KEY_ENTER || key == GLFW_KEY_KP_ENTER) run(host, memory, "fit", "true");
     const int right = key == GLFW_KEY_RIGHT  ? 1
                       : key == GLFW_KEY_LEFT ? -1
                                              : 0,
@@ -184,16 +207,36 @@ void take_key(WindowHost& host, WindowMemory& memory, unsigned character, int ke
     }
 }
 
+void leave(WindowHost& host, WindowMemory& memory) {
+    if (memory.dialog.open) {
+        memory.dialog.open = false;
+    } else if (ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopup)) {
+        memory.close_popup = true;
+    } else if (memory.shows_notes || host.look().help) {
+        memory.shows_notes = host.look().help = false;
+    } else if (host.look().tool != "turn") {
+        host.look().tool = "turn";
+    } else if (host.look().play) {
+        host.look().play = false;
+    } else if (host.busy()) {
+        host.stop();
+    }
+    memory.problem.clear();
+}
+
 void draw_help(WindowHost& host, const WindowMemory& memory) {
-    ImGui::SetNextWindowPos({24 * memory.scale, 24 * memory.scale});
-    ImGui::Begin("Keys", &host.look().help,
-                 ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings);
-    if (ImGui::BeginTable("keys", 2)) {
+    const float edge = 24 * memory.scale;
+    const ImVec2 screen = ImGui::GetIO().DisplaySize;
+    ImGui::SetNextWindowPos({edge, edge});
+    ImGui::SetNextWindowSize({std::min(540 * memory.scale, screen.x - 2 * edge), 0});
+    ImGui::SetNextWindowSizeConstraints({0, 0}, {screen.x, screen.y - 2 * edge});
+    ImGui::Begin("Keys", &host.look().help, ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings);
+    if (ImGui::BeginTable("keys", 2, ImGuiTableFlags_SizingStretchProp)) {
         for (const auto& [keys, effect] : kLines) {
             ImGui::TableNextColumn();
-            ImGui::TextUnformatted(keys);
+            ImGui::TextWrapped("%s", keys);
             ImGui::TableNextColumn();
-            ImGui::TextUnformatted(effect);
+            ImGui::TextWrapped("%s", effect);
         }
         ImGui::EndTable();
     }

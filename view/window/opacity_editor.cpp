@@ -122,6 +122,7 @@ void draw_curve(WindowHost& host, const WindowMemory& memory, const Canvas& canv
 
 void draw_colors(WindowHost& host, WindowMemory& memory, const Canvas& canvas) {
     const float height = 16 * memory.scale;
+    ImGui::SetCursorScreenPos({canvas.at.x, ImGui::GetCursorScreenPos().y});
     const ImVec2 at = ImGui::GetCursorScreenPos();
     ImGui::InvisibleButton("colours", {canvas.width, height});
     const auto colors = host.curve(canvas.range, kColors);
@@ -146,10 +147,12 @@ void draw_opacity_editor(WindowHost& host, WindowMemory& memory) {
     ValueRange range = host.shown_range();
     if (!(range.min < range.max)) range = {range.min - 0.5, range.max + 0.5};
     const float width = ImGui::GetContentRegionAvail().x, height = 130 * memory.scale;
-    const Canvas canvas{ImGui::GetCursorScreenPos(), width, height, range, host.look().log_opacity};
+    const float inset = 5 * memory.scale;  // knots at the ends are whole
+    const ImVec2 corner = ImGui::GetCursorScreenPos();
+    const Canvas canvas{{corner.x + inset, corner.y}, width - 2 * inset, height, range, host.look().log_opacity};
     ImGui::InvisibleButton("opacity", {width, height}, ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight);
     edit_knots(host, memory, canvas);
-    ImGui::GetWindowDrawList()->AddRectFilled(canvas.at, {canvas.at.x + width, canvas.at.y + height},
+    ImGui::GetWindowDrawList()->AddRectFilled(corner, {corner.x + width, corner.y + height},
                                               ImGui::GetColorU32(ImGuiCol_FrameBg), 3 * memory.scale);
     draw_histogram(host, canvas, ImGui::GetColorU32(ImGuiCol_TextDisabled, 0.45F));
     draw_curve(host, memory, canvas, ImGui::GetColorU32(ImGuiCol_Text), ImGui::GetColorU32(ImGuiCol_SliderGrab));

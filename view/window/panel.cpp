@@ -21,10 +21,12 @@ std::string text_of(double number, int digits) {
 }
 
 /// A combo box of words. returns: the one that was chosen now; empty: none
-std::string choose(const char* label, const std::string& current, const std::vector<std::string>& words) {
+std::string choose(const WindowMemory& memory, const char* label, const std::string& current,
+                   const std::vector<std::string>& words) {
     std::string chosen;
     ImGui::SetNextItemWidth(-0.34F * ImGui::GetContentRegionAvail().x);
     if (!ImGui::BeginCombo(label, current.c_str())) return chosen;
+    if (memory.close_popup) ImGui::CloseCurrentPopup();
     for (const std::string& word : words) {
         if (ImGui::Selectable(word.c_str(), word == current)) chosen = word;
     }
@@ -33,12 +35,34 @@ std::string choose(const char* label, const std::string& current, const std::vec
 }
 
 /// A heading that opens and closes its part of the panel; one part is open at a time.
-bool section(WindowHost& host, const char* title, const char* name) {
+bool section(WindowHost& host, WindowMemory& memory, const char* title, const char* name) {
     const bool open = host.look().section == name;
+    if (host.look().section != "sculpt") host.look().tool = "turn";  // no tool works unseen
     ImGui::SetNextItemOpen(open, ImGuiCond_Always);
     const bool now = ImGui::CollapsingHeader(title);
     if (now != open && ImGui::IsItemToggledOpen()) host.look().section = open ? "" : name;
+    if (open && memory.section != name) ImGui::SetScrollHereY(0);  // a key has opened it
+    if (open) memory.section = name;
     return now;
+}
+
+/// The fields, and a line for what is computed of them.
+void choose_field(WindowHost& host, WindowMemory& memory) {
+    const std::string& now = host.state().field;
+    ImGui::SetNextItemWidth(-0.34F * ImGui::GetContentRegionAvail().x);
+    if (ImGui::BeginCombo("field", now.c_str())) {
+        if (memory.close_popup) ImGui::CloseCurrentPopup();
+        ImGui::SetNextItemWidth(-1);
+        if (input_line("##expression", "such as length(U), 2*T", memory.expression) && !memory.expression.empty()) {
+            run(host, memory, "field", json_text(memory.expression));
+            if (memory.problem.empty()) ImGui::CloseCurrentPopup();
+        }
+        for (const std::string& name : host.fields()) {
+            if (ImGui::Selectable(name.c_str(), name == now)) run(host, memory, "field", json_text(name));
+        }
+        ImGui::EndCombo();
+    }
+    tip(memory, "the field that is shown, or an expression of fields", "n");
 }
 
 float part_width(int parts) {
@@ -48,12 +72,13 @@ float part_width(int parts) {
 
 void draw_what(WindowHost& host, WindowMemory& memory) {
     const ViewState& state = host.state();
-    if (const auto field = choose("field", state.field, host.fields()); !field.empty())
-        run(host, memory, "field", json_text(field));
-    if (const auto look = choose("look", std::string(name_of(state.look.look)), names_of<Look>()); !look.empty())
+    choose_field(host, memory);
+    if (const auto look = choose(memory, "look", std::string(name_of(state.look.look)), names_of<Look>()); !look.empty())
         run(host, memory, "look", json_text(look));
-    if (const auto method = choose("method", std::string(name_of(state.method)), host.methods()); !method.empty())
+    tip(memory, "solid: opaque and lit; volume: transparent; xray: dark where there is much; isosurface: lit levels", "k");
+    if (const auto method = choose(memory, "method", std::string(name_of(state.method)), host.methods()); !method.empty())
         run(host, memory, "method", json_text(method));
+    tip(memory, "splat: kernels; tets, pt: tetrahedra; dense: small cells; grid: voxels", "s t p d v");
     const std::vector<double>& times = host.times();
     if (times.size() < 2) return;
     int step = static_cast<int>(state.step);
@@ -63,13 +88,14 @@ void draw_what(WindowHost& host, WindowMemory& memory) {
         run(host, memory, "step", std::to_string(step));
     ImGui::SameLine();
     if (ImGui::SmallButton(host.look().play ? "stop" : "play")) host.look().play = !host.look().play;
+    tip(memory, "step after step", "space");
 }
 
 void draw_colours(WindowHost& host, WindowMemory& memory) {
     const ViewState& state = host.state();
     const std::string now = state.look.colors.empty() ? "(of the look)" : state.look.colors;
     const auto map = choose(
-        "map", now,
+        memory, "map", now,
         {"viridis", "plasma", "inferno", "cividis", "turbo", "coolwarm", "grey", "bone", "xray", "isosurface", "surface"});
     if (!map.empty()) run(host, memory, "tf", json_text(map));
     draw_opacity_editor(host, memory);
@@ -84,7 +110,8 @@ void draw_colours(WindowHost& host, WindowMemory& memory) {
     ImGui::Checkbox("log opacity", &host.look().log_opacity);
     if (ImGui::Button("whole range", {part_width(2), 0})) run(host, memory, "range", "\"field\"");
     ImGui::SameLine();
-    if (ImGui::Button("map's opacities", {ImGui::GetContentRegionAvail().x, 0})) run(host, memory, "opacity", "[]");
+    if (ImGui::Button("map's own", {ImGui::GetContentRegionAvail().x, 0})) run(host, memory, "opacity", "[]");
+    tip(memory, "the opacities of the colour map");
     ImGui::SetNextItemWidth(-0.34F * ImGui::GetContentRegionAvail().x);
     ImGui::InputTextWithHint("##map_file", "ParaView's map.json", memory.map_file, sizeof memory.map_file);
     ImGui::SameLine();
@@ -106,18 +133,21 @@ void draw_camera(WindowHost& host, WindowMemory& memory) {
     if (ImGui::Button("iso", {part_width(2), 0})) run(host, memory, "view", "\"iso\"");
     ImGui::SameLine();
     if (ImGui::Button("fit", {ImGui::GetContentRegionAvail().x, 0})) run(host, memory, "fit", "true");
-    const auto box = [&](const char* label, const char* action, bool value) {
+    tip(memory, "all of the body in the picture", "f, Enter");
+    const auto box = [&](const char* label, const char* key, const char* action, bool value) {
         if (ImGui::Checkbox(label, &value)) run(host, memory, action, value ? "true" : "false");
+        tip(memory, label, key);
     };
-    const float half = 0.5F * ImGui::GetContentRegionAvail().x;
-    box("parallel rays", "ortho", state.camera.ortho_height > 0);
+    const float half = 0.56F * ImGui::GetContentRegionAvail().x;
+    box("orthographic", "o", "ortho", state.camera.ortho_height > 0);
     ImGui::SameLine(half);
-    box("axes", "axes", state.axes);
-    box("control mesh", "edges", state.edges);
+    box("axes", "a", "axes", state.axes);
+    box("control mesh", "m", "edges", state.edges);
     ImGui::SameLine(half);
-    box("legend", "legend", state.legend);
+    box("legend", "l", "legend", state.legend);
     bool dark = host.look().dark;
     if (ImGui::Checkbox("dark panels", &dark)) host.look().dark = dark;
+    tip(memory, "dark or light panels", "b");
 }
 
 void draw_compare(WindowHost& host, WindowMemory& memory) {
@@ -125,13 +155,15 @@ void draw_compare(WindowHost& host, WindowMemory& memory) {
     const std::string now(state.compare ? name_of(*state.compare) : "nothing");
     std::vector<std::string> others = host.methods();
     others.insert(others.begin(), "nothing");
-    const auto with = choose("beside it", now, others);
+    const auto with = choose(memory, "beside it", now, others);
     if (!with.empty()) run(host, memory, "compare", with == "nothing" ? "null" : json_text(with));
+    tip(memory, "a second picture by another method, right of a border that can be dragged in the picture", "r");
     float slider = static_cast<float>(state.slider);
     ImGui::SetNextItemWidth(-0.34F * ImGui::GetContentRegionAvail().x);
     if (ImGui::SliderFloat("border", &slider, 0, 1, "%.2f")) run(host, memory, "slider", json_text(double{slider}));
     bool difference = state.difference;
     if (ImGui::Checkbox("difference, 8 times", &difference)) run(host, memory, "difference", difference ? "true" : "false");
+    tip(memory, "the largest difference of each pixel's colours, eight times as bright", "x");
 }
 
 void draw_files(WindowHost& host, WindowMemory& memory) {
@@ -149,11 +181,73 @@ void draw_files(WindowHost& host, WindowMemory& memory) {
     ImGui::SameLine();
     if (ImGui::Button("load##state", {ImGui::GetContentRegionAvail().x, 0}))
         run_and_tell(host, memory, "load_state", json_text(state), "read " + state);
-    if (ImGui::Button("copy as render command", {-1, 0})) {
-        ImGui::SetClipboardText(host.render_command().c_str());
-        memory.message = "copied";
-        memory.message_until = ImGui::GetTime() + kMessage_s;
+    if (ImGui::Button("copy as render command", {-1, 0})) copy_command(host, memory);
+    tip(memory, "the command that draws this picture", "ctrl + c");
+}
+
+std::string joined(const std::vector<std::string>& words) {
+    std::string text;
+    for (const std::string& word : words) text += (text.empty() ? "" : "; ") + word;
+    return text;
+}
+
+/// The file: another one, or the same with a region or a displacement.
+void draw_input(WindowHost& host, WindowMemory& memory) {
+    const OpenedFile& now = host.opened();
+    if (ImGui::Button("open a file ...", {-1, 0})) memory.dialog.open = true;
+    tip(memory, "a mesh, points, or a .vdb grid; files can be dropped on the window, too", "ctrl + o");
+    if (!memory.options_known) {
+        memory.only = joined(now.only);
+        memory.warp = now.warp.value_or("");
+        memory.options_known = true;
     }
+    const float label = -0.34F * ImGui::GetContentRegionAvail().x;
+    ImGui::SetNextItemWidth(label);
+    bool again = input_line("only", "where:T>500; box:...", memory.only);
+    tip(memory,
+        "a region as of --only: box:, sphere:, half:, where:, set:; several with ; between; Enter reads the file again");
+    ImGui::SetNextItemWidth(label);
+    again |= input_line("warp", "DISPL*20", memory.warp);
+    tip(memory, "a displacement as of --warp; Enter reads the file again");
+    if (!again) return;
+    OpenedFile next{.name = now.name};
+    for (std::size_t from = 0; from < memory.only.size();) {
+        const std::size_t to = std::min(memory.only.find(';', from), memory.only.size());
+        const std::size_t first = memory.only.find_first_not_of(' ', from);
+        if (first < to) next.only.push_back(memory.only.substr(first, to - first));
+        from = to + 1;
+    }
+    if (!memory.warp.empty()) next.warp = memory.warp;
+    memory.options_known = false;
+    memory.problem.clear();
+    host.open(next);
+}
+
+float foot_height(const WindowHost& host) {
+    const float between = ImGui::GetStyle().ItemSpacing.y, wrap = ImGui::GetContentRegionAvail().x;
+    float height = ImGui::GetTextLineHeight() + 3 * between;  // of the buttons
+    const auto picked = host.picked();
+    if (picked.empty()) height += ImGui::GetTextLineHeight() + between;
+    for (const std::string& line : picked) height += ImGui::CalcTextSize(line.c_str(), nullptr, false, wrap).y + between;
+    return height;
+}
+
+/// At the foot of the panel: what was clicked, and where the keys are.
+void draw_foot(WindowHost& host, WindowMemory& memory) {
+    ImGui::Separator();
+    const auto picked = host.picked();
+    if (picked.empty()) ImGui::TextDisabled("click on the body: its value there");
+    for (const std::string& line : picked) ImGui::TextWrapped("%s", line.c_str());
+    if (ImGui::SmallButton("?")) host.look().help = !host.look().help;
+    tip(memory, "all keys", "?");
+    ImGui::SameLine();
+    ImGui::TextDisabled("keys");
+    ImGui::SameLine();
+    if (ImGui::SmallButton("undo")) run(host, memory, "undo", "true");
+    tip(memory, "takes back the last change, whatever it was", "ctrl + z");
+    ImGui::SameLine();
+    if (ImGui::SmallButton("redo")) run(host, memory, "redo", "true");
+    tip(memory, "does it again", "ctrl + y");
 }
 
 }  // namespace
@@ -168,6 +262,23 @@ void run_and_tell(WindowHost& host, WindowMemory& memory, const std::string& nam
     if (!memory.problem.empty()) return;
     memory.message = message;
     memory.message_until = ImGui::GetTime() + kMessage_s;
+}
+
+void copy_command(WindowHost& host, WindowMemory& memory) {
+    const std::string command = host.render_command();
+    ImGui::SetClipboardText(command.c_str());
+    const auto comment = command.find("  # ");  // what the command leaves out
+    memory.message = comment == std::string::npos ? "copied the command" : "copied, but" + command.substr(comment + 3);
+    memory.message_until = ImGui::GetTime() + kMessage_s;
+}
+
+bool input_line(const char* label, const char* hint, std::string& text) {
+    std::array<char, 512> typed{};
+    text.copy(typed.data(), typed.size() - 1);
+    const bool entered =
+        ImGui::InputTextWithHint(label, hint, typed.data(), typed.size(), ImGuiInputTextFlags_EnterReturnsTrue);
+    text = typed.data();
+    return entered;
 }
 
 std::string json_text(double number) {
@@ -193,20 +304,25 @@ void draw_panel(WindowHost& host, WindowMemory& memory, float left, float width,
     ImGui::Begin("panel", nullptr,
                  ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
                      ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoBringToFrontOnFocus);
+    ImGui::BeginChild("content", {0, -foot_height(host)});
+    if (const auto notes = host.notes(); !notes.empty()) {
+        ImGui::PushStyleColor(ImGuiCol_Button, ImGui::GetStyleColorVec4(ImGuiCol_PlotHistogram));
+        ImGui::PushStyleColor(ImGuiCol_Text, {0, 0, 0, 1});
+        const std::string text =
+            notes.size() == 1 ? "1 warning of the file" : std::to_string(notes.size()) + " warnings of the file";
+        if (ImGui::Button(text.c_str(), {-1, 0})) memory.shows_notes = !memory.shows_notes;
+        ImGui::PopStyleColor(2);
+    }
     draw_what(host, memory);
-    if (section(host, "Colours and opacity", "colours")) draw_colours(host, memory);
-    if (section(host, "Camera and overlays", "camera")) draw_camera(host, memory);
-    if (section(host, "Cuts and slices", "cuts")) draw_cuts(host, memory);
-    if (section(host, "Compare with a reference", "compare")) draw_compare(host, memory);
-    if (section(host, "Sculpting", "sculpt")) draw_sculpt(host, memory);
-    if (section(host, "Picture, state, command", "files")) draw_files(host, memory);
-    ImGui::Separator();
-    const auto picked = host.picked();
-    if (picked.empty()) ImGui::TextDisabled("click on the body: its value there");
-    for (const std::string& line : picked) ImGui::TextUnformatted(line.c_str());
-    const std::string hint = "?  all keys";
-    ImGui::SetCursorPosY(height - ImGui::GetStyle().WindowPadding.y - ImGui::GetTextLineHeight());
-    ImGui::TextDisabled("%s", hint.c_str());
+    if (section(host, memory, "Colours and opacity", "colours")) draw_colours(host, memory);
+    if (section(host, memory, "Camera and overlays", "camera")) draw_camera(host, memory);
+    if (section(host, memory, "Cuts and slices", "cuts")) draw_cuts(host, memory);
+    if (section(host, memory, "Comparison", "compare")) draw_compare(host, memory);
+    if (section(host, memory, "Sculpting", "sculpt")) draw_sculpt(host, memory);
+    if (section(host, memory, "Saving and copying", "files")) draw_files(host, memory);
+    if (section(host, memory, "File and region", "input")) draw_input(host, memory);
+    ImGui::EndChild();
+    draw_foot(host, memory);
     ImGui::End();
 }
 

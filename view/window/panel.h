@@ -3,11 +3,25 @@
 
 #include <array>
 #include <cstdint>
+#include <filesystem>
 #include <string>
+#include <vector>
 
 #include "window_host.h"
 
 namespace subvol::detail {
+
+/// The dialog that opens files. entries: of the folder, folders first
+struct FileDialog {
+    struct Entry {
+        std::string name{};
+        bool folder = false;
+    };
+    bool open = false, all_files = false, read = false;
+    std::filesystem::path folder{};
+    std::vector<Entry> entries{};
+    std::string name{};
+};
 
 /// What the window remembers from frame to frame, besides the state of the session.
 ///
@@ -27,6 +41,17 @@ struct WindowMemory {
     bool works = false, rectangle = false;  // what a drag with a tool is
     std::array<float, 2> corner{};          // where it began
     bool quit = false;
+    std::string section{};      // that was open in the last frame
+    bool holds_border = false;  // between the pictures that are compared
+    bool asks_menu = false;     // the menu of the picture is to open
+    bool close_popup = false;   // menus and lists close in the next frame
+    bool shows_notes = false;
+    std::string tip{};  // the tooltip that is about to show, and since when
+    double tip_since = 0;
+    std::string expression{};  // typed for the field
+    std::string only{}, warp{};
+    bool options_known = false;  // the two are those of the file
+    FileDialog dialog{};
     bool holds_cut = false, turns_cut = false;  // a handle of a plane is dragged, at its foot or at its tip
     CutHandle held_cut{};
 };
@@ -36,6 +61,28 @@ void run(WindowHost& host, WindowMemory& memory, const std::string& name, const 
 /// The same, and a message if there is no error.
 void run_and_tell(WindowHost& host, WindowMemory& memory, const std::string& name, const std::string& value,
                   const std::string& message);
+
+/// A tooltip of the last item, once the pointer rests on it. key: that does the same; null: none
+void tip(WindowMemory& memory, const char* text, const char* key = nullptr);
+
+/// Leaves what is open or chosen, the topmost first: a dialog, a list, a tool, what plays, what is at work.
+void leave(WindowHost& host, WindowMemory& memory);
+
+/// Opens a file, or the state of a session (.json).
+void open_path(WindowHost& host, WindowMemory& memory, const std::string& path);
+/// The page of a window without a file. width, height: in units of the screen
+void draw_start_page(WindowHost& host, WindowMemory& memory, float width, float height);
+/// The dialog that opens files, while it is open.
+void draw_file_dialog(WindowHost& host, WindowMemory& memory);
+/// The menu of the picture.
+void draw_menu(WindowHost& host, WindowMemory& memory);
+/// The warnings of the file, while they are shown.
+void draw_notes(WindowHost& host, WindowMemory& memory);
+/// Copies the command that draws the picture.
+void copy_command(WindowHost& host, WindowMemory& memory);
+
+/// Lines of text that are typed. returns: whether Enter was pressed
+bool input_line(const char* label, const char* hint, std::string& text);
 
 /// JSON texts.
 [[nodiscard]] std::string json_text(double number);

@@ -10,6 +10,7 @@
 #include "subvol/detail/cut_handle.h"
 #include "subvol/detail/window_look.h"
 #include "subvol/view_state.h"
+#include "subvol/view_window.h"
 
 namespace subvol::detail {
 
@@ -28,11 +29,34 @@ struct CurvePlace {
     float red = 0, green = 0, blue = 0, alpha = 0;
 };
 
+/// What is at work. fraction: of the stage; seconds: since it was asked for; stage: empty: nothing
+struct WindowWork {
+    std::string stage{};
+    double fraction = 0, seconds = 0;
+};
+
 /// What the window needs of the session. The window is in a module of its own, which has no other way to it; all that it
 /// changes, it changes by actions.
 class WindowHost {
 public:
     virtual ~WindowHost() = default;
+
+    /// Whether a file is shown. All below that is about a picture needs one.
+    [[nodiscard]] virtual bool has_session() const = 0;
+    /// What is shown, as it was opened.
+    [[nodiscard]] virtual const OpenedFile& opened() const = 0;
+    /// Begins to read a file, which then takes the place of what is shown.
+    virtual void open(const OpenedFile& file) = 0;
+    /// Gives up reading a file, or drawing.
+    virtual void stop() = 0;
+    [[nodiscard]] virtual WindowWork work() const = 0;
+    /// Files that were opened before, the newest first.
+    [[nodiscard]] virtual std::vector<std::string> recent() const = 0;
+    /// Endings of files that can be opened, as ".vtu"; models: names of generated meshes.
+    [[nodiscard]] virtual const std::vector<std::string>& extensions() const = 0;
+    [[nodiscard]] virtual const std::vector<std::string>& models() const = 0;
+    /// Warnings of reading the file.
+    [[nodiscard]] virtual std::vector<std::string> notes() const = 0;
 
     [[nodiscard]] virtual const ViewState& state() const = 0;
     /// Runs an action. returns: what is wrong with it, in one sentence; empty: nothing
@@ -44,6 +68,8 @@ public:
     /// Replaces the picture if there is a newer one. returns: whether there was
     [[nodiscard]] virtual bool take_picture(ScreenPicture& picture) = 0;
     [[nodiscard]] virtual bool busy() const = 0;
+    /// Whether the picture of the other method is there, too.
+    [[nodiscard]] virtual bool shows_reference() const = 0;
     /// The error of the picture; empty: none.
     [[nodiscard]] virtual std::string problem() const = 0;
     /// A line of figures about the picture.

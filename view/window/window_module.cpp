@@ -32,7 +32,9 @@ namespace {
 #endif
 }
 
-constexpr float kPanel = 340;                     // width, in units of the screen
+constexpr float kPanel = 340, kSlimPanel = 236;   // width, in units of the screen: the most and the least
+constexpr float kPanelShare = 0.36F;              // of a narrow window
+constexpr double kSlow_s = 0.3;                   // work is shown that takes longer
 constexpr float kOrbit_deg = 0.35F;               // for each pixel of a drag
 constexpr double kBusy_s = 0.01, kIdle_s = 0.25;  // between frames without events
 constexpr double kStep_s = 0.5;                   // between steps that play
@@ -49,13 +51,20 @@ struct Window {
     std::uint64_t uploaded = 0;
     int settled = 0;
     bool dark = true;
-    bool dragged = false;
+    bool dragged = false, grabs = false;
+    double clicked_at = -1;
+    std::string title{};
 };
 
 void on_key(GLFWwindow* window, int key, int, int action, int mods) {
     if (action == GLFW_RELEASE || ImGui::GetIO().WantTextInput) return;
     auto& self = *static_cast<Window*>(glfwGetWindowUserPointer(window));
     take_key(self.host, self.memory, 0, key, (mods & GLFW_MOD_CONTROL) != 0, (mods & GLFW_MOD_SHIFT) != 0);
+}
+
+void on_drop(GLFWwindow* window, int count, const char** paths) {
+    auto& self = *static_cast<Window*>(glfwGetWindowUserPointer(window));
+    if (count > 0) open_path(self.host, self.memory, paths[0]);
 }
 
 void on_character(GLFWwindow* window, unsigned character) {
@@ -78,11 +87,50 @@ void upload(Window& self) {
     self.settled = 0;
 }
 
-/// The mouse on the picture.
-void take_mouse(Window& self, float height) {
+/// The pixel of the picture under the pointer, as the numbers of an action.
+std::string pixel_text() {
     const ImGuiIO& io = ImGui::GetIO();
-    if (ImGui::IsItemHovered() && io.MouseWheel != 0)
-        run(self.host, self.memory, "zoom", json_text(std::pow(1.1, double{io.MouseWheel})));
+    return json_text(double{io.MousePos.x * io.DisplayFramebufferScale.x}) + ", " +
+           json_text(double{io.MousePos.y * io.DisplayFramebufferScale.y});
+}
+
+/// The border between the pictures that are compared, which can be dragged. returns: whether it took the mouse
+bool take_border(Window& self, float width, float height) {
+    const ViewState& state = self.host.state();
+    if (!state.compare || state.difference) return false;
+    const float x = static_cast<float>(state.slider) * width, reach = 7 * self.memory.scale;
+    const bool near = ImGui::IsItemHovered() && std::abs(ImGui::GetIO().MousePos.x - x) < reach;
+    if (ImGui::IsItemActivated() && near && ImGui::IsMouseDown(ImGuiMouseButton_Left)) self.memory.holds_border = true;
+    const bool held = self.memory.holds_border;
+    if (near || held) ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
+    if (held && ImGui::IsItemActive() && ImGui::GetIO().MouseDelta.x != 0)
+        run(self.host, self.memory, "slider", json_text(std::clamp(double{ImGui::GetIO().MousePos.x / width}, 0.0, 1.0)));
+    if (ImGui::IsItemDeactivated()) self.memory.holds_border = false;
+    ImDrawList* list = ImGui::GetWindowDrawList();
+    const ImVec2 at{x, 0.5F * height};
+    const float size = (near || held ? 9.0F : 7.0F) * self.memory.scale;
+    const auto label = [&](const std::string& method, bool left) {
+        const ImVec2 letters = ImGui::CalcTextSize(method.c_str());
+        const float pad = 5 * self.memory.scale;
+        const ImVec2 from{left ? x - letters.x - 3 * pad : x + pad, pad};
+        list->AddRectFilled(from, {from.x + letters.x + 2 * pad, from.y + letters.y + pad},
+                            ImGui::GetColorU32(ImGuiCol_WindowBg, 0.8F), 3);
+        list->AddText({from.x + pad, from.y + 0.5F * pad}, ImGui::GetColorU32(ImGuiCol_Text), method.c_str());
+    };
+    label(std::string(name_of(state.method)), true);
+    label(std::string(name_of(*state.compare)) + (self.host.shows_reference() ? "" : ": not drawn yet"), false);
+    list->AddCircleFilled(at, size, IM_COL32(255, 255, 255, 235));
+    list->AddCircle(at, size, IM_COL32(40, 60, 90, 255), 0, 1.5F * self.memory.scale);
+    return held;
+}
+
+/// The mouse on the picture.
+void take_mouse(Window& self, float width, float height) {
+    const ImGuiIO& io = ImGui::GetIO();
+    if (ImGui::IsItemHovered() && io.MouseWheel != 0) {
+        run(self.host, self.memory, "zoom", "[" + json_text(std::pow(1.1, double{io.MouseWheel})) + ", " + pixel_text() + "]");
+    }
+    if (take_border(self, width, height)) return;
     if (take_cut(self.host, self.memory)) return;
     if (take_tool(self.host, self.memory, height)) return;
     if (ImGui::IsItemActivated()) self.dragged = false;
@@ -103,22 +151,52 @@ void take_mouse(Window& self, float height) {
             }
         }
     }
-    if (ImGui::IsItemDeactivated() && !self.dragged && ImGui::IsMouseReleased(ImGuiMouseButton_Left)) {
-        const double fine = double{io.DisplayFramebufferScale.x};
-        run(self.host, self.memory, "pick", json_text(double{io.MousePos.x} * fine, double{io.MousePos.y} * fine));
-    }
+    if (!ImGui::IsItemDeactivated() || self.dragged) return;
+    if (ImGui::IsMouseReleased(ImGuiMouseButton_Right)) self.memory.asks_menu = true;
+    if (!ImGui::IsMouseReleased(ImGuiMouseButton_Left)) return;
+    const bool twice = ImGui::GetTime() - self.clicked_at < double{io.MouseDoubleClickTime};
+    self.clicked_at = twice ? -1 : ImGui::GetTime();
+    run(self.host, self.memory, twice ? "focus" : "pick", "[" + pixel_text() + "]");
+}
+
+/// What is at work, at the right end of the line below the picture, with a button that stops it. returns: where it begins
+float draw_work(Window& self, float width, float top, float screen_top) {
+    const WindowWork work = self.host.work();
+    if (work.stage.empty() || work.seconds < kSlow_s) return width;
+    constexpr std::size_t kLongest = 40;
+    std::string text = work.stage.size() > kLongest ? "..." + work.stage.substr(work.stage.size() - kLongest) : work.stage;
+    if (work.fraction > 0) text += "  " + std::to_string(static_cast<int>(100 * work.fraction)) + " %";
+    const float pad = 8 * self.memory.scale, line = ImGui::GetTextLineHeight();
+    const float stop = ImGui::CalcTextSize("stop").x + 2 * pad, letters = ImGui::CalcTextSize(text.c_str()).x;
+    const float left = std::max(0.0F, width - letters - stop - line - 4 * pad);
+    ImDrawList* list = ImGui::GetWindowDrawList();
+    const ImU32 ink = ImGui::GetColorU32(ImGuiCol_SliderGrab);
+    const ImVec2 middle{left + 0.5F * line + pad, screen_top + top + pad + 0.5F * line};
+    const auto turn = static_cast<float>(4 * ImGui::GetTime());  // a sign that nothing hangs
+    list->PathArcTo(middle, 0.38F * line, turn, turn + 4.4F);
+    list->PathStroke(ink, 0, 2 * self.memory.scale);
+    list->AddText({middle.x + 0.5F * line + pad, screen_top + top + pad}, ImGui::GetColorU32(ImGuiCol_Text), text.c_str());
+    ImGui::SetCursorPos({width - stop - pad, top + 0.5F * pad});
+    if (ImGui::Button("stop", {stop, line + pad})) self.host.stop();
+    tip(self.memory, "gives up what is at work", "Esc");
+    return left;
 }
 
 /// The line below the picture: figures, or what is wrong.
-void draw_line(Window& self, float width, float height) {
+///
+/// screen_top: of the part of the window that is drawn to
+void draw_line(Window& self, float width, float height, float screen_top = 0) {
     const std::string problem = self.memory.problem.empty() ? self.host.problem() : self.memory.problem;
     const bool told = ImGui::GetTime() < self.memory.message_until;
-    const std::string text = !problem.empty() ? problem : told ? self.memory.message : self.host.figures();
+    const std::string figures = self.host.has_session() ? self.host.figures() : std::string();
+    const std::string text = !problem.empty() ? problem : told ? self.memory.message : figures;
     const float pad = 8 * self.memory.scale, line = ImGui::GetTextLineHeight();
     ImDrawList* list = ImGui::GetWindowDrawList();
-    const ImVec2 from{0, height - line - 2 * pad};
-    list->AddRectFilled(from, {width, height}, ImGui::GetColorU32(ImGuiCol_WindowBg));
-    list->PushClipRect(from, {width - pad, height});
+    const float top = height - line - 2 * pad;
+    const ImVec2 from{0, screen_top + top};
+    list->AddRectFilled(from, {width, screen_top + height}, ImGui::GetColorU32(ImGuiCol_WindowBg));
+    const float right = draw_work(self, width, top, screen_top);
+    list->PushClipRect(from, {right - pad, screen_top + height});
     const ImU32 ink = problem.empty() ? ImGui::GetColorU32(ImGuiCol_Text) : IM_COL32(230, 90, 70, 255);
     list->AddText({pad, from.y + pad}, ink, text.c_str());
     list->PopClipRect();
@@ -149,11 +227,43 @@ void draw_picture(Window& self, float width, float height) {
     ImGui::InvisibleButton(
         "mouse", {width, shown},
         ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight | ImGuiButtonFlags_MouseButtonMiddle);
-    take_mouse(self, shown);
+    take_mouse(self, width, shown);
     draw_selection(self.host, self.memory);
     draw_cut_handles(self.host, self.memory);
     draw_line(self, width, height);
+    draw_menu(self.host, self.memory);
     ImGui::End();
+}
+
+/// While a button of the mouse is held, all that it changes is one motion for undo.
+void group_motions(Window& self) {
+    const bool held = ImGui::IsAnyItemActive() && ImGui::IsAnyMouseDown();
+    if (held == self.grabs) return;
+    self.grabs = held;
+    (void)self.host.run(held ? "{\"grab\": true}" : "{\"grab\": false}");
+}
+
+/// The page without a file, and the line below it.
+void draw_start(Window& self, const ImVec2& size) {
+    draw_start_page(self.host, self.memory, size.x, size.y - ImGui::GetTextLineHeight() - 16 * self.memory.scale);
+    const float top = size.y - ImGui::GetTextLineHeight() - 16 * self.memory.scale;
+    ImGui::SetNextWindowPos({0, top});
+    ImGui::SetNextWindowSize({size.x, size.y - top});
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {0, 0});
+    ImGui::Begin("line", nullptr,
+                 ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
+                     ImGuiWindowFlags_NoBringToFrontOnFocus);
+    ImGui::PopStyleVar();
+    draw_line(self, size.x, size.y - top, top);
+    ImGui::End();
+}
+
+void set_title(Window& self) {
+    const std::string& name = self.host.opened().name;
+    const std::string title = name.empty() ? "subvol" : "subvol - " + name;
+    if (title == self.title) return;
+    self.title = title;
+    glfwSetWindowTitle(self.window, title.c_str());
 }
 
 void play_steps(Window& self) {
@@ -173,11 +283,23 @@ void draw_frame(Window& self) {
     ImGui_ImplGlfw_NewFrame();
     ImGui::NewFrame();
     const ImVec2 size = ImGui::GetIO().DisplaySize;
-    const float panel = std::min(kPanel * self.memory.scale, 0.6F * size.x);
-    draw_picture(self, size.x - panel, size.y);
-    draw_panel(self.host, self.memory, size.x - panel, panel, size.y);
+    set_title(self);
+    if (self.host.has_session()) {
+        const float scale = self.memory.scale;
+        const bool shown = self.host.look().panel;
+        const float panel =
+            shown ? std::clamp(kPanelShare * size.x, std::min(kSlimPanel * scale, 0.6F * size.x), kPanel * scale) : 0;
+        draw_picture(self, size.x - panel, size.y);
+        if (shown) draw_panel(self.host, self.memory, size.x - panel, panel, size.y);
+        play_steps(self);
+    } else {
+        draw_start(self, size);
+    }
     if (self.host.look().help) draw_help(self.host, self.memory);
-    play_steps(self);
+    draw_notes(self.host, self.memory);
+    draw_file_dialog(self.host, self.memory);
+    group_motions(self);
+    self.memory.close_popup = false;
     ImGui::Render();
     int width = 0, height = 0;
     glfwGetFramebufferSize(self.window, &width, &height);
@@ -254,6 +376,7 @@ std::optional<std::string> run_window(WindowHost& host, const WindowStart& start
     glfwSetWindowUserPointer(window, &self);
     glfwSetKeyCallback(window, on_key);  // before those of ImGui, which call them
     glfwSetCharCallback(window, on_character);
+    glfwSetDropCallback(window, on_drop);
     const Gui gui(window, self.memory.scale);
     glGenTextures(1, &self.texture);
     loop(self);

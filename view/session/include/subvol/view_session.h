@@ -31,6 +31,7 @@ struct PictureFigures {
 /// measure:       compares two pictures of one size; empty: comparisons have no figures
 /// notes:         warnings of reading the input
 /// more_words:    further words of the render command: options that no action changes
+/// read_words:    the same of options for reading the input, which a mesh that was saved here does not need
 /// points:        shown instead of a mesh: kernels or voxels, which have one step and are not edited; without a volume: a
 ///                mesh is
 /// tets:          a level of a scheme of tetrahedra for a mesh with one field, on its limit, in hexahedra, which is shown
@@ -43,7 +44,7 @@ struct ViewSource {
     std::function<void(const std::filesystem::path& path, const Image& image, const Vec3& background)> write_picture{};
     std::function<PictureFigures(const Image& test, const Image& reference)> measure{};
     std::vector<std::string> notes{};
-    std::vector<std::string> more_words{};
+    std::vector<std::string> more_words{}, read_words{};
     ViewPoints points{};
     std::function<HexMesh(HexMesh mesh, int level)> tets{};
 };
@@ -133,6 +134,8 @@ public:
 
     /// What is to be seen of a picture of the worker: if two methods are compared, both.
     [[nodiscard]] Image composed(const DrawnPicture& picture) const;
+    /// Whether the second picture of a comparison is there for this camera; else only the first one is shown.
+    [[nodiscard]] bool shows_reference() const;
     /// Whether a picture is still being drawn, or something goes on that was started.
     [[nodiscard]] bool busy() const;
     /// What the workers are at; of the reference, if the picture is done.
@@ -147,9 +150,12 @@ public:
     /// Where the planes that cut can be taken hold of.
     [[nodiscard]] std::vector<detail::CutHandle> cut_handles() const;
 
+    /// Shows the same as another session, as far as the mesh has it.
+    void take_state(const ViewSession& other);
+
     /// The state as JSON, which the action `load_state` reads.
     [[nodiscard]] std::string state_json() const;
-    /// The command that makes the same picture.
+    /// The command that makes the same picture. An edited mesh has to be saved first; else a comment says so.
     [[nodiscard]] std::string render_command() const;
 
 private:
