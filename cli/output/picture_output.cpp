@@ -13,6 +13,7 @@
 #include "subvol/error.h"
 #include "subvol/image_io.h"
 #include "subvol/raster.h"
+#include "subvol/view_options.h"
 #include "text.h"
 
 namespace subvol::cli {
@@ -99,6 +100,7 @@ Facts PictureOutput::write_sheet(const std::vector<View>& views, const DrawPictu
     const bool is_png = path_.extension() == ".png";
     bool blank = true;
     for (std::size_t i = 0; i < views.size(); ++i) {
+        cameras_.emplace_back(facts_of(views[i].camera()));
         Picture part = draw(views[i], progress);
         facts.merge(part.facts);
         notes_.draw_shells(part, views[i]);
@@ -118,7 +120,7 @@ Facts PictureOutput::write_sheet(const std::vector<View>& views, const DrawPictu
     if (is_png) warn_if_blank(blank, opacity_, facts);
     const detail::Stopwatch watch;
     notes_.add_legend(sheet);
-    write_frame(0, sheet);
+    write_frame(0, sheet, {});
     facts.add_seconds("write", watch.seconds());
     return facts;
 }
@@ -135,6 +137,7 @@ Facts PictureOutput::write(const std::vector<View>& views, const DrawPicture& dr
         detail::PartOfProgress of_frame(whole, text("frame ", written_ + 1, " of ", frames), written_, frames);
         Progress* const progress = frames_ ? &of_frame : whole;
         report_progress(progress, "draw", 0);
+        cameras_.emplace_back(facts_of(view.camera()));
         Picture picture = draw(view, progress);
         facts.merge(picture.facts);
         if (silent_) {
@@ -150,7 +153,8 @@ Facts PictureOutput::write(const std::vector<View>& views, const DrawPicture& dr
         const detail::Stopwatch watch;
         notes_.draw_over(picture, view);
         notes_.add_legend(picture);
-        write_frame(written_++, picture);
+        const bool alone = picture.image.width == view.width();  // without a legend beside it
+        write_frame(written_++, picture, alone ? camera_text(view.camera()) : std::string());
         facts.add_seconds("write", watch.seconds());
     }
     return facts;
@@ -162,6 +166,11 @@ Facts PictureOutput::finish(Progress* progress) {
     if (!share_) warn_if_empty(opacity_, facts);
     if (share_) facts["part"] = share_->name();
     facts["output"] = frame_path(0).string();
+    if (cameras_.size() == 1) {
+        facts["camera"] = cameras_.front();
+    } else if (!cameras_.empty()) {
+        facts["cameras"] = cameras_;
+    }
     if (!frames_) return facts;
     facts["frames"] = *frames_;
     if (video_) {
@@ -185,17 +194,17 @@ std::filesystem::path PictureOutput::frame_path(std::size_t frame) const {
                                   std::string(digits - number.size(), '0') + number + path_.extension().string());
 }
 
-void PictureOutput::write_frame(std::size_t frame, const Picture& picture) {
+void PictureOutput::write_frame(std::size_t frame, const Picture& picture, const std::string& camera) {
     if (video_) {
         video_->write(srgb_bytes(picture.image, background_));
     } else if (share_ && !frames_) {
-        write_rows(picture);
+        write_rows(picture, camera);
     } else {
-        write_image(frame_path(frame), picture.image, background_, picture.depth);
+        write_image(frame_path(frame), picture.image, background_, picture.depth, camera);
     }
 }
 
-void PictureOutput::write_rows(const Picture& picture) {
+void PictureOutput::write_rows(const Picture& picture, const std::string& camera) {
     const Image& image = picture.image;
     const PixelRows rows = rows_of(*share_, image.height);
     note_.range = {static_cast<std::uint64_t>(rows.first), static_cast<std::uint64_t>(rows.end),
@@ -203,6 +212,7 @@ void PictureOutput::write_rows(const Picture& picture) {
     note_.how = {{"first_row", rows.first},
                  {"end_row", rows.end},
                  {"height", image.height},
+                 {"camera", camera},
                  {"background", {background_.x, background_.y, background_.z}}};
     (void)deliver(PictureParts{path_}, rows_of(picture, rows), {.share = *share_, .note = note_});
 }

@@ -58,8 +58,8 @@ public:
 private:
     [[nodiscard]] std::filesystem::path frame_path(std::size_t frame) const;
     Facts write_sheet(const std::vector<View>& views, const DrawPicture& draw, Progress* progress);
-    void write_frame(std::size_t frame, const Picture& picture);
-    void write_rows(const Picture& picture);
+    void write_frame(std::size_t frame, const Picture& picture, const std::string& camera);
+    void write_rows(const Picture& picture, const std::string& camera);
 
     std::filesystem::path path_;
     std::optional<int> frames_;
@@ -68,7 +68,8 @@ private:
     Vec3 background_;
     PictureNotes notes_{};
     std::size_t written_ = 0;
-    float opacity_ = 0;  // the largest of a pixel
+    FactValue::List cameras_{};  // of what was drawn
+    float opacity_ = 0;          // the largest of a pixel
     std::optional<Share> share_;
     PartNote note_{};
     bool silent_ = false;

@@ -26,6 +26,7 @@
 #include "subvol/picture_metrics.h"
 #include "subvol/placed_image.h"
 #include "subvol/render_field.h"
+#include "subvol/view_options.h"
 #include "text.h"
 
 namespace subvol::cli {
@@ -34,27 +35,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kExactStep = 1e-3;  // of the diagonal
-
-/// A camera as `--camera` takes it: eye, target, up, and the vertical field of view; of an orthographic one its height, too.
-std::string camera_numbers(const Camera& camera) {
-    std::string all;
-    for (const Vec3& v : {camera.eye, camera.target, camera.up}) {
-        for (int k = 0; k < 3; ++k) all += detail::exact_text(v[k]) + ",";
-    }
-    all += detail::exact_text(camera.fovy_deg);
-    return camera.ortho_height > 0 ? all + "," + detail::exact_text(camera.ortho_height) : all;
-}
-
-std::string camera_json(const Camera& camera) {
-    const auto list = [](const Vec3& v) { return Json{v.x, v.y, v.z}; };
-    Json json{{"eye", list(camera.eye)}, {"target", list(camera.target)}, {"up", list(camera.up)}};
-    if (camera.ortho_height > 0) {
-        json["ortho_height"] = camera.ortho_height;
-    } else {
-        json["fovy_deg"] = camera.fovy_deg;
-    }
-    return json.dump(2) + "\n";
-}
 
 /// The options of a case as those of pictures: a volume without light.
 MethodOptions picture_options(const StudyCase& item, const HexMesh& mesh) {
@@ -160,7 +140,7 @@ Image read_foreign(const StudyCase& item, const HexMesh& mesh, const View& view)
                       view.height());
     if (!same_view(view, theirs, box.diagonal())) {
         throw Error(ErrorCode::InvalidInput, "the camera is not that of the case", description,
-                    "the numbers " + camera_numbers(view.camera()));
+                    "the numbers " + camera_text(view.camera()));
     }
     return read_image(item.text("file"));
 }
@@ -189,7 +169,7 @@ Scene scene_of(const StudyCase& item) {
 
 /// Stores the camera and the counts of a case.
 void describe(const Scene& scene, CaseResult& result) {
-    result.notes["camera_used"] = camera_numbers(scene.view.camera());
+    result.notes["camera_used"] = camera_text(scene.view.camera());
     result.metrics["points"] = static_cast<double>(scene.mesh.points.size());
     result.metrics["cells"] = static_cast<double>(scene.mesh.cells.size());
 }
@@ -239,7 +219,7 @@ void write_pictures(const StudyCase& item, const CasePlace& place, const Image& 
     fs::create_directories(place.folder / "pictures");
     const auto write = [&](const char* kind, const std::string& ending, const Image& picture) {
         result.files[kind] = "pictures/" + case_file(item, ending);
-        write_image(place.folder / result.files[kind], picture);
+        write_image(place.folder / result.files[kind], picture, Vec3(0.0), {}, result.notes["camera_used"]);
     };
     write("picture", ".png", image);
     write("difference", "_difference.png", log_heatmap(difference_map(image, reference)));
@@ -301,9 +281,10 @@ CaseResult run_reference(const StudyCase& item, const CasePlace& place) {
     for (const auto& [name, value] : measure_pictures(before, image, names)) result.metrics["floor_" + name] = value;
     fs::create_directories(place.references / "cameras");
     result.files = {{"exr", item.id + ".exr"}, {"picture", item.id + ".png"}};
-    for (const auto& [kind, name] : result.files) write_image(place.references / name, image);
+    for (const auto& [kind, name] : result.files)
+        write_image(place.references / name, image, Vec3(0.0), {}, result.notes["camera_used"]);
     result.files["camera"] = "cameras/" + item.id + ".json";
-    detail::write_text_file(place.references / result.files["camera"], camera_json(scene.view.camera()));
+    detail::write_text_file(place.references / result.files["camera"], json_of(facts_of(scene.view.camera())).dump(2) + "\n");
     return result;
 }
 

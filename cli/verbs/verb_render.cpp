@@ -265,13 +265,20 @@ private:
         report.merge(output.write(views, draw, report.progress()));
     }
 
+    /// The points that a named view is fitted to; none for other cameras, which bricks need not be read for.
+    [[nodiscard]] std::vector<Vec3> framed_points(PictureMaker& maker, const Optics& optics, Report& report) const {
+        if (picture_.eye.camera || picture_.eye.turntable) return {};
+        Facts facts;
+        std::vector<Vec3> points = maker.framed_points(optics, report.progress(), facts);
+        report.merge(facts);
+        return points;
+    }
+
     /// The pictures of a body without notes of its own, framed by its box.
     void write(PictureBody body, const ShownColors& shown, PictureOutput& output, Report& report) {
         output.set_notes(make_notes(picture_, shown, nullptr));
         PictureMaker maker = maker_of(std::move(body), report);
-        Facts facts;
-        const std::vector<Vec3> framed = maker.framed_points(shown.optics, report.progress(), facts);
-        report.merge(facts);
+        const std::vector<Vec3> framed = framed_points(maker, shown.optics, report);
         write(maker, picture_.make_views(box_, framed), shown.optics, output, report);
     }
 
@@ -352,8 +359,7 @@ private:
                 return report.merge(output.write(picture_.make_views(seen, shells), draw, report.progress()));
             }
             PictureMaker maker = maker_of(body_of(mesh), report);
-            Facts facts;
-            std::vector<Vec3> framed = maker.framed_points(shown.optics, report.progress(), facts);
+            std::vector<Vec3> framed = framed_points(maker, shown.optics, report);
             if (!framed.empty()) framed.insert(framed.end(), shells.begin(), shells.end());
             write(maker, picture_.make_views(seen, framed), shown.optics, output, report);
         });
@@ -365,7 +371,7 @@ private:
         report["input"] = input_;
         const VdbGrid grid = report.unpack(load_grid(input_, common(), report.progress()));
         const ShownField field{grid.report().name, {grid.report().min, grid.report().max}};
-        show(box_of(grid.report()), field, field, output, report, [&](const ShownColors& shown) {
+        show(grid.report().frame, field, field, output, report, [&](const ShownColors& shown) {
             if (arguments_.method == Method::Grid) {
                 const auto voxels = grid.voxels();
                 return write({.voxels = voxels.get()}, shown, output, report);

@@ -178,7 +178,7 @@ private:
         volume.channels.front().name = grid.report().name;
         return {.volume = std::make_shared<const RbfVolume>(std::move(volume)),
                 .voxels = grid.voxels(),
-                .box = box_of(grid.report()),
+                .box = grid.report().frame,
                 .range = ValueRange{grid.report().min, grid.report().max}};
     }
 

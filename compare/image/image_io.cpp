@@ -112,15 +112,18 @@ Image linear_image(const DecodedPicture& picture) {
 }
 
 void write_pixels(const fs::path& path, const Image& image, const PixelWindow& data, const PixelWindow& display,
-                  const Vec3& background, std::span<const float> depth) {
+                  const Vec3& background, std::span<const float> depth, const std::string& camera = {}) {
     check_image(image);
     if (!depth.empty() && 4 * depth.size() != image.rgba.size()) {
         throw Error(ErrorCode::InvalidInput, "the number of depths is not the number of pixels", path.string());
     }
     const std::string extension = extension_of(path);
     if (extension == ".exr") {
-        const PictureValues picture{
-            .data = data, .display = display, .rgba = image.rgba.data(), .depth = depth.empty() ? nullptr : depth.data()};
+        const PictureValues picture{.data = data,
+                                    .display = display,
+                                    .rgba = image.rgba.data(),
+                                    .depth = depth.empty() ? nullptr : depth.data(),
+                                    .camera = camera.empty() ? nullptr : camera.c_str()};
         write_file(path, [&](const std::string& name) { return openexr().write(name, picture); });
     } else if (extension == ".png") {
         const std::vector<std::uint8_t> rgb = srgb_bytes(image, background);
@@ -159,9 +162,10 @@ std::vector<std::uint8_t> srgb_bytes(const Image& image, const Vec3& background)
     return bytes;
 }
 
-void write_image(const fs::path& path, const Image& image, const Vec3& background, std::span<const float> depth) {
+void write_image(const fs::path& path, const Image& image, const Vec3& background, std::span<const float> depth,
+                 const std::string& camera) {
     const PixelWindow whole{0, 0, image.width, image.height};
-    write_pixels(path, image, whole, whole, background, depth);
+    write_pixels(path, image, whole, whole, background, depth, camera);
 }
 
 void write_placed_image(const fs::path& path, const PlacedImage& picture, const Vec3& background,
@@ -182,6 +186,12 @@ PlacedImage read_placed_image(const fs::path& path) {
 
 Image read_image(const fs::path& path) {
     return read_placed_image(path).image;
+}
+
+std::string camera_of_image(const fs::path& path) {
+    std::error_code ignored;
+    const bool may_have_one = extension_of(path) == ".exr" && fs::is_regular_file(path, ignored);
+    return may_have_one ? openexr().camera(path.string()) : std::string();
 }
 
 namespace {

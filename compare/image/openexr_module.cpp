@@ -27,7 +27,7 @@ namespace subvol::detail {
 
 namespace {
 
-constexpr const char* kNoteName = "subvolPart";
+constexpr const char *kNoteName = "subvolPart", *kCameraName = "subvolCamera";
 constexpr std::array kNames{"R", "G", "B", "A", "Z"};
 constexpr std::size_t kBlockBytes = std::size_t{16} << 20;  // of pixels that are read together: a short file ends it early
 constexpr int kLongestSide = 1 << 16;                       // of pictures that are read here
@@ -91,6 +91,7 @@ std::optional<PictureFault> write(const std::string& path, const PictureValues& 
     Imf::Header header(box_of(picture.display), data);
     header.compression() = Imf::ZIP_COMPRESSION;
     if (picture.note != nullptr) header.insert(kNoteName, Imf::StringAttribute(picture.note));
+    if (picture.camera != nullptr) header.insert(kCameraName, Imf::StringAttribute(picture.camera));
     Imf::FrameBuffer frame;
     const auto in_row = static_cast<std::size_t>(picture.data.width);
     const auto add = [&](const char* name, const float* values, std::size_t step) {
@@ -149,6 +150,17 @@ std::unique_ptr<Imf::InputFile> opened(const std::string& path) {
     }
 }
 
+/// A text of the header; empty if it has none of this name.
+std::string text_of(const Imf::Header& header, const char* name) {
+    const auto* text = header.findTypedAttribute<Imf::StringAttribute>(name);
+    return text != nullptr ? text->value() : std::string();
+}
+
+std::string camera(const std::string& path) {
+    const std::unique_ptr<Imf::InputFile> file = opened(path);
+    return file ? text_of(file->header(), kCameraName) : std::string();
+}
+
 std::optional<PictureFault> read(const std::string& path, DecodedPicture& picture, bool& taken) {
     taken = false;
     const std::unique_ptr<Imf::InputFile> file = opened(path);
@@ -168,7 +180,7 @@ std::optional<PictureFault> read(const std::string& path, DecodedPicture& pictur
     picture.alpha = channels > 3 ? 3 : -1;
     picture.data = {data.min.x, data.min.y, static_cast<int>(width), static_cast<int>(height)};
     picture.display = {whole.min.x, whole.min.y, static_cast<int>(whole_width), static_cast<int>(whole_height)};
-    if (const auto* note = header.findTypedAttribute<Imf::StringAttribute>(kNoteName)) picture.note = note->value();
+    picture.note = text_of(header, kNoteName);
     const bool depth = picture.wants_depth && channels == 5;
     const auto in_row = static_cast<std::size_t>(width), count = static_cast<std::size_t>(picture.channels);
     const auto rows = static_cast<int>(std::max(std::size_t{1}, kBlockBytes / (in_row * 4 * sizeof(float))));
@@ -210,7 +222,7 @@ const char subvol_module_version[] = SUBVOL_VERSION;
 
 const subvol::detail::OpenExr* subvol_openexr() {
     using namespace subvol::detail;
-    static constexpr OpenExr kFunctions{&write, &read};
+    static constexpr OpenExr kFunctions{&write, &read, &camera};
     return &kFunctions;
 }
 }

@@ -40,11 +40,13 @@ struct DecodedPicture {
 ///
 /// data, display: as in PlacedImage
 /// note:          a text beside the pixels
+/// camera:        its numbers; null: none
 struct PictureValues {
     PixelWindow data{}, display{};
     const float* rgba = nullptr;
     const float* depth = nullptr;
     const char* note = nullptr;
+    const char* camera = nullptr;
 };
 
 struct PictureFault {
@@ -79,6 +81,9 @@ struct OpenExr {
     ///
     /// taken: whether it is such a picture; if not, it is for OpenImageIO
     std::optional<PictureFault> (*read)(const std::string& path, DecodedPicture& picture, bool& taken);
+
+    /// The camera in the header; empty if there is none, or if it is another file.
+    std::string (*camera)(const std::string& path);
 };
 
 /// Loads the module when it is called first.

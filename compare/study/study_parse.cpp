@@ -12,6 +12,7 @@
 #include "subvol/detail/near_name.h"
 #include "subvol/detail/printable.h"
 #include "subvol/error.h"
+#include "subvol/image_io.h"
 #include "subvol/picture_metrics.h"
 
 namespace subvol {
@@ -119,18 +120,23 @@ private:
         check_different(study);
     }
 
-    /// The picture that was made elsewhere, and the description of its camera beside it.
+    /// The picture that was made elsewhere, and its camera: a description beside it, else the numbers in its header.
     void add_file(StudyValues& values, const std::string& path) const {
         if (!values.contains("file")) refuse(path, "this key is missing", "a picture such as theirs/{input}_{view}_{tf}.exr");
         const fs::path named = filled_in(as_text(values.at("file")), values, path);
         const fs::path file = named.is_absolute() ? named : file_.parent_path() / named;
+        const std::string in_header = camera_of_image(file);
         for (const auto& [key, one] : {std::pair("file", file), {"file.camera", fs::path(file).replace_extension(".json")}}) {
             values[key] = one.lexically_normal().string();
             values[std::string(key) + ".content"] = content_of(one, path);
             if (!as_text(values[std::string(key) + ".content"]).empty()) continue;
-            refuse(path, "'" + printable(one.string()) + "' cannot be read",
-                   "the picture, and beside it a .json file with its camera: eye, target, up, fovy_deg or ortho_height");
+            if (one != file && !in_header.empty()) continue;
+            refuse(
+                path, "'" + printable(one.string()) + "' cannot be read",
+                "the picture, and beside it a .json file with its camera: eye, target, up, fovy_deg or ortho_height; an .exr "
+                "of `render` has it in its header");
         }
+        if (as_text(values["file.camera.content"]).empty()) values["file.camera"] = in_header;
     }
 
     /// Closed forms are those of generated models, with the field that they come with.

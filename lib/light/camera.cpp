@@ -83,7 +83,8 @@ nlohmann::json read_json_object(const std::string& file) {
 }
 
 Camera read_camera(const std::string& file) {
-    const nlohmann::json json = read_json_object(file);
+    nlohmann::json json = read_json_object(file);
+    if (json.contains("camera") && json["camera"].is_object()) json = nlohmann::json(json["camera"]);  // of `render --json`
     for (const char* key : {"eye", "target"}) {
         if (!json.contains(key)) throw Error(ErrorCode::InvalidInput, std::string("key '") + key + "' is missing", file);
     }

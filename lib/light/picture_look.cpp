@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <filesystem>
+#include <span>
 
 #include "subvol/clamped.h"
 #include "subvol/error.h"
@@ -27,6 +28,38 @@ double largest_alpha(const TransferFunction& function, double low, double high) 
     }
     return largest;
 }
+
+/// The cells that can be seen: more opaque somewhere than a part of the largest opacity.
+class SeenCells {
+public:
+    explicit SeenCells(const TransferFunction& function) : function_(function) {
+        for (const auto& knot : function.opacity) faint_ = std::max(faint_, kFaint * knot.alpha);
+    }
+
+    /// Adds the corners of those of a mesh. owned: a flag for each cell; none: all are looked at
+    void add(const HexMesh& mesh, std::span<const std::uint8_t> owned, std::vector<Vec3>& points) const {
+        const std::vector<double>& values = mesh.attributes[0].values;
+        std::vector<std::uint8_t> seen(mesh.points.size());
+        for (std::size_t c = 0; c < mesh.cells.size(); ++c) {
+            if (!owned.empty() && owned[c] == 0) continue;
+            const auto& cell = mesh.cells[c];
+            double low = values[cell[0]], high = low;
+            for (const Index corner : cell) {
+                low = std::min(low, values[corner]);
+                high = std::max(high, values[corner]);
+            }
+            if (largest_alpha(function_, low, high) <= faint_) continue;
+            for (const Index corner : cell) seen[corner] = 1;
+        }
+        for (std::size_t p = 0; p < seen.size(); ++p) {
+            if (seen[p]) points.push_back(mesh.points[p]);
+        }
+    }
+
+private:
+    const TransferFunction& function_;
+    double faint_ = 0;
+};
 
 }  // namespace
 
@@ -158,31 +191,22 @@ Optics picture_optics(TransferFunction function, const LookOptions& options, con
     return {std::move(function), options.opacity_unit_world.value_or(opacity_unit_of(options.look, box))};
 }
 
-std::vector<Vec3> framed_points(const HexMesh& mesh, Look look, const Optics& optics) {
-    if (look == Look::Solid || mesh.cells.empty()) return mesh.points;
-    const TransferFunction& function = optics.function();
-    double most = 0;
-    for (const auto& knot : function.opacity) most = std::max(most, knot.alpha);
-    const std::vector<double>& values = mesh.attributes[0].values;
-    std::vector<std::uint8_t> seen(mesh.points.size());
-    for (const auto& cell : mesh.cells) {
-        double low = values[cell[0]], high = low;
-        for (const Index corner : cell) {
-            low = std::min(low, values[corner]);
-            high = std::max(high, values[corner]);
-        }
-        if (largest_alpha(function, low, high) <= kFaint * most) continue;
-        for (const Index corner : cell) seen[corner] = 1;
-    }
+std::vector<Vec3> framed_points(const MeshSource& source, Look look, const Optics& optics, Progress* progress) {
+    const HexMesh* const whole = source.mesh();
+    if (whole != nullptr && (look == Look::Solid || whole->cells.empty())) return whole->points;
+    if (look == Look::Solid) return {};
+    const SeenCells seen(optics.function());
     std::vector<Vec3> points;
-    Box part;
-    for (std::size_t p = 0; p < seen.size(); ++p) {
-        if (!seen[p]) continue;
-        points.push_back(mesh.points[p]);
-        part.add(mesh.points[p]);
+    if (whole != nullptr) {
+        seen.add(*whole, {}, points);
+    } else {
+        for_each_piece(source.stored(), "frame", progress,
+                       [&](std::size_t, const MeshPiece& piece) { seen.add(piece.mesh, piece.owned_cells, points); });
     }
+    Box part;
+    for (const Vec3& p : points) part.add(p);
     // Almost the whole is framed as the whole, like a grid or kernels of it.
-    if (points.empty() || part.diagonal() > kAlmostWhole * bounds(mesh).diagonal()) return {};
+    if (points.empty() || part.diagonal() > kAlmostWhole * source.bounds().diagonal()) return {};
     return points;
 }
 

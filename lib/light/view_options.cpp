@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <limits>
 #include <string_view>
+#include <utility>
 
 #include "subvol/camera_fit.h"
 #include "subvol/detail/number_text.h"
@@ -84,6 +85,19 @@ std::string camera_text(const Camera& camera) {
         text += (text.empty() ? "" : ",") + detail::exact_text(number);
     }
     return height > 0 ? text + "," + detail::exact_text(height) : text;
+}
+
+Facts facts_of(const Camera& camera) {
+    Facts facts;
+    for (const auto& [name, v] : {std::pair("eye", camera.eye), {"target", camera.target}, {"up", camera.up}}) {
+        facts[name] = FactValue::List{v.x, v.y, v.z};
+    }
+    if (camera.ortho_height > 0) {
+        facts["ortho_height"] = camera.ortho_height;
+    } else {
+        facts["fovy_deg"] = camera.fovy_deg;
+    }
+    return facts;
 }
 
 Camera find_camera(const ViewOptions& options, const Box& box, std::span<const Vec3> points, double aspect, OptionNames names) {

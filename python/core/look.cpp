@@ -197,7 +197,7 @@ void write_picture(const Picture& p, const py::object& given, const py::object& 
     if (p.part) {
         write_placed_image(path, {p.image, p.part->data, p.part->display}, behind, depth);
     } else {
-        write_image(path, p.image, behind, depth);
+        write_image(path, p.image, behind, depth, p.camera);
     }
 }
 

@@ -4,6 +4,7 @@
 #include <pybind11/pybind11.h>
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "subvol/image.h"
@@ -12,11 +13,12 @@
 namespace subvol::python {
 
 /// What a renderer returns to Python: the class Image there. report: counts and seconds, under the names of the command's JSON;
-/// part: the windows of a file that has a part of a picture
+/// camera: its numbers, for the header of a file; part: the windows of a file that has a part of a picture
 struct Picture {
     Image image;
     std::vector<float> depth{};
     pybind11::dict report{};
+    std::string camera{};
     struct Windows {
         PixelWindow data, display;
     };

@@ -118,7 +118,8 @@ Picture render(const DrawnBody& drawn, const std::string& method_name, const Vie
         bit(method), body.kind(), [&](std::string_view name) { return text_of(given, name); }, OptionNames::Keywords);
     PictureMaker maker(std::move(body), method_options(method, light, given));
     subvol::Picture picture = result_of(progress, [&](Progress* listener) { return maker.draw(view, light.optics, listener); });
-    return {std::move(picture.image), std::move(picture.depth), report_of(picture.facts)};
+    picture.facts["camera"] = facts_of(view.camera());
+    return {std::move(picture.image), std::move(picture.depth), report_of(picture.facts), camera_text(view.camera())};
 }
 
 /// The boundary of a body that is lit, and the limit's values on it, as the command has them.

@@ -160,6 +160,11 @@ PYBIND11_MODULE(_grids, module) {
                                    const Box& box = grid.report().bounds;
                                    return py::make_tuple(as_tuple(box.lower), as_tuple(box.upper));
                                })
+        .def_property_readonly("frame",
+                               [](const VdbGrid& grid) {
+                                   const Box& box = grid.report().frame;
+                                   return py::make_tuple(as_tuple(box.lower), as_tuple(box.upper));
+                               })
         .def("values", &values_at, py::arg("at"))
         .def("voxels", [](const VdbGrid& grid) { return grid.voxels(); })
         .def(

@@ -46,6 +46,7 @@ def render(what: Drawable, *, method: str = "splat", camera: Union[None, str, Ca
         raise InvalidInput("what: a Field cannot be drawn; draw the mesh or the points that it is of", "what", "a mesh, points or a grid")
     if len(size) != 2 or not all(1 <= side <= _core.largest_side for side in size):
         raise InvalidInput(f"size: {size} is not a picture size", "size", f"width and height, 1 to {_core.largest_side}")
+    frame = np.array(what.frame) if isinstance(what, Grid) else None
     if isinstance(what, Grid) and _core.draws_kernels(method):
         what = sample_grid(what)
     if not isinstance(what, (HexMesh, RbfVolume, Grid)):
@@ -63,6 +64,7 @@ def render(what: Drawable, *, method: str = "splat", camera: Union[None, str, Ca
     mesh = _selected(what, field) if isinstance(what, HexMesh) else None
     other = _selected(what, color_field) if isinstance(what, HexMesh) and color_field is not None else None
     body, shown, colors, bounds = _body_of(what if mesh is None else mesh, other, patches, field, color_field)
+    bounds = bounds if frame is None else frame
     light = _light_of(given, tf, mesh is not None and not options.get("shade"), shown, colors or shown, bounds)
     eye = _camera_of(light, given, camera, size, what if mesh is None else mesh, bounds)
     with listening(progress) as listener:
@@ -93,8 +95,7 @@ def _body_of(what: Drawable, colors: Optional[HexMesh], patches: Optional[_core.
         ranges = [_range_of(what.values[names[channel]]) for channel in channels]
         return _core.DrawnBody(points=what, channels=channels), ranges[0], ranges[1] if len(ranges) > 1 else None, _core.frame_of(what)
     about = what.report
-    half = about["voxel_size"] / 2
-    return _core.DrawnBody(voxels=what.voxels()), (about["min"], about["max"]), None, np.array(what.bounds) + [[-half], [half]]
+    return _core.DrawnBody(voxels=what.voxels()), (about["min"], about["max"]), None, np.array(what.frame)
 
 
 def _channel(names: list[str], field: Optional[str]) -> int:

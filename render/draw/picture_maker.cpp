@@ -479,10 +479,15 @@ Picture PictureMaker::draw(const View& view, const Optics& optics, Progress* pro
 std::vector<Vec3> PictureMaker::framed_points(const Optics& optics, Progress* progress, Facts& facts) {
     const Look look = state_->options.style.look.look;
     if (const HexMesh* mesh = state_->mesh()) return subvol::framed_points(*mesh, look, optics);
-    if (look != Look::Solid) return {};
+    const bool in_pieces = state_->is_in_pieces();
+    if (look != Look::Solid) {
+        if (!in_pieces) return {};
+        return facts.timed(progress, "frame",
+                           [&] { return subvol::framed_points(*state_->body.mesh, look, optics, progress); });
+    }
     if (const RbfVolume* kernels = state_->body.kernels) return detail::outline_of(*kernels);
     if (KernelFile* file = state_->body.file) return file->boundary().points;
-    if (!state_->is_in_pieces()) return {};
+    if (!in_pieces) return {};
     return state_->hull_of_pieces(progress, facts).mesh.points;
 }
 

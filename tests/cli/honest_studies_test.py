@@ -128,7 +128,12 @@ class Honest(InFolder):
         result = self.ran(code=1, methods=methods, transfer_functions=tf)
         self.assertEqual(result["studies"][0]["failed"], 1)
         self.assertIn("the camera is not that of the case", " ".join(result["warnings"]))
-        (theirs / "twist_+x.json").unlink()
+        (theirs / "twist_+x.json").unlink()  # its header has the camera
+        self.ran(methods=methods, transfer_functions=tf)
+        shutil.copy(theirs / "twist_iso.exr", theirs / "twist_+x.exr")
+        result = self.ran(code=1, methods=methods, transfer_functions=tf)
+        self.assertIn("the camera is not that of the case", " ".join(result["warnings"]))
+        (theirs / "twist_+x.exr").unlink()
         self.assertIn("cannot be read", self.ran(code=2, methods=methods, transfer_functions=tf).err)
 
     def test_a_manifest_names_what_made_the_pictures(self):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A named view is one camera for a mesh and its points."""
+"""A named view is one camera for a mesh, its points and its grid."""
 import os
 from pathlib import Path
 
@@ -37,3 +37,20 @@ def test_a_mesh_and_its_points_are_seen_by_the_same_camera(name, view):
     a, b = pictures["solid"]
     assert np.array_equal(a[..., 3], b[..., 3]) and 0 < a[..., 3].mean() < 1
     assert psnr(a, b) > 35
+
+
+@pytest.mark.parametrize("name", MESHES, ids=str)
+def test_a_mesh_and_its_grid_are_seen_by_the_same_camera(name):
+    mesh = mesh_named(name)
+    grid = subvol.rasterize(mesh, resolution=16)[0]
+    camera = subvol.render(mesh, view="iso", look="volume", size=(60, 40)).report["camera"]
+    for method in ("grid", "splat"):
+        assert subvol.render(grid, view="iso", method=method, size=(60, 40)).report["camera"] == camera
+    low, high = grid.frame
+    assert np.array_equal(np.array([low, high]), mesh.bounds)
+
+
+def test_the_camera_of_a_picture_is_that_of_the_keyword():
+    given = subvol.Camera((3, -4, 2), (0, 0, 0), (0, 0, 1), 35)
+    camera = subvol.render(subvol.model("ball", 6), camera=given, size=(32, 32)).report["camera"]
+    assert camera == {"eye": [3, -4, 2], "target": [0, 0, 0], "up": [0, 0, 1], "fovy_deg": 35}

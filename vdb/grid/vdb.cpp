@@ -49,7 +49,29 @@ void set_kind_and_range(const openvdb::GridBase& grid, GridReport& report) {
     }
 }
 
+constexpr const char *kFrameLower = "subvol_frame_lower", *kFrameUpper = "subvol_frame_upper";
+
+/// The stored frame; empty if there is none, or numbers that are no box.
+Box stored_frame(const openvdb::GridBase& grid) {
+    const auto lower = grid.getMetadata<openvdb::Vec3DMetadata>(kFrameLower);
+    const auto upper = grid.getMetadata<openvdb::Vec3DMetadata>(kFrameUpper);
+    if (!lower || !upper) return {};
+    Box frame;
+    for (const openvdb::Vec3d& corner : {lower->value(), upper->value()}) {
+        for (int k = 0; k < 3; ++k) {
+            if (!std::isfinite(corner[k])) return {};
+        }
+        frame.add({corner[0], corner[1], corner[2]});
+    }
+    return frame;
+}
+
 }  // namespace
+
+void detail::set_frame(openvdb::GridBase& grid, const Box& frame) {
+    grid.insertMeta(kFrameLower, openvdb::Vec3DMetadata({frame.lower.x, frame.lower.y, frame.lower.z}));
+    grid.insertMeta(kFrameUpper, openvdb::Vec3DMetadata({frame.upper.x, frame.upper.y, frame.upper.z}));
+}
 
 detail::VdbData::VdbData(const openvdb::GridBase::Ptr& from)
     : grid(from),
@@ -64,6 +86,10 @@ detail::VdbData::VdbData(const openvdb::GridBase::Ptr& from)
     const openvdb::CoordBBox voxels = grid->evalActiveVoxelBoundingBox();
     const auto box = grid->transform().indexToWorld(openvdb::BBoxd(voxels.min().asVec3d(), voxels.max().asVec3d()));
     report_.bounds = {{box.min()[0], box.min()[1], box.min()[2]}, {box.max()[0], box.max()[1], box.max()[2]}};
+    report_.frame = stored_frame(*grid);
+    if (!report_.frame.empty()) return;
+    const double half = 0.5 * report_.voxel_size_world;
+    report_.frame = {report_.bounds.lower - half, report_.bounds.upper + half};
 }
 
 VdbGrid detail::make_vdb_grid(const openvdb::GridBase::Ptr& grid) {

@@ -65,6 +65,7 @@ VdbGrid scalar_of(const VdbGrid& grid, std::optional<int> component, const std::
         throw Error(ErrorCode::InvalidInput, "cannot be read as floats", "grid " + data.report().name);
     }
     floats->setName(name);
+    set_frame(*floats, data.report().frame);
     return make_vdb_grid(floats);
 }
 

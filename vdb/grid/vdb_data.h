@@ -28,4 +28,7 @@ private:
 /// Wraps a grid and fills its report.
 [[nodiscard]] VdbGrid make_vdb_grid(const openvdb::GridBase::Ptr& grid);
 
+/// Stores the box that named views show in the metadata of a grid, which its report gets it from.
+void set_frame(openvdb::GridBase& grid, const Box& frame);
+
 }  // namespace subvol::detail

@@ -90,13 +90,14 @@ void check_level_set(const RasterizeOptions& options) {
     }
 }
 
-void describe(openvdb::GridBase& grid, const ToVoxels& to_voxels, const RasterizeOptions& options) {
+void describe(openvdb::GridBase& grid, const ToVoxels& to_voxels, const RasterizeOptions& options, const Box& frame) {
     if (options.like) {
         grid.setTransform(VdbData::of(*options.like).grid->transform().copy());
     } else {
         grid.setTransform(openvdb::math::Transform::createLinearTransform(to_voxels.voxel_size));
     }
     grid.setCreator(options.creator);
+    set_frame(grid, options.frame.empty() ? frame : options.frame);
     grid.insertMeta("subvol_field", openvdb::StringMetadata(grid.getName()));
     for (const auto& [name, text] : options.metadata) grid.insertMeta(name, openvdb::StringMetadata(text));
     grid.setSaveFloatAsHalf(options.half);

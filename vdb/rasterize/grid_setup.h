@@ -20,7 +20,9 @@ void check_representable(double voxel_size);
 void check_level_set(const RasterizeOptions& options);
 
 /// Sets a grid's transform, metadata and storage of floats.
-void describe(openvdb::GridBase& grid, const ToVoxels& to_voxels, const RasterizeOptions& options);
+///
+/// frame: if the options have none
+void describe(openvdb::GridBase& grid, const ToVoxels& to_voxels, const RasterizeOptions& options, const Box& frame);
 
 /// A grid of bits named "mask": the active voxels of a grid of floats or vectors.
 [[nodiscard]] openvdb::MaskGrid::Ptr mask_of(const openvdb::GridBase& grid);

@@ -142,8 +142,9 @@ public:
         if (samples_) grids.push_back(coverage(part));
         if (options_.level_set) grids.push_back(distances(*mask, part));
         std::vector<VdbGrid> result;
+        const Box frame = bounds(*request_.mesh);
         for (std::size_t g = 0; g < grids.size(); ++g) {
-            describe(*grids[g], request_.to_voxels, options_);
+            describe(*grids[g], request_.to_voxels, options_, frame);
             result.push_back(make_vdb_grid(grids[g]));
             if (g < request_.fields.size()) finish(*request_.fields[g], result.back());
         }

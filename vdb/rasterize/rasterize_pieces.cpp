@@ -166,6 +166,7 @@ public:
         const MeshPiece part = gather(source_, box);
         if (part.mesh.cells.empty()) return {};
         RasterizeOptions options = options_;
+        options.frame = source_.bounds();
         options.progress = options.refine.progress = progress;
         LimitCells limit;
         if (options.find_limit) {
@@ -219,6 +220,7 @@ std::vector<VdbGrid> empty_grids(const MeshSource& source, std::span<const std::
         const std::size_t values = 8 * static_cast<std::size_t>(field.channels);
         cell.attributes.push_back({field.name, field.channels, std::vector<double>(values)});
     }
+    options.frame = source.bounds();
     options.refine = {.levels = 0};
     options.on_limit = false;
     return rasterize_block(cell, fields, options, {{1, 1, 1}, {1, 1, 1}}).grids;

@@ -12,6 +12,7 @@
 #include "grid_setup.h"
 #include "level_set.h"
 #include "subvol/detail/number_text.h"
+#include "subvol/detail/points_frame.h"
 #include "subvol/error.h"
 #include "subvol/rbf_field.h"
 #include "surface_columns.h"
@@ -186,7 +187,7 @@ std::vector<VdbGrid> rasterize_points(const RbfVolume& volume, std::span<const s
     }
     std::vector<VdbGrid> result;
     for (const auto& grid : grids) {
-        describe(*grid, to_voxels, options);
+        describe(*grid, to_voxels, options, frame_of(volume));
         result.push_back(make_vdb_grid(grid));
     }
     return result;

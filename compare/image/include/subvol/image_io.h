@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "subvol/image.h"
@@ -16,9 +17,10 @@ namespace subvol {
 ///
 /// background: linear RGB
 /// depth:      one per pixel, +infinity where nothing is; empty: no channel Z
+/// camera:     its numbers (`camera_text`), which an .exr has in its header as subvolCamera; empty: none
 /// throws:     Error(InvalidInput) for another extension or another number of depths, Error(Io)
 void write_image(const std::filesystem::path& path, const Image& image, const Vec3& background = Vec3(0.0),
-                 std::span<const float> depth = {});
+                 std::span<const float> depth = {}, const std::string& camera = {});
 
 /// 8-bit sRGB over a background of linear RGB: three bytes per pixel, rows from the top. Values above 1, infinity too, become
 /// 255; those below 0 and NaN become 0.
@@ -31,5 +33,8 @@ void write_image(const std::filesystem::path& path, const Image& image, const Ve
 ///
 /// throws: Error(Io) if there is no such file, Error(InvalidInput) if it is not a complete image or has more than 2²⁸ pixels
 [[nodiscard]] Image read_image(const std::filesystem::path& path);
+
+/// The camera in the header of an .exr; empty if there is none, or no such file.
+[[nodiscard]] std::string camera_of_image(const std::filesystem::path& path);
 
 }  // namespace subvol

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "subvol/hex_mesh.h"
+#include "subvol/mesh_source.h"
 #include "subvol/names.h"
 #include "subvol/optics.h"
 #include "subvol/option.h"
@@ -121,7 +121,10 @@ void make_solid(TransferFunction& function, bool plain);
 /// The points to which a camera is fitted: those of a solid, and those of a mesh without cells; of other bodies those of the
 /// cells that can be seen, or nothing if these are most of the body.
 ///
-/// mesh: its first attribute is the field
-[[nodiscard]] std::vector<Vec3> framed_points(const HexMesh& mesh, Look look, const Optics& optics);
+/// source:  its first attribute is the field
+/// returns: of a mesh in pieces the same as of the whole, but nothing for a solid, whose hull frames it (`gather_hull`)
+/// cost:    reads all pieces once, but for a solid; memory: one piece and the points
+[[nodiscard]] std::vector<Vec3> framed_points(const MeshSource& source, Look look, const Optics& optics,
+                                              Progress* progress = nullptr);
 
 }  // namespace subvol

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "subvol/camera.h"
+#include "subvol/facts.h"
 #include "subvol/option.h"
 
 namespace subvol {
@@ -45,6 +46,9 @@ struct ViewOptions {
 
 /// The numbers of a camera, as `parse_camera` reads them: exact.
 [[nodiscard]] std::string camera_text(const Camera& camera);
+
+/// The same as a file of a camera has it: eye, target, up, and fovy_deg or ortho_height.
+[[nodiscard]] Facts facts_of(const Camera& camera);
 
 /// The camera of the options; of a turntable its first one.
 ///

@@ -17,6 +17,8 @@ namespace subvol {
 
 /// kind:     float, vector, integer, mask, or the name of another type
 /// min, max: of the active values; of a vector its length
+/// frame:    what named views show: the box of the mesh or the points that the grid was made of, which its file has; of other
+///           grids, the box of the active voxels
 struct GridReport {
     std::string name;
     std::string kind;
@@ -25,6 +27,7 @@ struct GridReport {
     std::size_t bytes = 0;  // of the tree in memory
     double min = 0, max = 0;
     Box bounds{};  // of the active voxels' centres, world; empty if there are none
+    Box frame{};   // empty if there are no active voxels
 };
 
 namespace detail {

@@ -48,6 +48,7 @@ struct LevelSetOptions {
 ///                   active where it is above zero
 /// level_set:        adds a grid of floats: the distance to the volume's boundary in world units, exact in a narrow band
 ///                   about it, negative at centres inside the volume; beyond the band ± its half width, inactive
+/// frame:            the box that named views of the grids show, which they store; empty: that of the mesh or the points
 /// metadata:         names and texts that are stored in every grid
 struct RasterizeOptions {
     double voxel_size_world = 0;
@@ -64,6 +65,7 @@ struct RasterizeOptions {
     bool mask = false;
     bool coverage = false;
     std::optional<LevelSetOptions> level_set{};
+    Box frame{};
     std::string creator = "OpenSubVol";
     std::vector<std::pair<std::string, std::string>> metadata{};
     Progress* progress = nullptr;
