@@ -118,12 +118,15 @@ private:
         std::vector<Range> ranges;
         const auto add = [&](const CommonOptions& common, const std::string& label) {
             report["input"] = input_;
-            mesh_ = shown_mesh(report.unpack(load_mesh(input_, common, report.progress())), common, report);
+            ReadResult read = report.unpack(read_input(input_, common, report.progress()));
+            const std::vector<FieldInfo> of_file = std::move(read.fields);
+            mesh_ = shown_mesh(report.unpack(mesh_of(std::move(read), common, nullptr)), common, report);
             mesh_ = report.unpack(tets_.hexes(std::move(mesh_), 1, report.progress()));
             const HexMesh& mesh = mesh_;
             box_.add(bounds(mesh));
             if (options.fields.empty()) {
-                for (const Attribute& field : mesh.attributes) options.fields.push_back({.name = field.name});
+                for (const Attribute& field : mesh.attributes)
+                    options.fields.push_back({.name = field.name, .unit = unit_of(of_file, field.name)});
             }
             const auto same = [](const PageField& a, const Attribute& b) { return a.name == b.name; };
             if (!std::ranges::equal(options.fields, mesh.attributes, same)) {
@@ -179,7 +182,7 @@ private:
             const Optics optics = of_field.make_optics(box_, range, range);
             field.function = optics.function();
             if (solid) field.function.color = picture_.make_optics(box_, range, range).function().color;
-            if (f == 0) field.unit = unit_;
+            if (f == 0 && !unit_.empty()) field.unit = unit_;
             if (f == 0) options.opacity_unit_world = optics.opacity_unit();
         }
         const PageField& first = options.fields.front();

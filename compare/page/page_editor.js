@@ -136,7 +136,11 @@ class Editor {
     c.fillStyle = soft;
     c.font = '11px system-ui, sans-serif';
     c.textAlign = 'center';
-    for (const [v, label] of roundTicks(this.low, this.high, 5)) {
+    const unit = this.field.unit ? ' ' + this.field.unit : '';
+    const ends = [shortNumber(this.low), shortNumber(this.high) + unit].map((text) => c.measureText(text).width);
+    const apart = (Math.max(...ends) + 24) / (l.right - l.left);
+    for (const [v, number] of ticksWithEnds(this.low, this.high, 4, apart)) {
+      const label = v === this.high ? number + unit : number;
       const x = this.xOf(v), half = c.measureText(label).width / 2;
       c.fillRect(x - 0.5, l.barEnd, 1, 4);
       c.fillText(label, Math.min(l.width - half - 1, Math.max(half + 1, x)), l.height - 10);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The page: what its controls do, and when the picture is drawn.
 
+const kFirstSheets = 1e9;  // as few sheets as there may be: something is soon to be seen, even without a GPU
+
 const $ = (id) => document.getElementById(id);
 
 function fail(error) {
@@ -53,7 +55,11 @@ class Page {
     $('compare-row').hidden = !this.head.reference;
   }
 
+  // A solid is opaque: where opacities show, instead of another look that nobody chose.
+  tellOpacities() { $('opacity-note').hidden = this.look !== 'solid'; }
+
   setScene() {
+    this.tellOpacities();
     this.painter.setScene(this.step, this.field);
     const current = this.transfers[this.field];
     this.editor.set(this.head.fields[this.field], current.transfer, current.scale, current.range, this.histogram());
@@ -84,7 +90,7 @@ class Page {
     };
     on('step', 'change', step);
     on('steps', 'input', step);
-    on('look', 'change', (e) => { this.look = e.value; this.leaveComparison(); this.drawLegend(); this.refresh(); });
+    on('look', 'change', (e) => { this.look = e.value; this.tellOpacities(); this.leaveComparison(); this.drawLegend(); this.refresh(); });
     on('colors', 'change', (e) => {
       const current = this.transfers[this.field];
       current.scale = this.editor.scale = e.value ? this.head.presets[e.value] : this.given(this.head.fields[this.field]).scale;
@@ -168,10 +174,6 @@ class Page {
   }
 
   transferChanged(opacities) {
-    if (opacities && this.look === 'solid') {
-      this.look = 'volume';
-      $('look').value = this.look;
-    }
     this.painter.setTransfer(this.transfers[this.field].transfer, this.head.opacityUnit);
     this.leaveComparison();
     this.drawLegend();
@@ -247,8 +249,8 @@ class Page {
 
   // A picture of fewer pixels and sheets, as many as a fifteenth of a second allows.
   async drawCoarse(view, clip) {
-    const c = this.coarseness, size = (n) => Math.max(16, Math.round(n / c));
-    const start = performance.now(), work = this.painter.drawVolume({ ...view, width: size(view.width), height: size(view.height) }, clip, 1 + c / 2);
+    const c = this.coarseness, sheets = this.firstPicture ? 1 + c / 2 : kFirstSheets, size = (n) => Math.max(16, Math.round(n / c));
+    const start = performance.now(), work = this.painter.drawVolume({ ...view, width: size(view.width), height: size(view.height) }, clip, sheets);
     let step = work.next();
     while (!step.done) step = work.next();
     this.painter.show(step.value, this.background());
@@ -307,10 +309,10 @@ class Page {
     c.scale(scale, scale);
     c.font = '12px system-ui, sans-serif';
     c.fillStyle = 0.2126 * b[0] + 0.7152 * b[1] + 0.0722 * b[2] > 0.18 ? '#1c1c1c' : '#eee';
-    const top = 24, bottom = height - 8, right = width - 10, left = right - 14, high = field.max > field.min ? field.max : field.min + 1;
+    const top = 30, bottom = height - 14, right = width - 10, left = right - 14, high = field.max > field.min ? field.max : field.min + 1;
     c.textAlign = 'right';
     c.fillText(field.name + (field.unit ? ' [' + field.unit + ']' : ''), right, 14, width - 12);
-    for (const [v, label] of roundTicks(field.min, high, 6)) {
+    for (const [v, label] of ticksWithEnds(field.min, high, 6, 16 / (bottom - top))) {
       const y = bottom - (v - field.min) / (high - field.min) * (bottom - top);
       c.fillRect(left - 4, y - 0.5, 4, 1);
       c.fillText(label, left - 7, y + 4);

@@ -86,4 +86,9 @@ function roundTicks(min, max, most) {
   }
   return ticks;
 }
+// The same with the values at the ends; round ones that are nearer to an end than a part of the axis are left out.
+function ticksWithEnds(min, max, most, apart) {
+  const far = apart * (max - min), inner = roundTicks(min, max, most).filter(([v]) => v - min > far && max - v > far);
+  return [[min, shortNumber(min)], ...inner, [max, shortNumber(max)]];
+}
 function shortNumber(v) { return String(Number(v.toPrecision(5))); }

@@ -235,15 +235,29 @@ class InTheBrowser(unittest.TestCase):
         cut = self.shot("page_cut.png")
         self.assertTrue(self.browser.evaluate("document.getElementById('clip').checked"))
         self.assertNotEqual(cut, turned)
-        # A point of the opacities: the look becomes transparent.
+        # A point of the opacities: a solid stays what it is, and the page says where opacities show.
         left, top, long, high = self.box("#editor")
         last = self.browser.evaluate("(e => e.transfer.opacity.map(([v, a]) => [e.xOf(v), e.yOf(a)]).at(-1))(subvolPage.editor)")
         self.drag(left + last[0], top + last[1], -0.3 * long, -20)
-        self.assertEqual(self.browser.evaluate("document.getElementById('look').value"), "volume")
+        self.assertEqual(self.browser.evaluate("document.getElementById('look').value"), "solid")
+        self.assertFalse(self.browser.evaluate("document.getElementById('opacity-note').hidden"))
+        self.browser.evaluate("(s => { s.value = 'volume'; s.dispatchEvent(new Event('change')); })(document.getElementById('look'))")
+        self.assertTrue(self.browser.evaluate("document.getElementById('opacity-note').hidden"))
         opacity = self.browser.evaluate("subvolPage.editor.transfer.opacity.at(-1)[1]")
         self.assertGreater(opacity, 0.5)
         self.assertNotEqual(self.shot("page_opacity.png"), cut)
         self.assertEqual(self.browser.requests(), [])
+        self.assertEqual(self.browser.complaints(), [])
+
+    def test_colours_have_the_values_of_their_ends(self):
+        self.command("page", "model:ball:4", "-o", "u.html", "--unit", "K")
+        self.open("u.html", 300)
+        ticks = self.browser.evaluate("ticksWithEnds(1.25, 99, 6, .1)")
+        self.assertEqual([ticks[0], ticks[-1]], [[1.25, "1.25"], [99, "99"]])
+        for value, _ in ticks[1:-1]:
+            self.assertTrue(1.25 + 9.7 < value < 99 - 9.7, ticks)  # beside the ends, not on them
+        self.assertEqual(self.browser.evaluate("document.getElementById('field').options[0].text"), "density [K]")
+        self.shot("page_ends.png")
         self.assertEqual(self.browser.complaints(), [])
 
     def test_hostile_names_are_shown_and_nothing_else_runs(self):
