@@ -3,8 +3,6 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <array>
-#include <charconv>
 #include <limits>
 
 #include "choices.h"
@@ -12,6 +10,7 @@
 #include "options.h"
 #include "outputs.h"
 #include "subvol/camera_fit.h"
+#include "subvol/color_name.h"
 #include "subvol/detail/near_name.h"
 #include "subvol/detail/picture_size.h"
 #include "subvol/detail/printable.h"
@@ -21,50 +20,6 @@
 #include "text.h"
 
 namespace subvol::cli {
-
-Vec3 parse_background(const std::string& text) {
-    struct Named {
-        const char* name;
-        int rgb;
-    };
-    constexpr std::array<Named, 14> kNamed{{{"white", 0xffffff},
-                                            {"black", 0},
-                                            {"lightgrey", 0xe4e6e9},
-                                            {"lightgray", 0xe4e6e9},
-                                            {"grey", 0x808080},
-                                            {"gray", 0x808080},
-                                            {"darkgrey", 0x404040},
-                                            {"darkgray", 0x404040},
-                                            {"red", 0xff0000},
-                                            {"green", 0x008000},
-                                            {"blue", 0x0000ff},
-                                            {"yellow", 0xffff00},
-                                            {"navy", 0x000080},
-                                            {"ivory", 0xfffff0}}};
-    const auto from_bytes = [](int rgb) { return linear_from_srgb(Vec3(rgb >> 16, rgb >> 8 & 255, rgb & 255) / 255.0); };
-    for (const auto& [name, rgb] : kNamed) {
-        if (text == name) return from_bytes(rgb);
-    }
-    if (text.starts_with('#')) {
-        int rgb = 0;
-        const auto [end, error] = std::from_chars(text.data() + 1, text.data() + text.size(), rgb, 16);
-        if (text.size() == 7 && text[1] != '-' && error == std::errc() && end == text.data() + text.size())
-            return from_bytes(rgb);
-        throw Error(ErrorCode::InvalidInput, "'" + text + "' is not a colour", "--background", "write it as #rrggbb");
-    }
-    if (text.find(',') == std::string::npos) {
-        std::vector<std::string> names;
-        for (const auto& named : kNamed) names.emplace_back(named.name);
-        throw Error(ErrorCode::InvalidInput, "'" + text + "' is not a colour" + detail::did_you_mean(text, names),
-                    "--background", "three numbers 0..1 such as 1,.5,0; #rrggbb; or " + join(names));
-    }
-    const Vec3 color = parse_vector("--background", text);
-    for (int c = 0; c < 3; ++c) {
-        if (color[c] >= 0 && color[c] <= 1) continue;
-        throw Error(ErrorCode::InvalidInput, "'" + text + "' is not a colour", "--background", "each number in 0..1");
-    }
-    return color;
-}
 
 Box visible_bounds(const HexMesh& mesh, const Optics& optics) {
     Box box;
@@ -89,13 +44,18 @@ void PictureArguments::add_some_to(CLI::App& app, std::initializer_list<std::str
 }
 
 void PictureArguments::add_camera_to(CLI::App& app) {
-    constexpr int kSides = 4, kMostPerSecond = 240;
+    constexpr int kMostPerSecond = 240;
+    constexpr double kLongest_s = 1e6;
     add_options(app, options_of(eye));
     add_option(app, Option("views", views)
-                        .between(kSides, kSides)
-                        .help("N", "4: one picture of four, from the front, the side, above and iso")
+                        .help("N|SIDE,…",
+                              "several sides in one picture, with their names: front,iso, or 4 (front, right, top and iso)")
                         .instead_of({"view", "camera"}));
     add_option(app, Option("fps", frames_per_second).between(1, kMostPerSecond).help("N", "pictures per second of a video"));
+    add_option(app, Option("duration", duration_s)
+                        .between(1e-3, kLongest_s)
+                        .help("S", "the length of a video in seconds, whatever the number of its pictures")
+                        .instead_of({"fps"}));
 }
 
 void PictureArguments::add_light_to(CLI::App& app) {
@@ -106,11 +66,13 @@ void PictureArguments::add_light_to(CLI::App& app) {
         ->expected(0, 1);
     app.add_option("--unit", unit, "the field's unit, which the legend shows")->type_name("TEXT");
     app.add_flag("--axes", axes, "draw the directions of x, y and z in the lower left corner");
+    app.add_flag("--scale-bar", scale_bar,
+                 "draw a bar of a round length in the lower right corner, at the depth of the box's centre");
     app.add_flag("--edges", edges, "splat: draw the edges of the control mesh over the picture, hidden lines hidden");
     app.add_option(
            "--background", background,
-           "the background of a .png: linear red, green, blue in 0..1, #rrggbb (sRGB), or a name such as white (default: light "
-           "grey for solid and isosurface, white for xray, black for volume)")
+           "the background: linear red, green, blue in 0..1, #rrggbb (sRGB), a name, or none (.png with alpha); default: light "
+           "grey for solid and isosurface, white for xray, black for volume")
         ->type_name("COLOR");
 }
 
@@ -119,13 +81,13 @@ void PictureArguments::settle_look(bool has_boundary) {
 }
 
 Vec3 PictureArguments::background_color() const {
-    if (background) return parse_background(*background);
+    if (background && *background != "none") return parse_color(*background, "--background");
     return background_of(look);
 }
 
 std::vector<View> PictureArguments::make_views(const Box& box, std::span<const Vec3> points) const {
     const int width = eye.size.width - legend_px, height = eye.size.height;
-    if (views) return make_sheet(box, points, width / 2, height / 2);
+    if (views) return make_sheet(box, points);
     const Camera first = find_camera(eye, box, points, static_cast<double>(width) / height, OptionNames::Flags);
     if (!eye.turntable) return {View(first, width, height)};
     std::vector<View> frames;
@@ -133,9 +95,35 @@ std::vector<View> PictureArguments::make_views(const Box& box, std::span<const V
     return frames;
 }
 
-std::vector<View> PictureArguments::make_sheet(const Box& box, std::span<const Vec3> points, int width, int height) const {
+std::vector<std::string> PictureArguments::sheet_views() const {
+    if (!views) return {};
+    if (*views == "4") return {"front", "right", "top", "iso"};
+    std::vector<std::string> names;
+    for (std::size_t begin = 0; begin <= views->size();) {
+        const std::size_t end = std::min(views->find(',', begin), views->size());
+        names.push_back(views->substr(begin, end - begin));
+        begin = end + 1;
+    }
+    constexpr std::size_t kMost = 16;
+    if (names.size() < 2 || names.size() > kMost || std::ranges::any_of(names, [](const auto& name) { return name.empty(); }))
+        throw Error(ErrorCode::InvalidInput, "'" + *views + "' are not several views", "--views",
+                    "4, or 2 to 16 sides such as front,iso");
+    return names;
+}
+
+int PictureArguments::sheet_columns() const {
+    const std::size_t count = sheet_views().size();
+    int columns = 1;
+    while (static_cast<std::size_t>(columns * columns) < count) ++columns;
+    return columns;
+}
+
+std::vector<View> PictureArguments::make_sheet(const Box& box, std::span<const Vec3> points) const {
+    const std::vector<std::string> sides = sheet_views();
+    const int columns = sheet_columns(), rows = (static_cast<int>(sides.size()) + columns - 1) / columns;
+    const int width = (eye.size.width - legend_px) / columns, height = eye.size.height / rows;
     std::vector<View> sheet;
-    for (const char* side : {"-y", "+x", "+z", "iso"}) {
+    for (const std::string& side : sides) {
         ViewOptions one = eye;
         one.view = side;
         sheet.emplace_back(find_camera(one, box, points, static_cast<double>(width) / height, OptionNames::Flags), width,
@@ -154,9 +142,10 @@ void PictureArguments::check() const {
     (void)find_camera(eye, any, {}, static_cast<double>(width) / height, OptionNames::Flags);
     (void)find_transfer_function(colors_of({.look = look, .colors = choices.colors.value_or("")}), {0, 1}, false);
     (void)background_color();
-    if (views && (width % 2 != 0 || height % 2 != 0)) {
-        throw Error(ErrorCode::InvalidInput, "a sheet of four views has quarters of whole pixels",
-                    text("--size ", width, "x", height), "an even width and height");
+    for (const std::string& side : sheet_views()) (void)camera_of_option("--views", side, any);
+    if (const int columns = std::max(1, sheet_columns()); views && width % columns != 0) {
+        throw Error(ErrorCode::InvalidInput, text("a sheet of ", columns, " views side by side has parts of whole pixels"),
+                    text("--size ", width, "x", height), text("a width that is a multiple of ", columns));
     }
     if (legend && !legend_inside()) check_output(*legend, {".svg"});
     if (!unit.empty() && !legend) throw Error(ErrorCode::InvalidInput, "is shown by a legend only", "--unit", "--legend");
@@ -165,7 +154,10 @@ void PictureArguments::check() const {
 LegendOptions PictureArguments::legend_options(const ShownField& field, const ShownField& colors) const {
     const Range range = shown_range(choices, colors.range, OptionNames::Flags);
     const std::string& known = unit.empty() ? colors.unit : unit;
-    LegendOptions options{.title = colors.name + (known.empty() ? "" : " [" + known + "]"), .min = range.min, .max = range.max};
+    LegendOptions options{.title = colors.name + (known.empty() ? "" : " [" + known + "]"),
+                          .min = range.min,
+                          .max = range.max,
+                          .shape = color_shape(choices, OptionNames::Flags)};
     options.note = legend_note;
     options.names = legend_names;
     if (field.name != colors.name) {

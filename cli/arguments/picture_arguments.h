@@ -35,16 +35,12 @@ struct ShownField {
 /// The box of the points that are not transparent; the pawn, for example, fills only a small part of its block.
 [[nodiscard]] Box visible_bounds(const HexMesh& mesh, const Optics& optics);
 
-/// The colour behind a picture, in linear light: "r,g,b" in 0..1, "#rrggbb" (sRGB), or a name.
-///
-/// throws: Error(InvalidInput)
-[[nodiscard]] Vec3 parse_background(const std::string& text);
-
 /// What a picture shows and how.
 struct PictureArguments {
     ViewOptions eye;
-    std::optional<int> views;  // 4: a sheet of front, side, top and iso
+    std::optional<std::string> views;  // a sheet: "4" (front, side, top and iso), or the views' names
     int frames_per_second = 30;
+    std::optional<double> duration_s;  // of a video, instead
     LookChoices choices;
     Look look = Look::Volume;               // as settled
     std::optional<std::string> legend;      // the file; empty: inside the picture
@@ -54,7 +50,7 @@ struct PictureArguments {
     std::vector<std::string> legend_names;  // of the values 1, 2, …, as settled; empty: the legend has a colour bar
     std::string title;                      // above the picture
     bool time_label = false;                // the time of the step below it
-    bool axes = false, edges = false;
+    bool axes = false, edges = false, scale_bar = false;
     std::optional<std::string> background;
 
     void add_to(CLI::App& app);
@@ -65,9 +61,15 @@ struct PictureArguments {
     void settle_look(bool has_boundary);
     [[nodiscard]] bool lit() const { return is_lit(look); }
     [[nodiscard]] Vec3 background_color() const;
+    /// Whether nothing is behind the picture.
+    [[nodiscard]] bool transparent() const { return background == "none"; }
+    /// The names of the views of a sheet.
+    [[nodiscard]] std::vector<std::string> sheet_views() const;
+    /// The pictures of a sheet side by side.
+    [[nodiscard]] int sheet_columns() const;
 
-    /// One view, or those of the turntable, or the four of a sheet, each a quarter of the picture. points: a
-    /// named view is fitted to them; none: to the box
+    /// One view, or those of the turntable, or those of a sheet, each a part of the picture. points: a named
+    /// view is fitted to them; none: to the box
     [[nodiscard]] std::vector<View> make_views(const Box& box, std::span<const Vec3> points = {}) const;
     /// field: the range of the field that gives the opacities
     [[nodiscard]] LookOptions look_options(const Range& field) const {
@@ -90,7 +92,7 @@ struct PictureArguments {
 private:
     void add_camera_to(CLI::App& app);
     void add_light_to(CLI::App& app);
-    [[nodiscard]] std::vector<View> make_sheet(const Box& box, std::span<const Vec3> points, int width, int height) const;
+    [[nodiscard]] std::vector<View> make_sheet(const Box& box, std::span<const Vec3> points) const;
 };
 
 }  // namespace subvol::cli

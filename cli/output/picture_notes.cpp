@@ -44,6 +44,12 @@ void PictureNotes::draw_over(Picture& picture, const View& view) const {
         }
     }
     if (axes) draw_axes(picture.image, view, ink);
+    if (scale_at) draw_scale_bar(picture.image, view, *scale_at, ink);
+}
+
+void PictureNotes::name_view(Picture& picture, const std::string& name) const {
+    const double letter = std::clamp(picture.image.height / 24.0, 9.0, 70.0);
+    draw_text(picture.image, {0.7 * letter, 1.4 * letter}, name, {.size_px = letter, .color = ink});
 }
 
 void PictureNotes::add_legend(Picture& picture) const {
@@ -75,7 +81,7 @@ PictureNotes make_notes(PictureArguments& arguments, const ShownColors& colors, 
     if (arguments.legend_inside()) {
         notes.legend = legend;
         const auto [width, height] = arguments.eye.size;
-        const int parts = arguments.views ? 2 : 1;  // each side by side gets as many columns
+        const int parts = std::max(1, arguments.sheet_columns());  // each side by side gets as many columns
         notes.legend_px = legend_width_px(notes.function, legend, height);
         notes.legend_px += (width - notes.legend_px) % parts;
         if (width - notes.legend_px < width / 3) {

@@ -24,6 +24,7 @@ struct ShownColors {
 /// What is drawn over the pictures of a run: shells and beams, axes, edges of the control mesh, a legend beside them.
 struct PictureNotes {
     bool axes = false;
+    std::optional<Vec3> scale_at{};  // a scale bar is for lengths at this point
     const HexMesh* edges = nullptr;  // of this mesh
     std::shared_ptr<const ShellScene> shells{};
     Vec3 ink{0.0};
@@ -34,8 +35,10 @@ struct PictureNotes {
 
     /// Draws shells and beams, which come first.
     void draw_shells(Picture& picture, const View& view) const;
-    /// Draws axes and edges.
+    /// Draws axes, edges and the scale bar.
     void draw_over(Picture& picture, const View& view) const;
+    /// Writes the name of a view into its upper left corner.
+    void name_view(Picture& picture, const std::string& name) const;
     /// Draws the caption. Makes room at the right for the legend, and draws it.
     void add_legend(Picture& picture) const;
 };

@@ -58,17 +58,23 @@ PictureOutput::PictureOutput(const std::string& path, std::optional<int> frames,
     : path_(path),
       frames_(frames),
       first_(first),
-      sheet_(arguments.views.has_value()),
-      background_(arguments.background_color()) {
-    if (sheet_ && frames_)
+      sheet_(arguments.sheet_views()),
+      columns_(arguments.sheet_columns()),
+      background_(arguments.background_color()),
+      transparent_(arguments.transparent()) {
+    if (!sheet_.empty() && frames_)
         throw Error(ErrorCode::InvalidInput, "a sheet of views does not turn", "--views", "--turntable alone");
     if (!is_video(path_)) {
-        check_output(path_, {".png", ".exr"});
+        check_output(path_, {".png", ".exr", ".jpg", ".jpeg", ".webp"});
+        if (transparent_ && path_.extension() != ".png" && path_.extension() != ".exr")
+            throw Error(ErrorCode::InvalidInput, "has no alpha", path_.string(), "--background COLOR, or .png or .exr");
     } else if (!frames_) {
         throw Error(ErrorCode::InvalidInput, "only a turntable or steps make a video", path,
                     "--turntable N, --step all, or .png or .exr");
     } else {
-        video_.emplace(path_, arguments.eye.size, arguments.frames_per_second);
+        if (transparent_) throw Error(ErrorCode::InvalidInput, "a video has no alpha", "--background none", "a colour");
+        const double rate = arguments.duration_s ? *frames_ / *arguments.duration_s : arguments.frames_per_second;
+        video_.emplace(path_, arguments.eye.size, rate);
     }
 }
 
@@ -79,7 +85,7 @@ void PictureOutput::set_share(const Share& share, PartNote note) {
         throw Error(ErrorCode::InvalidInput, "a video is not made in shares", path_.string(),
                     "numbered pictures: NAME_####.png");
     }
-    if (sheet_) throw Error(ErrorCode::InvalidInput, "a sheet of views is not made in shares", "--views");
+    if (!sheet_.empty()) throw Error(ErrorCode::InvalidInput, "a sheet of views is not made in shares", "--views");
     if (!frames_ && path_.extension() != ".exr") {
         throw Error(ErrorCode::InvalidInput, "a share of a picture is written as .exr", path_.string(),
                     ".exr; `subvol join` writes .png or .exr");
@@ -95,9 +101,10 @@ bool PictureOutput::wants_next() const {
 Facts PictureOutput::write_sheet(const std::vector<View>& views, const DrawPicture& draw, Progress* progress) {
     Facts facts;
     const int width = views.front().width(), height = views.front().height();
-    Picture sheet{Image(2 * width, 2 * height), {}};
+    const int rows = (static_cast<int>(views.size()) + columns_ - 1) / columns_;
+    Picture sheet{Image(columns_ * width, rows * height), {}};
     sheet.depth.assign(sheet.image.rgba.size() / 4, std::numeric_limits<float>::infinity());
-    const bool is_png = path_.extension() == ".png";
+    const bool is_png = path_.extension() != ".exr" && !transparent_;
     bool blank = true;
     for (std::size_t i = 0; i < views.size(); ++i) {
         cameras_.emplace_back(facts_of(views[i].camera()));
@@ -107,12 +114,14 @@ Facts PictureOutput::write_sheet(const std::vector<View>& views, const DrawPictu
         opacity_ = std::max(opacity_, most_opaque(part.image));  // before anything is drawn over it
         blank = blank && is_png && is_blank(part.image, background_);
         notes_.draw_over(part, views[i]);
-        const int left = static_cast<int>(i % 2) * width, top = static_cast<int>(i / 2) * height;
+        notes_.name_view(part, sheet_[i]);
+        const int number = static_cast<int>(i);
+        const int left = number % columns_ * width, top = number / columns_ * height;
         for (int y = 0; y < height; ++y) {
             for (int x = 0; x < width; ++x) {
                 std::ranges::copy(part.image.pixel(x, y), sheet.image.pixel(left + x, top + y).begin());
                 if (part.depth.empty()) continue;
-                sheet.depth[pixel_index(2 * width, left + x, top + y)] = part.depth[pixel_index(width, x, y)];
+                sheet.depth[pixel_index(columns_ * width, left + x, top + y)] = part.depth[pixel_index(width, x, y)];
             }
         }
     }
@@ -126,7 +135,7 @@ Facts PictureOutput::write_sheet(const std::vector<View>& views, const DrawPictu
 }
 
 Facts PictureOutput::write(const std::vector<View>& views, const DrawPicture& draw, Progress* whole) {
-    if (sheet_) return write_sheet(views, draw, whole);
+    if (!sheet_.empty()) return write_sheet(views, draw, whole);
     Facts facts;
     for (const View& view : views) {
         if (!wants_next()) {
@@ -147,7 +156,7 @@ Facts PictureOutput::write(const std::vector<View>& views, const DrawPicture& dr
         notes_.draw_shells(picture, view);
         const float opacity = most_opaque(picture.image);
         opacity_ = std::max(opacity_, opacity);
-        if (written_ == 0 && path_.extension() == ".png") {
+        if (written_ == 0 && path_.extension() != ".exr" && !transparent_) {
             warn_if_blank(is_blank(picture.image, background_), opacity, facts);
         }
         const detail::Stopwatch watch;
@@ -200,7 +209,8 @@ void PictureOutput::write_frame(std::size_t frame, const Picture& picture, const
     } else if (share_ && !frames_) {
         write_rows(picture, camera);
     } else {
-        write_image(frame_path(frame), picture.image, background_, picture.depth, camera);
+        write_image(frame_path(frame), picture.image, transparent_ ? std::nullopt : std::optional(background_), picture.depth,
+                    camera);
     }
 }
 

@@ -64,8 +64,10 @@ private:
     std::filesystem::path path_;
     std::optional<int> frames_;
     int first_;
-    bool sheet_;  // four views in one picture
+    std::vector<std::string> sheet_;  // the names of several views in one picture
+    int columns_;                     // of the sheet
     Vec3 background_;
+    bool transparent_;
     PictureNotes notes_{};
     std::size_t written_ = 0;
     FactValue::List cameras_{};  // of what was drawn

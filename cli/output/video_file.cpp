@@ -26,7 +26,7 @@ namespace {
     throw Error(ErrorCode::Io, "cannot be written: " + std::generic_category().message(error), path.string());
 }
 
-std::vector<std::string> arguments_for(const std::filesystem::path& path, const PictureSize& size, int frames_per_second) {
+std::vector<std::string> arguments_for(const std::filesystem::path& path, const PictureSize& size, double frames_per_second) {
     std::vector<std::string> arguments{"ffmpeg",
                                        "-v",
                                        "error",
@@ -78,7 +78,7 @@ bool is_video(const std::filesystem::path& path) {
     return extension == ".mp4" || extension == ".webm" || extension == ".gif";
 }
 
-VideoFile::VideoFile(const std::filesystem::path& path, const PictureSize& size, int frames_per_second)
+VideoFile::VideoFile(const std::filesystem::path& path, const PictureSize& size, double frames_per_second)
     : path_(path), file_(path), words_(std::tmpfile()) {
     if (!words_) fail_with(errno, path_);
     try {
@@ -98,7 +98,7 @@ VideoFile::~VideoFile() {
     std::fclose(words_);
 }
 
-void VideoFile::start(const PictureSize& size, int frames_per_second) {
+void VideoFile::start(const PictureSize& size, double frames_per_second) {
     // A socket rather than a pipe: once nobody reads it, writing to it can be an error instead of a signal.
     std::array<int, 2> ends{};
     if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0) fail_with(errno, path_);

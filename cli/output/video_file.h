@@ -23,7 +23,7 @@ public:
     /// Starts ffmpeg at once, so that a missing ffmpeg is noticed before any work is done.
     ///
     /// throws: Error(MissingCapability) if there is no ffmpeg
-    VideoFile(const std::filesystem::path& path, const PictureSize& size, int frames_per_second);
+    VideoFile(const std::filesystem::path& path, const PictureSize& size, double frames_per_second);
     ~VideoFile();
     VideoFile(const VideoFile&) = delete;
     VideoFile& operator=(const VideoFile&) = delete;
@@ -39,7 +39,7 @@ public:
     void finish();
 
 private:
-    void start(const PictureSize& size, int frames_per_second);
+    void start(const PictureSize& size, double frames_per_second);
     /// returns: whether ffmpeg succeeded
     bool wait();
     [[noreturn]] void fail();

@@ -151,7 +151,7 @@ private:
         const auto background = how("background", std::vector<double>(3));
         if (background.size() != 3) throw Error(ErrorCode::InvalidInput, "its note has no background", parts_.front());
         report.timed("write", [&] {
-            write_image(output_, picture.image, {background[0], background[1], background[2]}, picture.depth,
+            write_image(output_, picture.image, Vec3(background[0], background[1], background[2]), picture.depth,
                         how("camera", std::string()));
         });
         report["output"] = output_;

@@ -50,15 +50,16 @@ public:
             ->transform(number_in(1e4, 2e9));
         app().add_option("--title", title_, "the page's title (default: the file's name)")->type_name("TEXT");
         app().add_flag("--no-reference", no_reference_, "without the picture of `render` to compare with");
-        picture_.add_some_to(
-            app(), {"--size", "--camera", "--view", "--ortho", "--look", "--tf", "--range", "--opacity", "--opacity-unit"});
+        picture_.add_some_to(app(), {"--size", "--camera", "--view", "--ortho", "--look", "--tf", "--range", "--log",
+                                     "--symlog", "--bands", "--below", "--above", "--opacity", "--opacity-unit"});
         app().add_option("--unit", unit_, "the first field's unit, for the legend")->type_name("TEXT");
         sample_.add_to(app());
         refine_.add_to(app(), "show the refined mesh of this level instead of the limit");
         set_essentials({"--output", "--fields", "--field", "--look", "--tf", "--opacity", "--view", "--camera", "--max-bytes",
                         "--per-edge", "--title", "--json"});
         group("Camera", {"--size", "--camera", "--view", "--ortho"});
-        group("Colours and light", {"--look", "--tf", "--range", "--opacity", "--opacity-unit", "--unit"});
+        group("Colours and light", {"--look", "--tf", "--range", "--log", "--symlog", "--bands", "--below", "--above",
+                                    "--opacity", "--opacity-unit", "--unit"});
         group("Kernels",
               {"--per-edge", "--centers", "--spacing", "--spacing-voxels", "--tolerance", "--footprint", "--footprint-size",
                "--values", "--kernel", "--value-kernel", "--threshold", "--correction", "--reduce", "--refine"});

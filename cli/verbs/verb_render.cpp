@@ -135,7 +135,8 @@ public:
             .add_option("FILE", input_, text(input_help(), "; or points (.ply, .vtp, .svk, .vdb), or a .vdb grid of floats"))
             ->required();
         app()
-            .add_option("-o,--output", output_, "the picture (.png, or .exr for linear floats), or a turntable's video")
+            .add_option("-o,--output", output_,
+                        "the picture (.png, .jpg, .webp, or .exr for linear floats), or a turntable's video")
             ->type_name("IMAGE")
             ->required();
         arguments_.add_to(app());
@@ -200,7 +201,7 @@ private:
 
     void refuse_frames_per_second() {
         if (is_video(output_)) return;
-        refuse_options(app(), {"--fps"}, "has no effect without a video (-o NAME.mp4, .webm or .gif)");
+        refuse_options(app(), {"--fps", "--duration"}, "has no effect without a video (-o NAME.mp4, .webm or .gif)");
     }
 
     /// Shares are of frames; of a single picture they are of rows, which only splats and tetrahedra can be drawn in.
@@ -227,11 +228,28 @@ private:
     }
 
     void set_groups() {
-        group("Camera", {"--size", "--camera", "--view", "--views", "--fit", "--ortho", "--turntable", "--fps"});
+        group("Camera", {"--size", "--camera", "--view", "--views", "--fit", "--ortho", "--turntable", "--fps", "--duration"});
         group("Cuts", {"--clip", "--clip-box", "--slice", "--around"});
-        group("Colours and light",
-              {"--look", "--tf", "--tf-range", "--opacity", "--opacity-unit", "--legend", "--title", "--time-label",
-               "--background", "--shade", "--shadows", "--ambient-occlusion", "--color-field"});
+        group("Colours and light", {"--look",
+                                    "--iso",
+                                    "--tf",
+                                    "--tf-range",
+                                    "--log",
+                                    "--symlog",
+                                    "--bands",
+                                    "--below",
+                                    "--above",
+                                    "--opacity",
+                                    "--opacity-unit",
+                                    "--legend",
+                                    "--title",
+                                    "--time-label",
+                                    "--background",
+                                    "--scale-bar",
+                                    "--shade",
+                                    "--shadows",
+                                    "--ambient-occlusion",
+                                    "--color-field"});
         group("Kernels",
               {"--per-edge", "--centers", "--spacing", "--spacing-voxels", "--tolerance", "--footprint", "--footprint-size",
                "--values", "--kernel", "--value-kernel", "--threshold", "--correction", "--reduce", "--refine"});
@@ -276,15 +294,21 @@ private:
 
     /// The pictures of a body without notes of its own, framed by its box.
     void write(PictureBody body, const ShownColors& shown, PictureOutput& output, Report& report) {
-        output.set_notes(make_notes(picture_, shown, nullptr));
+        set_notes(make_notes(picture_, shown, nullptr), output);
         PictureMaker maker = maker_of(std::move(body), report);
         const std::vector<Vec3> framed = framed_points(maker, shown.optics, report);
         write(maker, picture_.make_views(box_, framed), shown.optics, output, report);
     }
 
+    /// Gives the notes to the output, with the scale bar that was asked for.
+    void set_notes(PictureNotes notes, PictureOutput& output) const {
+        if (picture_.scale_bar) notes.scale_at = box_.center();
+        output.set_notes(std::move(notes));
+    }
+
     void set_notes(const ShownBody& mesh, const ShownColors& shown, PictureOutput& output, Report& report) {
         Facts facts;
-        output.set_notes(make_notes(mesh, shown, arguments_, report.progress(), facts));
+        set_notes(make_notes(mesh, shown, arguments_, report.progress(), facts), output);
         report.merge(facts);
     }
 

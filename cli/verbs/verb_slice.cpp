@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <string_view>
 
 #include "body_input.h"
 #include "input.h"
@@ -10,6 +13,7 @@
 #include "picture_arguments.h"
 #include "places_input.h"
 #include "refine_arguments.h"
+#include "subvol/color_name.h"
 #include "subvol/error.h"
 #include "subvol/image_io.h"
 #include "subvol/limit_slice.h"
@@ -49,6 +53,10 @@ public:
                 .also("tf-range")
                 .help("MIN,MAX",
                       "the values of the first and of the last colour, or per cents of those on the plane (default: these)"));
+        constexpr std::array<std::string_view, 5> kShape{"log", "symlog", "bands", "below", "above"};
+        for (const Option& option : options_of(choices_)) {
+            if (std::ranges::find(kShape, option.name) != kShape.end()) add_option(app(), option);
+        }
         add_option(app(), Option("background", background_).help("COLOR", "the colour outside the volume, of a .png"));
         app().add_flag("--no-legend", no_legend_, "the picture alone");
         add_option(app(), Option("unit", unit_).help("TEXT", "of the field, for the legend").instead_of({"no-legend"}));
@@ -58,7 +66,7 @@ public:
 
     int run(Report& report) override {
         check_output(output_, {".png", ".exr", ".vtp", ".csv"});
-        const Vec3 background = parse_background(background_);
+        const Vec3 background = parse_color(background_, "--background");
         if (range_) (void)parse_range(*range_, {.min = 0, .max = 1}, "--range");
         std::vector<double> plane;
         if (!plane_.empty()) plane = parse_numbers("--plane", plane_, 6, "0,0,0,0,0,1");
@@ -110,11 +118,14 @@ private:
 
     void write_picture(const LimitSlice& slice, const std::vector<ContourLine>& lines, const Range& range,
                        const Vec3& background, Report& report) const {
-        TransferFunction function = find_transfer_function(function_, range);
+        const ColorShape shape = color_shape(choices_, OptionNames::Flags);
+        TransferFunction function = shaped(find_transfer_function(function_, range), shape);
         function.opacity = {{range.min, 1}, {range.max, 1}};  // a slice is opaque
         const bool png = output_.ends_with(".png");
-        const LegendOptions legend{
-            .title = slice.field + (unit_.empty() ? "" : " (" + unit_ + ")"), .min = range.min, .max = range.max};
+        const LegendOptions legend{.title = slice.field + (unit_.empty() ? "" : " (" + unit_ + ")"),
+                                   .min = range.min,
+                                   .max = range.max,
+                                   .shape = shape};
         int extra = 0;
         int height = slice.height;
         if (png && !no_legend_) {
@@ -154,6 +165,7 @@ private:
     std::string input_, output_, plane_, function_ = "viridis", background_ = "white", unit_;
     std::optional<std::string> range_;
     SliceOptions options_;
+    LookChoices choices_;  // the shape of the colours alone
     int contours_ = 0;
     bool no_legend_ = false;
     RefineArguments scheme_;

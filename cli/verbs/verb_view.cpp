@@ -38,8 +38,10 @@ namespace subvol::cli {
 namespace {
 
 /// Options of the arguments that a session does not have.
-constexpr std::array kNotHere{"--views",  "--turntable", "--fps",       "--legend",         "--unit",        "--threshold",
-                              "--reduce", "--refine",    "--footprint", "--footprint-size", "--color-field", "--shade"};
+constexpr std::array kNotHere{"--views",       "--turntable", "--fps",      "--legend",    "--unit",
+                              "--threshold",   "--reduce",    "--refine",   "--footprint", "--footprint-size",
+                              "--color-field", "--shade",     "--duration", "--scale-bar", "--iso",
+                              "--log",         "--symlog",    "--bands",    "--below",     "--above"};
 
 /// Options whose values actions change, so that the render command has them from the state; and those that only the window has.
 constexpr std::array kOfTheState{"--clip", "--clip-box", "--slice",        "--around",     "--size",     "--camera",  "--view",

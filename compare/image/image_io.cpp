@@ -76,6 +76,11 @@ private:
     std::array<std::uint8_t, kBins + 1> start_;
 };
 
+const EncodedBytes& encoder() {
+    static const EncodedBytes encoded;
+    return encoded;
+}
+
 /// write: to the path that it is given
 void write_file(const fs::path& path, const std::function<std::optional<PictureFault>(const std::string&)>& write) {
     AtomicFile file(path);
@@ -112,7 +117,7 @@ Image linear_image(const DecodedPicture& picture) {
 }
 
 void write_pixels(const fs::path& path, const Image& image, const PixelWindow& data, const PixelWindow& display,
-                  const Vec3& background, std::span<const float> depth, const std::string& camera = {}) {
+                  const std::optional<Vec3>& background, std::span<const float> depth, const std::string& camera = {}) {
     check_image(image);
     if (!depth.empty() && 4 * depth.size() != image.rgba.size()) {
         throw Error(ErrorCode::InvalidInput, "the number of depths is not the number of pixels", path.string());
@@ -126,11 +131,19 @@ void write_pixels(const fs::path& path, const Image& image, const PixelWindow& d
                                     .camera = camera.empty() ? nullptr : camera.c_str()};
         write_file(path, [&](const std::string& name) { return openexr().write(name, picture); });
     } else if (extension == ".png") {
-        const std::vector<std::uint8_t> rgb = srgb_bytes(image, background);
-        write_file(path, [&](const std::string& name) { return write_png(name, image.width, image.height, rgb); });
+        const std::vector<std::uint8_t> bytes = background ? srgb_bytes(image, *background) : srgba_bytes(image);
+        write_file(path, [&](const std::string& name) { return write_png(name, image.width, image.height, bytes); });
+    } else if (extension == ".jpg" || extension == ".jpeg" || extension == ".webp") {
+        if (!background)
+            throw Error(ErrorCode::InvalidInput, "a transparent picture is not written as " + extension, path.string(),
+                        ".png or .exr");
+        const std::vector<std::uint8_t> rgb = srgb_bytes(image, *background);
+        write_file(path, [&](const std::string& name) {
+            return openimageio().write(name, extension.substr(1), image.width, image.height, rgb);
+        });
     } else {
         throw Error(ErrorCode::InvalidInput, "images are not written as \"" + extension + "\" files", path.string(),
-                    ".exr or .png");
+                    ".exr, .png, .jpg or .webp");
     }
 }
 
@@ -147,8 +160,21 @@ DecodedPicture detail::read_picture(const fs::path& path, bool wants_depth) {
     return picture;
 }
 
+std::vector<std::uint8_t> srgba_bytes(const Image& image) {
+    const EncodedBytes& encoded_byte = encoder();
+    check_image(image);
+    std::vector<std::uint8_t> bytes;
+    bytes.reserve(image.rgba.size());
+    for (std::size_t i = 0; i < image.rgba.size(); i += 4) {
+        const double alpha = std::clamp(static_cast<double>(image.rgba[i + 3]), 0.0, 1.0);
+        for (std::size_t c = 0; c < 3; ++c) bytes.push_back(encoded_byte(alpha > 0 ? image.rgba[i + c] / alpha : 0));
+        bytes.push_back(static_cast<std::uint8_t>(std::lround(255 * alpha)));
+    }
+    return bytes;
+}
+
 std::vector<std::uint8_t> srgb_bytes(const Image& image, const Vec3& background) {
-    static const EncodedBytes encoded_byte;
+    const EncodedBytes& encoded_byte = encoder();
     check_image(image);
     std::vector<std::uint8_t> bytes;
     bytes.reserve(image.rgba.size() / 4 * 3);
@@ -162,7 +188,7 @@ std::vector<std::uint8_t> srgb_bytes(const Image& image, const Vec3& background)
     return bytes;
 }
 
-void write_image(const fs::path& path, const Image& image, const Vec3& background, std::span<const float> depth,
+void write_image(const fs::path& path, const Image& image, const std::optional<Vec3>& background, std::span<const float> depth,
                  const std::string& camera) {
     const PixelWindow whole{0, 0, image.width, image.height};
     write_pixels(path, image, whole, whole, background, depth, camera);

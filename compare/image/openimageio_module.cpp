@@ -60,6 +60,17 @@ OIIO::ImageBuf as_buffer(const Image& image) {
     return OIIO::ImageBuf(spec, const_cast<float*>(image.rgba.data()));
 }
 
+Outcome write(const std::string& path, const std::string& format, int width, int height, std::span<const std::uint8_t> rgb) {
+    const auto output = OIIO::ImageOutput::create(format);
+    if (!output) return PictureFault{ErrorCode::MissingCapability, "cannot be written: this OpenImageIO has no ." + format};
+    OIIO::ImageSpec spec(width, height, 3, OIIO::TypeDesc::UINT8);
+    spec.attribute("oiio:ColorSpace", "sRGB");
+    spec.attribute("Compression", format == "webp" ? "webp:92" : "jpeg:92");
+    const bool written = output->open(path, spec) && output->write_image(OIIO::TypeDesc::UINT8, rgb.data()) && output->close();
+    if (written) return std::nullopt;
+    return PictureFault{ErrorCode::Io, "cannot be written: " + output->geterror()};
+}
+
 OiioMetrics compare(const Image& a, const Image& b, const OiioOptions& options) {
     const auto result = OIIO::ImageBufAlgo::compare(as_buffer(a), as_buffer(b), options.fail, options.warn,
                                                     options.fail_relative, options.warn_relative);
@@ -83,7 +94,7 @@ const char subvol_module_version[] = SUBVOL_VERSION;
 
 const subvol::detail::OpenImageIo* subvol_openimageio() {
     using namespace subvol::detail;
-    static constexpr OpenImageIo kFunctions{&read, &compare, &compare_yee};
+    static constexpr OpenImageIo kFunctions{&read, &write, &compare, &compare_yee};
     return &kFunctions;
 }
 }

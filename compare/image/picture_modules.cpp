@@ -41,7 +41,7 @@ std::size_t compare_yee(const Image& a, const Image& b, float luminance, float f
 
 namespace subvol::detail {
 
-std::optional<PictureFault> write_png(const std::string& path, int width, int height, std::span<const std::uint8_t> rgb) {
+std::optional<PictureFault> write_png(const std::string& path, int width, int height, std::span<const std::uint8_t> bytes) {
     const auto failed = [](int error) {
         return PictureFault{ErrorCode::Io, "cannot be written: " + std::generic_category().message(error)};
     };
@@ -51,9 +51,10 @@ std::optional<PictureFault> write_png(const std::string& path, int width, int he
     picture.version = PNG_IMAGE_VERSION;
     picture.width = static_cast<png_uint_32>(width);
     picture.height = static_cast<png_uint_32>(height);
-    picture.format = PNG_FORMAT_RGB;
+    const std::size_t pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+    picture.format = bytes.size() == 4 * pixels ? PNG_FORMAT_RGBA : PNG_FORMAT_RGB;
     errno = 0;
-    if (png_image_write_to_stdio(&picture, stream.get(), 0, rgb.data(), 0, nullptr) == 0) {
+    if (png_image_write_to_stdio(&picture, stream.get(), 0, bytes.data(), 0, nullptr) == 0) {
         if (errno != 0) return failed(errno);
         return PictureFault{ErrorCode::Io, std::string("cannot be written: ") + picture.message};
     }

@@ -63,6 +63,9 @@ struct PictureFault {
 /// have different copies of the type `Error`.
 struct OpenImageIo {
     std::optional<PictureFault> (*read)(const std::string& path, DecodedPicture& picture);
+    /// format: jpg or webp, by the name of its extension, as the file's may be another one; rgb: as of `write_png`
+    std::optional<PictureFault> (*write)(const std::string& path, const std::string& format, int width, int height,
+                                         std::span<const std::uint8_t> rgb);
     OiioMetrics (*compare)(const Image& a, const Image& b, const OiioOptions& options);
     std::size_t (*compare_yee)(const Image& a, const Image& b, float luminance, float field_of_view_deg);
 };
@@ -94,8 +97,8 @@ struct OpenExr {
 /// Writes an 8-bit sRGB picture by libpng: the module of OpenImageIO takes a third of a second to load, which is a good part of
 /// the time of a first picture.
 ///
-/// rgb: three bytes a pixel, row by row from the top
+/// bytes: three a pixel, or four with alpha, row by row from the top
 [[nodiscard]] std::optional<PictureFault> write_png(const std::string& path, int width, int height,
-                                                    std::span<const std::uint8_t> rgb);
+                                                    std::span<const std::uint8_t> bytes);
 
 }  // namespace subvol::detail

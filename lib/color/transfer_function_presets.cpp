@@ -4,6 +4,7 @@
 #include <cmath>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "curves.h"
@@ -55,6 +56,26 @@ constexpr std::array<Stop, 4> kBone{{{0, {0, 0, 0}},
                                      {23 / 63.0, {23 / 72.0, 23 / 72.0, 32 / 72.0}},
                                      {47 / 63.0, {47 / 72.0, 56 / 72.0, 56 / 72.0}},
                                      {1, {1, 1, 1}}}};
+// jet, rainbow (blue to red by hue), desaturated and black body: ParaView's Jet, Blue to Red Rainbow, Rainbow Desaturated and
+// Black-Body Radiation.
+constexpr std::array<Stop, 7> kJet{{{0, {0, 0, .5625}},
+                                    {.111111, {0, 0, 1}},
+                                    {.365079, {0, 1, 1}},
+                                    {.503175, {.5, 1, .5}},
+                                    {.634921, {1, 1, 0}},
+                                    {.888889, {1, 0, 0}},
+                                    {1, {.5, 0, 0}}}};
+constexpr std::array<Stop, 5> kRainbow{
+    {{0, {0, 0, 1}}, {0.25, {0, 1, 1}}, {0.5, {0, 1, 0}}, {0.75, {1, 1, 0}}, {1, {1, 0, 0}}}};
+constexpr std::array<Stop, 8> kDesaturated{{{0, {.278431, .278431, .858824}},
+                                            {.143, {0, 0, .360784}},
+                                            {.285, {0, 1, 1}},
+                                            {.429, {0, .501961, 0}},
+                                            {.571, {1, 1, 0}},
+                                            {.714, {1, .380392, 0}},
+                                            {.857, {.419608, 0, 0}},
+                                            {1, {.878431, .301961, .301961}}}};
+constexpr std::array<Stop, 4> kBlackBody{{{0, {0, 0, 0}}, {.4, {.901961, 0, 0}}, {.8, {.901961, .901961, 0}}, {1, {1, 1, 1}}}};
 constexpr std::array<Stop, 2> kXray{{{0, {1, 1, 1}}, {1, {0, 0, 0}}}};
 constexpr std::array<Rgb, 3> kIvory{{{.80, .62, .40}, {.95, .86, .70}, {1, .97, .90}}};
 
@@ -90,6 +111,28 @@ constexpr double kMostCategories = 1000;
 
 const std::vector<std::string> kPresets{"viridis", "plasma", "inferno",    "cividis", "turbo",    "coolwarm",  "grey",
                                         "bone",    "xray",   "isosurface", "surface", "constant", "categories"};
+// What ParaView calls these maps, in small letters.
+struct Alias {
+    std::string_view name, preset;
+};
+constexpr std::array<Alias, 18> kAliases{{{"cool to warm", "coolwarm"},
+                                          {"blue to red", "rainbow"},
+                                          {"blue to red rainbow", "rainbow"},
+                                          {"rainbow desaturated", "desaturated"},
+                                          {"black-body radiation", "blackbody"},
+                                          {"hot", "blackbody"},
+                                          {"grayscale", "grey"},
+                                          {"greyscale", "grey"},
+                                          {"gray", "grey"},
+                                          {"x ray", "xray"},
+                                          {"viridis (matplotlib)", "viridis"},
+                                          {"plasma (matplotlib)", "plasma"},
+                                          {"inferno (matplotlib)", "inferno"},
+                                          {"cividis (matplotlib)", "cividis"},
+                                          {"bone_matlab", "bone"},
+                                          {"jet (matlab)", "jet"},
+                                          {"google turbo", "turbo"},
+                                          {"categorical", "categories"}}};
 constexpr double kDefaultOpacity = 0.5;
 constexpr double kSurfaceOpacity = 0.9;
 constexpr double kSurfaceRamp = 0.05;  // of the range
@@ -183,8 +226,13 @@ TransferFunction categories(KnotRange range) {
 
 }  // namespace
 
-TransferFunction transfer_function_preset(const std::string& name, double min, double max) {
+TransferFunction transfer_function_preset(const std::string& given, double min, double max) {
     const KnotRange range = usable_range(min, max);
+    std::string name = given;
+    std::ranges::transform(name, name.begin(),
+                           [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+    const auto alias = std::ranges::find(kAliases, name, &Alias::name);
+    if (alias != kAliases.end()) name = alias->preset;
     if (name == "viridis") return ramp(viridis(range), range);
     if (name == "plasma") return ramp(sampled(kPlasma, range), range);
     if (name == "inferno") return ramp(sampled(kInferno, range), range);
@@ -198,10 +246,14 @@ TransferFunction transfer_function_preset(const std::string& name, double min, d
     if (name == "surface") return surface(range);
     if (name == "constant") return constant(range);
     if (name == "categories") return categories(range);
+    if (name == "jet") return ramp(spread(kJet, ColorSpace::Rgb, range), range);
+    if (name == "rainbow") return ramp(spread(kRainbow, ColorSpace::Hsv, range), range);
+    if (name == "desaturated") return ramp(spread(kDesaturated, ColorSpace::Rgb, range), range);
+    if (name == "blackbody") return ramp(spread(kBlackBody, ColorSpace::Rgb, range), range);
     std::string list;
     for (const std::string& preset : kPresets) list += (list.empty() ? "" : ", ") + preset;
-    throw Error(ErrorCode::InvalidInput, "there is no transfer function '" + name + "'" + detail::did_you_mean(name, kPresets),
-                {}, list);
+    throw Error(ErrorCode::InvalidInput,
+                "there is no transfer function '" + given + "'" + detail::did_you_mean(given, kPresets), {}, list);
 }
 
 }  // namespace subvol

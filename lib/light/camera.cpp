@@ -23,12 +23,12 @@ using namespace detail;
 namespace {
 
 std::optional<Vec3> view_direction(std::string_view name) {
-    if (name == "+x") return Vec3(-1, 0, 0);
-    if (name == "-x") return Vec3(1, 0, 0);
-    if (name == "+y") return Vec3(0, -1, 0);
-    if (name == "-y") return Vec3(0, 1, 0);
-    if (name == "+z") return Vec3(0, 0, -1);
-    if (name == "-z") return Vec3(0, 0, 1);
+    if (name == "+x" || name == "right") return Vec3(-1, 0, 0);
+    if (name == "-x" || name == "left") return Vec3(1, 0, 0);
+    if (name == "+y" || name == "back") return Vec3(0, -1, 0);
+    if (name == "-y" || name == "front") return Vec3(0, 1, 0);
+    if (name == "+z" || name == "top") return Vec3(0, 0, -1);
+    if (name == "-z" || name == "bottom") return Vec3(0, 0, 1);
     if (name == "iso") return Vec3(-1, 1, -1);
     return std::nullopt;
 }
@@ -158,7 +158,7 @@ Camera parse_camera(const std::string& text, const Box& box, double aspect) {
         if (text.empty() || !std::filesystem::exists(text, ignored)) {
             throw Error(ErrorCode::InvalidInput, "is neither a view nor ten numbers nor a file that exists",
                         "camera '" + detail::shortened(text) + "'",
-                        "+x -x +y -y +z -z iso; ex,ey,ez,tx,ty,tz,ux,uy,uz,fovy; FILE.json");
+                        "+x -x +y -y +z -z iso, right left back front top bottom; ex,ey,ez,tx,ty,tz,ux,uy,uz,fovy; FILE.json");
         }
         camera = read_camera(text);
     }

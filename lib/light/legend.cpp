@@ -13,6 +13,7 @@
 
 #include "knot_values.h"
 #include "output_file.h"
+#include "subvol/detail/number_text.h"
 #include "subvol/detail/printable.h"
 #include "subvol/detail/round_ticks.h"
 #include "subvol/error.h"
@@ -64,6 +65,7 @@ public:
           opacity_range_(options.opacity_title.empty() ? range_ : usable_range(options.opacity_min, options.opacity_max)),
           end_(kLeft + options.width_px) {
         validate(function);
+        if (options_.names.empty() && options_.min == options_.max) options_.names = {number_text(options_.min)};
     }
 
     [[nodiscard]] std::string svg() const {
@@ -99,8 +101,8 @@ public:
 private:
     [[nodiscard]] bool apart() const { return !options_.opacity_title.empty(); }
     [[nodiscard]] bool named() const { return !options_.names.empty(); }
-    [[nodiscard]] static double part(const KnotRange& range, double value) {
-        return (value - range.min) / (range.max - range.min);
+    [[nodiscard]] double part(const KnotRange& range, double value) const {
+        return options_.shape.scale.part(value, range.min, range.max);
     }
     [[nodiscard]] double x(const KnotRange& range, double value) const {
         return kLeft + part(range, value) * options_.width_px;
@@ -111,7 +113,8 @@ private:
     /// SVG interpolates between stops in sRGB; there are enough of them to make that invisible.
     void append_colors(pugi::xml_node svg) const {
         std::set<double> values;
-        for (int i = 0; i <= kColors; ++i) values.insert(range_.at(static_cast<double>(i) / kColors));
+        for (int i = 0; i <= kColors; ++i)
+            values.insert(options_.shape.scale.at(static_cast<double>(i) / kColors, range_.min, range_.max));
         for (const auto& knot : function_.color) {
             if (inside(knot.value)) values.insert(knot.value);
         }
@@ -186,7 +189,7 @@ private:
 
     void append_ticks(pugi::xml_node svg, const KnotRange& range, double top) const {
         const int most = std::clamp(options_.width_px / 50, 5, 11);
-        for (const auto& [value, label] : round_ticks(range.min, range.max, most)) {
+        for (const auto& [value, label] : bar_ticks(options_.shape, range.min, range.max, most)) {
             append(svg, "path", {{"stroke", kInk}, {"d", "M" + number(x(range, value)) + " " + number(top) + " v5"}});
             append_text(svg, x(range, value), top + 19, "middle", label);
         }

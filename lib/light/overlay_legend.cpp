@@ -7,6 +7,7 @@
 
 #include "coverage.h"
 #include "knot_values.h"
+#include "subvol/detail/number_text.h"
 #include "subvol/detail/round_ticks.h"
 #include "subvol/overlay.h"
 
@@ -18,8 +19,10 @@ namespace {
 constexpr double kMostOfHeight = 0.45;  // a longer title is cut off
 constexpr double kNameRow = 1.7;        // of a category, in letters
 
-double part_of(const KnotRange& range, double value) {
-    return (value - range.min) / (range.max - range.min);
+/// A legend without a bar has names: of categories, or the value of a constant field.
+LegendOptions with_names(LegendOptions options) {
+    if (options.names.empty() && options.min == options.max) options.names = {number_text(options.min)};
+    return options;
 }
 
 bool varies(const TransferFunction& function) {
@@ -32,7 +35,7 @@ class LegendPainter {
 public:
     LegendPainter(const TransferFunction& function, const LegendOptions& options, int height)
         : function_(function),
-          options_(options),
+          options_(with_names(options)),
           colors_(usable_range(options.min, options.max)),
           opacities_(options.opacity_title.empty() ? colors_ : usable_range(options.opacity_min, options.opacity_max)),
           height_(height),
@@ -66,6 +69,9 @@ public:
     }
 
 private:
+    [[nodiscard]] double part_of(const KnotRange& range, double value) const {
+        return options_.shape.scale.part(value, range.min, range.max);
+    }
     [[nodiscard]] bool apart() const { return !options_.opacity_title.empty(); }
     [[nodiscard]] double margin() const { return 0.9 * letter_; }
     [[nodiscard]] double bar_width() const { return 1.3 * letter_; }
@@ -74,7 +80,7 @@ private:
     }
     [[nodiscard]] double title_width(const std::string& title) const { return text_width_px(title, 1.08 * letter_); }
     [[nodiscard]] std::vector<Tick> ticks(const KnotRange& range) const {
-        return round_ticks(range.min, range.max, apart() ? 5 : 8);
+        return bar_ticks(options_.shape, range.min, range.max, apart() ? 5 : 8);
     }
     [[nodiscard]] double labels_width(const KnotRange& range) const {
         double width = 0;
@@ -139,7 +145,8 @@ private:
         const double start = left_ + (apart() ? 0 : curve_width()), end = start + bar_width();
         const int x0 = static_cast<int>(start), x1 = static_cast<int>(end);
         for (int y = static_cast<int>(top); y < static_cast<int>(bottom); ++y) {
-            const Vec3 color = color_at(function_, colors_.at((bottom - y - 0.5) / (bottom - top)));
+            const Vec3 color =
+                color_at(function_, options_.shape.scale.at((bottom - y - 0.5) / (bottom - top), colors_.min, colors_.max));
             for (int x = x0; x < x1; ++x) put_inside(x, y, color);
         }
         draw_frame(x0, static_cast<int>(top), x1, static_cast<int>(bottom));
@@ -184,7 +191,7 @@ private:
     }
 
     const TransferFunction& function_;
-    const LegendOptions& options_;
+    LegendOptions options_;
     KnotRange colors_, opacities_;
     double height_, letter_;
     Image* image_ = nullptr;

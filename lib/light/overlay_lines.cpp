@@ -10,6 +10,7 @@
 
 #include "coverage.h"
 #include "overlay_texts.h"
+#include "subvol/detail/number_text.h"
 #include "subvol/overlay.h"
 #include "subvol/srgb.h"
 #include "subvol/vec.h"
@@ -172,6 +173,21 @@ void draw_axes(Image& image, const View& view, const Vec3& ink) {
         draw_text(image, beyond + Vec2(0, 0.27 * size), axis.name,
                   {.size_px = size, .color = ink, .anchor = TextAnchor::Middle});
     }
+}
+
+void draw_scale_bar(Image& image, const View& view, const Vec3& at, const Vec3& ink) {
+    const double depth = view.perspective() ? view.to_eye(at).z : 1;
+    const double world_per_px = view.pixel() * depth;
+    if (!(world_per_px > 0) || !std::isfinite(world_per_px)) return;  // the point is behind the eye
+    const double most = 0.25 * view.width() * world_per_px, power = std::pow(10, std::floor(std::log10(most)));
+    const double length = (most >= 5 * power ? 5 : most >= 2 * power ? 2 : 1) * power;
+    const double letter = std::clamp(image.height / 36.0, 8.0, 120.0), line = std::max(1.0, letter / 8);
+    const Vec2 end{view.width() - letter, view.height() - letter}, start = end - Vec2(length / world_per_px, 0);
+    const Vec2 cap{0, 0.35 * letter};
+    draw_line(image, start, end, {.width_px = line, .color = ink});
+    for (const Vec2& p : {start, end}) draw_line(image, p - cap, p + cap, {.width_px = line, .color = ink});
+    draw_text(image, 0.5 * (start + end) - Vec2(0, 0.7 * letter), number_text(length, 3),
+              {.size_px = letter, .color = ink, .anchor = TextAnchor::Middle});
 }
 
 }  // namespace subvol

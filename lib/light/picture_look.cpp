@@ -7,6 +7,7 @@
 #include <span>
 
 #include "subvol/clamped.h"
+#include "subvol/color_name.h"
 #include "subvol/error.h"
 #include "subvol/srgb.h"
 
@@ -14,6 +15,8 @@ namespace subvol {
 
 namespace {
 
+constexpr double kIsosurfaceHalfWidth = 0.01, kIsosurfaceOpacity = 0.9;  // the width as a part of the range
+constexpr int kMostBands = 1000;
 constexpr double kOpacityUnitsPerDiagonal = 100;
 constexpr double kFaint = 0.02;                 // of the largest opacity: what has less is not framed
 constexpr double kAlmostWhole = 0.8;            // of the box's diagonal
@@ -101,11 +104,12 @@ std::vector<Option> options_of(LookChoices& choices) {
                 "(five lit surfaces)"),
         Option("tf", choices.colors)
             .offer({"viridis", "plasma", "inferno", "cividis", "turbo", "coolwarm", "grey", "bone", "xray", "isosurface",
-                    "surface", "constant", "categories"})
-            .help("FILE|NAME",
-                  "colour map: viridis (default), plasma, inferno, cividis, turbo, coolwarm, grey, bone, xray, isosurface, "
-                  "surface, constant or categories (integers) over the field's range, or a ParaView colour-map JSON file "
-                  "(FILE.json:NAME for one of several in it)"),
+                    "surface", "constant", "categories", "jet", "rainbow", "desaturated", "blackbody"})
+            .help(
+                "FILE|NAME",
+                "colour map over the field's range: viridis (default), plasma, inferno, cividis, turbo, coolwarm, jet, "
+                "rainbow, desaturated, blackbody, grey, bone, xray, isosurface, surface, constant or categories (integers); or "
+                "a ParaView colour-map JSON file (FILE.json:NAME for one of several in it)"),
         Option("opacity-unit", choices.opacity_unit_world)
             .positive()
             .help("D", "the world distance over which an opacity acts (default: 1/100 of the bounding box's diagonal)"),
@@ -119,11 +123,40 @@ std::vector<Option> options_of(LookChoices& choices) {
         Option("opacity", choices.opacity)
             .help("V:A,V:A,…",
                   "opacities instead of those of --tf, linear in between: at values of the field or per cent of its range, "
-                  "such as 0%:0,50%:.2,100%:.9")};
+                  "such as 0%:0,50%:.2,100%:.9"),
+        Option("iso", WordValue{[&choices] { return choices.iso; },
+                                [&choices](const std::string& word, const std::string&) { choices.iso = word; }, true})
+            .help(
+                "V,…",
+                "lit surfaces of these values, or per cents of the field's range: --look isosurface with these instead of its "
+                "five")
+            .instead_of({"opacity"}),
+        Option("log", choices.log).help("spread the colour map by the logarithm of the values, which are above 0"),
+        Option("symlog", choices.symlog)
+            .positive()
+            .help("C", "spread the colour map logarithmically on both sides of 0, linearly within C")
+            .not_with("log"),
+        Option("bands", choices.bands).between(1, kMostBands).help("N", "cut the colour map into N colours"),
+        Option("below", choices.below)
+            .help("COLOR", "the colour of values below the range: #rrggbb, three numbers or a name (default: that of its end)"),
+        Option("above", choices.above).help("COLOR", "the colour of values above the range (default: that of its end)")};
+}
+
+ColorShape color_shape(const LookChoices& choices, OptionNames names) {
+    ColorShape shape{.scale = {.logarithmic = choices.log, .linear_within = choices.symlog.value_or(0)},
+                     .bands = choices.bands.value_or(0)};
+    if (choices.below) shape.below = parse_color(*choices.below, option_name("below", names));
+    if (choices.above) shape.above = parse_color(*choices.above, option_name("above", names));
+    return shape;
 }
 
 Look chosen_look(const LookChoices& choices, bool has_boundary, OptionNames names) {
-    if (choices.look) return named<Look>(*choices.look, option_name("look", names));
+    if (choices.look) {
+        const auto look = named<Look>(*choices.look, option_name("look", names));
+        if (choices.iso.empty() || look == Look::Isosurface) return look;
+        throw Error(ErrorCode::InvalidInput, "draws isosurfaces", option_name("iso", names), "without another look");
+    }
+    if (!choices.iso.empty()) return Look::Isosurface;
     const bool transparent = choices.opacity || choices.opacity_unit_world;
     return has_boundary && !transparent ? Look::Solid : Look::Volume;
 }
@@ -133,6 +166,21 @@ double parse_value(const std::string& text, const ValueRange& whole, const std::
     double value = 0;
     Option("value", value).read(part ? text.substr(0, text.size() - 1) : text, where);
     return part ? whole.min + value / 100 * (whole.max - whole.min) : value;
+}
+
+std::vector<TransferFunction::OpacityKnot> opacity_of_isosurfaces(std::vector<double> values, const ValueRange& range) {
+    std::ranges::sort(values);
+    values.erase(std::unique(values.begin(), values.end()), values.end());
+    const double half = range.min < range.max ? kIsosurfaceHalfWidth * (range.max - range.min) : kIsosurfaceHalfWidth;
+    std::vector<TransferFunction::OpacityKnot> knots;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        const double before = i > 0 ? std::min(half, 0.4 * (values[i] - values[i - 1])) : half;
+        const double after = i + 1 < values.size() ? std::min(half, 0.4 * (values[i + 1] - values[i])) : half;
+        knots.push_back({values[i] - before, 0});
+        knots.push_back({values[i], kIsosurfaceOpacity});
+        knots.push_back({values[i] + after, 0});
+    }
+    return knots;
 }
 
 ValueRange parse_range(const std::string& text, const ValueRange& whole, const std::string& where) {
@@ -153,10 +201,20 @@ LookOptions look_options(const LookChoices& choices, Look look, const ValueRange
     LookOptions options{.look = look,
                         .colors = choices.colors.value_or(""),
                         .stretch = choices.range.has_value(),
+                        .shape = color_shape(choices, names),
                         .opacity_unit_world = choices.opacity_unit_world,
                         .clamp = choices.clamp};
     const ValueRange range = shown_range(choices, field, names);
     if (choices.range && *choices.range != "field") options.range = range;
+    if (!choices.iso.empty()) {
+        std::vector<double> values;
+        for (std::size_t begin = 0; begin <= choices.iso.size();) {
+            const std::size_t end = std::min(choices.iso.find(',', begin), choices.iso.size());
+            values.push_back(parse_value(choices.iso.substr(begin, end - begin), range, option_name("iso", names)));
+            begin = end + 1;
+        }
+        options.opacity = opacity_of_isosurfaces(std::move(values), range);
+    }
     if (!choices.opacity) return options;
     try {
         options.opacity = parse_opacity(*choices.opacity, range.min, range.max);
@@ -180,6 +238,7 @@ Optics picture_optics(const LookOptions& options, const Box& box, const ValueRan
 
 Optics picture_optics(TransferFunction function, const LookOptions& options, const Box& box, const ValueRange& field,
                       const ValueRange& colors, bool plain) {
+    function = shaped(function, options.shape);
     if (options.look == Look::Solid) make_solid(function, plain && !(colors.min < colors.max));
     if (!options.opacity.empty()) function.opacity = options.opacity;
     if (options.clamp || field.bounded || colors.bounded) {

@@ -5,6 +5,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <initializer_list>
 
 #include "subvol/detail/number_text.h"
 
@@ -73,6 +74,62 @@ std::vector<Tick> round_ticks(double min, double max, int most) {
     }
     if (ticks.size() >= 2) return ticks;
     return {exact_tick(min), exact_tick(max)};  // only a few numbers lie between them, and none is round
+}
+
+namespace {
+
+/// Powers of ten, and these times `digits`, whose size lies in [least, most], ascending.
+std::vector<Tick> decades(double least, double most, std::initializer_list<int> digits) {
+    std::vector<Tick> ticks;
+    constexpr double kRounding = 1e-9;
+    const int first = static_cast<int>(std::floor(std::log10(least) + kRounding));
+    for (int exponent = first; exponent <= std::log10(most) + kRounding; ++exponent) {
+        for (const int digit : digits) {
+            const double value = Step{digit, exponent}.value();
+            if (value >= least * (1 - kRounding) && value <= most * (1 + kRounding))
+                ticks.push_back({value, label_of(value, exponent)});
+        }
+    }
+    return ticks;
+}
+
+/// Every n-th tick, so that there are no more than `most`.
+std::vector<Tick> thinned(const std::vector<Tick>& ticks, int most) {
+    const std::size_t step = (ticks.size() + static_cast<std::size_t>(most) - 1) / static_cast<std::size_t>(most);
+    std::vector<Tick> kept;
+    for (std::size_t i = 0; i < ticks.size(); i += step) kept.push_back(ticks[i]);
+    return kept;
+}
+
+/// The decades of one sign, of at most `most` ticks.
+std::vector<Tick> side_ticks(double least, double largest, int most) {
+    if (!(least > 0) || !(largest >= least)) return {};
+    std::vector<Tick> ticks = decades(least, largest, {1, 2, 5});
+    if (ticks.size() > static_cast<std::size_t>(most)) ticks = decades(least, largest, {1});
+    return ticks.size() > static_cast<std::size_t>(most) ? thinned(ticks, most) : ticks;
+}
+
+}  // namespace
+
+std::vector<Tick> bar_ticks(const ColorShape& shape, double min, double max, int most) {
+    const ColorScale& scale = shape.scale;
+    std::vector<Tick> ticks;
+    if (shape.bands > 0 && shape.bands < most + 2) {
+        for (int end = 0; end <= shape.bands; ++end) {
+            const double value = end == 0 ? min : end == shape.bands ? max : scale.at(double(end) / shape.bands, min, max);
+            ticks.push_back({value, sign_of(value) + number_text(std::abs(value), 4)});
+        }
+        return ticks;
+    }
+    if (scale.logarithmic) ticks = side_ticks(min, max, most);
+    if (scale.linear_within > 0) {
+        const int each = min < 0 && max > 0 ? most / 2 : most;
+        for (const Tick& tick : side_ticks(std::max(scale.linear_within, -max), -min, each))
+            ticks.insert(ticks.begin(), {-tick.value, sign_of(-1) + tick.label});
+        if (min <= 0 && max >= 0) ticks.push_back({0, "0"});
+        for (const Tick& tick : side_ticks(std::max(scale.linear_within, min), max, each)) ticks.push_back(tick);
+    }
+    return ticks.size() >= 2 ? ticks : round_ticks(min, max, most);
 }
 
 }  // namespace subvol::detail

@@ -56,8 +56,8 @@ std::vector<Option> options_of(ViewOptions& options) {
                   "ex,ey,ez,tx,ty,tz,ux,uy,uz,fovy (eye, target, up, vertical field of view in degrees), or a JSON file with "
                   "eye, target, up, fovy_deg or ortho_height"),
         Option("view", options.view)
-            .offer({"+x", "-x", "+y", "-y", "+z", "-z", "iso"})
-            .help("SIDE", "the side to look from: +x -x +y -y +z -z iso")
+            .offer({"+x", "-x", "+y", "-y", "+z", "-z", "iso", "front", "back", "left", "right", "top", "bottom"})
+            .help("SIDE", "the side to look from: +x -x +y -y +z -z iso, front (-y) back left right top bottom")
             .instead_of({"camera"}),
         Option("fit", options.fit).help("move the camera along its line of sight until the whole box is in the picture"),
         Option("ortho", options.orthographic)

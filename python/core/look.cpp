@@ -190,12 +190,13 @@ Picture picture_from_file(const std::string& path) {
 
 void write_picture(const Picture& p, const py::object& given, const py::object& background) {
     const auto path = py::module_::import("subvol._arguments").attr("path_bytes")(given).cast<std::string>();
-    const Vec3 behind = background_of(p, background);
+    std::optional<Vec3> behind;
+    if (!py::isinstance<py::str>(background) || background.cast<std::string>() != "none") behind = background_of(p, background);
     const py::gil_scoped_release without_gil;
     const bool exr = std::filesystem::path(path).extension() == ".exr";
     const auto depth = exr ? std::span<const float>(p.depth) : std::span<const float>();
     if (p.part) {
-        write_placed_image(path, {p.image, p.part->data, p.part->display}, behind, depth);
+        write_placed_image(path, {p.image, p.part->data, p.part->display}, behind.value_or(Vec3(0.0)), depth);
     } else {
         write_image(path, p.image, behind, depth, p.camera);
     }

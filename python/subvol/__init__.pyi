@@ -98,8 +98,9 @@ def page(
     mesh: HexMesh, field: Optional[str] = None, *, per_edge: int = 1, camera: Union[None, str, Camera] = None,
     tf: Union[None, str, TransferFunction] = None, title: str = '', unit: str = '', max_bytes: int = 24000000,
     scheme: str = 'mcq', look: Optional[str] = None, opacity_unit: Optional[float] = None, clamp: bool = False,
-    range: Optional[str] = None, opacity: Optional[str] = None, view: str = 'iso', fit: bool = False,
-    ortho: bool = False, progress: Progress = None
+    range: Optional[str] = None, opacity: Optional[str] = None, iso: Union[float, str] = '', log: bool = False,
+    symlog: Optional[float] = None, bands: Optional[int] = None, below: Optional[str] = None,
+    above: Optional[str] = None, view: str = 'iso', fit: bool = False, ortho: bool = False, progress: Progress = None
 ) -> Page:
     """A page of a field of a mesh: as `subvol page`.
 
@@ -109,10 +110,11 @@ def page(
     look:        solid (opaque and lit; the default for meshes without opacity and opacity_unit), volume (opacity 0 to .5
                  over the range, black behind; otherwise the default), xray (on white) or isosurface (five lit surfaces)
                  [solid, volume, xray, isosurface]
-    tf:          colour map: viridis (default), plasma, inferno, cividis, turbo, coolwarm, grey, bone, xray, isosurface,
-                 surface, constant or categories (integers) over the field's range, or a ParaView colour-map JSON file
-                 (FILE.json:NAME for one of several in it) [viridis, plasma, inferno, cividis, turbo, coolwarm, grey, bone,
-                 xray, isosurface, surface, constant, categories]
+    tf:          colour map over the field's range: viridis (default), plasma, inferno, cividis, turbo, coolwarm, jet,
+                 rainbow, desaturated, blackbody, grey, bone, xray, isosurface, surface, constant or categories (integers);
+                 or a ParaView colour-map JSON file (FILE.json:NAME for one of several in it) [viridis, plasma, inferno,
+                 cividis, turbo, coolwarm, grey, bone, xray, isosurface, surface, constant, categories, jet, rainbow,
+                 desaturated, blackbody]
     opacity_unit: the world distance over which an opacity acts (default: 1/100 of the bounding box's diagonal) [more than
                  0]
     clamp:       show values beyond the field's range, where interpolating schemes overshoot, as its ends
@@ -120,9 +122,17 @@ def page(
                  such as 10%,90%, or field (default: the field's range; a map from a file keeps its own values)
     opacity:     opacities instead of those of tf, linear in between: at values of the field or per cent of its range, such
                  as 0%:0,50%:.2,100%:.9
+    iso:         lit surfaces of these values, or per cents of the field's range: look isosurface with these instead of its
+                 five [not with opacity]
+    log:         spread the colour map by the logarithm of the values, which are above 0
+    symlog:      spread the colour map logarithmically on both sides of 0, linearly within C [more than 0; not with log]
+    bands:       cut the colour map into N colours [1 to 1000]
+    below:       the colour of values below the range: #rrggbb, three numbers or a name (default: that of its end)
+    above:       the colour of values above the range (default: that of its end)
     camera:      ex,ey,ez,tx,ty,tz,ux,uy,uz,fovy (eye, target, up, vertical field of view in degrees), or a JSON file with
                  eye, target, up, fovy_deg or ortho_height
-    view:        the side to look from: +x -x +y -y +z -z iso [+x, -x, +y, -y, +z, -z, iso; not with camera]
+    view:        the side to look from: +x -x +y -y +z -z iso, front (-y) back left right top bottom [+x, -x, +y, -y, +z,
+                 -z, iso, front, back, left, right, top, bottom; not with camera]
     fit:         move the camera along its line of sight until the whole box is in the picture
     ortho:       use an orthographic camera, as high as the box needs or as the JSON file's ortho_height
     """
@@ -245,7 +255,9 @@ def render(
     clip: Optional[npt.ArrayLike] = None, clip_box: Optional[npt.ArrayLike] = None,
     slice: Optional[npt.ArrayLike] = None, around: bool = False, look: Optional[str] = None,
     opacity_unit: Optional[float] = None, clamp: bool = False, range: Optional[str] = None,
-    opacity: Optional[str] = None, view: str = 'iso', fit: bool = False, ortho: bool = False, progress: Progress = None
+    opacity: Optional[str] = None, iso: Union[float, str] = '', log: bool = False, symlog: Optional[float] = None,
+    bands: Optional[int] = None, below: Optional[str] = None, above: Optional[str] = None, view: str = 'iso',
+    fit: bool = False, ortho: bool = False, progress: Progress = None
 ) -> Image:
     """Draws a mesh, points or a grid: the picture of `subvol render` with the same options, bit for bit.
 
@@ -305,10 +317,11 @@ def render(
     look:        solid (opaque and lit; the default for meshes without opacity and opacity_unit), volume (opacity 0 to .5
                  over the range, black behind; otherwise the default), xray (on white) or isosurface (five lit surfaces)
                  [solid, volume, xray, isosurface]
-    tf:          colour map: viridis (default), plasma, inferno, cividis, turbo, coolwarm, grey, bone, xray, isosurface,
-                 surface, constant or categories (integers) over the field's range, or a ParaView colour-map JSON file
-                 (FILE.json:NAME for one of several in it) [viridis, plasma, inferno, cividis, turbo, coolwarm, grey, bone,
-                 xray, isosurface, surface, constant, categories]
+    tf:          colour map over the field's range: viridis (default), plasma, inferno, cividis, turbo, coolwarm, jet,
+                 rainbow, desaturated, blackbody, grey, bone, xray, isosurface, surface, constant or categories (integers);
+                 or a ParaView colour-map JSON file (FILE.json:NAME for one of several in it) [viridis, plasma, inferno,
+                 cividis, turbo, coolwarm, grey, bone, xray, isosurface, surface, constant, categories, jet, rainbow,
+                 desaturated, blackbody]
     opacity_unit: the world distance over which an opacity acts (default: 1/100 of the bounding box's diagonal) [more than
                  0]
     clamp:       show values beyond the field's range, where interpolating schemes overshoot, as its ends
@@ -316,9 +329,17 @@ def render(
                  such as 10%,90%, or field (default: the field's range; a map from a file keeps its own values)
     opacity:     opacities instead of those of tf, linear in between: at values of the field or per cent of its range, such
                  as 0%:0,50%:.2,100%:.9
+    iso:         lit surfaces of these values, or per cents of the field's range: look isosurface with these instead of its
+                 five [not with opacity]
+    log:         spread the colour map by the logarithm of the values, which are above 0
+    symlog:      spread the colour map logarithmically on both sides of 0, linearly within C [more than 0; not with log]
+    bands:       cut the colour map into N colours [1 to 1000]
+    below:       the colour of values below the range: #rrggbb, three numbers or a name (default: that of its end)
+    above:       the colour of values above the range (default: that of its end)
     camera:      ex,ey,ez,tx,ty,tz,ux,uy,uz,fovy (eye, target, up, vertical field of view in degrees), or a JSON file with
                  eye, target, up, fovy_deg or ortho_height
-    view:        the side to look from: +x -x +y -y +z -z iso [+x, -x, +y, -y, +z, -z, iso; not with camera]
+    view:        the side to look from: +x -x +y -y +z -z iso, front (-y) back left right top bottom [+x, -x, +y, -y, +z,
+                 -z, iso, front, back, left, right, top, bottom; not with camera]
     fit:         move the camera along its line of sight until the whole box is in the picture
     ortho:       use an orthographic camera, as high as the box needs or as the JSON file's ortho_height
 

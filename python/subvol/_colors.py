@@ -86,7 +86,7 @@ def _range_of(values: npt.NDArray[Any]) -> tuple[float, float]:
 def _light_of(given: dict[str, Any], tf: Union[None, str, TransferFunction], has_boundary: bool, shown: tuple[float, float],
               colors: tuple[float, float], bounds: npt.NDArray[Any]) -> _core.PictureLight:
     """The look and the colours of a picture. given: keywords of all kinds; shown, colors: the ranges of the fields of both"""
-    chosen = {name: given.get(name) for name in ("look", "opacity_unit", "clamp", "range", "opacity")}
+    chosen = {name: given.get(name) for name in ("look", "iso", "opacity_unit", "clamp", "range", "opacity", "log", "symlog", "bands", "below", "above")}
     if isinstance(tf, TransferFunction):
         return _core.PictureLight(chosen, tf.knots, tf.opacity is not None, has_boundary, shown, colors, bounds)
     return _core.PictureLight({**chosen, "tf": tf}, None, False, has_boundary, shown, colors, bounds)

@@ -112,8 +112,9 @@ def read_image(path: Path) -> Image:
     return _core.read_image(path_bytes(path))
 
 
-def write_image(image: Union[Image, npt.ArrayLike], path: Path, background: Optional[Sequence[float]] = None) -> None:
-    """Writes `.exr` (linear floats, with the depth if there is one) or `.png` (8 bits over the background, linear rgb)."""
+def write_image(image: Union[Image, npt.ArrayLike], path: Path, background: Union[None, str, Sequence[float]] = None) -> None:
+    """Writes `.exr` (linear floats, with the depth if there is one), `.png` (8 bits over the background, linear rgb; with alpha over
+    "none"), `.jpg` or `.webp`."""
     _as_image(image).write(path_bytes(path), background)
 
 

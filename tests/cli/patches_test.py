@@ -3,10 +3,12 @@
 
 import csv
 import math
+import os
 import struct
+import subprocess
 import unittest
 
-from command import InFolder, subvol
+from command import COMMAND, InFolder, subvol
 from quantities_test import write_beam
 
 # A bar of 3 x 1 x 1 unit cubes along x.
@@ -336,8 +338,29 @@ class Patches(InFolder):
         named = legend("--patch", "right", "--patch", "left")
         self.assertLess(named.index(">right<"), named.index(">left<"))
         self.assertNotIn("linearGradient", named)
-        self.assertIn("linearGradient", legend("--patch", "right", "--density", "x"))
+        self.assertIn("linearGradient", legend("--patch", "right", "--density", "y"))
         self.run_ok("render", "a.inp", "-o", "b.png", "--size", "96x64", "--legend", "--patch", "all")
+
+    def test_heat_through_a_pipe(self):
+        """T = ln r in a quarter of a pipe: the same heat, pi/2 for a height of 1, flows through each cylinder."""
+        def errors(n):
+            points = [(r * math.cos(a), r * math.sin(a), z) for z in (0, 1) for a in (math.pi / 4 * j / n for j in range(2 * n + 1))
+                      for r in (1 + i / n for i in range(n + 1))]
+            at = lambda i, j, k: 1 + i + (n + 1) * (j + (2 * n + 1) * k)
+            cells = [[at(i + a, j + b, k) for k in (0, 1) for a, b in ((0, 0), (1, 0), (1, 1), (0, 1))] for j in range(2 * n) for i in range(n)]
+            lines = ["*NODE", *(f"{p + 1}, {x!r}, {y!r}, {z}" for p, (x, y, z) in enumerate(points)), "*ELEMENT, TYPE=C3D8, ELSET=all",
+                     *(f"{c + 1}, " + ", ".join(map(str, cell)) for c, cell in enumerate(cells))]
+            for name, column, side in ("inner", 0, "S6"), ("outer", n - 1, "S4"):
+                lines += [f"*SURFACE, NAME={name}", *(f"{c + 1}, {side}" for c in range(column, len(cells), n))]
+            (self.folder / "pipe.inp").write_text("\n".join(lines) + "\n")
+            found = self.run_ok("probe", "pipe.inp", "--patch", "inner", "--patch", "outer", "--density", "ln(sqrt(x^2+y^2))",
+                                "--flux", "grad(density)", "--json").json()
+            inner, outer = (p["flux"] / (math.pi / 2) for p in found["patches"])
+            return abs(inner + 1), abs(outer - 1)
+        coarse, fine = errors(4), errors(8)
+        for before, after in zip(coarse, fine):
+            self.assertLess(after, .01)
+            self.assertGreater(math.log2(before / after), 1.5)  # the order of the gradient at the boundary
 
     def test_a_table_over_steps(self):
         write_foam(self.folder / "case")
@@ -478,6 +501,31 @@ class Times(InFolder):
         _, found = heights("--warp", "D*auto")
         factor = found["warp"]["factor"]
         self.assertAlmostEqual(factor * .2 * 6, .1 * math.sqrt(4 + 4 + 36), 6)  # of the last step, which moves most
+
+    def test_a_film_of_a_bending_beam(self):
+        """Three steps in one box and one range, each moved by its own displacement, with its time."""
+        tools = self.folder / "tools"
+        tools.mkdir()
+        (tools / "ffmpeg").write_text('#!/bin/sh\nprintf "%s\\n" "$@" > arguments.txt\nfor last; do :; done\nexec cat > "${last#file:}"\n')
+        (tools / "ffmpeg").chmod(0o755)
+        words = ["render", "a.pvd", "--step", "all", "--size", "96x64", "--field", "T", "--warp", "D*3"]
+        environment = dict(os.environ, PATH=f"{tools}:{os.environ['PATH']}")
+        done = subprocess.run([COMMAND, *words, "-o", "a.mp4", "--time-label", "--duration", "6"], cwd=self.folder, env=environment,
+                              capture_output=True, text=True)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        arguments = (self.folder / "arguments.txt").read_text().split("\n")
+        self.assertEqual(float(arguments[arguments.index("-r") + 1]), .5)
+        film, size = (self.folder / "a.mp4").read_bytes(), 96 * 64 * 3
+        self.assertEqual(len(film), 3 * size)
+        frames = [film[k * size:(k + 1) * size] for k in range(3)]
+        self.assertEqual(len(set(frames)), 3)
+        subprocess.run([COMMAND, *words, "-o", "b.mp4", "--duration", "6"], cwd=self.folder, env=environment, check=True, capture_output=True)
+        plain = (self.folder / "b.mp4").read_bytes()
+        for k in range(3):  # the time stands in the upper left corner of every frame, and nowhere else
+            changed = {i // 3 for i in range(size) if plain[k * size + i] != frames[k][i]}
+            self.assertGreater(len(changed), 20)
+            self.assertLess(max(i // 96 for i in changed), 20)
+            self.assertLess(max(i % 96 for i in changed), 60)
 
     def test_what_is_written_into_pictures(self):
         def picture(*more):

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Turntables, cameras and legends of `render`; videos with a replacement for ffmpeg that keeps its input."""
 
+import json
 import os
 import shutil
 import subprocess
@@ -37,6 +38,28 @@ class Pictures(InFolder):
 
     def bytes_of(self, name):
         return (self.folder / name).read_bytes()
+
+    def pixels(self, name):
+        """The channels, the width and the rows of a .png, whose filters are undone."""
+        data, at, packed, head = self.bytes_of(name), 8, b"", b""
+        while at < len(data):
+            length = int.from_bytes(data[at:at + 4], "big")
+            kind, chunk = data[at + 4:at + 8], data[at + 8:at + 8 + length]
+            head, packed = (chunk if kind == b"IHDR" else head), packed + (chunk if kind == b"IDAT" else b"")
+            at += 12 + length
+        width, height, channels = int.from_bytes(head[:4], "big"), int.from_bytes(head[4:8], "big"), {2: 3, 6: 4}[head[9]]
+        raw, step, rows = zlib.decompress(packed), channels * width, []
+        above = bytes(step)
+        for y in range(height):
+            kind, row = raw[y * (step + 1)], bytearray(raw[y * (step + 1) + 1:(y + 1) * (step + 1)])
+            for i in range(step):
+                a, b, c = (row[i - channels] if i >= channels else 0), above[i], (above[i - channels] if i >= channels else 0)
+                p = a + b - c
+                nearest = min((abs(p - a), 0, a), (abs(p - b), 1, b), (abs(p - c), 2, c))[2]
+                row[i] = row[i] + (0, a, b, (a + b) // 2, nearest)[kind] & 255
+            above = bytes(row)
+            rows.append(above)
+        return channels, width, rows
 
     def put_ffmpeg(self, script):
         tools = self.folder / "tools"
@@ -86,6 +109,15 @@ class Videos(Pictures):
         arguments = (self.folder / "arguments.txt").read_text().split("\n")
         for option, value in [("-s", "48x32"), ("-r", "12"), ("-pix_fmt", "rgb24"), ("-i", "pipe:0")]:
             self.assertEqual(arguments[arguments.index(option) + 1], value)
+
+    def test_the_length_of_a_video(self):
+        path = self.put_ffmpeg(KEEP_FRAMES)
+        self.assertEqual(self.render("-o", "turn.mp4", "--turntable", 3, "--duration", 2, path=path).code, 0)
+        arguments = (self.folder / "arguments.txt").read_text().split("\n")
+        self.assertEqual(float(arguments[arguments.index("-r") + 1]), 1.5)
+        for wrong, words in (["--turntable", 3, "--duration", 2, "--fps", 3], "--duration"), (["--duration", 2], "video"):
+            done = self.render("-o", "a.png", *wrong, path=path)
+            self.assertEqual((done.code, words in done.err), (2, True), done.err)
 
     def test_without_ffmpeg(self):
         self.assert_refused(self.render("-o", "a.webm", "--turntable", 2, path="/nowhere"), 3, "ffmpeg")
@@ -216,9 +248,89 @@ class Looks(Pictures):
         for view, name in [("-y", "front"), ("iso", "iso")]:
             self.assertEqual(self.render("-o", name + ".exr", "--view", view, size="32x24").code, 0)
         done = self.render("-o", "odd.png", "--views", 4, size="33x24")
-        self.assertEqual((done.code, "even" in done.err), (2, True), done.err)
+        self.assertEqual((done.code, "multiple of 2" in done.err), (2, True), done.err)
         self.assertEqual(self.render("-o", "b.png", "--views", 4, "--turntable", 2).code, 2)
-        self.assertEqual(self.render("-o", "b.png", "--views", 3).code, 2)
+
+    def test_named_views_in_one_picture(self):
+        for views, words in ("3", "--views"), ("front,up", "up"), ("front,", "--views"), ("front", "--views"):
+            done = self.render("-o", "b.png", "--views", views)
+            self.assertEqual((done.code, words in done.err), (2, True), done.err)
+        self.assertEqual(self.render("-o", "b.png", "--views", "front,left", size="96x64").code, 0)
+        self.assertEqual(self.render("-o", "c.png", "--views", "front,bottom", size="96x64").code, 0)
+        b, c = (self.pixels(name)[2] for name in ("b.png", "c.png"))
+        half = [[row[:3 * 48] for row in rows] for rows in (b, c)]
+        self.assertEqual(half[0], half[1])  # the front, with its name
+        self.assertNotEqual(b, c)
+        self.assertEqual(self.render("-o", "three.png", "--views", "front,left,iso", size="96x64").code, 0)
+        self.assertEqual(self.render("-o", "front.png", "--view", "front").code, 0)
+        self.assertEqual(self.render("-o", "same.png", "--view", "-y").code, 0)
+        self.assertEqual(self.bytes_of("front.png"), self.bytes_of("same.png"))
+
+    def test_no_background(self):
+        self.assertEqual(self.render("-o", "a.png", "--background", "none", "--look", "volume").code, 0)
+        self.assertEqual(self.render("-o", "b.png", "--background", "black", "--look", "volume").code, 0)
+        channels, width, rows = self.pixels("a.png")
+        self.assertEqual((channels, width, rows[0][:4]), (4, 48, bytes(4)))
+        over_black = self.pixels("b.png")[2]
+
+        def linear(byte):
+            s = byte / 255
+            return s / 12.92 if s <= .04045 else ((s + .055) / 1.055) ** 2.4
+        partly = 0
+        for straight, black in zip(rows, over_black):
+            for x in range(width):
+                alpha = straight[4 * x + 3] / 255
+                partly += .05 < alpha < .95
+                for c in range(3):  # linear light times alpha is what stands on black
+                    self.assertAlmostEqual(linear(straight[4 * x + c]) * alpha, linear(black[3 * x + c]), delta=.02)
+        self.assertGreater(partly, 20)
+        for name in "a.jpg", "a.webp":
+            done = self.render("-o", name, "--background", "none")
+            self.assertEqual((done.code, "alpha" in done.err), (2, True), done.err)
+
+    def test_other_formats(self):
+        for name, head in ("a.jpg", b"\xff\xd8\xff"), ("a.webp", b"RIFF"):
+            done = self.render("-o", name)
+            self.assertEqual(done.code, 0, done.err)
+            self.assertEqual(self.bytes_of(name)[:len(head)], head)
+            done = subprocess.run([COMMAND, "render", "model:ball:2", "-o", "a.png", "--size", "48x32", *SMALL], cwd=self.folder)
+            done = subprocess.run([COMMAND, "compare", name, "a.png", "--json"], cwd=self.folder, capture_output=True, text=True)
+            self.assertGreater(json.loads(done.stdout)["psnr"], 25)
+
+    def test_a_scale_bar_is_as_long_as_it_says(self):
+        camera = self.folder / "camera.json"
+        camera.write_text('{"eye": [0, -9, 0], "target": [0, 0, 0], "up": [0, 0, 1], "ortho_height": 3.2}')
+        self.assertEqual(self.render("-o", "a.png", "--camera", "camera.json", size="480x320").code, 0)
+        self.assertEqual(self.render("-o", "b.png", "--camera", "camera.json", "--scale-bar", size="480x320").code, 0)
+        a, b = (self.pixels(name)[2] for name in ("a.png", "b.png"))
+        longest = max(sum(row[3 * x:3 * x + 3] != other[3 * x:3 * x + 3] for x in range(480)) for row, other in zip(a, b))
+        self.assertAlmostEqual(longest, 100, delta=3)  # 1 of 3.2 in 320 pixels: a quarter of the width is 1.2
+
+    def test_isosurfaces_of_values(self):
+        self.assertEqual(self.render("-o", "five.png", "--look", "isosurface").code, 0)
+        self.assertEqual(self.render("-o", "same.png", "--iso", "10%,30%,50%,70%,90%").code, 0)
+        five, same = (self.pixels(name)[2] for name in ("five.png", "same.png"))
+        self.assertLess(max(abs(p - q) for row, other in zip(five, same) for p, q in zip(row, other)), 3)
+        self.assertEqual(self.render("-o", "one.png", "--iso", "50%").code, 0)
+        self.assertNotEqual(self.bytes_of("one.png"), self.bytes_of("five.png"))
+        for wrong, words in (["--iso", "a"], "--iso"), (["--iso", "1", "--look", "solid"], "--iso"), (["--iso", "1", "--opacity", "0:1"], "--iso"):
+            done = self.render("-o", "x.png", *wrong)
+            self.assertEqual((done.code, words in done.err), (2, True), done.err)
+
+    def test_scales_and_bands(self):
+        def colors(*words):
+            self.assertEqual(self.render("-o", "a.png", "--slice", "0,0,0,0,1,0", "--view", "-y", "--tf", "grey", "--range", ".01,1", *words).code, 0)
+            channels, width, rows = self.pixels("a.png")
+            return {row[channels * x] for row in rows for x in range(width)}
+        self.assertGreater(len(colors()), 60)
+        self.assertLess(len(colors("--bands", "3", "--samples", "1")), 6)
+        plain, logarithmic = self.render("-o", "p.png", "--legend", "p.svg"), self.render("-o", "l.png", "--log", "--range", ".01,1", "--legend", "l.svg")
+        self.assertEqual((plain.code, logarithmic.code), (0, 0), logarithmic.err)
+        self.assertIn(">0.1<", (self.folder / "l.svg").read_text())
+        self.assertNotEqual(self.bytes_of("p.png"), self.bytes_of("l.png"))
+        for wrong, words in (["--log", "--range=-1,1"], "above 0"), (["--log", "--symlog", "1"], "symlog"), (["--bands", "0"], "--bands"), (["--below", "rose"], "--below"):
+            done = self.render("-o", "x.png", *wrong)
+            self.assertEqual((done.code, words in done.err), (2, True), done.err)
 
     def test_what_is_drawn_over_an_empty_picture_does_not_hide_that(self):
         nothing = ["--clip=0,0,-9,0,0,1", "--json"]

@@ -238,3 +238,25 @@ def test_a_camera_object_is_its_text(ball):
     assert (near[..., 3] > 0).sum() > (drawn[..., 3] > 0).sum()  # the ball fills more of the picture
     with pytest.raises(subvol.InvalidInput, match="view: cannot be given with camera|camera"):
         subvol.render(ball, size=(8, 8), camera=camera, view="+x")
+
+
+def test_scales_bands_and_isosurfaces_are_those_of_the_command(tmp_path, command):
+    mesh = subvol.model("ball", 2)
+    for given in {"bands": 4, "tf": "Cool to Warm"}, {"symlog": .1}, {"iso": "40%,80%"}, {"range": ".1,.6", "below": "blue", "above": "#ff00ff", "log": True}:
+        words = [word for name, value in given.items() for word in ([f"--{name}"] if value is True else [f"--{name}", str(value)])]
+        command("render", "model:ball:2", "-o", tmp_path / "a.exr", "--size", "40x30", *words)
+        drawn = subvol.render(mesh, size=(40, 30), **given)
+        np.testing.assert_array_equal(drawn, subvol.read_image(tmp_path / "a.exr"))
+        assert not np.array_equal(drawn, subvol.render(mesh, size=(40, 30)))
+    with pytest.raises(subvol.InvalidInput, match="opacity"):
+        subvol.render(mesh, iso=1, opacity="0:1", size=(8, 8))
+
+
+def test_a_transparent_png_keeps_its_alpha(tmp_path):
+    image = subvol.render(subvol.model("ball", 2), look="volume", size=(40, 30))
+    subvol.write_image(image, tmp_path / "a.png", "none")
+    again = np.asarray(subvol.read_image(tmp_path / "a.png"))
+    np.testing.assert_allclose(again[..., 3], np.asarray(image)[..., 3], atol=1 / 255)
+    np.testing.assert_allclose(again[..., :3], np.asarray(image)[..., :3], atol=.02)
+    with pytest.raises(subvol.InvalidInput, match="transparent"):
+        subvol.write_image(image, tmp_path / "a.jpg", "none")

@@ -17,6 +17,8 @@
 #include "subvol/clip.h"
 #include "subvol/coarse_edit.h"
 #include "subvol/color_map_file.h"
+#include "subvol/color_name.h"
+#include "subvol/color_scale.h"
 #include "subvol/dense_cells.h"
 #include "subvol/error.h"
 #include "subvol/expression.h"

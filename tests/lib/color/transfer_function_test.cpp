@@ -33,7 +33,8 @@ TEST(TransferFunctions, AreLinearBetweenKnotsAndConstantBeyond) {
 }
 
 TEST(Preset, EachIsValidOverAnyRange) {
-    for (const char* name : {"viridis", "coolwarm", "grey", "bone", "xray", "isosurface", "surface", "constant"}) {
+    for (const char* name : {"viridis", "coolwarm", "grey", "bone", "xray", "isosurface", "surface", "constant", "jet",
+                             "rainbow", "desaturated", "blackbody", "Cool to Warm", "Blue to Red Rainbow"}) {
         for (const auto& [min, max] : {std::pair{-1.0, 1.0},
                                        {0.0, 1.0},
                                        {5.0, 5.0},
@@ -55,6 +56,20 @@ TEST(Preset, CategoriesHaveOneColourForEachInteger) {
     }
     EXPECT_LT(glm::length(color_at(transfer_function_preset("categories", 3, 3), 3) - color_at(f, 3)), 1e-12);
     expect_error(kInvalid, "too many", [] { (void)transfer_function_preset("categories", 0, 1e7); });
+}
+
+TEST(Preset, NamesOfParaviewAreKnown) {
+    const auto same = [](const char* a, const char* b) {
+        const TransferFunction f = transfer_function_preset(a, 0, 1), g = transfer_function_preset(b, 0, 1);
+        for (int i = 0; i <= 10; ++i) EXPECT_EQ(color_at(f, 0.1 * i), color_at(g, 0.1 * i)) << a;
+    };
+    same("Cool to Warm", "coolwarm");
+    same("Blue to Red Rainbow", "rainbow");
+    same("Viridis (matplotlib)", "viridis");
+    const TransferFunction rainbow = transfer_function_preset("rainbow", 0, 1);
+    EXPECT_EQ(color_at(rainbow, 0), Vec3(0, 0, 1));
+    EXPECT_NEAR(glm::length(color_at(rainbow, 0.5) - Vec3(0, 1, 0)), 0, 1e-2) << "green between blue and red";
+    EXPECT_EQ(color_at(rainbow, 1), Vec3(1, 0, 0));
 }
 
 TEST(Preset, ViridisSpansTheRangeInLinearLight) {
@@ -160,8 +175,8 @@ TEST(Preset, ConstantFieldLiesInTheMiddle) {
 }
 
 TEST(Preset, NamesThoseThatExist) {
-    expect_error(kInvalid, "viridis, plasma", [] { (void)transfer_function_preset("jet", 0, 1); });
-    expect_error(kInvalid, "did you mean turbo?", [] { (void)transfer_function_preset("Turbo", 0, 1); });
+    expect_error(kInvalid, "viridis, plasma", [] { (void)transfer_function_preset("jot", 0, 1); });
+    expect_error(kInvalid, "did you mean turbo?", [] { (void)transfer_function_preset("Turbp", 0, 1); });
     expect_error(kInvalid, "range", [] { (void)transfer_function_preset("grey", 1, 0); });
     expect_error(kInvalid, "range", [] { (void)transfer_function_preset("grey", NAN, 0); });
 }

@@ -147,6 +147,33 @@ TEST_F(Legend, NamesCategories) {
     EXPECT_FALSE(document.child("svg").child("linearGradient")) << "there is no bar";
 }
 
+TEST(BarTicks, FollowTheScale) {
+    const auto texts = [](const ColorShape& shape, double min, double max) {
+        std::vector<std::string> all;
+        for (const Tick& tick : bar_ticks(shape, min, max)) all.push_back(tick.label);
+        return all;
+    };
+    const ColorShape log{.scale = {.logarithmic = true}}, both{.scale = {.linear_within = 1}};
+    EXPECT_EQ(texts(log, 0.01, 1000), (Labels{"0.01", "0.1", "1", "10", "100", "1000"}));
+    EXPECT_EQ(texts(log, 2, 60), (Labels{"2", "5", "10", "20", "50"}));
+    EXPECT_EQ(texts(both, -100, 100), (Labels{"−100", "−10", "−1", "0", "1", "10", "100"}));
+    EXPECT_EQ(texts({.bands = 4}, 0, 2), (Labels{"0", "0.5", "1", "1.5", "2"}));
+    EXPECT_EQ(texts({.bands = 100}, 0, 1), labels(0, 1)) << "of many bands round values";
+    for (const auto& [min, max] : {std::pair{1e-30, 1e30}, {3.0, 3.1}, {1.0, 1e300}}) {
+        const auto ticks = bar_ticks(log, min, max);
+        EXPECT_GE(ticks.size(), 2u);
+        EXPECT_LE(ticks.size(), 7u);
+    }
+}
+
+TEST_F(Legend, OfAConstantFieldHasOneValue) {
+    const TransferFunction f = transfer_function_preset("viridis", 3.5, 3.5);
+    const auto document = parsed(legend_svg(f, {.title = "T", .min = 3.5, .max = 3.5}));
+    std::vector<std::string> texts;
+    for (const pugi::xml_node text : document.child("svg").children("text")) texts.emplace_back(text.text().get());
+    EXPECT_EQ(texts, (std::vector<std::string>{"T", "3.5"})) << "no range is made up";
+}
+
 TEST_F(Legend, IsWrittenWhole) {
     const TransferFunction f = transfer_function_preset("bone", 0, 1);
     const auto path = write("a.svg", "before");

@@ -55,6 +55,8 @@ TEST(LookChoices, ABodyIsSolidUnlessColoursAreChosen) {
     EXPECT_EQ(chosen_look({.opacity_unit_world = 1.0}, true), Look::Volume);
     EXPECT_EQ(chosen_look({.look = "xray", .colors = "grey"}, true), Look::Xray);
     expect_error(kInvalid, "look", [] { (void)chosen_look({.look = "glass"}, true); });
+    EXPECT_EQ(chosen_look({.iso = "50%"}, true), Look::Isosurface);
+    expect_error(kInvalid, "iso", [] { (void)chosen_look({.look = "solid", .iso = "50%"}, true); });
 }
 
 TEST(LookChoices, RangesAndOpacitiesArePartsOfTheFieldsRange) {

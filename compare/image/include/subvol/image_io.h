@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -12,14 +13,15 @@
 
 namespace subvol {
 
-/// Writes `.exr` (linear float RGBA, premultiplied; with depths a fifth channel Z) or `.png` (8-bit sRGB RGB over the
-/// background, no depth). The file appears whole under its name or not at all.
+/// Writes `.exr` (linear float RGBA, premultiplied; with depths a fifth channel Z), `.png` (8-bit sRGB RGB over the background,
+/// no depth), or the same as `.jpg` or `.webp`. The file appears whole under its name or not at all.
 ///
-/// background: linear RGB
+/// background: linear RGB; none: a `.png` has an alpha, which its colours are not multiplied by
 /// depth:      one per pixel, +infinity where nothing is; empty: no channel Z
 /// camera:     its numbers (`camera_text`), which an .exr has in its header as subvolCamera; empty: none
-/// throws:     Error(InvalidInput) for another extension or another number of depths, Error(Io)
-void write_image(const std::filesystem::path& path, const Image& image, const Vec3& background = Vec3(0.0),
+/// throws:     Error(InvalidInput) for another extension, another number of depths or a transparent `.jpg` or `.webp`,
+/// Error(Io)
+void write_image(const std::filesystem::path& path, const Image& image, const std::optional<Vec3>& background = Vec3(0.0),
                  std::span<const float> depth = {}, const std::string& camera = {});
 
 /// 8-bit sRGB over a background of linear RGB: three bytes per pixel, rows from the top. Values above 1, infinity too, become
@@ -27,6 +29,11 @@ void write_image(const std::filesystem::path& path, const Image& image, const Ve
 ///
 /// throws: Error(InvalidInput) if the image has no pixels, or its number of values does not match its size
 [[nodiscard]] std::vector<std::uint8_t> srgb_bytes(const Image& image, const Vec3& background = Vec3(0.0));
+
+/// 8-bit sRGB with alpha, which the colours are not multiplied by: four bytes per pixel, rows from the top.
+///
+/// throws: Error(InvalidInput) as `srgb_bytes`
+[[nodiscard]] std::vector<std::uint8_t> srgba_bytes(const Image& image);
 
 /// Reads an image of any format that OpenImageIO reads as linear premultiplied RGBA; integer samples are decoded from sRGB. A
 /// channel Z is ignored. Of a part of a larger picture it has the pixels alone: `read_placed_image` knows where they are.

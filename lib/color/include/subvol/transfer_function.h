@@ -41,6 +41,9 @@ struct TransferFunction {
 /// constant:   white, opacity .5
 /// categories: another colour for each integer, from half below it to half above it; opacity .5
 ///
+/// plasma, inferno, cividis, turbo, jet, rainbow (blue to red by hue), desaturated, blackbody: sequences of colours
+///
+/// name:     in any case; also what ParaView calls the map, such as "Cool to Warm", "Blue to Red Rainbow", "Grayscale"
 /// min, max: the field's range; that of a constant field is widened by .5 on either side
 /// throws:   Error(InvalidInput) for an unknown name (lists those that exist), or if the range is not finite or min > max
 [[nodiscard]] TransferFunction transfer_function_preset(const std::string& name, double min, double max);

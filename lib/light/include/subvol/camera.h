@@ -94,10 +94,10 @@ private:
 /// `fit_camera` for all frames of a turntable about the box's centre: each of them sees the whole box.
 [[nodiscard]] Camera fit_turntable(const Camera& camera, const Box& box, int frames, double aspect = 1);
 
-/// Reads a camera from text: the name of a view (±x ±y ±z iso), ten numbers "ex,ey,ez,tx,ty,tz,ux,uy,uz,fovy", of an
-/// orthographic camera with its ortho_height as the eleventh, or the name of a JSON file with the keys eye and target, and
-/// optionally up (default: as for a view), fovy_deg and ortho_height; or with these under the key camera, as in the report of
-/// `subvol render --json`.
+/// Reads a camera from text: the name of a view (±x ±y ±z iso, or front −y, back, left −x, right, top +z, bottom), ten numbers
+/// "ex,ey,ez,tx,ty,tz,ux,uy,uz,fovy", of an orthographic camera with its ortho_height as the eleventh, or the name of a JSON
+/// file with the keys eye and target, and optionally up (default: as for a view), fovy_deg and ortho_height; or with these
+/// under the key camera, as in the report of `subvol render --json`.
 ///
 /// A view is named after the side of the eye: in `-y` the eye is at negative y and looks towards +y; in `iso` it is in the
 /// direction (+1,-1,+1) from the centre. Views have a field of view of 30°.

@@ -5,12 +5,14 @@
 #include <string>
 #include <vector>
 
+#include "subvol/color_scale.h"
 #include "subvol/transfer_function.h"
 
 namespace subvol {
 
 /// title:    above the legend, e.g. the field's name with its unit
-/// min, max: the range of values; if it has no width, it is widened by .5 on either side
+/// min, max: the range of values; without width: a swatch with the value takes the place of the bar
+/// shape:    the scale of the ticks, which are the ends of the bands, if there are a few
 /// width_px: of the colour bar, 50..10000
 /// opacity_title, opacity_min, opacity_max: where the opacities are of another field than the colours, its name and range: they
 ///           get a plot of their own; an empty title: they are of the same field
@@ -21,6 +23,7 @@ struct LegendOptions {
     std::string title{};
     double min = 0;
     double max = 1;
+    ColorShape shape{};
     int width_px = 360;
     std::string opacity_title{};
     double opacity_min = 0;

@@ -59,6 +59,12 @@ void draw_edges(Image& image, std::span<const float> depth, const View& view, co
 /// ink: of the names
 void draw_axes(Image& image, const View& view, const Vec3& ink);
 
+/// Draws a bar of a round length in the lower right corner, at most a quarter of the picture wide, with the length above it.
+///
+/// at:  the point at whose depth lengths are those of the bar; of an orthographic view it does not matter
+/// ink: of bar and text
+void draw_scale_bar(Image& image, const View& view, const Vec3& at, const Vec3& ink);
+
 /// The width that `draw_legend` needs in a picture of this height.
 [[nodiscard]] int legend_width_px(const TransferFunction& function, const LegendOptions& options, int height);
 

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "subvol/color_scale.h"
 #include "subvol/mesh_source.h"
 #include "subvol/names.h"
 #include "subvol/optics.h"
@@ -35,6 +36,7 @@ struct NameTable<Look> {
 /// range:   what the colour map covers; none: the field's range
 /// stretch: spreads the map of a file over the range; otherwise it keeps its own values
 /// opacity: knots instead of those of the map; empty: those of the map
+/// shape:   the scale of the map, its bands, and the colours beyond the range
 /// opacity_unit_world: the distance that opacities are for; none: 1/100 of the box's diagonal, of a solid 1/1,000,000
 /// clamp:   values beyond the field's range look like its ends
 struct LookOptions {
@@ -43,6 +45,7 @@ struct LookOptions {
     std::optional<ValueRange> range{};
     bool stretch = false;
     std::vector<TransferFunction::OpacityKnot> opacity{};
+    ColorShape shape{};
     std::optional<double> opacity_unit_world{};
     bool clamp = false;
 };
@@ -52,16 +55,24 @@ struct LookOptions {
 /// look:    none: solid for bodies with a boundary, unless opacities are chosen; else volume
 /// range:   "MIN,MAX", parts of the field's range such as "10%,90%", or "field"
 /// opacity: as `parse_opacity` reads it
+/// iso:     values, or parts of the field's range, of lit surfaces: "300,60%"; the look is that of isosurfaces
+/// log:     a logarithmic scale; symlog: one that is so on both sides of 0, and linear within this value
+/// bands:   the number of colours; below, above: of values beyond the range, as `parse_color` reads them
 struct LookChoices {
     std::optional<std::string> look{}, colors{}, range{}, opacity{};
+    std::string iso{};
     std::optional<double> opacity_unit_world{};
     bool clamp = false;
+    bool log = false;
+    std::optional<double> symlog{};
+    std::optional<int> bands{};
+    std::optional<std::string> below{}, above{};
 };
 
-/// look, tf, opacity-unit, clamp, range, opacity
+/// look, tf, opacity-unit, clamp, range, opacity, iso, log, symlog, bands, below, above
 [[nodiscard]] std::vector<Option> options_of(LookChoices& choices);
 
-/// throws: Error(InvalidInput) for an unknown look
+/// throws: Error(InvalidInput) for an unknown look, or for another one than isosurfaces with their values
 [[nodiscard]] Look chosen_look(const LookChoices& choices, bool has_boundary, OptionNames names = OptionNames::Keywords);
 
 /// A value of a field, or a part of its range: "293", "20%".
@@ -70,12 +81,22 @@ struct LookChoices {
 /// throws: Error(InvalidInput) if it is neither
 [[nodiscard]] double parse_value(const std::string& text, const ValueRange& whole, const std::string& where);
 
+/// Opacities that show narrow layers around values, as those of isosurfaces: 0 beside them, in between a hundredth of the range
+/// to either side.
+///
+/// values: any order; equal ones are taken once
+[[nodiscard]] std::vector<TransferFunction::OpacityKnot> opacity_of_isosurfaces(std::vector<double> values,
+                                                                                const ValueRange& range);
+
 /// "293,913" or "10%,90%". throws: Error(InvalidInput) if it is not two ascending values
 [[nodiscard]] ValueRange parse_range(const std::string& text, const ValueRange& whole, const std::string& where);
 
 /// The range that the colours cover: the one that is chosen, else the field's.
 [[nodiscard]] ValueRange shown_range(const LookChoices& choices, const ValueRange& field,
                                      OptionNames names = OptionNames::Keywords);
+
+/// throws: Error(InvalidInput) that names the option
+[[nodiscard]] ColorShape color_shape(const LookChoices& choices, OptionNames names = OptionNames::Keywords);
 
 /// field:  the range of the field that gives the opacities
 /// throws: Error(InvalidInput) that names the option

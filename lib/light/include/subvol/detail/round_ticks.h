@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "subvol/color_scale.h"
+
 namespace subvol::detail {
 
 /// A round value on an axis and its text, with as many digits as the step between ticks needs.
@@ -17,5 +19,9 @@ struct Tick {
 ///
 /// min, max: finite, min < max; most: 5 or more
 [[nodiscard]] std::vector<Tick> round_ticks(double min, double max, int most = 7);
+
+/// Ticks of a colour bar: of a linear scale as `round_ticks`; powers of ten on logarithmic ones, with twice and five times
+/// these if there are few; the ends of the bands if these are as few.
+[[nodiscard]] std::vector<Tick> bar_ticks(const ColorShape& shape, double min, double max, int most = 7);
 
 }  // namespace subvol::detail
