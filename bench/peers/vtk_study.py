@@ -4,10 +4,10 @@
 
     vtk_study.py mesh.vtu FIELD camera.json WIDTHxHEIGHT map.json UNIT picture.pfm [--rays]
 
-The camera is that of references/cameras, the map a ParaView colour map that the study names as its transfer function, UNIT its
-opacity_unit. Tetrahedra are projected; with --rays Bunyk's ray caster integrates them. Beside the picture its camera is written. VTK
-blends colours as they stand, in 8 bits a channel: they are given as linear ones, and the picture is a file of linear floats. Needs what
-vtk_window needs.
+The camera is a file of references/cameras, or the report of `subvol render --json`; the map is a ParaView colour map that the study
+names as its transfer function, UNIT its opacity_unit. Tetrahedra are projected; with --rays Bunyk's ray caster integrates them. Beside
+the picture its camera is written. VTK blends colours as they stand, in 8 bits a channel: they are given as linear ones, and the picture
+is a file of linear floats. Needs what vtk_window needs.
 """
 import json
 import shutil
@@ -25,11 +25,14 @@ def linear(channel):
 
 
 def functions_of(file):
-    """Colours and opacities of the first map in a file of ParaView's."""
+    """Colours and opacities of the first map in a file of ParaView's: between its points colours are linear in sRGB, as there."""
     first = json.loads(Path(file).read_text())
     first = first[0] if isinstance(first, list) else first
-    rgb, points = first["RGBPoints"], first["Points"]
-    return ([(rgb[i], [linear(c) for c in rgb[i + 1:i + 4]]) for i in range(0, len(rgb), 4)],
+    knots = numpy.array(first["RGBPoints"], dtype=float).reshape(-1, 4)
+    values = numpy.unique(numpy.concatenate([numpy.linspace(a, b, 65) for a, b in zip(knots[:-1, 0], knots[1:, 0])]))
+    channels = [numpy.interp(values, knots[:, 0], knots[:, k]) for k in (1, 2, 3)]
+    points = first["Points"]
+    return ([(value, [linear(c) for c in rgb]) for value, *rgb in zip(values, *channels)],
             [(points[i], points[i + 1]) for i in range(0, len(points), 4)])
 
 
@@ -47,6 +50,7 @@ def mapper_of(rays):
 def main(mesh, field, camera_file, size, colors, unit, picture, rays=None):
     width, height = map(int, size.split("x"))
     eye = json.loads(Path(camera_file).read_text())
+    eye = eye.get("camera", eye)
     mapper = mapper_of(rays == "--rays")
     mapper.SetInputData(tetrahedra(mesh, field))
     window, camera = window_of(volume_of(mapper, *functions_of(colors), float(unit)), max(width, height), eye["eye"], eye["target"],

@@ -97,6 +97,7 @@ Image draw(const StudyCase& item, const HexMesh& mesh, const View& view, const O
         least = std::min(least, drawing.seconds());
     }
     result.costs["draw_seconds"] = least;
+    result.costs["frames_per_second"] = 1 / least;
     facts.merge(picture.facts);
     keep_facts(facts, result);
     if (draws_kernels(method)) {

@@ -76,7 +76,8 @@ constexpr std::array kMeasures{
     StudyMeasure{"own_bytes", kPictures, "memory of the method, bytes", "growth of the peak after the mesh was read"},
     StudyMeasure{"prepare_seconds", kPictures, "time of preparation, s",
                  "seconds before the first picture (of all but `dense`)"},
-    StudyMeasure{"draw_seconds", kPictures, "time of a picture, s", "least seconds of one picture"}};
+    StudyMeasure{"draw_seconds", kPictures, "time of a picture, s", "least seconds of one picture"},
+    StudyMeasure{"frames_per_second", kPictures, "pictures per second", "1 / draw_seconds"}};
 
 bool lists(std::string_view words, std::string_view word, char between) {
     while (!words.empty()) {
