@@ -53,6 +53,21 @@ class Honest(InFolder):
         self.assertIn('class="band"', (self.folder / "out/small/small_plot.svg").read_text())
         self.assertIn("floor of each metric", page)
 
+    def test_floors_bound_the_error_of_the_reference_by_another_renderer(self):
+        self.ran(reference={"tolerance": 1e-9, "max_levels": 2}, transfer_functions=[{"name": "viridis", "colors": "viridis", "opacity_unit": 0.05}])
+        for row in self.rows():
+            if row["per_edge"] != "1":
+                continue
+            reference = json.loads((self.folder / f"out/small/cases/{row['id']}.json").read_text())["notes"]["reference"]
+            folder = self.folder / "out/references"
+            self.run_ok("render", "model:twist:4", "-o", "finer.exr", "--camera", str(folder / f"cameras/{reference}.json"), "--size", "48x48", "--method",
+                        "tets", "--levels", "4", "--tf", "viridis", "--opacity-unit", "0.05", "--look", "volume")  # two levels finer, by tetrahedra
+            error = subvol("compare", folder / f"{reference}.exr", self.folder / "finer.exr", "--json").json()
+            for metric in ("rmse", "flip", "max"):
+                self.assertLess(error[metric], float(row["floor_" + metric]), metric)
+            for metric in ("psnr", "ssim"):
+                self.assertGreater(error[metric], float(row["floor_" + metric]), metric)
+
     def test_regions_and_displacements_of_inputs(self):
         vectors = "VECTORS D double\n" + "".join(f"{.5 * z} 0 0\n" for z in (0, 1, 2) for _ in range(4))
         corners = "".join(f"{x} {y} {z}\n" for z in (0, 1, 2) for y in (0, 1) for x in (0, 1))
