@@ -42,8 +42,12 @@ public:
             const View view = view_at(volume_.bounds, distance, size_);
             RbfVolume few;
             SplatResult all;
-            splatter_.set_kernels(volume_);
-            const double seconds_all = cpu_seconds_of([&] { all = splatter_.draw(view, optics_); }, 2);
+            const double seconds_all = cpu_seconds_of(
+                [&] {
+                    splatter_.set_kernels(volume_);  // so that nothing is kept from the picture before
+                    all = splatter_.draw(view, optics_);
+                },
+                2);
             PixelMask seen;
             for (std::size_t i = 3; i < all.image.rgba.size(); i += 4) seen.push_back(all.image.rgba[i] > 0 ? 1 : 0);
             std::printf("  distance %2.0f: all %8zu kernels %4d sheets %7.3f s\n", distance, volume_.size(), all.report.sheets,

@@ -80,7 +80,10 @@ void measure_all(int n, const std::string& exact_file, int size) {
     const auto points = sample_rbf_points(mesh, {.per_edge = 1});
     measure("subvol splat, a kernel a control vertex (CPU)", exact, [&] {
         auto splatter = std::make_shared<Splatter>(points.volume, SplatOptions{.method = SplatMethod::Cpu});
-        return [&, splatter] { return splatter->draw(view, optics).image; };
+        return [&, splatter] {
+            splatter->set_kernels(points.volume);  // so that nothing is kept from the picture before
+            return splatter->draw(view, optics).image;
+        };
     });
     for (const int level : {0, 1}) {
         const HexMesh fine = refine(mesh, {.levels = level});

@@ -135,8 +135,8 @@ void add(Key& key, const std::optional<Box>& box) {
     add(key, box->upper);
 }
 
-/// Of the light in a volume, besides its kernels: the view's axes, to which the key light is fixed, the opacities, and what is
-/// cut away. Moving along these axes and coming nearer changes none of them.
+/// What the light in a volume depends on besides its kernels: the view's axes, to which the key light is fixed, the opacities,
+/// and what is cut away. Moving along these axes and coming nearer changes none of them.
 Key light_key(const View& view, const Optics& optics, const Clip& clip) {
     Key key{optics.opacity_unit(), clip.slices_alone() ? 1.0 : 0.0};
     for (const Vec3& axis : view.axes()) add(key, axis);
@@ -148,8 +148,8 @@ Key light_key(const View& view, const Optics& optics, const Clip& clip) {
     return key;
 }
 
-/// Of a prepared frame, besides its kernels: the view, what is cut away, and the range of the transfer function, in whose cells
-/// values are counted.
+/// What a prepared frame depends on besides its kernels: the view, what is cut away, and the range of the transfer function, in
+/// whose cells values are counted.
 Key frame_key(const View& view, const detail::SplatScene& scene, const detail::Classification& classification,
               const Clip& clip) {
     Key key{static_cast<double>(view.width()), static_cast<double>(view.height()), view.pixel(),

@@ -73,6 +73,19 @@ void list_tiles(SplatFrame& frame) {
     });
 }
 
+/// Whether the values of all pixels on all sheets of a frame are few enough to be kept. Values of lit volumes are not.
+bool fits_in_memory(const SplatFrame& frame) {
+    constexpr double kMost_bytes = 256e6;
+    constexpr double kSheetsAround = 3;  // of an interval
+    if (!frame.scene->plain() || frame.intervals.offsets.empty()) return false;
+    const auto& depths = frame.intervals.depths;
+    double inside = 0;
+    for (std::size_t i = 0; i < depths.size(); i += 2) inside += static_cast<double>(depths[i + 1] - depths[i]);
+    const double sheets =
+        inside / static_cast<double>(frame.sheets.distance) + kSheetsAround * static_cast<double>(depths.size() / 2);
+    return sheets * sizeof(float) <= kMost_bytes;
+}
+
 /// Places the light volume of the scene, if there is one.
 void set_light(SplatFrame& frame) {
     const SplatScene& scene = *frame.scene;
@@ -96,6 +109,7 @@ void prepare_kernels(SplatFrame& frame, const SplatScene& scene, const View& vie
     frame.scene = &scene;
     frame.view = &view;
     frame.classification = &classification;
+    frame.kept.clear();
     frame.sheets = make_sheets(scene, view, sheets);
     frame.tiles_x = (view.width() + SplatFrame::kTile_px - 1) / SplatFrame::kTile_px;
     frame.tiles_y = (view.height() + SplatFrame::kTile_px - 1) / SplatFrame::kTile_px;
@@ -113,6 +127,10 @@ void set_transfer_function(SplatFrame& frame, const View& view, const Classifica
     const bool finer = frame.finer.any();
     frame.finer = sheets == 0 ? finer_sheets(frame) : FinerSheets{};
     if (frame.finer.any() != finer) list_tiles(frame);
+    if (frame.kept.empty() && fits_in_memory(frame)) {
+        frame.kept.resize(static_cast<std::size_t>(frame.tiles_x * frame.tiles_y) *
+                          static_cast<std::size_t>(frame.sheets.batches()));
+    }
     set_light(frame);
 }
 

@@ -24,6 +24,14 @@ struct IntervalEnd {
     BoundaryLight light;
 };
 
+/// The values of a tile's pixels on the sheets of a batch, which other transfer functions may use again. Blocks are vectors of
+/// pixels of the machine that draws.
+struct KeptValues {
+    std::vector<std::uint8_t> sheets{};  // of each block, one bit for each sheet that is there; empty: nothing is
+    std::vector<std::uint32_t> first{};  // of each block: its place in x
+    std::vector<float> x{};              // in cells, of each pixel of a block on each of its sheets; NaN: unknown
+};
+
 /// The data of a frame for the CPU: kernels in eye space, and for each square tile the kernels that it meets, ascending.
 struct SplatFrame {
     static constexpr int kTile_px = 32;
@@ -39,6 +47,8 @@ struct SplatFrame {
     float* optical_depths = nullptr;          // of each pixel on each sheet: these are wanted instead of a picture
     EyeSplats kernels;
     FinerSheets finer;
+    mutable std::vector<KeptValues>
+        kept;  // of tile t and batch b: t · batches + b, set while they are drawn; empty: none are kept
     std::vector<std::array<std::uint16_t, 2>> batches;  // of each kernel: the first and the last that it may touch
     int tiles_x = 0, tiles_y = 0;
     std::vector<std::size_t> tile_offsets;
@@ -56,7 +66,8 @@ void prepare_kernels(SplatFrame& frame, const SplatScene& scene, const View& vie
 void prepare_frame(SplatFrame& frame, const SplatScene& scene, const View& view, const Classification& classification,
                    int sheets, Progress* progress);
 
-/// Sets a transfer function with the same range for a filled frame. Kernels, tiles and intervals stay as they are.
+/// Sets a transfer function with the same range for a filled frame. Kernels, tiles and intervals stay as they are, and values
+/// on sheets are kept from now on, where that does not take too much memory.
 void set_transfer_function(SplatFrame& frame, const View& view, const Classification& classification, int sheets);
 
 }  // namespace subvol::detail

@@ -26,6 +26,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <new>
 #include <span>
 #include <utility>
@@ -54,6 +55,7 @@ public:
     HWY_ATTR void draw(int tile, Drawn& drawn) {
         x0_ = tile % frame_.tiles_x * SplatFrame::kTile_px;
         y0_ = tile / frame_.tiles_x * SplatFrame::kTile_px;
+        tile_id_ = static_cast<std::size_t>(tile);
         place_pixels(view_, x0_, y0_, tile_);
         if (!start_blocks()) return;
         if (done()) return write(drawn);
@@ -240,11 +242,64 @@ private:
         for (int first = 0; first < sheets; first += kBatch) {
             place_sheets(batch, first);
             if (!choose_blocks(first)) continue;
-            sum(level_ > 0 ? kernels_of_part(first / kBatch) : kernels_of(batch), 0, std::min(kBatch, sheets - first));
+            KeptValues* const kept = kept_of(batch);
+            batch_.begin = 0;
+            batch_.end = std::min(kBatch, sheets - first);
+            kept_ = nullptr;
+            if (kept == nullptr || !has_needed(*kept)) {
+                sum(level_ > 0 ? kernels_of_part(first / kBatch) : kernels_of(batch));
+                if (kept != nullptr) keep(*kept);
+            }
+            kept_ = kept;
             for (std::size_t block = 0; block < kBlocks; ++block) {
                 if (scratch().needed[block] != 0) composite(block, batch);
             }
         }
+    }
+
+    /// Where the values of a batch are kept; null: nowhere.
+    [[nodiscard]] KeptValues* kept_of(int batch) const {
+        if (!kPlain || frame_.kept.empty() || level_ > 0) return nullptr;
+        return &frame_.kept[tile_id_ * static_cast<std::size_t>(sheets_.batches()) + static_cast<std::size_t>(batch)];
+    }
+    [[nodiscard]] static bool has_needed(const KeptValues& kept) {
+        if (kept.sheets.empty()) return false;
+        const auto& needed = scratch().needed;
+        for (std::size_t block = 0; block < kBlocks; ++block) {
+            if ((needed[block] & ~kept.sheets[block]) != 0) return false;
+        }
+        return true;
+    }
+
+    /// Keeps the values of the sheets that blocks need.
+    HWY_ATTR void keep(KeptValues& kept) {
+        const Lanes d;
+        const auto& needed = scratch().needed;
+        kept.sheets.clear();
+        kept.first.resize(kBlocks);
+        std::uint32_t size = 0;
+        for (std::size_t block = 0; block < kBlocks; ++block) {
+            kept.first[block] = size;
+            size += static_cast<std::uint32_t>(static_cast<std::size_t>(std::popcount(needed[block])) * kBlock);
+        }
+        kept.x.resize(size);
+        for (std::size_t block = 0; block < kBlocks; ++block) {
+            float* to = kept.x.data() + kept.first[block];
+            for (std::uint32_t bits = needed[block]; bits != 0; bits &= bits - 1, to += kBlock) {
+                const SheetValues sheet = values(block, std::countr_zero(bits));
+                hn::StoreU(hn::IfThenElse(sheet.known, sheet.x, hn::NaN(d)), d, to);
+            }
+        }
+        kept.sheets.assign(needed.begin(), needed.end());  // last, so that an error leaves nothing half kept
+    }
+    [[nodiscard]] HWY_ATTR SheetValues kept_values(std::size_t block, int k) const {
+        const Lanes d;
+        const auto before = static_cast<std::uint8_t>(kept_->sheets[block] & ((1u << k) - 1));
+        const auto x =
+            hn::LoadU(d, kept_->x.data() + kept_->first[block] + static_cast<std::size_t>(std::popcount(before)) * kBlock);
+        const auto known = hn::Eq(x, x);
+        const auto zero = hn::Zero(d);
+        return {hn::IfThenElseZero(known, x), known, zero, zero, {zero, zero}};
     }
 
     [[nodiscard]] static std::span<const std::uint32_t> kernels_of(int batch) {
@@ -340,7 +395,10 @@ private:
         batch_.need_all();
         level_ = 0;
         place_sheets(batch, 0);
-        sum(kernels_of(batch), kBatch - 1, kBatch);
+        batch_.begin = kBatch - 1;
+        batch_.end = kBatch;
+        kept_ = nullptr;
+        sum(kernels_of(batch));
         for (std::size_t block = 0; block < kBlocks; ++block) {
             BlockWalk<kPlain> walk(frame_, classifier_, scratch().blocks[block]);
             walk.skip_to(values(block, kBatch - 1));
@@ -348,18 +406,16 @@ private:
         }
     }
 
-    /// Sums kernels on the placed sheets [begin, end).
-    HWY_ATTR void sum(std::span<const std::uint32_t> kernels, int begin, int end) {
+    /// Sums kernels on the placed sheets of the batch.
+    HWY_ATTR void sum(std::span<const std::uint32_t> kernels) {
         for (int k = 0; k < kBatch; ++k) {
             const auto i = static_cast<std::size_t>(k);
             batch_.depth[i] = sheets_.depth(place_of(k));
             batch_.across[i] = view_.perspective() ? sheets_.middle + batch_.depth[i] : 1.0f;
             batch_.to_pixels[i] = 1.0f / (batch_.across[i] * static_cast<float>(view_.pixel()));
         }
-        batch_.begin = begin;
-        batch_.end = end;
         float* sums = scratch().sums;
-        for (int k = begin; k < end; ++k) {
+        for (int k = batch_.begin; k < batch_.end; ++k) {
             for (std::size_t row = 0; row < kRows; ++row) {
                 if (batch_.first_column[k][row] > batch_.last_column[k][row]) continue;
                 const auto first = static_cast<std::size_t>(batch_.first_column[k][row]);
@@ -407,6 +463,7 @@ private:
     }
 
     HWY_ATTR SheetValues values(std::size_t block, int k) const {
+        if (kPlain && kept_ != nullptr) return kept_values(block, k);
         const Lanes d;
         const float* sums = scratch().sums + (static_cast<std::size_t>(k) * kBlocks + block) * (kStride * kBlock);
         SheetValues result;
@@ -481,6 +538,8 @@ private:
     std::pair<std::size_t, std::size_t> marked_;  // sheets of a block, the last one included
     float x_offset_ = 0, color_offset_ = 0, least_gradient_ = 0;
     int x0_ = 0, y0_ = 0;
+    std::size_t tile_id_ = 0;
+    const KeptValues* kept_ = nullptr;  // of the sheets that are composited; null: they are in the sums
     // The sheets that are summed: the place in the stack of the one before them, and their distance there. Levels: the most of
     // those of the batch, and of its cells.
     float before_ = -1, step_ = 1;
