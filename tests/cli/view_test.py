@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Sessions of `view`: scripts without a window, and the window under Xvfb, by a script and by a real mouse."""
 
+import ctypes.util
 import json
 import os
 import pathlib
@@ -8,6 +9,7 @@ import shlex
 import shutil
 import struct
 import subprocess
+import sys
 import unittest
 import zlib
 
@@ -307,6 +309,20 @@ class InWindow(InSession):
         self.assertEqual(self.state("opened.json")["field"], "density")
         self.assertEqual((self.folder / "home" / "subvol" / "recent").read_text(), f"{self.folder}/ball.vtu\n")
         self.assertNotEqual(pixels_of(self.folder / "start.xwd"), pixels_of(self.folder / "opened.xwd"))
+
+    def test_a_file_is_dropped(self):
+        if not ctypes.util.find_library("X11"):
+            self.skipTest("libX11 is not installed")
+        self.run_ok("model", "ball", "--resolution", 3, "-o", "a ball.vtu")
+        drop = shlex.join([sys.executable, str(pathlib.Path(__file__).with_name("drop_file.py"))])
+        self.by_hand(f"""
+            {drop} $window 'a ball.vtu' || echo failed >fault
+            sleep 3
+            shot dropped
+            save dropped.json
+        """, ["--backend", "cpu"])
+        self.assertNotIn("fault", self.files())
+        self.assertEqual(self.state("dropped.json")["field"], "density")
 
     def test_nothing_overlaps_in_a_small_window(self):
         self.by_hand("""
