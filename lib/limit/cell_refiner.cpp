@@ -330,17 +330,6 @@ struct CellRefiner::State {
         };
     }
 
-    static std::vector<Index> in_space_order(const HexMesh& mesh, std::span<const Index> cells) {
-        std::vector<Vec3> centers(cells.size());
-        parallel_each(cells.size(), [&](std::size_t i) {
-            const auto& corners = mesh.cells[cells[i]];
-            centers[i] = 0.5 * (mesh.points[corners[0]] + mesh.points[corners[6]]);
-        });
-        std::vector<Index> ordered = space_order(centers);
-        for (Index& i : ordered) i = cells[i];
-        return ordered;
-    }
-
     const HexMesh& control;
     SchemeOptions scheme;
     bool moves;
@@ -367,7 +356,7 @@ void CellRefiner::for_each(std::span<const Index> cells, int levels, Progress* p
     const Sink sink = [&](Index cell, const CellGrid& grid) { visit(grid.dense_cell(cell, levels)); };
     std::vector<Index> ordered;
     if (cells.size() > kClassified) {
-        ordered = State::in_space_order(state.control, cells);
+        ordered = in_space_order(state.control, cells);
         cells = ordered;
     }
     for (std::size_t first = 0; first < cells.size(); first += kClassified) {

@@ -18,6 +18,7 @@
 #include "patch.h"
 #include "refine_steps.h"
 #include "run_nested.h"
+#include "space_order.h"
 #include "subvol/detail/all_cells.h"
 #include "subvol/error.h"
 #include "subvol/limit.h"
@@ -122,6 +123,9 @@ void DenseCells::for_each(std::span<const Index> cells, int levels, const std::f
     const std::size_t most = batch_size(levels), at_least = std::max<std::size_t>(1, (cells.size() + most - 1) / most);
     const std::size_t batch = (cells.size() + at_least - 1) / at_least;  // of equal size, as they run side by side
     const std::size_t batches = batch == 0 ? 0 : (cells.size() + batch - 1) / batch;
+    // Neighbours together, as the cells around each batch are refined too.
+    std::vector<Index> ordered;
+    if (batches > 1) cells = ordered = detail::in_space_order(state_->control, cells);
     constexpr std::size_t kTurn = 64;  // batches between two reports of progress
     for (std::size_t turn = 0; turn < batches; turn += kTurn) {
         report_progress(state_->options.progress, "dense cells", turn, batches);

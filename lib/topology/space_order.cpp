@@ -42,4 +42,15 @@ std::vector<Index> space_order(std::span<const Vec3> points) {
     return order;
 }
 
+std::vector<Index> in_space_order(const HexMesh& mesh, std::span<const Index> cells) {
+    std::vector<Vec3> middles(cells.size());
+    parallel_each(cells.size(), [&](std::size_t i) {
+        const auto& corners = mesh.cells[cells[i]];
+        middles[i] = 0.5 * (mesh.points[corners[0]] + mesh.points[corners[6]]);
+    });
+    std::vector<Index> ordered = space_order(middles);
+    for (Index& i : ordered) i = cells[i];
+    return ordered;
+}
+
 }  // namespace subvol::detail

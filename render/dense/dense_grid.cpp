@@ -224,17 +224,33 @@ Index DenseGrid::neighbor(Index tet, Index k) const {
     return static_cast<Index>(8 * beyond + cell_splits_[splits_[beyond]].owners[opposite][missing] / 4u);
 }
 
-void DenseGrid::descend(const RayPlane& plane, double margin, std::size_t face, int level, Index i, Index j,
-                        std::vector<TetFace>& faces) const {
-    const SmallBox& box = sides_[face * boxes_above(levels_ + 1) + boxes_above(level) + i + (std::size_t{j} << level)];
+const DenseGrid::SmallBox& DenseGrid::small_box(const SidePart& part) const {
+    return sides_[part.side * boxes_above(levels_ + 1) + boxes_above(part.level) + part.i +
+                  (std::size_t{part.j} << part.level)];
+}
+
+Box DenseGrid::box_of(const SidePart& part) const {
+    const SmallBox& small = small_box(part);
+    const Vec3 center = origin_ + Vec3(small.center[0], small.center[1], small.center[2]);
+    const Vec3 half(small.half[0], small.half[1], small.half[2]);
+    Box box;
+    box.add(center - half);
+    box.add(center + half);
+    return box;
+}
+
+void DenseGrid::descend(const RayPlane& plane, double margin, const SidePart& part, std::vector<TetFace>& faces) const {
+    const SmallBox& box = small_box(part);
     const Vec3 center = origin_ + Vec3(box.center[0], box.center[1], box.center[2]);
     if (!plane.may_meet(center, Vec3(box.half[0], box.half[1], box.half[2]), margin)) return;
-    if (level < levels_) {
-        for (Index k = 0; k < 4; ++k) descend(plane, margin, face, level + 1, 2 * i + k % 2, 2 * j + k / 2, faces);
+    if (part.level < levels_) {
+        for (Index k = 0; k < 4; ++k) {
+            descend(plane, margin, {part.side, part.level + 1, 2 * part.i + k % 2, 2 * part.j + k / 2}, faces);
+        }
         return;
     }
-    const std::size_t cell = cell_number(cell_at(face, i, j));
-    for (const std::uint8_t owner : cell_splits_[splits_[cell]].owners[face]) {
+    const std::size_t cell = cell_number(cell_at(part.side, part.i, part.j));
+    for (const std::uint8_t owner : cell_splits_[splits_[cell]].owners[part.side]) {
         if (owner == CellSplit::kNoOwner) continue;
         const auto triangle = static_cast<TetFace>(32 * cell + owner);
         if (cross_face(*this, plane, triangle)) faces.push_back(triangle);
@@ -271,14 +287,12 @@ std::optional<TetFace> DenseGrid::face_of(const SideTriangle& triangle) const {
     return std::nullopt;
 }
 
-void DenseGrid::find_crossed(const RayPlane& plane, unsigned sides, std::vector<TetFace>& faces) const {
+void DenseGrid::find_crossed(const RayPlane& plane, const SidePart& part, std::vector<TetFace>& faces) const {
     // For rounding: of the boxes in single precision about the origin, of the points in double precision about the eye.
     const Vec3 away = glm::abs(origin_ - plane.origin()), place = glm::abs(origin_);
     const double margin =
         1e-6 * box_.diagonal() + 1e-14 * (std::max({away.x, away.y, away.z}) + std::max({place.x, place.y, place.z}));
-    for (std::size_t side = 0; side < 6; ++side) {
-        if (sides >> side & 1u) descend(plane, margin, side, 0, 0, 0, faces);
-    }
+    descend(plane, margin, part, faces);
 }
 
 }  // namespace subvol::detail

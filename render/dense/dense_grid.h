@@ -96,10 +96,17 @@ public:
     }
     [[nodiscard]] Index neighbor(Index tet, Index k) const;
 
-    /// Appends the boundary faces that the whole line of a ray crosses, as edge signs decide: an even number of all six sides.
-    ///
-    /// sides: bit k: those on side k
-    void find_crossed(const RayPlane& plane, unsigned sides, std::vector<TetFace>& faces) const;
+    /// A square part of a side: one of 2^level × 2^level, along the two axes after that of the side.
+    struct SidePart {
+        std::size_t side = 0;
+        int level = 0;
+        Index i = 0, j = 0;
+    };
+    /// A box around a part of a side, up to rounding to floats.
+    [[nodiscard]] Box box_of(const SidePart& part) const;
+    /// Appends the boundary faces of a part of a side that the whole line of a ray crosses, as edge signs decide: an even
+    /// number of all six sides.
+    void find_crossed(const RayPlane& plane, const SidePart& part, std::vector<TetFace>& faces) const;
 
     /// A triangle on a side of the grid: the quad's place along the two axes after that of the side, and the quad's corner that
     /// the triangle leaves out, along the same axes.
@@ -128,8 +135,8 @@ private:
         return (cell & mask) + side_ * ((cell >> levels_ & mask) + side_ * (cell >> (2 * levels_)));
     }
     [[nodiscard]] SmallBox small_box(const Box& box) const;
-    void descend(const RayPlane& plane, double margin, std::size_t face, int level, Index i, Index j,
-                 std::vector<TetFace>& faces) const;
+    [[nodiscard]] const SmallBox& small_box(const SidePart& part) const;
+    void descend(const RayPlane& plane, double margin, const SidePart& part, std::vector<TetFace>& faces) const;
 
     const CellSplit* cell_splits_;
     Index cell_;

@@ -14,6 +14,7 @@
 #include "dense_tracer.h"
 
 #include <algorithm>
+#include <bit>
 #include <tuple>
 #include <utility>
 
@@ -28,15 +29,13 @@ constexpr double kMargin = 1e-5;  // around a box, for single precision
 // Embree passes a pointer to the context to the callback: what follows it in memory comes along.
 struct Query {
     RTCIntersectContext context;
-    const std::vector<std::uint32_t>& numbers;
-    std::vector<std::uint32_t>* grids;
+    std::vector<std::uint32_t>* parts;
 };
 
-// Records every grid but reports no hit, so that the traversal goes on to the next.
-void record_grid(const RTCIntersectFunctionNArguments* arguments) {
+// Records every part but reports no hit, so that the traversal goes on to the next.
+void record_part(const RTCIntersectFunctionNArguments* arguments) {
     if (arguments->valid[0] == 0) return;
-    const auto* query = reinterpret_cast<const Query*>(arguments->context);
-    query->grids->push_back(query->numbers[arguments->primID]);
+    reinterpret_cast<const Query*>(arguments->context)->parts->push_back(arguments->primID);
 }
 
 }  // namespace
@@ -44,8 +43,7 @@ void record_grid(const RTCIntersectFunctionNArguments* arguments) {
 struct DenseScene::Embree {
     RTCDevice device = nullptr;
     RTCScene scene = nullptr;
-    std::vector<RTCBounds> bounds;
-    std::vector<std::uint32_t> grids;  // of the boxes
+    std::vector<RTCBounds> bounds;  // of the parts
 
     ~Embree() {
         rtcReleaseScene(scene);
@@ -53,8 +51,8 @@ struct DenseScene::Embree {
     }
 };
 
-DenseScene::DenseScene(const std::vector<DenseGrid>& grids, const CellSides& sides)
-    : embree_(std::make_unique<Embree>()), grids_(grids), sides_(sides), next_(grids.size()) {
+DenseScene::DenseScene(const std::vector<DenseGrid>& grids, const CellSides& sides, Absent absent)
+    : embree_(std::make_unique<Embree>()), grids_(grids), sides_(sides), absent_(absent), next_(grids.size()) {
     link_grids();
     Box all;
     for (const DenseGrid& grid : grids) {
@@ -64,12 +62,10 @@ DenseScene::DenseScene(const std::vector<DenseGrid>& grids, const CellSides& sid
     }
     center_ = all.center();
     if (all.diagonal() > 0) scale_ = 2 / all.diagonal();
-    for (std::uint32_t g = 0; g < grids.size(); ++g) {
-        if (open_sides(g) == 0) continue;
-        const DenseGrid& grid = grids[g];
-        embree_->grids.push_back(g);
-        const Vec3 low = scale_ * (grid.box().lower - center_) - kMargin,
-                   high = scale_ * (grid.box().upper - center_) + kMargin;
+    find_parts();
+    for (const OpenPart& part : parts_) {
+        const Box box = grids[part.grid].box_of(part.part);
+        const Vec3 low = scale_ * (box.lower - center_) - kMargin, high = scale_ * (box.upper - center_) + kMargin;
         RTCBounds bounds{};
         bounds.lower_x = static_cast<float>(low.x);
         bounds.lower_y = static_cast<float>(low.y);
@@ -84,13 +80,13 @@ DenseScene::DenseScene(const std::vector<DenseGrid>& grids, const CellSides& sid
     embree_->scene = rtcNewScene(embree_->device);
     rtcSetSceneFlags(embree_->scene, RTC_SCENE_FLAG_ROBUST);
     const RTCGeometry geometry = rtcNewGeometry(embree_->device, RTC_GEOMETRY_TYPE_USER);
-    rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned>(embree_->grids.size()));
+    rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned>(parts_.size()));
     rtcSetGeometryUserData(geometry, embree_.get());
     const auto bounds_of = [](const RTCBoundsFunctionArguments* arguments) {
         *arguments->bounds_o = static_cast<const Embree*>(arguments->geometryUserPtr)->bounds[arguments->primID];
     };
     rtcSetGeometryBoundsFunction(geometry, bounds_of, nullptr);
-    rtcSetGeometryIntersectFunction(geometry, record_grid);
+    rtcSetGeometryIntersectFunction(geometry, record_part);
     rtcCommitGeometry(geometry);
     rtcAttachGeometry(embree_->scene, geometry);
     rtcCommitScene(embree_->scene);
@@ -111,10 +107,29 @@ void DenseScene::link_grids() {
     }
 }
 
-unsigned DenseScene::open_sides(std::uint32_t grid) const {
-    unsigned open = 0;
-    for (unsigned side = 0; side < 6; ++side) open |= unsigned{next_[grid][side] == kNone} << side;
-    return open;
+bool DenseScene::is_open(std::uint32_t grid, std::size_t side) const {
+    return absent_ == Absent::NotYet ? sides_.open(grids_[grid].cell(), side) : next_[grid][side] == kNone;
+}
+
+/// The smaller the boxes, the fewer of them a ray meets in vain; more than half a million take longer to be sorted than they
+/// save.
+void DenseScene::find_parts() {
+    constexpr std::size_t kMostParts = std::size_t{1} << 19;
+    constexpr int kFinest = 2;
+    std::vector<std::pair<std::uint32_t, std::size_t>> open;
+    for (std::uint32_t g = 0; g < grids_.size(); ++g) {
+        for (std::size_t side = 0; side < 6; ++side) {
+            if (is_open(g, side)) open.emplace_back(g, side);
+        }
+    }
+    int finest = kFinest;
+    while (finest > 0 && open.size() << (2 * finest) > kMostParts) --finest;
+    for (const auto& [g, side] : open) {
+        const int level = std::min(finest, std::countr_zero(grids_[g].quads_along()));
+        for (Index k = 0; k < Index{1} << (2 * level); ++k) {
+            parts_.push_back({g, {side, level, k & ((Index{1} << level) - 1), k >> level}});
+        }
+    }
 }
 
 std::optional<DenseScene::Door> DenseScene::behind(const Door& door) const {
@@ -136,10 +151,16 @@ std::optional<DenseScene::Door> DenseScene::behind(const Door& door) const {
     return face ? std::optional(Door{next, *face}) : std::nullopt;
 }
 
-void DenseScene::find_met(const Ray& ray, std::vector<std::uint32_t>& grids) const {
+Index DenseScene::awaited_behind(const Door& door) const {
+    if (absent_ == Absent::Nothing) return kNone;
+    const std::size_t side = grids_[door.grid].on_side(door.face).side;
+    return next_[door.grid][side] == kNone ? sides_.link(grids_[door.grid].cell(), side).cell : kNone;
+}
+
+void DenseScene::find_met(const Ray& ray, std::vector<std::uint32_t>& parts) const {
     auto query = embree_line(ray, center_, scale_);
     if (!query) return;
-    Query context{{}, embree_->grids, &grids};
+    Query context{{}, &parts};
     rtcInitIntersectContext(&context.context);
     rtcIntersect1(embree_->scene, &context.context, &*query);
 }
@@ -149,10 +170,11 @@ void DenseTracer::find_ends(const RayPlane& plane, const Ray& ray) {
     ends_.clear();
     scene_.find_met(ray, met_);
     bool in_front = false;
-    for (const std::uint32_t g : met_) {
+    for (const std::uint32_t number : met_) {
+        const auto& [g, part] = scene_.part(number);
         const DenseGrid& grid = scene_.grids()[g];
         faces_.clear();
-        grid.find_crossed(plane, scene_.open_sides(g), faces_);
+        grid.find_crossed(plane, part, faces_);
         for (const TetFace face : faces_) {
             const double t = cross_face(grid, plane, face)->crossing().t;
             in_front |= t > 0;
@@ -174,7 +196,7 @@ bool DenseTracer::mark_walked(const DenseScene::Door& door) {
     return true;
 }
 
-/// Walks from grid to grid until an open side.
+/// Walks from grid to grid until an open side, or until a cell without a grid, which is then `awaited`.
 WalkOutcome DenseTracer::walk_from(DenseScene::Door door, RayWalker& walker) {
     const std::size_t most = scene_.most_doors();
     for (std::size_t step = 0; step < most; ++step) {
@@ -182,13 +204,19 @@ WalkOutcome DenseTracer::walk_from(DenseScene::Door door, RayWalker& walker) {
         if (walk.outcome == WalkOutcome::Opaque || walk.outcome == WalkOutcome::Lost) return walk.outcome;
         door.face = walk.end;
         const auto next = scene_.behind(door);
-        if (!next) return mark_walked(door) ? WalkOutcome::Through : WalkOutcome::Lost;
-        door = *next;
+        if (next) {
+            door = *next;
+            continue;
+        }
+        awaited_ = scene_.awaited_behind(door);
+        if (awaited_ != kNone) return WalkOutcome::Opaque;
+        return mark_walked(door) ? WalkOutcome::Through : WalkOutcome::Lost;
     }
     return WalkOutcome::Lost;
 }
 
 Segment DenseTracer::trace(const Ray& ray) {
+    awaited_ = kNone;
     clip_.cut(ray, cut_.ray);
     if (cut_.ray.empty()) return {};
     const RayPlane plane(ray);

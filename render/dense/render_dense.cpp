@@ -2,18 +2,21 @@
 #include "subvol/render_dense.h"
 
 #include <tbb/combinable.h>
+#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <limits>
 #include <mutex>
+#include <numeric>
 #include <optional>
 #include <vector>
 
 #include "dense_level.h"
 #include "dense_tracer.h"
 #include "pixel_tiles.h"
+#include "subvol/detail/all_cells.h"
 #include "subvol/detail/number_text.h"
 #include "subvol/detail/stopwatch.h"
 #include "subvol/hex_mesh.h"
@@ -134,18 +137,72 @@ double rms(const Image& a, const Image& b) {
     return std::sqrt(sum / (0.75 * static_cast<double>(a.rgba.size())));
 }
 
+/// How far light comes in the clearest value, in world units; infinity if a value may be invisible.
+double farthest_sight(const Optics& optics) {
+    double least = optics.extinction(0);
+    for (const double knot : optics.knots()) least = std::min(least, optics.extinction(knot));
+    if (std::ranges::any_of(optics.spans(), &Optics::Span::transparent)) least = 0;
+    return -std::log(kRayCutoff) / least;
+}
+
+/// The cells with a point on an open side.
+std::vector<std::uint8_t> cells_at_boundary(const HexMesh& mesh, const CellSides& sides) {
+    std::vector<std::uint8_t> at_boundary(mesh.points.size(), 0), chosen(mesh.cells.size(), 0);
+    for (Index c = 0; c < mesh.cells.size(); ++c) {
+        for (std::size_t side = 0; side < 6; ++side) {
+            if (!sides.open(c, side)) continue;
+            for (const std::size_t corner : kCellFaces[side]) at_boundary[mesh.cells[c][corner]] = 1;
+        }
+    }
+    for (Index c = 0; c < mesh.cells.size(); ++c) {
+        chosen[c] = std::ranges::any_of(mesh.cells[c], [&](Index p) { return at_boundary[p] != 0; }) ? 1 : 0;
+    }
+    return chosen;
+}
+
+// What the tracers of a picture have found: counts, and what has to wait for grids.
+struct TraceSums {
+    TraceCounts counts;
+    std::vector<Index> pixels, cells;
+
+    TraceSums& operator+=(const TraceSums& other) {
+        counts += other.counts;
+        pixels.insert(pixels.end(), other.pixels.begin(), other.pixels.end());
+        cells.insert(cells.end(), other.cells.begin(), other.cells.end());
+        return *this;
+    }
+};
+
 // Traces, and adds its counts to the sums when its tile is done.
 class CountedTracer {
 public:
-    CountedTracer(const DenseScene& scene, const Optics& optics, const RayClip& clip, tbb::combinable<TraceCounts>& sums)
+    CountedTracer(const DenseScene& scene, const Optics& optics, const RayClip& clip, tbb::combinable<TraceSums>& sums)
         : tracer_(scene, optics, clip), sums_(&sums) {}
     CountedTracer(CountedTracer&&) = delete;
-    ~CountedTracer() { sums_->local() += tracer_.counts(); }
-    Segment operator()(const Ray& ray) { return tracer_.trace(ray); }
+    ~CountedTracer() {
+        found_.counts = tracer_.counts();
+        sums_->local() += found_;
+    }
+    Segment operator()(const Ray& ray) {
+        const Segment seen = tracer_.trace(ray);
+        if (tracer_.awaited() != kNone) found_.cells.push_back(tracer_.awaited());
+        return seen;
+    }
+    /// Traces a pixel. One that has to wait for a grid is not written or counted.
+    void draw(const View& view, int samples, Index pixel, Image& image) {
+        const TraceCounts before = tracer_.counts();
+        const std::size_t waited = found_.cells.size();
+        const int x = static_cast<int>(pixel) % view.width(), y = static_cast<int>(pixel) / view.width();
+        const Segment seen = trace_pixel(view, x, y, samples, *this);
+        if (found_.cells.size() == waited) return write_pixel(image, x, y, seen);
+        found_.pixels.push_back(pixel);
+        tracer_.set_counts(before);
+    }
 
 private:
     DenseTracer tracer_;
-    tbb::combinable<TraceCounts>* sums_;
+    tbb::combinable<TraceSums>* sums_;
+    TraceSums found_;
 };
 
 /// Draws one level.
@@ -169,7 +226,8 @@ public:
     DenseResult run() {
         Stopwatch watch;
         report_progress(options_.progress, "build", 0);
-        find_seen();
+        if (draw_from_outside()) return {std::move(image_), report_};
+        find_seen({});
         const std::size_t at_once = most_bytes_ > 0 ? options_.memory / most_bytes_ : seen_.size();
         const std::vector<DensePass> passes = plan_passes(view_, seen_, at_once);
         report_.passes = passes.size();
@@ -186,8 +244,92 @@ public:
     }
 
 private:
-    /// Finds the grids that are visible in the picture, and keeps them as long as they fit into memory.
-    void find_seen() {
+    /// Where light does not come far, most grids inside are not seen. Makes those at the boundary, and as long as rays come to
+    /// others, these and some around them: twice as many layers each time. False if that does not pay, or needs too much
+    /// memory; then nothing has been done.
+    bool draw_from_outside() {
+        constexpr double kFar = .1;              // of the diagonal
+        constexpr std::size_t kMostWaiting = 4;  // one pixel of so many; then all grids are made
+        if (clip_.has_slices() || !(farthest_sight(optics_) < kFar * bounds(mesh_).diagonal())) return false;
+        std::vector<std::uint8_t> made = cells_at_boundary(mesh_, sides_);
+        std::vector<Index> wanted;
+        for (Index c = 0; c < made.size(); ++c) {
+            if (made[c] != 0) wanted.push_back(c);
+        }
+        if (4 * wanted.size() > 3 * made.size()) return false;
+        std::vector<Index> pixels(image_.rgba.size() / 4);
+        std::iota(pixels.begin(), pixels.end(), Index{0});
+        for (int layers = 1; !pixels.empty(); layers *= 2) {
+            Stopwatch watch;
+            find_seen(wanted);
+            if (kept_.size() < seen_.size() || wanted.empty()) return forget();
+            sort_kept();
+            report_.seconds_build += watch.restart();
+            TraceSums sums = draw_pixels(pixels);
+            report_.seconds_draw += watch.restart();
+            const bool many = kMostWaiting * sums.pixels.size() > pixels.size();
+            wanted = many ? all_cells(mesh_) : cells_around(std::move(sums.cells), layers);
+            std::erase_if(wanted, [&](Index c) { return made[c] != 0; });
+            for (const Index c : wanted) made[c] = 1;
+            std::ranges::sort(sums.pixels);
+            pixels = std::move(sums.pixels);
+        }
+        report_.skipped_blocks = mesh_.cells.size() - report_.blocks;
+        report_.passes = 1;
+        return true;
+    }
+
+    bool forget() {
+        drop();
+        seen_.clear();
+        most_bytes_ = 0;
+        report_ = {.levels = report_.levels};
+        image_ = Image(view_.width(), view_.height());
+        return false;
+    }
+
+    [[nodiscard]] TraceSums draw_pixels(const std::vector<Index>& pixels) {
+        constexpr std::size_t kRun = 256;
+        const DenseScene scene(kept_, sides_, DenseScene::Absent::NotYet);
+        tbb::combinable<TraceSums> sums;
+        tbb::parallel_for(std::size_t{0}, (pixels.size() + kRun - 1) / kRun, [&](std::size_t run) {
+            CountedTracer tracer(scene, optics_, clip_, sums);
+            for (std::size_t i = run * kRun; i < std::min(pixels.size(), (run + 1) * kRun); ++i) {
+                tracer.draw(view_, options_.samples, pixels[i], image_);
+            }
+        });
+        TraceSums all;
+        sums.combine_each([&](const TraceSums& sum) { all += sum; });
+        count(all.counts);
+        return all;
+    }
+
+    /// The cells and so many layers around them, through sides, in ascending order.
+    [[nodiscard]] std::vector<Index> cells_around(std::vector<Index> cells, int layers) const {
+        std::vector<std::uint8_t> chosen(mesh_.cells.size(), 0);
+        for (const Index c : cells) chosen[c] = 1;
+        for (std::size_t begin = 0; layers > 0; --layers) {
+            const std::size_t end = cells.size();
+            for (std::size_t i = begin; i < end; ++i) {
+                for (std::size_t side = 0; side < 6; ++side) {
+                    const Index next = sides_.link(cells[i], side).cell;
+                    if (next == kNone || chosen[next] != 0) continue;
+                    chosen[next] = 1;
+                    cells.push_back(next);
+                }
+            }
+            begin = end;
+        }
+        std::ranges::sort(cells);
+        cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
+        return cells;
+    }
+
+    /// Finds the grids that are visible in the picture, and keeps them as long as they fit into memory. Adds them to those
+    /// that were found before.
+    ///
+    /// cells: none: all
+    void find_seen(std::optional<std::vector<Index>> cells) {
         std::mutex adding;
         std::atomic<bool> full = false;
         const auto inspect = [&](const DenseCell& cell) {
@@ -208,7 +350,7 @@ private:
             full = true;
             drop();
         };
-        for_each_dense_cell(mesh_, refine_, {.cells = {}, .on_limit = true}, inspect);
+        for_each_dense_cell(mesh_, refine_, {.cells = std::move(cells), .on_limit = true}, inspect);
         std::sort(seen_.begin(), seen_.end(), [](const SeenGrid& a, const SeenGrid& b) { return a.cell < b.cell; });
     }
 
@@ -237,14 +379,15 @@ private:
 
     void draw(const PixelRect& rect) {
         const DenseScene scene(kept_, sides_);
-        tbb::combinable<TraceCounts> sums;
+        tbb::combinable<TraceSums> sums;
         draw_in_tiles(view_, options_.samples, rect, image_, options_.progress,
                       [&] { return CountedTracer(scene, optics_, clip_, sums); });
-        sums.combine_each([&](const TraceCounts& sum) {
-            report_.rays += sum.rays;
-            report_.segments += sum.segments;
-            report_.lost_rays += sum.lost_rays;
-        });
+        sums.combine_each([&](const TraceSums& sum) { count(sum.counts); });
+    }
+    void count(const TraceCounts& sum) {
+        report_.rays += sum.rays;
+        report_.segments += sum.segments;
+        report_.lost_rays += sum.lost_rays;
     }
 
     const HexMesh& mesh_;

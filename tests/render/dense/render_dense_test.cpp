@@ -297,6 +297,43 @@ TEST(RenderDense, ThreadsAndMemoryChangeNoBit) {
     }
 }
 
+/// Opaque, and clear enough that some rays come through the outer cells.
+Optics opaque_optics(double alpha) {
+    return {{{{0, {1, 0, 0}}, {1, {0.1, 0.3, 1}}}, {{0, alpha}, {1, 0.99}}}, 0.01};
+}
+
+TEST(RenderDense, CellsThatNoRayComesToAreNotMade) {
+    const HexMesh mesh = with_field(test::jittered_box(9, 0.2, 4), waves);
+    for (const double alpha : {0.999, 0.7}) {  // sight ends within 2 and 12 % of a side: in the outer cells, and beyond them
+        const auto draw = [&](std::size_t threads, std::size_t memory) {
+            const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+            return render_dense(mesh, {}, slanted_view(70), opaque_optics(alpha),
+                                {.levels = 1, .memory = memory, .samples = 2});
+        };
+        const DenseResult drawn = draw(4, std::size_t{2} << 30), whole = draw(4, 1);
+        EXPECT_LT(drawn.report.blocks, 729u) << alpha;
+        EXPECT_EQ(drawn.report.blocks + drawn.report.skipped_blocks, 729u);
+        EXPECT_EQ(drawn.report.micro_cells, 8 * drawn.report.blocks);
+        EXPECT_EQ(drawn.report.lost_rays, 0u);
+        EXPECT_EQ(drawn.image.rgba, whole.image.rgba) << alpha;
+        EXPECT_EQ(drawn.report.rays, whole.report.rays);
+        EXPECT_EQ(drawn.report.segments, whole.report.segments);
+        const DenseResult alone = draw(1, std::size_t{2} << 30);
+        EXPECT_EQ(alone.image.rgba, drawn.image.rgba);
+        EXPECT_EQ(alone.report.blocks, drawn.report.blocks);
+    }
+}
+
+TEST(RenderDense, AnOpaqueVolumeThatIsCutOpenShowsItsInside) {
+    const HexMesh mesh = with_field(test::jittered_box(9, 0.2, 4), waves);
+    const auto draw = [&](std::size_t memory) {
+        DenseOptions options{.levels = 1, .memory = memory};
+        options.clip.planes.push_back({.point = {0.5, 0.5, 0.5}, .normal = {0.3, 0.2, 1}});
+        return render_dense(mesh, {}, slanted_view(70), opaque_optics(0.999), options).image.rgba;
+    };
+    EXPECT_EQ(draw(std::size_t{2} << 30), draw(1));
+}
+
 TEST(RenderDense, InvisibleBlocksAreSkippedWithoutChange) {
     const HexMesh mesh = with_field(test::box(6), [](const Vec3& p) { return p.x; });
     const View view = slanted_view(48);

@@ -45,9 +45,9 @@ struct DenseReport {
     std::optional<double> error_px{}, error_color{};
     std::optional<double> image_change{};
     bool converged = false;
-    std::size_t blocks = 0;          // control cells in the picture whose values are visible
+    std::size_t blocks = 0;          // control cells in the picture whose values are visible, and not hidden by others
     std::size_t skipped_blocks = 0;  // the others
-    std::size_t micro_cells = 0;     // of all control cells at this level
+    std::size_t micro_cells = 0;     // of all control cells at this level that were looked at
     std::size_t passes = 0;
     std::size_t rays = 0;  // that met a visible block
     std::size_t segments = 0;
@@ -63,8 +63,8 @@ struct DenseResult {
 
 /// The picture of the limit volume by rays through dense grids. Each control cell becomes the scheme's level-L grid with its
 /// vertices on the limit, and each micro-cell is split into tetrahedra that match those of its neighbours on any mesh. Each
-/// segment is integrated exactly. Cells whose values are invisible are skipped. Bitwise the same for any number of threads and
-/// any `memory`.
+/// segment is integrated exactly. Cells whose values are invisible are skipped, and cells inside an opaque volume that no ray
+/// comes to. Bitwise the same for any number of threads and any `memory`.
 ///
 /// field:  the attribute of the control mesh that is shown, as in scalar_field
 /// throws: Error(InvalidInput) if an option is out of range, and as scalar_field and `refine`
