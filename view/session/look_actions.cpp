@@ -116,7 +116,7 @@ void legend(Session& session, const Json& value) {
 
 void compare(Session& session, const Json& name) {
     session.state.compare = name.is_null() ? std::nullopt : std::optional(method_of(name, session));
-    session.show();
+    session.show_reference();
 }
 
 void slider(Session& session, const Json& value) {

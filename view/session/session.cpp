@@ -234,8 +234,12 @@ void ViewSession::State::measure_later(std::uint64_t number) {
 }
 
 void ViewSession::State::show() {
-    compared.reset();
     worker.show(state, body);
+    show_reference();
+}
+
+void ViewSession::State::show_reference() {
+    compared.reset();
     if (!state.compare) return;
     if (!reference) reference = std::make_unique<DrawWorker>(settings, on_picture);
     ViewState other = state;

@@ -77,6 +77,8 @@ struct ViewSession::State {
     void choose_body();
     /// What a method draws: of a scheme of tetrahedra one of two levels, of all else the body.
     [[nodiscard]] std::shared_ptr<const ViewBody> body_for(Method method);
+    /// Lets the worker of the second picture draw the state.
+    void show_reference();
     /// Lets the worker draw the state.
     void show();
     [[nodiscard]] std::shared_ptr<const detail::PickedField> field();

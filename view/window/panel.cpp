@@ -94,9 +94,7 @@ void draw_what(WindowHost& host, WindowMemory& memory) {
 void draw_colours(WindowHost& host, WindowMemory& memory) {
     const ViewState& state = host.state();
     const std::string now = state.look.colors.empty() ? "(of the look)" : state.look.colors;
-    const auto map = choose(
-        memory, "map", now,
-        {"viridis", "plasma", "inferno", "cividis", "turbo", "coolwarm", "grey", "bone", "xray", "isosurface", "surface"});
+    const auto map = choose(memory, "map", now, host.maps());
     if (!map.empty()) run(host, memory, "tf", json_text(map));
     draw_opacity_editor(host, memory);
     const ValueRange range = host.shown_range(), field = host.field_range();

@@ -213,6 +213,11 @@ public:
 
     [[nodiscard]] std::vector<std::string> fields() const override { return session_->fields(); }
     [[nodiscard]] std::vector<std::string> methods() const override { return session_->methods(); }
+    [[nodiscard]] std::vector<std::string> maps() const override {
+        LookChoices any;
+        const auto options = options_of(any);
+        return std::ranges::find(options, "tf", &Option::name)->words;
+    }
     [[nodiscard]] const std::vector<double>& times() const override { return session_->source().times; }
     [[nodiscard]] ValueRange field_range() const override { return session_->body().range; }
     [[nodiscard]] ValueRange shown_range() const override {

@@ -77,6 +77,8 @@ public:
 
     [[nodiscard]] virtual std::vector<std::string> fields() const = 0;
     [[nodiscard]] virtual std::vector<std::string> methods() const = 0;
+    /// The colour maps that need no file.
+    [[nodiscard]] virtual std::vector<std::string> maps() const = 0;
     [[nodiscard]] virtual const std::vector<double>& times() const = 0;
     [[nodiscard]] virtual ValueRange field_range() const = 0;
     [[nodiscard]] virtual ValueRange shown_range() const = 0;
