@@ -29,7 +29,7 @@ namespace subvol::detail {
 
 namespace {
 
-constexpr int kMostLevels = 6, kMostLevelsOfExtremes = 4;
+constexpr int kMostLevels = 6;
 constexpr double kLeftOfTrilinear = 1, kLeftOfQuadratic = 1.0 / 3;  // at most
 
 /// The part of the tolerance that the cells use up which end at a level: as each level costs eight times as much a cell, later
@@ -282,11 +282,24 @@ void Measurer::collect(Index cell, std::size_t number, double step, const CellNo
     extremes_.look(p, cell, number, step, note.extremes);
 }
 
+namespace {
+
+/// How many pieces the cells of extremes may be refined to beyond a level. Those of a few channels go on to the last level, and
+/// may take four times as long as the first one. Where many channels are refined together, the last levels would take most of
+/// the time.
+std::size_t room_for_extremes(std::size_t work, int level, std::size_t channels) {
+    constexpr std::size_t kFew = 4, kMany = 64;
+    const std::size_t most = std::clamp(channels, kFew, kMany), room = 4 * work * kFew * kFew / (most * most);
+    return level < 4 ? std::max(work, room) : room;
+}
+
+}  // namespace
+
 std::vector<Index> Measurer::choose(std::span<const Index> cells, const Changes& changes, int level) {
     constexpr std::size_t kLeastWork = 32768;  // pieces
     const std::size_t work = level >= kMostLevels ? 0 : std::max(cells_.size(), kLeastWork);
     std::vector<std::uint8_t> for_extremes(cells.size(), 0), for_sums(cells.size(), 0);
-    extremes_.end_level(level < kMostLevelsOfExtremes ? work >> 3 * level : 0, for_extremes);
+    extremes_.end_level(room_for_extremes(work, level, channels_.size()) >> 3 * level, for_extremes);
     choose_for_sums(cells, changes, level, 8 * work >> 3 * level, for_sums);
     std::vector<Index> next, summed;
     for (std::size_t i = 0; i < cells.size(); ++i) {

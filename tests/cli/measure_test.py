@@ -4,12 +4,15 @@
 import csv
 import math
 import json
+import os
 import struct
 import unittest
+from pathlib import Path
 
 from command import InFolder, subvol
 
 BOX = "model:twist:4"
+POST = Path(os.environ.get("SUBVOL_DATA", "/nowhere")) / "vtkdata_post_tet.vtk"
 
 
 class Refusing(InFolder):
@@ -77,6 +80,12 @@ class Probe(Refusing):
         for found in (every, alone):
             self.assertLessEqual(found["error"], 1e-4)
             self.assertTrue(all(field["extreme_error"] >= 0 for field in found["fields"]))
+
+    @unittest.skipUnless(POST.is_file(), "SUBVOL_DATA names no collection with vtkdata_post_tet.vtk")
+    def test_extremes_are_said_to_a_ten_thousandth_of_the_range(self):
+        # At level 4 the limit could still go beyond the values that were found, by half as much again.
+        field = self.run_ok("probe", POST, "--stats", "--field", "Pressure", "--json").json()["stats"]["whole"]["fields"][0]
+        self.assertLessEqual(field["extreme_error"], 1e-4 * (field["max"] - field["min"]))
 
     def test_what_makes_no_sense_is_refused(self):
         (self.folder / "bad.csv").write_text("0,0,0\n1,two,3\n")

@@ -73,7 +73,7 @@ struct LimitMeasure {
 /// Every cell is refined once and integrated as a triquadratic piece, by 27 Gauss points (exact for volumes). Each cell has an
 /// estimate of what is left; those in which most is left are refined further, until the rest is within the tolerance. What a
 /// sample of cells shows to follow is added. So are refined cells whose nodes lie so near the best value that the limit may go
-/// beyond it. Sums end at level 6, extremes at level 4, both when they have taken several times as long as the first level:
+/// beyond it. Both end at level 6, or when they have taken several times as long as the first level:
 /// `error` and `extreme_error` say how far the figures may be off.
 ///
 /// A mesh that is stored in pieces is measured piece by piece: each is read and refined twice, the second time for the
