@@ -64,6 +64,14 @@ void PictureArguments::add_light_to(CLI::App& app) {
                    "a colour bar with the opacities and the field's name, at the right of the picture, or in a file of its own")
         ->type_name("[FILE.svg]")
         ->expected(0, 1);
+    constexpr double kSmallest = 0.25, kLargest = 8;
+    add_option(app,
+               Option("legend-side", legend_style.side).help("SIDE", "right or bottom: where --legend stands in the picture"));
+    add_option(app, Option("legend-size", legend_style.size)
+                        .between(kSmallest, kLargest)
+                        .help("F", "the size of the letters and the bar of --legend in the picture, 1 by default"));
+    add_option(app, Option("legend-format", legend_format)
+                        .help("FORMAT", "how --legend writes numbers: %.2f, %g, %.3e (default: as many digits as they need)"));
     app.add_option("--unit", unit, "the field's unit, which the legend shows")->type_name("TEXT");
     app.add_flag("--axes", axes, "draw the directions of x, y and z in the lower left corner");
     app.add_flag("--scale-bar", scale_bar,
@@ -85,8 +93,14 @@ Vec3 PictureArguments::background_color() const {
     return background_of(look);
 }
 
+PictureSize PictureArguments::size_of_body() const {
+    PictureSize size = eye.size;
+    (legend_style.side == LegendSide::Right ? size.width : size.height) -= legend_px;
+    return size;
+}
+
 std::vector<View> PictureArguments::make_views(const Box& box, std::span<const Vec3> points) const {
-    const int width = eye.size.width - legend_px, height = eye.size.height;
+    const auto [width, height] = size_of_body();
     if (views) return make_sheet(box, points);
     const Camera first = find_camera(eye, box, points, static_cast<double>(width) / height, OptionNames::Flags);
     if (!eye.turntable) return {View(first, width, height)};
@@ -118,10 +132,15 @@ int PictureArguments::sheet_columns() const {
     return columns;
 }
 
+int PictureArguments::sheet_rows() const {
+    return (static_cast<int>(sheet_views().size()) + sheet_columns() - 1) / sheet_columns();
+}
+
 std::vector<View> PictureArguments::make_sheet(const Box& box, std::span<const Vec3> points) const {
     const std::vector<std::string> sides = sheet_views();
-    const int columns = sheet_columns(), rows = (static_cast<int>(sides.size()) + columns - 1) / columns;
-    const int width = (eye.size.width - legend_px) / columns, height = eye.size.height / rows;
+    const int columns = sheet_columns(), rows = sheet_rows();
+    const PictureSize body = size_of_body();
+    const int width = body.width / columns, height = body.height / rows;
     std::vector<View> sheet;
     for (const std::string& side : sides) {
         ViewOptions one = eye;
@@ -148,6 +167,15 @@ void PictureArguments::check() const {
                     text("--size ", width, "x", height), text("a width that is a multiple of ", columns));
     }
     if (legend && !legend_inside()) check_output(*legend, {".svg"});
+    const bool styled = legend_style.side != LegendSide::Right || legend_style.size != 1;
+    if (styled && !legend_inside())
+        throw Error(ErrorCode::InvalidInput, "is about a legend in the picture", "--legend-side, --legend-size",
+                    "--legend without a file");
+    if (!legend_format.empty() && !legend)
+        throw Error(ErrorCode::InvalidInput, "is about a legend", "--legend-format", "--legend");
+    if (!legend_format.empty() && !is_tick_format(legend_format))
+        throw Error(ErrorCode::InvalidInput, "'" + legend_format + "' is not a format of one number", "--legend-format",
+                    "such as %.2f, %g or %.3e");
     if (!unit.empty() && !legend) throw Error(ErrorCode::InvalidInput, "is shown by a legend only", "--unit", "--legend");
 }
 
@@ -160,6 +188,7 @@ LegendOptions PictureArguments::legend_options(const ShownField& field, const Sh
                           .shape = color_shape(choices, OptionNames::Flags)};
     options.note = legend_note;
     options.names = legend_names;
+    options.format = legend_format;
     if (field.name != colors.name) {
         const Range opacities = shown_range(choices, field.range, OptionNames::Flags);
         options.opacity_title = field.name;

@@ -13,6 +13,7 @@
 #include "subvol/hex_mesh.h"
 #include "subvol/legend.h"
 #include "subvol/optics.h"
+#include "subvol/overlay.h"
 #include "subvol/picture_look.h"
 #include "subvol/view_options.h"
 
@@ -44,7 +45,9 @@ struct PictureArguments {
     LookChoices choices;
     Look look = Look::Volume;               // as settled
     std::optional<std::string> legend;      // the file; empty: inside the picture
-    int legend_px = 0;                      // the width of a legend inside the picture, as settled
+    int legend_px = 0;                      // the columns or rows of a legend inside the picture, as settled
+    LegendStyle legend_style;               // without its ink
+    std::string legend_format;              // of its ticks; empty: as many digits as they need
     std::string unit;                       // of the field that the legend shows
     std::string legend_note;                // what the legend says besides, as settled
     std::vector<std::string> legend_names;  // of the values 1, 2, …, as settled; empty: the legend has a colour bar
@@ -65,8 +68,9 @@ struct PictureArguments {
     [[nodiscard]] bool transparent() const { return background == "none"; }
     /// The names of the views of a sheet.
     [[nodiscard]] std::vector<std::string> sheet_views() const;
-    /// The pictures of a sheet side by side.
+    /// The pictures of a sheet side by side, and one below the other.
     [[nodiscard]] int sheet_columns() const;
+    [[nodiscard]] int sheet_rows() const;
 
     /// One view, or those of the turntable, or those of a sheet, each a part of the picture. points: a named
     /// view is fitted to them; none: to the box
@@ -90,6 +94,8 @@ struct PictureArguments {
     [[nodiscard]] Facts write_legend(const Optics& optics, const LegendOptions& options) const;
 
 private:
+    /// The size without the legend.
+    [[nodiscard]] PictureSize size_of_body() const;
     void add_camera_to(CLI::App& app);
     void add_light_to(CLI::App& app);
     [[nodiscard]] std::vector<View> make_sheet(const Box& box, std::span<const Vec3> points) const;

@@ -139,12 +139,13 @@ std::optional<Warp> reshape(ReadResult& read, const CommonOptions& options, Fact
         facts.note(text("moved by ", *moved->factor, " × ", moved->field));
     }
     if (!options.patches.empty()) {
-        const std::vector<Patch> patches = patches_of_option(read.sets, options.patches);
+        std::vector<Patch> patches = patches_of_option(mesh, read.sets, options.patches);
         read.shells = patch_shells(mesh, patches);
         mesh.cells.clear();
         std::vector<std::string> names;
         for (const Patch& patch : patches) names.push_back(text(names.size() + 1, " ", patch.name));
         facts.note("patches: " + join(names));
+        read.sets = {std::move(patches), {}};
     }
     read.mesh = std::move(mesh);
     return moved;
@@ -321,8 +322,8 @@ std::string unit_of(const std::vector<FieldInfo>& fields, const std::string& qua
     return {};
 }
 
-std::vector<Patch> patches_of_option(const MeshSets& sets, const std::vector<std::string>& names) {
-    return of_option("--patch", [&] { return chosen_patches(sets, names); });
+std::vector<Patch> patches_of_option(const HexMesh& mesh, const MeshSets& sets, const std::vector<std::string>& names) {
+    return of_option("--patch", [&] { return chosen_patches(mesh, sets, names); });
 }
 
 HexMesh used_mesh(HexMesh read, const CommonOptions& options) {

@@ -69,7 +69,8 @@ enum class ShellsAlone { Refuse, Take };
 [[nodiscard]] std::string unit_of(const std::vector<FieldInfo>& fields, const std::string& quantity);
 
 /// `chosen_patches` of --patch, which errors name.
-[[nodiscard]] std::vector<Patch> patches_of_option(const MeshSets& sets, const std::vector<std::string>& names);
+[[nodiscard]] std::vector<Patch> patches_of_option(const HexMesh& mesh, const MeshSets& sets,
+                                                   const std::vector<std::string>& names);
 
 /// What a call returns; its errors name the option.
 template <class Call>

@@ -14,9 +14,9 @@ namespace {
 
 constexpr double kDarkInk = 0.012, kLightInk = 0.85;  // linear
 
-/// Copies a picture into a larger one, transparent at its right.
-Picture widened(const Picture& from, int width) {
-    Picture to{Image(width, from.image.height), {}};
+/// Copies a picture into a larger one, transparent at its right and below.
+Picture extended(const Picture& from, int width, int height) {
+    Picture to{Image(width, height), {}};
     if (!from.depth.empty()) to.depth.assign(to.image.rgba.size() / 4, std::numeric_limits<float>::infinity());
     const auto columns = static_cast<std::size_t>(from.image.width);
     for (int y = 0; y < from.image.height; ++y) {
@@ -59,8 +59,11 @@ void PictureNotes::add_legend(Picture& picture) const {
                   {.size_px = letter, .color = ink});
     }
     if (!legend) return;
-    picture = widened(picture, picture.image.width + legend_px);
-    draw_legend(picture.image, function, *legend, ink);
+    const bool right = legend_style.side == LegendSide::Right;
+    picture = extended(picture, picture.image.width + (right ? legend_px : 0), picture.image.height + (right ? 0 : legend_px));
+    LegendStyle style = legend_style;
+    style.ink = ink;
+    draw_legend(picture.image, function, *legend, style, legend_height);
 }
 
 PictureNotes make_notes(PictureArguments& arguments, const ShownColors& colors, const HexMesh* mesh) {
@@ -81,12 +84,16 @@ PictureNotes make_notes(PictureArguments& arguments, const ShownColors& colors, 
     if (arguments.legend_inside()) {
         notes.legend = legend;
         const auto [width, height] = arguments.eye.size;
-        const int parts = std::max(1, arguments.sheet_columns());  // each side by side gets as many columns
-        notes.legend_px = legend_width_px(notes.function, legend, height);
-        notes.legend_px += (width - notes.legend_px) % parts;
-        if (width - notes.legend_px < width / 3) {
+        notes.legend_style = arguments.legend_style;
+        notes.legend_height = height;
+        notes.legend_px = legend_extent_px(notes.function, legend, arguments.legend_style, height);
+        const bool right = arguments.legend_style.side == LegendSide::Right;
+        const int parts = right ? std::max(1, arguments.sheet_columns()) : std::max(1, arguments.sheet_rows());
+        const int whole = right ? width : height;  // each of the parts gets as many columns or rows
+        notes.legend_px += (whole - notes.legend_px) % parts;
+        if (whole - notes.legend_px < whole / 3) {
             throw Error(ErrorCode::InvalidInput, "leaves no room for the picture", "--legend",
-                        "a wider --size, or --legend FILE.svg");
+                        "a larger --size, or --legend FILE.svg");
         }
         arguments.legend_px = notes.legend_px;
     }

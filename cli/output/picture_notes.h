@@ -7,6 +7,7 @@
 
 #include "picture_arguments.h"
 #include "subvol/legend.h"
+#include "subvol/overlay.h"
 #include "subvol/picture_maker.h"
 
 namespace subvol {
@@ -31,7 +32,9 @@ struct PictureNotes {
     std::vector<std::string> caption{};  // lines in the upper left corner
     TransferFunction function{};
     std::optional<LegendOptions> legend{};
-    int legend_px = 0;  // its width
+    LegendStyle legend_style{};
+    int legend_px = 0;      // its columns or rows
+    int legend_height = 0;  // of the whole picture, by which its letters go
 
     /// Draws shells and beams, which come first.
     void draw_shells(Picture& picture, const View& view) const;
@@ -39,7 +42,7 @@ struct PictureNotes {
     void draw_over(Picture& picture, const View& view) const;
     /// Writes the name of a view into its upper left corner.
     void name_view(Picture& picture, const std::string& name) const;
-    /// Draws the caption. Makes room at the right for the legend, and draws it.
+    /// Draws the caption. Makes room at the right or below for the legend, and draws it.
     void add_legend(Picture& picture) const;
 };
 

@@ -252,7 +252,7 @@ private:
                                                        Report& report) const {
         const HexMesh* mesh = body.source().mesh();
         if (mesh == nullptr) throw Error(ErrorCode::InvalidInput, "bricks have no patches", "--patch", "the mesh itself");
-        const std::vector<Patch> patches = patches_of_option(body.sets, patches_);
+        const std::vector<Patch> patches = patches_of_option(*mesh, body.sets, patches_);
         return report.timed("patches", [&] {
             return measure_patches(*mesh, patches, {.scheme = scheme, .flux = flux_vectors_, .progress = report.progress()});
         });

@@ -141,7 +141,9 @@ public:
             ->required();
         arguments_.add_to(app());
         add_patches(
-            "draw this patch of the boundary alone, as info lists them (repeatable; all); coloured by patch, or by --field");
+            "draw this patch of the boundary alone, as info lists them, or the hull of a set of cells, set:NAME (repeatable; "
+            "all); "
+            "coloured by patch, or by --field");
         app().add_option("--title", picture_.title, "a line of text in the upper left corner")->type_name("TEXT");
         app().add_flag("--time-label", picture_.time_label, "draw the time of the step in the upper left corner");
         share_.add_to(app(), "rows of the picture, or some of the frames");
@@ -242,6 +244,9 @@ private:
                                     "--opacity",
                                     "--opacity-unit",
                                     "--legend",
+                                    "--legend-side",
+                                    "--legend-size",
+                                    "--legend-format",
                                     "--title",
                                     "--time-label",
                                     "--background",
@@ -369,8 +374,7 @@ private:
         const ShownBody mesh = load_shown(common(), report, ShellsAlone::Take);
         if (draws_categories(common())) {
             if (!picture_.choices.colors) picture_.choices.colors = "categories";
-            for (const Patch& patch : patches_of_option(mesh.body.sets, common().patches))
-                picture_.legend_names.push_back(patch.name);
+            for (const Patch& patch : mesh.body.sets.patches) picture_.legend_names.push_back(patch.name);
         }
         if (mesh.body.source().cells() == 0) check_options_of_shells(given_options(app()));
         show(mesh.box, mesh.field, mesh.colors, output, report, [&](const ShownColors& shown) {

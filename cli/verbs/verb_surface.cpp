@@ -118,8 +118,14 @@ public:
         const MeshSource source = body.source();
         std::vector<CellSide> sides;
         if (!patches_.empty()) {
-            for (const Patch& patch : patches_of_option(body.sets, patches_))
+            const HexMesh* mesh = source.mesh();
+            if (mesh == nullptr) throw Error(ErrorCode::InvalidInput, "bricks have no patches", "--patch", "the mesh itself");
+            for (const Patch& patch : patches_of_option(*mesh, body.sets, patches_)) {
+                if (std::ranges::find(body.sets.patches, patch.name, &Patch::name) == body.sets.patches.end())
+                    throw Error(ErrorCode::InvalidInput, "the boundary alone is written", "--patch set:" + patch.name,
+                                "--only set:" + patch.name);
                 sides.insert(sides.end(), patch.sides.begin(), patch.sides.end());
+            }
         }
         options.sides = sides;
         std::optional<LimitSurface> surface =

@@ -38,17 +38,18 @@ namespace subvol::cli {
 namespace {
 
 /// Options of the arguments that a session does not have.
-constexpr std::array kNotHere{"--views",       "--turntable", "--fps",      "--legend",    "--unit",
-                              "--threshold",   "--reduce",    "--refine",   "--footprint", "--footprint-size",
-                              "--color-field", "--shade",     "--duration", "--scale-bar", "--iso",
-                              "--log",         "--symlog",    "--bands",    "--below",     "--above"};
+constexpr std::array kNotHere{"--views",       "--turntable",     "--fps",      "--legend",    "--unit",
+                              "--threshold",   "--reduce",        "--refine",   "--footprint", "--footprint-size",
+                              "--color-field", "--shade",         "--duration", "--scale-bar", "--legend-side",
+                              "--legend-size", "--legend-format", "--log",      "--symlog",    "--bands",
+                              "--below",       "--above"};
 
 /// Options whose values actions change, so that the render command has them from the state; and those that only the window has.
-constexpr std::array kOfTheState{"--clip", "--clip-box", "--slice",        "--around",     "--size",     "--camera",  "--view",
-                                 "--fit",  "--ortho",    "--look",         "--tf",         "--tf-range", "--opacity", "--clamp",
-                                 "--axes", "--edges",    "--opacity-unit", "--background", "--method",   "--field",   "--step",
-                                 "--time", "--script",   "--screenshot",   "--only",       "--warp",     "--window",  "--state",
-                                 "--json", "--quiet",    "--progress"};
+constexpr std::array kOfTheState{"--iso",   "--clip", "--clip-box", "--slice",        "--around",     "--size",     "--camera",
+                                 "--view",  "--fit",  "--ortho",    "--look",         "--tf",         "--tf-range", "--opacity",
+                                 "--clamp", "--axes", "--edges",    "--opacity-unit", "--background", "--method",   "--field",
+                                 "--step",  "--time", "--script",   "--screenshot",   "--only",       "--warp",     "--window",
+                                 "--state", "--json", "--quiet",    "--progress"};
 
 std::string text_of(const std::string& file) {
     std::string text = detail::read_text(file);

@@ -189,7 +189,7 @@ private:
 
     void append_ticks(pugi::xml_node svg, const KnotRange& range, double top) const {
         const int most = std::clamp(options_.width_px / 50, 5, 11);
-        for (const auto& [value, label] : bar_ticks(options_.shape, range.min, range.max, most)) {
+        for (const auto& [value, label] : formatted(bar_ticks(options_.shape, range.min, range.max, most), options_.format)) {
             append(svg, "path", {{"stroke", kInk}, {"d", "M" + number(x(range, value)) + " " + number(top) + " v5"}});
             append_text(svg, x(range, value), top + 19, "middle", label);
         }
@@ -202,6 +202,22 @@ private:
 };
 
 }  // namespace
+
+bool is_tick_format(const std::string& format) {
+    const std::size_t percent = format.find('%');
+    if (percent == std::string::npos) return false;
+    std::size_t at = percent + 1;
+    if (at < format.size() && format[at] == '.') {
+        const std::size_t digits = at + 1;
+        at = std::min(format.find_first_not_of("0123456789", digits), format.size());
+        int count = 0;
+        const auto [end, error] = std::from_chars(format.data() + digits, format.data() + at, count);
+        if (error != std::errc() || count > 20) return false;
+    }
+    constexpr std::size_t kLongest = 40;
+    return at < format.size() && (format[at] == 'e' || format[at] == 'f' || format[at] == 'g') &&
+           format.find('%', at) == std::string::npos && format.size() <= kLongest;
+}
 
 std::string legend_svg(const TransferFunction& function, const LegendOptions& options) {
     if (options.width_px < 50 || options.width_px > 10000) {

@@ -33,13 +33,14 @@ bool varies(const TransferFunction& function) {
 /// A bar, its ticks and its title from the top, at one size of letters.
 class LegendPainter {
 public:
-    LegendPainter(const TransferFunction& function, const LegendOptions& options, int height)
+    LegendPainter(const TransferFunction& function, const LegendOptions& options, const LegendStyle& style, int height)
         : function_(function),
           options_(with_names(options)),
           colors_(usable_range(options.min, options.max)),
           opacities_(options.opacity_title.empty() ? colors_ : usable_range(options.opacity_min, options.opacity_max)),
           height_(height),
-          letter_(std::clamp(height / 40.0, 8.0, 120.0)) {
+          letter_(style.size * std::clamp(height / 40.0, 8.0, 120.0)),
+          ink_(style.ink) {
         validate(function);
     }
 
@@ -53,9 +54,35 @@ public:
         return static_cast<int>(std::ceil(std::max(std::min(titles, most), bars) + 2 * margin()));
     }
 
-    void draw(Image& image, const Vec3& ink) {
+    /// The rows of a legend along the lower edge: title, bar and labels, or the title and one row of names.
+    [[nodiscard]] int rows() const { return static_cast<int>(std::ceil((options_.names.empty() ? 5.6 : 4.2) * letter_)); }
+
+    void draw_below(Image& image) {
         image_ = &image;
-        ink_ = ink;
+        const double top = image.height - rows();
+        left_ = margin() + 0.5 * letter_;
+        std::string title = options_.title;
+        if (!options_.note.empty()) title += ", " + options_.note;
+        draw_title(title, top + 1.4 * letter_);
+        const double y0 = top + 2.1 * letter_;
+        if (!options_.names.empty()) return draw_names_below(y0);
+        const double right = image.width - left_, y1 = y0 + bar_width();
+        for (int x = static_cast<int>(left_); x < static_cast<int>(right); ++x) {
+            const double part = (x + 0.5 - left_) / (right - left_);
+            const Vec3 color = color_at(function_, options_.shape.scale.at(part, colors_.min, colors_.max));
+            for (int y = static_cast<int>(y0); y < static_cast<int>(y1); ++y) put_inside(x, y, color);
+        }
+        draw_frame(static_cast<int>(left_), static_cast<int>(y0), static_cast<int>(right), static_cast<int>(y1));
+        for (const auto& [value, label] : ticks(colors_)) {
+            const double x = left_ + part_of(colors_, value) * (right - left_);
+            line({x, y1}, {x, y1 + 0.4 * letter_}, 1);
+            const double half = 0.5 * text_width_px(label, letter_);
+            write({std::clamp(x, half, image.width - half), y1 + 1.5 * letter_}, label, TextAnchor::Middle);
+        }
+    }
+
+    void draw(Image& image) {
+        image_ = &image;
         left_ = image.width - width() + margin();
         const double bottom = height_ - (options_.note.empty() ? 2.2 : 4) * letter_;
         if (!options_.note.empty()) draw_title(options_.note, height_ - 0.7 * letter_);
@@ -80,7 +107,7 @@ private:
     }
     [[nodiscard]] double title_width(const std::string& title) const { return text_width_px(title, 1.08 * letter_); }
     [[nodiscard]] std::vector<Tick> ticks(const KnotRange& range) const {
-        return bar_ticks(options_.shape, range.min, range.max, apart() ? 5 : 8);
+        return formatted(bar_ticks(options_.shape, range.min, range.max, apart() ? 5 : 8), options_.format);
     }
     [[nodiscard]] double labels_width(const KnotRange& range) const {
         double width = 0;
@@ -122,17 +149,36 @@ private:
         for (std::size_t i = 0; i < shown; ++i) {
             const double y = top + static_cast<double>(i) * row;
             const Vec3 color = color_at(function_, options_.min + static_cast<double>(i));
-            const int x0 = static_cast<int>(left_), y0 = static_cast<int>(y), side = static_cast<int>(1.1 * letter_);
-            for (int dy = 0; dy < side; ++dy) {
-                for (int dx = 0; dx < side; ++dx) put_inside(x0 + dx, y0 + dy, color);
-            }
-            draw_frame(x0, y0, x0 + side, y0 + side);
+            draw_swatch(left_, y, color);
             write_within({left_ + row, y + 0.92 * letter_}, options_.names[i], 1);
         }
         if (shown < count) {
             const double y = top + static_cast<double>(shown) * row;
             write_within({left_ + row, y + 0.92 * letter_}, "and " + std::to_string(count - shown) + " more", 1);
         }
+    }
+
+    /// As many names side by side as there is room for.
+    void draw_names_below(double y) const {
+        double x = left_;
+        const double row = kNameRow * letter_, base = y + 0.92 * letter_;
+        for (std::size_t i = 0; i < options_.names.size(); ++i) {
+            const bool last = i + 1 == options_.names.size();
+            const double width = row + text_width_px(options_.names[i], letter_) + letter_;
+            if (x + width + (last ? 0 : 6 * letter_) > image_->width)
+                return write({x, base}, "and " + std::to_string(options_.names.size() - i) + " more");
+            draw_swatch(x, y, color_at(function_, options_.min + static_cast<double>(i)));
+            write({x + row, base}, options_.names[i]);
+            x += width;
+        }
+    }
+
+    void draw_swatch(double x, double y, const Vec3& color) const {
+        const int x0 = static_cast<int>(x), y0 = static_cast<int>(y), side = static_cast<int>(1.1 * letter_);
+        for (int dy = 0; dy < side; ++dy) {
+            for (int dx = 0; dx < side; ++dx) put_inside(x0 + dx, y0 + dy, color);
+        }
+        draw_frame(x0, y0, x0 + side, y0 + side);
     }
 
     void put_inside(int x, int y, const Vec3& color) const {
@@ -201,12 +247,19 @@ private:
 
 }  // namespace
 
-int legend_width_px(const TransferFunction& function, const LegendOptions& options, int height) {
-    return LegendPainter(function, options, height).width();
+int legend_extent_px(const TransferFunction& function, const LegendOptions& options, const LegendStyle& style, int height) {
+    const LegendPainter painter(function, options, style, height);
+    return style.side == LegendSide::Right ? painter.width() : painter.rows();
 }
 
-void draw_legend(Image& image, const TransferFunction& function, const LegendOptions& options, const Vec3& ink) {
-    LegendPainter(function, options, image.height).draw(image, ink);
+void draw_legend(Image& image, const TransferFunction& function, const LegendOptions& options, const LegendStyle& style,
+                 int height) {
+    LegendPainter painter(function, options, style, height);
+    if (style.side == LegendSide::Right) {
+        painter.draw(image);
+    } else {
+        painter.draw_below(image);
+    }
 }
 
 }  // namespace subvol

@@ -32,7 +32,7 @@ struct Step {
 };
 
 std::string text_of(double value, std::chars_format format, int precision) {
-    std::array<char, 64> buffer{};
+    std::array<char, 400> buffer{};  // of %f: 309 digits, and 20
     const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value, format, precision).ptr;
     return {buffer.data(), end};
 }
@@ -130,6 +130,22 @@ std::vector<Tick> bar_ticks(const ColorShape& shape, double min, double max, int
         for (const Tick& tick : side_ticks(std::max(scale.linear_within, min), max, each)) ticks.push_back(tick);
     }
     return ticks.size() >= 2 ? ticks : round_ticks(min, max, most);
+}
+
+std::vector<Tick> formatted(std::vector<Tick> ticks, const std::string& format) {
+    if (format.empty()) return ticks;
+    const std::size_t percent = format.find('%'), kind = format.find_first_of("efg", percent);
+    const std::size_t dot = format.find('.', percent);
+    int digits = 6;
+    if (dot != std::string::npos && dot < kind) std::from_chars(format.data() + dot + 1, format.data() + kind, digits);
+    const auto style = format[kind] == 'e'   ? std::chars_format::scientific
+                       : format[kind] == 'f' ? std::chars_format::fixed
+                                             : std::chars_format::general;
+    for (Tick& tick : ticks) {
+        tick.label = format.substr(0, percent) + sign_of(tick.value) + text_of(std::abs(tick.value), style, digits) +
+                     format.substr(kind + 1);
+    }
+    return ticks;
 }
 
 }  // namespace subvol::detail

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <utility>
 
 #include "subvol/cell.h"
 #include "subvol/error.h"
@@ -30,16 +31,42 @@ const CellSet& find_set(const MeshSets& sets, std::string_view name) {
     return find(sets.sets, name, "set", "sets of cells");
 }
 
-std::vector<Patch> chosen_patches(const MeshSets& sets, std::span<const std::string> names) {
+Patch hull_of(const HexMesh& mesh, const CellSet& set) {
+    struct Side {
+        std::array<Index, 4> corners;  // ascending: the same for both cells at a face
+        CellSide side;
+    };
+    std::vector<Side> sides;
+    for (const Index cell : set.cells) {
+        for (std::uint8_t side = 0; side < kCellFaces.size(); ++side) {
+            Side one{{}, {cell, side}};
+            for (std::size_t k = 0; k < 4; ++k) one.corners[k] = mesh.cells[cell][kCellFaces[side][k]];
+            std::ranges::sort(one.corners);
+            sides.push_back(one);
+        }
+    }
+    std::ranges::stable_sort(sides, {}, &Side::corners);
+    Patch hull{set.name, {}};
+    for (std::size_t i = 0; i < sides.size(); ++i) {
+        const bool before = i > 0 && sides[i - 1].corners == sides[i].corners;
+        const bool after = i + 1 < sides.size() && sides[i + 1].corners == sides[i].corners;
+        if (!before && !after) hull.sides.push_back(sides[i].side);
+    }
+    std::ranges::sort(hull.sides, {}, [](const CellSide& side) { return std::pair(side.cell, side.side); });
+    return hull;
+}
+
+std::vector<Patch> chosen_patches(const HexMesh& mesh, const MeshSets& sets, std::span<const std::string> names) {
+    constexpr std::string_view kSet = "set:";
     std::vector<Patch> patches;
     for (const std::string& name : names) {
-        const bool all =
-            name == "all" && !sets.patches.empty() && std::ranges::find(sets.patches, name, &Patch::name) == sets.patches.end();
-        if (all) {
+        const bool known = std::ranges::find(sets.patches, name, &Patch::name) != sets.patches.end();
+        if (!known && name == "all" && !sets.patches.empty()) {
             std::ranges::copy_if(sets.patches, std::back_inserter(patches), [](const Patch& p) { return !p.sides.empty(); });
             continue;
         }
-        patches.push_back(find_patch(sets, name));
+        const bool is_set = !known && name.starts_with(kSet);
+        patches.push_back(is_set ? hull_of(mesh, find_set(sets, name.substr(kSet.size()))) : find_patch(sets, name));
         if (patches.back().sides.empty())
             throw Error(ErrorCode::InvalidInput, "no face of patch \"" + name + "\" is left", {}, "a patch with faces");
     }

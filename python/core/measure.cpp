@@ -168,7 +168,7 @@ py::list measure_patches_of(const py::object& self, const std::vector<std::strin
     const auto& mesh = self.cast<const HexMesh&>();
     PatchOptions options;
     set_options(keywords_of(options), keywords);
-    const std::vector<Patch> patches = chosen_patches(sets_of(self), names);
+    const std::vector<Patch> patches = chosen_patches(mesh, sets_of(self), names);
     const std::vector<PatchMeasure> found = result_of(progress, [&](Progress* listener) {
         std::vector<double> vectors;
         if (flux) vectors = vectors_of(mesh, *flux, listener);

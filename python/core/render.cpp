@@ -163,13 +163,17 @@ void bind_render(py::module_& module) {
         .def_property_readonly(
             "mesh",
             [](const Shells& shells) {
-                return HexMesh{shells.points, {}, shells.attributes};
+                HexMesh points;
+                points.points = shells.points;
+                points.attributes = shells.attributes;
+                return points;
             },
             "The points, without cells, with the fields and, last, \"patch\": the number of each.");
     module.def(
         "choose_patches",
         [](const py::object& mesh, const std::vector<std::string>& names) {
-            return patch_shells(mesh.cast<const HexMesh&>(), chosen_patches(sets_of(mesh), names));
+            const auto& hexes = mesh.cast<const HexMesh&>();
+            return patch_shells(hexes, chosen_patches(hexes, sets_of(mesh), names));
         },
         py::arg("mesh"), py::arg("names"));
     module.def(

@@ -330,6 +330,17 @@ class Patches(InFolder):
         self.assertEqual(picture("--patch", "left", "--json").json()["field"], "density")
         self.refused(["no patch \"inlet\"", "left, right, tips, free"], "render", "a.inp", "-o", "a.png", "--patch", "inlet")
 
+    def test_hulls_of_sets(self):
+        (self.folder / "a.inp").write_text(INP)
+        found = self.run_ok("probe", "a.inp", "--patch", "set:ends", "--patch", "left", "--density", "x", "--flux", "grad(density)",
+                            "--scheme", "linear", "--json").json()["patches"]
+        self.assertEqual([(p["name"], p["faces"]) for p in found], [("ends", 12), ("left", 1)])  # the sides between cells, too
+        self.assertAlmostEqual(found[0]["area"], 12, 6)
+        self.assertAlmostEqual(found[0]["flux"], 0, 6)  # a closed surface
+        self.run_ok("render", "a.inp", "-o", "a.png", "--size", "48x32", "--patch", "set:ends", "--legend", "a.svg")
+        self.assertIn(">ends<", (self.folder / "a.svg").read_text())
+        self.refused(["no set", "ends"], "probe", "a.inp", "--patch", "set:middle")
+
     def test_the_legend_names_patches(self):
         (self.folder / "a.inp").write_text(INP)
         def legend(*words):

@@ -306,6 +306,17 @@ class Looks(Pictures):
         longest = max(sum(row[3 * x:3 * x + 3] != other[3 * x:3 * x + 3] for x in range(480)) for row, other in zip(a, b))
         self.assertAlmostEqual(longest, 100, delta=3)  # 1 of 3.2 in 320 pixels: a quarter of the width is 1.2
 
+    def test_where_and_how_a_legend_stands(self):
+        for words in [], ["--legend-side", "bottom"], ["--legend-side", "bottom", "--legend-size", "2", "--views", "4"], ["--legend-format", "%.3f"]:
+            self.assertEqual(self.render("-o", "a.png", "--legend", *words, size="200x160").code, 0)
+            self.assertEqual(self.pixels("a.png")[1], 200)
+            self.assertEqual(len(self.pixels("a.png")[2]), 160)
+        self.assertEqual(self.render("-o", "a.png", "--legend", "a.svg", "--legend-format", "%.3f").code, 0)
+        self.assertRegex((self.folder / "a.svg").read_text(), r">0\.\d{3}<")
+        for wrong, words in (["--legend-side", "top", "--legend"], "--legend-side"), (["--legend-side", "bottom"], "--legend"), (["--legend-format", "%d", "--legend"], "%d"):
+            done = self.render("-o", "x.png", *wrong)
+            self.assertEqual((done.code, words in done.err), (2, True), done.err)
+
     def test_isosurfaces_of_values(self):
         self.assertEqual(self.render("-o", "five.png", "--look", "isosurface").code, 0)
         self.assertEqual(self.render("-o", "same.png", "--iso", "10%,30%,50%,70%,90%").code, 0)

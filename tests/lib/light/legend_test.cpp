@@ -174,6 +174,16 @@ TEST_F(Legend, OfAConstantFieldHasOneValue) {
     EXPECT_EQ(texts, (std::vector<std::string>{"T", "3.5"})) << "no range is made up";
 }
 
+TEST_F(Legend, WritesNumbersInTheFormatThatIsAskedFor) {
+    for (const char* right : {"%g", "%.2f", "%.3e", "%.0f m", "T = %f"}) EXPECT_TRUE(is_tick_format(right)) << right;
+    for (const char* wrong : {"", "2f", "%", "%d", "%s", "%.f2", "%.99f", "%f%f", "%5.2f", "%.2"})
+        EXPECT_FALSE(is_tick_format(wrong)) << wrong;
+    const TransferFunction f = transfer_function_preset("viridis", -2, 2);
+    const std::string svg = legend_svg(f, {.min = -2, .max = 2, .format = "%.2f K"});
+    EXPECT_NE(svg.find(">1.00 K<"), std::string::npos);
+    EXPECT_NE(svg.find(">−2.00 K<"), std::string::npos);
+}
+
 TEST_F(Legend, IsWrittenWhole) {
     const TransferFunction f = transfer_function_preset("bone", 0, 1);
     const auto path = write("a.svg", "before");

@@ -195,5 +195,27 @@ TEST(Legends, HaveASwatchForEachCategoryThatFits) {
     EXPECT_LE(swatches(200), 24u) << "the last row says how many more there are";
 }
 
+TEST(Legends, StandBelowThePicture) {
+    const TransferFunction grey{{{0, Vec3(0.1)}, {10, Vec3(1)}}, {{0, 1}}};
+    const LegendOptions options{.title = "T", .min = 0, .max = 10};
+    const LegendStyle style{.side = LegendSide::Bottom, .ink = Vec3(1, 0, 0)}, large{.side = LegendSide::Bottom, .size = 2};
+    const int rows = legend_extent_px(grey, options, style, 300);
+    EXPECT_NEAR(legend_extent_px(grey, options, large, 300), 2 * rows, 2);
+    Image image(400, 300 + rows);
+    draw_legend(image, grey, options, style, 300);
+    for (int y = 0; y < 300; ++y) {
+        for (int x = 0; x < 400; ++x) ASSERT_EQ(image.pixel(x, y)[3], 0) << "the picture is left alone";
+    }
+    const auto grey_at = [&](int x, int y) {
+        const auto pixel = image.pixel(x, y);
+        return pixel[3] == 1 && pixel[0] == pixel[1] && pixel[1] == pixel[2] ? static_cast<double>(pixel[0]) : -1;
+    };
+    int bar = 300;
+    while (bar < image.height && grey_at(200, bar) < 0) ++bar;
+    ASSERT_LT(bar, image.height);
+    EXPECT_NEAR(grey_at(200, bar + 2), 0.55, 0.01) << "the middle of the range in the middle of the bar";
+    EXPECT_LT(grey_at(100, bar + 2), grey_at(300, bar + 2));
+}
+
 }  // namespace overlay_test
 }  // namespace subvol

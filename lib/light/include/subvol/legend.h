@@ -17,6 +17,7 @@ namespace subvol {
 /// opacity_title, opacity_min, opacity_max: where the opacities are of another field than the colours, its name and range: they
 ///           get a plot of their own; an empty title: they are of the same field
 /// note:     a line below the legend
+/// format:   of the ticks' values, as of printf: %.2f, %g, %.3e; empty: as many digits as they need
 /// names:    of categories, whose values are min, min + 1, …: the legend has a swatch and the name for each, in place of the
 /// bar
 struct LegendOptions {
@@ -29,8 +30,12 @@ struct LegendOptions {
     double opacity_min = 0;
     double opacity_max = 1;
     std::string note{};
+    std::string format{};
     std::vector<std::string> names{};
 };
+
+/// Whether a format of ticks has one number, by e, f or g, at most 20 digits, and no other conversion.
+[[nodiscard]] bool is_tick_format(const std::string& format);
 
 /// A colour bar with ticks at round values and the opacity curve above it, or the names of categories, as a self-contained SVG
 /// picture in sRGB on white.

@@ -8,6 +8,7 @@
 #include "subvol/hex_mesh.h"
 #include "subvol/image.h"
 #include "subvol/legend.h"
+#include "subvol/names.h"
 #include "subvol/shells.h"
 #include "subvol/transfer_function.h"
 
@@ -65,14 +66,41 @@ void draw_axes(Image& image, const View& view, const Vec3& ink);
 /// ink: of bar and text
 void draw_scale_bar(Image& image, const View& view, const Vec3& at, const Vec3& ink);
 
-/// The width that `draw_legend` needs in a picture of this height.
-[[nodiscard]] int legend_width_px(const TransferFunction& function, const LegendOptions& options, int height);
+/// Where a legend stands: at the right edge of the picture, upright, or along its lower edge.
+enum class LegendSide { Right, Bottom };
 
-/// Draws an upright colour bar with ticks at round values, its title above it, and the curve of the opacities where they
-/// differ, at the right edge of the picture; of categories a swatch and a name for each, as many as there is room for.
+template <>
+struct NameTable<LegendSide> {
+    static constexpr Name<LegendSide> rows[] = {{LegendSide::Right, "right"}, {LegendSide::Bottom, "bottom"}};
+};
+
+/// side: where it stands
+/// size: of the letters and the bar, 1 as they are by default
+/// ink:  of text and lines, in linear light
+struct LegendStyle {
+    LegendSide side = LegendSide::Right;
+    double size = 1;
+    Vec3 ink{0.0};
+};
+
+/// The pixels that `draw_legend` needs in a picture of this height: columns at its right, or rows below.
+[[nodiscard]] int legend_extent_px(const TransferFunction& function, const LegendOptions& options, const LegendStyle& style,
+                                   int height);
+
+/// Draws a colour bar with ticks at round values, its title, and the curve of the opacities where they differ (not along the
+/// lower edge); of categories a swatch and a name for each, as many as there is room for.
 ///
-/// ink:    of text and lines
+/// height: of the picture, which decides the size of the letters
 /// throws: Error(InvalidInput) as `legend_svg`
-void draw_legend(Image& image, const TransferFunction& function, const LegendOptions& options, const Vec3& ink);
+void draw_legend(Image& image, const TransferFunction& function, const LegendOptions& options, const LegendStyle& style,
+                 int height);
+
+/// The same at the right edge, in the usual size.
+[[nodiscard]] inline int legend_width_px(const TransferFunction& function, const LegendOptions& options, int height) {
+    return legend_extent_px(function, options, {}, height);
+}
+inline void draw_legend(Image& image, const TransferFunction& function, const LegendOptions& options, const Vec3& ink) {
+    draw_legend(image, function, options, {.ink = ink}, image.height);
+}
 
 }  // namespace subvol

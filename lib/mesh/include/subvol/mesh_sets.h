@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "subvol/hex_mesh.h"
 #include "subvol/index.h"
 
 namespace subvol {
@@ -46,10 +47,14 @@ struct MeshSets {
 /// throws: Error(InvalidInput) if there is no set of that name; lists those that exist
 [[nodiscard]] const CellSet& find_set(const MeshSets& sets, std::string_view name);
 
-/// The patches of these names, in their order; all that have sides for "all", unless one is called so.
+/// The sides of a set's cells that have no cell of the set beside them, by cell and side: its hull, with the set's name.
+[[nodiscard]] Patch hull_of(const HexMesh& mesh, const CellSet& set);
+
+/// The patches of these names, in their order; all that have sides for "all", the hull of a set of cells for "set:NAME", unless
+/// a patch is called so.
 ///
-/// throws: Error(InvalidInput) as `find_patch`, or if a named patch has no sides
-[[nodiscard]] std::vector<Patch> chosen_patches(const MeshSets& sets, std::span<const std::string> names);
+/// throws: Error(InvalidInput) as `find_patch` and `find_set`, or if a named patch has no sides
+[[nodiscard]] std::vector<Patch> chosen_patches(const HexMesh& mesh, const MeshSets& sets, std::span<const std::string> names);
 
 /// The sets of a mesh of which some cells are left, in their order. Patches and sets that have lost all cells stay, empty.
 ///

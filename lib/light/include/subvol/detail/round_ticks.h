@@ -24,4 +24,7 @@ struct Tick {
 /// these if there are few; the ends of the bands if these are as few.
 [[nodiscard]] std::vector<Tick> bar_ticks(const ColorShape& shape, double min, double max, int most = 7);
 
+/// The labels of ticks in another format, as of `LegendOptions::format`; empty: unchanged.
+[[nodiscard]] std::vector<Tick> formatted(std::vector<Tick> ticks, const std::string& format);
+
 }  // namespace subvol::detail
