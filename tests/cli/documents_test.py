@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Documents name files, headers, calls and rooms that exist, and their code compiles."""
 
+import json
 import os
 import re
 import shlex
@@ -118,6 +119,13 @@ class Documents(unittest.TestCase):
         made = {"index.md", "examples.md", "python-examples.md", "options.md", "CONTRIBUTING.md", "CHANGELOG.md"}
         pages = {page.relative_to(TOP / "docs").as_posix() for page in (TOP / "docs").glob("*.md")} | {"adr/README.md"}
         self.assertEqual(set(shown), pages | made)
+
+    def test_recipes_for_packages_can_be_read(self):
+        for path in (TOP / "packaging").rglob("*"):
+            if path.suffix == ".py":
+                compile(path.read_text(), str(path), "exec")
+            elif path.suffix == ".json":
+                json.loads(path.read_text())
 
     def test_files_that_are_named_exist(self):
         for document in DOCUMENTS:
