@@ -143,31 +143,32 @@ Json parameters_of(const Kernel& kernel) {
     return fields;
 }
 
-void report_table1(const BasisFunction& basis, Report& report) {
-    report.say("kernel   r  paper              float32            double             float32");
-    report.say("            RMSE     MAE       RMSE     MAE       RMSE     MAE       - paper   parameters");
+FitTable table1(const BasisFunction& basis) {
+    FitTable table;
+    table.lines = {"kernel   r  paper              float32            double             float32",
+                   "            RMSE     MAE       RMSE     MAE       RMSE     MAE       - paper   parameters"};
     for (const PaperRow& row : paper_rows()) {
-        Json fitted = report.timed("fit", [&] { return table1_row(basis, row); });  // adds the seconds, which moves the rows
-        report["rows"].push_back(std::move(fitted));
-        report.say(table1_line(report["rows"].back()));
-        for (const std::string& line : fit_lines(report["rows"].back())) report.say(line);
+        const Json& fitted = table.rows.emplace_back(table1_row(basis, row));
+        table.lines.push_back(table1_line(fitted));
+        std::ranges::move(fit_lines(fitted), std::back_inserter(table.lines));
     }
-    report.all_said();
+    return table;
 }
 
-void report_kernels(const BasisFunction& basis, Report& report) {
-    report.say(text(std::left, std::setw(18), "kernel", "numbers RMSE     MAE       max     parameters"));
+FitTable kernels_table(const BasisFunction& basis) {
+    FitTable table;
+    table.lines.push_back(text(std::left, std::setw(18), "kernel", "numbers RMSE     MAE       max     parameters"));
     const auto add = [&](const std::string& name, const Json& parameters, const FitErrors& errors, int numbers) {
         Json row{{"kernel", name}, {"numbers", numbers}, {"parameters", parameters}, {"double", to_json(errors)}};
-        report.say(text(std::left, std::setw(20), name, std::right, std::setw(4), numbers ? text(numbers) : "", "  ",
-                        error_columns(row["double"]), std::fixed, std::setprecision(4), errors.max, "  ",
-                        short_parameters(parameters)));
-        report["kernels"].push_back(std::move(row));
+        table.lines.push_back(text(std::left, std::setw(20), name, std::right, std::setw(4), numbers ? text(numbers) : "", "  ",
+                                   error_columns(row["double"]), std::fixed, std::setprecision(4), errors.max, "  ",
+                                   short_parameters(parameters)));
+        table.rows.push_back(std::move(row));
     };
     const Kernel paper = GaussianKernel{.sigma = 0.43};
     add("paper_gaussian", parameters_of(paper), kernel_errors(basis, paper), 1);
     const auto add_fitted = [&](const std::string& name) {
-        const KernelFit fit = report.timed("fit", [&] { return fit_shape(basis, shape_named(name).value()); });
+        const KernelFit fit = fit_shape(basis, shape_named(name).value());
         add(name, parameters_of(fit.kernel), fit.report.errors, fit.report.parameters);
     };
     for (const char* name :
@@ -177,10 +178,10 @@ void report_kernels(const BasisFunction& basis, Report& report) {
     add("radial_bound", Json::object(), radial_bound(basis), 0);
     for (const char* name : {"separable_gaussian", "separable_table"}) add_fitted(name);
     for (const int rank : {2, 3, 4}) {
-        const TuckerFit fit = report.timed("fit", [&] { return fit_tucker(basis, rank); });
+        const TuckerFit fit = fit_tucker(basis, rank);
         add(text("tucker_", rank), {{"rank", rank}}, fit.report.errors, fit.report.parameters);
     }
-    report.all_said();
+    return table;
 }
 
 }  // namespace subvol::cli

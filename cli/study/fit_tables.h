@@ -31,13 +31,19 @@ struct NamedShape {
 /// A kernel's parameters, without long tables.
 [[nodiscard]] Json parameters_of(const Kernel& kernel);
 
-/// Reports table 1 of [mnmq2007] under "rows": the paper's kernels with its printed errors, with ours summed in float (as the
-/// paper did) and in double precision, and the kernels fitted by us.
+/// rows: for JSON; lines: for people
+struct FitTable {
+    Json rows = Json::array();
+    std::vector<std::string> lines;
+};
+
+/// Table 1 of [mnmq2007]: the paper's kernels with its printed errors, with ours summed in float (as the paper did) and in double
+/// precision, and the kernels fitted by us.
 ///
 /// basis: of MCQ at level 5
-void report_table1(const BasisFunction& basis, Report& report);
+[[nodiscard]] FitTable table1(const BasisFunction& basis);
 
-/// Reports every kind of kernel, fitted to the basis function, under "kernels".
-void report_kernels(const BasisFunction& basis, Report& report);
+/// Every kind of kernel, fitted to the basis function.
+[[nodiscard]] FitTable kernels_table(const BasisFunction& basis);
 
 }  // namespace subvol::cli

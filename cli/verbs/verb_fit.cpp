@@ -55,13 +55,19 @@ public:
         const BasisFunction basis = report.timed("sample", [&] { return sample_basis_function(scheme_, level_); });
         report["scheme"] = name_of(scheme_);
         report["level"] = level_;
-        if (table1_) report_table1(basis, report);
-        if (kernels_) report_kernels(basis, report);
+        if (table1_) tell(report, "rows", report.timed("fit", [&] { return table1(basis); }));
+        if (kernels_) tell(report, "kernels", report.timed("fit", [&] { return kernels_table(basis); }));
         if (!kernel_.empty()) fit_one(basis, report);
         return 0;
     }
 
 private:
+    static void tell(Report& report, const char* key, FitTable table) {
+        report[key] = std::move(table.rows);
+        for (const std::string& line : table.lines) report.say(line);
+        report.all_said();
+    }
+
     void fit_one(const BasisFunction& basis, Report& report) {
         const KernelFit fit = report.timed("fit", [&] { return chosen(basis); });
         report["kernel"] = kernel_.front() == '{' ? "given" : kernel_;
