@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "places_input.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <optional>
@@ -41,24 +42,35 @@ std::optional<std::array<std::size_t, 3>> columns_of(const std::vector<std::stri
     return std::array{*found[0], *found[1], *found[2]};
 }
 
-}  // namespace
+/// The lines of a table, cut into words. names: of its columns, empty without a header
+struct Table {
+    std::vector<std::string> names;
+    std::vector<std::vector<std::string>> rows;
+    std::vector<std::size_t> lines;  // of the rows, counted from 1
+};
 
-std::vector<Vec3> read_places(const std::string& path) {
+Table read_table(const std::string& path) {
     std::istringstream in(detail::read_text(path));
-    std::vector<Vec3> places;
-    std::array<std::size_t, 3> columns{0, 1, 2};
+    Table table;
     std::string line;
-    bool first = true;
     for (std::size_t number = 1; std::getline(in, line); ++number) {
         if (number == 1 && line.starts_with("\xEF\xBB\xBF")) line.erase(0, 3);
         if (line.find_first_not_of(" \t\r") == std::string::npos || line.starts_with('#')) continue;
-        const auto words = words_of(line);
-        const bool header = first && !words.empty() && !detail::number_from(words[0]);
-        first = false;
-        if (header) {
-            columns = columns_of(words).value_or(columns);
+        auto words = words_of(line);
+        if (table.rows.empty() && table.names.empty() && !words.empty() && !detail::number_from(words[0])) {
+            table.names = std::move(words);
             continue;
         }
+        table.rows.push_back(std::move(words));
+        table.lines.push_back(number);
+    }
+    return table;
+}
+
+std::vector<Vec3> places_of(const Table& table, const std::array<std::size_t, 3>& columns, const std::string& path) {
+    std::vector<Vec3> places;
+    for (std::size_t row = 0; row < table.rows.size(); ++row) {
+        const auto& words = table.rows[row];
         Vec3 place(NAN);
         for (std::size_t axis = 0; axis < 3; ++axis) {
             if (columns[axis] < words.size()) {
@@ -66,13 +78,53 @@ std::vector<Vec3> read_places(const std::string& path) {
             }
         }
         if (!std::isfinite(place.x + place.y + place.z)) {
-            throw Error(ErrorCode::InvalidInput, "'" + detail::printable(line.substr(0, 60)) + "' is not a place",
-                        path + ":" + std::to_string(number), "three finite numbers, as in 1,2,3");
+            throw Error(ErrorCode::InvalidInput, "'" + detail::printable(join(words).substr(0, 60)) + "' is not a place",
+                        path + ":" + std::to_string(table.lines[row]), "three finite numbers, as in 1,2,3");
         }
         places.push_back(place);
     }
     if (places.empty()) throw Error(ErrorCode::InvalidInput, "has no places", path, "lines of three numbers, as in 1,2,3");
     return places;
+}
+
+std::vector<double> values_of(const Table& table, std::size_t column, const std::string& path) {
+    std::vector<double> values;
+    for (std::size_t row = 0; row < table.rows.size(); ++row) {
+        const auto& words = table.rows[row];
+        const auto value = column < words.size() ? detail::number_from(words[column]) : std::nullopt;
+        if (!value || !std::isfinite(*value)) {
+            throw Error(ErrorCode::InvalidInput, "column " + std::to_string(column + 1) + " has no number here",
+                        path + ":" + std::to_string(table.lines[row]), "finite numbers in all columns");
+        }
+        values.push_back(*value);
+    }
+    return values;
+}
+
+constexpr std::array<std::size_t, 3> kFirst{0, 1, 2};
+
+}  // namespace
+
+std::vector<Vec3> read_places(const std::string& path) {
+    const Table table = read_table(path);
+    return places_of(table, columns_of(table.names).value_or(kFirst), path);
+}
+
+HexMesh read_samples(const std::string& path) {
+    const Table table = read_table(path);
+    const auto columns = columns_of(table.names).value_or(kFirst);
+    HexMesh samples;
+    samples.points = places_of(table, columns, path);
+    const std::size_t all = table.names.empty() ? table.rows.front().size() : table.names.size();
+    for (std::size_t column = 0; column < all; ++column) {
+        if (std::ranges::find(columns, column) != columns.end()) continue;
+        const std::string name = table.names.empty() ? "v" + std::to_string(column - 2) : table.names[column];
+        samples.attributes.push_back({.name = name, .channels = 1, .values = values_of(table, column, path)});
+    }
+    if (samples.attributes.empty()) {
+        throw Error(ErrorCode::InvalidInput, "has no column of values", path, "a fourth column, as in x,y,z,T");
+    }
+    return samples;
 }
 
 }  // namespace subvol::cli

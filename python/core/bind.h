@@ -51,6 +51,8 @@ template <class T>
 template <std::size_t N>
 [[nodiscard]] std::vector<std::array<Index, N>> index_rows(const py::handle& given, std::size_t end, const std::string& what);
 [[nodiscard]] std::vector<Vec3> vectors(const py::handle& given, const std::string& what);
+/// A field of (points,) or (points, channels) numbers.
+[[nodiscard]] Attribute attribute_of(const std::string& name, const py::handle& given, std::size_t points);
 
 /// A read-only array over memory of `owner`, which the array keeps alive. The memory must not move as long as the owner lives.
 template <class T>

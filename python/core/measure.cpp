@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "bind.h"
+#include "subvol/approximate.h"
 #include "subvol/certificate.h"
 #include "subvol/limit_slice.h"
 #include "subvol/limit_surface.h"
@@ -37,6 +38,10 @@ std::vector<Option> keywords_of(MeasureOptions& options) {
 }
 
 std::vector<Option> keywords_of(FoldOptions& options) {
+    return scheme_and(options.scheme, options_of(options));
+}
+
+std::vector<Option> keywords_of(ApproximateOptions& options) {
     return scheme_and(options.scheme, options_of(options));
 }
 
@@ -291,7 +296,42 @@ py::dict check_folds_of(const HexMesh& mesh, const py::object& progress, const p
     return result;
 }
 
+py::tuple approximate_of(const HexMesh& onto, const py::object& points, const py::dict& given, const py::object& progress,
+                         const py::kwargs& keywords) {
+    ApproximateOptions options;
+    set_options(keywords_of(options), keywords);
+    HexMesh samples;
+    samples.points = vectors(points, "samples");
+    for (const auto& [name, values] : given) {
+        samples.attributes.push_back(attribute_of(py::str(name), values, samples.points.size()));
+    }
+    Approximation made = result_of(progress, [&](Progress* listener) {
+        options.progress = listener;
+        return approximate(onto, samples, options);
+    });
+    py::dict report, fields;
+    for (const FieldError& error : made.report.fields) {
+        py::dict field;
+        field["rms"] = error.rms;
+        field["rms_boundary"] = error.rms_boundary;
+        field["max"] = error.max;
+        field["max_at"] = py::make_tuple(error.max_at.x, error.max_at.y, error.max_at.z);
+        field["range"] = error.range;
+        fields[py::str(error.name)] = field;
+    }
+    report["samples"] = made.report.samples;
+    report["outside"] = made.report.outside;
+    report["snapped"] = made.report.snapped;
+    report["unseen"] = made.report.unseen;
+    report["iterations"] = made.report.iterations;
+    report["refined"] = made.report.refined;
+    report["fields"] = fields;
+    return py::make_tuple(std::move(made.mesh), report);
+}
+
 void bind_measure(py::module_& module) {
+    module.def("approximate", &approximate_of, py::arg("onto"), py::arg("points"), py::arg("fields"), py::arg("progress"));
+    describe_call<ApproximateOptions>(module, "approximate");
     module.def("check_folds", &check_folds_of, py::arg("mesh"), py::arg("progress"));
     describe_call<FoldOptions>(module, "check_folds");
     module.def("probe", &probe, py::arg("mesh"), py::arg("places"), py::arg("levels"), py::arg("progress"));

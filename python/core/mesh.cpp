@@ -33,6 +33,8 @@ py::dict fields_of(const py::object& self) {
     return fields;
 }
 
+}  // namespace
+
 Attribute attribute_of(const std::string& name, const py::handle& given, std::size_t points) {
     const std::string what = "fields['" + name + "']";
     const py::array array =
@@ -46,6 +48,8 @@ Attribute attribute_of(const std::string& name, const py::handle& given, std::si
     }
     return {name, static_cast<int>(channels), std::vector<double>(rows.data(), rows.data() + rows.size())};
 }
+
+namespace {
 
 HexMesh mesh_of(const py::object& points, const py::object& cells, const py::object& fields, const py::object& creases,
                 const py::object& sharp_faces) {

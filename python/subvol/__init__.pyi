@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 # Made by: python3 -c 'from subvol import _options; _options.print_stubs()'
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any, Optional, Union
 
 import numpy.typing as npt
@@ -22,6 +22,30 @@ from ._pictures import Drawable
 from ._progress import Progress
 
 __version__: str
+
+def approximate(
+    onto: HexMesh, samples: Union[HexMesh, npt.ArrayLike], fields: Optional[Mapping[str, npt.ArrayLike]] = None, *,
+    scheme: str = 'mcq', tension: float = 0.0625, crease_angle: Optional[float] = None, levels: int = 2,
+    reach: float = 0.01, smoothing: float = 0.0, iterations: int = 200, refine: int = 0, tolerance: float = 0.001,
+    progress: Progress = None
+) -> tuple[HexMesh, dict[str, Any]]:
+    """Fits fields of a control mesh so that its limit is as near to samples as it can be, by least squares.
+
+    onto: the control mesh; samples: a mesh whose points and fields are the data, or places (n,3) with values in `fields`.
+    Returns the control mesh with the fitted fields, and a report: samples, outside, snapped, unseen, iterations, refined, and for each
+    of fields rms, rms_boundary, max, max_at and range.
+
+    scheme:      mcq (smooth, through the control points), cc (Catmull-Clark), bsxw (Bajaj-Schaefer-Warren-Xu), linear [mcq,
+                 cc, bsxw, linear]
+    tension:     of mcq: 0 is linear; 1/16 reproduces cubics [0 to 0.125; with scheme='mcq']
+    crease_angle: keep boundary edges sharp that bend by more than this, in degrees (tetoct, boxspline: 60) [0 to 180]
+    levels:      how finely the limit is interpolated where the samples are: between its points on level L [1 to 4]
+    reach:       samples outside count at the nearest place up to R times the box's diagonal away [0 to 1]
+    smoothing:   the weight of the differences along edges: for samples with noise [0 to 1e+06]
+    iterations:  the most steps of the search [1 to 100000]
+    refine:      refine the control mesh up to N times while the samples are not met within tolerance [0 to 6]
+    tolerance:   an error that is good enough, as a part of the range [0 to 1; with refine]
+    """
 
 def check_folds(
     mesh: HexMesh, *, scheme: str = 'mcq', tension: float = 0.0625, crease_angle: Optional[float] = None,
@@ -475,7 +499,7 @@ def write_vdb(
 __all__ = [
     "Camera", "Cancelled", "Error", "Field", "FieldComparison", "FileError", "FoldCheck", "Grid", "HexMesh", "Image", "ImageComparison",
     "InvalidInput", "LimitSamples", "MissingCapability", "Page", "PointsError", "ProbeSamples", "RbfVolume", "Refinement", "Series",
-    "Slice", "Study", "StudyCase", "StudyResults", "SubvolWarning", "SurfaceMesh", "TransferFunction", "as_field", "check_folds", "compare",
+    "Slice", "Study", "StudyCase", "StudyResults", "SubvolWarning", "SurfaceMesh", "TransferFunction", "approximate", "as_field", "check_folds", "compare",
     "compare_fields", "compare_images", "evaluate", "evaluate_limit", "fit", "from_meshio", "from_pyvista", "gl_devices", "kernels",
     "measure", "model", "models", "only", "open_series", "page", "points_error", "probe", "quantity", "rasterize", "read_image", "read_mesh", "read_points",
     "read_vdb", "reduce", "render", "run_study", "sample", "sample_grid", "set_threads", "slice", "studies", "study", "subdivide",

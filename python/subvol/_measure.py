@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Optional, Union
 
@@ -105,6 +105,23 @@ def measure(mesh: HexMesh, *, only: Union[str, Sequence[str]] = (), patch: Union
     with listening(progress) as listener:
         found: dict[str, Any] = _core.measure(mesh, [only] if isinstance(only, str) else list(only), listener, **options)
     return found
+
+
+@described
+def approximate(onto: HexMesh, samples: Union[HexMesh, npt.ArrayLike], fields: Optional[Mapping[str, npt.ArrayLike]] = None, *,
+                progress: Progress = None, **options: Any) -> tuple[HexMesh, dict[str, Any]]:
+    """Fits fields of a control mesh so that its limit is as near to samples as it can be, by least squares.
+
+    onto: the control mesh; samples: a mesh whose points and fields are the data, or places (n,3) with values in `fields`.
+    Returns the control mesh with the fitted fields, and a report: samples, outside, snapped, unseen, iterations, refined, and for each
+    of fields rms, rms_boundary, max, max_at and range.
+
+    {keywords}
+    """
+    with listening(progress) as listener:
+        if isinstance(samples, HexMesh):
+            return _core.approximate(onto, samples.points, samples.fields if fields is None else fields, listener, **options)
+        return _core.approximate(onto, samples, fields or {}, listener, **options)
 
 
 @dataclass(frozen=True)

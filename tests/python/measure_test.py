@@ -152,3 +152,16 @@ def test_folds_are_proved_or_placed():
     mirrored = subvol.check_folds(subvol.HexMesh(points, twist.cells), levels=1)
     assert mirrored.verdict == "folded" and (mirrored.determinants < 0).all()
     np.testing.assert_array_equal(mirrored.cells, np.arange(len(twist.cells)))
+
+
+def test_a_field_is_approximated():
+    control = subvol.model("twist", 4)
+    values = np.random.default_rng(1).normal(size=len(control.points))
+    fine = subvol.subdivide(subvol.HexMesh(control.points, control.cells, {"T": values}), levels=2)
+    fitted, report = subvol.approximate(control, fine)
+    np.testing.assert_allclose(fitted.fields["T"], values, atol=1e-10)
+    assert report["samples"] == len(fine.points) and report["fields"]["T"]["max"] < 1e-10
+    coarse, report = subvol.approximate(subvol.model("twist", 2), fine.points[::3], {"T": fine.fields["T"][::3]}, smoothing=.01, refine=1, tolerance=.01)
+    assert report["refined"] == 1 and len(coarse.cells) == 64
+    with pytest.raises(subvol.InvalidInput, match="there is no field to approximate"):
+        subvol.approximate(control, subvol.HexMesh(fine.points, fine.cells))

@@ -1,0 +1,334 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "subvol/approximate.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "limit_matrix.h"
+#include "subvol/cell.h"
+#include "subvol/detail/parallel_sums.h"
+#include "subvol/error.h"
+#include "subvol/mesh_report.h"
+#include "subvol/probe.h"
+#include "subvol/topology.h"
+
+// Least squares, min |A x − b|² + s |D x|², with the limit's matrix A and the differences D along edges. The search is that of
+// conjugate gradients for least squares (CGLS), which works with the residual itself and not with that of the normal
+// equations, so that a field that can be met is met to rounding. It starts from values that continue the samples: what no
+// sample decides stays as the start has it.
+
+namespace subvol {
+
+using namespace detail;
+
+namespace {
+
+using Vector = std::vector<double>;
+
+double dot(const Vector& a, const Vector& b) {
+    return parallel_sums(1, a.size(), [&](std::size_t i, Vector& sum) { sum[0] += a[i] * b[i]; })[0];
+}
+
+// a += factor·b
+void add(Vector& a, double factor, const Vector& b) {
+    parallel_each(a.size(), [&](std::size_t i) { a[i] += factor * b[i]; });
+}
+
+/// A over √s·D.
+class System {
+public:
+    System(const LimitMatrix& limit, const Topology& topology, double smoothing)
+        : limit_(limit), topology_(topology), weight_(smoothing > 0 ? std::sqrt(smoothing) : 0) {}
+
+    [[nodiscard]] Vector apply(const Vector& x) const {
+        Vector values = limit_.apply(x);
+        if (weight_ == 0) return values;
+        for (const auto& [a, b] : topology_.edges) values.push_back(weight_ * (x[a] - x[b]));
+        return values;
+    }
+
+    [[nodiscard]] Vector transposed(const Vector& values) const {
+        Vector x = limit_.transposed(std::span(values).first(limit_.rows()));
+        if (weight_ == 0) return x;
+        for (std::size_t e = 0; e < topology_.edges.size(); ++e) {
+            const double value = weight_ * values[limit_.rows() + e];
+            x[topology_.edges[e][0]] += value;
+            x[topology_.edges[e][1]] -= value;
+        }
+        return x;
+    }
+
+private:
+    const LimitMatrix& limit_;
+    const Topology& topology_;
+    double weight_;
+};
+
+/// Steps of CGLS until the gradient is 1e-14 of the first one, or no longer falls. returns: the number of steps
+int solve(const System& system, const Vector& wanted, Vector& x, int most, Progress* progress) {
+    Vector rest = system.apply(x);
+    rest.resize(std::max(rest.size(), wanted.size()));
+    parallel_each(rest.size(), [&](std::size_t i) { rest[i] = (i < wanted.size() ? wanted[i] : 0.0) - rest[i]; });
+    Vector gradient = system.transposed(rest);
+    Vector direction = gradient;
+    double size = dot(gradient, gradient);
+    const double first = size;
+    constexpr double kSmall = 1e-28;
+    int step = 0;
+    for (; step < most && size > kSmall * first; ++step) {
+        report_progress(progress, "fit", static_cast<double>(step) / most);
+        const Vector change = system.apply(direction);
+        const double length = dot(change, change);
+        if (!(length > 0)) break;
+        add(x, size / length, direction);
+        add(rest, -size / length, change);
+        gradient = system.transposed(rest);
+        const double next = dot(gradient, gradient);
+        const double ratio = next / size;
+        parallel_each(direction.size(), [&](std::size_t i) { direction[i] = gradient[i] + ratio * direction[i]; });
+        size = next;
+    }
+    return step;
+}
+
+/// Samples that lie in the volume, with their places.
+struct Located {
+    std::vector<LimitQuery> places;
+    std::vector<Index> samples;
+    std::size_t outside = 0, snapped = 0;
+};
+
+Located locate(const HexMesh& mesh, std::span<const Vec3> positions, const ApproximateOptions& options, double diagonal) {
+    ProbeOptions probing;
+    probing.limit.scheme = options.scheme;
+    probing.reach_world = options.reach * diagonal;
+    const ProbeResult found = LimitProbe(mesh, probing).at(positions, options.progress);
+    Located located;
+    for (std::size_t p = 0; p < positions.size(); ++p) {
+        if (!found.inside(p)) {
+            ++located.outside;
+            continue;
+        }
+        if (found.distances[p] > 0) ++located.snapped;
+        located.places.push_back({found.cells[p], found.parameters[p]});
+        located.samples.push_back(static_cast<Index>(p));
+    }
+    if (located.places.empty()) {
+        throw Error(ErrorCode::InvalidInput, "none of the samples lies in the limit of the mesh", "samples",
+                    "places in the box of the mesh");
+    }
+    return located;
+}
+
+/// Values that continue samples to all control points: the mean over the cells about a point, and layer by layer outwards the
+/// mean of the neighbours. unseen: the points without a sample in their cells
+class Start {
+public:
+    Start(const Topology& topology, const std::vector<LimitQuery>& places) : topology_(topology), places_(places) {
+        std::vector<std::uint8_t> seen(topology.point_count, 0);
+        for (const LimitQuery& place : places) {
+            for (const Index p : topology.cells[place.cell]) seen[p] = 1;
+        }
+        unseen_ = static_cast<std::size_t>(std::ranges::count(seen, 0));
+        for (std::size_t left = unseen_, before = 0; left > 0 && left != before;) {
+            before = left;
+            std::vector<Index> layer;
+            for (Index p = 0; p < seen.size(); ++p) {
+                if (seen[p] == 0 &&
+                    std::ranges::any_of(topology.point_edges[p], [&](Index e) { return seen[other(e, p)] == 1; })) {
+                    layer.push_back(p);
+                }
+            }
+            for (const Index p : layer) seen[p] = 2;  // so that a layer does not see itself
+            layers_.push_back(layer);
+            for (const Index p : layer) seen[p] = 1;
+            left -= layer.size();
+        }
+    }
+
+    [[nodiscard]] std::size_t unseen() const { return unseen_; }
+
+    [[nodiscard]] Vector values(const Vector& wanted) const {
+        Vector sums(topology_.point_count, 0), counts(topology_.point_count, 0);
+        double all = 0;
+        for (std::size_t k = 0; k < places_.size(); ++k) {
+            all += wanted[k] / static_cast<double>(places_.size());
+            for (const Index p : topology_.cells[places_[k].cell]) {
+                sums[p] += wanted[k];
+                counts[p] += 1;
+            }
+        }
+        for (std::size_t p = 0; p < sums.size(); ++p) sums[p] = counts[p] > 0 ? sums[p] / counts[p] : all;
+        for (const std::vector<Index>& layer : layers_) {
+            Vector means;
+            for (const Index p : layer) means.push_back(mean_of_neighbors(p, sums, counts));
+            for (std::size_t k = 0; k < layer.size(); ++k) sums[layer[k]] = means[k];
+            for (const Index p : layer) counts[p] = 1;
+        }
+        return sums;
+    }
+
+private:
+    [[nodiscard]] Index other(Index edge, Index point) const {
+        return topology_.edges[edge][0] == point ? topology_.edges[edge][1] : topology_.edges[edge][0];
+    }
+
+    [[nodiscard]] double mean_of_neighbors(Index point, const Vector& values, const Vector& counts) const {
+        double sum = 0, count = 0;
+        for (const Index e : topology_.point_edges[point]) {
+            if (counts[other(e, point)] == 0) continue;
+            sum += values[other(e, point)];
+            count += 1;
+        }
+        return sum / count;
+    }
+
+    const Topology& topology_;
+    const std::vector<LimitQuery>& places_;
+    std::size_t unseen_ = 0;
+    std::vector<std::vector<Index>> layers_;
+};
+
+std::vector<std::uint8_t> cells_at_boundary(const Topology& topology) {
+    std::vector<std::uint8_t> at_boundary(topology.cells.size());
+    parallel_each(at_boundary.size(), [&](std::size_t c) {
+        at_boundary[c] = std::ranges::any_of(topology.cell_faces[c], [&](Index f) { return topology.face_on_boundary(f); });
+    });
+    return at_boundary;
+}
+
+/// The errors of one field, from its channels.
+class ErrorSum {
+public:
+    ErrorSum(const HexMesh& samples, const Located& located, const std::vector<std::uint8_t>& at_boundary)
+        : samples_(samples), located_(located), at_boundary_(at_boundary) {}
+
+    void add(const Vector& wanted, const Vector& found) {
+        const auto [low, high] = std::ranges::minmax(wanted);
+        error_.range = std::max(error_.range, high - low);
+        for (std::size_t k = 0; k < wanted.size(); ++k) {
+            const double error = std::abs(found[k] - wanted[k]);
+            squares_ += error * error;
+            ++count_;
+            if (at_boundary_[located_.places[k].cell] != 0) {
+                squares_of_boundary_ += error * error;
+                ++boundary_count_;
+            }
+            if (error > error_.max) {
+                error_.max = error;
+                error_.max_at = samples_.points[located_.samples[k]];
+            }
+        }
+    }
+
+    [[nodiscard]] FieldError result(const std::string& name) const {
+        FieldError error = error_;
+        error.name = name;
+        error.rms = std::sqrt(squares_ / static_cast<double>(std::max<std::size_t>(count_, 1)));
+        error.rms_boundary = std::sqrt(squares_of_boundary_ / static_cast<double>(std::max<std::size_t>(boundary_count_, 1)));
+        return error;
+    }
+
+private:
+    const HexMesh& samples_;
+    const Located& located_;
+    const std::vector<std::uint8_t>& at_boundary_;
+    FieldError error_;
+    double squares_ = 0, squares_of_boundary_ = 0;
+    std::size_t count_ = 0, boundary_count_ = 0;
+};
+
+/// Fits all fields on one control mesh.
+Approximation fit_on(HexMesh mesh, const HexMesh& samples, const ApproximateOptions& options) {
+    const Topology topology = build_topology(mesh);
+    const double diagonal = bounds(mesh).diagonal();
+    const Located located = locate(mesh, samples.points, options, diagonal);
+    LimitMatrix limit(topology, {.scheme = options.scheme, .levels = options.levels, .progress = options.progress},
+                      located.places);
+    std::vector<Vec3> positions;
+    for (const Index s : located.samples) positions.push_back(samples.points[s]);
+    limit.settle(mesh.points, positions, LimitOptions{}.tolerance * diagonal);
+    const System system(limit, topology,
+                        options.smoothing * static_cast<double>(limit.rows()) / static_cast<double>(topology.edges.size()));
+    const Start start(topology, located.places);
+    const std::vector<std::uint8_t> at_boundary = cells_at_boundary(topology);
+    ApproximateReport report;
+    report.samples = located.places.size();
+    report.outside = located.outside;
+    report.snapped = located.snapped;
+    report.unseen = start.unseen();
+    for (const Attribute& field : samples.attributes) {
+        const auto channels = static_cast<std::size_t>(field.channels);
+        Attribute fitted{.name = field.name, .channels = field.channels, .values = Vector(mesh.points.size() * channels)};
+        ErrorSum errors(samples, located, at_boundary);
+        for (std::size_t c = 0; c < channels; ++c) {
+            Vector wanted;
+            for (const Index s : located.samples) wanted.push_back(field.values[s * channels + c]);
+            Vector x = start.values(wanted);
+            report.iterations = std::max(report.iterations, solve(system, wanted, x, options.iterations, options.progress));
+            errors.add(wanted, limit.apply(x));
+            for (std::size_t p = 0; p < x.size(); ++p) fitted.values[p * channels + c] = x[p];
+        }
+        report.fields.push_back(errors.result(field.name));
+        mesh.attributes.push_back(std::move(fitted));
+    }
+    return {std::move(mesh), std::move(report)};
+}
+
+}  // namespace
+
+std::vector<Option> options_of(ApproximateOptions& options) {
+    return {Option("levels", options.levels)
+                .between(1, 4)
+                .help("L", "how finely the limit is interpolated where the samples are: between its points on level L"),
+            Option("reach", options.reach)
+                .between(0, 1)
+                .help("R", "samples outside count at the nearest place up to R times the box's diagonal away"),
+            Option("smoothing", options.smoothing)
+                .between(0, 1e6)
+                .help("S", "the weight of the differences along edges: for samples with noise"),
+            Option("iterations", options.iterations).between(1, 100000).help("N", "the most steps of the search"),
+            Option("refine", options.refine)
+                .between(0, 6)
+                .help("N", "refine the control mesh up to N times while the samples are not met within --tolerance"),
+            Option("tolerance", options.tolerance)
+                .between(0, 1)
+                .only_with("refine")
+                .help("T", "an error that is good enough, as a part of the range")};
+}
+
+Approximation approximate(const HexMesh& onto, const HexMesh& samples, const ApproximateOptions& given) {
+    ApproximateOptions options = given;
+    check_options(options);
+    check_options(options.scheme);
+    if (samples.attributes.empty()) throw Error(ErrorCode::InvalidInput, "there is no field to approximate", "samples");
+    HexMesh mesh = onto;
+    mesh.attributes.clear();
+    validate(mesh);
+    if (options.scheme.crease_angle_deg) tag_creases(mesh, *options.scheme.crease_angle_deg);
+    options.scheme.crease_angle_deg.reset();
+    for (int refined = 0;; ++refined) {
+        Approximation result = fit_on(mesh, samples, options);
+        result.report.refined = refined;
+        const bool met = std::ranges::all_of(
+            result.report.fields, [&](const FieldError& error) { return error.max <= options.tolerance * error.range; });
+        if (met || refined == options.refine) return result;
+        mesh = refine(mesh, {.scheme = options.scheme, .levels = 1, .progress = options.progress});
+    }
+}
+
+std::vector<Vec3> places_in_cells(const HexMesh& mesh, int per_edge, const LimitOptions& options) {
+    std::vector<LimitQuery> queries;
+    for (Index c = 0; c < mesh.cells.size(); ++c) {
+        for (int i = 0; i < per_edge * per_edge * per_edge; ++i) {
+            queries.push_back(
+                {c, (Vec3(i % per_edge, i / per_edge % per_edge, i / (per_edge * per_edge)) + 0.5) / double(per_edge)});
+        }
+    }
+    HexMesh bare = mesh;
+    bare.attributes.clear();
+    return evaluate_limit(bare, queries, options).positions;
+}
+
+}  // namespace subvol

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "subvol/hex_mesh.h"
+#include "subvol/limit.h"
+#include "subvol/option.h"
+#include "subvol/progress.h"
+#include "subvol/scheme.h"
+
+namespace subvol {
+
+/// levels:     the limit at a sample is interpolated between the points that it has on this level: 27 about each of the cells
+/// one
+///             level coarser
+/// reach:      samples outside the volume, at most this part of the box's diagonal from it, count at the nearest place
+/// smoothing:  the weight of the differences along the mesh's edges beside that of the samples; 0 follows the samples alone
+/// iterations: the most steps of the search, for each channel
+/// refine:     the control mesh is refined up to so often while the samples are not met within `tolerance`
+/// tolerance:  the largest error that is good enough, as a part of the range of the samples
+struct ApproximateOptions {
+    SchemeOptions scheme{};
+    int levels = 2;
+    double reach = 0.01;
+    double smoothing = 0;
+    int iterations = 200;
+    int refine = 0;
+    double tolerance = 1e-3;
+    Progress* progress = nullptr;
+};
+
+/// The options without those of the scheme.
+[[nodiscard]] std::vector<Option> options_of(ApproximateOptions& options);
+
+/// How far the limit is from the samples of a field.
+///
+/// rms, max: over all samples and channels; rms_boundary: over those in cells at the boundary
+/// max_at:   the sample where it is farthest
+/// range:    of the samples
+struct FieldError {
+    std::string name;
+    double rms = 0, rms_boundary = 0, max = 0, range = 0;
+    Vec3 max_at{0.0};
+};
+
+/// samples:    that were used; outside: that lie beyond the reach; snapped: of the used ones, outside
+/// unseen:     control points without a sample in their cells: they continue what is around them
+/// iterations: of the channel that took most; refined: how often the control mesh was
+struct ApproximateReport {
+    std::size_t samples = 0, outside = 0, snapped = 0, unseen = 0;
+    int iterations = 0, refined = 0;
+    std::vector<FieldError> fields;
+    std::vector<std::string> warnings;
+};
+
+/// mesh: the control mesh with the fitted fields as its attributes
+struct Approximation {
+    HexMesh mesh;
+    ApproximateReport report;
+};
+
+/// Fits control values so that the limit is as near to samples as it can be: in the least squares sense, by conjugate gradients
+/// with the tables that make the limit and their transposes, from a start that continues the samples. A field that is a limit
+/// of the mesh already is found again.
+///
+/// onto:    the control mesh; its attributes are not used
+/// samples: places and their fields, as points and attributes; cells are not used
+/// throws:  Error(InvalidInput) as `refine`, if no sample lies in the volume, if the samples have no field, or if an option is
+/// out of
+///          range
+/// cost:    time and memory grow with the samples (27 numbers each) and with the points of level `levels`; parallel, the same
+/// bits for
+///          any number of threads
+[[nodiscard]] Approximation approximate(const HexMesh& onto, const HexMesh& samples, const ApproximateOptions& options = {});
+
+/// Places of the limit in each cell, per_edge³ of them at the middles of equal parts: where a function of the world can be
+/// sampled.
+[[nodiscard]] std::vector<Vec3> places_in_cells(const HexMesh& mesh, int per_edge, const LimitOptions& options = {});
+
+}  // namespace subvol

@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
+#include <tbb/global_control.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "lib/temp_folder.h"
+#include "lib/test_meshes.h"
+#include "subvol/approximate.h"
+#include "subvol/model.h"
+
+namespace subvol {
+namespace approximate_test {
+
+using test::error_of;
+using test::make_box;
+using testing::HasSubstr;
+
+/// A mesh with values from a die at its points: a field that no polynomial is.
+HexMesh with_noise(HexMesh mesh, unsigned seed) {
+    std::mt19937 dice(seed);
+    std::uniform_real_distribution<double> value(-1, 1);
+    mesh.attributes = {{.name = "T", .channels = 1, .values = {}}};
+    for (std::size_t p = 0; p < mesh.points.size(); ++p) mesh.attributes[0].values.push_back(value(dice));
+    return mesh;
+}
+
+double difference(const std::vector<double>& a, const std::vector<double>& b) {
+    double most = 0;
+    for (std::size_t k = 0; k < a.size(); ++k) most = std::max(most, std::abs(a[k] - b[k]));
+    return a.size() == b.size() ? most : INFINITY;
+}
+
+TEST(Approximate, FindsALimitAgain) {
+    for (const HexMesh& bare : {make_model("twist", 4), make_model("ball", 2), test::irregular()}) {
+        const HexMesh control = with_noise(bare, 3);
+        const HexMesh fine = refine(control, {.levels = 2});
+        const Approximation made = approximate(control, fine);
+        EXPECT_EQ(made.report.samples, fine.points.size());
+        EXPECT_LT(difference(made.mesh.attributes[0].values, control.attributes[0].values), 1e-10);
+        EXPECT_LT(made.report.fields[0].max, 1e-10);
+    }
+}
+
+TEST(Approximate, FindsALimitOfASchemeThatDoesNotInterpolate) {
+    const HexMesh control = with_noise(make_model("ball", 2), 4);
+    for (const Scheme scheme : {Scheme::CatmullClark, Scheme::Bsxw, Scheme::Linear}) {
+        const HexMesh fine = on_limit(refine(control, {.scheme = {.kind = scheme}, .levels = 2}), scheme);
+        const Approximation made = approximate(control, fine, {.scheme = {.kind = scheme}});
+        EXPECT_LT(difference(made.mesh.attributes[0].values, control.attributes[0].values), 1e-8) << name_of(scheme);
+    }
+}
+
+/// Random places in the limit, with values that no limit has, and the matrix of the limit there by unit fields.
+struct Scattered {
+    HexMesh samples;
+    Eigen::MatrixXd matrix;
+    Eigen::VectorXd values;
+};
+
+Scattered scattered(const HexMesh& mesh, std::size_t count, unsigned seed) {
+    std::mt19937 dice(seed);
+    std::uniform_real_distribution<double> part(0.02, 0.98);
+    std::vector<LimitQuery> queries;
+    for (std::size_t k = 0; k < count; ++k) {
+        queries.push_back({static_cast<Index>(k % mesh.cells.size()), {part(dice), part(dice), part(dice)}});
+    }
+    HexMesh units = mesh;
+    const std::size_t n = mesh.points.size();
+    units.attributes = {{.name = "units", .channels = static_cast<int>(n), .values = std::vector<double>(n * n, 0)}};
+    for (std::size_t p = 0; p < n; ++p) units.attributes[0].values[p * n + p] = 1;
+    const LimitSamples limit = evaluate_limit(units, queries);
+    Scattered made;
+    made.samples.points = limit.positions;
+    made.samples.attributes = {{.name = "v", .channels = 1, .values = {}}};
+    made.matrix.resize(static_cast<Eigen::Index>(count), static_cast<Eigen::Index>(n));
+    made.values.resize(static_cast<Eigen::Index>(count));
+    for (std::size_t k = 0; k < count; ++k) {
+        const Vec3& x = limit.positions[k];
+        const double value = std::sin(3 * x.x) + x.y * x.z + 0.1 * (part(dice) - 0.5);
+        made.samples.attributes[0].values.push_back(value);
+        made.values(static_cast<Eigen::Index>(k)) = value;
+        for (std::size_t p = 0; p < n; ++p) {
+            made.matrix(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(p)) = limit.attributes[0].values[k * n + p];
+        }
+    }
+    return made;
+}
+
+TEST(Approximate, IsAsGoodAsDenseLeastSquares) {
+    for (const HexMesh& bare : {make_model("twist", 3), make_model("ball", 2)}) {
+        const Scattered data = scattered(bare, 40 * bare.cells.size(), 5);
+        const Eigen::VectorXd best = data.matrix.householderQr().solve(data.values);
+        const double least = (data.matrix * best - data.values).norm();
+        const Approximation made = approximate(bare, data.samples, {.levels = 3});
+        const auto& found = made.mesh.attributes[0].values;
+        const Eigen::Map<const Eigen::VectorXd> x(found.data(), static_cast<Eigen::Index>(found.size()));
+        EXPECT_LT((data.matrix * x - data.values).norm(), 1.01 * least);
+        const double rms = least / std::sqrt(static_cast<double>(data.samples.points.size()));
+        EXPECT_NEAR(made.report.fields[0].rms, rms, 0.02 * rms);
+    }
+}
+
+TEST(Approximate, WhatNoSampleSeesContinuesWhatIsAroundIt) {
+    HexMesh box = make_box(6, 3, 3);
+    HexMesh samples = refine(with_noise(box, 1), {.levels = 2});
+    for (double& value : samples.attributes[0].values) value = 7;
+    HexMesh part;
+    part.attributes = {{.name = "T", .channels = 1, .values = {}}};
+    for (std::size_t p = 0; p < samples.points.size(); ++p) {
+        if (samples.points[p].x > 2) continue;
+        part.points.push_back(samples.points[p]);
+        part.attributes[0].values.push_back(7);
+    }
+    const Approximation made = approximate(box, part);
+    EXPECT_GT(made.report.unseen, 0U);
+    for (const double value : made.mesh.attributes[0].values) EXPECT_NEAR(value, 7, 1e-6);
+}
+
+TEST(Approximate, RefinesUntilTheSamplesAreMet) {
+    const HexMesh coarse = make_model("twist", 2);
+    HexMesh samples = refine(coarse, {.levels = 3});
+    samples.attributes = {{.name = "wave", .channels = 1, .values = {}}};
+    for (const Vec3& x : samples.points) samples.attributes[0].values.push_back(std::sin(4 * x.x) * std::cos(3 * x.z));
+    const Approximation once = approximate(coarse, samples);
+    const Approximation more = approximate(coarse, samples, {.refine = 2, .tolerance = 0.01});
+    EXPECT_EQ(once.report.refined, 0);
+    EXPECT_GT(more.report.refined, 0);
+    EXPECT_GT(more.mesh.cells.size(), coarse.cells.size());
+    EXPECT_LT(more.report.fields[0].rms, 0.3 * once.report.fields[0].rms);
+}
+
+TEST(Approximate, SmoothingMakesNeighborsAlike) {
+    const HexMesh box = make_box(4, 4, 4);
+    const Scattered data = scattered(box, 2000, 8);
+    const auto roughness = [&](double smoothing) {
+        const Approximation made = approximate(box, data.samples, {.smoothing = smoothing});
+        const auto [low, high] = std::ranges::minmax(made.mesh.attributes[0].values);
+        return high - low;
+    };
+    EXPECT_LT(roughness(10), 0.5 * roughness(0));
+}
+
+TEST(Approximate, TakesFieldsOfSeveralComponentsAndSamplesNearby) {
+    const HexMesh box = make_box(3, 3, 3);
+    HexMesh samples = refine(box, {.levels = 1});
+    samples.attributes = {{.name = "x", .channels = 3, .values = {}}};
+    for (const Vec3& x : samples.points)
+        samples.attributes[0].values.insert(samples.attributes[0].values.end(), {x.x, x.y, x.z});
+    samples.points[0] -= Vec3(0.001);
+    samples.points.back() += Vec3(100.0);
+    const Approximation made = approximate(box, samples);
+    EXPECT_EQ(made.report.snapped, 1U);
+    EXPECT_EQ(made.report.outside, 1U);
+    for (std::size_t p = 0; p < box.points.size(); ++p) {
+        for (int a = 0; a < 3; ++a) {
+            EXPECT_NEAR(made.mesh.attributes[0].values[3 * p + static_cast<std::size_t>(a)], box.points[p][a], 2e-3);
+        }
+    }
+}
+
+TEST(Approximate, AnyNumberOfThreads) {
+    const HexMesh control = with_noise(make_model("ball", 2), 6);
+    const Scattered data = scattered(control, 800, 2);
+    const auto fitted = [&](std::size_t threads) {
+        const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+        return approximate(control, data.samples).mesh.attributes[0].values;
+    };
+    EXPECT_EQ(fitted(1), fitted(4));
+}
+
+TEST(Approximate, SaysWhatIsWrong) {
+    const HexMesh box = make_box(2, 2, 2);
+    HexMesh samples = test::only_points({{0.5, 0.5, 0.5}});
+    EXPECT_THAT(error_of([&] { (void)approximate(box, samples); }), HasSubstr("there is no field to approximate"));
+    samples.attributes = {{.name = "T", .channels = 1, .values = {1}}};
+    samples.points[0] = Vec3(50.0);
+    EXPECT_THAT(error_of([&] { (void)approximate(box, samples); }), HasSubstr("none of the samples lies in the limit"));
+    EXPECT_THAT(error_of([&] { (void)approximate(box, samples, {.levels = 9}); }),
+                HasSubstr("levels: 9 is out of range (1 to 4)"));
+}
+
+}  // namespace approximate_test
+}  // namespace subvol
