@@ -32,7 +32,9 @@ public:
                "JSON: samples, outside, snapped, unseen, iterations, refined, fields {name: rms, rms_boundary, max, max_at, "
                "range}, points, cells.") {
         app()
-            .add_option("DATA", input_, "a mesh, a .vdb grid of floats, or a table (.csv, .txt) of x, y, z and values")
+            .add_option(
+                "DATA", input_,
+                "a mesh, a .vdb grid of floats (0 where it is not active), or a table (.csv, .txt) of x, y, z and values")
             ->required();
         app().add_option("--onto", onto_, "the control mesh: a file or model:NAME:RESOLUTION")->type_name("MESH")->required();
         app()
@@ -70,17 +72,18 @@ private:
         const VdbGrid grid = report.unpack(load_grid(input_, common(), report.progress()));
         HexMesh samples;
         Attribute field{.name = grid.report().name, .channels = 1, .values = {}};
+        std::size_t active = 0;
         LimitOptions limit;
         limit.scheme = options.scheme;
         limit.progress = report.progress();
         for (const Vec3& place : report.timed("sample", [&] { return places_in_cells(onto, kPlacesPerEdge, limit); })) {
-            if (const auto value = grid.value(place)) {
-                samples.points.push_back(place);
-                field.values.push_back(*value);
-            }
+            const auto value = grid.value(place);
+            active += value ? 1 : 0;
+            samples.points.push_back(place);
+            field.values.push_back(value.value_or(0));  // the background of fog
         }
         samples.attributes.push_back(std::move(field));
-        if (samples.points.empty()) {
+        if (active == 0) {
             throw Error(ErrorCode::InvalidInput, "no active voxel lies in the control mesh", input_, "a grid that overlaps it");
         }
         return samples;

@@ -13,10 +13,10 @@
 #include "subvol/probe.h"
 #include "subvol/topology.h"
 
-// Least squares, min |A x − b|² + s |D x|², with the limit's matrix A and the differences D along edges. The search is that of
-// conjugate gradients for least squares (CGLS), which works with the residual itself and not with that of the normal
-// equations, so that a field that can be met is met to rounding. It starts from values that continue the samples: what no
-// sample decides stays as the start has it.
+// Least squares, min |A x − b|² + Σ w_ij (x_i − x_j)², with the limit's matrix A and differences along edges, which have a
+// weight where smoothing is asked for or a sample hardly decides a value. The search is that of conjugate gradients for least
+// squares (CGLS), which works with the residual itself and not with that of the normal equations, so that a field that can be
+// met is met to rounding. It starts from values that continue the samples.
 
 namespace subvol {
 
@@ -35,40 +35,77 @@ void add(Vector& a, double factor, const Vector& b) {
     parallel_each(a.size(), [&](std::size_t i) { a[i] += factor * b[i]; });
 }
 
-/// A over √s·D.
+/// How well the samples decide a control value: the sum of the squares of its trilinear weights in them.
+Vector support_of(const Topology& topology, const std::vector<LimitQuery>& places) {
+    return parallel_sums(topology.point_count, places.size(), [&](std::size_t k, Vector& sums) {
+        const auto& cell = topology.cells[places[k].cell];
+        const Vec3& at = places[k].uvw;
+        for (std::size_t c = 0; c < 8; ++c) {
+            double weight = 1;
+            for (std::size_t a = 0; a < 3; ++a) {
+                const double t = at[static_cast<int>(a)];
+                weight *= kCornerParameters[c][a] != 0 ? t : 1 - t;
+            }
+            sums[cell[c]] += weight * weight;
+        }
+    });
+}
+
+/// Differences along edges and their weights: everywhere with the smoothing that was asked for, and where samples hardly decide
+/// a value with so much that it follows its neighbours.
+struct Smoothing {
+    std::vector<std::array<Index, 2>> edges;
+    Vector weights;
+
+    Smoothing(const Topology& topology, const std::vector<LimitQuery>& places, double asked) {
+        constexpr double kPoor = 0.05, kPull = 0.01;  // parts of the usual support: the corner of a box has an eighth of it
+        const Vector support = support_of(topology, places);
+        Vector sorted = support;
+        std::erase(sorted, 0.0);
+        const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
+        std::ranges::nth_element(sorted, middle);
+        for (const auto& edge : topology.edges) {
+            const bool poor = std::min(support[edge[0]], support[edge[1]]) < kPoor * *middle;
+            const double weight = (asked + (poor ? kPull : 0)) * *middle;
+            if (weight == 0) continue;
+            edges.push_back(edge);
+            weights.push_back(std::sqrt(weight));
+        }
+    }
+};
+
+/// A over the weighted differences.
 class System {
 public:
-    System(const LimitMatrix& limit, const Topology& topology, double smoothing)
-        : limit_(limit), topology_(topology), weight_(smoothing > 0 ? std::sqrt(smoothing) : 0) {}
+    System(const LimitMatrix& limit, const Smoothing& smoothing) : limit_(limit), smoothing_(smoothing) {}
 
     [[nodiscard]] Vector apply(const Vector& x) const {
         Vector values = limit_.apply(x);
-        if (weight_ == 0) return values;
-        for (const auto& [a, b] : topology_.edges) values.push_back(weight_ * (x[a] - x[b]));
+        for (std::size_t e = 0; e < smoothing_.edges.size(); ++e) {
+            const auto& [a, b] = smoothing_.edges[e];
+            values.push_back(smoothing_.weights[e] * (x[a] - x[b]));
+        }
         return values;
     }
 
     [[nodiscard]] Vector transposed(const Vector& values) const {
         Vector x = limit_.transposed(std::span(values).first(limit_.rows()));
-        if (weight_ == 0) return x;
-        for (std::size_t e = 0; e < topology_.edges.size(); ++e) {
-            const double value = weight_ * values[limit_.rows() + e];
-            x[topology_.edges[e][0]] += value;
-            x[topology_.edges[e][1]] -= value;
+        for (std::size_t e = 0; e < smoothing_.edges.size(); ++e) {
+            const double value = smoothing_.weights[e] * values[limit_.rows() + e];
+            x[smoothing_.edges[e][0]] += value;
+            x[smoothing_.edges[e][1]] -= value;
         }
         return x;
     }
 
 private:
     const LimitMatrix& limit_;
-    const Topology& topology_;
-    double weight_;
+    const Smoothing& smoothing_;
 };
 
 /// Steps of CGLS until the gradient is 1e-14 of the first one, or no longer falls. returns: the number of steps
 int solve(const System& system, const Vector& wanted, Vector& x, int most, Progress* progress) {
     Vector rest = system.apply(x);
-    rest.resize(std::max(rest.size(), wanted.size()));
     parallel_each(rest.size(), [&](std::size_t i) { rest[i] = (i < wanted.size() ? wanted[i] : 0.0) - rest[i]; });
     Vector gradient = system.transposed(rest);
     Vector direction = gradient;
@@ -249,8 +286,8 @@ Approximation fit_on(HexMesh mesh, const HexMesh& samples, const ApproximateOpti
     std::vector<Vec3> positions;
     for (const Index s : located.samples) positions.push_back(samples.points[s]);
     limit.settle(mesh.points, positions, LimitOptions{}.tolerance * diagonal);
-    const System system(limit, topology,
-                        options.smoothing * static_cast<double>(limit.rows()) / static_cast<double>(topology.edges.size()));
+    const Smoothing smoothing(topology, located.places, options.smoothing);
+    const System system(limit, smoothing);
     const Start start(topology, located.places);
     const std::vector<std::uint8_t> at_boundary = cells_at_boundary(topology);
     ApproximateReport report;

@@ -120,6 +120,23 @@ TEST(Approximate, WhatNoSampleSeesContinuesWhatIsAroundIt) {
     for (const double value : made.mesh.attributes[0].values) EXPECT_NEAR(value, 7, 1e-6);
 }
 
+TEST(Approximate, ValuesThatSamplesHardlyDecideFollowTheirNeighbors) {
+    const HexMesh box = make_box(4, 4, 4);
+    const Scattered data = scattered(box, 4000, 11);
+    HexMesh part;  // down to a thin layer of a cell that is sampled
+    part.attributes = {{.name = "v", .channels = 1, .values = {}}};
+    for (std::size_t p = 0; p < data.samples.points.size(); ++p) {
+        if (data.samples.points[p].x > 2.05) continue;
+        part.points.push_back(data.samples.points[p]);
+        part.attributes[0].values.push_back(data.samples.attributes[0].values[p]);
+    }
+    const Approximation made = approximate(box, part);
+    const auto [least, most] = std::ranges::minmax(part.attributes[0].values);
+    const auto [low, high] = std::ranges::minmax(made.mesh.attributes[0].values);
+    EXPECT_GT(low, least - 0.3 * (most - least));
+    EXPECT_LT(high, most + 0.3 * (most - least));
+}
+
 TEST(Approximate, RefinesUntilTheSamplesAreMet) {
     const HexMesh coarse = make_model("twist", 2);
     HexMesh samples = refine(coarse, {.levels = 3});

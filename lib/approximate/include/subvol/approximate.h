@@ -17,7 +17,8 @@ namespace subvol {
 /// one
 ///             level coarser
 /// reach:      samples outside the volume, at most this part of the box's diagonal from it, count at the nearest place
-/// smoothing:  the weight of the differences along the mesh's edges beside that of the samples; 0 follows the samples alone
+/// smoothing:  the weight of the differences along the mesh's edges beside the usual weight of the samples about a control point; 0 follows
+///             the samples alone, but where they hardly decide a value
 /// iterations: the most steps of the search, for each channel
 /// refine:     the control mesh is refined up to so often while the samples are not met within `tolerance`
 /// tolerance:  the largest error that is good enough, as a part of the range of the samples
