@@ -49,7 +49,9 @@ public:
         check_output(output_, {".vtu", ".vtkhdf"});
         ApproximateOptions options = options_;
         options.scheme = scheme_.options(0, report.progress()).scheme;
+        options.names = OptionNames::Flags;
         options.progress = report.progress();
+        report.if_long("--levels 1");
         report["input"] = input_;
         report["onto"] = onto_;
         const HexMesh onto = report.unpack(load_mesh(onto_, CommonOptions{}, report.progress()));

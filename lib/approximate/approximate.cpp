@@ -8,6 +8,7 @@
 #include "limit_matrix.h"
 #include "subvol/cell.h"
 #include "subvol/detail/parallel_sums.h"
+#include "subvol/detail/refined_memory.h"
 #include "subvol/error.h"
 #include "subvol/mesh_report.h"
 #include "subvol/probe.h"
@@ -278,6 +279,9 @@ private:
 
 /// Fits all fields on one control mesh.
 Approximation fit_on(HexMesh mesh, const HexMesh& samples, const ApproximateOptions& options) {
+    constexpr double kBytesOfFineCell = 300;  // of its stencils, and of what is computed for its points
+    check_memory(options.levels, static_cast<double>(mesh.cells.size()) * std::pow(8.0, options.levels), kBytesOfFineCell,
+                 option_name("levels", options.names));
     const Topology topology = build_topology(mesh);
     const double diagonal = bounds(mesh).diagonal();
     const Located located = locate(mesh, samples.points, options, diagonal);
