@@ -37,8 +37,8 @@ struct FitTable {
     std::vector<std::string> lines;
 };
 
-/// Table 1 of [mnmq2007]: the paper's kernels with its printed errors, with ours summed in float (as the paper did) and in double
-/// precision, and the kernels fitted by us.
+/// Table 1 of [mnmq2007]: the paper's kernels with its printed errors, with ours summed in float (as the paper did) and in
+/// double precision, and the kernels fitted by us.
 ///
 /// basis: of MCQ at level 5
 [[nodiscard]] FitTable table1(const BasisFunction& basis);
