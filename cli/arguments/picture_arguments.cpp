@@ -171,10 +171,9 @@ void PictureArguments::check() const {
     if (styled && !legend_inside())
         throw Error(ErrorCode::InvalidInput, "is about a legend in the picture", "--legend-side, --legend-size",
                     "--legend without a file");
-    if (!legend_format.empty() && !legend)
-        throw Error(ErrorCode::InvalidInput, "is about a legend", "--legend-format", "--legend");
-    if (!legend_format.empty() && !is_tick_format(legend_format))
-        throw Error(ErrorCode::InvalidInput, "'" + legend_format + "' is not a format of one number", "--legend-format",
+    if (legend_format && !legend) throw Error(ErrorCode::InvalidInput, "is about a legend", "--legend-format", "--legend");
+    if (legend_format && !is_tick_format(*legend_format))
+        throw Error(ErrorCode::InvalidInput, "'" + *legend_format + "' is not a format of one number", "--legend-format",
                     "such as %.2f, %g or %.3e");
     if (!unit.empty() && !legend) throw Error(ErrorCode::InvalidInput, "is shown by a legend only", "--unit", "--legend");
 }
@@ -188,7 +187,7 @@ LegendOptions PictureArguments::legend_options(const ShownField& field, const Sh
                           .shape = color_shape(choices, OptionNames::Flags)};
     options.note = legend_note;
     options.names = legend_names;
-    options.format = legend_format;
+    options.format = legend_format.value_or("");
     if (field.name != colors.name) {
         const Range opacities = shown_range(choices, field.range, OptionNames::Flags);
         options.opacity_title = field.name;

@@ -43,16 +43,16 @@ struct PictureArguments {
     int frames_per_second = 30;
     std::optional<double> duration_s;  // of a video, instead
     LookChoices choices;
-    Look look = Look::Volume;               // as settled
-    std::optional<std::string> legend;      // the file; empty: inside the picture
-    int legend_px = 0;                      // the columns or rows of a legend inside the picture, as settled
-    LegendStyle legend_style;               // without its ink
-    std::string legend_format;              // of its ticks; empty: as many digits as they need
-    std::string unit;                       // of the field that the legend shows
-    std::string legend_note;                // what the legend says besides, as settled
-    std::vector<std::string> legend_names;  // of the values 1, 2, …, as settled; empty: the legend has a colour bar
-    std::string title;                      // above the picture
-    bool time_label = false;                // the time of the step below it
+    Look look = Look::Volume;                  // as settled
+    std::optional<std::string> legend;         // the file; empty: inside the picture
+    int legend_px = 0;                         // the columns or rows of a legend inside the picture, as settled
+    LegendStyle legend_style;                  // without its ink
+    std::optional<std::string> legend_format;  // of its ticks; else as many digits as they need
+    std::string unit;                          // of the field that the legend shows
+    std::string legend_note;                   // what the legend says besides, as settled
+    std::vector<std::string> legend_names;     // of the values 1, 2, …, as settled; empty: the legend has a colour bar
+    std::string title;                         // above the picture
+    bool time_label = false;                   // the time of the step below it
     bool axes = false, edges = false, scale_bar = false;
     std::optional<std::string> background;
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "piece_tree.h"
 #include "subvol/cell.h"
 #include "subvol/detail/parallel_each.h"
 #include "subvol/detail/parallel_sums.h"
@@ -10,11 +11,6 @@
 namespace subvol::detail {
 
 namespace {
-
-// Quadratics that are 1 at one of 0, ½, 1 and 0 at the others.
-std::array<double, 3> quadratics(double t) {
-    return {(1 - t) * (1 - 2 * t), 4 * t * (1 - t), t * (2 * t - 1)};
-}
 
 // The number of the corner with these parameters.
 std::size_t corner_number(bool u, bool v, bool w) {
@@ -77,7 +73,8 @@ Index LimitMatrix::node(const Place& place, std::size_t i, std::size_t j, std::s
 
 template <class Visit>
 void LimitMatrix::each_term(const Place& place, const Visit& visit) const {
-    const auto u = quadratics(place.at.x), v = quadratics(place.at.y), w = quadratics(place.at.z);
+    const auto u = QuadraticWeights(place.at.x).values, v = QuadraticWeights(place.at.y).values,
+               w = QuadraticWeights(place.at.z).values;
     for (std::size_t i = 0; i < 3; ++i) {
         for (std::size_t j = 0; j < 3; ++j) {
             for (std::size_t k = 0; k < 3; ++k) visit(node(place, i, j, k), u[i] * v[j] * w[k]);

@@ -9,7 +9,6 @@
 
 #include "limit_place.h"
 #include "piece_tree.h"
-#include "pieces_within.h"
 #include "subvol/error.h"
 
 namespace subvol {

@@ -23,7 +23,6 @@
 #include <numeric>
 
 #include "piece_tree.h"
-#include "pieces_within.h"
 #include "subvol/error.h"
 #include "subvol/measure.h"
 

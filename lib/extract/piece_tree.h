@@ -62,6 +62,9 @@ private:
     std::optional<MedianTree<Box>> tree_;
 };
 
+/// The limit's pieces within cells.max_bytes: where they would be more, the tolerances are enlarged until they are not.
+[[nodiscard]] LimitCells pieces_within(const HexMesh& mesh, const RefineOptions& refinement, LimitCellsOptions cells);
+
 /// The weights of the three nodes at 0, ½ and 1 of a quadratic, and their derivatives.
 struct QuadraticWeights {
     explicit QuadraticWeights(double t)

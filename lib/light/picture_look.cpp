@@ -125,7 +125,14 @@ std::vector<Option> options_of(LookChoices& choices) {
                   "opacities instead of those of --tf, linear in between: at values of the field or per cent of its range, "
                   "such as 0%:0,50%:.2,100%:.9"),
         Option("iso", WordValue{[&choices] { return choices.iso; },
-                                [&choices](const std::string& word, const std::string&) { choices.iso = word; }, true})
+                                [&choices](const std::string& word, const std::string& where) {
+                                    if (word.empty()) {
+                                        throw Error(ErrorCode::InvalidInput, "no value is given", where,
+                                                    "values such as .3,.5");
+                                    }
+                                    choices.iso = word;
+                                },
+                                true})
             .help(
                 "V,…",
                 "lit surfaces of these values, or per cents of the field's range: --look isosurface with these instead of its "

@@ -72,7 +72,7 @@ def test_unknown_words_are_answered_with_the_known_ones(cube):
                         (lambda: subvol.render(cube, backend="metal", method="splat"), "cpu"),
                         (lambda: subvol.render(cube, tf="virids"), "viridis"),
                         (lambda: subvol.fit("square"), "gaussian"),
-                        (lambda: subvol.render(cube, view="left"), "iso")]:
+                        (lambda: subvol.render(cube, view="sideways"), "iso")]:
         with pytest.raises(subvol.InvalidInput) as caught:
             call()
         assert words in str(caught.value)

@@ -7,7 +7,7 @@
 
 #include <filesystem>
 
-static_assert(SUBVOL_VERSION_MAJOR == 0 && SUBVOL_VERSION_MINOR == 1);
+static_assert(SUBVOL_VERSION_MAJOR == 0 && SUBVOL_VERSION_MINOR == 2);
 
 int main() {
     const subvol::HexMesh mesh = subvol::make_model("ball", 2);
