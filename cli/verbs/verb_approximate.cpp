@@ -52,9 +52,12 @@ public:
         options.names = OptionNames::Flags;
         options.progress = report.progress();
         report.if_long("--levels 1");
+        if (kind_of(onto_) == InputKind::Bricks) {
+            throw Error(ErrorCode::InvalidInput, "is a folder of bricks", onto_, "a mesh in one piece");
+        }
+        const HexMesh onto = report.unpack(load_mesh(onto_, CommonOptions{}, report.progress()));
         report["input"] = input_;
         report["onto"] = onto_;
-        const HexMesh onto = report.unpack(load_mesh(onto_, CommonOptions{}, report.progress()));
         const HexMesh samples = read_data(onto, options, report);
         const Approximation made = report.timed("fit", [&] { return approximate(onto, samples, options); });
         for (const std::string& warning : report.timed("write", [&] { return write_mesh(output_, made.mesh, {}); })) {
@@ -65,12 +68,23 @@ public:
     }
 
 private:
-    [[nodiscard]] HexMesh read_data(const HexMesh& onto, const ApproximateOptions& options, Report& report) const {
+    [[nodiscard]] HexMesh read_data(const HexMesh& onto, const ApproximateOptions& options, Report& report) {
         const std::string extension = extension_of(input_);
-        if (extension == ".csv" || extension == ".txt") return report.timed("read", [&] { return read_samples(input_); });
-        if (!is_vdb_file(input_)) {
-            return with_written_field(report.unpack(load_mesh(input_, common(), report.progress())), common());
+        if (extension == ".csv" || extension == ".txt") {
+            refuse_mesh_options(app(), "needs a mesh; this is a table");
+            refuse_options(app(), {"--field"}, "needs a mesh or a grid; of a table all columns are taken");
+            return report.timed("read", [&] { return read_samples(input_); });
         }
+        if (is_vdb_file(input_)) return read_grid(onto, options, report);
+        if (const InputKind kind = kind_of(input_); kind == InputKind::Points || kind == InputKind::Bricks) {
+            throw Error(ErrorCode::InvalidInput, kind == InputKind::Points ? "has kernels" : "is a folder of bricks", input_,
+                        "a mesh, a .vdb grid of floats, or a table (.csv, .txt)");
+        }
+        return with_written_field(report.unpack(load_mesh(input_, common(), report.progress())), common());
+    }
+
+    [[nodiscard]] HexMesh read_grid(const HexMesh& onto, const ApproximateOptions& options, Report& report) {
+        refuse_mesh_options(app(), "needs a mesh; this is a grid of voxels");
         const VdbGrid grid = report.unpack(load_grid(input_, common(), report.progress()));
         HexMesh samples;
         Attribute field{.name = grid.report().name, .channels = 1, .values = {}};

@@ -42,9 +42,14 @@ class Approximate(InFolder):
 
     def test_says_what_is_wrong(self):
         (self.folder / "holes.csv").write_text("x,y,z,T\n0,0,0,1\n0,0,1,\n")
+        (self.folder / "T.csv").write_text("x,y,z,T\n0,0,0,1\n")
+        self.run_ok("points", "model:ball:2", "-o", "a.ply")
         (self.folder / "places.csv").write_text("x,y,z\n0,0,0\n")
         for words, part in ((["holes.csv"], "holes.csv:3: column 4 has no number here"), (["places.csv"], "places.csv: has no column of values"),
-                            (["none.csv"], "none.csv"), (["model:ball", "--tolerance", ".1"], "--tolerance: has no effect without --refine")):
+                            (["none.csv"], "none.csv"), (["T.csv", "--only", "box:0,0,0,1,1,1"], "--only: needs a mesh; this is a table"),
+                            (["T.csv", "--field", "T"], "--field: needs a mesh or a grid"), (["a.ply"], "a.ply: has kernels"),
+                            (["model:ball", "--warp", "density"], "model:ball: --warp"),
+                            (["model:ball", "--tolerance", ".1"], "--tolerance: has no effect without --refine")):
             done = subvol("approximate", *words, "--onto", "model:ball:2", "-o", "fitted.vtu", folder=self.folder)
             self.assertEqual(done.code, 2, done.err)
             self.assertIn(part, done.err)
