@@ -27,9 +27,9 @@ void Measurer::add_histograms(std::vector<PartMeasure>& found) {
         return;
     }
     // Few cells are refined more often, so that each interval has enough Gauss points.
-    constexpr std::size_t kEnough = 16384;  // pieces
+    constexpr std::size_t kEnoughPieces = 16384;  // pieces
     int level = 1;
-    while (level < 4 && cells_.size() << 3 * level <= kEnough) ++level;
+    while (level < 4 && cells_.size() << 3 * level <= kEnoughPieces) ++level;
     // Volumes are counted in a unit, as sums of whole numbers are the same in any order.
     const double unit = std::ldexp(std::max(std::abs(found[0].volume), box_volume()), -kUnitBits);
     using Counts = std::vector<std::int64_t>;

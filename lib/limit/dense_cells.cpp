@@ -146,7 +146,7 @@ void for_each_dense_cell(const HexMesh& mesh, const RefineOptions& options,
 void for_each_dense_cell(const HexMesh& mesh, const RefineOptions& options, const DenseSelection& selection,
                          const std::function<void(const DenseCell&)>& visit) {
     const DenseCells dense(mesh, options, selection.on_limit);
-    dense.for_each(selection.cells ? *selection.cells : all_cells(mesh), visit);
+    dense.for_each(selection.cells ? *selection.cells : detail::all_cells(mesh), visit);
 }
 
 }  // namespace subvol
