@@ -241,8 +241,11 @@ class InWindow(InSession):
         self.by_hand("""
             xdotool mousemove 570 290 sleep .3 click --repeat 4 --delay 100 4 sleep .5
             save near.json
-            xdotool click 1 sleep .1 click 1 sleep 2
-            save middle.json
+            for i in $(seq 20); do  # until the picture is there that has the place
+                xdotool click 1 sleep .1 click 1 sleep 1
+                save middle.json
+                cmp -s near.json middle.json || break
+            done
             xdotool key Return sleep .5
             save fit.json
             shot middle
