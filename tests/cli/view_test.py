@@ -90,11 +90,21 @@ class WithoutWindow(InSession):
         self.run_ok(*shlex.split(said["render"])[1:], "--quiet")  # of the mesh that was saved with the state
         self.assertEqual(self.bytes_of("view.png"), self.bytes_of("picture.png"), said["render"])
         self.assertIn("# without the edits", self.view(*edit)["render"])
-        (self.folder / "state.vtu").unlink()
-        self.run_ok("model", "ball", "--resolution", 4, "-o", "state.vtu")
+        (self.folder / "state.edits.vtu").unlink()
+        self.run_ok("model", "ball", "--resolution", 4, "-o", "state.edits.vtu")
         done = subvol("view", BALL, *SMALL, "--state", "state.json", "--screenshot", "no.png", folder=self.folder)
         self.assertEqual(done.code, 2, done.err)
-        self.assertIn("state.vtu", done.err)
+        self.assertIn("state.edits.vtu", done.err)
+
+    def test_a_state_does_not_replace_the_mesh(self):
+        for mesh, state in (("part.vtu", "part.json"), ("part.edits.vtu", "part.json")):
+            self.run_ok("model", "ball", "--resolution", 3, "-o", mesh)
+            before = self.bytes_of(mesh)
+            done = subvol("view", mesh, *SMALL, "--script", self.script({"select": "all"}, {"twist": {"angle": 40}}, {"save_state": state}),
+                          "--screenshot", "a.png", folder=self.folder)
+            self.assertEqual(done.code, 0 if mesh == "part.vtu" else 2, done.err)
+            self.assertEqual(self.bytes_of(mesh), before)
+        self.assertIn("part.edits.vtu", done.err)
 
     def test_regions_and_expressions_are_in_the_command(self):
         said = self.view({"field": "2*density"}, options=["--only", "half:0,0,0,1,0,0", "--look", "volume"])
@@ -297,6 +307,17 @@ class InWindow(InSession):
         self.assertEqual(axes["camera"], edited["camera"])  # the brush worked, and the camera stayed
         self.assertIn("mesh", edited)
         self.assertNotEqual(edited["camera"], turned["camera"])  # Escape has left the tool
+
+    @patiently
+    def test_edits_are_not_dropped_unasked(self):
+        self.by_hand("""
+            xdotool mousemove 400 300 key e sleep .5
+            drag 470 390 520 390
+            xdotool key q sleep 1
+            shot asked
+            save kept.json
+        """, [BALL, "--backend", "cpu"])
+        self.assertIn("mesh", self.state("kept.json"))
 
     @patiently
     def test_border_and_typed_planes(self):

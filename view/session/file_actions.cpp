@@ -99,13 +99,18 @@ void save_tf(Session& session, const Json& file) {
     write_text_file(path, color_map_json(optics.function(), path.stem().string()));
 }
 
-/// An edited mesh is saved beside the state, under its name.
+/// An edited mesh is saved beside the state, as NAME.edits.vtu: NAME.vtu may be the mesh that it was made of.
 void save_state(Session& session, const Json& file) {
     const std::filesystem::path path = word(file);
     Json json = json_of(session.state);
     if (session.edited) {
         std::filesystem::path mesh = path;
-        mesh.replace_extension(".vtu");
+        mesh.replace_extension(".edits.vtu");
+        std::error_code ignored;
+        if (std::filesystem::equivalent(mesh, session.source.input, ignored)) {
+            throw Error(ErrorCode::InvalidInput, "is the mesh that is shown, which the edits would replace", mesh.string(),
+                        "another name for the state");
+        }
         run_part(session, "save_mesh", mesh.string());
         json["mesh"] = mesh.filename().string();
     }

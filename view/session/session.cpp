@@ -427,13 +427,17 @@ std::string ViewSession::state_json() const {
     return json_of(state_->state).dump(2) + "\n";
 }
 
+const ViewBody* ViewSession::unsaved_edits() const {
+    const auto& saved = state_->saved_edit;
+    return !state_->edited || (saved && saved->body == state_->body) ? nullptr : state_->body.get();
+}
+
 std::string ViewSession::render_command() const {
     const ViewSource& source = state_->source;
-    const auto& saved = state_->saved_edit;
     if (!state_->edited) return detail::render_command(state_->state, *state_->body, source, source.read_words);
-    if (saved && saved->body == state_->body) {
+    if (unsaved_edits() == nullptr) {
         ViewSource of_file = source;
-        of_file.input = saved->file;
+        of_file.input = state_->saved_edit->file;
         of_file.times = {0.0};
         return detail::render_command(state_->state, *state_->body, of_file, {});
     }

@@ -96,7 +96,7 @@ void take_letter(WindowHost& host, WindowMemory& memory, unsigned letter) {
             host.look().help = !host.look().help;
             break;
         case 'q':
-            memory.quit = true;
+            memory.quit = may_drop_edits(host, memory);
             break;
         case '+':
         case '=':
@@ -205,6 +205,14 @@ void take_key(WindowHost& host, WindowMemory& memory, unsigned character, int ke
     } else {
         run(host, memory, "orbit", json_text(5.0 * right, 5.0 * up));
     }
+}
+
+bool may_drop_edits(const WindowHost& host, WindowMemory& memory) {
+    const std::uintptr_t edits = host.unsaved_edits();
+    if (edits == 0 || edits == memory.asked_about) return true;
+    memory.asked_about = edits;
+    memory.problem = "the edits of the mesh are not saved: ctrl + s saves them with the state; once more drops them";
+    return false;
 }
 
 void leave(WindowHost& host, WindowMemory& memory) {

@@ -207,7 +207,7 @@ void draw_input(WindowHost& host, WindowMemory& memory) {
     ImGui::SetNextItemWidth(label);
     again |= input_line("warp", "DISPL*20", memory.warp);
     tip(memory, "a displacement as of --warp; Enter reads the file again");
-    if (!again) return;
+    if (!again || !may_drop_edits(host, memory)) return;
     OpenedFile next{.name = now.name};
     for (std::size_t from = 0; from < memory.only.size();) {
         const std::size_t to = std::min(memory.only.find(';', from), memory.only.size());

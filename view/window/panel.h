@@ -41,10 +41,11 @@ struct WindowMemory {
     bool works = false, rectangle = false;  // what a drag with a tool is
     std::array<float, 2> corner{};          // where it began
     bool quit = false;
-    std::string section{};      // that was open in the last frame
-    bool holds_border = false;  // between the pictures that are compared
-    bool asks_menu = false;     // the menu of the picture is to open
-    bool close_popup = false;   // menus and lists close in the next frame
+    std::uintptr_t asked_about = 0;  // edits that the next attempt drops
+    std::string section{};           // that was open in the last frame
+    bool holds_border = false;       // between the pictures that are compared
+    bool asks_menu = false;          // the menu of the picture is to open
+    bool close_popup = false;        // menus and lists close in the next frame
     bool shows_notes = false;
     std::string tip{};  // the tooltip that is about to show, and since when
     double tip_since = 0;
@@ -64,6 +65,9 @@ void run_and_tell(WindowHost& host, WindowMemory& memory, const std::string& nam
 
 /// A tooltip of the last item, once the pointer rests on it. key: that does the same; null: none
 void tip(WindowMemory& memory, const char* text, const char* key = nullptr);
+
+/// Whether what is shown may go. Of edits that are in no file the first attempt says so, and the second drops them.
+[[nodiscard]] bool may_drop_edits(const WindowHost& host, WindowMemory& memory);
 
 /// Leaves what is open or chosen, the topmost first: a dialog, a list, a tool, what plays, what is at work.
 void leave(WindowHost& host, WindowMemory& memory);

@@ -74,6 +74,7 @@ void draw_entries(WindowHost& host, WindowMemory& memory) {
 
 void open_path(WindowHost& host, WindowMemory& memory, const std::string& path) {
     memory.problem.clear();
+    if (!may_drop_edits(host, memory)) return;
     if (lower(path).ends_with(".json")) {
         run_and_tell(host, memory, "load_state", json_text(path), "read " + path);
     } else {

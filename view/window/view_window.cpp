@@ -104,6 +104,9 @@ public:
 
     [[nodiscard]] bool has_session() const override { return session_ != nullptr; }
     [[nodiscard]] const OpenedFile& opened() const override { return opened_; }
+    [[nodiscard]] std::uintptr_t unsaved_edits() const override {
+        return session_ ? reinterpret_cast<std::uintptr_t>(session_->unsaved_edits()) : 0;
+    }
 
     void open(const OpenedFile& file) override {
         if (!options_.open) return;
@@ -213,11 +216,7 @@ public:
 
     [[nodiscard]] std::vector<std::string> fields() const override { return session_->fields(); }
     [[nodiscard]] std::vector<std::string> methods() const override { return session_->methods(); }
-    [[nodiscard]] std::vector<std::string> maps() const override {
-        LookChoices any;
-        const auto options = options_of(any);
-        return std::ranges::find(options, "tf", &Option::name)->words;
-    }
+    [[nodiscard]] std::vector<std::string> maps() const override { return transfer_function_names(); }
     [[nodiscard]] const std::vector<double>& times() const override { return session_->source().times; }
     [[nodiscard]] ValueRange field_range() const override { return session_->body().range; }
     [[nodiscard]] ValueRange shown_range() const override {

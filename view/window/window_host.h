@@ -45,6 +45,8 @@ public:
     [[nodiscard]] virtual bool has_session() const = 0;
     /// What is shown, as it was opened.
     [[nodiscard]] virtual const OpenedFile& opened() const = 0;
+    /// Edits of the mesh that are in no file, one after another by another number; 0: there are none.
+    [[nodiscard]] virtual std::uintptr_t unsaved_edits() const = 0;
     /// Begins to read a file, which then takes the place of what is shown.
     virtual void open(const OpenedFile& file) = 0;
     /// Gives up reading a file, or drawing.

@@ -327,8 +327,16 @@ void save(Window& self) {
     self.host.save_window(width, height, pixels);
 }
 
+bool is_closing(Window& self) {
+    if (glfwWindowShouldClose(self.window) != 0) {
+        self.memory.quit = may_drop_edits(self.host, self.memory);
+        glfwSetWindowShouldClose(self.window, GLFW_FALSE);
+    }
+    return self.memory.quit;
+}
+
 void loop(Window& self) {
-    while (glfwWindowShouldClose(self.window) == 0 && !self.memory.quit) {
+    while (!is_closing(self)) {
         glfwWaitEventsTimeout(self.host.busy() || self.settled < kSettled ? kBusy_s : kIdle_s);
         const bool ended = self.settled >= kSettled && self.host.play_script();
         draw_frame(self);

@@ -150,6 +150,9 @@ public:
     /// Where the planes that cut can be taken hold of.
     [[nodiscard]] std::vector<detail::CutHandle> cut_handles() const;
 
+    /// The body with edits of the mesh that are in no file; null: there are none.
+    [[nodiscard]] const ViewBody* unsaved_edits() const;
+
     /// Shows the same as another session, as far as the mesh has it.
     void take_state(const ViewSession& other);
 
