@@ -201,7 +201,7 @@ PageJson json_of(const TransferFunction& function) {
 /// The colours that a reader of the page can choose from, over [0,1].
 PageJson presets() {
     PageJson json;
-    for (const char* name : {"viridis", "plasma", "inferno", "cividis", "turbo", "coolwarm", "grey", "bone"}) {
+    for (const std::string& name : color_map_names()) {
         json[name] = json_of(transfer_function_preset(name, 0, 1))["color"];
     }
     return json;

@@ -34,7 +34,7 @@ double unscaled(const ColorScale& scale, double s) {
 void check_range(const ColorScale& scale, double min) {
     if (!scale.logarithmic || min > 0) return;
     throw Error(ErrorCode::InvalidInput, "a logarithmic scale needs values above 0; the range begins at " + number_text(min),
-                "transfer function", "a range above 0, or a scale that is logarithmic on both sides of 0");
+                scale.where, "a range above 0, or a scale that is logarithmic on both sides of 0");
 }
 
 /// Knots spread over the range of their values, with new ones between them where the scale bends.

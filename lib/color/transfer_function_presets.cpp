@@ -109,8 +109,6 @@ constexpr std::array<int, 10> kCategories{0x1f77b4, 0xff7f0e, 0x2ca02c, 0xd62728
                                           0x8c564b, 0xe377c2, 0x7f7f7f, 0xbcbd22, 0x17becf};
 constexpr double kMostCategories = 1000;
 
-const std::vector<std::string> kPresets{"viridis", "plasma", "inferno",    "cividis", "turbo",    "coolwarm",  "grey",
-                                        "bone",    "xray",   "isosurface", "surface", "constant", "categories"};
 // What ParaView calls these maps, in small letters.
 struct Alias {
     std::string_view name, preset;
@@ -224,7 +222,56 @@ TransferFunction categories(KnotRange range) {
     return function;
 }
 
+/// sequence: of colours alone, with the usual opacity
+struct Preset {
+    std::string_view name;
+    bool sequence;
+    TransferFunction (*make)(KnotRange);
+};
+
+template <const auto& kStops, ColorSpace kSpace>
+TransferFunction through(KnotRange range) {
+    return ramp(spread(kStops, kSpace, range), range);
+}
+
+template <const Polynomials& kCurves>
+TransferFunction along(KnotRange range) {
+    return ramp(sampled(kCurves, range), range);
+}
+
+constexpr std::array<Preset, 17> kPresets{{{"viridis", true, [](KnotRange range) { return ramp(viridis(range), range); }},
+                                           {"plasma", true, along<kPlasma>},
+                                           {"inferno", true, along<kInferno>},
+                                           {"cividis", true, along<kCividis>},
+                                           {"turbo", true, along<kTurbo>},
+                                           {"coolwarm", true, through<kCoolwarm, ColorSpace::Diverging>},
+                                           {"grey", true, through<kGrey, ColorSpace::Rgb>},
+                                           {"bone", true, through<kBone, ColorSpace::Rgb>},
+                                           {"jet", true, through<kJet, ColorSpace::Rgb>},
+                                           {"rainbow", true, through<kRainbow, ColorSpace::Hsv>},
+                                           {"desaturated", true, through<kDesaturated, ColorSpace::Rgb>},
+                                           {"blackbody", true, through<kBlackBody, ColorSpace::Rgb>},
+                                           {"xray", false, through<kXray, ColorSpace::Rgb>},
+                                           {"isosurface", false, isosurfaces},
+                                           {"surface", false, surface},
+                                           {"constant", false, constant},
+                                           {"categories", false, categories}}};
+
 }  // namespace
+
+std::vector<std::string> color_map_names() {
+    std::vector<std::string> names;
+    for (const Preset& preset : kPresets) {
+        if (preset.sequence) names.emplace_back(preset.name);
+    }
+    return names;
+}
+
+std::vector<std::string> transfer_function_names() {
+    std::vector<std::string> names;
+    for (const Preset& preset : kPresets) names.emplace_back(preset.name);
+    return names;
+}
 
 TransferFunction transfer_function_preset(const std::string& given, double min, double max) {
     const KnotRange range = usable_range(min, max);
@@ -233,27 +280,13 @@ TransferFunction transfer_function_preset(const std::string& given, double min, 
                            [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
     const auto alias = std::ranges::find(kAliases, name, &Alias::name);
     if (alias != kAliases.end()) name = alias->preset;
-    if (name == "viridis") return ramp(viridis(range), range);
-    if (name == "plasma") return ramp(sampled(kPlasma, range), range);
-    if (name == "inferno") return ramp(sampled(kInferno, range), range);
-    if (name == "cividis") return ramp(sampled(kCividis, range), range);
-    if (name == "turbo") return ramp(sampled(kTurbo, range), range);
-    if (name == "coolwarm") return ramp(spread(kCoolwarm, ColorSpace::Diverging, range), range);
-    if (name == "grey") return ramp(spread(kGrey, ColorSpace::Rgb, range), range);
-    if (name == "bone") return ramp(spread(kBone, ColorSpace::Rgb, range), range);
-    if (name == "xray") return ramp(spread(kXray, ColorSpace::Rgb, range), range);
-    if (name == "isosurface") return isosurfaces(range);
-    if (name == "surface") return surface(range);
-    if (name == "constant") return constant(range);
-    if (name == "categories") return categories(range);
-    if (name == "jet") return ramp(spread(kJet, ColorSpace::Rgb, range), range);
-    if (name == "rainbow") return ramp(spread(kRainbow, ColorSpace::Hsv, range), range);
-    if (name == "desaturated") return ramp(spread(kDesaturated, ColorSpace::Rgb, range), range);
-    if (name == "blackbody") return ramp(spread(kBlackBody, ColorSpace::Rgb, range), range);
+    const auto preset = std::ranges::find(kPresets, name, &Preset::name);
+    if (preset != kPresets.end()) return preset->make(range);
+    const std::vector<std::string> names = transfer_function_names();
     std::string list;
-    for (const std::string& preset : kPresets) list += (list.empty() ? "" : ", ") + preset;
-    throw Error(ErrorCode::InvalidInput,
-                "there is no transfer function '" + given + "'" + detail::did_you_mean(given, kPresets), {}, list);
+    for (const std::string& known : names) list += (list.empty() ? "" : ", ") + known;
+    throw Error(ErrorCode::InvalidInput, "there is no transfer function '" + given + "'" + detail::did_you_mean(given, names),
+                {}, list);
 }
 
 }  // namespace subvol

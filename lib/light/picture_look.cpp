@@ -103,8 +103,7 @@ std::vector<Option> options_of(LookChoices& choices) {
                 "over the range, black behind; otherwise the default), xray (on white) or isosurface "
                 "(five lit surfaces)"),
         Option("tf", choices.colors)
-            .offer({"viridis", "plasma", "inferno", "cividis", "turbo", "coolwarm", "grey", "bone", "xray", "isosurface",
-                    "surface", "constant", "categories", "jet", "rainbow", "desaturated", "blackbody"})
+            .offer(transfer_function_names())
             .help(
                 "FILE|NAME",
                 "colour map over the field's range: viridis (default), plasma, inferno, cividis, turbo, coolwarm, jet, "
@@ -150,8 +149,9 @@ std::vector<Option> options_of(LookChoices& choices) {
 }
 
 ColorShape color_shape(const LookChoices& choices, OptionNames names) {
-    ColorShape shape{.scale = {.logarithmic = choices.log, .linear_within = choices.symlog.value_or(0)},
-                     .bands = choices.bands.value_or(0)};
+    ColorShape shape{
+        .scale = {.logarithmic = choices.log, .linear_within = choices.symlog.value_or(0), .where = option_name("log", names)},
+        .bands = choices.bands.value_or(0)};
     if (choices.below) shape.below = parse_color(*choices.below, option_name("below", names));
     if (choices.above) shape.above = parse_color(*choices.above, option_name("above", names));
     return shape;

@@ -137,8 +137,8 @@ def page(
     tf:          colour map over the field's range: viridis (default), plasma, inferno, cividis, turbo, coolwarm, jet,
                  rainbow, desaturated, blackbody, grey, bone, xray, isosurface, surface, constant or categories (integers);
                  or a ParaView colour-map JSON file (FILE.json:NAME for one of several in it) [viridis, plasma, inferno,
-                 cividis, turbo, coolwarm, grey, bone, xray, isosurface, surface, constant, categories, jet, rainbow,
-                 desaturated, blackbody]
+                 cividis, turbo, coolwarm, grey, bone, jet, rainbow, desaturated, blackbody, xray, isosurface, surface,
+                 constant, categories]
     opacity_unit: the world distance over which an opacity acts (default: 1/100 of the bounding box's diagonal) [more than
                  0]
     clamp:       show values beyond the field's range, where interpolating schemes overshoot, as its ends
@@ -344,8 +344,8 @@ def render(
     tf:          colour map over the field's range: viridis (default), plasma, inferno, cividis, turbo, coolwarm, jet,
                  rainbow, desaturated, blackbody, grey, bone, xray, isosurface, surface, constant or categories (integers);
                  or a ParaView colour-map JSON file (FILE.json:NAME for one of several in it) [viridis, plasma, inferno,
-                 cividis, turbo, coolwarm, grey, bone, xray, isosurface, surface, constant, categories, jet, rainbow,
-                 desaturated, blackbody]
+                 cividis, turbo, coolwarm, grey, bone, jet, rainbow, desaturated, blackbody, xray, isosurface, surface,
+                 constant, categories]
     opacity_unit: the world distance over which an opacity acts (default: 1/100 of the bounding box's diagonal) [more than
                  0]
     clamp:       show values beyond the field's range, where interpolating schemes overshoot, as its ends

@@ -339,7 +339,7 @@ class Looks(Pictures):
         self.assertEqual((plain.code, logarithmic.code), (0, 0), logarithmic.err)
         self.assertIn(">0.1<", (self.folder / "l.svg").read_text())
         self.assertNotEqual(self.bytes_of("p.png"), self.bytes_of("l.png"))
-        for wrong, words in (["--log", "--range=-1,1"], "above 0"), (["--log", "--symlog", "1"], "symlog"), (["--bands", "0"], "--bands"), (["--below", "rose"], "--below"):
+        for wrong, words in (["--log", "--range=-1,1"], "--log: a logarithmic scale needs values above 0"), (["--log", "--symlog", "1"], "symlog"), (["--bands", "0"], "--bands"), (["--below", "rose"], "--below"):
             done = self.render("-o", "x.png", *wrong)
             self.assertEqual((done.code, words in done.err), (2, True), done.err)
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 
 #include "subvol/transfer_function.h"
 
@@ -11,9 +12,11 @@ namespace subvol {
 ///
 /// logarithmic: equal ratios of values get equal parts of the map; of a range that is not above 0, linear
 /// linear_within: symmetrically logarithmic: by sign(v) ln(1 + |v|/C), with C = linear_within > 0; 0: not
+/// where:       is named in errors
 struct ColorScale {
     bool logarithmic = false;
     double linear_within = 0;
+    std::string where = "transfer function";
 
     [[nodiscard]] bool linear() const { return !logarithmic && !(linear_within > 0); }
     /// The part of the range [min, max] at which a value lies, 0 to 1 inside.

@@ -48,6 +48,10 @@ struct TransferFunction {
 /// throws:   Error(InvalidInput) for an unknown name (lists those that exist), or if the range is not finite or min > max
 [[nodiscard]] TransferFunction transfer_function_preset(const std::string& name, double min, double max);
 
+/// The names of all presets, and of those that are sequences of colours with the usual opacity.
+[[nodiscard]] std::vector<std::string> transfer_function_names();
+[[nodiscard]] std::vector<std::string> color_map_names();
+
 /// Reads ParaView's colour-map JSON: an array of maps with RGBPoints (sRGB), ColorSpace (RGB, HSV, Lab, Lab/CIELAB, Diverging,
 /// Step; RGB if it is missing) and Points (opacity; x, alpha, midpoint, sharpness). Both curves are VTK's, resampled to knots
 /// that are right to 1/512. Two knots with the same value are a jump. Without Points the opacity ramps from 0 to .5. The knots
