@@ -107,12 +107,7 @@ private:
 
     void put(const Approximation& made, Report& report) const {
         const ApproximateReport& found = made.report;
-        report["samples"] = found.samples;
-        report["outside"] = found.outside;
-        report["snapped"] = found.snapped;
-        report["unseen"] = found.unseen;
-        report["iterations"] = found.iterations;
-        report["refined"] = found.refined;
+        report.merge(facts_of(found));
         report["points"] = made.mesh.points.size();
         report["cells"] = made.mesh.cells.size();
         report["output"] = output_;
@@ -123,18 +118,11 @@ private:
             text("control     ", counted(made.mesh.points.size(), "point"),
                  found.refined > 0 ? text(", refined ", counted(static_cast<std::size_t>(found.refined), "time")) : "",
                  found.unseen > 0 ? text("; ", found.unseen, " without a sample near them continue what is around them") : ""));
-        Json fields = Json::object();
         for (const FieldError& error : found.fields) {
-            fields[error.name] = Json{{"rms", error.rms},
-                                      {"rms_boundary", error.rms_boundary},
-                                      {"max", error.max},
-                                      {"max_at", {error.max_at.x, error.max_at.y, error.max_at.z}},
-                                      {"range", error.range}};
             report.say(text(error.name, ": error ", error.rms, " RMS, at the boundary ", error.rms_boundary, ", at most ",
                             error.max, " at ", error.max_at.x, ", ", error.max_at.y, ", ", error.max_at.z,
                             "; the data's range is ", error.range));
         }
-        report["fields"] = std::move(fields);
         report.all_said();
     }
 

@@ -2,6 +2,7 @@
 #include "subvol/approximate.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 
@@ -337,6 +338,26 @@ std::vector<Option> options_of(ApproximateOptions& options) {
                 .between(0, 1)
                 .only_with("refine")
                 .help("T", "an error that is good enough, as a part of the range")};
+}
+
+Facts facts_of(const ApproximateReport& report) {
+    Facts facts;
+    facts["samples"] = report.samples;
+    facts["outside"] = report.outside;
+    facts["snapped"] = report.snapped;
+    facts["unseen"] = report.unseen;
+    facts["iterations"] = report.iterations;
+    facts["refined"] = report.refined;
+    Facts& fields = facts.group("fields");
+    for (const FieldError& error : report.fields) {
+        Facts& field = fields.group(error.name);
+        field["rms"] = error.rms;
+        field["rms_boundary"] = error.rms_boundary;
+        field["max"] = error.max;
+        field["max_at"] = std::array{error.max_at.x, error.max_at.y, error.max_at.z};
+        field["range"] = error.range;
+    }
+    return facts;
 }
 
 Approximation approximate(const HexMesh& onto, const HexMesh& samples, const ApproximateOptions& given) {

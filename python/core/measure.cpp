@@ -309,24 +309,7 @@ py::tuple approximate_of(const HexMesh& onto, const py::object& points, const py
         options.progress = listener;
         return approximate(onto, samples, options);
     });
-    py::dict report, fields;
-    for (const FieldError& error : made.report.fields) {
-        py::dict field;
-        field["rms"] = error.rms;
-        field["rms_boundary"] = error.rms_boundary;
-        field["max"] = error.max;
-        field["max_at"] = py::make_tuple(error.max_at.x, error.max_at.y, error.max_at.z);
-        field["range"] = error.range;
-        fields[py::str(error.name)] = field;
-    }
-    report["samples"] = made.report.samples;
-    report["outside"] = made.report.outside;
-    report["snapped"] = made.report.snapped;
-    report["unseen"] = made.report.unseen;
-    report["iterations"] = made.report.iterations;
-    report["refined"] = made.report.refined;
-    report["fields"] = fields;
-    return py::make_tuple(std::move(made.mesh), report);
+    return py::make_tuple(std::move(made.mesh), dict_of(facts_of(made.report)));
 }
 
 void bind_measure(py::module_& module) {

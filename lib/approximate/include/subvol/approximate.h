@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "subvol/facts.h"
 #include "subvol/hex_mesh.h"
 #include "subvol/limit.h"
 #include "subvol/option.h"
@@ -55,6 +56,9 @@ struct ApproximateReport {
     int iterations = 0, refined = 0;
     std::vector<FieldError> fields;
 };
+
+/// The report under its members' names; "fields" is a group with a group for each field.
+[[nodiscard]] Facts facts_of(const ApproximateReport& report);
 
 /// mesh: the control mesh with the fitted fields as its attributes
 struct Approximation {
