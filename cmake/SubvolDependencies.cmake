@@ -34,7 +34,11 @@ if(SUBVOL_VDB AND NOT TARGET OpenVDB::openvdb) # found once for all folders of a
 endif()
 
 if(SUBVOL_RENDER)
-  find_package(embree 3.13 CONFIG REQUIRED)
+  find_package(embree CONFIG REQUIRED) # 3.13 or 4: a version here would mean that major version alone
+  if(embree_VERSION VERSION_LESS 3.13)
+    message(FATAL_ERROR "Embree 3.13 or later is needed; found ${embree_VERSION}")
+  endif()
+  target_compile_definitions(embree INTERFACE SUBVOL_EMBREE_MAJOR=${embree_VERSION_MAJOR}) # both versions' headers may be there
   pkg_check_modules(epoxy REQUIRED IMPORTED_TARGET epoxy)
 endif()
 

@@ -28,7 +28,7 @@ constexpr double kMargin = 1e-5;  // around a box, for single precision
 
 // Embree passes a pointer to the context to the callback: what follows it in memory comes along.
 struct Query {
-    RTCIntersectContext context;
+    EmbreeContext context;
     std::vector<std::uint32_t>* parts;
 };
 
@@ -161,8 +161,7 @@ void DenseScene::find_met(const Ray& ray, std::vector<std::uint32_t>& parts) con
     auto query = embree_line(ray, center_, scale_);
     if (!query) return;
     Query context{{}, &parts};
-    rtcInitIntersectContext(&context.context);
-    rtcIntersect1(embree_->scene, &context.context, &*query);
+    intersect(embree_->scene, context.context, *query);
 }
 
 void DenseTracer::find_ends(const RayPlane& plane, const Ray& ray) {

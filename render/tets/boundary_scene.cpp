@@ -9,7 +9,7 @@ namespace {
 
 // Embree passes a pointer to the context to the filter: what follows it in memory comes along.
 struct Query {
-    RTCIntersectContext context;
+    EmbreeContext context;
     std::span<const TetFace> boundary;
     std::vector<TetFace>* faces;
 };
@@ -88,8 +88,7 @@ void BoundaryScene::find_crossed(const Ray& ray, std::vector<TetFace>& faces) co
     auto query = embree_line(ray, center_, scale_);
     if (!query) return;
     Query context{{}, boundary_, &faces};
-    rtcInitIntersectContext(&context.context);
-    rtcIntersect1(embree_->scene, &context.context, &*query);
+    intersect(embree_->scene, context.context, *query);
 }
 
 }  // namespace subvol::detail

@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#if SUBVOL_EMBREE_MAJOR >= 4
+#include <embree4/rtcore.h>
+#else
 #include <embree3/rtcore.h>
+#endif
 
 #include <optional>
 #include <string>
@@ -18,6 +22,26 @@ inline void check_embree(RTCDevice device) {
     throw Error(ErrorCode::MissingCapability, error == RTC_ERROR_OUT_OF_MEMORY
                                                   ? "Embree has not enough memory"
                                                   : "Embree failed with error " + std::to_string(static_cast<int>(error)));
+}
+
+#if SUBVOL_EMBREE_MAJOR >= 4
+using EmbreeContext = RTCRayQueryContext;
+#else
+using EmbreeContext = RTCIntersectContext;
+#endif
+
+/// Calls the functions of the scene's geometry for the line of `query`, with `context`.
+inline void intersect(RTCScene scene, EmbreeContext& context, RTCRayHit& query) {
+#if SUBVOL_EMBREE_MAJOR >= 4
+    rtcInitRayQueryContext(&context);
+    RTCIntersectArguments arguments;
+    rtcInitIntersectArguments(&arguments);
+    arguments.context = &context;
+    rtcIntersect1(scene, &query, &arguments);
+#else
+    rtcInitIntersectContext(&context);
+    rtcIntersect1(scene, &context, &query);
+#endif
 }
 
 /// A query along the whole line of a ray, for a scene that was translated by −center and scaled into the ball of radius 1;
