@@ -93,6 +93,7 @@
 #include "subvol/view_options.h"
 #include "subvol/visible_points.h"
 #include "subvol/voxels.h"
+#include "subvol/vtk_grid.h"
 #include "subvol/warp.h"
 #include "subvol/wavelet.h"
 #include "subvol/wavelet_file.h"

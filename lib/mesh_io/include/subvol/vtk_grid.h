@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "subvol/read_options.h"
+#include "subvol/vec.h"
+
+namespace subvol {
+
+/// An array of a VTK grid. values: `components` for each point or cell
+struct VtkGridArray {
+    std::string name;
+    int components = 1;
+    bool at_cells = false;
+    std::vector<double> values;
+};
+
+/// An unstructured grid as VTK has it in memory.
+///
+/// types:        VTK's number for the type of each cell
+/// ends:         of each cell in `connectivity`
+/// connectivity: the points of the cells, one cell after the other
+/// faces:        of polyhedra, VTK's list: how many faces, then for each its number of points and the points; for each cell all
+///               its faces, one cell after the other
+/// face_ends:    of each cell in `faces`, that of the cell before for cells of other types; empty if there are no polyhedra
+struct VtkUnstructuredGrid {
+    std::vector<Vec3> points;
+    std::vector<std::uint8_t> types;
+    std::vector<std::int64_t> ends, connectivity;
+    std::vector<std::int64_t> faces{}, face_ends{};
+    std::vector<VtkGridArray> arrays{};
+};
+
+/// The mesh that `read_mesh` makes of a `.vtu` file with this grid: tetrahedra, prisms, pyramids and polyhedra are split,
+/// curved cells followed, ghost cells dropped, values at cells moved to the points.
+///
+/// throws: Error(InvalidInput) as `read_mesh`, or if the sizes of the arrays contradict each other or a point is not there
+[[nodiscard]] ReadResult mesh_of_vtk(VtkUnstructuredGrid grid, const ReadOptions& options = {});
+
+}  // namespace subvol

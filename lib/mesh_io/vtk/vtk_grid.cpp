@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "subvol/vtk_grid.h"
+
+#include <algorithm>
+#include <span>
+#include <utility>
+
+#include "assemble.h"
+#include "subvol/detail/printable.h"
+#include "subvol/error.h"
+#include "text_scanner.h"
+#include "vtk_cells.h"
+
+namespace subvol {
+
+using namespace detail;
+
+namespace {
+
+constexpr std::string_view kGridName = "VTK grid";  // in the place of a file's name, in messages
+
+[[noreturn]] void fail(const std::string& what, std::string allowed = {}) {
+    throw Error(ErrorCode::InvalidInput, what, std::string(kGridName), std::move(allowed));
+}
+
+/// Refuses ends that fall or leave the list that they belong to.
+void check_ends(const std::vector<std::int64_t>& ends, std::size_t cells, std::size_t list, const char* name) {
+    if (ends.size() != cells)
+        fail("there are " + std::to_string(ends.size()) + " " + name + " for " + std::to_string(cells) + " cells");
+    if (!std::ranges::is_sorted(ends) || (cells > 0 && (ends.front() < 0 || ends.back() != static_cast<std::int64_t>(list))))
+        fail(std::string("the ") + name + " do not divide the list of " + std::to_string(list) + " numbers",
+             "never falling, up to its end");
+}
+
+void check_arrays(const VtkUnstructuredGrid& grid) {
+    for (const VtkGridArray& array : grid.arrays) {
+        const std::size_t tuples = array.at_cells ? grid.types.size() : grid.points.size();
+        if (array.components < 1 || array.values.size() != tuples * static_cast<std::size_t>(array.components))
+            fail("array '" + printable(array.name) + "' has " + std::to_string(array.values.size()) + " values",
+                 std::to_string(std::max(array.components, 1)) + " for each of the " + std::to_string(tuples) +
+                     (array.at_cells ? " cells" : " points"));
+    }
+}
+
+void take_cells(const VtkUnstructuredGrid& grid, VtkCellSorter& sorter) {
+    const auto points = static_cast<std::int64_t>(grid.points.size());
+    const VtkFaces faces{.stream = grid.faces, .ends = grid.face_ends};
+    std::vector<Index> corners;
+    std::int64_t begin = 0;
+    for (std::size_t c = 0; c < grid.types.size(); begin = grid.ends[c++]) {
+        if (grid.types[c] == kVtkPolyhedron) {
+            auto of_cell = grid.face_ends.empty() ? std::nullopt : faces.of_cell(c, 0, grid.points.size());
+            if (!of_cell) fail(kVtkNames.cell(c) + ": its faces are not those of a polyhedron");
+            sorter.take_polyhedron(std::move(*of_cell));
+            continue;
+        }
+        corners.clear();
+        for (std::int64_t k = begin; k < grid.ends[c]; ++k) {
+            const std::int64_t corner = grid.connectivity[static_cast<std::size_t>(k)];
+            if (corner < 0 || corner >= points) {
+                fail(kVtkNames.cell(c) + ": there is no point with index " + std::to_string(corner),
+                     "there are " + std::to_string(points) + " points, counted from 0");
+            }
+            corners.push_back(static_cast<Index>(corner));
+        }
+        sorter.take(grid.types[c], corners, 0);
+    }
+}
+
+}  // namespace
+
+ReadResult mesh_of_vtk(VtkUnstructuredGrid grid, const ReadOptions& options) {
+    if (grid.points.size() >= kNone || grid.types.size() >= kNone) fail("too many points or cells");
+    check_ends(grid.ends, grid.types.size(), grid.connectivity.size(), "ends of cells");
+    if (!grid.face_ends.empty()) check_ends(grid.face_ends, grid.types.size(), grid.faces.size(), "ends of faces");
+    check_arrays(grid);
+    TextScanner nowhere({}, kGridName, TextScanner::Comments::None);
+    nowhere.name_no_place();
+    MeshFile found;
+    for (const Vec3& point : grid.points) add_point(found, point, 0);
+    VtkCellSorter sorter(nowhere, found, options);
+    take_cells(grid, sorter);
+    for (VtkGridArray& array : grid.arrays)
+        found.arrays.push_back({std::move(array.name), array.components, array.at_cells, std::move(array.values)});
+    sorter.report(kGridName);
+    return assemble(std::move(found), nowhere, kGridName, kVtkNames, options);
+}
+
+}  // namespace subvol

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "subvol/vtk_grid.h"
+
+#include <gmock/gmock.h>
+
+#include <string>
+#include <string_view>
+
+#include "lib/expect_error.h"
+#include "lib/temp_folder.h"
+#include "subvol/mesh_io.h"
+
+namespace subvol::test {
+
+namespace vtk_grid_test {
+
+class VtkGridInMemory : public TempFolder {};
+
+/// A hexahedron, a polyhedron of the same shape on it and a prism beside it, with a value at points and one at cells.
+VtkUnstructuredGrid three_cells() {
+    VtkUnstructuredGrid grid;
+    grid.types = {12, 42, 13};
+    grid.ends = {8, 16, 22};
+    for (int z = 0; z < 3; ++z) {
+        for (const Vec2 p : {Vec2(0, 0), Vec2(1, 0), Vec2(1, 1), Vec2(0, 1)}) grid.points.emplace_back(p.x, p.y, z);
+    }
+    grid.points.insert(grid.points.end(), {{2, 0.5, 0}, {2, 0.5, 1}});
+    grid.connectivity = {0, 1, 2, 3, 4, 5, 6, 7, 4, 5, 6, 7, 8, 9, 10, 11, 1, 12, 2, 5, 13, 6};
+    grid.faces = {6, 4, 4, 7, 6, 5, 4, 8, 9, 10, 11, 4, 4, 5, 9, 8, 4, 5, 6, 10, 9, 4, 6, 7, 11, 10, 4, 7, 4, 8, 11};
+    grid.face_ends = {0, 31, 31};
+    grid.arrays = {{"f", 1, false, {}}, {"c", 2, true, {1, 2, 3, 4, 5, 6}}};
+    for (const Vec3& p : grid.points) grid.arrays[0].values.push_back(p.x + 2 * p.z);
+    return grid;
+}
+
+template <class Numbers>
+std::string text_of(const Numbers& numbers) {
+    std::string text;
+    for (const auto number : numbers) text += std::to_string(number) + " ";
+    return text;
+}
+
+std::string vtu_of(const VtkUnstructuredGrid& grid) {
+    const auto array = [](const std::string& about, const std::string& numbers) {
+        return "<DataArray format=\"ascii\" " + about + ">" + numbers + "</DataArray>\n";
+    };
+    std::string points, of_points, of_cells;
+    for (const Vec3& p : grid.points) points += text_of(std::array{p.x, p.y, p.z});
+    for (const VtkGridArray& a : grid.arrays) {
+        (a.at_cells ? of_cells : of_points) +=
+            array("type=\"Float64\" Name=\"" + a.name + "\" NumberOfComponents=\"" + std::to_string(a.components) + "\"",
+                  text_of(a.values));
+    }
+    return "<VTKFile type=\"UnstructuredGrid\" version=\"2.2\"><UnstructuredGrid><Piece NumberOfPoints=\"" +
+           std::to_string(grid.points.size()) + "\" NumberOfCells=\"" + std::to_string(grid.types.size()) + "\"><Points>" +
+           array("type=\"Float64\" NumberOfComponents=\"3\"", points) + "</Points><Cells>" +
+           array("type=\"Int64\" Name=\"connectivity\"", text_of(grid.connectivity)) +
+           array("type=\"Int64\" Name=\"offsets\"", text_of(grid.ends)) +
+           array("type=\"UInt8\" Name=\"types\"", text_of(grid.types)) +
+           array("type=\"Int64\" Name=\"faces\"", text_of(grid.faces)) +
+           array("type=\"Int64\" Name=\"faceoffsets\"", text_of(grid.face_ends)) + "</Cells><PointData>" + of_points +
+           "</PointData><CellData>" + of_cells + "</CellData></Piece></UnstructuredGrid></VTKFile>";
+}
+
+TEST_F(VtkGridInMemory, IsTheMeshOfItsFile) {
+    const VtkUnstructuredGrid grid = three_cells();
+    const ReadResult in_memory = mesh_of_vtk(grid), read = read_mesh(write("a.vtu", vtu_of(grid)));
+    EXPECT_GT(in_memory.mesh.cells.size(), 2u + 6u);  // all were split, as there is a prism
+    EXPECT_EQ(in_memory.mesh.points, read.mesh.points);
+    EXPECT_EQ(in_memory.mesh.cells, read.mesh.cells);
+    EXPECT_EQ(in_memory.warnings, read.warnings);
+    ASSERT_EQ(in_memory.mesh.attributes.size(), 2u);
+    for (std::size_t a = 0; a < 2; ++a) {
+        EXPECT_EQ(in_memory.mesh.attributes[a].name, read.mesh.attributes[a].name);
+        EXPECT_EQ(in_memory.mesh.attributes[a].values, read.mesh.attributes[a].values);
+    }
+}
+
+TEST_F(VtkGridInMemory, RefusesArraysThatContradictEachOther) {
+    const auto refused = [](const std::string& part, const auto& spoil) {
+        VtkUnstructuredGrid grid = three_cells();
+        spoil(grid);
+        expect_error(ErrorCode::InvalidInput, part, [&] { (void)mesh_of_vtk(grid); });
+    };
+    refused("2 ends of cells for 3 cells", [](auto& grid) { grid.ends.pop_back(); });
+    refused("do not divide", [](auto& grid) { grid.ends = {8, 7, 22}; });
+    refused("do not divide", [](auto& grid) { grid.ends = {-8, 16, 22}; });
+    refused("do not divide", [](auto& grid) { grid.ends = {8, 16, 23}; });
+    refused("cell 2: there is no point with index 14", [](auto& grid) { grid.connectivity.back() = 14; });
+    refused("cell 0: there is no point with index -1", [](auto& grid) { grid.connectivity.front() = -1; });
+    refused("cell 1: its faces", [](auto& grid) { grid.faces[1] = 5; });
+    refused("cell 1: its faces", [](auto& grid) { grid.face_ends.clear(); });
+    refused("array 'c' has 5 values", [](auto& grid) { grid.arrays[1].values.pop_back(); });
+    refused("array 'f' has", [](auto& grid) { grid.arrays[0].components = 0; });
+    refused("VTK grid", [](auto& grid) { grid = {}; });
+}
+
+}  // namespace vtk_grid_test
+
+}  // namespace subvol::test
