@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "subvol/camera.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "camera_axes.h"
@@ -16,6 +19,7 @@
 #include "subvol/detail/printable.h"
 #include "subvol/detail/read_file.h"
 #include "subvol/error.h"
+#include "subvol/raster.h"
 
 namespace subvol {
 
@@ -143,8 +147,37 @@ Vec2 View::to_pixels(const Vec3& eye_point) const {
 Ray View::ray(double x_px, double y_px) const {
     const Vec2 s = slopes(x_px, y_px);
     const Vec3 across = s.x * axes_[0] + s.y * axes_[1];
-    if (perspective_) return {eye_, axes_[2] + across};
-    return {eye_ + across, axes_[2]};
+    if (perspective_) return {eye_, axes_[2] + across, ray_end(x_px, y_px)};
+    return {eye_ + across, axes_[2], ray_end(x_px, y_px)};
+}
+
+View View::resized(int width, int height) const {
+    View other(camera_, width, height);
+    other.ends_ = ends_;
+    return other;
+}
+
+void View::end_rays(std::vector<float> depths) {
+    if (depths.size() != pixel_count(width_, height_)) {
+        throw Error(ErrorCode::InvalidInput, "there are " + std::to_string(depths.size()) + " depths", "ray ends",
+                    "one for each of the " + std::to_string(width_) + " x " + std::to_string(height_) + " pixels");
+    }
+    if (std::ranges::any_of(depths, [](float depth) { return std::isnan(depth); })) {
+        throw Error(ErrorCode::InvalidInput, "a depth is not a number", "ray ends", "infinity where a ray does not end");
+    }
+    ends_ = std::make_shared<const RayEnds>(RayEnds{width_, height_, std::move(depths)});
+}
+
+std::span<const float> View::ray_ends() const {
+    return ends_ ? std::span(ends_->depths) : std::span<const float>();
+}
+
+double View::ray_end(double x_px, double y_px) const {
+    if (!ends_) return std::numeric_limits<double>::infinity();
+    const auto at = [](double place, int from, int to) {
+        return static_cast<int>(std::clamp(std::floor(place * to / from), 0.0, to - 1.0));
+    };
+    return double{ends_->depths[pixel_index(ends_->width, at(x_px, width_, ends_->width), at(y_px, height_, ends_->height))]};
 }
 
 Camera parse_camera(const std::string& text, const Box& box, double aspect) {

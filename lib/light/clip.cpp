@@ -137,7 +137,7 @@ RayClip::RayClip(const Clip& clip, double diagonal)
 
 void RayClip::cut(const Ray& ray, RayCut& result) const {
     result.near = 0;
-    result.far = std::numeric_limits<double>::infinity();
+    result.far = ray.end;
     result.near_face = RayCut::kNoFace;
     result.slices.clear();
     for (std::size_t i = 0; i < faces_.size(); ++i) {

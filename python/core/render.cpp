@@ -129,6 +129,15 @@ BoundaryValues skin(const HexMesh& mesh, const std::string& scheme, double tensi
     return boundary_values(mesh, refine_options(scheme, picture_levels(mesh, levels), tension, crease_angle));
 }
 
+/// ends: (height, width) eye depths at which rays end; None: no ray ends
+View view_of(const Camera& camera, const std::pair<int, int>& size, const py::object& ends) {
+    View view(camera, size.first, size.second);
+    if (ends.is_none()) return view;
+    const py::array_t<float> rows = rows_of<float>(ends, view.width(), "ray_ends");
+    view.end_rays({rows.data(), rows.data() + rows.size()});
+    return view;
+}
+
 py::list devices() {
     const std::vector<GlDevice> found = [] {
         const py::gil_scoped_release without_gil;
@@ -179,11 +188,11 @@ void bind_render(py::module_& module) {
     module.def(
         "render",
         [](const DrawnBody& body, const std::string& method, const Camera& camera, const std::pair<int, int>& size,
-           const PictureLight& light, const py::dict& given, const py::object& progress) {
-            return render(body, method, View(camera, size.first, size.second), light, given, progress);
+           const py::object& ray_ends, const PictureLight& light, const py::dict& given, const py::object& progress) {
+            return render(body, method, view_of(camera, size, ray_ends), light, given, progress);
         },
-        py::arg("body"), py::arg("method"), py::arg("camera"), py::arg("size"), py::arg("light"), py::arg("given"),
-        py::arg("progress"));
+        py::arg("body"), py::arg("method"), py::arg("camera"), py::arg("size"), py::arg("ray_ends"), py::arg("light"),
+        py::arg("given"), py::arg("progress"));
     module.def("skin", &skin, py::arg("mesh"), py::arg("scheme"), py::arg("tension"), py::arg("crease_angle"),
                py::arg("levels"));
     module.def(

@@ -26,7 +26,8 @@ Drawable = Union[HexMesh, RbfVolume, Grid]
 @described
 def render(what: Drawable, *, method: str = "splat", camera: Union[None, str, Camera] = None, size: tuple[int, int] = (512, 512),
            field: Optional[str] = None, tf: Union[None, str, TransferFunction] = None,
-           patch: Union[None, str, Sequence[str]] = None, progress: Progress = None, **options: Any) -> Image:
+           patch: Union[None, str, Sequence[str]] = None, ray_ends: Optional[npt.ArrayLike] = None, progress: Progress = None,
+           **options: Any) -> Image:
     """Draws a mesh, points or a grid: the picture of `subvol render` with the same options, bit for bit.
 
     A keyword that has no effect with the method is refused; docs/pictures.md has the table. None leaves the default.
@@ -37,6 +38,8 @@ def render(what: Drawable, *, method: str = "splat", camera: Union[None, str, Ca
     size:        width and height in pixels
     field:       what is drawn; tf may also be a TransferFunction, camera a Camera
     patch:       patches of `mesh.patches` that are drawn alone, or "all"; coloured by patch, or by `field`
+    ray_ends:    (height, width) eye depths at which the rays of each pixel end, as where they meet something opaque that another
+                 program draws; infinity: they do not. Not with method="footprints"
     {keywords}
 
     Cuts are rows of six numbers, each a list or an array. Returns an Image: `numpy.asarray(image)` is (height, width, 4) float32,
@@ -68,7 +71,7 @@ def render(what: Drawable, *, method: str = "splat", camera: Union[None, str, Ca
     light = _light_of(given, tf, mesh is not None and not options.get("shade"), shown, colors or shown, bounds)
     eye = _camera_of(light, given, camera, size, what if mesh is None else mesh, bounds)
     with listening(progress) as listener:
-        image = _core.render(body, method, eye, (int(size[0]), int(size[1])), light, given, listener)
+        image = _core.render(body, method, eye, (int(size[0]), int(size[1])), ray_ends, light, given, listener)
     image.report["background"] = light.background
     for warning in image.report.get("warnings", []):
         warn(warning)

@@ -130,7 +130,7 @@ private:
 
     void draw_at(const RbfVolume& volume, int scale, double footprint_px) {
         const int width = (view_.width() + scale - 1) / scale, height = (view_.height() + scale - 1) / scale;
-        SplatResult drawn = render_splats(volume, View(view_.camera(), width, height), optics_, splat_options(scale));
+        SplatResult drawn = render_splats(volume, view_.resized(width, height), optics_, splat_options(scale));
         if (scale > 1) {
             drawn.image.rgba = enlarge(drawn.image.rgba, 4, width, scale, view_.width(), view_.height());
             drawn.depth = enlarge(drawn.depth, 1, width, scale, view_.width(), view_.height());

@@ -148,8 +148,8 @@ Key light_key(const View& view, const Optics& optics, const Clip& clip) {
     return key;
 }
 
-/// What a prepared frame depends on besides its kernels: the view, what is cut away, and the range of the transfer function, in
-/// whose cells values are counted.
+/// What a prepared frame depends on besides its kernels: the view, the ends of its rays, what is cut away, and the range of the
+/// transfer function, in whose cells values are counted.
 Key frame_key(const View& view, const detail::SplatScene& scene, const detail::Classification& classification,
               const Clip& clip) {
     Key key{static_cast<double>(view.width()), static_cast<double>(view.height()), view.pixel(),
@@ -161,6 +161,7 @@ Key frame_key(const View& view, const detail::SplatScene& scene, const detail::C
     add(key, clip.planes);
     add(key, clip.slices);
     add(key, clip.box);
+    key.insert(key.end(), view.ray_ends().begin(), view.ray_ends().end());
     return key;
 }
 
@@ -330,7 +331,7 @@ SplatResult Splatter::draw(const View& view, const Optics& optics, Progress* pro
     }
     report.seconds_prepare = watch.seconds();
     const int n = state.options.samples;
-    const View fine(view.camera(), n * view.width(), n * view.height());  // the centres of its pixels are the samples
+    const View fine = view.resized(n * view.width(), n * view.height());  // the centres of its pixels are the samples
     auto drawn = state.draw(fine, classification, progress, report);
     result.image = std::move(drawn.image);
     result.depth = std::move(drawn.depth);

@@ -10,7 +10,7 @@ namespace {
 
 /// The view whose pixels are the samples, as `Splatter` draws it.
 View fine_view(const View& view, const SplatOptions& options) {
-    return {view.camera(), options.samples * view.width(), options.samples * view.height()};
+    return view.resized(options.samples * view.width(), options.samples * view.height());
 }
 
 }  // namespace

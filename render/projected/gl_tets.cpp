@@ -35,7 +35,7 @@ namespace subvol::detail {
 namespace {
 
 // The same as in the shaders.
-constexpr GLuint kPointsBinding = 0, kItemsBinding = 1, kOrderBinding = 2, kPlanesBinding = 9, kKnotsBinding = 10;
+constexpr GLuint kPointsBinding = 0, kItemsBinding = 1, kOrderBinding = 2, kCutsBinding = 9, kKnotsBinding = 10;
 constexpr std::size_t kFirstDrawn = 1U << 14, kLeastDrawn = 1U << 8, kMostDrawn = 1U << 20;  // at a time
 
 template <class T>
@@ -98,7 +98,7 @@ void GlTets::set_frame(const GlTetFrame& frame, const View& view) {
     fill(points_, frame.points);
     fill(order_, frame.order);
     fill(knots_, frame.knots);
-    if (!frame.planes.empty()) fill(planes_, frame.planes);
+    if (!frame.cuts.empty()) fill(cuts_, frame.cuts);
     if (program_knots_ != frame.knots.size()) programs_.clear();
     program_knots_ = frame.knots.size();
 }
@@ -128,7 +128,8 @@ std::string GlTets::defines(const char* mode, int corners) const {
     define("FRAGMENT_COMPOSITE", 0);
     define("FRAGMENT_LISTS", 1);
     define("FRAGMENT_MODE", mode);
-    define("CLIPPED", int{!frame_->planes.empty()});
+    define("CLIPPED", int{!frame_->cuts.empty()});
+    define("RAYS_END", int{frame_->ends_rays});
     define("kCorners", corners);
     define("kKnots", frame_->knots.size());
     define("kRayCutoff", kRayCutoff);
@@ -177,10 +178,10 @@ void GlTets::set_uniforms(const GlProgram& program, const PixelRect& rect) {
     glProgramUniform1f(id, program.uniform("middle_depth"), static_cast<float>(frame_->middle_depth));
     glProgramUniform1f(id, program.uniform("per_unit"), static_cast<float>(frame_->opacity_units));
     glProgramUniform4i(id, program.uniform("rectangle"), rect.x0, rect.y0, rect.x1, rect.y1);
-    if (frame_->planes.empty()) return;
-    planes_.bind(kPlanesBinding);
+    if (frame_->cuts.empty()) return;
+    cuts_.bind(kCutsBinding);
     glProgramUniform2i(id, program.uniform("plane_counts"), static_cast<GLint>(frame_->faces),
-                       static_cast<GLint>(frame_->planes.size() - frame_->faces));
+                       static_cast<GLint>(frame_->slices));
     glProgramUniform1i(id, program.uniform("slices_alone"), frame_->slices_alone);
 }
 

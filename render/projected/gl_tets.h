@@ -38,10 +38,11 @@ struct GlTetFrame {
     double opacity_units = 1;  // opacity units in the scale
     double eye_value = 0;
 
-    /// Planes {normal, offset} in eye space, in the same units: the faces of a clip, then the slices.
-    std::vector<std::array<float, 4>> planes{};
-    std::size_t faces = 0;
-    bool slices_alone = false;
+    /// Planes {normal, offset} in eye space, in the same units: the faces of a clip, then the slices. After them the depths at
+    /// which the rays of pixels end, four in each; none: no ray ends.
+    std::vector<std::array<float, 4>> cuts{};
+    std::size_t faces = 0, slices = 0;
+    bool slices_alone = false, ends_rays = false;
 };
 
 /// A part of the work, from `begin` to `begin` + `size` of the whole, for reports of progress.
@@ -102,7 +103,7 @@ private:
     Vec2 offset_px_{0.0};
     GLuint vertices_ = 0, framebuffer_ = 0, texture_ = 0;
     int width_ = 0, height_ = 0;
-    GlBuffer points_, tets_, faces_, order_, knots_, planes_;
+    GlBuffer points_, tets_, faces_, order_, knots_, cuts_;
     std::map<std::string, GlProgram> programs_;  // by their defines; all of them for program_knots_ knots
     std::size_t program_knots_ = 0;
 };

@@ -70,18 +70,24 @@ void set_points(GlTetFrame& frame, const TetMesh& mesh, const View& view, double
     });
 }
 
-void set_planes(GlTetFrame& frame, const View& view, double middle_depth, const RayClip& clip) {
+void set_cuts(GlTetFrame& frame, const View& view, double middle_depth, const RayClip& clip) {
     const auto add = [&](const CutPlane& plane) {
         const Vec3 place = (view.to_eye(plane.point) - Vec3(0, 0, middle_depth)) / frame.scale;
         Vec3 normal;
         for (int k = 0; k < 3; ++k) normal[k] = glm::dot(view.axes()[static_cast<std::size_t>(k)], plane.normal);
-        frame.planes.push_back({static_cast<float>(normal.x), static_cast<float>(normal.y), static_cast<float>(normal.z),
-                                static_cast<float>(-glm::dot(normal, place))});
+        frame.cuts.push_back({static_cast<float>(normal.x), static_cast<float>(normal.y), static_cast<float>(normal.z),
+                              static_cast<float>(-glm::dot(normal, place))});
     };
     for (const CutPlane& face : clip.faces()) add(face);
     for (const CutPlane& slice : clip.slices()) add(slice);
     frame.faces = clip.faces().size();
+    frame.slices = clip.slices().size();
     frame.slices_alone = clip.slices_alone();
+    frame.ends_rays = view.ends_rays();
+    for (std::size_t i = 0; i < view.ray_ends().size(); ++i) {
+        if (i % 4 == 0) frame.cuts.emplace_back();
+        frame.cuts.back()[i % 4] = static_cast<float>((double{view.ray_ends()[i]} - middle_depth) / frame.scale);
+    }
 }
 
 bool contains(const Box& box, const Vec3& p) {
@@ -102,7 +108,7 @@ GlTetFrame make_tet_frame(const TetMesh& mesh, const Box& box, const View& view,
     frame.middle_depth = middle_depth / frame.scale;
     const Values values = set_knots(frame, optics);
     set_points(frame, mesh, view, middle_depth, values);
-    set_planes(frame, view, middle_depth, clip);
+    set_cuts(frame, view, middle_depth, clip);
     if (eye_value && view.perspective() && contains(box, view.eye()))
         frame.eye_value = values.parts(value_at(mesh, view.eye()));
     return frame;

@@ -107,7 +107,7 @@ TriangleRaster::TriangleRaster(const Surface& surface, const View& view, const C
                 const Vec2 slopes = view.slopes(x + 0.5, y + 0.5);
                 const double z = view.perspective() ? offset / glm::dot(flat, Vec3(slopes, 1))
                                                     : (offset - glm::dot(flat, Vec3(slopes, 0))) / flat.z;
-                if (!(z < double{depth.at(x, y)}) || z <= 0) continue;
+                if (!(z < double{depth.at(x, y)}) || z <= 0 || z > view.ray_end(x + 0.5, y + 0.5)) continue;
                 if (cuts) {
                     const Ray ray = view.ray(x + 0.5, y + 0.5);
                     if (clip.removes(ray.origin + z * ray.direction)) continue;
@@ -277,7 +277,7 @@ void draw_shells(Image& image, std::span<float> depth, const ColoredSurface& she
     check_sizes(image, depth, shells, view);
     if (shells.surface.triangles.empty()) return;
     const int samples = options.samples;
-    const View fine(view.camera(), samples * view.width(), samples * view.height());
+    const View fine = view.resized(samples * view.width(), samples * view.height());
     const TriangleRaster hits(shells.surface, fine, options.clip);
     const Raster<float> enters = entries(boundary, fine, options.clip);
     const ShellLight light(shells, hits, fine, optics, options.shading);

@@ -170,13 +170,13 @@ struct FirstHits {
     std::optional<EntryShader> shader;
 
     FirstHits(const Surface& boundary, const View& view, const Shading& shading, int samples, const Clip& clip)
-        : fine(view.camera(), samples * view.width(), samples * view.height()) {
+        : fine(view.resized(samples * view.width(), samples * view.height())) {
         Box box;
         for (const Vec3& point : boundary.points) box.add(point);
         cuts = RayClip(clip, box.diagonal());
         middle = fine.to_eye(box.center()).z;
         intervals = boundary_intervals(boundary, fine, nearest_depth(fine, box.diagonal()), middle);
-        if (!cuts.empty()) intervals = clip_intervals(intervals, fine, cuts, middle);
+        if (!cuts.empty() || fine.ends_rays()) intervals = clip_intervals(intervals, fine, cuts, middle);
         normals = corner_normals(boundary);
         lit.emplace(LitSurface{boundary, normals, shading, middle, cuts.faces()});
         shader.emplace(*lit, fine);

@@ -120,14 +120,18 @@ PixelIntervals clip_intervals(const PixelIntervals& intervals, const View& view,
     return result;
 }
 
+bool has_cuts(const SplatScene& scene, const View& view) {
+    return !scene.clip.empty() || view.ends_rays();
+}
+
 PixelIntervals scene_intervals(const SplatScene& scene, const View& view, const SheetStack& sheets) {
     const double middle = view.to_eye(scene.middle).z;
     if (scene.half_weight > 0) {
-        return scene.clip.empty() ? PixelIntervals{} : clip_intervals(whole_rays(view, sheets), view, scene.clip, middle);
+        return has_cuts(scene, view) ? clip_intervals(whole_rays(view, sheets), view, scene.clip, middle) : PixelIntervals{};
     }
     PixelIntervals intervals =
         boundary_intervals(scene.volume->boundary, view, static_cast<double>(sheets.near) + middle, middle);
-    if (!scene.clip.empty()) intervals = clip_intervals(intervals, view, scene.clip, middle);
+    if (has_cuts(scene, view)) intervals = clip_intervals(intervals, view, scene.clip, middle);
     const bool inside = std::ranges::find(intervals.triangles, PixelIntervals::kNoTriangle) != intervals.triangles.end();
     return scene.solid && inside ? with_material_at_eye(intervals) : intervals;
 }

@@ -7,7 +7,10 @@
 
 namespace subvol::detail {
 
-/// What a clip leaves of intervals, with its slices as intervals without length.
+/// Whether rays are shortened by the clip of a scene, or by the ends that a view has given them.
+[[nodiscard]] bool has_cuts(const SplatScene& scene, const View& view);
+
+/// What a clip and the ends of rays leave of intervals, with its slices as intervals without length.
 ///
 /// middle: the depth that those of the intervals are relative to
 [[nodiscard]] PixelIntervals clip_intervals(const PixelIntervals& intervals, const View& view, const RayClip& clip,

@@ -98,6 +98,8 @@ std::vector<Footprints::Kernel> Footprints::kernels_of(const SplatFrame& frame) 
 }
 
 Drawn Footprints::draw(SplatFrame& frame, const View& view, const Classification& classification, Progress* progress) const {
+    if (view.ends_rays())
+        throw Error(ErrorCode::InvalidInput, "the rays of footprints cannot be ended", "footprints", "the method splat");
     prepare_kernels(frame, scene_, view, classification, 0, progress);
     const std::vector<Kernel> kernels = kernels_of(frame);
     Drawn drawn{Image(view.width(), view.height()), {}};

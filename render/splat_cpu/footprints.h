@@ -18,7 +18,8 @@ public:
     /// throws: Error(InvalidInput) if the kernel is not radial, or the scene has cuts or shadows
     explicit Footprints(const SplatScene& scene);
 
-    /// frame: its memory is used again
+    /// frame:  its memory is used again
+    /// throws: Error(InvalidInput) if rays of the view end
     [[nodiscard]] Drawn draw(SplatFrame& frame, const View& view, const Classification& classification,
                              Progress* progress) const;
 

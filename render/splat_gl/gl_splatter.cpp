@@ -212,8 +212,8 @@ private:
         return sums * static_cast<std::size_t>(tuning_.batch) * sizeof(float);
     }
     [[nodiscard]] const GlProgram& program();
-    /// Whether rays have intervals: there is a boundary, or a clip.
-    [[nodiscard]] bool has_intervals() const { return scene_.half_weight == 0 || !scene_.clip.empty(); }
+    /// Whether rays have intervals: there is a boundary, or rays are cut.
+    [[nodiscard]] bool has_intervals() const { return scene_.half_weight == 0 || cuts_; }
     void read(Drawn& drawn);
 
     const SplatScene& scene_;
@@ -223,13 +223,14 @@ private:
     GlPace tiles_at_once_{1, 1, 1}, steps_at_once_{1, 1, 1};  // of a dispatch; kept from picture to picture
     bool resident_ = false;                                   // whether all kernels are on the device
     std::size_t room_ = 0;                                    // for so many entries
+    bool cuts_ = false;                                       // of the picture, as has_cuts
     SheetStack sheets_;
     GlSplatFrame frame_;
     SplatFrame host_;  // its kernels, as far as the host needs them
     GlSplatBins bins_;
     GlBoundary boundary_;
     GlProgram draw_;
-    std::optional<GlProgram> draw_clipped_;  // a volume without a boundary; made when it is clipped for the first time
+    std::optional<GlProgram> draw_clipped_;  // a volume without a boundary; made when its rays are cut for the first time
     GlStages stages_;
     GlBuffer frame_buffer_, kernel_table_, rows_, visible_, color_rows_, picture_, kept_, states_, ends_, light_;
 };
@@ -261,10 +262,11 @@ FinerSheets GlSplatter::State::finer_sheets(const View& view, const Classificati
 }
 
 void GlSplatter::State::find_intervals(const View& view) {
+    cuts_ = has_cuts(scene_, view);
     if (!has_intervals()) return;
     const double middle = view.to_eye(scene_.middle).z, near = static_cast<double>(sheets_.near) + middle;
     const Surface& surface = scene_.volume->boundary;
-    if (scene_.shading || !scene_.clip.empty()) {  // the device neither finds the triangles that are seen nor clips
+    if (scene_.shading || cuts_) {  // the device neither finds the triangles that are seen nor clips
         const PixelIntervals intervals = scene_intervals(scene_, view, sheets_);
         boundary_.set(intervals, view);
         std::vector<std::array<float, 4>> ends(intervals.depths.size(), {kUnknownValue, 0, 1, 0});
@@ -292,7 +294,7 @@ void GlSplatter::State::set_pass(int first, int end) {
 }
 
 const GlProgram& GlSplatter::State::program() {
-    if (scene_.half_weight == 0 || scene_.clip.empty()) return draw_;
+    if (scene_.half_weight == 0 || !cuts_) return draw_;
     if (!draw_clipped_) draw_clipped_.emplace(drawing_program(common_defines(scene_, tuning_) + "#define CLIPPED 1\n"));
     return *draw_clipped_;
 }

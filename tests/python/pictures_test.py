@@ -230,6 +230,22 @@ def test_colours_by_keywords_are_those_of_a_transfer_function(ball):
         subvol.render(ball, size=(8, 8), range="5,3")
 
 
+@pytest.mark.parametrize("method", ["splat", "tets", "dense"])
+def test_rays_end_where_another_program_has_drawn(method):
+    block = grid_of(3)
+    camera = subvol.Camera((.5, -2, .5), (.5, 0, .5), (0, 0, 1), ortho_height=1.5)
+    options = dict(method=method, camera=camera, size=(40, 30), tf=opaque(), opacity_unit=1)
+    ends = np.full((30, 40), np.inf)
+    ends[:, 20:] = 2.25  # a quarter of the block
+    image = np.asarray(subvol.render(block, ray_ends=ends, **options))
+    assert np.array_equal(image[:, :20], np.asarray(subvol.render(block, **options))[:, :20])
+    assert image[15, 25, 3] == pytest.approx(1 - .5 ** .25, abs=2e-3)  # splats sum halves of floats
+    for wrong, message in [(ends.T, r"ray_ends: has the shape \(40, 30\)"), (ends[1:], "there are 1160 depths"),
+                           (ends * np.nan, "not a number")]:
+        with pytest.raises(subvol.InvalidInput, match=message):
+            subvol.render(block, ray_ends=wrong, **options)
+
+
 def test_a_camera_object_is_its_text(ball):
     camera = subvol.Camera((5.2, -8.4, 4.2), (0, .1, 0), (0, 0, 1), 33.3)
     drawn = np.asarray(subvol.render(ball, size=(32, 24), camera=camera, backend="cpu"))

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a clip leaves of a segment. Planes are {normal, offset} in the units of projected_frame.glsl; faces remove places where
-// normal · place + offset > 0.
+// normal · place + offset > 0. The rays of a pixel may end at a depth.
 #if CLIPPED
-layout(std430, binding = 9) readonly buffer Planes { vec4 planes[]; };  // faces, then slices
+layout(std430, binding = 9) readonly buffer Cuts { vec4 cuts[]; };  // faces, slices, four ends of rays in each
 layout(location = 5) uniform ivec2 plane_counts;
 layout(location = 6) uniform bool slices_alone;
 
@@ -17,10 +17,18 @@ vec2 cut_at(float depth, vec2 front, vec2 back) {
     return vec2(depth, mix(front.y, back.y, part));
 }
 
+#if RAYS_END
+float ray_end(vec2 slope) {
+    ivec2 at = clamp(ivec2(floor(middle_px + vec2(slope.x, -slope.y) / pixel)), ivec2(0), ivec2(size_px) - 1);
+    int number = at.y * int(size_px.x) + at.x;
+    return cuts[plane_counts.x + plane_counts.y + number / 4][number % 4];
+}
+#endif
+
 // Shortens a segment between two depths with values, which change places if nothing is left; false if the whole ray is removed.
 bool clip_segment(vec2 slope, inout vec2 front, inout vec2 back) {
     for (int i = 0; i < plane_counts.x; ++i) {
-        vec2 height = height_along(planes[i], slope);
+        vec2 height = height_along(cuts[i], slope);
         if (height.x == 0.0) {
             if (height.y > 0.0) return false;
             continue;
@@ -29,6 +37,10 @@ bool clip_segment(vec2 slope, inout vec2 front, inout vec2 back) {
         if (height.x > 0.0 && depth < back.x) back = cut_at(depth, front, back);
         if (height.x < 0.0 && depth > front.x) front = cut_at(depth, front, back);
     }
+#if RAYS_END
+    float end = ray_end(slope);
+    if (end < back.x) back = cut_at(end, front, back);
+#endif
     return true;
 }
 
@@ -37,7 +49,7 @@ vec4 visible_light(vec2 slope, vec2 front, vec2 back, float ray_length) {
     if (!clip_segment(slope, front, back)) return vec4(0.0);
     bool sliced = false;
     for (int i = 0; i < plane_counts.y; ++i) {
-        vec2 height = height_along(planes[plane_counts.x + i], slope);
+        vec2 height = height_along(cuts[plane_counts.x + i], slope);
         if (!(abs(height.x) > kSliceTolerance)) continue;
         float depth = -height.y / height.x, tolerance = kSliceTolerance / abs(height.x);
         if (!(middle_depth + depth > tolerance)) continue;

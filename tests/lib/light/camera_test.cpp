@@ -93,6 +93,30 @@ TEST(View, RefusesCamerasThatSeeNothing) {
     EXPECT_NO_THROW(View(kBenchmark, 65536, 4096));
 }
 
+TEST(View, EndsRaysPixelByPixelInAnySize) {
+    View view(kBenchmark, 3, 2);
+    EXPECT_TRUE(std::isinf(view.ray(0.5, 0.5).end));
+    EXPECT_FALSE(view.ends_rays());
+    view.end_rays({1, 2, 3, 4, 5, 6});
+    EXPECT_EQ(view.ray(2.5, 1.5).end, 6);
+    EXPECT_EQ(view.ray(0.01, 1.99).end, 4);
+    EXPECT_EQ(view.ray(-1, -1).end, 1);  // beside the picture: as the next pixel
+    const View fine = view.resized(21, 14), coarse = view.resized(1, 1);
+    for (int y = 0; y < 14; ++y) {
+        for (int x = 0; x < 21; ++x) EXPECT_EQ(fine.ray(x + 0.5, y + 0.5).end, 1 + x / 7 + 3 * (y / 7)) << x << ' ' << y;
+    }
+    EXPECT_EQ(coarse.ray(0.5, 0.5).end, 5);  // of the pixel at its centre
+    EXPECT_EQ(fine.camera().eye, kBenchmark.eye);
+}
+
+TEST(View, RefusesEndsOfRaysThatAreNotOneForEachPixel) {
+    View view(kBenchmark, 3, 2);
+    expect_error(ErrorCode::InvalidInput, "there are 5 depths", [&] { view.end_rays(std::vector<float>(5, 1.0F)); });
+    expect_error(ErrorCode::InvalidInput, "a depth is not a number",
+                 [&] { view.end_rays(std::vector<float>(6, std::nanf(""))); });
+    EXPECT_FALSE(view.ends_rays());
+}
+
 TEST(FitCamera, SeesTheWholeBoxWithFivePercentToSpare) {
     const Box box{{-1, 0.5, -3}, {2, 0.75, 4}};
     for (const Vec3 direction : {Vec3(1, 0, 0), Vec3(0, -1, 0), Vec3(0, 0, 1), Vec3(0, 0, -2), Vec3(-1, 1, -1)}) {

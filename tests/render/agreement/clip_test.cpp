@@ -2,7 +2,11 @@
 // Volumes that are cut open: every renderer against a field with a closed form, and against itself.
 #include <gtest/gtest.h>
 
+#include <tbb/global_control.h>
+
 #include <algorithm>
+#include <limits>
+#include <utility>
 
 #include "lib/expect_error.h"
 #include "lib/test_meshes.h"
@@ -303,8 +307,112 @@ TEST_P(Clips, SlicesOutsideOrBehindTheEyeAreNotSeen) {
     }
 }
 
+/// The depths at which the rays of a view meet a plane; infinity where they do not.
+std::vector<float> depths_of(const CutPlane& plane, const View& view) {
+    std::vector<float> depths;
+    for (int y = 0; y < view.height(); ++y) {
+        for (int x = 0; x < view.width(); ++x) {
+            const Ray ray = view.ray(x + 0.5, y + 0.5);
+            const double t = glm::dot(plane.normal, plane.point - ray.origin) / glm::dot(plane.normal, ray.direction);
+            depths.push_back(t > 0 ? static_cast<float>(t) : std::numeric_limits<float>::infinity());
+        }
+    }
+    return depths;
+}
+
+View ended(View view, std::vector<float> depths) {
+    view.end_rays(std::move(depths));
+    return view;
+}
+
+// Ends are floats: at a depth of 5 they are off by 2.4e-7, and opacities by half of that. Single precision adds as much.
+constexpr double kEndTolerance = 2e-6;
+
+TEST_P(Clips, RaysThatEndAtAPlaneSeeWhatAPlaneLeaves) {
+    for (const View& view : views()) {
+        const CutPlane back{{0.1, 0.1, 0}, {-0.4, 1, -0.2}};
+        ASSERT_GT(glm::dot(back.normal, view.ray(20, 20).direction), 0);
+        const Image cut = draw(GetParam(), view, smooth_optics(), {.planes = {back}});
+        const Image drawn = draw(GetParam(), ended(view, depths_of(back, view)), smooth_optics(), {});
+        EXPECT_LT(test::largest_difference(drawn, cut), kEndTolerance) << view.perspective();
+        EXPECT_GT(test::largest_difference(drawn, draw(GetParam(), view, smooth_optics(), {})), 0.05);
+    }
+}
+
+TEST_P(Clips, WhatIsOpaqueInsideIsMetWithoutASeam) {
+    const Vec3 color(0.25, 0.5, 0.75);
+    const Optics constant({.color = {{0, color}, {1, color}}, .opacity = {{0, 0}, {1, .5}}}, .5);
+    const CutPlane plane{{0.1, 0, 0}, {0.7, 1, -0.2}};  // its slice has that colour everywhere
+    for (const View& view : views()) {
+        const Image whole = draw(GetParam(), view, constant, {.slices = {plane}, .around_slices = true});
+        const Image alone = draw(GetParam(), view, constant, {.slices = {plane}});
+        const Image before = draw(GetParam(), ended(view, depths_of(plane, view)), constant, {});
+        int met = 0;
+        for (std::size_t i = 0; i < alone.rgba.size(); i += 4) {
+            if (alone.rgba[i + 3] < 1) continue;
+            ++met;
+            for (std::size_t c = 0; c < 3; ++c) {
+                const double over = double{before.rgba[i + c]} + (1 - double{before.rgba[i + 3]}) * color[static_cast<int>(c)];
+                EXPECT_NEAR(over, double{whole.rgba[i + c]}, kEndTolerance) << "pixel " << i / 4;
+            }
+        }
+        EXPECT_GT(met, 200);
+    }
+}
+
+TEST_P(Clips, EachPixelHasItsOwnEnd) {
+    const View view = views()[0];
+    std::vector<float> depths(40 * 36);
+    for (std::size_t i = 0; i < depths.size(); ++i) {
+        const float kinds[]{0, -1, std::numeric_limits<float>::infinity(), 1, 99, 5};  // the body is between 3 and 7
+        depths[i] = kinds[i % 6];
+    }
+    const Image whole = draw(GetParam(), view, smooth_optics(), {});
+    const Image half = draw(GetParam(), ended(view, std::vector<float>(depths.size(), 5.0F)), smooth_optics(), {});
+    const Image drawn = draw(GetParam(), ended(view, depths), smooth_optics(), {});
+    for (std::size_t i = 0; i < depths.size(); ++i) {
+        for (std::size_t c = 4 * i; c < 4 * i + 4; ++c) {
+            const float expected = depths[i] == 5 ? half.rgba[c] : depths[i] > 5 ? whole.rgba[c] : 0;
+            // GL finds the intervals of a view with ends on the host, where triangles are rounded otherwise.
+            ASSERT_NEAR(drawn.rgba[c], expected, 5e-5) << "pixel " << i << ", end " << depths[i];
+        }
+    }
+}
+
 INSTANTIATE_TEST_SUITE_P(, Clips, testing::ValuesIn(kMethods),
                          [](const auto& one) { return kNames[static_cast<std::size_t>(one.param)]; });
+
+TEST(RayEnds, AreTheSameForAllSamplesOfAPixelAndAnyNumberOfThreads) {
+    const View view({.eye = {0, -4, 0}, .target = {0, 0, 0}, .up = {0, 0, 1}, .ortho_height = 3}, 30, 30);
+    std::vector<float> depths(30 * 30, 4.0F);  // the middle of the block
+    for (std::size_t i = 0; i < depths.size(); i += 2) depths[i] = 0;
+    HexMesh mesh = box_about_origin();
+    test::add_field(mesh, "f", [](const Vec3&) { return 1.0; });
+    const RbfVolume volume = sample_rbf_points(mesh, {.per_edge = 2}).volume;
+    const auto picture = [&] {
+        return render_splats(volume, ended(view, depths), smooth_optics(), {.method = SplatMethod::Cpu, .samples = 3}).image;
+    };
+    const Image drawn = picture();
+    const double expected = 1 - std::pow(1 - 0.5, 1 / 0.5);  // opacity .5 for each .5, over a length of 1
+    for (const int x : {10, 12, 14, 16}) {
+        EXPECT_EQ(drawn.pixel(x, 15)[3], 0) << x;
+        EXPECT_NEAR(drawn.pixel(x + 1, 15)[3], expected, 1e-3) << x;
+    }
+    const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+    EXPECT_EQ(picture().rgba, drawn.rgba);
+}
+
+TEST(RayEnds, OtherDepthsForTheSameViewAreAnotherPicture) {
+    const View view = views()[0];
+    const RbfVolume volume = sample_rbf_points(block_mesh(), {.per_edge = 2}).volume;
+    Splatter splatter(volume, {.method = SplatMethod::Cpu});
+    const auto at = [&](float depth) { return ended(view, std::vector<float>(40 * 36, depth)); };
+    (void)splatter.draw(at(4.8F), smooth_optics());
+    const SplatResult second = splatter.draw(at(5.2F), smooth_optics());
+    EXPECT_EQ(second.image.rgba, render_splats(volume, at(5.2F), smooth_optics(), {.method = SplatMethod::Cpu}).image.rgba);
+    for (const float depth : second.depth) EXPECT_TRUE(depth < 5.2F || std::isinf(depth));
+    EXPECT_TRUE(splatter.draw(at(5.2F), smooth_optics()).report.kept);
+}
 
 /// A plane that looks at the camera, through an opaque, lit block whose values are constant on the plane.
 TEST(ClippedSolid, CapsAreLitByTheirPlane) {

@@ -138,6 +138,17 @@ TEST(DrawShells, GiveTheirDepthAndAreCut) {
     EXPECT_EQ(cut.rgba, Image(kSize, kSize).rgba);
 }
 
+TEST(DrawShells, AreNotSeenBehindTheEndOfARay) {
+    View view = view_of(Vec3(4, .5, .5));  // 3.5 before a wall
+    std::vector<float> ends(kSize * kSize, 3.6F);
+    for (std::size_t i = 0; i < ends.size() / 2; ++i) ends[i] = 3.4F;
+    view.end_rays(ends);
+    Image image(kSize, kSize);
+    draw_shells(image, {}, wall_at(.5, 1), {}, view, grey_to_white(), {.samples = 2});
+    EXPECT_EQ(image.pixel(kSize / 2, kSize / 2 - 1)[3], 0);
+    EXPECT_EQ(image.pixel(kSize / 2, kSize / 2)[3], 1);
+}
+
 TEST(DrawShells, RefuseWhatDoesNotFit) {
     Image image(kSize, kSize), small(8, 8);
     ColoredSurface wall = wall_at(0, 1);

@@ -147,6 +147,11 @@ TEST(Footprints, RefuseWhatTheyDoNotKnow) {
     expect_error(ErrorCode::InvalidInput, "cut", [&] { Splatter(volume, {.method = SplatMethod::Footprints, .clip = clip}); });
     Splatter splatter(volume, kFootprints);
     expect_error(ErrorCode::InvalidInput, "cut", [&] { splatter.set_clip(clip); });
+    View ended({.eye = {0, 0, -5}, .target = {0, 0, 0}, .up = {0, 1, 0}, .fovy_deg = 30}, 8, 8);
+    ended.end_rays(std::vector<float>(64, 1.0F));
+    expect_error(ErrorCode::InvalidInput, "cannot be ended", [&] {
+        (void)splatter.draw(ended, Optics({.color = {{0, {1, 1, 1}}}, .opacity = {{0, .5}}}, 1));
+    });
     RbfVolume separable = volume;
     separable.kernel = CubicConvolutionKernel{};
     expect_error(ErrorCode::InvalidInput, "radial", [&] { Splatter(separable, kFootprints); });

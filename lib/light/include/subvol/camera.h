@@ -2,6 +2,9 @@
 #pragma once
 
 #include <array>
+#include <limits>
+#include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -21,10 +24,12 @@ struct Camera {
     double ortho_height = 0;
 };
 
-/// x(z) = origin + z · direction, z the eye depth: |direction| ≥ 1 is the world length of a unit of depth.
+/// x(z) = origin + z · direction, z the eye depth: |direction| ≥ 1 is the world length of a unit of depth. end: the depth at
+/// which it ends
 struct Ray {
     Vec3 origin;
     Vec3 direction;
+    double end = std::numeric_limits<double>::infinity();
 };
 
 /// A camera and a picture size: the mapping between pixels, eye space (x right, y up, z = depth along the view) and the world.
@@ -33,6 +38,21 @@ public:
     /// throws: Error(InvalidInput) if eye and target coincide, up is parallel to the view, the field of view is out of range or
     ///         the size is not in 1..65536, or of more than 2^28 pixels
     View(const Camera& camera, int width, int height);
+
+    /// The same camera, and the same ends of rays, for another number of pixels.
+    [[nodiscard]] View resized(int width, int height) const;
+
+    /// Ends all rays of a pixel at a depth: where they meet something opaque that others draw. Volumes and shells are drawn up
+    /// to there, exactly; the light inside a volume does not change. All methods but footprints.
+    ///
+    /// depths: eye depths, one for each pixel, rows from the top; infinity: the ray does not end, ≤ 0: it sees nothing
+    /// throws: Error(InvalidInput) if there are more or fewer than pixels, or one is NaN
+    void end_rays(std::vector<float> depths);
+    [[nodiscard]] bool ends_rays() const { return ends_ != nullptr; }
+    /// As end_rays was given them, to this view or to that which was resized; empty: no ray ends.
+    [[nodiscard]] std::span<const float> ray_ends() const;
+    /// The depth at which rays through a point of the picture end.
+    [[nodiscard]] double ray_end(double x_px, double y_px) const;
 
     [[nodiscard]] const Camera& camera() const { return camera_; }
     [[nodiscard]] int width() const { return width_; }
@@ -59,12 +79,18 @@ public:
     [[nodiscard]] Ray ray(double x_px, double y_px) const;
 
 private:
+    struct RayEnds {
+        int width, height;
+        std::vector<float> depths;
+    };
+
     Camera camera_;
     int width_, height_;
     bool perspective_;
     double pixel_;
     Vec3 eye_;
     std::array<Vec3, 3> axes_;
+    std::shared_ptr<const RayEnds> ends_{};  // never changes: copies of a view share it
 };
 
 /// A perspective camera that sees a whole box: its eight corners, with a margin of 5 % and the box's centre in the middle. Up
