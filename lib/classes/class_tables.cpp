@@ -15,6 +15,7 @@
 #include <list>
 #include <map>
 #include <mutex>
+#include <numeric>
 #include <utility>
 
 #include "dense_block.h"
@@ -78,24 +79,26 @@ ClassKey key_of(const Neighborhood& neighborhood) {
 
 /// The cells of a 5×5×5 grid: the middle one, the layer around it, the layer around that. Its points are numbered by the grid,
 /// not by a walk, because find_regular finds them without one.
-Neighborhood regular_neighborhood() {
-    Neighborhood grid{.points = std::vector<Index>(216), .code = {}};
-    for (std::size_t p = 0; p < 216; ++p) grid.points[p] = static_cast<Index>(p);
-    std::vector<std::array<std::size_t, 3>> cells{{2, 2, 2}};
-    const auto add_layer = [&](std::size_t low, std::size_t high) {
-        for (std::size_t n = 0; n < 125; ++n) {
-            const std::array<std::size_t, 3> at{n % 5, n / 5 % 5, n / 25};
-            const bool inside = std::ranges::all_of(at, [&](std::size_t i) { return i >= low && i <= high; });
+Neighborhood regular_neighborhood(int layers) {
+    const auto middle = static_cast<std::size_t>(layers), across = 2 * middle + 1, side = across + 1;
+    Neighborhood grid{.points = std::vector<Index>(side * side * side), .code = {}};
+    std::iota(grid.points.begin(), grid.points.end(), Index{0});
+    std::vector<std::array<std::size_t, 3>> cells{{middle, middle, middle}};
+    const auto add_layer = [&](std::size_t layer) {
+        for (std::size_t n = 0; n < across * across * across; ++n) {
+            const std::array<std::size_t, 3> at{n % across, n / across % across, n / (across * across)};
+            const bool inside =
+                std::ranges::all_of(at, [&](std::size_t i) { return i + layer >= middle && i <= middle + layer; });
             if (inside && std::ranges::find(cells, at) == cells.end()) cells.push_back(at);
         }
     };
-    add_layer(1, 3);
+    add_layer(1);
     grid.code.push_back(static_cast<std::uint16_t>(cells.size()));
-    add_layer(0, 4);
+    if (layers == 2) add_layer(2);
     for (const auto& at : cells) {
         for (std::size_t octant = 0; octant < 8; ++octant) {
             const std::size_t u = at[0] + (octant & 1), v = at[1] + (octant >> 1 & 1), w = at[2] + (octant >> 2);
-            grid.code.push_back(static_cast<std::uint16_t>(u + 6 * (v + 6 * w)));
+            grid.code.push_back(static_cast<std::uint16_t>(u + side * (v + side * w)));
         }
     }
     return grid;

@@ -40,8 +40,8 @@ struct ClassKey {
 
 [[nodiscard]] ClassKey key_of(const Neighborhood& neighborhood);
 
-/// The neighbourhood of a cell in a grid. Its points are those of NeighborhoodWalk::find_regular.
-[[nodiscard]] Neighborhood regular_neighborhood();
+/// The neighbourhood of a cell in a grid, of one or two layers. Its points are those of NeighborhoodWalk::find_regular.
+[[nodiscard]] Neighborhood regular_neighborhood(int layers = 2);
 
 /// Tables by neighbourhood class, made when they are first asked for.
 ///

@@ -184,27 +184,36 @@ bool NeighborhoodWalk::find(Index cell, int layers, Neighborhood& found) {
     return true;
 }
 
-/// The points of 27 cells, each one or two steps off along each axis, are those of the neighbourhood.
+constexpr std::size_t kPointsOfTwoLayers = 216;
+
+/// The points of 27 cells, each one or two steps off along each axis, are those of the neighbourhood; without the second layer
+/// those of the eight cells one step off along all axes.
 struct GridCorner {
     std::array<std::size_t, 3> at;  // 0, 1 or 2 along each axis; 1: the middle
 
     explicit GridCorner(std::size_t n) : at{n % 3, n / 3 % 3, n / 9} {}
-    [[nodiscard]] std::size_t point(std::size_t octant) const {
-        return 2 * at[0] + (octant & 1) + 6 * (2 * at[1] + (octant >> 1 & 1) + 6 * (2 * at[2] + (octant >> 2)));
+    [[nodiscard]] bool is_off_all_axes() const { return at[0] != 1 && at[1] != 1 && at[2] != 1; }
+    /// layers: in whose points the cell of this corner lies
+    [[nodiscard]] std::size_t point(std::size_t octant, std::size_t layers) const {
+        const std::size_t side = 2 * layers + 2;
+        const auto along = [&](std::size_t axis) { return layers * at[axis] + (octant >> axis & 1); };
+        return along(0) + side * (along(1) + side * along(2));
     }
 };
 
 /// Cells with four cells around each edge leave open how many meet at a corner that only one of them has.
-bool NeighborhoodWalk::eight_cells_meet(std::span<const Index, 216> points) const {
+bool NeighborhoodWalk::eight_cells_meet(std::span<const Index> points) const {
+    const bool all = points.size() == kPointsOfTwoLayers;
     for (std::size_t n = 0; n < 64; ++n) {
-        if (links_.cells_at[points[n % 4 + 1 + 6 * (n / 4 % 4 + 1) + 36 * (n / 16 + 1)]] != 8) return false;
+        const std::size_t inner = all ? n % 4 + 1 + 6 * (n / 4 % 4 + 1) + 36 * (n / 16 + 1) : n;
+        if (links_.cells_at[points[inner]] != 8) return false;
     }
     return true;
 }
 
 /// As find_regular below, for cells whose axes lie alike, as most do: then there are no turns to be multiplied. None if they do
 /// not.
-std::optional<bool> NeighborhoodWalk::find_aligned(Index cell, std::span<Index, 216> points) const {
+std::optional<bool> NeighborhoodWalk::find_aligned(Index cell, std::span<Index> points) const {
     bool turned = false;
     const auto step = [&](Index from, std::size_t axis, std::size_t at) {
         const std::size_t side = 2 * axis + at / 2;
@@ -225,22 +234,24 @@ std::optional<bool> NeighborhoodWalk::find_aligned(Index cell, std::span<Index, 
         if (turned) return {};
         if (!links_.regular[near[n]]) return false;
     }
+    const std::size_t layers = points.size() == kPointsOfTwoLayers ? 2 : 1;
     for (std::size_t n = 0; n < 27; ++n) {
         const GridCorner corner(n);
+        if (layers == 1 && !corner.is_off_all_axes()) continue;
         Index far = near[n];
-        for (std::size_t axis = 0; axis < 3; ++axis) {
+        for (std::size_t axis = 0; layers == 2 && axis < 3; ++axis) {
             if (corner.at[axis] != 1) far = step(far, axis, corner.at[axis]);
             if (turned) return {};
             if (far == kNone) return false;
         }
         for (std::size_t octant = 0; octant < 8; ++octant) {
-            points[corner.point(octant)] = mesh_.cells[far][kCornerOctants[octant]];
+            points[corner.point(octant, layers)] = mesh_.cells[far][kCornerOctants[octant]];
         }
     }
     return eight_cells_meet(points);
 }
 
-bool NeighborhoodWalk::find_regular(Index cell, std::span<Index, 216> points) const {
+bool NeighborhoodWalk::find_regular(Index cell, std::span<Index> points) const {
     if (const auto aligned = find_aligned(cell, points)) return *aligned;
     const auto step = [&](Visited from, std::size_t side) -> Visited {
         if (from.cell == kNone) return from;
@@ -259,16 +270,18 @@ bool NeighborhoodWalk::find_regular(Index cell, std::span<Index, 216> points) co
         if (!links_.regular[now.cell]) return false;
         near[n] = now;
     }
+    const std::size_t layers = points.size() == kPointsOfTwoLayers ? 2 : 1;
     for (std::size_t n = 0; n < 27; ++n) {
         const GridCorner corner(n);
+        if (layers == 1 && !corner.is_off_all_axes()) continue;
         Visited now = near[n];
-        for (std::size_t axis = 0; axis < 3; ++axis) {  // two steps off
+        for (std::size_t axis = 0; layers == 2 && axis < 3; ++axis) {  // two steps off
             if (corner.at[axis] != 1) now = step(now, 2 * axis + corner.at[axis] / 2);
             if (now.cell == kNone) return false;
         }
         const auto& octants = cell_turns()[now.turn].octants;
         for (std::size_t octant = 0; octant < 8; ++octant) {
-            points[corner.point(octant)] = mesh_.cells[now.cell][kCornerOctants[octants[octant]]];
+            points[corner.point(octant, layers)] = mesh_.cells[now.cell][kCornerOctants[octants[octant]]];
         }
     }
     return eight_cells_meet(points);

@@ -38,8 +38,11 @@ public:
     /// layers: 1 or 2
     [[nodiscard]] bool find(Index cell, int layers, Neighborhood& found);
 
-    /// The points of a regular neighbourhood, 6×6×6, u fastest, the cell's own in the middle; false if it is not regular.
-    [[nodiscard]] bool find_regular(Index cell, std::span<Index, 216> points) const;
+    /// The points of a regular neighbourhood, u fastest, the cell's own in the middle; false if it is not regular, whatever the
+    /// number of points.
+    ///
+    /// points: 6×6×6, or 4×4×4 without the second layer
+    [[nodiscard]] bool find_regular(Index cell, std::span<Index> points) const;
 
     struct Visited {
         Index cell;
@@ -49,8 +52,8 @@ public:
     [[nodiscard]] std::span<const Visited> visited() const { return visited_; }
 
 private:
-    [[nodiscard]] std::optional<bool> find_aligned(Index cell, std::span<Index, 216> points) const;
-    [[nodiscard]] bool eight_cells_meet(std::span<const Index, 216> points) const;
+    [[nodiscard]] std::optional<bool> find_aligned(Index cell, std::span<Index> points) const;
+    [[nodiscard]] bool eight_cells_meet(std::span<const Index> points) const;
     void start(Neighborhood& found);
     [[nodiscard]] std::uint16_t number(Index point, Neighborhood& found);
     void add_first(Index cell, Neighborhood& found);

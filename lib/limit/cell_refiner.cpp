@@ -22,9 +22,11 @@
 #include <tbb/parallel_sort.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <mutex>
 #include <numeric>
+#include <optional>
 
 #include "cell_tables.h"
 #include "class_tables.h"
@@ -58,8 +60,8 @@ struct CellRefiner::State {
         : control(mesh),
           scheme(wanted),
           moves(on_limit && !interpolates(wanted.kind)),
-          regular(regular_neighborhood()),
-          regular_key(key_of(regular)),
+          regular{regular_neighborhood(1), regular_neighborhood(2)},
+          regular_keys{key_of(regular[0]), key_of(regular[1])},
           tables(wanted, moves ? [kind = wanted.kind](HexMesh m) { return subvol::on_limit(std::move(m), kind); }
                                : std::function<HexMesh(HexMesh)>()),
           top(control) {}
@@ -73,15 +75,20 @@ struct CellRefiner::State {
 
     [[nodiscard]] Classified classes_of(RefinedLevel& level, std::span<const Index> cells, int levels,
                                         int whole = kWhole) const {
-        return classify(level, cells, levels, layers(levels), regular_key, whole);
+        return classify(level, cells, levels, layers(levels), regular_key(levels), whole);
     }
+
+    /// The class of regular cells, refined by some levels.
+    [[nodiscard]] const ClassKey& regular_key(int levels) const { return regular_keys[layers(levels) > 1 ? 1 : 0]; }
 
     /// Evaluates up to kTableLanes cells of one class. All members have the same code, so the neighbourhood of any of them
     /// makes the table if it is not there yet.
     void apply(RefinedLevel& level, std::span<const Member> members, int levels, const DenseBlock& block, Scratch& to,
                const Sink& sink) {
         const auto table = tables.table(members[0].key, levels, [&]() -> const Neighborhood& {
-            if (members[0].key == regular_key) return regular;
+            for (std::size_t layer = 0; layer < 2; ++layer) {
+                if (members[0].key == regular_keys[layer]) return regular[layer];
+            }
             (void)level.walks.local().find(members[0].cell, layers(levels), to.found);
             return to.found;
         });
@@ -177,14 +184,20 @@ struct CellRefiner::State {
         });
     }
 
+    /// Removes the cells without a class, and returns them.
+    [[nodiscard]] static std::vector<Index> take_rare(Classified& classified) {
+        std::vector<Index> rare;
+        for (const Member& member : classified.members) {
+            if (member.key == kNoClass) rare.push_back(member.cell);
+        }
+        std::erase_if(classified.members, [](const Member& member) { return member.key == kNoClass; });
+        return rare;
+    }
+
     /// Control cells by tables as far as there are classes of them: regular ones are found without a walk, so they come first.
     void evaluate_common(const Cut& cut, std::span<const Index> cells, int levels, const Sink& sink) {
-        Classified regulars = classify(top, cells, levels, 2, regular_key, std::max(levels, kWhole));
-        std::vector<Index> rest;
-        for (const Member& member : regulars.members) {
-            if (member.key == kNoClass) rest.push_back(member.cell);
-        }
-        std::erase_if(regulars.members, [](const Member& member) { return member.key == kNoClass; });
+        Classified regulars = classes_of(top, cells, levels, std::max(levels, kWhole));
+        const std::vector<Index> rest = take_rare(regulars);
         evaluate(top, cut, regulars, levels, sink);
         evaluate(top, cut, classes_of(top, rest, levels, 0), levels, sink);
     }
@@ -282,26 +295,27 @@ struct CellRefiner::State {
         std::vector<std::uint8_t> is_done(control.cells.size(), 0), seen(control.cells.size(), 0);
         for (std::size_t first = 0; first < cells.size(); first += kClassified) {
             const auto run = std::span(cells).subspan(first, std::min(kClassified, cells.size() - first));
-            Classified classified = classes_of(top, run, 2);
-            std::vector<Index> rest;
-            for (const Member& member : classified.members) {
-                if (member.key == kNoClass) rest.push_back(member.cell);
-            }
-            std::erase_if(classified.members, [](const Member& member) { return member.key == kNoClass; });
+            Classified regulars = classes_of(top, run, 1);
+            const std::vector<Index> rest = take_rare(regulars);
             const Sink show_first = [&](Index cell, const CellGrid& grid) {
                 if (!visitor.cell(grid.dense_cell(cell, 1))) is_done[cell] = 1;
             };
-            evaluate(top, {}, classified, 1, show_first);
+            evaluate(top, {}, regulars, 1, show_first);
             // Level 1 depends on fewer cells than level 2: there cells near the boundary are of a few classes only. To find
             // those pays where there are many.
             if (control.cells.size() > kClassified) {
                 Classified near = classes_of(top, rest, 1, 0);
-                std::erase_if(near.members, [](const Member& member) { return member.key == kNoClass; });
+                (void)take_rare(near);
                 evaluate(top, {}, near, 1, show_first);
             }
             if (most_levels < 2) continue;
-            std::erase_if(classified.members, [&](const Member& member) { return is_done[member.cell] != 0; });
-            evaluate(top, {}, classified, 2, [&](Index cell, const CellGrid& grid) {
+            std::vector<Index> open;
+            for (const Member& member : regulars.members) {
+                if (is_done[member.cell] == 0) open.push_back(member.cell);
+            }
+            regulars = classes_of(top, open, 2);
+            (void)take_rare(regulars);
+            evaluate(top, {}, regulars, 2, [&](Index cell, const CellGrid& grid) {
                 seen[cell] = visitor.whole(grid.dense_cell(cell, 2));
                 if (seen[cell] == 0) is_done[cell] = 1;
             });
@@ -321,8 +335,30 @@ struct CellRefiner::State {
         report_progress(progress, "limit", 1);
     }
 
+    /// A few cells of a large mesh with two layers around them, sorted. None if the walks do not find them all.
+    [[nodiscard]] std::optional<std::vector<Index>> surroundings_of(std::span<const Index> cells) {
+        constexpr std::size_t kFew = 256;  // of so many cells one
+        if (cells.size() > control.cells.size() / kFew) return {};
+        tbb::enumerable_thread_specific<std::vector<Index>> found;
+        std::atomic<bool> is_complete{true};
+        tbb::parallel_for(tbb::blocked_range<std::size_t>(0, cells.size(), 16), [&](const auto& range) {
+            NeighborhoodWalk& walk = top.walks.local();
+            for (std::size_t i = range.begin(); i != range.end() && is_complete; ++i) {
+                if (!walk.find(cells[i], 2, scratch.local().found)) is_complete = false;
+                for (const auto& visited : walk.visited()) found.local().push_back(visited.cell);
+            }
+        });
+        if (!is_complete) return {};
+        std::vector<Index> all;
+        for (const std::vector<Index>& part : found) all.insert(all.end(), part.begin(), part.end());
+        tbb::parallel_sort(all.begin(), all.end());
+        all.erase(std::unique(all.begin(), all.end()), all.end());
+        return all;
+    }
+
     [[nodiscard]] Cut cut_of_control() {
         return [this](std::span<const Index> wanted, int layers) {
+            if (const auto around = surroundings_of(wanted)) return PatchSource(control, *around).cut(wanted, layers);
             std::call_once(patches_made, [&] {
                 run_nested([&] { patches = std::make_unique<PatchSource>(control, PatchSource::Faces::Known); });
             });
@@ -333,8 +369,8 @@ struct CellRefiner::State {
     const HexMesh& control;
     SchemeOptions scheme;
     bool moves;
-    Neighborhood regular;
-    ClassKey regular_key;
+    std::array<Neighborhood, 2> regular;  // of one layer and of two
+    std::array<ClassKey, 2> regular_keys;
     ClassTables tables;
     RefinedLevel top;
     std::once_flag patches_made;

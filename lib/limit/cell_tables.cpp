@@ -86,6 +86,7 @@ Classified classify(RefinedLevel& level, std::span<const Index> cells, int level
     auto& members = result.members;
     for (std::size_t i = 0; i < cells.size(); ++i) members[i] = {kNoClass, cells[i]};
     if (levels == 0) return result;
+    const std::size_t regular_points = layers == 2 ? 216 : 64;
     tbb::enumerable_thread_specific<Neighborhood> founds;
     tbb::parallel_for(std::size_t{0}, result.points.size(), [&](std::size_t r) {
         NeighborhoodWalk& walk = level.walks.local();
@@ -94,8 +95,9 @@ Classified classify(RefinedLevel& level, std::span<const Index> cells, int level
         const std::size_t end = std::min(cells.size(), (r + 1) * kRun);
         for (std::size_t i = r * kRun; i < end; ++i) {
             const std::size_t before = points.size();
-            points.resize(before + 216);
-            if (layers == 2 && walk.find_regular(cells[i], std::span(points).subspan(before).first<216>())) {
+            if (before == 0) points.reserve((end - i) * regular_points);
+            points.resize(before + regular_points);
+            if (walk.find_regular(cells[i], std::span(points).subspan(before))) {
                 members[i].key = regular;
             } else {
                 points.resize(before);

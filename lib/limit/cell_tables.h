@@ -63,8 +63,9 @@ constexpr int kWhole = 2;  // so many levels are refined as they are, without cl
 
 /// The cells in their order with their classes, kNoClass where a class has too few members for a table.
 ///
-/// layers: how many layers around a cell its refinement by `levels` levels depends on
-/// whole:  up to so many levels only regular cells have a class, of key `regular`
+/// layers:  how many layers around a cell its refinement by `levels` levels depends on
+/// regular: the key of regular cells, with so many layers
+/// whole:   up to so many levels only regular cells have a class
 [[nodiscard]] Classified classify(RefinedLevel& level, std::span<const Index> cells, int levels, int layers,
                                   const ClassKey& regular, int whole = kWhole);
 

@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cassert>
 
 #include "child_topology.h"
 #include "scheme_rows.h"
@@ -201,6 +202,34 @@ PatchSource::PatchSource(const HexMesh& mesh, Faces faces)
                   [&](std::size_t p) { std::sort(cells_.data() + offsets_[p], cells_.data() + offsets_[p + 1]); });
 }
 
+PatchSource::PatchSource(const HexMesh& mesh, std::span<const Index> cells)
+    : mesh_(mesh), creases_(sorted_tags(mesh.creases)), sharp_faces_(sorted_tags(mesh.sharp_faces)) {
+    std::vector<std::pair<Index, Index>> corners;  // point and cell
+    corners.reserve(8 * cells.size());
+    for (const Index c : cells) {
+        for (const Index p : mesh.cells[c]) corners.emplace_back(p, c);
+    }
+    std::sort(corners.begin(), corners.end());
+    for (const auto& [point, cell] : corners) {
+        if (points_.empty() || points_.back() != point) {
+            points_.push_back(point);
+            offsets_.push_back(cells_.size());
+        }
+        cells_.push_back(cell);
+    }
+    offsets_.push_back(cells_.size());
+}
+
+std::span<const Index> PatchSource::cells_at(Index point) const {
+    std::size_t i = point;
+    if (!points_.empty()) {
+        const auto found = std::lower_bound(points_.begin(), points_.end(), point);
+        assert(found != points_.end() && *found == point);
+        i = static_cast<std::size_t>(found - points_.begin());
+    }
+    return std::span(cells_).subspan(offsets_[i], offsets_[i + 1] - offsets_[i]);
+}
+
 std::vector<Index> PatchSource::cells_about(std::span<const Index> cells) const {
     // Each point once, since very many cells may share an axis.
     std::vector<std::array<Index, 8>> corners;
@@ -209,7 +238,7 @@ std::vector<Index> PatchSource::cells_about(std::span<const Index> cells) const 
     std::vector<Index> found;
     const auto for_each_found = [&](const auto& take) {
         for (const Index p : selection.points()) {
-            for (std::size_t i = offsets_[p]; i < offsets_[p + 1]; ++i) take(cells_[i]);
+            for (const Index c : cells_at(p)) take(c);
         }
     };
     if (mesh_.cells.size() > 64 * cells.size()) {  // a few cells of a large mesh

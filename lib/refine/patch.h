@@ -31,17 +31,24 @@ public:
     /// throws: Error(InvalidInput) if more than two cells share a face, or two cells have the same corners
     explicit PatchSource(const HexMesh& mesh, Faces faces = Faces::Check);
 
+    /// For patches of a few cells of a large mesh, whose faces are known.
+    ///
+    /// cells: sorted; with each cell that is to be cut all in the layers around it
+    PatchSource(const HexMesh& mesh, std::span<const Index> cells);
+
     /// layers: 1 if the patch is refined once, else 2
     [[nodiscard]] Patch cut(std::span<const Index> cells, int layers) const;
 
 private:
     /// Some cells and those that share a point with them, sorted.
     [[nodiscard]] std::vector<Index> cells_about(std::span<const Index> cells) const;
+    [[nodiscard]] std::span<const Index> cells_at(Index point) const;
 
     const HexMesh& mesh_;
     std::vector<std::array<Index, 2>> creases_;      // sorted
     std::vector<std::array<Index, 4>> sharp_faces_;  // their points sorted, sorted
-    FlatArray<std::size_t> offsets_;                 // cells_[offsets_[p] .. offsets_[p+1]) have point p
+    std::vector<Index> points_;                      // sorted; empty: all
+    FlatArray<std::size_t> offsets_;                 // cells_[offsets_[i] .. offsets_[i+1]) have point i of these
     std::vector<Index> cells_;
 };
 

@@ -208,10 +208,15 @@ void BrickFiller::load_pieces(Batch& batch) const {
     batch.first_piece.resize(batch.numbers.size());
     std::iota(batch.first_piece.begin(), batch.first_piece.end(), std::size_t{0});
     batch.piece_boxes.resize(batch.numbers.size());
+    const Mat3 linear = request_.to_voxels.linear / request_.to_voxels.voxel_size;
     tbb::parallel_for(std::size_t{0}, batch.numbers.size(), [&](std::size_t i) {
         const std::size_t piece = batch.numbers[i], first = batch.first[i];
+        const Vec3 origin = request_.to_voxels(pieces.origins[piece]);
         std::array<Vec3, kCurvedNodes> points;
-        for (std::size_t n = 0; n < kCurvedNodes; ++n) points[n] = request_.to_voxels(pieces.position(piece, n));
+        for (std::size_t n = 0; n < kCurvedNodes; ++n) {
+            const float* node = pieces.node(piece, n);
+            points[n] = origin + linear * Vec3(node[0], node[1], node[2]);
+        }
         CellBlock bare = block(batch, i);
         bare.points = points.data();
         set_piece_boxes(bare, &batch.piece_boxes[i]);
