@@ -2,7 +2,9 @@
 #include "extreme_search.h"
 
 #include <algorithm>
+#include <map>
 
+#include "extreme_bounds.h"
 #include "mesh_subset.h"
 #include "subvol/limit.h"
 
@@ -12,6 +14,12 @@ namespace {
 
 constexpr std::size_t kStarts = 4;     // cells in which an extreme is followed
 constexpr std::size_t kEnough = 8192;  // candidates, before those that are no longer open are looked for
+
+constexpr std::size_t kBoxNodes = 125;                       // of 5³
+constexpr std::size_t kBoxesAtOnce = 128;                    // so that their values need little memory
+constexpr std::size_t kBoxesOfSide = 512;                    // at most: around an extreme some are enough
+constexpr std::size_t kLeastBoxes = 2048, kCellsOfBox = 16;  // so many are halved at most; a box takes some 100 µs
+constexpr double kLeastWidth = 1.0 / 64;                     // of a box that is halved
 
 /// One of the best places on its way. step: in parameters, how far the extreme may be
 struct Climb {
@@ -150,32 +158,111 @@ void ExtremeSearch::end_level(std::size_t room, std::vector<std::uint8_t>& marke
     kept_ = 0;
 }
 
-void ExtremeSearch::find(const HexMesh& control, const SchemeOptions& scheme, const LimitExtent& extent, Progress* progress,
-                         std::vector<PartMeasure>& found) const {
-    std::vector<Climb> climbs;
-    std::vector<LimitQuery> queries;
-    std::vector<std::uint8_t> about(control.cells.size(), 0);
-    for (std::size_t s = 0; s < sides_.size(); ++s) {
-        const std::size_t channel = s / 2 % scales_.size();
-        for (const Start& start : sides_[s].starts) {
-            if (&start != &sides_[s].starts.front() && start.bound < sides_[s].best) continue;  // leads to nothing better
-            about[start.cell] = 1;
-            climbs.push_back({s / 2 / scales_.size(), channel, s % 2 == 1, start.cell, scales_[channel] > 0 ? start.step : 0});
-            queries.push_back({start.cell, start.uvw});
-            queries.push_back({start.cell, start.peak});
-        }
+void ExtremeSearch::end_cells(std::span<const Index> cells) {
+    keep_open();
+    for (const Candidate& one : candidates_) boxes_.push_back({one, cells[one.number]});
+    candidates_.clear();
+    kept_ = 0;
+}
+
+struct ExtremeSearch::Surroundings {
+    MeshSubset subset;
+    LimitEvaluator limit;
+
+    Surroundings(const HexMesh& control, std::vector<std::uint8_t> cells, const SchemeOptions& scheme,
+                 const LimitExtent& extent)
+        : subset((grow(control, cells, kHaloOfLimit), detail::subset(control, cells))),
+          limit(subset.mesh, {.scheme = scheme}, extent) {}
+
+    [[nodiscard]] Index number(Index cell) const {
+        return static_cast<Index>(std::ranges::lower_bound(subset.cells, cell) - subset.cells.begin());
     }
-    if (climbs.empty()) return;
-    grow(control, about, kHaloOfLimit);
-    const MeshSubset around = subset(control, about);
-    const auto number = [&](Index cell) {
-        return static_cast<Index>(std::ranges::lower_bound(around.cells, cell) - around.cells.begin());
-    };
-    for (LimitQuery& query : queries) query.cell = number(query.cell);
+};
+
+void ExtremeSearch::find(const HexMesh& control, const SchemeOptions& scheme, const LimitExtent& extent, Progress* progress,
+                         std::vector<PartMeasure>& found) {
+    std::vector<std::uint8_t> cells(control.cells.size(), 0);
+    for (const Side& side : sides_) {
+        for (const Start& start : side.starts) cells[start.cell] = 1;
+    }
+    for (const CellBox& box : boxes_) cells[box.cell] = 1;
+    if (std::ranges::find(cells, 1) == cells.end()) return;
     SchemeOptions rules = scheme;
     rules.crease_angle_deg.reset();
-    const LimitEvaluator limit(around.mesh, {.scheme = rules}, extent);
-    climb(limit, std::move(queries), climbs, number, progress);
+    const Surroundings around(control, std::move(cells), rules, extent);
+    halve_boxes(around, std::max(kLeastBoxes, control.cells.size() / kCellsOfBox), progress);
+    climb_sides(around, progress, found);
+}
+
+/// The most promising boxes first, some at once.
+void ExtremeSearch::halve_boxes(const Surroundings& around, std::size_t room, Progress* progress) {
+    const std::size_t all = room;
+    std::vector<std::size_t> halved(sides_.size(), 0);
+    std::vector<LimitQuery> queries;
+    std::array<double, kBoxNodes> grid;
+    while (true) {
+        std::erase_if(boxes_, [&](const CellBox& box) {
+            const bool ends = !is_open(box) || box.width < kLeastWidth || halved[box.side] >= kBoxesOfSide;
+            if (ends) leave(box);
+            return ends;
+        });
+        if (boxes_.empty() || room == 0) break;
+        report_progress(progress, "extremes", 1 - static_cast<double>(room) / static_cast<double>(all));
+        const std::size_t count = std::min({boxes_.size(), room, kBoxesAtOnce});
+        std::ranges::stable_sort(boxes_, std::ranges::greater{}, [&](const CellBox& box) { return excess(box); });
+        const std::vector<CellBox> batch(boxes_.begin(), boxes_.begin() + static_cast<std::ptrdiff_t>(count));
+        boxes_.erase(boxes_.begin(), boxes_.begin() + static_cast<std::ptrdiff_t>(count));
+        queries.clear();
+        std::map<std::array<double, 5>, std::size_t> first;  // of the queries of a box: those of several sides share them
+        for (const CellBox& box : batch) {
+            ++halved[box.side];
+            if (!first.try_emplace(box.place(), queries.size()).second) continue;
+            for (std::size_t n = 0; n < kBoxNodes; ++n) queries.push_back({around.number(box.cell), box.node(n)});
+        }
+        room -= std::min(room, first.size());
+        const LimitSamples samples = around.limit.at(queries);
+        for (const CellBox& box : batch) {
+            const std::size_t query = first.at(box.place());
+            for (std::size_t n = 0; n < kBoxNodes; ++n) {
+                grid[n] = sides_[box.side].sign * value_of(samples, query + n, channel_of(box.side));
+            }
+            halve(box, grid);
+        }
+    }
+    for (const CellBox& box : boxes_) leave(box);
+    boxes_.clear();
+}
+
+/// Takes the best node, and the octants in which there may be better places.
+void ExtremeSearch::halve(const CellBox& box, std::span<const double, 125> grid) {
+    Side& side = sides_[box.side];
+    const auto best = static_cast<std::size_t>(std::ranges::max_element(grid) - grid.begin());
+    const std::array<double, 8> bounds = octant_bounds(grid);
+    const double bound = std::max(grid[best], std::ranges::max(bounds)), width = box.width / 2;
+    side.add({side.sign * grid[best], bound, box.cell, box.node(best), box.node(best), box.width / 8});
+    for (std::size_t k = 0; k < 8; ++k) {
+        CellBox octant = box;
+        octant.bound = std::min(box.bound, bounds[k]);
+        octant.lower += width * Vec3(k & 1, k >> 1 & 1, k >> 2);
+        octant.width = width;
+        is_open(octant) ? boxes_.push_back(octant) : leave(octant);
+    }
+}
+
+void ExtremeSearch::climb_sides(const Surroundings& around, Progress* progress, std::vector<PartMeasure>& found) const {
+    std::vector<Climb> climbs;
+    std::vector<LimitQuery> queries;
+    for (std::size_t s = 0; s < sides_.size(); ++s) {
+        const std::size_t channel = channel_of(s);
+        for (const Start& start : sides_[s].starts) {
+            if (&start != &sides_[s].starts.front() && start.bound < sides_[s].best) continue;  // leads to nothing better
+            climbs.push_back({s / 2 / scales_.size(), channel, s % 2 == 1, start.cell, scales_[channel] > 0 ? start.step : 0});
+            queries.push_back({around.number(start.cell), start.uvw});
+            queries.push_back({around.number(start.cell), start.peak});
+        }
+    }
+    climb(
+        around.limit, std::move(queries), climbs, [&](Index cell) { return around.number(cell); }, progress);
     const auto each_part = [&](std::size_t part, const auto& visit) {
         visit(found[0]);
         if (found.size() > 1) visit(found[part + 1]);
@@ -183,7 +270,7 @@ void ExtremeSearch::find(const HexMesh& control, const SchemeOptions& scheme, co
     for (const Climb& one : climbs) each_part(one.part, [&](PartMeasure& part) { take(one, part); });
     for (std::size_t s = 0; s < sides_.size(); ++s) {
         each_part(s / 2 / scales_.size(), [&](PartMeasure& part) {
-            FieldMeasure& field = part.fields[s / 2 % scales_.size()];
+            FieldMeasure& field = part.fields[channel_of(s)];
             const double known = s % 2 == 1 ? field.max.value : -field.min.value;
             field.extreme_error = std::max(field.extreme_error, sides_[s].open - known);
         });

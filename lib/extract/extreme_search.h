@@ -13,8 +13,8 @@
 namespace subvol::detail {
 
 /// The extremes of the limit by branch and bound, for each channel and each part of a mesh: a cell is refined further while
-/// the limit may go beyond the best value so far between its nodes. In the end the best places are followed in the limit
-/// itself.
+/// the limit may go beyond the best value so far between its nodes. What is left after the first levels is halved along u, v
+/// and w, box by box, and in the end the best places are followed in the limit itself.
 class ExtremeSearch {
 public:
     /// scales:    of each channel, 1/range; 0 for a constant
@@ -45,12 +45,17 @@ public:
     /// marked: one flag for each cell of the level
     void end_level(std::size_t room, std::vector<std::uint8_t>& marked);
 
+    /// Ends the last level: what is open is left to `find`.
+    ///
+    /// cells: of the level
+    void end_cells(std::span<const Index> cells);
+
     /// Puts the extremes into the whole and, if there are any, its parts.
     ///
     /// control: its creases are tagged
     /// extent:  of the whole mesh
     void find(const HexMesh& control, const SchemeOptions& scheme, const LimitExtent& extent, Progress* progress,
-              std::vector<PartMeasure>& found) const;
+              std::vector<PartMeasure>& found);
 
 private:
     /// A place with a value near an extreme. peak: where it may be even nearer; bound: sign × what it may reach
@@ -89,10 +94,31 @@ private:
     }
     void keep_open();
 
+    /// A part of a cell in which the limit may have an extreme. lower, width: in parameters of the cell
+    struct CellBox : Candidate {
+        Index cell = 0;
+        Vec3 lower{0.0};
+        double width = 1;
+
+        [[nodiscard]] std::array<double, 5> place() const {
+            return {static_cast<double>(cell), lower.x, lower.y, lower.z, width};
+        }
+        /// A node of 5³.
+        [[nodiscard]] Vec3 node(std::size_t n) const { return lower + width / 4 * Vec3(n % 5, n / 5 % 5, n / 25); }
+    };
+    /// The cells of a mesh around starts and boxes, and their limit.
+    struct Surroundings;
+
+    [[nodiscard]] std::size_t channel_of(std::size_t side) const { return side / 2 % scales_.size(); }
+    void halve_boxes(const Surroundings& around, std::size_t room, Progress* progress);
+    void halve(const CellBox& box, std::span<const double, 125> grid);
+    void climb_sides(const Surroundings& around, Progress* progress, std::vector<PartMeasure>& found) const;
+
     std::vector<double> scales_;
     double tolerance_;
     std::vector<Side> sides_;
     std::vector<Candidate> candidates_;
+    std::vector<CellBox> boxes_;
     std::size_t kept_ = 0;
 };
 

@@ -17,6 +17,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "extreme_bounds.h"
 #include "piece_tree.h"
 #include "subvol/cell.h"
 
@@ -81,16 +82,6 @@ void slopes_at_gauss_points(const Piece& nodes, std::array<Piece, 3>& to) {
     pass(kPasses.values, two, to[2]);
 }
 
-/// The nodes of the trilinear piece with the same corners: means along u, then v, then w.
-Piece trilinear(Piece nodes) {
-    for (const std::size_t n : {1u, 7u, 19u, 25u}) nodes[n] = (nodes[n - 1] + nodes[n + 1]) / 2;
-    for (std::size_t first = 3; first < 27; first += 9) {
-        for (std::size_t n = first; n < first + 3; ++n) nodes[n] = (nodes[n - 3] + nodes[n + 3]) / 2;
-    }
-    for (std::size_t n = 9; n < 18; ++n) nodes[n] = (nodes[n - 9] + nodes[n + 9]) / 2;
-    return nodes;
-}
-
 /// What the weights of the nodes of a trilinear piece are for its corners: the transpose of `trilinear`.
 void move_to_corners(Piece& weights) {
     const auto halve = [&](std::size_t n, std::size_t step) {
@@ -105,15 +96,17 @@ void move_to_corners(Piece& weights) {
     for (const std::size_t n : {1u, 7u, 19u, 25u}) halve(n, 1);
 }
 
-/// How far a node lies from the trilinear piece.
-double largest_step(const Piece& nodes) {
-    const Piece flat = trilinear(nodes);
-    double largest = 0;
-    for (std::size_t n = 0; n < 27; ++n) largest = std::max(largest, std::abs(nodes[n] - flat[n]));
-    return largest;
-}
-
 }  // namespace
+
+/// Means along u, then v, then w.
+std::array<double, 27> trilinear(std::array<double, 27> nodes) {
+    for (const std::size_t n : {1u, 7u, 19u, 25u}) nodes[n] = (nodes[n - 1] + nodes[n + 1]) / 2;
+    for (std::size_t first = 3; first < 27; first += 9) {
+        for (std::size_t n = first; n < first + 3; ++n) nodes[n] = (nodes[n - 3] + nodes[n + 3]) / 2;
+    }
+    for (std::size_t n = 9; n < 18; ++n) nodes[n] = (nodes[n - 9] + nodes[n + 9]) / 2;
+    return nodes;
+}
 
 GridMeasure::GridMeasure(std::vector<double> origins) : origins_(std::move(origins)), at_gauss_(origins_.size()) {
 }
@@ -286,136 +279,18 @@ void GridMeasure::read_channel(const DenseCell& grid, std::size_t channel) {
     }
 }
 
-/// Half of how far a node of the piece lies from the trilinear one between its corners is what the limit goes beyond the nodes
-/// at most: where it is smooth it is a quarter, and twice that is for its kinks.
-double GridMeasure::first_bound(double known) const {
-    constexpr double kReach = 0.5;
-    const auto [low, high] = std::ranges::minmax(channel_);
-    if (high + kReach * (high - low) < known) return -HUGE_VAL;  // no node is farther from the corners than the two
-    Piece nodes;
-    std::ranges::copy(channel_, nodes.begin());
-    return high + kReach * largest_step(nodes);
-}
-
-/// By how much nodes of the finest level differ from the parabolas through those of the level before, in the piece of that
-/// level that begins at `first`: the largest difference along each axis, summed.
-double GridMeasure::bend_of_lines(std::size_t first, std::size_t side) const {
-    const std::array<std::size_t, 3> strides{1, side, side * side};
-    double sum = 0;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-        const std::size_t step = strides[axis], other = strides[(axis + 1) % 3], third = strides[(axis + 2) % 3];
-        double largest = 0;
-        for (std::size_t line = 0; line < 25; ++line) {
-            const double* f = &channel_[first + line % 5 * other + line / 5 * third];
-            const double middle = 6 * f[2 * step], ends[2] = {f[0], f[4 * step]};
-            largest = std::max({largest, std::abs((3 * ends[0] + middle - ends[1]) / 8 - f[step]),
-                                std::abs((3 * ends[1] + middle - ends[0]) / 8 - f[3 * step])});
-        }
-        sum += largest;
-    }
-    return sum;
-}
-
-namespace {
-
-/// The quadratic through a node and its 26 neighbours by central differences in steps of the grid.
-struct NodeQuadratic {
-    double value;
-    Vec3 slope{0.0};
-    Mat3 bend{0.0};
-
-    NodeQuadratic(const double* f, std::size_t side) : value(*f) {
-        const std::array<std::ptrdiff_t, 3> strides{1, static_cast<std::ptrdiff_t>(side),
-                                                    static_cast<std::ptrdiff_t>(side * side)};
-        for (int d = 0; d < 3; ++d) {
-            const std::ptrdiff_t i = strides[static_cast<std::size_t>(d)];
-            slope[d] = (f[i] - f[-i]) / 2;
-            bend[d][d] = f[i] - 2 * f[0] + f[-i];
-            for (int e = 0; e < d; ++e) {
-                const std::ptrdiff_t j = strides[static_cast<std::size_t>(e)];
-                bend[d][e] = bend[e][d] = (f[i + j] - f[i - j] - f[j - i] + f[-i - j]) / 4;
-            }
-        }
-    }
-    [[nodiscard]] double at(const Vec3& place) const {
-        return value + glm::dot(slope, place) + glm::dot(place, bend * place) / 2;
-    }
-    /// The best place, from -1 to 1, along one axis after the other.
-    [[nodiscard]] Vec3 peak(Vec3 place) const {
-        constexpr int kRounds = 24;
-        for (int round = 0; round < kRounds; ++round) {
-            const Vec3 before = place;
-            for (int d = 0; d < 3; ++d) {
-                const double rise = slope[d] + bend[0][d] * place.x + bend[1][d] * place.y + bend[2][d] * place.z;
-                if (bend[d][d] < 0) {
-                    place[d] = std::clamp(place[d] - rise / bend[d][d], -1.0, 1.0);
-                } else if (rise != 0) {
-                    place[d] = rise > 0 ? 1 : -1;
-                }
-            }
-            if (place == before) break;
-        }
-        return place;
-    }
-};
-
-}  // namespace
-
-/// From level 2 on a piece has a quadratic, whose largest value is known. What it lacks is told by its 27 nodes, and by how the
-/// finest level differs from the one before.
-double GridMeasure::finer_bound(std::size_t side, double known) const {
-    const auto [low, high] = std::ranges::minmax(channel_);
-    if (high + (high - low) < known) return -HUGE_VAL;
-    double bound = -HUGE_VAL;
-    for (std::size_t w = 1; w < side; w += 2) {
-        for (std::size_t v = 1; v < side; v += 2) {
-            for (std::size_t u = 1; u < side; u += 2) {
-                const double* middle = &channel_[u + side * (v + side * w)];
-                const NodeQuadratic quadratic(middle, side);
-                const double bend = bend_of_lines(u / 4 * 4 + side * (v / 4 * 4 + side * (w / 4 * 4)), side) / 2;
-                double highest = -HUGE_VAL, off = 0;
-                Vec3 best(0.0);
-                for (std::size_t n = 0; n < kNodes; ++n) {
-                    const Vec3 at = Vec3(n % 3, n / 3 % 3, n / 9) - Vec3(1.0);
-                    const double value = *(middle + (static_cast<std::ptrdiff_t>(n % 3) - 1) +
-                                           (static_cast<std::ptrdiff_t>(n / 3 % 3) - 1) * static_cast<std::ptrdiff_t>(side) +
-                                           (static_cast<std::ptrdiff_t>(n / 9) - 1) * static_cast<std::ptrdiff_t>(side * side));
-                    if (value > highest) best = at;
-                    highest = std::max(highest, value);
-                    off = std::max(off, std::abs(quadratic.at(at) - value));
-                }
-                bound = std::max(bound, std::max(highest, quadratic.at(quadratic.peak(best))) + bend + off / 2);
-            }
-        }
-    }
-    return bound;
-}
-
-/// Where the quadratic through the 27 nodes around a node, or beside it at the cell's sides, has its largest value.
-Vec3 GridMeasure::peak(std::size_t node, std::size_t side) const {
-    const std::array<std::size_t, 3> at{node % side, node / side % side, node / side / side};
-    std::array<std::size_t, 3> middle;
-    Vec3 place(0.0);
-    for (std::size_t d = 0; d < 3; ++d) {
-        middle[d] = std::clamp<std::size_t>(at[d], 1, side - 2);
-        place[static_cast<int>(d)] = static_cast<double>(at[d]) - static_cast<double>(middle[d]);
-    }
-    const NodeQuadratic quadratic(&channel_[middle[0] + side * (middle[1] + side * middle[2])], side);
-    return (Vec3(middle[0], middle[1], middle[2]) + quadratic.peak(place)) / static_cast<double>(side - 1);
-}
-
 void GridMeasure::add_extremes(const DenseCell& grid, std::size_t channel, const std::array<double, 2>& known,
                                std::vector<Extreme>& extremes) {
     const std::size_t side = grid.side;
     read_channel(grid, channel);
     for (const std::size_t s : {0u, 1u}) {
         for (double& value : channel_) value = -value;  // times -1, then times 1 again
-        const double bound = side > 3 ? finer_bound(side, known[s]) : first_bound(known[s]);
+        const double bound = side > 3 ? finer_bound(channel_, side, known[s]) : first_bound(channel_, known[s]);
         if (bound < known[s]) continue;
         const auto node = static_cast<std::size_t>(std::ranges::max_element(channel_) - channel_.begin());
         Extreme found{channel, s == 0 ? -1.0 : 1.0, channel_[node], bound};
         found.uvw = Vec3(node % side, node / side % side, node / side / side) / static_cast<double>(side - 1);
-        found.peak = side > 3 ? peak(node, side) : found.uvw;
+        found.peak = side > 3 ? peak_near(channel_, side, node) : found.uvw;
         extremes.push_back(found);
     }
 }

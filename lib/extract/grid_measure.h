@@ -9,6 +9,9 @@
 
 namespace subvol::detail {
 
+/// The 27 nodes of the trilinear piece with the same corners.
+[[nodiscard]] std::array<double, 27> trilinear(std::array<double, 27> nodes);
+
 /// Integrals and extremes of one refined cell, from the grid of its nodes.
 ///
 /// Nodes of two levels make pieces of 27 nodes, which are integrated by 27 Gauss points: exact for volumes of triquadratic
@@ -94,10 +97,6 @@ private:
     void add(const DenseCell& grid, const Nodes& nodes, std::span<double> sums) const;
     void find_values(const DenseCell& grid, const Nodes& nodes);
     void read_channel(const DenseCell& grid, std::size_t channel);
-    [[nodiscard]] double first_bound(double known) const;
-    [[nodiscard]] double finer_bound(std::size_t side, double known) const;
-    [[nodiscard]] double bend_of_lines(std::size_t first, std::size_t side) const;
-    [[nodiscard]] Vec3 peak(std::size_t node, std::size_t side) const;
 
     std::vector<double> origins_;
     std::array<Piece, 3> positions_{};  // of the piece's nodes

@@ -11,8 +11,8 @@
 // cells themselves. If ρ is the part by which the sums change again, ρ·(S₂ − S₁) is added for the cells that are not refined,
 // and ρ times what the changes are without regard to signs is said as the error.
 //
-// Extremes follow by branch and bound: a cell is refined as well if the limit may go beyond the best value so far between its
-// nodes. In the end the best places are evaluated in the limit itself.
+// Extremes follow by branch and bound: a cell is refined once more if the limit may go beyond the best value so far between its
+// nodes. Where it still may, the octants of the cell are looked at, and theirs (ExtremeSearch).
 //
 // Cells are worked on in blocks. What is kept of a cell beyond its block is a number, and which cells go on.
 #include "measurer.h"
@@ -282,24 +282,15 @@ void Measurer::collect(Index cell, std::size_t number, double step, const CellNo
     extremes_.look(p, cell, number, step, note.extremes);
 }
 
-namespace {
-
-/// How many pieces the cells of extremes may be refined to beyond a level. Those of a few channels go on to the last level, and
-/// may take four times as long as the first one. Where many channels are refined together, the last levels would take most of
-/// the time.
-std::size_t room_for_extremes(std::size_t work, int level, std::size_t channels) {
-    constexpr std::size_t kFew = 4, kMany = 64;
-    const std::size_t most = std::clamp(channels, kFew, kMany), room = 4 * work * kFew * kFew / (most * most);
-    return level < 4 ? std::max(work, room) : room;
-}
-
-}  // namespace
-
 std::vector<Index> Measurer::choose(std::span<const Index> cells, const Changes& changes, int level) {
     constexpr std::size_t kLeastWork = 32768;  // pieces
     const std::size_t work = level >= kMostLevels ? 0 : std::max(cells_.size(), kLeastWork);
     std::vector<std::uint8_t> for_extremes(cells.size(), 0), for_sums(cells.size(), 0);
-    extremes_.end_level(room_for_extremes(work, level, channels_.size()) >> 3 * level, for_extremes);
+    if (level == 1) {
+        extremes_.end_level(work >> 3, for_extremes);
+    } else {
+        extremes_.end_cells(cells);
+    }
     choose_for_sums(cells, changes, level, 8 * work >> 3 * level, for_sums);
     std::vector<Index> next, summed;
     for (std::size_t i = 0; i < cells.size(); ++i) {

@@ -166,6 +166,27 @@ TEST(Measure, NoPlaceIsBeyondTheExtremes) {
     const auto [low, high] = std::ranges::minmax(found);
     EXPECT_GE(static_cast<double>(low), field.min.value - 1e-4);  // the search stops at 1e-4 of the range
     EXPECT_LE(static_cast<double>(high), field.max.value + 1e-4);
+    EXPECT_LE(field.extreme_error, 1e-4 * (field.max.value - field.min.value));  // and it says so
+}
+
+// Many rough fields: each is followed into the octants of its own cells.
+TEST(Measure, ExtremesOfManyFieldsAreKnownToTheTolerance) {
+    HexMesh mesh = test::distorted_box(6, .15);
+    std::mt19937 random(3);
+    for (int f = 0; f < 12; ++f) {
+        Attribute field{"f" + std::to_string(f), 1, std::vector<double>(mesh.points.size())};
+        for (double& value : field.values) value = static_cast<double>(random() % 1000) / 1000;
+        mesh.attributes.push_back(std::move(field));
+    }
+    const LimitMeasure many = measure_limit(mesh);
+    HexMesh alone = mesh;
+    alone.attributes = {mesh.attributes[5]};
+    const FieldMeasure one = measure_limit(alone, {.tolerance = 1e-6}).whole.fields[0];
+    for (const FieldMeasure& field : many.whole.fields) {
+        EXPECT_LE(field.extreme_error, 1e-4 * (field.max.value - field.min.value)) << field.name;
+    }
+    EXPECT_NEAR(many.whole.fields[5].max.value, one.max.value, 1e-4);
+    EXPECT_NEAR(many.whole.fields[5].min.value, one.min.value, 1e-4);
 }
 
 TEST(Measure, AConstantHasItsPlaceInACell) {

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <span>
+
+#include "subvol/vec.h"
+
+namespace subvol::detail {
+
+// How large the limit may be between the nodes of a grid: estimates. A grid has side³ values, u fastest.
+
+/// From the nodes of level 1, 3³; -HUGE_VAL if it does not reach what is known.
+[[nodiscard]] double first_bound(std::span<const double> grid, double known);
+
+/// The same from level 2 on.
+///
+/// side: 5, or one more than a larger multiple of 4
+[[nodiscard]] double finer_bound(std::span<const double> grid, std::size_t side, double known);
+
+/// The bound of each octant of a grid of 5³ nodes, in the order u + 2v + 4w.
+[[nodiscard]] std::array<double, 8> octant_bounds(std::span<const double, 125> grid);
+
+/// Where the quadratic through the 27 nodes around a node, or beside it at the sides, has its largest value, in [0,1]³.
+[[nodiscard]] Vec3 peak_near(std::span<const double> grid, std::size_t side, std::size_t node);
+
+}  // namespace subvol::detail
