@@ -26,9 +26,11 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <numbers>
 #include <sstream>
 #include <string>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "grids.h"
@@ -49,29 +51,35 @@ uniform sampler2D picture;
 void main() { gl_FragData[0] = texture(picture, texCoord); }
 )";
 
-/// The part of a renderer's whole picture that is in this tile of the window, from the lower left.
+/// The picture of a renderer in the window, and where it lies in the whole one, from the lower left. These are the same unless
+/// the camera is off the middle of its window, as in each tile of a large screenshot: then the whole picture is the smallest
+/// one about the line of sight that contains it.
 struct Tile {
     int whole_width = 0, whole_height = 0;
     int x = 0, y = 0, width = 0, height = 0;
     int window_x = 0, window_y = 0;
 
+    /// The height of the whole picture in those that the camera's angle is for.
+    [[nodiscard]] double taller() const { return static_cast<double>(whole_height) / height; }
+    [[nodiscard]] bool is_whole() const { return width == whole_width && height == whole_height; }
     bool operator==(const Tile&) const = default;
 };
 
 Tile tile_of(vtkRenderer& renderer) {
     Tile tile;
     renderer.GetTiledSizeAndOrigin(&tile.width, &tile.height, &tile.window_x, &tile.window_y);
-    const int* const whole = renderer.GetSize();
-    tile.whole_width = std::max(whole[0], tile.width);
-    tile.whole_height = std::max(whole[1], tile.height);
-    const int* const window = renderer.GetVTKWindow()->GetSize();  // of all tiles
-    const double* const in_window = renderer.GetViewport();
-    const double* const shown = renderer.GetVTKWindow()->GetTileViewport();
-    const auto offset = [&](int k) {
-        return std::max(0, static_cast<int>(std::lround(shown[k] * window[k]) - std::lround(in_window[k] * window[k])));
+    const double* const center = renderer.GetActiveCamera()->GetWindowCenter();
+    const auto place = [](double off_middle, int size, int& whole, int& first) {
+        const double shift = off_middle * size;
+        constexpr double kRounding = 1e-3;
+        if (std::abs(shift - std::round(shift)) > kRounding)
+            throw Error(ErrorCode::InvalidInput, "the window is off the middle by parts of a pixel", "Camera");
+        const auto pixels = static_cast<int>(std::lround(shift));
+        whole = size + std::abs(pixels);
+        first = std::max(0, pixels);
     };
-    tile.x = std::min(offset(0), tile.whole_width - tile.width);
-    tile.y = std::min(offset(1), tile.whole_height - tile.height);
+    place(center[0], tile.width, tile.whole_width, tile.x);
+    place(center[1], tile.height, tile.whole_height, tile.y);
     return tile;
 }
 
@@ -110,22 +118,23 @@ Vec3 vec(const double* x) {
     return {x[0], x[1], x[2]};
 }
 
-Camera camera_of(vtkCamera& camera, const Placement& placement) {
+Camera camera_of(vtkCamera& camera, const Placement& placement, double taller) {
+    constexpr double kDegree = std::numbers::pi / 180;
+    const double half_angle = camera.GetViewAngle() / 2 * kDegree;
     return {.eye = placement.in_mesh(vec(camera.GetPosition())),
             .target = placement.in_mesh(vec(camera.GetFocalPoint())),
             .up = placement.direction_in_mesh(vec(camera.GetViewUp())),
-            .fovy_deg = camera.GetViewAngle(),
-            .ortho_height = camera.GetParallelProjection() ? 2 * camera.GetParallelScale() / placement.scale : 0};
+            .fovy_deg = 2 * std::atan(taller * std::tan(half_angle)) / kDegree,
+            .ortho_height = camera.GetParallelProjection() ? 2 * taller * camera.GetParallelScale() / placement.scale : 0};
 }
 
-/// Refuses cameras that a View does not have: off the middle, sheared, or with their angle across.
+/// Refuses cameras that a View does not have.
 void check_camera(vtkCamera& camera) {
-    const double* const center = camera.GetWindowCenter();
     const double* const shear = camera.GetViewShear();
-    if (center[0] == 0 && center[1] == 0 && shear[0] == 0 && shear[1] == 0 && !camera.GetUseHorizontalViewAngle() &&
-        !camera.GetUseOffAxisProjection() && !camera.GetStereo())
+    if (shear[0] == 0 && shear[1] == 0 && !camera.GetUseHorizontalViewAngle() && !camera.GetUseOffAxisProjection() &&
+        !camera.GetStereo())
         return;
-    throw Error(ErrorCode::InvalidInput, "the camera is stereo, sheared, or off the middle of its window", "Camera");
+    throw Error(ErrorCode::InvalidInput, "the camera is stereo, sheared, or its angle is that of the width", "Camera");
 }
 
 /// The eye depths of what has been drawn in a tile, in the mesh's units, rows from the top; those of the rest of the picture
@@ -240,7 +249,10 @@ struct vtkSubvolVolumeMapper::State {
         for (const auto& [name, text] : all_options()) {
             const auto found = std::ranges::find_if(known, [&](const Option& option) { return option.key() == name; });
             if (found == known.end()) throw Error(ErrorCode::InvalidInput, "there is no option '" + name + "'", "Options");
-            found->read(text, name);
+            if (bool* const* const on = std::get_if<bool*>(&found->value))
+                **on = text != "0" && text != "false";
+            else
+                found->read(text, name);
         }
         const auto given = all_options();
         subvol::check_options(
@@ -363,11 +375,10 @@ void vtkSubvolVolumeMapper::Render(vtkRenderer* renderer, vtkVolume* volume) {
         vtkCamera& camera = *renderer->GetActiveCamera();
         check_camera(camera);
         const Placement placement = placement_of(*volume);
-        const Camera eye = camera_of(camera, placement);
         const Tile tile = tile_of(*renderer);
-        const bool tiled = tile.width < tile.whole_width || tile.height < tile.whole_height;
+        const Camera eye = camera_of(camera, placement, tile.taller());
         const bool turning = renderer->GetRenderWindow()->GetDesiredUpdateRate() > kManyFrames;
-        const int reduction = tiled ? 1 : Reduction > 0 ? Reduction : turning ? kReductionWhileTurning : 1;
+        const int reduction = !tile.is_whole() ? 1 : Reduction > 0 ? Reduction : turning ? kReductionWhileTurning : 1;
         State::PictureKey key{.mapper = GetMTime(),
                               .property = property.GetMTime(),
                               .colors = property.GetRGBTransferFunction()->GetMTime(),

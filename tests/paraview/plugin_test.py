@@ -1,0 +1,227 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The plugin in ParaView: pictures against those of the library, rays that end at slices, filters, files, states. Run by pvpython;
+scripts/test-paraview does. Arguments: the plugin, and a folder for pictures."""
+import os
+import sys
+import unittest
+
+import numpy as np
+import subvol
+from paraview import servermanager, simple
+from paraview.vtk.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkIOImage import vtkPNGReader
+
+PLUGIN, FOLDER = sys.argv[1], sys.argv[2]
+simple.LoadPlugin(PLUGIN, remote=False, ns=vars(simple))
+SIZE = (300, 260)
+EYE, TARGET, UP, ANGLE = (5.0, -7.0, 4.0), (0.1, 0.0, 0.0), (0.0, 0.0, 1.0), 25.0
+TO_8_BITS = 1.01 / 255  # a picture in 8 bits is off by half a step; two that round differently by one
+
+
+def mesh_file():
+    path = os.path.join(FOLDER, "ball.vtu")
+    mesh = subvol.model("ball", 4)
+    x, y, z = mesh.points.T
+    mesh.fields["heat"] = np.sin(3 * x) + z * y
+    subvol.write_mesh(subvol.HexMesh(mesh.points, mesh.cells, {"heat": np.sin(3 * x) + z * y}), path)
+    return path
+
+
+def read_png(path):
+    """As floats of the screen, rows from the top."""
+    reader = vtkPNGReader()
+    reader.SetFileName(path)
+    reader.Update()
+    image = reader.GetOutput()
+    width, height, _ = image.GetDimensions()
+    return vtk_to_numpy(image.GetPointData().GetScalars()).reshape(height, width, -1)[::-1, :, :3] / 255.0
+
+
+def pixels(view, name, size=SIZE):
+    path = os.path.join(FOLDER, name + ".png")
+    simple.SaveScreenshot(path, view, ImageResolution=size)
+    return read_png(path)
+
+
+def psnr(a, b):
+    return -10 * np.log10(max(np.mean((a - b) ** 2), 1e-12))
+
+
+class Plugin(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.path = mesh_file()
+        cls.mesh = subvol.read_mesh(cls.path)
+
+    def setUp(self):
+        self.reader = simple.XMLUnstructuredGridReader(FileName=[self.path])
+        self.view = simple.CreateRenderView()
+        self.view.ViewSize = SIZE
+        self.view.OrientationAxesVisibility = 0
+        self.view.UseColorPaletteForBackground = 0
+        self.view.Background = [0, 0, 0]
+        self.view.CameraPosition, self.view.CameraFocalPoint, self.view.CameraViewUp = EYE, TARGET, UP
+        self.view.CameraViewAngle = ANGLE
+        self.shown = simple.Show(self.reader, self.view)
+        simple.ColorBy(self.shown, ("POINTS", "heat"))
+        self.shown.SetRepresentationType("Subdivision splats")
+        self.shown.SetScalarBarVisibility(self.view, False)
+        self.shown.ScalarOpacityUnitDistance = 0.4
+        self.colors = simple.GetColorTransferFunction("heat")
+        self.opacities = simple.GetOpacityTransferFunction("heat")
+
+    def tearDown(self):
+        simple.Delete(self.view)
+        simple.Delete(self.reader)
+
+    def transfer_function(self):
+        colors, opacities = self.colors.GetClientSideObject(), self.opacities.GetClientSideObject()
+        low, high = colors.GetRange()
+        values = np.linspace(low, high, 257)
+        low, high = opacities.GetRange()
+        places = np.linspace(low, high, 257)
+
+        def color(value):
+            rgb = [0.0, 0.0, 0.0]
+            colors.GetColor(value, rgb)
+            return rgb
+
+        return subvol.TransferFunction.from_knots([[v, *color(v)] for v in values],
+                                                  [[p, opacities.GetValue(p)] for p in places])
+
+    def picture(self, size=SIZE, **options):
+        camera = subvol.Camera(EYE, TARGET, UP, ANGLE)
+        if self.view.CameraParallelProjection:
+            camera = subvol.Camera(EYE, TARGET, UP, ortho_height=2 * self.view.CameraParallelScale)
+        return np.asarray(subvol.render(self.mesh, camera=camera, size=size, tf=self.transfer_function(), look="volume", opacity_unit=0.4,
+                                        **({"backend": "cpu"} if options.get("method", "splat") == "splat" else {}), **options))
+
+    def assert_same(self, drawn, expected, most=TO_8_BITS):
+        self.assertGreater((expected > 0.05).mean(), 0.03)  # something is seen
+        self.assertLess(np.abs(drawn - expected).max(), most)
+
+    def slice_at(self, y):
+        plane = simple.Plane(Origin=[-4, y, -4], Point1=[4, y, -4], Point2=[-4, y, 4])
+        shown = simple.Show(plane, self.view)
+        shown.ColorArrayName = [None, ""]
+        shown.AmbientColor = shown.DiffuseColor = [0.25, 0.5, 0.75]
+        shown.Ambient, shown.Diffuse = 1, 0
+        self.addCleanup(simple.Delete, plane)
+        forward = (np.array(TARGET) - EYE) / np.linalg.norm(np.array(TARGET) - EYE)
+        right = np.cross(forward, UP)
+        right /= np.linalg.norm(right)
+        up = np.cross(right, forward)
+        pixel = 2 * np.tan(np.radians(ANGLE / 2)) / SIZE[1]
+        columns, rows = np.meshgrid(np.arange(SIZE[0]) + 0.5 - SIZE[0] / 2, SIZE[1] / 2 - np.arange(SIZE[1]) - 0.5)
+        direction = forward + pixel * (columns[..., None] * right + rows[..., None] * up)
+        depth = (y - EYE[1]) / direction[..., 1]
+        place = np.array(EYE) + depth[..., None] * direction
+        met = (np.abs(place[..., 0]) < 4) & (np.abs(place[..., 2]) < 4)
+        return np.where(met, depth, np.inf), met
+
+    def test_the_picture_is_that_of_the_library(self):
+        self.assert_same(pixels(self.view, "perspective"), self.picture()[..., :3])
+
+    def test_parallel_projection(self):
+        self.view.CameraParallelProjection, self.view.CameraParallelScale = 1, 1.5
+        self.assert_same(pixels(self.view, "parallel"), self.picture()[..., :3])
+
+    def test_methods_and_options(self):
+        self.shown.SubvolMethod = "dense"
+        self.assert_same(pixels(self.view, "dense"), self.picture(method="dense")[..., :3])
+        self.shown.SubvolMethod, self.shown.SubvolScheme, self.shown.SubvolOptions = "splat", "cc", "per_edge=2"
+        self.assert_same(pixels(self.view, "scheme"), self.picture(scheme="cc", per_edge=2)[..., :3])
+        self.shown.SubvolShade = 1
+        self.assert_same(pixels(self.view, "shade"), self.picture(scheme="cc", per_edge=2, shade=True)[..., :3])
+
+    def test_opaque_geometry_inside_has_no_seam(self):
+        ends, met = self.slice_at(0.2)
+        before = self.picture(ray_ends=ends)
+        expected = before[..., :3] + (1 - before[..., 3:]) * met[..., None] * [0.25, 0.5, 0.75]
+        drawn = pixels(self.view, "slice")
+        rim = np.logical_or.reduce([met != np.roll(met, step, axis) for step in (1, -1) for axis in (0, 1)])
+        # A depth buffer of 24 bits between ParaView's near and far plane.
+        self.assert_same(drawn[~rim], expected[~rim], 2 * TO_8_BITS)
+        self.assertGreater(np.abs(drawn - self.picture()[..., :3]).max(), 0.2)
+
+    def test_what_lies_behind_shows_through_and_what_lies_before_hides(self):
+        _, met = self.slice_at(3.0)
+        whole = self.picture()
+        expected = whole[..., :3] + (1 - whole[..., 3:]) * met[..., None] * [0.25, 0.5, 0.75]
+        drawn = pixels(self.view, "behind")
+        self.assertGreater(psnr(drawn, expected), 40)  # the rim of the plane is rounded to other pixels
+        _, met = self.slice_at(-3.0)
+        self.assertTrue(np.allclose(pixels(self.view, "before")[met][100:-100], [0.25, 0.5, 0.75], atol=TO_8_BITS))
+
+    def test_a_moved_volume(self):
+        self.shown.Position, self.shown.Scale = [0.3, 0, 0.1], [0.5, 0.5, 0.5]
+        moved = subvol.HexMesh(0.5 * self.mesh.points + [0.3, 0, 0.1], self.mesh.cells, {"heat": self.mesh.fields["heat"]})
+        self.mesh, whole = moved, self.mesh
+        try:
+            self.assert_same(pixels(self.view, "moved"), self.picture()[..., :3])
+        finally:
+            self.mesh = whole
+
+    def test_a_larger_screenshot_of_tiles(self):
+        large = [4 * side for side in SIZE]
+        self.assert_same(pixels(self.view, "large", large), self.picture(size=large)[..., :3])
+
+    def test_a_state_file(self):
+        first = pixels(self.view, "state_before")
+        path = os.path.join(FOLDER, "state.pvsm")
+        simple.SaveState(path)
+        simple.Delete(self.view)
+        simple.LoadState(path)
+        self.view = simple.GetActiveView()
+        self.assertTrue(np.array_equal(first, pixels(self.view, "state_after")))
+
+    def test_limit_surface(self):
+        surface = simple.LimitSurface(Input=self.reader, Boundary=1, Isovalues=[])
+        surface.UpdatePipeline()
+        self.assertEqual(len(surface.Isovalues), 0)
+        drawn = servermanager.Fetch(surface)
+        points = vtk_to_numpy(drawn.GetPoints().GetData())
+        of_library = subvol.surface(self.mesh, boundary=True)
+        self.assertEqual(drawn.GetNumberOfCells(), len(of_library.triangles))
+        self.assertTrue(np.allclose(points, of_library.points))
+        self.assertTrue(drawn.GetPointData().GetArray("heat"))
+        simple.Delete(surface)
+
+    def test_limit_slice(self):
+        cut = simple.LimitSlice(Input=self.reader, Origin=[0, 0, 0], Normal=[0, 0, 1], Resolution=64)
+        cut.UpdatePipeline()
+        drawn = servermanager.Fetch(cut)
+        values = vtk_to_numpy(drawn.GetPointData().GetArray("heat"))
+        expected = np.asarray(subvol.slice(self.mesh, (0, 0, 0), (0, 0, 1), resolution=64).values)
+        self.assertTrue(np.array_equal(values, expected[~np.isnan(expected)]))
+        self.assertTrue(np.allclose(vtk_to_numpy(drawn.GetPoints().GetData())[:, 2], 0, atol=1e-12))
+        simple.Delete(cut)
+
+    def test_subdivide_and_folds(self):
+        fine = simple.SubdivideVolume(Input=self.reader, Levels=1)
+        fine.UpdatePipeline()
+        self.assertEqual(fine.GetDataInformation().GetNumberOfCells(), 8 * len(self.mesh.cells))
+        fine.Levels, fine.CheckFolds = 0, 1
+        fine.UpdatePipeline()
+        self.assertEqual(servermanager.Fetch(fine).GetCellData().GetArray("fold").GetRange()[0], 0)
+        simple.Delete(fine)
+
+    def test_vdb(self):
+        path = os.path.join(FOLDER, "ball.vdb")
+        simple.SaveData(path, proxy=self.reader, Resolution=60)
+        grid, = subvol.read_vdb(path)
+        self.assertEqual(grid.name, "heat")
+        inside = [[0.1, 0.2, 0.3], [-0.4, 0.1, 0.2], [0.0, 0.0, 0.6]]
+        expected = [np.sin(3 * x) + z * y for x, y, z in inside]
+        self.assertTrue(np.allclose(grid.values(inside)[0], expected, atol=0.05), grid.values(inside))
+
+    def test_bad_input_is_said(self):
+        self.shown.SubvolOptions = "per_edges=2"
+        pixels(self.view, "refused")  # the error is in ParaView's log; nothing is drawn
+        self.shown.SubvolOptions = ""
+        self.assert_same(pixels(self.view, "again"), self.picture()[..., :3])
+
+
+if __name__ == "__main__":
+    outcome = unittest.TextTestRunner(verbosity=2).run(unittest.defaultTestLoader.loadTestsFromTestCase(Plugin))
+    os._exit(0 if outcome.wasSuccessful() else 1)  # pvpython's own end fails in its X context
