@@ -1,4 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <iterator>
+#include <string_view>
+#include <tuple>
+
 #include "bind.h"
 #include "subvol/expression.h"
 #include "subvol/mesh_io.h"
@@ -10,6 +15,7 @@
 #include "subvol/region.h"
 #include "subvol/surface.h"
 #include "subvol/topology.h"
+#include "subvol/vtk_grid.h"
 #include "subvol/warp.h"
 #include "subvol/wavelet_file.h"
 
@@ -99,6 +105,49 @@ py::tuple read(const std::string& path, const py::kwargs& given) {
         return read_mesh(path, options);
     }();
     if (!result.shells.empty()) result.warnings.emplace_back("quads and lines of shells and beams left out");
+    return py::make_tuple(with_sets(std::move(result.mesh), std::move(result.sets)), result.warnings);
+}
+
+/// Those that have an effect on a grid in memory.
+std::vector<Option> options_of_grids(ReadOptions& options) {
+    constexpr std::string_view kNames[]{"other-cells", "weld-distance", "curved", "cell-values"};
+    std::vector<Option> all = options_of(options);
+    std::erase_if(all, [&](const Option& option) { return std::ranges::find(kNames, option.name) == std::end(kNames); });
+    return all;
+}
+
+/// An array of a VTK grid: (name, whether at the cells, numbers).
+VtkGridArray vtk_array_of(const py::handle& given) {
+    const auto [name, at_cells, numbers] = given.cast<std::tuple<std::string, bool, py::object>>();
+    const py::array array = array_from(numbers, Error(ErrorCode::InvalidInput, "is no array", name));
+    const bool flat = array.ndim() < 2;
+    const int components = flat ? 1 : static_cast<int>(array.shape(1));
+    const py::array_t<double> rows =
+        flat ? subvol::python::numbers<double>(array, name) : rows_of<double>(array, components, name);
+    return {name, components, at_cells, {rows.data(), rows.data() + rows.size()}};
+}
+
+py::tuple from_vtk(const py::object& points, const py::object& types, const py::object& ends, const py::object& connectivity,
+                   const py::object& faces, const py::object& face_ends, const py::list& arrays, const py::kwargs& given) {
+    ReadOptions options;
+    set_options(options_of_grids(options), given);
+    const auto whole = [](const py::object& list, const char* what) {
+        const py::array_t<std::int64_t> all = numbers<std::int64_t>(list, what);
+        return std::vector<std::int64_t>(all.data(), all.data() + all.size());
+    };
+    VtkUnstructuredGrid grid;
+    grid.points = vectors(points, "points");
+    const std::vector<std::int64_t> kinds = whole(types, "types");
+    grid.types.assign(kinds.begin(), kinds.end());
+    grid.ends = whole(ends, "offsets");
+    grid.connectivity = whole(connectivity, "connectivity");
+    grid.faces = whole(faces, "faces");
+    grid.face_ends = whole(face_ends, "face offsets");
+    for (const py::handle& array : arrays) grid.arrays.push_back(vtk_array_of(array));
+    ReadResult result = [&] {
+        const py::gil_scoped_release without_gil;
+        return mesh_of_vtk(std::move(grid), options);
+    }();
     return py::make_tuple(with_sets(std::move(result.mesh), std::move(result.sets)), result.warnings);
 }
 
@@ -251,6 +300,9 @@ void bind_mesh(py::module_& module) {
     module.def("read_mesh", &read, py::arg("path"));
     ReadOptions reading;
     describe(module, "read_mesh", options_of(reading));
+    module.def("from_vtk", &from_vtk, py::arg("points"), py::arg("types"), py::arg("ends"), py::arg("connectivity"),
+               py::arg("faces"), py::arg("face_ends"), py::arg("arrays"));
+    describe(module, "from_vtk", options_of_grids(reading));
     module.def(
         "series_times",
         [](const std::string& path) {

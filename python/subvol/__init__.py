@@ -9,7 +9,7 @@ from . import _core
 from ._colors import TransferFunction
 from ._core import Camera, Field, HexMesh, Image, RbfVolume, Refinement, Study, StudyCase, StudyResults, gl_devices, set_threads
 from ._errors import Cancelled, Error, FileError, InvalidInput, MissingCapability, SubvolWarning
-from ._exchange import from_meshio, from_pyvista, to_meshio, to_pyvista
+from ._exchange import from_meshio, from_pyvista, from_vtk, to_meshio, to_pyvista, to_vtk
 from ._fields import LimitSamples, as_field, evaluate, evaluate_limit
 from ._measure import FoldCheck, PointsError, ProbeSamples, Slice, SurfaceMesh, approximate, check_folds, measure, points_error, probe, slice, surface
 from ._mesh import Series, model, models, only, open_series, quantity, read_mesh, subdivide, warp, write_mesh, write_wavelets
@@ -29,8 +29,8 @@ __all__ = [
     "Camera", "Cancelled", "Error", "Field", "FieldComparison", "FileError", "FoldCheck", "Grid", "HexMesh", "Image", "ImageComparison",
     "InvalidInput", "LimitSamples", "MissingCapability", "Page", "PointsError", "ProbeSamples", "RbfVolume", "Refinement", "Series",
     "Slice", "Study", "StudyCase", "StudyResults", "SubvolWarning", "SurfaceMesh", "TransferFunction", "approximate", "as_field", "check_folds", "compare",
-    "compare_fields", "compare_images", "evaluate", "evaluate_limit", "fit", "from_meshio", "from_pyvista", "gl_devices", "kernels",
+    "compare_fields", "compare_images", "evaluate", "evaluate_limit", "fit", "from_meshio", "from_pyvista", "from_vtk", "gl_devices", "kernels",
     "measure", "model", "models", "only", "open_series", "page", "points_error", "probe", "quantity", "rasterize", "read_image", "read_mesh", "read_points",
     "read_vdb", "reduce", "render", "run_study", "sample", "sample_grid", "set_threads", "slice", "studies", "study", "subdivide",
-    "surface", "to_meshio", "to_pyvista", "warp", "write_image", "write_mesh", "write_points", "write_vdb", "write_wavelets",
+    "surface", "to_meshio", "to_pyvista", "to_vtk", "warp", "write_image", "write_mesh", "write_points", "write_vdb", "write_wavelets",
 ]

@@ -8,7 +8,7 @@ import numpy.typing as npt
 from ._colors import TransferFunction
 from ._core import Camera, Field, HexMesh, Image, RbfVolume, Refinement, Study, StudyCase, StudyResults, gl_devices, set_threads
 from ._errors import Cancelled, Error, FileError, InvalidInput, MissingCapability, SubvolWarning
-from ._exchange import from_meshio, from_pyvista, to_meshio, to_pyvista
+from ._exchange import from_meshio, from_pyvista, to_meshio, to_pyvista, to_vtk
 from ._fields import LimitSamples, as_field, evaluate
 from ._measure import FoldCheck, PointsError, ProbeSamples, Slice, SurfaceMesh
 from ._mesh import Series, model, models, only, open_series, quantity, warp, write_mesh, write_wavelets
@@ -92,6 +92,25 @@ def fit(
     extent:      the distance at which bc and cardinal end [0.001 to 3]
     terms:       number of gaussians in a sum [1 to 6]
     sign_slip:   fit bc with the sign error of the paper's fits in the inner cubic coefficient
+    """
+
+def from_vtk(
+    grid: Any, *, other_cells: str = 'split', weld: Optional[float] = None, curved: Union[float, str] = '5e-06',
+    cell_values: str = 'auto'
+) -> HexMesh:
+    """The mesh of a `vtkUnstructuredGrid`, as `read_mesh` makes it of a file with this grid: tetrahedra, prisms, pyramids and polyhedra
+    are split, curved cells followed, ghost cells dropped, values at cells moved to the points.
+
+    other_cells: what to do with tetrahedra, prisms and pyramids: split (all cells, into hexahedra), ignore, refuse [split,
+                 ignore, refuse]
+    weld:        join points of a file whose distance is at most D; 0: those at the same place [0 or more]
+    curved:      split curved hexahedra into smaller ones, to within this part T of the mesh's size from their true shape,
+                 and 400 T of the fields' ranges; corners: use nothing but their corners [corners]
+    cell_values: values at cells become values at points: fit (the volume follows the cells' means without waves; the
+                 default for OpenFOAM), mean (of the cells around each point; the default for all others), exact (the volume
+                 has the cells' means), auto [auto, fit, mean, exact]
+
+    Warns (SubvolWarning) once for each thing left out, turned round or converted.
     """
 
 def measure(
@@ -502,8 +521,8 @@ __all__ = [
     "Camera", "Cancelled", "Error", "Field", "FieldComparison", "FileError", "FoldCheck", "Grid", "HexMesh", "Image", "ImageComparison",
     "InvalidInput", "LimitSamples", "MissingCapability", "Page", "PointsError", "ProbeSamples", "RbfVolume", "Refinement", "Series",
     "Slice", "Study", "StudyCase", "StudyResults", "SubvolWarning", "SurfaceMesh", "TransferFunction", "approximate", "as_field", "check_folds", "compare",
-    "compare_fields", "compare_images", "evaluate", "evaluate_limit", "fit", "from_meshio", "from_pyvista", "gl_devices", "kernels",
+    "compare_fields", "compare_images", "evaluate", "evaluate_limit", "fit", "from_meshio", "from_pyvista", "from_vtk", "gl_devices", "kernels",
     "measure", "model", "models", "only", "open_series", "page", "points_error", "probe", "quantity", "rasterize", "read_image", "read_mesh", "read_points",
     "read_vdb", "reduce", "render", "run_study", "sample", "sample_grid", "set_threads", "slice", "studies", "study", "subdivide",
-    "surface", "to_meshio", "to_pyvista", "warp", "write_image", "write_mesh", "write_points", "write_vdb", "write_wavelets",
+    "surface", "to_meshio", "to_pyvista", "to_vtk", "warp", "write_image", "write_mesh", "write_points", "write_vdb", "write_wavelets",
 ]

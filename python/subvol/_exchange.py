@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Meshes of meshio and pyvista. These are imported when a call needs them."""
+"""Meshes of meshio, VTK and pyvista. These are imported when a call needs them."""
 from __future__ import annotations
 
 import importlib
@@ -7,11 +7,13 @@ from typing import Any
 
 import numpy as np
 
+from . import _core
 from ._arguments import warn
 from ._core import HexMesh
 from ._errors import InvalidInput
+from ._options import described
 
-_VTK_HEXAHEDRON = 12
+_VTK_HEXAHEDRON, _VTK_POLYHEDRON = 12, 42
 
 
 def _fields(arrays: Any, points: int) -> dict[str, Any]:
@@ -67,4 +69,66 @@ def to_pyvista(mesh: HexMesh) -> Any:
     grid = pyvista.UnstructuredGrid({_VTK_HEXAHEDRON: mesh.cells.astype(np.int64)}, mesh.points)
     for name, values in mesh.fields.items():
         grid.point_data[name] = values
+    return grid
+
+
+@described
+def from_vtk(grid: Any, **options: Any) -> HexMesh:
+    """The mesh of a `vtkUnstructuredGrid`, as `read_mesh` makes it of a file with this grid: tetrahedra, prisms, pyramids and polyhedra
+    are split, curved cells followed, ghost cells dropped, values at cells moved to the points.
+
+    {keywords}
+
+    Warns (SubvolWarning) once for each thing left out, turned round or converted.
+    """
+    support = importlib.import_module("vtkmodules.util.numpy_support")
+    if not hasattr(grid, "GetCellTypesArray"):
+        raise InvalidInput(f"from_vtk() takes a vtkUnstructuredGrid, not {type(grid).__name__}", "grid")
+    if grid.GetNumberOfCells() == 0:
+        raise InvalidInput("the VTK grid has no cells", "grid")
+    cells, types = grid.GetCells(), support.vtk_to_numpy(grid.GetCellTypesArray())
+    faces, face_ends = _faces_of(grid, types)
+    arrays = []
+    for data, at_cells in ((grid.GetPointData(), False), (grid.GetCellData(), True)):
+        given = [(data.GetArrayName(k), data.GetArray(k)) for k in range(data.GetNumberOfArrays())]
+        arrays += [(name or "unnamed", at_cells, support.vtk_to_numpy(values)) for name, values in given if values is not None]
+    mesh, said = _core.from_vtk(support.vtk_to_numpy(grid.GetPoints().GetData()), types, support.vtk_to_numpy(cells.GetOffsetsArray())[1:],
+                                support.vtk_to_numpy(cells.GetConnectivityArray()), faces, face_ends, arrays, **options)
+    for text in said:
+        warn(text)
+    return mesh
+
+
+def _faces_of(grid: Any, types: Any) -> tuple[list[int], list[int]]:
+    """The faces of polyhedra as VTK lists them, and where those of each cell end; nothing if there are none."""
+    if _VTK_POLYHEDRON not in types:
+        return [], []
+    ids = importlib.import_module("vtkmodules.vtkCommonCore").vtkIdList()
+    faces: list[int] = []
+    ends = []
+    for cell, kind in enumerate(types):
+        if kind == _VTK_POLYHEDRON:
+            grid.GetFaceStream(cell, ids)
+            faces += [ids.GetId(k) for k in range(ids.GetNumberOfIds())]
+        ends.append(len(faces))
+    return faces, ends
+
+
+def to_vtk(mesh: HexMesh) -> Any:
+    """A `vtkUnstructuredGrid` with all fields. Its points and fields are this mesh's memory: nothing may write to them."""
+    support = importlib.import_module("vtkmodules.util.numpy_support")
+    model = importlib.import_module("vtkmodules.vtkCommonDataModel")
+    points = importlib.import_module("vtkmodules.vtkCommonCore").vtkPoints()
+    points.SetData(support.numpy_to_vtk(mesh.points))
+    corners = mesh.cells.view(np.int32).ravel()
+    cells = model.vtkCellArray()
+    ends = np.arange(0, len(corners) + 1, 8, dtype=np.int32)
+    cells.SetData(support.numpy_to_vtk(ends, deep=True), support.numpy_to_vtk(corners, deep=True))  # VTK keeps neither array
+    grid = model.vtkUnstructuredGrid()
+    grid.SetPoints(points)
+    grid.SetCells(_VTK_HEXAHEDRON, cells)
+    for name, values in mesh.fields.items():
+        array = support.numpy_to_vtk(values)
+        array.SetName(name)
+        grid.GetPointData().AddArray(array)
     return grid

@@ -61,3 +61,61 @@ def test_pyvista_there_and_back(ball):
     pytest.importorskip("pyvista")
     again = subvol.from_pyvista(subvol.to_pyvista(ball))
     assert np.array_equal(again.points, ball.points) and np.array_equal(again.cells, ball.cells)
+
+
+def test_vtk_there_and_back(ball):
+    pytest.importorskip("vtkmodules", reason="Debian's python3-vtk9 is not installed")
+    grid = subvol.to_vtk(ball)
+    again = subvol.from_vtk(grid)
+    assert np.array_equal(again.points, ball.points) and np.array_equal(again.cells, ball.cells)
+    assert again.fields["density"].tobytes() == ball.fields["density"].tobytes()
+    numpy_support = pytest.importorskip("vtkmodules.util.numpy_support")
+    assert np.shares_memory(numpy_support.vtk_to_numpy(grid.GetPoints().GetData()), ball.points)
+    del ball, again
+    assert grid.GetCell(0).GetNumberOfPoints() == 8 and np.isfinite(grid.GetBounds()).all()
+
+
+def test_a_vtk_grid_of_other_cells_is_that_of_its_file(tmp_path):
+    vtk = pytest.importorskip("vtkmodules.vtkCommonDataModel", reason="Debian's python3-vtk9 is not installed")
+    core, files = pytest.importorskip("vtkmodules.vtkCommonCore"), pytest.importorskip("vtkmodules.vtkIOXML")
+    grid, points, values = vtk.vtkUnstructuredGrid(), core.vtkPoints(), core.vtkFloatArray()
+    for p in [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1), (.5, .5, 2)]:
+        points.InsertNextPoint(*p)
+        values.InsertNextValue(p[0] + 2 * p[2])
+    values.SetName("f")
+    grid.SetPoints(points)
+    faces = [(0, 3, 2, 1), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7)]
+    stream = core.vtkIdList()
+    for number in [6, *(n for face in faces for n in (4, *face))]:
+        stream.InsertNextId(number)
+    grid.InsertNextCell(42, stream)  # a cube as a polyhedron
+    grid.InsertNextCell(14, 5, [4, 5, 6, 7, 8])  # a pyramid
+    grid.GetPointData().AddArray(values)
+    writer = files.vtkXMLUnstructuredGridWriter()
+    writer.SetFileName(str(tmp_path / "a.vtu"))
+    writer.SetInputData(grid)
+    writer.SetDataModeToAscii()
+    writer.Write()
+    with pytest.warns(subvol.SubvolWarning):
+        ours, theirs = subvol.from_vtk(grid), subvol.read_mesh(tmp_path / "a.vtu")
+    assert len(ours.cells) > 8 and np.array_equal(ours.cells, theirs.cells)
+    assert np.allclose(ours.points, theirs.points) and np.allclose(ours.fields["f"], theirs.fields["f"])
+    with pytest.raises(subvol.InvalidInput, match="1 pyramid"):
+        subvol.from_vtk(grid, other_cells="refuse")
+    with pytest.raises(subvol.InvalidInput, match="has no cells"):
+        subvol.from_vtk(vtk.vtkUnstructuredGrid())
+    with pytest.raises(subvol.InvalidInput, match="takes a vtkUnstructuredGrid"):
+        subvol.from_vtk(vtk.vtkPolyData())
+
+
+def test_the_accessor_of_pyvista(tmp_path, ball):
+    pytest.importorskip("pyvista")
+    import subvol.pyvista  # noqa: F401
+
+    grid = subvol.to_pyvista(ball)
+    drawn = np.asarray(grid.subvol.render(size=(24, 24), backend="cpu"))
+    assert np.array_equal(drawn, np.asarray(subvol.render(ball, field="density", size=(24, 24), backend="cpu")))
+    surface = grid.subvol.limit_surface()
+    assert surface.n_cells == len(subvol.surface(ball, boundary=True).triangles) and "density" in surface.point_data
+    assert grid.subvol.limit_surface(iso=0).n_points == len(subvol.surface(ball, 0, "density").points)
+    assert [report["name"] for report in grid.subvol.to_vdb(tmp_path / "a.vdb", resolution=20)] == ["density"]

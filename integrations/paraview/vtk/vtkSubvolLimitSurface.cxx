@@ -48,11 +48,15 @@ int vtkSubvolLimitSurface::RequestData(vtkInformation*, vtkInformationVector** i
                                      .cap = Cap,
                                      .tolerance = Tolerance,
                                      .max_level = MaxLevel};
-        vtkDataArray* const array = GetInputArrayToProcess(0, grid);
-        const std::string field = array != nullptr && array->GetName() != nullptr ? array->GetName() : "";
-        if (field.empty() && !Isovalues.empty()) throw Error(ErrorCode::InvalidInput, "no array is chosen for the isosurfaces");
+        std::string field;
+        if (!Isovalues.empty()) {
+            vtkDataArray* const array = GetInputArrayToProcess(0, grid);
+            if (array == nullptr || array->GetName() == nullptr)
+                throw Error(ErrorCode::InvalidInput, "no array is chosen for the isosurfaces");
+            field = array->GetName();
+        }
         const HexMesh mesh = mesh_of_grid(*grid).mesh;
-        set_surface(*vtkPolyData::GetData(outputs), limit_surface(mesh, Isovalues.empty() ? "" : field, options));
+        set_surface(*vtkPolyData::GetData(outputs), limit_surface(mesh, field, options));
     } catch (const std::exception& error) {
         vtkErrorMacro(<< error.what());
         return 0;
