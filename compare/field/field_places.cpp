@@ -3,11 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <random>
 
 #include "sample_grid.h"
 #include "subvol/cell.h"
 #include "subvol/dense_cells.h"
+#include "subvol/detail/gather_cells.h"
 #include "subvol/error.h"
 #include "subvol/limit.h"
 #include "subvol/topology.h"
@@ -96,14 +98,19 @@ double share_of(const Topology& topology, Index cell, const std::array<std::size
     return 0;
 }
 
-/// The new vertices of some cells, ascending.
-FieldSamples new_vertices_of(const HexMesh& coarse, const std::vector<Index>& cells, Scheme scheme) {
-    constexpr std::size_t kNew = 19;  // of a cell: on 12 edges, on 6 sides, in the middle
-    const Topology topology = build_topology(coarse);
-    const std::size_t count = kNew * cells.size();
-    FieldSamples places{std::vector<Vec3>(count), std::vector<double>(count), std::vector<double>(count)};
-    for_each_dense_cell(coarse, {.scheme = {scheme}, .levels = 1}, {.cells = cells}, [&](const DenseCell& grid) {
-        auto to = kNew * static_cast<std::size_t>(std::ranges::lower_bound(cells, grid.cell) - cells.begin());
+constexpr std::size_t kNew = 19;  // vertices of a cell: on 12 edges, on 6 sides, in the middle
+
+/// The new vertices of the owned cells of a part.
+///
+/// first: where they begin
+void put_new_vertices(const MeshPiece& part, Scheme scheme, std::size_t first, FieldSamples& places) {
+    const Topology topology = build_topology(part.mesh);
+    std::vector<Index> cells;
+    for (Index c = 0; c < part.owned_cells.size(); ++c) {
+        if (part.owned_cells[c] != 0) cells.push_back(c);
+    }
+    for_each_dense_cell(part.mesh, {.scheme = {scheme}, .levels = 1}, {.cells = cells}, [&](const DenseCell& grid) {
+        auto to = first + kNew * static_cast<std::size_t>(std::ranges::lower_bound(cells, grid.cell) - cells.begin());
         for (std::size_t n = 0; n < grid.points.size(); ++n) {
             const std::array<std::size_t, 3> at{n % 3, n / 3 % 3, n / 9};
             if (std::ranges::count(at, 1) == 0) continue;
@@ -112,6 +119,27 @@ FieldSamples new_vertices_of(const HexMesh& coarse, const std::vector<Index>& ce
             places.weights[to++] = share_of(topology, grid.cell, at);
         }
     });
+}
+
+/// The new vertices of some cells, ascending: of a few at once, so that the topology of the whole is not needed.
+FieldSamples new_vertices_of(HexMesh coarse, const std::vector<Index>& cells, Scheme scheme) {
+    constexpr std::size_t kAtOnce = 1024;
+    constexpr int kLayers = 2;
+    const std::size_t count = kNew * cells.size();
+    FieldSamples places{std::vector<Vec3>(count), std::vector<double>(count), std::vector<double>(count)};
+    MeshPiece all{.mesh = std::move(coarse)};
+    all.owned_cells.assign(all.mesh.cells.size(), 1);
+    all.owned_points.assign(all.mesh.points.size(), 1);
+    all.cell_numbers.resize(all.owned_cells.size());
+    all.point_numbers.resize(all.owned_points.size());
+    std::iota(all.cell_numbers.begin(), all.cell_numbers.end(), std::uint64_t{0});
+    std::iota(all.point_numbers.begin(), all.point_numbers.end(), std::uint64_t{0});
+    for (std::size_t first = 0; first < cells.size(); first += kAtOnce) {
+        std::vector<std::uint8_t> chosen(all.owned_cells.size(), 0);
+        const auto some = std::span(cells).subspan(first, std::min(kAtOnce, cells.size() - first));
+        for (const Index cell : some) chosen[cell] = 1;
+        put_new_vertices(detail::chosen_cells(all, chosen, kLayers), scheme, kNew * first, places);
+    }
     return places;
 }
 
@@ -124,7 +152,7 @@ FieldSamples new_vertices(const HexMesh& mesh, std::string_view field, int level
         const std::size_t stride = 1 + kOfACell * coarse.cells.size() / std::max<std::size_t>(most, 1);
         std::vector<Index> cells;
         for (std::size_t c = stride / 2; c < coarse.cells.size(); c += stride) cells.push_back(static_cast<Index>(c));
-        return new_vertices_of(coarse, cells, scheme);
+        return new_vertices_of(std::move(coarse), cells, scheme);
     }
     const auto old = static_cast<std::ptrdiff_t>(coarse.points.size());  // they keep their numbers
     const HexMesh fine = refine(coarse, {.scheme = {scheme}, .levels = 1});

@@ -29,6 +29,7 @@
 #include "subvol/detail/flat_array.h"
 #include "subvol/detail/limit_of_part.h"
 #include "subvol/detail/parallel_each.h"
+#include "subvol/detail/part_of_progress.h"
 #include "subvol/field_range.h"
 #include "subvol/limit_level.h"
 
@@ -328,7 +329,6 @@ public:
           control_(searched_.get()),
           refiner_(control_, refinement.scheme, true),
           options_(options),
-          progress_(refinement.progress),
           found_([this] {
               return Found{PieceCutter(floats_.scales, options_), {}, 0};
           }) {
@@ -338,8 +338,8 @@ public:
 
     // Each callback adds the pieces that are fine enough, and returns what needs a finer grid: the cell, some children of it
     // (one bit for each), or the child.
-    void run(std::span<const Index> cells) {
-        refiner_.descend(cells, options_.max_levels, progress_,
+    void run(std::span<const Index> cells, Progress* progress) {
+        refiner_.descend(cells, options_.max_levels, progress,
                          {.cell =
                               [&](const DenseCell& grid) {
                                   Found& found = found_.local();
@@ -385,12 +385,12 @@ public:
     }
 
     /// Whether the pieces are few enough to be kept.
-    [[nodiscard]] bool has_pieces() const { return pieces_ * bytes_of_piece() <= options_.max_bytes; }
+    [[nodiscard]] bool has_pieces() const { return (before_ + pieces_) * bytes_of_piece() <= options_.max_bytes; }
 
-    /// Collects the pieces of the cells that were run last, in the order of the cells.
-    void collect(LimitPieces& pieces) {
+    /// Collects the pieces of the cells that were run last, in the order of the cells, behind the first ones of others.
+    void collect(LimitPieces& pieces, std::size_t first = 0) {
         const std::vector<Place> places = sorted_places();
-        const std::size_t count = places.size();
+        const std::size_t count = first + places.size();
         pieces.cells.resize(count);
         pieces.levels.resize(count);
         pieces.lowest.resize(count);
@@ -399,9 +399,10 @@ public:
         pieces.node_size = node_size_;
         const std::size_t numbers = LimitPieces::kNodes * node_size_;
         pieces.nodes.resize(numbers * count);
-        parallel_each(count, [&](std::size_t i) {
-            const Place& place = places[i];
+        parallel_each(places.size(), [&](std::size_t p) {
+            const Place& place = places[p];
             const PieceList& from = *place.list;
+            const std::size_t i = first + p;
             pieces.cells[i] = place.cell;
             pieces.levels[i] = place.level;
             pieces.lowest[i] = place.lowest;
@@ -424,6 +425,7 @@ public:
 
     /// Forgets the pieces of the cells that were run last, and keeps their memory for the next ones.
     void clear() {
+        before_ += pieces_;
         pieces_ = 0;
         for (Found& found : found_) {
             found.list.truncate(0);
@@ -448,7 +450,8 @@ private:
     void spare(Found& found) {
         const std::size_t more = found.list.size() - found.counted;
         found.counted = found.list.size();
-        if ((pieces_ += more) * bytes_of_piece() > options_.max_bytes && found.list.has_nodes) found.list.drop_nodes();
+        if (((pieces_ += more) + before_) * bytes_of_piece() > options_.max_bytes && found.list.has_nodes)
+            found.list.drop_nodes();
     }
 
     /// Takes how fine the pieces of a list are into account.
@@ -494,24 +497,27 @@ private:
     const HexMesh& control_;
     CellRefiner refiner_;
     const LimitCellsOptions& options_;
-    Progress* progress_;
     std::size_t node_size_ = 3;
     std::atomic<std::size_t> pieces_{0};
+    std::size_t before_ = 0;  // pieces that were forgotten
     FoundByThreads found_;
     LimitCells result_;
     float trilinear_ = 0;
 };
 
-std::shared_ptr<const LimitPieces> kept_pieces(const HexMesh& mesh, Search& search) {
-    auto pieces = std::make_shared<LimitPieces>();
-    search.collect(*pieces);
-    pieces->mesh_hash = hash_of(mesh);
+/// What the pieces belong to.
+void set_owner(const HexMesh& mesh, LimitPieces& pieces) {
+    pieces.mesh_hash = hash_of(mesh);
     for (const Attribute& attribute : mesh.attributes) {
-        pieces->names.push_back(attribute.name);
-        pieces->channels.push_back(attribute.channels);
-        pieces->attribute_hashes.push_back(hash_of(attribute));
+        pieces.names.push_back(attribute.name);
+        pieces.channels.push_back(attribute.channels);
+        pieces.attribute_hashes.push_back(hash_of(attribute));
     }
-    return pieces;
+}
+
+/// The cells of a mesh in some runs, so that what is found is in memory twice for one of them only.
+std::size_t cells_of_run(std::size_t cells, std::size_t runs) {
+    return (cells / runs / CellRefiner::kRun + 1) * CellRefiner::kRun;
 }
 
 /// ranges: null: those of the mesh
@@ -525,10 +531,21 @@ LimitCells search(const HexMesh& mesh, RefineOptions refinement, const LimitCell
     refinement.levels = 1;
     const FloatValues floats = ranges != nullptr ? FloatValues(mesh, *ranges) : FloatValues(mesh, limit_extent(mesh).ranges);
     Search search(mesh, refinement, options, floats);
-    search.run(all_cells(mesh));
-    LimitCells cells = search.result();
-    if (search.has_pieces()) cells.pieces = kept_pieces(mesh, search);
-    return cells;
+    const std::vector<Index> cells = all_cells(mesh);
+    constexpr std::size_t kRuns = 8;
+    const std::size_t size = cells_of_run(count, kRuns);
+    auto pieces = std::make_shared<LimitPieces>();
+    for (std::size_t first = 0; first < count; first += size) {
+        PartOfProgress of_run(refinement.progress, "limit", first / size, (count + size - 1) / size);
+        search.run(std::span(cells).subspan(first, std::min(size, count - first)), &of_run);
+        if (!search.has_pieces()) pieces.reset();
+        if (pieces) search.collect(*pieces, pieces->cells.size());
+        search.clear();
+    }
+    LimitCells found = search.result();
+    if (pieces) set_owner(mesh, *pieces);
+    found.pieces = std::move(pieces);
+    return found;
 }
 
 }  // namespace
@@ -548,17 +565,15 @@ LimitCells visit_limit_pieces(const HexMesh& mesh, RefineOptions refinement, con
     if (mesh.cells.empty() || options.max_levels < 1) return search(mesh, refinement, options);
     validate(mesh);
     refinement.levels = 1;
-    refinement.progress = nullptr;
     LimitCellsOptions without_limit = options;
     without_limit.max_bytes = std::numeric_limits<std::size_t>::max();
     Search search(mesh, refinement, without_limit, FloatValues(mesh, limit_extent(mesh).ranges));
     const std::vector<Index> cells = all_cells(mesh);
-    const std::size_t runs = (cells.size() / kParts + CellRefiner::kRun - 1) / CellRefiner::kRun;
-    const std::size_t size = std::clamp(runs * CellRefiner::kRun, CellRefiner::kRun, kMost);
+    const std::size_t size = std::min(cells_of_run(cells.size(), kParts), kMost);
     search.reserve(std::min(size, cells.size()));
     LimitPieces pieces;
     for (std::size_t first = 0; first < cells.size(); first += size) {
-        search.run(std::span(cells).subspan(first, std::min(size, cells.size() - first)));
+        search.run(std::span(cells).subspan(first, std::min(size, cells.size() - first)), nullptr);
         search.collect(pieces);
         search.clear();
         take(pieces);

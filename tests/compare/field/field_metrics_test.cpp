@@ -163,6 +163,11 @@ TEST(NewVertices, OfSomeCellsStandForAll) {
         return squares / weights;
     };
     EXPECT_NEAR(square_of(some) / square_of(all), 1, .05);  // a sixth of the cells
+    const HexMesh fine =
+        test::with_field(make_model("twist", 23), "f", [](const Vec3& x) { return std::sin(x.x) + x.y * x.z; });
+    const FieldSamples most = new_vertices(fine, "f", 0, Scheme::Mcq, 40000);  // more cells than are refined at once
+    EXPECT_GT(most.size(), 19 * 2048u);
+    EXPECT_NEAR(square_of(most) / square_of(new_vertices(fine, "f")), 1, .01);
     EXPECT_LT(compare_field(MeshField(refine(mesh), "f").view(), some).l2, 1e-7);
 }
 
