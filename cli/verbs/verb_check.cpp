@@ -4,9 +4,11 @@
 
 #include "input.h"
 #include "options.h"
+#include "outputs.h"
 #include "quantities.h"
 #include "refine_arguments.h"
-#include "subvol/certificate.h"
+#include "subvol/mend_folds.h"
+#include "subvol/mesh_io.h"
 #include "text.h"
 #include "verb.h"
 
@@ -16,19 +18,28 @@ namespace {
 class CheckVerb : public Verb {
 public:
     explicit CheckVerb(CLI::App& program)
-        : Verb(program, "check", "Check whether the limit folds: a proof that it does not, or places where it does.",
-               "  subvol check part.vtu\n"
-               "  subvol check part.vtu --scheme cc --json\n"
-               "\n"
-               "The exit code is 1 if the limit folds. Cells at irregular edges are refined; near the edges they stay "
-               "undecided.\n"
-               "JSON: verdict (sound, folded or undecided), cells {proved, folded, undecided, irregular: those of the "
-               "undecided that are at irregular edges}, open_volume (of undecided cells, in cells), places, one for each "
-               "folded cell: cell, parameters, at, determinant.") {
+        : Verb(
+              program, "check", "Check whether the limit folds: a proof that it does not, or places where it does.",
+              "  subvol check part.vtu\n"
+              "  subvol check part.vtu --scheme cc --json\n"
+              "  subvol check part.vtu --mend -o sound.vtu\n"
+              "\n"
+              "The exit code is 1 if the limit folds. Cells at irregular edges are refined; near the edges they stay "
+              "undecided. With --mend control points move, as little as it takes, until no regular cell folds; the figures are "
+              "then of the mended mesh, whose fields stay with their points.\n"
+              "JSON: verdict (sound, folded or undecided), cells {proved, folded, undecided, irregular: those of the "
+              "undecided that are at irregular edges}, open_volume (of undecided cells, in cells), places, one for each "
+              "folded cell: cell, parameters, at, determinant; with --mend also mend {folded, open: before; moved, "
+              "farthest_edges, boundary_edges, rounds, left: cells with reasons}.") {
         app().add_option("FILE", input_, input_help())->required();
         scheme_.add_scheme_to(app());
         add_options(app(), options_of(options_));
-        set_essentials({"--scheme", "--levels", "--irregular-levels", "--json"});
+        CLI::Option* mend = app().add_flag("--mend", mend_, "move control points until the limit does not fold");
+        mend->needs(
+            app().add_option("-o,--output", output_, "the mended mesh (.vtu, .vtkhdf)")->type_name("FILE")->needs(mend));
+        add_options(app(), options_of(mending_));
+        for (const char* name : {"--boundary-move", "--rounds"}) app().get_option(name)->needs(mend);
+        set_essentials({"--scheme", "--levels", "--irregular-levels", "--mend", "--output", "--json"});
     }
 
     int run(Report& report) override {
@@ -36,15 +47,41 @@ public:
         options.scheme = scheme_.options(0, report.progress()).scheme;
         options.progress = report.progress();
         options.names = OptionNames::Flags;
+        if (mend_) check_output(output_, {".vtu", ".vtkhdf"});
         report["input"] = input_;
         report.if_long("fewer --irregular-levels");
-        const HexMesh mesh = report.unpack(load_mesh(input_, common(), report.progress()));
+        HexMesh mesh = report.unpack(load_mesh(input_, common(), report.progress()));
+        if (mend_) return mend(std::move(mesh), options, report);
         const FoldCheck found = report.timed("check", [&] { return check_folds(mesh, options); });
         put(found, mesh.cells.size(), report);
         return found.report.folded > 0 ? 1 : 0;
     }
 
 private:
+    int mend(HexMesh mesh, const FoldOptions& folds, Report& report) {
+        MendOptions options = mending_;
+        options.folds = folds;
+        const Mended mended = report.timed("mend", [&] { return mend_folds(std::move(mesh), options); });
+        for (const std::string& warning : report.timed("write", [&] { return write_mesh(output_, mended.mesh, {}); })) {
+            report.warn(warning);
+        }
+        const MendReport& done = mended.report;
+        Facts found;
+        found["mend"] = facts_of(done);
+        report.merge(found);
+        report["output"] = output_;
+        report.say(text("before        ", counted(done.before.folded, "folded cell"), ", ", done.before.open, " undecided"));
+        report.say(text("moved         ", counted(done.moved, "point"), ", at most by ", done.farthest_edges,
+                        " of their shortest edge (", done.boundary_edges, " on the boundary)"));
+        put(mended.check, mended.mesh.cells.size(), report);
+        constexpr std::size_t kShown = 5;
+        for (std::size_t k = 0; k < std::min(kShown, done.left.size()); ++k) {
+            report.warn(text("cell ", done.left[k].cell, " could not be mended: ", done.left[k].reason));
+        }
+        if (done.left.size() > kShown) report.warn(text("nor could ", counted(done.left.size() - kShown, "more cell")));
+        return mended.check.report.folded > 0 ? 1 : 0;
+    }
+
     static void put(const FoldCheck& found, std::size_t cells, Report& report) {
         const FoldReport& all = found.report;
         const std::size_t undecided = all.open + all.irregular;
@@ -91,9 +128,11 @@ private:
         report.all_said();
     }
 
-    std::string input_;
+    std::string input_, output_;
     RefineArguments scheme_;
     FoldOptions options_;
+    MendOptions mending_;
+    bool mend_ = false;
 };
 
 }  // namespace

@@ -17,25 +17,6 @@ std::size_t corner_number(bool u, bool v, bool w) {
     return kCornerOctants[(u ? 1u : 0u) + (v ? 2u : 0u) + (w ? 4u : 0u)];
 }
 
-// Sᵀ y
-std::vector<double> transposed(const StencilTable& table, std::span<const double> fine) {
-    const auto& blocks = table.blocks();
-    std::vector<double> sums = parallel_sums(table.columns(), blocks.size(), [&](std::size_t b, std::vector<double>& into) {
-        const StencilTable::Block& block = blocks[b];
-        const Index* point = block.points.data();
-        for (std::size_t row = 0; row < block.row_patterns.size(); ++row) {
-            const double value = fine[block.first_row + row];
-            const std::size_t pattern = block.row_patterns[row];
-            for (std::size_t r = block.pattern_offsets[pattern]; r < block.pattern_offsets[pattern + 1]; ++r) {
-                const StencilTable::Run& run = block.runs[r];
-                for (std::uint32_t k = 0; k < run.count; ++k) into[*point++] += run.weight * value;
-            }
-        }
-    });
-    for (std::size_t p = 0; p < table.kept(); ++p) sums[p] += fine[p];
-    return sums;
-}
-
 }  // namespace
 
 LimitMatrix::LimitMatrix(const Topology& topology, const RefineOptions& options, std::span<const LimitQuery> places)
@@ -119,7 +100,7 @@ std::vector<double> LimitMatrix::transposed(std::span<const double> values) cons
     std::vector<double> level = parallel_sums(tables_.back().rows(), rows(), [&](std::size_t k, std::vector<double>& sums) {
         each_term(places_[k], [&](Index point, double weight) { sums[point] += weight * values[k]; });
     });
-    for (auto table = tables_.rbegin(); table != tables_.rend(); ++table) level = detail::transposed(*table, level);
+    for (auto table = tables_.rbegin(); table != tables_.rend(); ++table) level = table->apply_transpose(level, 1);
     return level;
 }
 

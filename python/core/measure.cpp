@@ -5,10 +5,10 @@
 
 #include "bind.h"
 #include "subvol/approximate.h"
-#include "subvol/certificate.h"
 #include "subvol/limit_slice.h"
 #include "subvol/limit_surface.h"
 #include "subvol/measure.h"
+#include "subvol/mend_folds.h"
 #include "subvol/mixed_probe.h"
 #include "subvol/patch_measure.h"
 #include "subvol/points_error.h"
@@ -39,6 +39,12 @@ std::vector<Option> keywords_of(MeasureOptions& options) {
 
 std::vector<Option> keywords_of(FoldOptions& options) {
     return scheme_and(options.scheme, options_of(options));
+}
+
+std::vector<Option> keywords_of(MendOptions& options) {
+    std::vector<Option> all = keywords_of(options.folds);
+    std::ranges::move(options_of(options), std::back_inserter(all));
+    return all;
 }
 
 std::vector<Option> keywords_of(ApproximateOptions& options) {
@@ -266,13 +272,7 @@ py::dict surface(const HexMesh& mesh, const std::string& field, std::vector<doub
 
 }  // namespace
 
-py::dict check_folds_of(const HexMesh& mesh, const py::object& progress, const py::kwargs& keywords) {
-    FoldOptions options;
-    set_options(keywords_of(options), keywords);
-    FoldCheck found = result_of(progress, [&](Progress* listener) {
-        options.progress = listener;
-        return check_folds(mesh, options);
-    });
+py::dict dict_of(FoldCheck found) {
     std::vector<std::uint8_t> verdicts;
     for (const FoldVerdict verdict : found.verdicts) verdicts.push_back(static_cast<std::uint8_t>(verdict));
     std::vector<Vec3> parameters, positions;
@@ -296,6 +296,25 @@ py::dict check_folds_of(const HexMesh& mesh, const py::object& progress, const p
     return result;
 }
 
+py::dict check_folds_of(const HexMesh& mesh, const py::object& progress, const py::kwargs& keywords) {
+    FoldOptions options;
+    set_options(keywords_of(options), keywords);
+    return dict_of(result_of(progress, [&](Progress* listener) {
+        options.progress = listener;
+        return check_folds(mesh, options);
+    }));
+}
+
+py::tuple mend_folds_of(const HexMesh& mesh, const py::object& progress, const py::kwargs& keywords) {
+    MendOptions options;
+    set_options(keywords_of(options), keywords);
+    Mended mended = result_of(progress, [&](Progress* listener) {
+        options.folds.progress = listener;
+        return mend_folds(mesh, options);
+    });
+    return py::make_tuple(std::move(mended.mesh), dict_of(std::move(mended.check)), dict_of(facts_of(mended.report)));
+}
+
 py::tuple approximate_of(const HexMesh& onto, const py::object& points, const py::dict& given, const py::object& progress,
                          const py::kwargs& keywords) {
     ApproximateOptions options;
@@ -317,6 +336,8 @@ void bind_measure(py::module_& module) {
     describe_call<ApproximateOptions>(module, "approximate");
     module.def("check_folds", &check_folds_of, py::arg("mesh"), py::arg("progress"));
     describe_call<FoldOptions>(module, "check_folds");
+    module.def("mend_folds", &mend_folds_of, py::arg("mesh"), py::arg("progress"));
+    describe_call<MendOptions>(module, "mend_folds");
     module.def("probe", &probe, py::arg("mesh"), py::arg("places"), py::arg("levels"), py::arg("progress"));
     module.def("points_error", &error_of_points, py::arg("volume"), py::arg("mesh"), py::arg("field"), py::arg("channel"),
                py::arg("progress"));

@@ -153,6 +153,20 @@ def check_folds(mesh: HexMesh, *, progress: Progress = None, **options: Any) -> 
         return FoldCheck(**_core.check_folds(mesh, listener, **options))
 
 
+@described
+def mend_folds(mesh: HexMesh, *, progress: Progress = None, **options: Any) -> tuple[HexMesh, FoldCheck, dict[str, Any]]:
+    """Moves control points, as little as it can, until the limit is proved not to fold.
+
+    Returns the mesh, what `check_folds` finds of it, and a report: folded and open cells before, moved points, farthest_edges and
+    boundary_edges (the longest way of a point, and of one of the boundary, in its shortest edges), rounds, and the cells that are left, with reasons.
+
+    {keywords}
+    """
+    with listening(progress) as listener:
+        mended, check, report = _core.mend_folds(mesh, listener, **options)
+        return mended, FoldCheck(**check), report
+
+
 @dataclass(frozen=True)
 class Slice:
     """field: its name; values: (height,width), nan outside; gradients: (height,width,3); cells: (height,width), -1 outside; the place of

@@ -44,6 +44,28 @@ class Check(InFolder):
             code, found = self.check("a.mesh", "--scheme", scheme)
             self.assertEqual((code, found["verdict"]), (0, "sound"))
 
+    def test_folds_are_mended(self):
+        pushed = lambda x, y, z: (x + 1.3 * (x == y == z == 3), y, z)
+        (self.folder / "a.mesh").write_text(box(6, pushed))
+        self.assertEqual(self.check("a.mesh")[0], 1)
+        code, found = self.check("a.mesh", "--mend", "-o", "b.vtu", "--boundary-move", "0")
+        self.assertEqual((code, found["verdict"], found["mend"]["left"]), (0, "sound", []))
+        self.assertGreater(found["mend"]["folded"], 0)
+        self.assertGreater(found["mend"]["moved"], 0)
+        self.assertEqual(found["mend"]["boundary_edges"], 0)
+        self.assertEqual(self.check("b.vtu")[1]["verdict"], "sound")
+        # A lone cell has no point that could move: it is named, the exit code is that of a fold.
+        (self.folder / "c.mesh").write_text(box(1, lambda x, y, z: (x + 2 * (x == y == z == 0), y, z)))
+        done = subvol("check", "c.mesh", "--mend", "-o", "d.vtu", "--boundary-move", "0", folder=self.folder)
+        self.assertEqual(done.code, 1)
+        self.assertIn("cell 0 could not be mended: all of its points are on the boundary", done.out + done.err)
+        for arguments, naming in ((["-o", "e.vtu"], "--mend"), (["--rounds", "2"], "--mend"), (["--boundary-move", ".1"], "--mend"),
+                                  (["--mend"], "--output"), (["--mend", "-o", "e.png"], ".vtu")):
+            done = subvol("check", "a.mesh", *arguments, folder=self.folder)
+            self.assertEqual(done.code, 2, arguments)
+            self.assertIn(naming, done.err)
+            self.assertFalse((self.folder / "e.vtu").exists())
+
     def test_irregular_edges_stay_open(self):
         code, found = self.check("model:ball:3")
         self.assertEqual((code, found["verdict"]), (0, "undecided"))

@@ -154,6 +154,20 @@ def test_folds_are_proved_or_placed():
     np.testing.assert_array_equal(mirrored.cells, np.arange(len(twist.cells)))
 
 
+def test_folds_are_mended():
+    twist = subvol.model("twist", 6)
+    points = twist.points.copy()
+    middle = np.argmin(np.linalg.norm(points - points.mean(axis=0), axis=1))
+    points[middle] += [.25, .02, 0]
+    bad = subvol.HexMesh(points, twist.cells, {"T": points[:, 0]})
+    mended, check, report = subvol.mend_folds(bad, boundary_move=0)
+    assert report["folded"] > 0 and report["left"] == [] and check.verdict == "sound"
+    np.testing.assert_array_equal(mended.fields["T"], bad.fields["T"])
+    assert report["moved"] == np.count_nonzero((mended.points != points).any(axis=1)) > 0
+    with pytest.raises(subvol.InvalidInput, match="rounds"):
+        subvol.mend_folds(bad, rounds=0)
+
+
 def test_a_field_is_approximated():
     control = subvol.model("twist", 4)
     values = np.random.default_rng(1).normal(size=len(control.points))

@@ -10,7 +10,7 @@ import pytest
 import subvol
 from subvol import _core, _options
 
-CALLS = ["approximate", "check_folds", "evaluate_limit", "fit", "from_vtk", "measure", "page", "points_error", "probe", "rasterize", "read_mesh", "reduce", "render", "sample",
+CALLS = ["approximate", "check_folds", "evaluate_limit", "fit", "from_vtk", "measure", "mend_folds", "page", "points_error", "probe", "rasterize", "read_mesh", "reduce", "render", "sample",
          "slice", "subdivide", "surface", "write_points", "write_vdb"]
 
 

@@ -42,6 +42,7 @@
 #include "subvol/limit_slice.h"
 #include "subvol/limit_surface.h"
 #include "subvol/measure.h"
+#include "subvol/mend_folds.h"
 #include "subvol/mesh_io.h"
 #include "subvol/mesh_kernels.h"
 #include "subvol/mesh_motion.h"

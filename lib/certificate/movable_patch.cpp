@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "movable_patch.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "subvol/cell.h"
+#include "subvol/topology.h"
+
+namespace subvol::detail {
+
+namespace {
+
+constexpr double kKept = 0.7;  // a determinant that is small but sound may fall by a third
+
+double determinant_at(const std::vector<Vec3>& x, const std::array<Index, 4>& p) {
+    return glm::dot(x[p[1]] - x[p[0]], glm::cross(x[p[2]] - x[p[0]], x[p[3]] - x[p[0]]));
+}
+
+double product(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
+    double sum = 0;
+    for (std::size_t k = 0; k < a.size(); ++k) sum += dot(a[k], b[k]);
+    return sum;
+}
+
+/// a + t b
+std::vector<Vec3> along(const std::vector<Vec3>& a, double t, const std::vector<Vec3>& b) {
+    std::vector<Vec3> sum = a;
+    for (std::size_t k = 0; k < a.size(); ++k) sum[k] += t * b[k];
+    return sum;
+}
+
+}  // namespace
+
+MovablePatch::MovablePatch(const HexMesh& patch, const SchemeOptions& scheme, int levels, std::vector<Vec3> start,
+                           std::vector<Freedom> freedom, const std::vector<PatchCell>& cells)
+    : tables_(refinement_tables(build_topology(patch), {.scheme = scheme, .levels = levels})),
+      points_(patch.points),
+      start_(std::move(start)),
+      freedom_(std::move(freedom)) {
+    make_corners(patch, cells);
+}
+
+void MovablePatch::make_corners(const HexMesh& patch, const std::vector<PatchCell>& cells) {
+    const std::vector<Vec3> x = fine(start_);
+    const std::size_t children = tables_.cells.size() / patch.cells.size();
+    const auto corners_of = [&](std::size_t cell, const auto& visit) {
+        for (std::size_t child = cell * children; child < (cell + 1) * children; ++child) {
+            const auto& points = tables_.cells[child];
+            for (std::size_t k = 0; k < 8; ++k) {
+                const auto& [a, b, c] = kCornerNeighbors[k];
+                visit(std::array<Index, 4>{points[k], points[a], points[b], points[c]});
+            }
+        }
+    };
+    // The mean determinant of a cell is its volume over the number of children. A cell that is folded or thin beside those
+    // around it has to become a part of their mean.
+    std::vector<double> means(patch.cells.size(), 0), at_points(patch.points.size(), 0), counts(patch.points.size(), 0);
+    for (std::size_t c = 0; c < patch.cells.size(); ++c) {
+        corners_of(c, [&](const std::array<Index, 4>& at) {
+            means[c] += determinant_at(x, at) / (8.0 * static_cast<double>(children));
+        });
+        for (const Index p : patch.cells[c]) {
+            at_points[p] += std::max(0.0, means[c]);
+            counts[p] += 1;
+        }
+    }
+    constexpr double kOfAround = 0.2;
+    for (std::size_t c = 0; c < patch.cells.size(); ++c) {
+        if (cells[c].role == CellRole::Around) continue;
+        double around = 0;
+        for (const Index p : patch.cells[c]) around += at_points[p] / counts[p] / 8;
+        const double volume = std::max(means[c], kOfAround * around);
+        if (!(volume > 0)) continue;
+        corners_of(c, [&](const std::array<Index, 4>& at) {
+            const double then = determinant_at(x, at) / volume;
+            const bool sound = cells[c].role == CellRole::Kept && then > 0;
+            corners_.push_back({at, volume, sound ? std::min(cells[c].share, kKept * then) : cells[c].share});
+        });
+    }
+}
+
+std::vector<Vec3> MovablePatch::fine(const std::vector<Vec3>& points) const {
+    std::vector<Vec3> fine(tables_.points());
+    tables_.apply(std::span<const double>(&points.front().x, 3 * points.size()), 3,
+                  std::span<double>(&fine.front().x, 3 * fine.size()));
+    return fine;
+}
+
+std::vector<Vec3> MovablePatch::transposed(const std::vector<Vec3>& fine) const {
+    const double* first = &fine.front().x;
+    std::vector<double> level(first, first + 3 * fine.size());
+    for (auto table = tables_.levels.rbegin(); table != tables_.levels.rend(); ++table)
+        level = table->apply_transpose(level, 3);
+    std::vector<Vec3> sums(points_.size());
+    for (std::size_t p = 0; p < sums.size(); ++p) sums[p] = {level[3 * p], level[3 * p + 1], level[3 * p + 2]};
+    return sums;
+}
+
+std::vector<MovablePatch::Active> MovablePatch::lacking(const std::vector<Vec3>& points) const {
+    const std::vector<Vec3> x = fine(points);
+    std::vector<Active> lacks;
+    for (std::size_t k = 0; k < corners_.size(); ++k) {
+        const Corner& at = corners_[k];
+        const double lack = at.least - determinant_at(x, at.points) / at.volume;
+        if (!(lack > 0)) continue;
+        const auto& [p, a, b, c] = at.points;
+        const Vec3 u = x[a] - x[p], v = x[b] - x[p], w = x[c] - x[p];
+        Active& active = lacks.emplace_back(Active{k, lack, {}});
+        active.gradient[1] = glm::cross(v, w) / at.volume;
+        active.gradient[2] = glm::cross(w, u) / at.volume;
+        active.gradient[3] = glm::cross(u, v) / at.volume;
+        active.gradient[0] = -(active.gradient[1] + active.gradient[2] + active.gradient[3]);
+    }
+    return lacks;
+}
+
+double MovablePatch::cost(const std::vector<Vec3>& points, const std::vector<Active>& lacks, double weight) const {
+    double sum = 0;
+    for (const Active& at : lacks) sum += weight * at.lack * at.lack;
+    for (std::size_t p = 0; p < points.size(); ++p) {
+        if (freedom_[p].reach == 0) continue;
+        const Vec3 way = (points[p] - start_[p]) / freedom_[p].edge;
+        sum += dot(way, freedom_[p].weight * way);
+    }
+    return sum;
+}
+
+// Aᵀ y, A being the change of the determinants with the points in their edges.
+std::vector<Vec3> MovablePatch::pulled(const std::vector<Active>& lacks, const std::vector<double>& by) const {
+    std::vector<Vec3> forces(tables_.points(), Vec3(0.0));
+    for (std::size_t k = 0; k < lacks.size(); ++k) {
+        const Corner& corner = corners_[lacks[k].corner];
+        for (std::size_t i = 0; i < 4; ++i) forces[corner.points[i]] += by[k] * lacks[k].gradient[i];
+    }
+    std::vector<Vec3> sums = transposed(forces);
+    for (std::size_t p = 0; p < sums.size(); ++p) sums[p] *= freedom_[p].reach == 0 ? 0.0 : freedom_[p].edge;
+    return sums;
+}
+
+// The Gauss-Newton step, by conjugate gradients, in edges.
+std::vector<Vec3> MovablePatch::step(const std::vector<Vec3>& points, const std::vector<Active>& lacks, double weight) const {
+    std::vector<double> pull(lacks.size());
+    for (std::size_t k = 0; k < lacks.size(); ++k) pull[k] = weight * lacks[k].lack;
+    std::vector<Vec3> rest = pulled(lacks, pull);
+    for (std::size_t p = 0; p < points.size(); ++p) {
+        if (freedom_[p].reach > 0) rest[p] -= freedom_[p].weight * ((points[p] - start_[p]) / freedom_[p].edge);
+    }
+    const auto applied = [&](const std::vector<Vec3>& to) {
+        std::vector<Vec3> world = to;
+        for (std::size_t p = 0; p < to.size(); ++p) world[p] *= freedom_[p].reach == 0 ? 0.0 : freedom_[p].edge;
+        const std::vector<Vec3> moved = fine(world);
+        std::vector<double> changes(lacks.size(), 0);
+        for (std::size_t k = 0; k < lacks.size(); ++k) {
+            const Corner& corner = corners_[lacks[k].corner];
+            for (std::size_t i = 0; i < 4; ++i) changes[k] += weight * dot(lacks[k].gradient[i], moved[corner.points[i]]);
+        }
+        std::vector<Vec3> sums = pulled(lacks, changes);
+        for (std::size_t p = 0; p < to.size(); ++p) sums[p] += freedom_[p].weight * to[p];
+        return sums;
+    };
+    std::vector<Vec3> found(points.size(), Vec3(0.0)), way = rest;
+    double left = product(rest, rest);
+    constexpr int kSteps = 40;
+    constexpr double kEnough = 1e-4;
+    const double enough = kEnough * left;
+    for (int k = 0; k < kSteps && left > enough; ++k) {
+        const std::vector<Vec3> image = applied(way);
+        const double length = left / product(way, image);
+        found = along(found, length, way);
+        rest = along(rest, -length, image);
+        const double before = std::exchange(left, product(rest, rest));
+        way = along(rest, left / before, way);
+    }
+    return found;
+}
+
+std::vector<Vec3> MovablePatch::move() {
+    const auto moved = [&](const std::vector<Vec3>& step, double part) {
+        std::vector<Vec3> points = points_;
+        for (std::size_t p = 0; p < points.size(); ++p) {
+            const Freedom& at = freedom_[p];
+            if (at.reach == 0) continue;
+            Vec3 way = points[p] + part * at.edge * step[p] - start_[p];
+            const double length = glm::length(way);
+            if (length > at.reach) way *= at.reach / length;
+            points[p] = start_[p] + way;
+        }
+        return points;
+    };
+    std::vector<Active> lacks = lacking(points_);
+    constexpr int kWeights = 4, kNewton = 6;
+    double weight = 100;
+    for (int k = 0; k < kWeights; ++k, weight *= 10) {
+        double now = cost(points_, lacks, weight);
+        for (int n = 0; n < kNewton; ++n) {
+            const std::vector<Vec3> way = step(points_, lacks, weight);
+            double part = 1;
+            bool better = false;
+            constexpr int kHalvings = 10;
+            constexpr double kProgress = 1e-2;
+            for (int h = 0; h < kHalvings && !better; ++h, part /= 2) {
+                std::vector<Vec3> points = moved(way, part);
+                std::vector<Active> next = lacking(points);
+                const double then = cost(points, next, weight);
+                if (!(then < now * (1 - kProgress))) continue;
+                better = true;
+                points_ = std::move(points);
+                lacks = std::move(next);
+                now = then;
+            }
+            if (!better) break;
+        }
+    }
+    return points_;
+}
+
+}  // namespace subvol::detail

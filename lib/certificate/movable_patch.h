@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "subvol/hex_mesh.h"
+#include "subvol/refine.h"
+#include "subvol/scheme.h"
+
+namespace subvol::detail {
+
+/// How a point may move.
+///
+/// edge:   its shortest edge
+/// reach:  the longest way from its start; 0 where it stays
+/// weight: symmetric; of the way in its edge, squared
+struct Freedom {
+    double edge = 1, reach = 0;
+    Mat3 weight{1.0};
+    bool on_boundary = false;
+};
+
+/// Bad cells are to become sound, kept ones to stay sound; those around only shape them.
+enum class CellRole : std::uint8_t { Around, Kept, Bad };
+
+/// share: of the cell's volume that the determinants of its children are to be at least
+struct PatchCell {
+    CellRole role = CellRole::Around;
+    double share = 0;
+};
+
+/// A part of a mesh whose points move as little as possible,
+///
+///     min Σ wᵀW w,   w = (x − start) / edge,   so that   d ≥ share
+///
+/// at all corners of the children of `levels` generations, d being the determinant there as a part of it. What is too small is
+/// punished by its square, by Gauss-Newton steps with a weight that grows.
+class MovablePatch {
+public:
+    MovablePatch(const HexMesh& patch, const SchemeOptions& scheme, int levels, std::vector<Vec3> start,
+                 std::vector<Freedom> freedom, const std::vector<PatchCell>& cells);
+
+    /// The new points.
+    [[nodiscard]] std::vector<Vec3> move();
+
+private:
+    /// A corner of a child: its points and what its determinant has to be, in `volume`.
+    struct Corner {
+        std::array<Index, 4> points;
+        double volume, least;
+    };
+    /// A corner that is too small: how its determinant changes with its points.
+    struct Active {
+        std::size_t corner;
+        double lack;
+        std::array<Vec3, 4> gradient;
+    };
+
+    [[nodiscard]] std::vector<Vec3> fine(const std::vector<Vec3>& points) const;
+    [[nodiscard]] std::vector<Vec3> transposed(const std::vector<Vec3>& fine) const;
+    [[nodiscard]] std::vector<Active> lacking(const std::vector<Vec3>& points) const;
+    [[nodiscard]] double cost(const std::vector<Vec3>& points, const std::vector<Active>& lacks, double weight) const;
+    [[nodiscard]] std::vector<Vec3> step(const std::vector<Vec3>& points, const std::vector<Active>& lacks,
+                                         double weight) const;
+    [[nodiscard]] std::vector<Vec3> pulled(const std::vector<Active>& lacks, const std::vector<double>& by) const;
+    void make_corners(const HexMesh& patch, const std::vector<PatchCell>& cells);
+
+    RefinementTables tables_;
+    std::vector<Vec3> points_, start_;
+    std::vector<Freedom> freedom_;
+    std::vector<Corner> corners_;
+};
+
+}  // namespace subvol::detail
