@@ -138,7 +138,7 @@ private:
             start.push_back(start_[p]);
             if (moves[p] == 0) freedom.back().reach = 0;
         }
-        constexpr double kShare = 0.1, kMoreEachTime = 1.3, kMost = 0.4;
+        constexpr double kShare = 0.1, kMoreEachTime = 1.5, kMost = 0.4;
         std::vector<PatchCell> patch_cells;
         for (const Index c : patch.cells) {
             const CellRole role = bad[c] != 0 ? CellRole::Bad : cells[c] != 0 ? CellRole::Kept : CellRole::Around;

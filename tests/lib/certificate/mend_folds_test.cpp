@@ -22,9 +22,9 @@ std::vector<std::uint8_t> on_boundary(const HexMesh& mesh) {
 
 // Cells that are sound, with a limit that overshoots between them.
 HexMesh overshooting() {
-    HexMesh mesh = make_box(8, 8, 8);
+    HexMesh mesh = make_box(7, 7, 7);
     for (Vec3& x : mesh.points) {
-        const bool inside = x.y > 1.5 && x.y < 6.5 && x.z > 1.5 && x.z < 6.5;
+        const bool inside = x.y > 1.5 && x.y < 5.5 && x.z > 1.5 && x.z < 5.5;
         if (std::abs(x.x - 3) < 0.1 && inside) x.x += 0.85;
         if (std::abs(x.x - 5) < 0.1 && inside) x.x -= 0.85;
     }
@@ -48,7 +48,7 @@ void expect_mended(const HexMesh& mesh, const Mended& mended, double farthest) {
     EXPECT_GT(mended.report.before.folded, 0u);
     EXPECT_EQ(mended.check.report.folded + mended.check.report.open, 0u);
     EXPECT_EQ(check_folds(mended.mesh).report.folded, 0u);
-    EXPECT_THAT(mended.report.left, testing::IsEmpty());
+    EXPECT_TRUE(mended.report.left.empty());
     EXPECT_GT(mended.report.moved, 0u);
     EXPECT_LT(mended.report.farthest_edges, farthest);
     EXPECT_EQ(mended.mesh.cells, mesh.cells);
@@ -80,9 +80,8 @@ TEST(MendFolds, FoldsAtIrregularEdgesAreMended) {
     const auto boundary = on_boundary(mesh);
     Index point = 0;
     while (boundary[point] != 0) ++point;
-    mesh.points[point] += Vec3(0.6, 0.5, 0.4) * glm::distance(mesh.points[point], mesh.points[point + 1]);
+    mesh.points[point] += Vec3(1.4, 1.1, 0.9) * glm::distance(mesh.points[point], mesh.points[point + 1]);
     const Mended mended = mend_folds(mesh);
-    if (mended.report.before.folded == 0) GTEST_FAIL() << "the mesh is meant to fold";
     expect_mended(mesh, mended, 12);
 }
 
@@ -91,20 +90,20 @@ INSTANTIATE_TEST_SUITE_P(Schemes, MendFoldsOf, testing::Values(Scheme::CatmullCl
 
 TEST_P(MendFoldsOf, OtherSchemesAreMendedToo) {
     const HexMesh box = make_box(7, 7, 7);
-    const HexMesh mesh = pushed(box, point_at(box, {3, 3, 3}), {3.2, 0.2, 0.1});
+    const HexMesh mesh = pushed(box, point_at(box, {3, 3, 3}), {6.2, 0.2, 0.1});
     MendOptions options;
     options.folds.scheme.kind = GetParam();
     const Mended mended = mend_folds(mesh, options);
     EXPECT_GT(mended.report.before.folded, 0u);
     EXPECT_EQ(check_folds(mended.mesh, options.folds).report.folded, 0u);
-    EXPECT_THAT(mended.report.left, testing::IsEmpty());
+    EXPECT_TRUE(mended.report.left.empty());
 }
 
 // The boundary moves as far as it may, along itself: the planes of a box stay planes, nearly.
 TEST(MendFolds, TheBoundaryMovesAlongItself) {
     const HexMesh box = make_box(7, 7, 7);
     const HexMesh mesh = pushed(box, point_at(box, {3, 3, 0}), {1.2, 0, 0});
-    const Mended stays = mend_folds(mesh, {.boundary_edges = 0});
+    const Mended stays = mend_folds(mesh, {.boundary_edges = 0, .rounds = 2});
     EXPECT_GT(stays.report.left.size(), 0u);
     EXPECT_THAT(stays.report.left[0].reason, HasSubstr("boundary"));
     const Mended mended = mend_folds(mesh, {.boundary_edges = 8});

@@ -15,7 +15,7 @@ namespace subvol {
 struct MendOptions {
     FoldOptions folds{};
     double boundary_edges = 0.1;
-    int rounds = 8;
+    int rounds = 10;
 };
 
 /// The options without those of the check.
