@@ -1,0 +1,166 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Writes a mesh as OpenUSD text: a volume of UsdVol whose fields are those of .vdb files, which are written beside it.
+
+    python3 -m subvol.usd part.vtu -o part.usda [--field NAME] [--resolution N] [--steps all|A-B] [--tf NAME]
+
+With steps there is a .vdb file for each, and the time codes are the numbers of the steps. The colour map is written as attributes of the
+volume, subvol:colors and others: OpenUSD has no shader of its own for volumes. Ends with 2 if the file cannot be read or written.
+"""
+from __future__ import annotations
+
+import argparse
+import os
+import re
+import sys
+import warnings
+from collections.abc import Sequence
+from typing import Any, Optional, Union
+
+from ._arguments import Path, path_bytes
+from ._colors import TransferFunction
+from ._errors import Error, InvalidInput, SubvolWarning
+from ._mesh import Series, open_series, read_mesh
+from ._vdb import Grid, read_vdb, write_vdb
+
+
+def _name(text: str) -> str:
+    """As a prim may be called."""
+    name = re.sub(r"\W", "_", text, flags=re.ASCII) or "_"
+    return f"_{name}" if name[0].isdigit() else name
+
+
+def _row(numbers: Sequence[float]) -> str:
+    return "(" + ", ".join(f"{number:.9g}" for number in numbers) + ")"
+
+
+def _list(rows: Sequence[str]) -> str:
+    return "[" + ", ".join(rows) + "]"
+
+
+def write_usd(path: Path, files: Union[Path, list[Path], tuple[Path, ...]], *, codes: Optional[Sequence[float]] = None,
+              tf: Union[None, str, TransferFunction] = None, opacity_unit: Optional[float] = None) -> None:
+    """Writes `.usda`: a Volume with a field for each grid of floats. The `.vdb` files are named relative to it.
+
+    files:        one, or one for each time code, with the same grids
+    codes:        the time code of each file; None: 0, 1, …
+    tf:           the colour map that is written as attributes: a name, or a TransferFunction; None: viridis over the first grid's values
+    opacity_unit: the distance that its opacities are for; None: 1/100 of the diagonal, as in pictures
+
+    Raises InvalidInput for another extension, no grids, or codes that are not one for each file and ascending; FileError.
+    """
+    target = os.fsdecode(path_bytes(path))
+    if not target.endswith(".usda"):
+        raise InvalidInput(f"{path!s}: has an unknown extension (.usda)", str(path), ".usda")
+    names = [os.fsdecode(path_bytes(file)) for file in (files if isinstance(files, (list, tuple)) else [files])]
+    times = [float(code) for code in (range(len(names)) if codes is None else codes)]
+    if not names or len(times) != len(names) or any(b <= a for a, b in zip(times, times[1:])):
+        raise InvalidInput(f"codes: there are {len(times)} for {len(names)} files", "codes", "one for each file, ascending")
+    contents = [read_vdb(name) for name in names]
+    grids = contents[0]
+    for name, other in zip(names, contents):
+        if [grid.name for grid in other] != [grid.name for grid in grids]:
+            raise InvalidInput(f"{name}: has other grids than {names[0]}", str(name), ", ".join(grid.name for grid in grids))
+    text = _stage(os.path.splitext(os.path.basename(target))[0], contents, times, _colors(grids[0], tf, opacity_unit),
+                  [os.path.relpath(name, os.path.dirname(target) or ".").replace(os.sep, "/") for name in names])
+    made = target + ".part"
+    try:
+        with open(made, "w", encoding="utf-8") as file:
+            file.write(text)
+        os.replace(made, target)
+    finally:
+        if os.path.exists(made):
+            os.remove(made)
+
+
+def _colors(grid: Grid, tf: Union[None, str, TransferFunction], opacity_unit: Optional[float]) -> list[str]:
+    function = tf if isinstance(tf, TransferFunction) else TransferFunction(tf or "viridis")
+    report = grid.report
+    knots = function.knots(report["min"], report["max"])
+    lower, upper = grid.frame
+    unit = opacity_unit or sum((b - a) ** 2 for a, b in zip(lower, upper)) ** 0.5 / 100
+    return [f"custom float[] subvol:colorValues = {_list([f'{row[0]:.9g}' for row in knots.color])}",
+            f"custom color3f[] subvol:colors = {_list([_row(row[1:4]) for row in knots.color])}",
+            f"custom float[] subvol:opacityValues = {_list([f'{row[0]:.9g}' for row in knots.opacity])}",
+            f"custom float[] subvol:opacities = {_list([f'{row[1]:.9g}' for row in knots.opacity])}",
+            f"custom float subvol:opacityUnit = {unit:.9g}"]
+
+
+def _asset(file: str) -> str:
+    return f"@@@{file}@@@" if "@" in file else f"@./{file}@"
+
+
+def _stage(title: str, contents: Sequence[Sequence[Grid]], times: Sequence[float], colors: Sequence[str], files: Sequence[str]) -> str:
+    root, grids, moves = _name(title), contents[0], len(files) > 1
+
+    def value(declaration: str, values: Sequence[str]) -> str:
+        if not moves:
+            return f"{declaration} = {values[0]}"
+        samples = "".join(f"                {time:g}: {each},\n" for time, each in zip(times, values))
+        return f"{declaration}.timeSamples = {{\n{samples}            }}"
+
+    extents = []
+    for each in contents:
+        lower, upper = each[0].frame
+        extents.append(_list([_row(lower), _row(upper)]))
+    lines = ["#usda 1.0", "(", f'    defaultPrim = "{root}"', '    doc = "Written by OpenSubVol"', "    metersPerUnit = 1", '    upAxis = "Z"']
+    if moves:
+        lines += [f"    startTimeCode = {times[0]:g}", f"    endTimeCode = {times[-1]:g}", "    timeCodesPerSecond = 24"]
+    lines += [")", "", f'def Xform "{root}" (', '    kind = "component"', ")", "{", '    def Volume "volume"', "    {",
+              f"        {value('float3[] extent', extents)}"]
+    lines += [f"        rel field:{_name(grid.name)} = </{root}/volume/{_name(grid.name)}>" for grid in grids]
+    lines += [f"        {line}" for line in colors]
+    for grid in grids:
+        lines += ["", f'        def OpenVDBAsset "{_name(grid.name)}"', "        {",
+                  '            token fieldDataType = "float"', f'            token fieldName = "{grid.name}"',
+                  f"            {value('asset filePath', [_asset(file) for file in files])}", "        }"]
+    return "\n".join([*lines, "    }", "}", ""])
+
+
+def _steps(text: str, series: Series) -> range:
+    if text == "all":
+        return range(len(series))
+    found = re.fullmatch(r"(\d+)(?:-(\d+))?", text)
+    chosen = range(int(found[1]), int(found[2] or found[1]) + 1) if found else range(0)
+    if not chosen or chosen[-1] >= len(series):
+        raise InvalidInput(f"--steps: '{text}' is not a range of the {len(series)} steps", "--steps", f"all, A-B up to {len(series) - 1}")
+    return chosen
+
+
+def _convert(given: argparse.Namespace) -> str:
+    base = os.path.splitext(given.output)[0]
+    options: dict[str, Any] = {"resolution": given.resolution, "fields": given.field or None}
+    if given.steps is None:
+        files, codes = [base + ".vdb"], [0]
+        write_vdb(read_mesh(given.mesh), files[0], **options)
+    else:
+        series = open_series(given.mesh)
+        codes = list(_steps(given.steps, series))
+        files = [f"{base}_{step:04}.vdb" for step in codes]
+        for step, file in zip(codes, files):
+            write_vdb(series[step], file, **options)
+    write_usd(given.output, files, codes=codes, tf=given.tf)
+    return f"{given.output}, and {len(files)} .vdb {'file' if len(files) == 1 else 'files'}"
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(prog="python3 -m subvol.usd", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("mesh", metavar="MESH", help="a mesh, or a series with --steps")
+    parser.add_argument("-o", "--output", metavar="NAME.usda", required=True, help="the file to write")
+    parser.add_argument("--field", metavar="NAME", action="append", help="a field that is written (repeatable; default: the most sensible one)")
+    parser.add_argument("--resolution", metavar="N", type=int, default=200, help="voxels along the longest side (default 200)")
+    parser.add_argument("--steps", metavar="A-B", help="steps of a series, or all")
+    parser.add_argument("--tf", metavar="NAME", help="the colour map (default viridis)")
+    with warnings.catch_warnings():
+        warnings.simplefilter("always", SubvolWarning)
+        warnings.showwarning = lambda message, *_: print(f"subvol.usd: warning: {message}", file=sys.stderr)
+        try:
+            print(_convert(parser.parse_args()))
+        except (Error, OSError) as error:
+            allowed = getattr(error, "allowed", "")
+            print(f"subvol.usd: {error}{f' ({allowed})' if allowed else ''}", file=sys.stderr)
+            return 2
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
