@@ -7,6 +7,7 @@
 #include "subvol/cell.h"
 #include "subvol/detail/parallel_each.h"
 #include "subvol/detail/parallel_sums.h"
+#include "transposed_table.h"
 
 namespace subvol::detail {
 
@@ -100,7 +101,7 @@ std::vector<double> LimitMatrix::transposed(std::span<const double> values) cons
     std::vector<double> level = parallel_sums(tables_.back().rows(), rows(), [&](std::size_t k, std::vector<double>& sums) {
         each_term(places_[k], [&](Index point, double weight) { sums[point] += weight * values[k]; });
     });
-    for (auto table = tables_.rbegin(); table != tables_.rend(); ++table) level = table->apply_transpose(level, 1);
+    for (auto table = tables_.rbegin(); table != tables_.rend(); ++table) level = apply_transpose(*table, level, 1);
     return level;
 }
 

@@ -7,6 +7,7 @@
 
 #include "subvol/cell.h"
 #include "subvol/topology.h"
+#include "transposed_table.h"
 
 namespace subvol::detail {
 
@@ -92,7 +93,7 @@ std::vector<Vec3> MovablePatch::transposed(const std::vector<Vec3>& fine) const 
     const double* first = &fine.front().x;
     std::vector<double> level(first, first + 3 * fine.size());
     for (auto table = tables_.levels.rbegin(); table != tables_.levels.rend(); ++table)
-        level = table->apply_transpose(level, 3);
+        level = apply_transpose(*table, level, 3);
     std::vector<Vec3> sums(points_.size());
     for (std::size_t p = 0; p < sums.size(); ++p) sums[p] = {level[3 * p], level[3 * p + 1], level[3 * p + 2]};
     return sums;

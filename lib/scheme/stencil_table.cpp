@@ -6,7 +6,6 @@
 #include <cassert>
 
 #include "stencil_block.h"
-#include "subvol/detail/parallel_sums.h"
 #include "subvol/error.h"
 
 namespace subvol {
@@ -146,31 +145,6 @@ StencilTable StencilTable::after(const StencilTable& first) const {
         composed[b] = writer.block();
     });
     return {first.columns(), kept, std::move(composed)};
-}
-
-std::vector<double> StencilTable::apply_transpose(std::span<const double> fine, std::size_t channels) const {
-    if (fine.size() != rows_ * channels) {
-        throw Error(ErrorCode::InvalidInput, "the transpose of a table of " + std::to_string(rows_) + " rows over " +
-                                                 std::to_string(fine.size()) + " values of " + std::to_string(channels) +
-                                                 " channels");
-    }
-    const std::size_t size = columns_ * channels;
-    std::vector<double> sums = detail::parallel_sums(size, blocks_.size(), [&](std::size_t b, std::vector<double>& into) {
-        const Block& block = blocks_[b];
-        const Index* point = block.points.data();
-        for (std::size_t row = 0; row < block.row_patterns.size(); ++row) {
-            const double* values = &fine[(block.first_row + row) * channels];
-            const std::size_t pattern = block.row_patterns[row];
-            for (std::size_t r = block.pattern_offsets[pattern]; r < block.pattern_offsets[pattern + 1]; ++r) {
-                const Run& run = block.runs[r];
-                for (std::uint32_t k = 0; k < run.count; ++k, ++point) {
-                    for (std::size_t c = 0; c < channels; ++c) into[*point * channels + c] += run.weight * values[c];
-                }
-            }
-        }
-    });
-    for (std::size_t k = 0; k < kept_ * channels; ++k) sums[k] += fine[k];
-    return sums;
 }
 
 CsrMatrix StencilTable::csr() const {

@@ -59,14 +59,6 @@ public:
     void apply(std::span<const double> in, std::size_t channels, std::span<double> out) const;
     void apply(std::span<const float> in, std::size_t channels, std::span<float> out) const;
 
-    /// Applies the transpose to data of the finer points, point-major.
-    ///
-    /// fine:    rows() × channels values
-    /// returns: columns() × channels sums
-    /// throws:  Error(InvalidInput) if the size is wrong
-    /// cost:    parallel; bitwise the same for any number of threads
-    [[nodiscard]] std::vector<double> apply_transpose(std::span<const double> fine, std::size_t channels) const;
-
     /// The composition: `first`, then this table. Its rows are over the points that `first` starts from.
     [[nodiscard]] StencilTable after(const StencilTable& first) const;
 
