@@ -14,6 +14,7 @@
 #include "subvol/error.h"
 #include "subvol/image_io.h"
 #include "subvol/rbf_field.h"
+#include "subvol/shading.h"
 #include "subvol/version.h"
 
 namespace subvol::detail {
@@ -240,6 +241,11 @@ PageJson camera_json(const Camera& camera) {
             {"ortho", camera.ortho_height}};
 }
 
+PageJson light_json(const Shading& shading) {
+    return {{"material", {shading.ambient, shading.diffuse, shading.specular, shading.shininess}},
+            {"key", json_of(glm::normalize(shading.key))}};
+}
+
 PageJson head_json(std::span<const PageStep> steps, const PageOptions& options) {
     Box box;
     for (const PageStep& step : steps) {
@@ -254,6 +260,7 @@ PageJson head_json(std::span<const PageStep> steps, const PageOptions& options) 
                   {"camera", camera_json(options.camera)},
                   {"opacityUnit", unit},
                   {"bounds", {json_of(box.lower), json_of(box.upper)}},
+                  {"light", light_json(Shading{})},
                   {"presets", presets()}};
     for (const PageField& field : options.fields) {
         PageJson entry = json_of(field.function);

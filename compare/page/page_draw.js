@@ -94,7 +94,7 @@ class Painter {
   // The camera, for shaders.
   uniforms(view, depths, clip) {
     return { right: view.right, up: view.up, forward: view.forward, eye: view.eye, half_size: view.half, perspective: view.perspective,
-      size: [view.width, view.height], clip: clip || [0, 0, 0, 1],
+      size: [view.width, view.height], clip: clip || [0, 0, 0, 1], ...this.data.head.light,
       near_far: view.perspective ? [Math.max(1e-3, 0.9 * depths.front), 0] : [depths.front - 0.01, depths.back + 0.01] };
   }
 

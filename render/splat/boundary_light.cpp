@@ -43,17 +43,6 @@ Vec3 turned(const View& view, const Vec3& direction) {
     return {glm::dot(right, direction), glm::dot(up, direction), glm::dot(forward, direction)};
 }
 
-/// x to a power that is a whole number as a rule.
-double power(double x, double exponent) {
-    constexpr double kMostFactors = 256;
-    if (exponent != std::floor(exponent) || exponent < 0 || exponent > kMostFactors) return std::pow(x, exponent);
-    double result = 1;
-    for (auto left = static_cast<unsigned>(exponent); left != 0; left >>= 1, x *= x) {
-        if ((left & 1) != 0) result *= x;
-    }
-    return result;
-}
-
 /// The light just before a surface: on it, the nodes of the light volume behind it would be dark. In eye space.
 std::array<float, 2> light_before(const LightVolume& light, const View& view, const Vec3& place, const Vec3& normal,
                                   const Shading& shading) {
@@ -82,8 +71,8 @@ public:
     /// The light at the entry into an interval, which has a triangle or a face of the clip.
     ///
     /// shares: set to those of the triangle's corners
-    [[nodiscard]] BoundaryLight at(const PixelIntervals& intervals, std::size_t i, const Vec2& slopes,
-                                   std::array<double, 3>& shares) const {
+    [[nodiscard]] SurfaceLight at(const PixelIntervals& intervals, std::size_t i, const Vec2& slopes,
+                                  std::array<double, 3>& shares) const {
         const std::uint32_t triangle = intervals.triangles[i];
         const double z = static_cast<double>(intervals.depths[2 * i]) + lit_.middle;
         const Vec3 place = view_.perspective() ? z * Vec3(slopes, 1) : Vec3(slopes, z);
@@ -114,8 +103,8 @@ private:
     std::vector<Vec3> eye_;
 };
 
-std::vector<BoundaryLight> lights_of(const PixelIntervals& intervals, const LitSurface& lit, const View& view) {
-    std::vector<BoundaryLight> lights(intervals.triangles.size());
+std::vector<SurfaceLight> lights_of(const PixelIntervals& intervals, const LitSurface& lit, const View& view) {
+    std::vector<SurfaceLight> lights(intervals.triangles.size());
     const EntryShader shader(lit, view);
     tbb::parallel_for(0, view.height(), [&](int y) {
         std::array<double, 3> shares{};
@@ -133,18 +122,7 @@ std::vector<BoundaryLight> lights_of(const PixelIntervals& intervals, const LitS
 
 }  // namespace
 
-BoundaryLight surface_light(const Shading& shading, const Vec3& normal, const Vec3& to_eye,
-                            const std::array<float, 2>& arrives) {
-    const Vec3 to_key = glm::normalize(shading.key);
-    const double from_key = static_cast<double>(arrives[0]), open = static_cast<double>(arrives[1]);
-    const double head = std::max(0.0, glm::dot(normal, to_eye)), side = from_key * std::max(0.0, glm::dot(normal, to_key));
-    const double halfway = std::max(0.0, glm::dot(normal, glm::normalize(to_key + to_eye)));
-    const double gloss = power(head, shading.shininess) + from_key * power(halfway, shading.shininess);
-    return {static_cast<float>(open * (shading.ambient + shading.diffuse * 0.5 * (head + side))),
-            static_cast<float>(open * (shading.specular * 0.5 * gloss))};
-}
-
-std::vector<BoundaryLight> entry_lights(const PixelIntervals& intervals, const SplatScene& scene, const View& view) {
+std::vector<SurfaceLight> entry_lights(const PixelIntervals& intervals, const SplatScene& scene, const View& view) {
     const double middle = view.to_eye(scene.middle).z;
     return lights_of(intervals,
                      {scene.volume->boundary, scene.boundary_normals, *scene.shading, middle, scene.clip.faces(), scene.light},
@@ -191,7 +169,7 @@ struct FirstHits {
         return intervals.offsets[ray];
     }
 
-    [[nodiscard]] BoundaryLight light(std::size_t interval, int column, int row, std::array<double, 3>& shares) const {
+    [[nodiscard]] SurfaceLight light(std::size_t interval, int column, int row, std::array<double, 3>& shares) const {
         if (intervals.triangles[interval] == PixelIntervals::kNoTriangle) return {};
         return shader->at(intervals, interval, fine.slopes(column + 0.5, row + 0.5), shares);
     }
@@ -211,7 +189,7 @@ void light_boundary(Image& image, const Surface& boundary, const View& view, con
                 const int row = y * samples + k / samples, column = x * samples + k % samples;
                 const auto first = hits.first(column, row);
                 if (!first) continue;
-                const BoundaryLight light = hits.light(*first, column, row, shares);
+                const SurfaceLight light = hits.light(*first, column, row, shares);
                 diffuse += static_cast<double>(light.diffuse);
                 specular += static_cast<double>(light.specular);
                 ++met;
@@ -239,7 +217,7 @@ void color_boundary(Image& image, const Surface& boundary, std::span<const doubl
     const auto color_of = [&](std::size_t interval, int x, int y) {
         const std::uint32_t triangle = hits.intervals.triangles[interval];
         std::array<double, 3> shares{};
-        const BoundaryLight light = hits.light(interval, x, y, shares);
+        const SurfaceLight light = hits.light(interval, x, y, shares);
         double sum = 0, value = 0;
         for (std::size_t k = 0; k < 3; ++k) {
             sum += shares[k];

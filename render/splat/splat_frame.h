@@ -21,7 +21,7 @@ inline constexpr float kPastCenter_px = 0.45f;
 /// kUnknownValue where no kernel reaches. light: a factor of the colour, and white that is added.
 struct IntervalEnd {
     float x = kUnknownValue, color = 0;
-    BoundaryLight light;
+    SurfaceLight light;
 };
 
 /// The values of a tile's pixels on the sheets of a batch, which other transfer functions may use again. Blocks are vectors of
@@ -40,11 +40,11 @@ struct SplatFrame {
     const View* view = nullptr;
     const Classification* classification = nullptr;
     SheetStack sheets;
-    PixelIntervals intervals;                 // no offsets: there is neither a boundary nor a clip
-    std::vector<BoundaryLight> entry_lights;  // of each interval; empty without shading
-    std::vector<IntervalEnd> ends;            // beside the depths of the intervals
-    EyeToNodes to_light{};                    // of the scene's light volume
-    float* optical_depths = nullptr;          // of each pixel on each sheet: these are wanted instead of a picture
+    PixelIntervals intervals;                // no offsets: there is neither a boundary nor a clip
+    std::vector<SurfaceLight> entry_lights;  // of each interval; empty without shading
+    std::vector<IntervalEnd> ends;           // beside the depths of the intervals
+    EyeToNodes to_light{};                   // of the scene's light volume
+    float* optical_depths = nullptr;         // of each pixel on each sheet: these are wanted instead of a picture
     EyeSplats kernels;
     FinerSheets finer;
     mutable std::vector<KeptValues>

@@ -24,7 +24,7 @@ constexpr std::size_t kCells = 1024;          // of the table
 constexpr float kLeastTransmittance = 1e-6F;  // below it a ray ends
 
 /// Light on a kernel from its gradient (eye space), on either side: that of values inside the volume.
-BoundaryLight light_on(const Shading& shading, const Vec3& gradient, const Vec3& to_eye, double least) {
+SurfaceLight light_on(const Shading& shading, const Vec3& gradient, const Vec3& to_eye, double least) {
     const double square = glm::dot(gradient, gradient);
     if (!(square > 0)) return {};
     const Vec3 normal = gradient / std::sqrt(square), key = glm::normalize(shading.key);
@@ -89,7 +89,7 @@ std::vector<Footprints::Kernel> Footprints::kernels_of(const SplatFrame& frame) 
             const Vec3 world = Vec3(g[0], g[1], g[2]) / range;
             const Vec3 gradient(glm::dot(axes[0], world), glm::dot(axes[1], world), glm::dot(axes[2], world));
             const Vec3 to_eye = view.perspective() ? -glm::normalize(view.to_eye(volume.centers[i])) : Vec3(0, 0, -1);
-            const BoundaryLight lit = light_on(*scene_.shading, gradient, to_eye, least);
+            const SurfaceLight lit = light_on(*scene_.shading, gradient, to_eye, least);
             for (float& c : color) c = c * lit.diffuse + lit.specular;
         }
         kernels[i] = {inverse_symmetric_root(volume.frames[i]), volume.centers[i], light[0], color, splat.depth};

@@ -310,7 +310,7 @@ private:
             IntervalEnd& to = ends[2 * first + layer];
             to = {values[lane], colors[lane], {diffuse[lane], specular[lane]}};
             if (!lit) continue;
-            const BoundaryLight& entry = frame_.entry_lights[first + layer / 2];
+            const SurfaceLight& entry = frame_.entry_lights[first + layer / 2];
             to.light.diffuse += cover[lane] * (entry.diffuse - diffuse[lane]);
             to.light.specular += cover[lane] * (entry.specular - specular[lane]);
         }

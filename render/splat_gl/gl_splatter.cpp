@@ -271,7 +271,7 @@ void GlSplatter::State::find_intervals(const View& view) {
         boundary_.set(intervals, view);
         std::vector<std::array<float, 4>> ends(intervals.depths.size(), {kUnknownValue, 0, 1, 0});
         if (scene_.shading) {
-            const std::vector<BoundaryLight> lights = entry_lights(intervals, scene_, view);
+            const std::vector<SurfaceLight> lights = entry_lights(intervals, scene_, view);
             for (std::size_t i = 0; i < ends.size(); ++i) {
                 ends[i] = {kUnknownValue, 0, lights[i / 2].diffuse, lights[i / 2].specular};
             }

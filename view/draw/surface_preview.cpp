@@ -5,26 +5,15 @@
 
 #include "subvol/detail/parallel_each.h"
 #include "subvol/detail/triangle_raster.h"
-#include "subvol/splat_options.h"
+#include "subvol/shading.h"
 
 namespace subvol::detail {
-
-namespace {
-
-/// As the boundary of solids is lit, without gloss.
-double light_on(const Vec3& normal, const Vec3& to_eye) {
-    const Shading shading;
-    const double head = std::max(0.0, glm::dot(normal, to_eye));
-    const double key = std::max(0.0, glm::dot(normal, glm::normalize(shading.key)));
-    return shading.ambient + shading.diffuse * 0.5 * (head + key);
-}
-
-}  // namespace
 
 Preview surface_preview(const BoundaryValues& boundary, const View& view, const Optics& optics, const Clip& clip) {
     const Surface& surface = boundary.surface;
     const std::vector<double>& values = boundary.values.back();
     TriangleRaster hits(surface, view, clip);
+    const Shading shading;
     std::vector<std::array<float, 4>> colors(surface.triangles.size());
     parallel_each(colors.size(), [&](std::size_t t) {
         const auto& [i, j, k] = surface.triangles[t];
@@ -33,7 +22,7 @@ Preview surface_preview(const BoundaryValues& boundary, const View& view, const 
         const Vec3 flat = glm::cross(c - a, b - a);
         const double length = glm::length(flat);
         const Vec3 to_eye = view.perspective() ? -glm::normalize(a) : Vec3(0, 0, -1);
-        const double light = length > 0 ? light_on(flat / length, to_eye) : 0;
+        const double light = length > 0 ? double{surface_light(shading, flat / length, to_eye).diffuse} : 0;
         const glm::vec3 color(light * optics.color(values[i] / 3 + values[j] / 3 + values[k] / 3));
         colors[t] = {color.x, color.y, color.z, 1};
     });

@@ -9,7 +9,7 @@
 #include "subvol/names.h"
 #include "subvol/option.h"
 #include "subvol/progress.h"
-#include "subvol/vec.h"
+#include "subvol/shading.h"
 
 namespace subvol {
 
@@ -32,22 +32,6 @@ template <>
 struct NameTable<SplatMethod> {
     static constexpr Name<SplatMethod> rows[] = {
         {SplatMethod::Auto, "auto"}, {SplatMethod::Gl, "gl"}, {SplatMethod::Cpu, "cpu"}};
-};
-
-/// Light on surfaces: the model of Blinn and Phong, with a light at the eye and a key light. Inside the volume surfaces are
-/// those of equal value, lit on either side; where the value hardly changes there is no surface, and colours are not changed.
-/// Where the volume is opaque already at its boundary, that is the surface: it is lit by its own normals, which are smooth
-/// except at creases. With the eye inside such a solid one sees the material at the eye, in the colour of its value there and
-/// without light, for there is no surface before it; every method draws that.
-///
-/// ambient, diffuse, specular: parts of the light, ≥ 0
-/// key:                        towards the key light, in eye space (right, up, away from the eye)
-struct Shading {
-    double ambient = 0.3;
-    double diffuse = 0.7;
-    double specular = 0.25;
-    double shininess = 32;
-    Vec3 key{-0.5, 0.7, -0.5};
 };
 
 /// samples:       the mean of n × n places on a regular grid in each pixel is taken, 1..16

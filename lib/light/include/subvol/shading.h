@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+
+#include "subvol/vec.h"
+
+namespace subvol {
+
+/// Light on surfaces, the same for every renderer, the window and the page: a light at the eye, which fills in, and a key light
+/// that turns with the camera, so that no view is darker than another one. Colours carry values, so by default nothing gleams
+/// (specular is 0), and no direction of a surface gets more light than there is: white is white where a surface faces halfway
+/// between the two lights, .9 of it where it faces the eye, and nothing is cut off.
+///
+/// Inside the volume surfaces are those of equal value, lit on either side; where the value hardly changes there is no surface,
+/// and colours are not changed. Where the volume is opaque already at its boundary, that is the surface: it is lit by its own
+/// normals, which are smooth except at creases. With the eye inside such a solid one sees the material at the eye, in the
+/// colour of its value there and without light, for there is no surface before it; every method draws that.
+///
+/// ambient, diffuse, specular: parts of the light, ≥ 0: from all around; by the cosines to the eye and to the key light, half
+///                             each; and the gloss of Blinn and Phong, added in white
+/// key:                        towards the key light, in eye space (right, up, away from the eye)
+struct Shading {
+    double ambient = 0.3;
+    double diffuse = 0.8;
+    double specular = 0;
+    double shininess = 32;
+    Vec3 key{-0.5, 0.7, -0.5};
+};
+
+namespace detail {
+
+/// The effect of light on a colour: a factor, and white that is added.
+struct SurfaceLight {
+    float diffuse = 1, specular = 0;
+};
+
+/// The light on a surface. normal, to_eye: of unit length, in eye space
+/// arrives: the part of the key light, and of that from all around
+[[nodiscard]] SurfaceLight surface_light(const Shading& shading, const Vec3& normal, const Vec3& to_eye,
+                                         const std::array<float, 2>& arrives = {1, 1});
+
+}  // namespace detail
+
+}  // namespace subvol
