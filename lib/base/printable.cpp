@@ -133,6 +133,19 @@ std::string in_quotes(std::string_view text) {
 }
 
 std::string parser_message(std::string_view what) {
+    // "[json.exception.parse_error.101] parse error at line 1, column 5: syntax error while parsing value - …; expected …"
+    constexpr std::string_view kPrefix = "[json.exception.parse_error.", kWhere = "parse error at line ", kWhile = " - ";
+    if (what.starts_with(kPrefix)) {
+        const std::size_t where = what.find(kWhere), colon = what.find(':', where);
+        if (where != std::string_view::npos && colon != std::string_view::npos) {
+            const std::string place = "line " + std::string(what.substr(where + kWhere.size(), colon - where - kWhere.size()));
+            what.remove_prefix(colon + 2);
+            if (what.starts_with("syntax error while parsing") && what.find(kWhile) != std::string_view::npos)
+                what.remove_prefix(what.find(kWhile) + kWhile.size());
+            const std::size_t expected = what.rfind("; expected ");
+            return place + ": " + parser_message(what.substr(0, expected));
+        }
+    }
     constexpr std::string_view kQuote = "last read: '", kNext = "'; expected ";
     const std::size_t quote = what.find(kQuote);
     if (quote == std::string_view::npos) return printable(what);

@@ -47,7 +47,7 @@ json read_color_map(const std::string& file, const std::string& name) {
     try {
         document = json::parse(of_limited_depth(read_text(file), file));
     } catch (const json::exception& e) {
-        refuse(file, parser_message(e.what()));
+        refuse(file, "is not JSON: " + parser_message(e.what()));
     }
     // ParaView writes an array of colour maps; a single map without the array is accepted too.
     if (document.is_object()) document = json::array({std::move(document)});

@@ -80,7 +80,7 @@ nlohmann::json read_json_object(const std::string& file) {
     try {
         json = nlohmann::json::parse(detail::of_limited_depth(detail::read_text(file), file));
     } catch (const nlohmann::json::exception& e) {
-        throw Error(ErrorCode::InvalidInput, detail::parser_message(e.what()), file);
+        throw Error(ErrorCode::InvalidInput, "is not JSON: " + detail::parser_message(e.what()), file);
     }
     if (!json.is_object()) throw Error(ErrorCode::InvalidInput, "is not a JSON object", file);
     return json;

@@ -109,6 +109,19 @@ TEST(Printable, WhatAParserQuotesIsCut) {
     }
 }
 
+TEST(Printable, AParserIsNotQuotedButForThePlaceAndTheFault) {
+    const auto message_of = [](const char* text) -> std::string {
+        try {
+            const auto read = nlohmann::json::parse(text);
+        } catch (const nlohmann::json::exception& error) {
+            return parser_message(error.what());
+        }
+        return "no error";
+    };
+    EXPECT_EQ(message_of("{\"eye\": [1,2,"), "line 1, column 14: unexpected end of input");
+    EXPECT_EQ(message_of("{\n\"eye\": 1x2}"), "line 2, column 9: invalid literal; last read: \"1x\"");
+}
+
 TEST(Printable, WhatAParserExpectsStays) {
     EXPECT_EQ(parser_message("invalid literal; last read: '1.4\xff'; expected '}'"),
               "invalid literal; last read: \"1.4\\xff\"; expected '}'");

@@ -221,7 +221,7 @@ TEST_F(TransferFunctionFile, NamesFileAndKey) {
         expect_error(kInvalid, part, [&] { (void)read(content); });
         expect_error(kInvalid, "colors.json", [&] { (void)read(content); });
     };
-    refused("parse error", "[{");
+    refused("is not JSON: line 1, column 3: unexpected end of input", "[{");
     refused("has no colour map", "[]");
     refused("has no colour map", "[3]");
     refused("'RGBPoints' is missing", R"([{"IndexedColors": [1, 0, 0]}])");
