@@ -27,6 +27,7 @@ namespace {
 // Pixels, with room for half a label on either side of the bar, and for the labels of the opacity on its left.
 constexpr int kLeft = 56, kRight = 36, kTop = 34, kCurve = 64, kGap = 6, kBar = 18, kBottom = 30;
 constexpr int kBarTop = kTop + kCurve + kGap, kBarEnd = kBarTop + kBar;
+constexpr int kTip = 18;      // of the bar, for values beyond its ends
 constexpr int kRow = 21;      // of a category
 constexpr int kApart = 130;   // from the bar down to the plot of the opacities of another field
 constexpr int kColors = 128;  // along the bar, besides the knots
@@ -184,7 +185,16 @@ private:
                 {"height", number(kBar)},
                 {"fill", kColorsUrl},
                 {"stroke", kInk}});
+        if (options_.shape.below) append_tip(svg, kLeft, -kTip, *options_.shape.below);
+        if (options_.shape.above) append_tip(svg, end_, kTip, *options_.shape.above);
         append_ticks(svg, range_, kBarEnd);
+    }
+
+    /// A tip of the bar, in the colour of values beyond its end.
+    static void append_tip(pugi::xml_node svg, int end, int length, const Vec3& color) {
+        const std::string text = "M" + number(end) + " " + number(kBarTop) + " L" + number(end + length) + " " +
+                                 number(kBarTop + 0.5 * kBar) + " L" + number(end) + " " + number(kBarEnd) + " Z";
+        append(svg, "path", {{"fill", hex(color)}, {"stroke", kInk}, {"d", text}});
     }
 
     void append_ticks(pugi::xml_node svg, const KnotRange& range, double top) const {

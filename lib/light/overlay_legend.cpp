@@ -66,15 +66,22 @@ public:
         draw_title(title, top + 1.4 * letter_);
         const double y0 = top + 2.1 * letter_;
         if (!options_.names.empty()) return draw_names_below(y0);
-        const double right = image.width - left_, y1 = y0 + bar_width();
-        for (int x = static_cast<int>(left_); x < static_cast<int>(right); ++x) {
-            const double part = (x + 0.5 - left_) / (right - left_);
+        double right = image.width - left_;
+        const double y1 = y0 + bar_width(), middle = 0.5 * (y0 + y1);
+        const double left = left_ + (options_.shape.below ? bar_width() : 0);
+        if (options_.shape.below) draw_tip({left_, middle}, {left, middle}, *options_.shape.below);
+        if (options_.shape.above) {
+            draw_tip({right, middle}, {right - bar_width(), middle}, *options_.shape.above);
+            right -= bar_width();
+        }
+        for (int x = static_cast<int>(left); x < static_cast<int>(right); ++x) {
+            const double part = (x + 0.5 - left) / (right - left);
             const Vec3 color = color_at(function_, options_.shape.scale.at(part, colors_.min, colors_.max));
             for (int y = static_cast<int>(y0); y < static_cast<int>(y1); ++y) put_inside(x, y, color);
         }
-        draw_frame(static_cast<int>(left_), static_cast<int>(y0), static_cast<int>(right), static_cast<int>(y1));
+        draw_frame(static_cast<int>(left), static_cast<int>(y0), static_cast<int>(right), static_cast<int>(y1));
         for (const auto& [value, label] : ticks(colors_)) {
-            const double x = left_ + part_of(colors_, value) * (right - left_);
+            const double x = left + part_of(colors_, value) * (right - left);
             line({x, y1}, {x, y1 + 0.4 * letter_}, 1);
             const double half = 0.5 * text_width_px(label, letter_);
             write({std::clamp(x, half, image.width - half), y1 + 1.5 * letter_}, label, TextAnchor::Middle);
@@ -181,14 +188,41 @@ private:
         draw_frame(x0, y0, x0 + side, y0 + side);
     }
 
+    /// A tip of the bar, in the colour of values beyond its end. from: the tip; to: the middle of the bar's end
+    void draw_tip(const Vec2& from, const Vec2& to, const Vec3& color) const {
+        const Vec2 side = 0.5 * Vec2(to.y - from.y, from.x - to.x);
+        const Vec2 a = to + side, b = to - side;
+        const int x0 = static_cast<int>(std::min({from.x, a.x, b.x})), x1 = static_cast<int>(std::max({from.x, a.x, b.x}));
+        const int y0 = static_cast<int>(std::min({from.y, a.y, b.y})), y1 = static_cast<int>(std::max({from.y, a.y, b.y}));
+        const double length = glm::length(to - from);
+        const Vec2 along = (to - from) / length;
+        for (int y = y0; y < y1; ++y) {
+            for (int x = x0; x < x1; ++x) {
+                const Vec2 place = Vec2(x + 0.5, y + 0.5) - from;
+                const double across = std::abs(along.x * place.y - along.y * place.x);
+                if (across <= 0.5 * glm::dot(along, place)) put_inside(x, y, color);
+            }
+        }
+        line(from, a, 1);
+        line(from, b, 1);
+    }
+
     void put_inside(int x, int y, const Vec3& color) const {
         if (x >= 0 && y >= 0 && x < image_->width && y < image_->height) put_over(*image_, x, y, color, 1);
     }
 
     void draw_bar(double title_base, double bottom) const {
         draw_title(options_.title, title_base);
-        const double top = title_base + 1.2 * letter_;
-        const double start = left_ + (apart() ? 0 : curve_width()), end = start + bar_width();
+        double top = title_base + 1.2 * letter_;
+        const double start = left_ + (apart() ? 0 : curve_width()), end = start + bar_width(), middle = 0.5 * (start + end);
+        if (options_.shape.above) {
+            draw_tip({middle, top}, {middle, top + bar_width()}, *options_.shape.above);
+            top += bar_width();
+        }
+        if (options_.shape.below) {
+            draw_tip({middle, bottom}, {middle, bottom - bar_width()}, *options_.shape.below);
+            bottom -= bar_width();
+        }
         const int x0 = static_cast<int>(start), x1 = static_cast<int>(end);
         for (int y = static_cast<int>(top); y < static_cast<int>(bottom); ++y) {
             const Vec3 color =

@@ -184,6 +184,17 @@ TEST_F(Legend, WritesNumbersInTheFormatThatIsAskedFor) {
     EXPECT_NE(svg.find(">−2.00 K<"), std::string::npos);
 }
 
+TEST_F(Legend, HasTipsInTheColoursBeyondTheRange) {
+    const TransferFunction function = transfer_function_preset("viridis", 0, 1);
+    const std::string plain = legend_svg(function, {.title = "T", .min = 0, .max = 1});
+    const std::string tips =
+        legend_svg(function, {.title = "T", .min = 0, .max = 1, .shape = {.below = Vec3(1, 0, 1), .above = Vec3(0, 1, 0)}});
+    for (const char* color : {"fill=\"#ff00ff\"", "fill=\"#00ff00\""}) {
+        EXPECT_EQ(plain.find(color), std::string::npos);
+        EXPECT_NE(tips.find(color), std::string::npos);
+    }
+}
+
 TEST_F(Legend, IsWrittenWhole) {
     const TransferFunction f = transfer_function_preset("bone", 0, 1);
     const auto path = write("a.svg", "before");

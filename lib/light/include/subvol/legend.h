@@ -12,7 +12,8 @@ namespace subvol {
 
 /// title:    above the legend, e.g. the field's name with its unit
 /// min, max: the range of values; without width: a swatch with the value takes the place of the bar
-/// shape:    the scale of the ticks, which are the ends of the bands, if there are a few
+/// shape:    the scale of the ticks, which are the ends of the bands, if there are a few; colours of values below and above are
+///           the bar's tips
 /// width_px: of the colour bar, 50..10000
 /// opacity_title, opacity_min, opacity_max: where the opacities are of another field than the colours, its name and range: they
 ///           get a plot of their own; an empty title: they are of the same field
