@@ -41,15 +41,15 @@ namespace {
 constexpr std::array kNotHere{"--views",       "--turntable",     "--fps",      "--legend",    "--unit",
                               "--threshold",   "--reduce",        "--refine",   "--footprint", "--footprint-size",
                               "--color-field", "--shade",         "--duration", "--scale-bar", "--legend-side",
-                              "--legend-size", "--legend-format", "--log",      "--symlog",    "--bands",
-                              "--below",       "--above"};
+                              "--legend-size", "--legend-format", "--extremes"};
 
 /// Options whose values actions change, so that the render command has them from the state; and those that only the window has.
 constexpr std::array kOfTheState{"--iso",   "--clip", "--clip-box", "--slice",        "--around",     "--size",     "--camera",
                                  "--view",  "--fit",  "--ortho",    "--look",         "--tf",         "--tf-range", "--opacity",
                                  "--clamp", "--axes", "--edges",    "--opacity-unit", "--background", "--method",   "--field",
                                  "--step",  "--time", "--script",   "--screenshot",   "--only",       "--warp",     "--window",
-                                 "--state", "--json", "--quiet",    "--progress"};
+                                 "--state", "--json", "--quiet",    "--progress",     "--log",        "--symlog",   "--bands",
+                                 "--below", "--above"};
 
 std::string text_of(const std::string& file) {
     std::string text = detail::read_text(file);
@@ -88,7 +88,8 @@ public:
         set_essentials({"--script", "--screenshot", "--window", "--state", "--field", "--look", "--tf", "--opacity",
                         "--background", "--size", "--view", "--camera", "--method", "--levels", "--json"});
         group("Camera", {"--size", "--camera", "--view", "--fit", "--ortho"});
-        group("Colours and light", {"--look", "--tf", "--tf-range", "--opacity", "--opacity-unit", "--background", "--clamp"});
+        group("Colours and light", {"--look", "--tf", "--tf-range", "--log", "--symlog", "--bands", "--below", "--above",
+                                    "--opacity", "--opacity-unit", "--background", "--clamp"});
         group("Kernels", {"--per-edge", "--centers", "--spacing", "--spacing-voxels", "--tolerance", "--values", "--kernel",
                           "--value-kernel", "--correction"});
         group("The limit", {"--scheme", "--tension", "--levels", "--crease-angle"});

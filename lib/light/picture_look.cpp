@@ -16,7 +16,6 @@ namespace subvol {
 namespace {
 
 constexpr double kIsosurfaceHalfWidth = 0.01, kIsosurfaceOpacity = 0.9;  // the width as a part of the range
-constexpr int kMostBands = 1000;
 constexpr double kOpacityUnitsPerDiagonal = 100;
 constexpr double kFaint = 0.02;                 // of the largest opacity: what has less is not framed
 constexpr double kAlmostWhole = 0.8;            // of the box's diagonal
@@ -122,7 +121,7 @@ std::vector<Option> options_of(LookChoices& choices) {
         Option("opacity", choices.opacity)
             .help("V:A,V:A,…",
                   "opacities instead of those of --tf, linear in between: at values of the field or per cent of its range, "
-                  "such as 0%:0,50%:.2,100%:.9"),
+                  "such as 0%:0,50%:.2,100%:.9; with --look solid those of its surface, through which one sees its back"),
         Option("iso", WordValue{[&choices] { return choices.iso; },
                                 [&choices](const std::string& word, const std::string& where) {
                                     if (word.empty()) {

@@ -69,6 +69,8 @@ class WithoutWindow(InSession):
                  {"legend": True}, {"size": [160, 90]}],
                 [{"ortho": True}, {"view": "+x"}, {"axes": True}, {"edges": True}, {"look": "isosurface"}],
                 [{"edges": True}, {"method": "tets"}],  # which has no depths to hide lines by
+                [{"range": [.2, .9]}, {"log": True}, {"bands": 5}, {"below": [1, 0, 0]}, {"above": [0, 0, 1]}, {"legend": True}],
+                [{"log": True}, {"symlog": .1}, {"bands": 9}, {"bands": None}],
                 [{"method": "dense"}, {"look": "xray"}, {"opacity_unit": 0.4}, {"size": [48, 27]}],
         ):
             command = self.view(*actions)["render"]
@@ -150,7 +152,7 @@ class WithoutWindow(InSession):
         return [*camera["eye"], *camera["target"], *camera["up"], camera["fovy_deg"]]
 
     def test_refuses_in_one_sentence(self):
-        for text, naming in [("", "empty"), ("{", "parse error"), ("{}", "array"), ("[7]", "object"), ('[{"orbit": [1]}]', "action 1: orbit"),
+        for text, naming in [("", "empty"), ("{", "is not JSON: line 1, column 2"), ("{}", "array"), ("[7]", "object"), ('[{"orbit": [1]}]', "action 1: orbit"),
                              ('[{"wait": true}, {"spin": 1}]', "action 2"), ('[{"field": "T"}]', "density"),
                              ('[{"load_state": "no.json"}]', "no.json"), ("[" * 100000, "wrong.json")]:
             (self.folder / "wrong.json").write_text(text)

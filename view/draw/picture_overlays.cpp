@@ -37,7 +37,7 @@ Vec3 ink_on(const Vec3& background) {
 
 LegendOptions legend_of(const ViewState& state, const ViewBody& body) {
     const ValueRange range = state.look.range.value_or(body.range);
-    return {.title = body.field(), .min = range.min, .max = range.max};
+    return {.title = body.field(), .min = range.min, .max = range.max, .shape = state.look.shape};
 }
 
 View seen_view(const ViewState& state, const ViewBody& body) {
@@ -60,7 +60,7 @@ void draw_overlays(DrawnPicture& picture, const View& view, const ViewBody& body
     const Vec3 ink = ink_on(background_of(state));
     if (state.edges && !picture.depth.empty()) {
         const double width = std::max(1.0, std::min(view.width(), view.height()) / 512.0);
-        draw_edges(picture.image, picture.depth, view, body.mesh, {.width_px = width, .color = ink, .alpha = 0.6});
+        draw_edges(picture.image, picture.depth, view, body.mesh, {.width_px = width, .color = ink, .alpha = 0.6}, state.clip);
     }
     if (state.axes) draw_axes(picture.image, view, ink);
     if (state.legend) {

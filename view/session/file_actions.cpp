@@ -143,6 +143,7 @@ void load_state(Session& session, const Json& file) {
     const Json known = json_of(session.state);
     const Session::Moment before = session.moment();
     try {
+        if (json.contains("log")) session.state.look.shape = {};  // else it would have to fit what is read before it
         restore(session, json, known, path);
         if (json.contains("mesh")) take_edits(session, std::filesystem::path(path).parent_path() / word(json["mesh"]));
     } catch (...) {

@@ -13,6 +13,13 @@ using Session = ViewSession::State;
 
 constexpr int kLargestSide_px = 8192;
 
+/// Three parts from 0 to 1, or none.
+std::optional<Vec3> color(const Json& value) {
+    if (value.is_null()) return {};
+    for (const Json& part : value) (void)number(part, 0, 1);
+    return vector(value);
+}
+
 Method method_of(const Json& name, const Session& session) {
     return named<Method>(word_of(name, methods_of(*session.body)), "method");
 }
@@ -79,6 +86,36 @@ void opacity(Session& session, const Json& value) {
     });
 }
 
+void log(Session& session, const Json& value) {
+    edit_state(session, [&](ViewState& next) {
+        ColorScale& scale = next.look.shape.scale;
+        scale.where = "log";
+        scale.logarithmic = flag(value);
+        if (scale.logarithmic) scale.linear_within = 0;
+    });
+}
+
+void symlog(Session& session, const Json& value) {
+    edit_state(session, [&](ViewState& next) {
+        ColorScale& scale = next.look.shape.scale;
+        scale.linear_within = value.is_null() ? 0 : number(value, 1e-300, 1e300);
+        if (!value.is_null()) scale.logarithmic = false;
+    });
+}
+
+void bands(Session& session, const Json& value) {
+    edit_state(session,
+               [&](ViewState& next) { next.look.shape.bands = value.is_null() ? 0 : whole_number(value, 1, kMostBands); });
+}
+
+void below(Session& session, const Json& value) {
+    edit_state(session, [&](ViewState& next) { next.look.shape.below = color(value); });
+}
+
+void above(Session& session, const Json& value) {
+    edit_state(session, [&](ViewState& next) { next.look.shape.above = color(value); });
+}
+
 void opacity_unit(Session& session, const Json& value) {
     edit_state(session, [&](ViewState& next) {
         next.look.opacity_unit_world.reset();
@@ -91,12 +128,7 @@ void clamp(Session& session, const Json& value) {
 }
 
 void background(Session& session, const Json& value) {
-    edit_state(session, [&](ViewState& next) {
-        next.background.reset();
-        if (value.is_null()) return;
-        for (const Json& part : value) (void)number(part, 0, 1);
-        next.background = vector(value);
-    });
+    edit_state(session, [&](ViewState& next) { next.background = color(value); });
 }
 
 void axes(Session& session, const Json& value) {

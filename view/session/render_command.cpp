@@ -60,10 +60,17 @@ std::string render_command(const ViewState& state, const ViewBody& body, const V
     } else if (look.stretch) {
         add("--tf-range", "field");
     }
+    const ColorShape& shape = look.shape;
+    const auto color_text = [](const Vec3& color) { return comma_separated({color.x, color.y, color.z}); };
+    if (shape.scale.logarithmic) words.emplace_back("--log");
+    if (shape.scale.linear_within > 0) add("--symlog", exact_text(shape.scale.linear_within));
+    if (shape.bands > 0) add("--bands", std::to_string(shape.bands));
+    if (shape.below) add("--below", color_text(*shape.below));
+    if (shape.above) add("--above", color_text(*shape.above));
     if (!look.opacity.empty()) add("--opacity", opacity_text(look.opacity));
     if (look.opacity_unit_world) add("--opacity-unit", exact_text(*look.opacity_unit_world));
     if (look.clamp) words.emplace_back("--clamp");
-    if (state.background) add("--background", comma_separated({state.background->x, state.background->y, state.background->z}));
+    if (state.background) add("--background", color_text(*state.background));
     if (state.method != Method::Splat) add("--method", std::string(name_of(state.method)));
     const bool computed = body.field() == "density" && std::ranges::find(read_words, "--density") != read_words.end();
     if (!computed) add("--field", body.field());  // --density says which field, and excludes --field

@@ -113,7 +113,7 @@ detail::Json detail::parsed(std::string_view text, const std::string& where) {
     try {
         return Json::parse(of_limited_depth(text, where));
     } catch (const nlohmann::json::exception& error) {
-        throw Error(ErrorCode::InvalidInput, parser_message(error.what()), where);
+        throw Error(ErrorCode::InvalidInput, "is not JSON: " + parser_message(error.what()), where);
     }
 }
 
@@ -138,6 +138,7 @@ void ViewSession::State::choose_body() {
         chosen = tet_body(source, chosen->mesh, chosen->field(), state.method);
         levels[static_cast<std::size_t>(default_tet_level(state.method)) - 1] = chosen;
     }
+    (void)optics_of(state, *chosen);  // a logarithmic scale does not fit every field
     state.field = chosen->field();
     body = std::move(chosen);
     tet_levels = std::move(levels);

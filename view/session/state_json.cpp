@@ -40,6 +40,12 @@ Json json_of(const ViewState& state) {
     }
     json["opacity"] = Json::array();
     for (const auto& knot : state.look.opacity) json["opacity"].push_back({knot.value, knot.alpha});
+    const ColorShape& shape = state.look.shape;
+    json["log"] = shape.scale.logarithmic;
+    json["symlog"] = shape.scale.linear_within > 0 ? Json(shape.scale.linear_within) : Json(nullptr);
+    json["bands"] = shape.bands > 0 ? Json(shape.bands) : Json(nullptr);
+    json["below"] = shape.below ? numbers(*shape.below) : Json(nullptr);
+    json["above"] = shape.above ? numbers(*shape.above) : Json(nullptr);
     json["opacity_unit"] = state.look.opacity_unit_world ? Json(*state.look.opacity_unit_world) : Json(nullptr);
     json["clamp"] = state.look.clamp;
     json["background"] = state.background ? numbers(*state.background) : Json(nullptr);

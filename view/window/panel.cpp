@@ -6,6 +6,10 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cmath>
+#include <optional>
+
+#include "subvol/srgb.h"
 
 namespace subvol::detail {
 
@@ -91,6 +95,56 @@ void draw_what(WindowHost& host, WindowMemory& memory) {
     tip(memory, "step after step", "space");
 }
 
+/// A box that gives values beyond the range a colour of their own, and that colour.
+void choose_beyond(WindowHost& host, WindowMemory& memory, const char* action, const std::optional<Vec3>& now) {
+    bool own = now.has_value();
+    if (ImGui::Checkbox(action, &own)) run(host, memory, action, own ? "[0.5, 0.5, 0.5]" : "null");
+    tip(memory, "values beyond the range have a colour of their own, not that of its end");
+    if (!now) return;
+    std::array<float, 3> color{};
+    for (int k = 0; k < 3; ++k) color[static_cast<std::size_t>(k)] = static_cast<float>(srgb_from_linear((*now)[k]));
+    ImGui::SameLine();
+    ImGui::PushID(action);
+    if (ImGui::ColorEdit3("##color", color.data(), ImGuiColorEditFlags_NoInputs)) {
+        const Vec3 chosen = linear_from_srgb(Vec3(color[0], color[1], color[2]));
+        run(host, memory, action, "[" + json_text(chosen.x) + ", " + json_text(chosen.y) + ", " + json_text(chosen.z) + "]");
+    }
+    ImGui::PopID();
+}
+
+/// How the map is spread over the range: the scale, bands, and colours beyond the range.
+void draw_color_shape(WindowHost& host, WindowMemory& memory) {
+    const ColorShape& shape = host.state().look.shape;
+    const bool symmetric = shape.scale.linear_within > 0;
+    const ValueRange field = host.field_range();
+    const double least = 0.01 * std::max(std::abs(field.min), std::abs(field.max));
+    const auto scale = choose(memory, "scale",
+                              shape.scale.logarithmic ? "log"
+                              : symmetric             ? "symlog"
+                                                      : "linear",
+                              {"linear", "log", "symlog"});
+    if (scale == "log") run(host, memory, "log", "true");
+    if (scale == "symlog") run(host, memory, "symlog", json_text(least > 0 ? least : 1.0));
+    if (scale == "linear") run(host, memory, symmetric ? "symlog" : "log", symmetric ? "null" : "false");
+    tip(memory, "log: equal ratios, equal parts of the map; symlog: on both sides of 0, linear within a value");
+    if (symmetric) {
+        float within = static_cast<float>(shape.scale.linear_within);
+        ImGui::SetNextItemWidth(-0.34F * ImGui::GetContentRegionAvail().x);
+        if (ImGui::DragFloat("linear within", &within, 0.01F * within, 0, 0, "%.4g") && within > 0)
+            run(host, memory, "symlog", json_text(double{within}));
+    }
+    int bands = shape.bands;
+    ImGui::SetNextItemWidth(-0.34F * ImGui::GetContentRegionAvail().x);
+    if (ImGui::SliderInt("bands", &bands, 0, 20, bands == 0 ? "none" : "%d"))
+        run(host, memory, "bands", bands > 0 ? std::to_string(bands) : "null");
+    tip(memory, "so many colours; ctrl and a click types a number");
+    const std::optional<Vec3> below = shape.below, above = shape.above;
+    const float half = 0.5F * ImGui::GetContentRegionAvail().x;
+    choose_beyond(host, memory, "below", below);
+    ImGui::SameLine(half);
+    choose_beyond(host, memory, "above", above);
+}
+
 void draw_colours(WindowHost& host, WindowMemory& memory) {
     const ViewState& state = host.state();
     const std::string now = state.look.colors.empty() ? "(of the look)" : state.look.colors;
@@ -103,6 +157,7 @@ void draw_colours(WindowHost& host, WindowMemory& memory) {
     ImGui::SetNextItemWidth(-0.34F * ImGui::GetContentRegionAvail().x);
     if (ImGui::DragFloatRange2("range", &low, &high, speed, 0, 0, "%.4g", "%.4g") && low < high)
         run(host, memory, "range", json_text(double{low}, double{high}));
+    draw_color_shape(host, memory);
     ImGui::Checkbox("log counts", &host.look().log_counts);
     ImGui::SameLine(0.5F * ImGui::GetContentRegionAvail().x);
     ImGui::Checkbox("log opacity", &host.look().log_opacity);

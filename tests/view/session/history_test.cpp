@@ -31,6 +31,7 @@ TEST_F(History, EveryActionIsTakenBackAndDoneAgain) {
     for (const char* action :
          {R"({"orbit": [30, 5]})", R"({"look": "xray"})", R"({"field": "height"})", R"({"add_cut": {"clip": [1, 0, 0]}})",
           R"({"set_cut": {"clip": 0, "plane": [0, 0, 0.2, 0, 0, 1]}})", R"({"step": 1})", R"({"tf": "plasma"})",
+          R"({"range": [0.1, 2]})", R"({"log": true})", R"({"symlog": 0.1})", R"({"bands": 7})", R"({"below": [1, 0, 0]})",
           R"({"compare": "tets"})", R"({"legend": true})", R"({"zoom": [2, 10, 10]})"}) {
         session.run(action);
         EXPECT_NE(session.state_json(), states.back()) << action;

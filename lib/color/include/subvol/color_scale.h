@@ -25,6 +25,8 @@ struct ColorScale {
     [[nodiscard]] double at(double part, double min, double max) const;
 };
 
+inline constexpr int kMostBands = 1000;
+
 /// What is done with a colour map over its range.
 ///
 /// bands:        so many colours, evenly spaced in the scale; the first and the last are the ends of the map; 0: all colours
