@@ -22,16 +22,17 @@ enum class Reads { Meshes, NoMesh };
 /// The options that every verb has.
 struct CommonOptions {
     std::optional<std::string> field;
-    std::optional<std::string> density;  // an expression in x, y, z
-    std::optional<std::string> warp;     // "DISPL*20"
-    std::vector<std::string> only;       // regions
-    std::vector<std::string> patches;    // drawn alone
-    std::vector<std::string> at_rest;    // quantities that are computed before --warp and --only, besides that of --field
-    ReadOptions read{};                  // what the library describes of them
-    bool weld = false;                   // join points at the same place
-    std::optional<std::string> step;     // a number from 0, "last", "all" or a range
-    bool interpolate_time = false;       // between the two steps around read.time
-    int threads = 0;                     // 0: all
+    std::optional<std::string> density;       // an expression in x, y, z
+    std::optional<std::string> warp;          // "DISPL*20"
+    std::vector<std::string> only;            // regions
+    std::vector<std::string> patches;         // drawn alone
+    std::vector<std::string> part_opacities;  // of parts of a solid
+    std::vector<std::string> at_rest;         // quantities that are computed before --warp and --only, besides that of --field
+    ReadOptions read{};                       // what the library describes of them
+    bool weld = false;                        // join points at the same place
+    std::optional<std::string> step;          // a number from 0, "last", "all" or a range
+    bool interpolate_time = false;            // between the two steps around read.time
+    int threads = 0;                          // 0: all
     bool json = false;
     bool quiet = false;
     std::string progress = "auto";

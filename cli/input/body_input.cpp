@@ -94,8 +94,8 @@ WithFacts<BodyInput> open_body(const std::string& input, const CommonOptions& op
         auto [bricks, facts] = open_bricks_input(input, app);
         return {{input, std::move(bricks)}, std::move(facts)};
     }
-    std::optional<Warp> moved;
-    auto [read, facts] = read_input(input, options, progress, alone, &moved);
+    Reshaped reshaped;
+    auto [read, facts] = read_input(input, options, progress, alone, &reshaped);
     std::vector<MeshBlock> blocks = std::move(read.blocks);
     MeshSets sets = std::move(read.sets);
     std::vector<FieldInfo> fields = std::move(read.fields);
@@ -106,7 +106,8 @@ WithFacts<BodyInput> open_body(const std::string& input, const CommonOptions& op
     body.value.sets = std::move(sets);
     body.value.of_file = std::move(fields);
     body.value.shells = std::move(taken);
-    body.value.moved = std::move(moved);
+    body.value.moved = std::move(reshaped.moved);
+    body.value.opacities = std::move(reshaped.opacities);
     return body;
 }
 

@@ -55,6 +55,7 @@ public:
     MeshSets sets{};                   // of a mesh in memory
     std::vector<FieldInfo> of_file{};  // of its file
     std::optional<Warp> moved{};       // by --warp, with its factor
+    std::vector<float> opacities{};    // of the shells' quads, which are translucent parts; empty: shells are opaque
 
 private:
     std::string input_;

@@ -102,11 +102,12 @@ ReadResult read_between(const std::string& input, const BetweenSteps& between, d
     return read;
 }
 
-/// What --only and --warp make of a mesh. Quantities are computed before, in the whole mesh at rest.
-std::optional<Warp> reshape(ReadResult& read, const CommonOptions& options, Facts& facts) {
+/// What --only, --warp, --patch and --part-opacity make of a mesh. Quantities are computed before, in the whole mesh at rest.
+Reshaped reshape(ReadResult& read, const CommonOptions& options, Facts& facts) {
     const std::vector<Region> regions = regions_of(options);
-    if (regions.empty() && !options.warp && options.patches.empty()) return std::nullopt;
-    std::optional<Warp> moved;
+    if (regions.empty() && !options.warp && options.patches.empty() && options.part_opacities.empty()) return {};
+    Reshaped reshaped;
+    std::optional<Warp>& moved = reshaped.moved;
     HexMesh mesh = used_mesh(std::move(read.mesh), options);
     if (options.field && mesh.find_attribute(*options.field) == nullptr) {
         mesh.attributes.push_back(select_field(mesh, options.field, options.listener).scalar);
@@ -117,7 +118,7 @@ std::optional<Warp> reshape(ReadResult& read, const CommonOptions& options, Fact
             mesh.attributes.push_back(field_of(mesh, quantity, quantity, options.listener));
     }
     if (!read.shells.empty()) {
-        facts.warn("shells and beams are left out with --only, --warp and --patch");
+        facts.warn("shells and beams are left out with --only, --warp, --patch and --part-opacity");
         read.shells = {};
     }
     if (!regions.empty()) {
@@ -147,8 +148,22 @@ std::optional<Warp> reshape(ReadResult& read, const CommonOptions& options, Fact
         facts.note("patches: " + join(names));
         read.sets = {std::move(patches), {}};
     }
+    if (!options.part_opacities.empty()) {
+        TranslucentParts parts = of_option("--part-opacity", [&] {
+            std::vector<PartOpacity> asked;
+            for (const std::string& part : options.part_opacities) asked.push_back(parse_part_opacity(part));
+            return translucent_parts(mesh, asked, read.sets);
+        });
+        facts["opaque_cells"] = parts.rest.cells.size();
+        mesh = std::move(parts.rest);
+        read.sets = sets_of_cells(std::move(read.sets), parts.cells);
+        read.shells = std::move(parts.shells);
+        read.cell_means.clear();
+        read.cell_parts.clear();
+        reshaped.opacities = std::move(parts.opacities);
+    }
     read.mesh = std::move(mesh);
-    return moved;
+    return reshaped;
 }
 
 }  // namespace
@@ -190,7 +205,7 @@ ReadOptions read_options(const std::string& input, const CommonOptions& options)
 }
 
 WithFacts<ReadResult> read_input(const std::string& input, const CommonOptions& options, Progress* progress, ShellsAlone alone,
-                                 std::optional<Warp>* moved) {
+                                 Reshaped* reshaped) {
     Facts facts;
     facts["input"] = input;
     if (kind_of(input) == InputKind::Bricks) {
@@ -243,8 +258,8 @@ WithFacts<ReadResult> read_input(const std::string& input, const CommonOptions& 
         curved["fields_error"] = read.curved->fields_error;
         curved["limited"] = read.curved->limited;
     }
-    const std::optional<Warp> warp = reshape(read, options, facts);
-    if (moved != nullptr) *moved = warp;
+    Reshaped made = reshape(read, options, facts);
+    if (reshaped != nullptr) *reshaped = std::move(made);
     return {std::move(read), std::move(facts)};
 }
 

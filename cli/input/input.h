@@ -11,6 +11,7 @@
 #include "subvol/facts.h"
 #include "subvol/hex_mesh.h"
 #include "subvol/mesh_io.h"
+#include "subvol/part_opacity.h"
 #include "subvol/region.h"
 #include "subvol/warp.h"
 
@@ -38,11 +39,20 @@ enum class InputKind { Picture, Mesh, Bricks, Points, Grid };
 /// Whether a file of shells and beams without cells is an error.
 enum class ShellsAlone { Refuse, Take };
 
+/// What --warp and --part-opacity have made of a mesh.
+///
+/// moved:     the displacement with its factor
+/// opacities: of the quads of the shells, which are the translucent parts
+struct Reshaped {
+    std::optional<Warp> moved{};
+    std::vector<float> opacities{};
+};
+
 /// Reads a mesh file, or generates "model:NAME[:RESOLUTION]". The reader's warnings are facts.
 ///
-/// moved: gets the displacement of --warp with its factor, nothing without it
+/// reshaped: gets what was made of the mesh
 [[nodiscard]] WithFacts<ReadResult> read_input(const std::string& input, const CommonOptions& options, Progress* progress,
-                                               ShellsAlone alone = ShellsAlone::Refuse, std::optional<Warp>* moved = nullptr);
+                                               ShellsAlone alone = ShellsAlone::Refuse, Reshaped* reshaped = nullptr);
 
 /// `read_input` without the unused points; --density becomes the first attribute.
 ///

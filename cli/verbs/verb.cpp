@@ -18,6 +18,10 @@ void Verb::add_patches(const std::string& help) {
     app_.add_option("--patch", common_.patches, help)->type_name("NAME")->allow_extra_args(false);
 }
 
+void Verb::add_part_opacities(const std::string& help) {
+    app_.add_option("--part-opacity", common_.part_opacities, help)->type_name("PART=A")->allow_extra_args(false);
+}
+
 void Verb::group(const std::string& heading, std::initializer_list<const char*> options) {
     for (const char* option : options) app_.get_option(option)->group(heading);
 }

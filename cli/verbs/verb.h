@@ -50,6 +50,8 @@ protected:
     [[nodiscard]] CLI::App& app() { return app_; }
     /// Adds --patch, by which nothing but patches of the mesh is read. help: what becomes of them
     void add_patches(const std::string& help);
+    /// Adds --part-opacity, which takes translucent parts out of the mesh.
+    void add_part_opacities(const std::string& help);
 
     /// Null: this process is alone.
     [[nodiscard]] Ranks* ranks() const { return ranks_; }

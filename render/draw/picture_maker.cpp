@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <tuple>
 #include <utility>
 
@@ -10,6 +11,8 @@
 #include "picture_facts.h"
 #include "subvol/boundary_shading.h"
 #include "subvol/detail/points_frame.h"
+#include "subvol/draw_shells.h"
+#include "subvol/error.h"
 #include "subvol/limit.h"
 #include "subvol/progressive.h"
 #include "subvol/render_dense.h"
@@ -98,6 +101,8 @@ struct PictureMaker::State {
     [[nodiscard]] const SchemeOptions& scheme() const { return options.kernels.sample.scheme; }
     [[nodiscard]] Method method() const { return options.style.method; }
     [[nodiscard]] bool is_solid() const { return options.style.look.look == Look::Solid; }
+    /// Whether a solid has opacities: then its surface is translucent, whatever the method.
+    [[nodiscard]] bool is_translucent() const { return is_solid() && !options.style.look.opacity.empty(); }
     [[nodiscard]] bool is_finished() const { return team == nullptr || team->finishes(); }
     /// Whether the light of the boundary is added to finished pictures.
     [[nodiscard]] bool lights_boundary() const {
@@ -170,6 +175,19 @@ struct PictureMaker::State {
     Facts prepare(const Optics& optics, Progress* progress) {
         check_method(method(), body.kind(), options.names);
         Facts facts;
+        if (is_translucent()) {
+            if (!body.mesh) {
+                throw Error(ErrorCode::InvalidInput, "of a solid are those of its surface, for which a mesh is needed",
+                            option_name("opacity", options.names), "look volume");
+            }
+            if (!options.style.clip.slices.empty()) {
+                throw Error(ErrorCode::InvalidInput, "slices lie in volumes and in opaque solids",
+                            option_name("slice", options.names), "look volume, or no " + option_name("opacity", options.names));
+            }
+            (void)skin_of_mesh(progress, facts);
+            hull.reset();
+            return facts;
+        }
         if (is_in_pieces()) {
             prepare_pieces(progress, facts);
         } else if (draws_kernels(method())) {
@@ -409,7 +427,20 @@ struct PictureMaker::State {
         return picture;
     }
 
+    /// The surface of a solid, one part of it seen through the other. Every process has all rows.
+    Picture draw_translucent(const View& view, const Optics& optics) const {
+        Picture picture{Image(view.width(), view.height())};
+        picture.depth.assign(picture.image.rgba.size() / 4, std::numeric_limits<float>::infinity());
+        ColoredSurface colored{skin->surface, skin->values.back()};
+        for (const double value : skin->values.front())
+            colored.opacities.push_back(static_cast<float>(alpha_at(optics.function(), value)));
+        draw_shells(picture.image, picture.depth, colored, {}, view, optics,
+                    {.samples = options.style.sample_count(), .clip = options.style.clip});
+        return picture;
+    }
+
     Picture drawn_rows(const View& view, const Optics& optics, Progress* progress, const RbfVolume* stand_in) {
+        if (is_translucent()) return draw_translucent(view, optics);
         switch (method()) {
             case Method::Splat:
             case Method::Sheets:
@@ -433,6 +464,7 @@ struct PictureMaker::State {
     void finish(Picture& picture, const View& view, const Optics& optics) const {
         const int samples = options.style.sample_count();
         const Clip& clip = options.style.clip;
+        if (is_translucent()) return;
         if (lights_boundary()) {
             light_boundary(picture.image, skin->surface, view, Shading{}, samples, clip);
         } else if (is_in_pieces() && paints_finished() && !skin->values.empty()) {

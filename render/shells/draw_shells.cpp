@@ -8,6 +8,7 @@
 #include <cmath>
 #include <span>
 #include <string>
+#include <tuple>
 #include <utility>
 
 #include "boundary_intervals.h"
@@ -77,50 +78,89 @@ std::array<int, 2> columns_of(const Outline& outline, int row, int width) {
     return {std::max(0, begin), std::min(width - 1, end)};
 }
 
-}  // namespace
-
-TriangleRaster::TriangleRaster(const Surface& surface, const View& view, const Clip& clip)
-    : eye(surface.points.size()), depth(view.width(), view.height(), kFar), triangle(view.width(), view.height(), kNothing) {
-    const std::size_t triangles = surface.triangles.size(), bands = (depth.height + kRows - 1) / kRows;
-    parallel_each(eye.size(), [&](std::size_t p) { eye[p] = view.to_eye(surface.points[p]); });
-    const auto corners_of = [&](std::size_t t) {
-        const auto& [a, b, c] = surface.triangles[t];
-        return std::array{eye[a], eye[b], eye[c]};
-    };
-    std::vector<Outline> outlines(triangles);
-    parallel_each(triangles, [&](std::size_t t) { outlines[t] = outline_of(corners_of(t), view); });
-    std::vector<std::vector<std::uint32_t>> of_band(bands);
-    for (std::uint32_t t = 0; t < triangles; ++t) {
-        const int first = std::max(0, outlines[t].top), last = std::min(view.height() - 1, outlines[t].bottom);
-        for (int band = first / kRows; first <= last && band <= last / kRows; ++band) {
-            of_band[static_cast<std::size_t>(band)].push_back(t);
+/// The rows of a picture that triangles reach, in bands.
+class TriangleRows {
+public:
+    /// eye: the surface's points in eye space. Keeps references to all of them.
+    TriangleRows(const Surface& surface, const std::vector<Vec3>& eye, const View& view, const Clip& clip)
+        : surface_(surface),
+          eye_(eye),
+          view_(view),
+          clip_(clip),
+          outlines_(surface.triangles.size()),
+          of_band_(static_cast<std::size_t>((view.height() + kRows - 1) / kRows)) {
+        parallel_each(outlines_.size(), [&](std::size_t t) { outlines_[t] = outline_of(corners_of(t), view); });
+        for (std::uint32_t t = 0; t < outlines_.size(); ++t) {
+            const int first = std::max(0, outlines_[t].top), last = std::min(view.height() - 1, outlines_[t].bottom);
+            for (int band = first / kRows; first <= last && band <= last / kRows; ++band) {
+                of_band_[static_cast<std::size_t>(band)].push_back(t);
+            }
         }
     }
-    const bool cuts = !clip.planes.empty() || clip.box;
-    const auto fill = [&](std::uint32_t t, int first, int last) {
+
+    /// Calls take(x, y, z, t) where rays meet triangles that the clip leaves, in parallel bands, each in the triangles' order.
+    ///
+    /// wants(x, y, z): whether take would do something
+    template <class Wants, class Take>
+    void each(const Wants& wants, const Take& take) const {
+        tbb::parallel_for(std::size_t{0}, of_band_.size(), [&](std::size_t band) {
+            const int first = static_cast<int>(band) * kRows, last = std::min(view_.height(), first + kRows) - 1;
+            for (const std::uint32_t t : of_band_[band]) fill(t, first, last, wants, take);
+        });
+    }
+
+private:
+    [[nodiscard]] std::array<Vec3, 3> corners_of(std::size_t t) const {
+        const auto& [a, b, c] = surface_.triangles[t];
+        return {eye_[a], eye_[b], eye_[c]};
+    }
+
+    template <class Wants, class Take>
+    void fill(std::uint32_t t, int first, int last, const Wants& wants, const Take& take) const {
+        const bool cuts = !clip_.planes.empty() || clip_.box;
         const auto [a, b, c] = corners_of(t);
         const Vec3 flat = glm::cross(b - a, c - a);
         const double offset = glm::dot(flat, a);
-        for (int y = std::max({0, first, outlines[t].top}); y <= std::min(last, outlines[t].bottom); ++y) {
-            const auto [begin, end] = columns_of(outlines[t], y, view.width());
+        for (int y = std::max({0, first, outlines_[t].top}); y <= std::min(last, outlines_[t].bottom); ++y) {
+            const auto [begin, end] = columns_of(outlines_[t], y, view_.width());
             for (int x = begin; x <= end; ++x) {
-                const Vec2 slopes = view.slopes(x + 0.5, y + 0.5);
-                const double z = view.perspective() ? offset / glm::dot(flat, Vec3(slopes, 1))
-                                                    : (offset - glm::dot(flat, Vec3(slopes, 0))) / flat.z;
-                if (!(z < double{depth.at(x, y)}) || z <= 0 || z > view.ray_end(x + 0.5, y + 0.5)) continue;
+                const Vec2 slopes = view_.slopes(x + 0.5, y + 0.5);
+                const double z = view_.perspective() ? offset / glm::dot(flat, Vec3(slopes, 1))
+                                                     : (offset - glm::dot(flat, Vec3(slopes, 0))) / flat.z;
+                if (!(z > 0) || !wants(x, y, z) || z > view_.ray_end(x + 0.5, y + 0.5)) continue;
                 if (cuts) {
-                    const Ray ray = view.ray(x + 0.5, y + 0.5);
-                    if (clip.removes(ray.origin + z * ray.direction)) continue;
+                    const Ray ray = view_.ray(x + 0.5, y + 0.5);
+                    if (clip_.removes(ray.origin + z * ray.direction)) continue;
                 }
-                depth.at(x, y) = static_cast<float>(z);
-                triangle.at(x, y) = t;
+                take(x, y, z, t);
             }
         }
-    };
-    tbb::parallel_for(std::size_t{0}, bands, [&](std::size_t band) {
-        const int first = static_cast<int>(band) * kRows, last = std::min(view.height(), first + kRows) - 1;
-        for (const std::uint32_t t : of_band[band]) fill(t, first, last);
-    });
+    }
+
+    const Surface& surface_;
+    const std::vector<Vec3>& eye_;
+    const View& view_;
+    const Clip& clip_;
+    std::vector<Outline> outlines_;
+    std::vector<std::vector<std::uint32_t>> of_band_;
+};
+
+std::vector<Vec3> to_eye(const Surface& surface, const View& view) {
+    std::vector<Vec3> eye(surface.points.size());
+    parallel_each(eye.size(), [&](std::size_t p) { eye[p] = view.to_eye(surface.points[p]); });
+    return eye;
+}
+
+}  // namespace
+
+TriangleRaster::TriangleRaster(const Surface& surface, const View& view, const Clip& clip)
+    : eye(to_eye(surface, view)), depth(view.width(), view.height(), kFar), triangle(view.width(), view.height(), kNothing) {
+    TriangleRows(surface, eye, view, clip)
+        .each([&](int x, int y, double z) { return z < double{depth.at(x, y)}; },
+              [&](int x, int y, double z, std::uint32_t t) {
+                  depth.at(x, y) = static_cast<float>(z);
+                  triangle.at(x, y) = t;
+              });
 }
 
 }  // namespace detail
@@ -185,49 +225,64 @@ Raster<float> entries(const Surface& boundary, const View& fine, const Clip& cli
     return depths;
 }
 
+/// The colour of a surface with the light on it, and its opacity.
+struct Lit {
+    Vec3 color{0.0};
+    double opacity = 1;
+};
+
 /// The colour of the shells where rays meet them.
 class ShellLight {
 public:
     /// Keeps references to all of them.
-    ShellLight(const ColoredSurface& shells, const TriangleRaster& hits, const View& fine, const Optics& optics,
+    ShellLight(const ColoredSurface& shells, const std::vector<Vec3>& eye, const View& fine, const Optics& optics,
                const Shading& shading)
         : shells_(shells),
-          hits_(hits),
+          eye_(eye),
           fine_(fine),
           optics_(optics),
           shading_(shading),
           normals_(two_sided_normals(shells.surface)) {}
 
-    [[nodiscard]] Vec3 color_at(int column, int row) const {
-        const std::uint32_t number = hits_.triangle.at(column, row);
+    /// Where a ray meets a triangle at the depth z.
+    [[nodiscard]] Lit at(int column, int row, double z, std::uint32_t number) const {
         const auto& corners = shells_.surface.triangles[number];
-        const Corners at{hits_.eye[corners[0]], hits_.eye[corners[1]], hits_.eye[corners[2]]};
+        const Corners at{eye_[corners[0]], eye_[corners[1]], eye_[corners[2]]};
         const Vec2 slopes = fine_.slopes(column + 0.5, row + 0.5);
-        const double z{hits_.depth.at(column, row)};
         const Vec3 place = fine_.perspective() ? z * Vec3(slopes, 1) : Vec3(slopes, z);
         const Vec3 flat = glm::cross(at[1] - at[0], at[2] - at[0]);
         Vec3 normal(0.0);
-        double sum = 0, value = 0;
+        double sum = 0, value = 0, opacity = 0;
         for (std::size_t k = 0; k < 3; ++k) {
             const double share =
                 std::max(0.0, glm::dot(flat, glm::cross(at[(k + 2) % 3] - at[(k + 1) % 3], place - at[(k + 1) % 3])));
             sum += share;
             value += share * shells_.values[corners[k]];
+            if (!shells_.opacities.empty()) opacity += share * double{shells_.opacities[corners[k]]};
             normal += share * normals_[number][k];
         }
         value = sum > 0 ? value / sum : shells_.values[corners[0]];
+        opacity = shells_.opacities.empty() ? 1 : sum > 0 ? opacity / sum : double{shells_.opacities[corners[0]]};
         const auto& [right, up, forward] = fine_.axes();
         normal = sum > 0 ? Vec3(glm::dot(right, normal), glm::dot(up, normal), glm::dot(forward, normal)) : flat;
         const Vec3 to_eye = fine_.perspective() ? -glm::normalize(place) : Vec3(0, 0, -1);
         const double length = glm::length(normal);
         if (length > 0) normal = (glm::dot(normal, to_eye) < 0 ? -1.0 : 1.0) * normal / length;
-        const BoundaryLight light = surface_light(shading_, normal, to_eye);
-        return double{light.diffuse} * optics_.color(value) + double{light.specular};
+        const SurfaceLight light = surface_light(shading_, normal, to_eye);
+        return {double{light.diffuse} * optics_.color(value) + double{light.specular}, opacity};
+    }
+
+    /// Whether a ray meets the triangle on the side that its corners turn to.
+    [[nodiscard]] bool is_front(std::uint32_t number) const {
+        const auto& corners = shells_.surface.triangles[number];
+        const Vec3 &a = eye_[corners[0]], &b = eye_[corners[1]], &c = eye_[corners[2]];
+        const Vec3 flat = glm::cross(b - a, c - a);
+        return (fine_.perspective() ? glm::dot(flat, a) : flat.z) > 0;
     }
 
 private:
     const ColoredSurface& shells_;
-    const TriangleRaster& hits_;
+    const std::vector<Vec3>& eye_;
     const View& fine_;
     const Optics& optics_;
     const Shading& shading_;
@@ -257,6 +312,83 @@ struct PixelRays {
     }
 };
 
+/// What a ray meets of translucent triangles.
+struct Layer {
+    std::size_t ray = 0;
+    double z = 0;
+    std::uint32_t triangle = 0;
+};
+
+/// The light that translucent layers add to a ray, and the part of what is behind them that they let through.
+struct Veil {
+    std::array<float, 3> color{};
+    float through = 1;
+};
+
+/// The layers before the volume, for each ray. Triangles that share an edge may both meet a ray there: one of them counts.
+std::vector<Veil> veils_of(const View& fine, const Raster<float>& enters, const ShellLight& light, const TriangleRows& rows) {
+    constexpr double kSame = 1e-7;  // of a depth
+    const auto width = static_cast<std::size_t>(fine.width());
+    std::vector<std::vector<Layer>> of_row(static_cast<std::size_t>(fine.height()));
+    rows.each([&](int x, int y, double z) { return z < double{enters.at(x, y)}; },
+              [&](int x, int y, double z, std::uint32_t t) {
+                  of_row[static_cast<std::size_t>(y)].push_back({static_cast<std::size_t>(x), z, t});
+              });
+    std::vector<Veil> veils(width * of_row.size());
+    parallel_each(of_row.size(), [&](std::size_t row) {
+        std::vector<Layer>& layers = of_row[row];
+        std::ranges::sort(layers, {}, [](const Layer& l) { return std::tuple(l.ray, l.z, l.triangle); });
+        for (std::size_t i = 0; i < layers.size(); ++i) {
+            const Layer& layer = layers[i];
+            bool again = false;
+            for (std::size_t k = i; k > 0 && !again && layers[k - 1].ray == layer.ray; --k) {
+                if (layer.z - layers[k - 1].z > kSame * layer.z) break;
+                again = light.is_front(layers[k - 1].triangle) == light.is_front(layer.triangle);
+            }
+            if (again) continue;
+            Veil& veil = veils[row * width + layer.ray];
+            const Lit lit = light.at(static_cast<int>(layer.ray), static_cast<int>(row), layer.z, layer.triangle);
+            const double part = double{veil.through} * lit.opacity;
+            for (std::size_t c = 0; c < 3; ++c) veil.color[c] += static_cast<float>(part * lit.color[static_cast<int>(c)]);
+            veil.through -= static_cast<float>(part);
+        }
+        layers = {};
+    });
+    return veils;
+}
+
+/// Draws triangles that let light through before the volume.
+void draw_veils(Image& image, const ColoredSurface& shells, const Surface& boundary, const View& view, const Optics& optics,
+                const ShellOptions& options) {
+    const int samples = options.samples, rays = samples * samples;
+    const View fine = view.resized(samples * view.width(), samples * view.height());
+    const std::vector<Vec3> eye = to_eye(shells.surface, fine);
+    const Raster<float> enters = entries(boundary, fine, options.clip);
+    const ShellLight light(shells, eye, fine, optics, options.shading);
+    const std::vector<Veil> veils = veils_of(fine, enters, light, TriangleRows(shells.surface, eye, fine, options.clip));
+    tbb::parallel_for(0, view.height(), [&](int y) {
+        for (int x = 0; x < view.width(); ++x) {
+            Vec3 color(0.0);
+            double through = 0, to_volume = 0;
+            int of_volume = 0;
+            for (int k = 0; k < rays; ++k) {
+                const int row = y * samples + k / samples, column = x * samples + k % samples;
+                const Veil& veil = veils[pixel_index(fine.width(), column, row)];
+                color += Vec3(veil.color[0], veil.color[1], veil.color[2]);
+                through += double{veil.through};
+                if (!(enters.at(column, row) < kFar)) continue;
+                to_volume += double{veil.through};
+                ++of_volume;
+            }
+            const auto pixel = image.pixel(x, y);
+            const double left = of_volume > 0 ? to_volume / of_volume : through / rays;
+            for (std::size_t c = 0; c < 3; ++c)
+                pixel[c] = static_cast<float>(left * double{pixel[c]} + color[static_cast<int>(c)] / rays);
+            pixel[3] = static_cast<float>(std::min(1.0, left * double{pixel[3]} + 1 - through / rays));
+        }
+    });
+}
+
 void check_sizes(const Image& image, std::span<const float> depth, const ColoredSurface& shells, const View& view) {
     if (shells.values.size() != shells.surface.points.size()) {
         throw Error(ErrorCode::InvalidInput,
@@ -264,6 +396,8 @@ void check_sizes(const Image& image, std::span<const float> depth, const Colored
                         std::to_string(shells.surface.points.size()) + " points",
                     "shells");
     }
+    if (!shells.opacities.empty() && shells.opacities.size() != shells.surface.points.size())
+        throw Error(ErrorCode::InvalidInput, "there is not one opacity for each point", "shells");
     if (view.width() != image.width || view.height() != image.height ||
         (!depth.empty() && depth.size() != image.rgba.size() / 4)) {
         throw Error(ErrorCode::InvalidInput, "the picture, its depths and the view are not of one size", "shells");
@@ -276,11 +410,12 @@ void draw_shells(Image& image, std::span<float> depth, const ColoredSurface& she
                  const Optics& optics, const ShellOptions& options) {
     check_sizes(image, depth, shells, view);
     if (shells.surface.triangles.empty()) return;
+    if (!shells.opacities.empty()) return draw_veils(image, shells, boundary, view, optics, options);
     const int samples = options.samples;
     const View fine = view.resized(samples * view.width(), samples * view.height());
     const TriangleRaster hits(shells.surface, fine, options.clip);
     const Raster<float> enters = entries(boundary, fine, options.clip);
-    const ShellLight light(shells, hits, fine, optics, options.shading);
+    const ShellLight light(shells, hits.eye, fine, optics, options.shading);
     tbb::parallel_for(0, view.height(), [&](int y) {
         for (int x = 0; x < view.width(); ++x) {
             PixelRays rays;
@@ -290,7 +425,8 @@ void draw_shells(Image& image, std::span<float> depth, const ColoredSurface& she
                 rays.of_volume += volume;
                 if (hits.triangle.at(column, row) == TriangleRaster::kNothing) continue;
                 const bool first = hits.depth.at(column, row) <= enters.at(column, row);
-                (first ? rays.before : rays.behind) += light.color_at(column, row);
+                const Lit lit = light.at(column, row, double{hits.depth.at(column, row)}, hits.triangle.at(column, row));
+                (first ? rays.before : rays.behind) += lit.color;
                 ++(!first ? rays.under_volume : volume ? rays.over_volume : rays.alone);
                 if (first) rays.nearest = std::min(rays.nearest, hits.depth.at(column, row));
             }

@@ -28,7 +28,7 @@ void ShellScene::draw_into(Image& image, std::span<float> depth, const View& vie
 }
 
 ShellScene make_shell_scene(const HexMesh& mesh, const Shells& shells, RefineOptions refine, std::optional<int> most,
-                            const Optics& optics, int samples, const Clip& clip) {
+                            const Optics& optics, int samples, const Clip& clip, std::span<const float> opacities) {
     Shells control = with_fields_of(shells, mesh);
     refine.levels = levels_of(control, most);
     const Shells fine = limit_shells(mesh, control, refine);
@@ -38,6 +38,14 @@ ShellScene make_shell_scene(const HexMesh& mesh, const Shells& shells, RefineOpt
     ColoredSurface colored;
     const std::vector<double>& values = fine.attributes.back().values;
     for (const Index p : drawn.sources) colored.values.push_back(values[p]);
+    if (!opacities.empty()) {
+        std::vector<float> of_point(fine.points.size(), 1.0F);
+        for (std::size_t q = 0; q < fine.quads.size(); ++q) {
+            const float opacity = opacities[q >> static_cast<unsigned>(2 * refine.levels)];  // each level makes four of one
+            for (const Index p : fine.quads[q]) of_point[p] = opacity;
+        }
+        for (const Index p : drawn.sources) colored.opacities.push_back(of_point[p]);
+    }
     colored.surface = std::move(drawn.surface);
     Surface boundary;
     if (!mesh.cells.empty()) {

@@ -59,6 +59,7 @@
 #include "subvol/optics.h"
 #include "subvol/option.h"
 #include "subvol/overlay.h"
+#include "subvol/part_opacity.h"
 #include "subvol/patch_measure.h"
 #include "subvol/patch_values.h"
 #include "subvol/picture_look.h"

@@ -149,11 +149,61 @@ TEST(DrawShells, AreNotSeenBehindTheEndOfARay) {
     EXPECT_EQ(image.pixel(kSize / 2, kSize / 2)[3], 1);
 }
 
+/// The same wall, which lets light through.
+ColoredSurface veil_at(double x, double value, float opacity) {
+    ColoredSurface veil = wall_at(x, value);
+    veil.opacities.assign(4, opacity);
+    return veil;
+}
+
+TEST(DrawShells, TranslucentSurfacesKeepOffTheirPartOfTheLight) {
+    // The diagonal of the wall, an edge of both of its triangles, goes through the middles of pixels.
+    const View view({.eye = {6, 0, 0}, .target = {0, 0, 0}, .up = {0, 0, 1}, .ortho_height = 2}, kSize, kSize);
+    const Optics optics = grey_to_white();
+    Image opaque(kSize, kSize), veil(kSize, kSize);
+    draw_shells(opaque, {}, wall_at(1, 2), {}, view, optics);
+    draw_shells(veil, {}, veil_at(1, 2, .25F), {}, view, optics);
+    for (std::size_t i = 0; i < veil.rgba.size(); ++i) ASSERT_NEAR(veil.rgba[i], .25F * opaque.rgba[i], 1e-6) << i;
+}
+
+TEST(DrawShells, TranslucentSurfacesLieOneOverTheOtherInAnyOrderAndBeforeTheVolume) {
+    const Surface body = colored_box().surface;
+    const View view = view_of({6, .5, .5});
+    const Optics optics = grey_to_white();
+    const int middle = kSize / 2;
+    const auto color_of = [&](double x, double value) {
+        Image image(kSize, kSize);
+        draw_shells(image, {}, wall_at(x, value), {}, view, optics);
+        return image.pixel(middle, middle)[1];
+    };
+    for (const bool far_first : {false, true}) {
+        ColoredSurface both = veil_at(far_first ? 1.5 : 2, far_first ? 0 : 3, far_first ? .5F : .25F);
+        const ColoredSurface second = veil_at(far_first ? 2 : 1.5, far_first ? 3 : 0, far_first ? .25F : .5F);
+        for (const auto& [a, b, c] : second.surface.triangles) both.surface.triangles.push_back({a + 4, b + 4, c + 4});
+        both.surface.points.insert(both.surface.points.end(), second.surface.points.begin(), second.surface.points.end());
+        both.values.insert(both.values.end(), second.values.begin(), second.values.end());
+        both.opacities.insert(both.opacities.end(), second.opacities.begin(), second.opacities.end());
+        Image image = filled(0, 1);
+        image.pixel(middle, middle)[1] = .8F;
+        draw_shells(image, {}, both, body, view, optics);
+        const float expected = .25F * color_of(2, 3) + .75F * (.5F * color_of(1.5, 0) + .5F * .8F);
+        EXPECT_NEAR(image.pixel(middle, middle)[1], expected, 1e-5);
+        EXPECT_NEAR(image.pixel(middle, middle)[3], 1, 1e-6);
+    }
+    Image behind = filled(.5F, 1);
+    const float before = behind.pixel(middle, middle)[0];
+    draw_shells(behind, {}, veil_at(-1, 1, .5F), body, view, optics);
+    EXPECT_EQ(behind.pixel(middle, middle)[0], before) << "what is behind an opaque body is not seen";
+}
+
 TEST(DrawShells, RefuseWhatDoesNotFit) {
     Image image(kSize, kSize), small(8, 8);
     ColoredSurface wall = wall_at(0, 1);
     const auto draw = [&](Image& into) { draw_shells(into, {}, wall, {}, view_of({5, 0, 0}), grey_to_white()); };
     test::expect_error(ErrorCode::InvalidInput, "not of one size", [&] { draw(small); });
+    wall.opacities = {1, 1, 1};
+    test::expect_error(ErrorCode::InvalidInput, "one opacity", [&] { draw(image); });
+    wall.opacities.clear();
     wall.values.pop_back();
     test::expect_error(ErrorCode::InvalidInput, "3 values for 4 points", [&] { draw(image); });
 }

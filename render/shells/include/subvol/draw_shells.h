@@ -13,9 +13,12 @@
 namespace subvol {
 
 /// Triangles with a value at each point, such as those of `shell_surface`.
+///
+/// opacities: of each point, linear on triangles, 0 to 1: what part of the light from behind a surface keeps off; empty: opaque
 struct ColoredSurface {
     Surface surface;
     std::vector<double> values;
+    std::vector<float> opacities{};
 };
 
 /// samples: those of the picture: n × n places in each pixel
@@ -26,13 +29,14 @@ struct ShellOptions {
     Clip clip{};
 };
 
-/// Draws opaque triangles, lit on either side, into the finished picture of a volume: before it or behind it. What lies within
-/// the volume, or between parts of it, is drawn behind it, as far as that is transparent; where the volume is opaque from its
-/// boundary on, that is exact.
+/// Draws triangles, lit on either side, into the finished picture of a volume: before it or behind it. Opaque ones that lie
+/// within the volume, or between parts of it, are drawn behind it, as far as that is transparent; where the volume is opaque
+/// from its boundary on, that is exact. Translucent ones are drawn one over the other, in any number, before the volume; what
+/// lies behind its boundary is not seen.
 ///
-/// depth:    of the picture as of `SplatResult`, which becomes that of the triangles where they are seen first; empty: none
+/// depth:    of the picture as of `SplatResult`, which becomes that of opaque triangles where they are seen first; empty: none
 /// boundary: of the volume, closed, outward; empty: there is no volume
-/// throws:   Error(InvalidInput) if there is not one value for each point, or the sizes of picture and view differ
+/// throws:   Error(InvalidInput) if there is not one value and opacity for each point, or the sizes of picture and view differ
 /// cost:     parallel; the same for any number of threads
 void draw_shells(Image& image, std::span<float> depth, const ColoredSurface& shells, const Surface& boundary, const View& view,
                  const Optics& optics, const ShellOptions& options = {});

@@ -31,8 +31,10 @@ struct ShellScene {
 /// mesh:   with the field that is shown and, last, the one of the colours; without cells the shells are alone
 /// shells: with the fields of their file, or with the same
 /// most:   no more levels than these, if given
+/// opacities: of the shells' quads, whose points belong to one opacity each, as of `translucent_parts`; empty: they are opaque
 /// throws: Error(InvalidInput) as `limit_shells` and `with_fields_of`
 [[nodiscard]] ShellScene make_shell_scene(const HexMesh& mesh, const Shells& shells, RefineOptions refine,
-                                          std::optional<int> most, const Optics& optics, int samples, const Clip& clip);
+                                          std::optional<int> most, const Optics& optics, int samples, const Clip& clip,
+                                          std::span<const float> opacities = {});
 
 }  // namespace subvol
