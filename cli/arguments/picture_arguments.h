@@ -53,7 +53,7 @@ struct PictureArguments {
     std::vector<std::string> legend_names;     // of the values 1, 2, …, as settled; empty: the legend has a colour bar
     std::string title;                         // above the picture
     bool time_label = false;                   // the time of the step below it
-    bool axes = false, edges = false, scale_bar = false;
+    bool axes = false, edges = false, scale_bar = false, extremes = false;
     std::optional<std::string> background;
 
     void add_to(CLI::App& app);

@@ -28,6 +28,17 @@ Picture extended(const Picture& from, int width, int height) {
     return to;
 }
 
+/// Whether the picture shows something before a place; without depths nobody knows.
+bool is_hidden(const Picture& picture, double z, const Vec2& place) {
+    constexpr double kOnSurface = 0.01;  // of a depth
+    const int x = static_cast<int>(place.x), y = static_cast<int>(place.y);
+    if (picture.depth.empty() || x < 0 || y < 0 || x >= picture.image.width || y >= picture.image.height) return false;
+    const float seen =
+        picture
+            .depth[static_cast<std::size_t>(y) * static_cast<std::size_t>(picture.image.width) + static_cast<std::size_t>(x)];
+    return z > (1 + kOnSurface) * double{seen};
+}
+
 }  // namespace
 
 void PictureNotes::draw_shells(Picture& picture, const View& view) const {
@@ -38,10 +49,18 @@ void PictureNotes::draw_over(Picture& picture, const View& view) const {
     if (edges != nullptr) {
         const double scale = std::max(1.0, std::min(view.width(), view.height()) / 512.0);
         if (!edges->cells.empty())
-            draw_edges(picture.image, picture.depth, view, *edges, {.width_px = scale, .color = ink, .alpha = 0.6});
+            draw_edges(picture.image, picture.depth, view, *edges, {.width_px = scale, .color = ink, .alpha = 0.6}, clip);
         if (shells) {
-            draw_edges(picture.image, picture.depth, view, shells->control, {.width_px = scale, .color = ink, .alpha = 0.6});
+            draw_edges(picture.image, picture.depth, view, shells->control, {.width_px = scale, .color = ink, .alpha = 0.6},
+                       clip);
         }
+    }
+    for (const PictureMark& mark : marks) {
+        const Vec3 at = view.to_eye(mark.place);
+        if (view.perspective() && !(at.z > 0)) continue;
+        const Vec2 place = view.to_pixels(at);
+        const double size = std::clamp(picture.image.height / 34.0, 9.0, 100.0);
+        draw_mark(picture.image, place, mark.text, size, ink, paper, is_hidden(picture, at.z, place));
     }
     if (axes) draw_axes(picture.image, view, ink);
     if (scale_at) draw_scale_bar(picture.image, view, *scale_at, ink);
@@ -70,7 +89,9 @@ PictureNotes make_notes(PictureArguments& arguments, const ShownColors& colors, 
     const LegendOptions& legend = colors.legend;
     const Vec3 behind = arguments.background_color();
     PictureNotes notes{.axes = arguments.axes, .function = colors.optics.function()};
-    notes.ink = Vec3(0.2126 * behind.x + 0.7152 * behind.y + 0.0722 * behind.z > 0.18 ? kDarkInk : kLightInk);
+    const bool light = 0.2126 * behind.x + 0.7152 * behind.y + 0.0722 * behind.z > 0.18;
+    notes.ink = Vec3(light ? kDarkInk : kLightInk);
+    notes.paper = Vec3(light ? 1.0 : 0.0);
     if (arguments.edges) {
         if (mesh == nullptr) throw Error(ErrorCode::InvalidInput, "needs a mesh; this input has no cells", "--edges");
         notes.edges = mesh;

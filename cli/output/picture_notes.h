@@ -22,13 +22,21 @@ struct ShownColors {
     LegendOptions legend;
 };
 
+/// A place with a text beside it.
+struct PictureMark {
+    Vec3 place{0.0};
+    std::string text{};
+};
+
 /// What is drawn over the pictures of a run: shells and beams, axes, edges of the control mesh, a legend beside them.
 struct PictureNotes {
     bool axes = false;
     std::optional<Vec3> scale_at{};  // a scale bar is for lengths at this point
     const HexMesh* edges = nullptr;  // of this mesh
+    Clip clip{};                     // that of the pictures, which cuts edges
+    std::vector<PictureMark> marks{};
     std::shared_ptr<const ShellScene> shells{};
-    Vec3 ink{0.0};
+    Vec3 ink{0.0}, paper{1.0};
     std::vector<std::string> caption{};  // lines in the upper left corner
     TransferFunction function{};
     std::optional<LegendOptions> legend{};
@@ -38,7 +46,7 @@ struct PictureNotes {
 
     /// Draws shells and beams, which come first.
     void draw_shells(Picture& picture, const View& view) const;
-    /// Draws axes, edges and the scale bar.
+    /// Draws edges, marks, axes and the scale bar.
     void draw_over(Picture& picture, const View& view) const;
     /// Writes the name of a view into its upper left corner.
     void name_view(Picture& picture, const std::string& name) const;

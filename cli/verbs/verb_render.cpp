@@ -4,6 +4,7 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -25,6 +26,7 @@
 #include "subvol/detail/points_frame.h"
 #include "subvol/error.h"
 #include "subvol/method.h"
+#include "subvol/quantity.h"
 #include "subvol/shell_scene.h"
 #include "text.h"
 #include "verb.h"
@@ -65,6 +67,11 @@ void check_points(const std::vector<Vec3>& points) {
     }
 }
 
+Range with_values(Range range, std::span<const double> values) {
+    for (const double value : values) range = {std::min(range.min, value), std::max(range.max, value)};
+    return range;
+}
+
 /// Reads the mesh with its shells and beams. A scheme of tetrahedra refines it, and leaves those out.
 ///
 /// app:    of the command; options that bricks cannot have are refused
@@ -92,6 +99,12 @@ WithFacts<ShownBody> load_shown_body(const std::string& input, const CommonOptio
         check_points(shown.body.shells.points);
         const std::string& colors = mesh->attributes.back().name;
         shown.colors = {colors, shown.body.range(colors), unit_of(shown.body.of_file, colors)};
+        if (!shown.body.opacities.empty()) {  // colours and views are those of the whole
+            const Shells parts = with_fields_of(shown.body.shells, *mesh);
+            shown.field.range = with_values(shown.field.range, parts.attributes.front().values);
+            shown.colors.range = with_values(shown.colors.range, parts.attributes.back().values);
+            for (const Vec3& p : parts.points) shown.box.add(p);
+        }
         if (mesh->cells.empty()) {
             for (const Vec3& p : mesh->points) shown.box.add(p);
         }
@@ -104,13 +117,14 @@ PictureNotes make_notes(const ShownBody& shown, const ShownColors& colors, Rende
                         Facts& facts) {
     const MeshSource source = shown.body.source();
     PictureNotes notes = make_notes(arguments.picture, colors, source.mesh());
+    notes.clip = arguments.clip;
     if (!shown.body.shells.empty()) {
         const int samples =
             PictureStyle{.look = {.look = arguments.picture.look}, .samples = arguments.chosen.style.samples}.sample_count();
         notes.shells = facts.timed(progress, "sheets", [&] {
             return std::make_shared<const ShellScene>(
                 make_shell_scene(*source.mesh(), shown.body.shells, arguments.refine.options(0, progress),
-                                 arguments.refine.levels, colors.optics, samples, arguments.clip));
+                                 arguments.refine.levels, colors.optics, samples, arguments.clip, shown.body.opacities));
         });
     }
     return notes;
@@ -144,6 +158,9 @@ public:
             "draw this patch of the boundary alone, as info lists them, or the hull of a set of cells, set:NAME (repeatable; "
             "all); "
             "coloured by patch, or by --field");
+        add_part_opacities(
+            "of a solid: the opacity of the surface of a set of cells or of a region as of --only, 0 to 1; 0 leaves it out "
+            "(repeatable)");
         app().add_option("--title", picture_.title, "a line of text in the upper left corner")->type_name("TEXT");
         app().add_flag("--time-label", picture_.time_label, "draw the time of the step in the upper left corner");
         share_.add_to(app(), "rows of the picture, or some of the frames");
@@ -157,6 +174,7 @@ public:
     int run(Report& report) override {
         arguments_.settle(kind_of_input(), app());
         refuse_frames_per_second();
+        check_parts();
         const Method method = arguments_.method;
         report.if_long(method == Method::Dense ? "--levels 2, a smaller --size, or --method splat"
                        : draws_kernels(method) ? "a smaller --size, a larger --spacing, or fewer --sheets"
@@ -201,6 +219,23 @@ private:
         return BodyKind::Mesh;
     }
 
+    /// throws: Error(InvalidInput) where parts have no surfaces of their own, or there are no places of values
+    void check_parts() const {
+        if (picture_.extremes && arguments_.body != BodyKind::Mesh && arguments_.body != BodyKind::Tets)
+            throw Error(ErrorCode::InvalidInput, "needs a mesh in memory", "--extremes");
+        if (picture_.extremes && arguments_.clip.slices_alone())
+            throw Error(ErrorCode::InvalidInput, "are those of the body, which slices alone do not show", "--extremes",
+                        "--around, or subvol slice --extremes");
+        if (common().part_opacities.empty()) return;
+        if (picture_.look != Look::Solid || picture_.choices.opacity)
+            throw Error(ErrorCode::InvalidInput, "is of the surfaces of a solid", "--part-opacity",
+                        "--look solid without --opacity");
+        if (arguments_.body != BodyKind::Mesh)
+            throw Error(ErrorCode::InvalidInput, "needs a mesh of hexahedra in memory", "--part-opacity");
+        if (!common().patches.empty())
+            throw Error(ErrorCode::InvalidInput, "is of parts of a volume, and --patch draws faces alone", "--part-opacity");
+    }
+
     void refuse_frames_per_second() {
         if (is_video(output_)) return;
         refuse_options(app(), {"--fps", "--duration"}, "has no effect without a video (-o NAME.mp4, .webm or .gif)");
@@ -232,28 +267,14 @@ private:
     void set_groups() {
         group("Camera", {"--size", "--camera", "--view", "--views", "--fit", "--ortho", "--turntable", "--fps", "--duration"});
         group("Cuts", {"--clip", "--clip-box", "--slice", "--around"});
-        group("Colours and light", {"--look",
-                                    "--iso",
-                                    "--tf",
-                                    "--tf-range",
-                                    "--log",
-                                    "--symlog",
-                                    "--bands",
-                                    "--below",
-                                    "--above",
-                                    "--opacity",
-                                    "--opacity-unit",
-                                    "--legend",
-                                    "--legend-side",
-                                    "--legend-size",
-                                    "--legend-format",
-                                    "--title",
-                                    "--time-label",
-                                    "--background",
-                                    "--scale-bar",
-                                    "--shade",
-                                    "--shadows",
-                                    "--ambient-occlusion",
+        group("Colours and light", {"--look",        "--iso",          "--tf",
+                                    "--tf-range",    "--log",          "--symlog",
+                                    "--bands",       "--below",        "--above",
+                                    "--opacity",     "--opacity-unit", "--legend",
+                                    "--legend-side", "--legend-size",  "--legend-format",
+                                    "--title",       "--time-label",   "--background",
+                                    "--scale-bar",   "--part-opacity", "--extremes",
+                                    "--shade",       "--shadows",      "--ambient-occlusion",
                                     "--color-field"});
         group("Kernels",
               {"--per-edge", "--centers", "--spacing", "--spacing-voxels", "--tolerance", "--footprint", "--footprint-size",
@@ -288,6 +309,12 @@ private:
         report.merge(output.write(views, draw, report.progress()));
     }
 
+    /// The pictures of shells without cells.
+    static void write_alone(const std::vector<View>& views, PictureOutput& output, Report& report) {
+        const auto draw = [](const View& view, Progress*) { return empty_picture(view); };
+        report.merge(output.write(views, draw, report.progress()));
+    }
+
     /// The points that a named view is fitted to; none for other cameras, which bricks need not be read for.
     [[nodiscard]] std::vector<Vec3> framed_points(PictureMaker& maker, const Optics& optics, Report& report) const {
         if (picture_.eye.camera || picture_.eye.turntable) return {};
@@ -313,8 +340,41 @@ private:
 
     void set_notes(const ShownBody& mesh, const ShownColors& shown, PictureOutput& output, Report& report) {
         Facts facts;
-        set_notes(make_notes(mesh, shown, arguments_, report.progress(), facts), output);
+        PictureNotes notes = make_notes(mesh, shown, arguments_, report.progress(), facts);
         report.merge(facts);
+        if (picture_.extremes) {
+            PictureMaker maker = maker_of(body_of(mesh), report);
+            notes.marks = extremes_of(mesh, maker, report);
+        }
+        set_notes(std::move(notes), output);
+    }
+
+    /// The least and the largest value of what gives the colours, with their places.
+    [[nodiscard]] std::vector<PictureMark> extremes_of(const ShownBody& shown, PictureMaker& maker, Report& report) const {
+        const HexMesh* mesh = shown.body.source().mesh();
+        if (mesh == nullptr || mesh->cells.empty())
+            throw Error(ErrorCode::InvalidInput, "needs a mesh with opaque cells in memory", "--extremes");
+        Facts facts;
+        const bool solid = maker.paints_boundary();
+        const std::vector<Vec3>& points = solid ? maker.skin(report.progress(), facts).surface.points : mesh->points;
+        const std::vector<double>& values =
+            solid ? maker.skin(report.progress(), facts).values.back() : mesh->attributes.back().values;
+        std::optional<std::size_t> least, largest;
+        for (std::size_t p = 0; p < points.size(); ++p) {
+            if (arguments_.clip.removes(points[p])) continue;
+            if (!least || values[p] < values[*least]) least = p;
+            if (!largest || values[p] > values[*largest]) largest = p;
+        }
+        if (!least) throw Error(ErrorCode::InvalidInput, "nothing is left of the body", "--extremes", "a smaller cut");
+        std::vector<PictureMark> marks;
+        Json said;
+        for (const auto& [name, p] : {std::pair{"min", *least}, {"max", *largest}}) {
+            marks.push_back({points[p], text(name, " ", detail::number_text(values[p], 4))});
+            said[name] = values[p];
+            said[text(name, "_at")] = {points[p].x, points[p].y, points[p].z};
+        }
+        report["extremes"] = std::move(said);
+        return marks;
     }
 
     [[nodiscard]] ShownBody load_shown(const CommonOptions& options, Report& report, ShellsAlone alone = ShellsAlone::Refuse) {
@@ -362,6 +422,10 @@ private:
                 const ShownBody mesh = load_shown(of_step(all, step), report);
                 set_notes(mesh, shown, output, report);
                 if (views.empty()) views = picture_.make_views(seen);
+                if (mesh.body.source().cells() == 0) {  // all parts are translucent
+                    write_alone(views, output, report);
+                    continue;
+                }
                 PictureMaker maker = maker_of(body_of(mesh), report);
                 write(maker, views, shown.optics, output, report);
             }
@@ -376,15 +440,14 @@ private:
             if (!picture_.choices.colors) picture_.choices.colors = "categories";
             for (const Patch& patch : mesh.body.sets.patches) picture_.legend_names.push_back(patch.name);
         }
-        if (mesh.body.source().cells() == 0) check_options_of_shells(given_options(app()));
+        if (mesh.body.source().cells() == 0 && mesh.body.opacities.empty()) check_options_of_shells(given_options(app()));
         show(mesh.box, mesh.field, mesh.colors, output, report, [&](const ShownColors& shown) {
             const std::vector<Vec3>& shells = mesh.body.shells.points;
             set_notes(mesh, shown, output, report);
             Box seen = mesh.box;
             for (const Vec3& p : shells) seen.add(p);
             if (mesh.body.source().cells() == 0) {
-                const auto draw = [](const View& view, Progress*) { return empty_picture(view); };
-                return report.merge(output.write(picture_.make_views(seen, shells), draw, report.progress()));
+                return write_alone(picture_.make_views(seen, shells), output, report);
             }
             PictureMaker maker = maker_of(body_of(mesh), report);
             std::vector<Vec3> framed = framed_points(maker, shown.optics, report);

@@ -14,6 +14,7 @@
 #include "places_input.h"
 #include "refine_arguments.h"
 #include "subvol/color_name.h"
+#include "subvol/detail/number_text.h"
 #include "subvol/error.h"
 #include "subvol/image_io.h"
 #include "subvol/limit_slice.h"
@@ -46,6 +47,12 @@ public:
         add_option(app(), Option("contours", contours_)
                               .between(1, 1000)
                               .help("N", "lines at this many values between the least and the largest on the plane"));
+        app().add_flag("--contour-labels", contour_labels_, "write the values of --contours on the lines");
+        app().add_flag(
+            "--axes", axes_,
+            "coordinates along the sides of the picture: x, y or z where a side is parallel to one, else lengths from "
+            "the plane's point");
+        app().add_flag("--extremes", extremes_, "mark the least and the largest value on the plane, with the values");
         add_option(app(), Option("tf", function_).help("FILE|NAME", "the colours: a preset, or a colour map of ParaView"));
         add_option(
             app(),
@@ -61,12 +68,13 @@ public:
         app().add_flag("--no-legend", no_legend_, "the picture alone");
         add_option(app(), Option("unit", unit_).help("TEXT", "of the field, for the legend").instead_of({"no-legend"}));
         scheme_.add_scheme_to(app());
-        set_essentials({"--output", "--plane", "--resolution", "--contours", "--tf", "--range", "--field", "--json"});
+        set_essentials({"--output", "--plane", "--resolution", "--contours", "--axes", "--tf", "--range", "--field", "--json"});
     }
 
     int run(Report& report) override {
         check_output(output_, {".png", ".exr", ".vtp", ".csv"});
         const Vec3 background = parse_color(background_, "--background");
+        check_notes();
         if (range_) (void)parse_range(*range_, {.min = 0, .max = 1}, "--range");
         std::vector<double> plane;
         if (!plane_.empty()) plane = parse_numbers("--plane", plane_, 6, "0,0,0,0,0,1");
@@ -79,7 +87,7 @@ public:
             write_slice(output_, slice, lines);
         } else {
             const Range whole{.min = slice.min, .max = slice.max};
-            write_picture(slice, lines, range_ ? parse_range(*range_, whole, "--range") : whole, background, report);
+            write_picture(slice, lines, range_ ? parse_range(*range_, whole, "--range") : whole, plane, background, report);
         }
         report["output"] = output_;
         report["plane"] = plane;
@@ -117,7 +125,7 @@ private:
     }
 
     void write_picture(const LimitSlice& slice, const std::vector<ContourLine>& lines, const Range& range,
-                       const Vec3& background, Report& report) const {
+                       const std::vector<double>& plane, const Vec3& background, Report& report) const {
         const ColorShape shape = color_shape(choices_, OptionNames::Flags);
         TransferFunction function = shaped(find_transfer_function(function_, range), shape);
         function.opacity = {{range.min, 1}, {range.max, 1}};  // a slice is opaque
@@ -126,21 +134,28 @@ private:
                                    .min = range.min,
                                    .max = range.max,
                                    .shape = shape};
+        const bool dark_paper = glm::dot(background, Vec3(.2126, .7152, .0722)) < 0.18;
+        const Vec3 ink(dark_paper ? 1.0 : 0.0);
+        const Vec3 point(plane[0], plane[1], plane[2]);
+        const PictureScale across = scale_of(slice.right, slice.place(-0.5, 0), slice.width, point, "s");
+        const PictureScale up = scale_of(-slice.down, slice.place(0, slice.height - 0.5), slice.height, point, "t");
+        const PlotMargins margins = axes_ ? plot_margins_px(slice.height, up) : PlotMargins{};
         int extra = 0;
-        int height = slice.height;
+        int height = slice.height + margins.top + margins.bottom;
         if (png && !no_legend_) {
             height = std::max(height, kLeastLegend_px);
             extra = legend_width_px(function, legend, height);
         }
-        Image image(slice.width + extra, height);
-        const int top = (height - slice.height) / 2;
+        const int left = margins.left;
+        Image image(left + slice.width + margins.right + extra, height);
+        const int top = margins.top + (height - slice.height - margins.top - margins.bottom) / 2;
         for (int row = 0; row < slice.height; ++row) {
             for (int column = 0; column < slice.width; ++column) {
                 const auto p =
                     static_cast<std::size_t>(row) * static_cast<std::size_t>(slice.width) + static_cast<std::size_t>(column);
                 if (slice.cells[p] == kNone) continue;
                 const Vec3 rgb = color_at(function, slice.values[p]);
-                const auto pixel = image.pixel(column, row + top);
+                const auto pixel = image.pixel(left + column, row + top);
                 for (int k = 0; k < 3; ++k) pixel[static_cast<std::size_t>(k)] = static_cast<float>(rgb[k]);
                 pixel[3] = 1;
             }
@@ -148,17 +163,89 @@ private:
         for (const ContourLine& line : lines) {
             const Vec3 rgb = color_at(function, line.value);
             const bool dark = glm::dot(rgb, Vec3(.2126, .7152, .0722)) < 0.18;
-            const Vec2 middle(0.5, 0.5 + top);
+            const Vec2 middle(0.5 + left, 0.5 + top);
             for (std::size_t i = 1; i < line.places.size(); ++i) {
                 draw_line(image, line.places[i - 1] + middle, line.places[i] + middle,
                           {.width_px = 1.25, .color = dark ? Vec3(1.0) : Vec3(0.0), .alpha = 0.75});
             }
         }
-        if (extra > 0) {
-            const bool dark = glm::dot(background, Vec3(.2126, .7152, .0722)) < 0.18;
-            draw_legend(image, function, legend, dark ? Vec3(1.0) : Vec3(0.0));
-        }
+        const double letter = std::clamp(slice.height / 40.0, 9.0, 60.0);
+        if (contour_labels_) label_lines(image, lines, Vec2(0.5 + left, 0.5 + top), letter);
+        if (axes_) draw_scales(image, {left, top, slice.width, slice.height}, across, up, ink);
+        if (extremes_) mark_extremes(image, slice, Vec2(0.5 + left, 0.5 + top), letter, report);
+        if (extra > 0) draw_legend(image, function, legend, ink);
         report.timed("write", [&] { write_image(output_, image, background); });
+    }
+
+    /// throws: Error(InvalidInput) if something is to be drawn into a file that is no picture
+    void check_notes() const {
+        if (contour_labels_ && contours_ == 0)
+            throw Error(ErrorCode::InvalidInput, "has no lines to label", "--contour-labels", "--contours N");
+        if (output_.ends_with(".png") || output_.ends_with(".exr")) return;
+        for (const auto& [given, name] :
+             {std::pair{contour_labels_, "--contour-labels"}, {axes_, "--axes"}, {extremes_, "--extremes"}}) {
+            if (given) throw Error(ErrorCode::InvalidInput, "is drawn into pictures", name, "-o NAME.png or .exr");
+        }
+    }
+
+    /// The coordinate along a side of the picture. step: from a place to the next; first: the outer edge of the first place
+    [[nodiscard]] static PictureScale scale_of(const Vec3& step, const Vec3& first, int count, const Vec3& point,
+                                               const char* name) {
+        constexpr double kParallel = 1e-9;
+        const double length = glm::length(step);
+        const Vec3 along = step / length;
+        for (int k = 0; k < 3; ++k) {
+            if (std::abs(std::abs(along[k]) - 1) > kParallel) continue;
+            return {std::string(1, static_cast<char>('x' + k)), first[k], first[k] + count * step[k]};
+        }
+        const double from = glm::dot(along, first - point);
+        return {name, from, from + count * length};
+    }
+
+    /// Writes the value of each line at its middle, where the line is long enough and no label is near.
+    static void label_lines(Image& image, const std::vector<ContourLine>& lines, const Vec2& middle, double letter) {
+        std::vector<Vec2> taken;
+        for (const ContourLine& line : lines) {
+            const std::string label = detail::number_text(line.value, 4);
+            const double room = text_width_px(label, letter) + letter;
+            double length = 0;
+            for (std::size_t i = 1; i < line.places.size(); ++i) length += glm::length(line.places[i] - line.places[i - 1]);
+            if (length < 3 * room) continue;
+            double walked = 0;
+            for (std::size_t i = 1; i < line.places.size(); ++i) {
+                walked += glm::length(line.places[i] - line.places[i - 1]);
+                const Vec2 place = line.places[i] + middle;
+                if (walked < 0.5 * length) continue;
+                const bool free = std::ranges::none_of(taken, [&](const Vec2& other) {
+                    return std::abs(other.x - place.x) < room && std::abs(other.y - place.y) < 1.6 * letter;
+                });
+                if (!free) continue;
+                taken.push_back(place);
+                draw_label(image, place + Vec2(0, 0.35 * letter), label,
+                           {.size_px = letter, .color = Vec3(0.0), .anchor = TextAnchor::Middle}, Vec3(1.0));
+                break;
+            }
+        }
+    }
+
+    static void mark_extremes(Image& image, const LimitSlice& slice, const Vec2& middle, double letter, Report& report) {
+        std::size_t least = slice.values.size(), largest = least;
+        for (std::size_t p = 0; p < slice.values.size(); ++p) {
+            if (slice.cells[p] == kNone) continue;
+            if (least == slice.values.size()) least = largest = p;
+            if (slice.values[p] < slice.values[least]) least = p;
+            if (slice.values[p] > slice.values[largest]) largest = p;
+        }
+        const auto width = static_cast<std::size_t>(slice.width);
+        Json said;
+        for (const auto& [name, p] : {std::pair{"min", least}, {"max", largest}}) {
+            const Vec2 place(static_cast<double>(p % width), static_cast<double>(p / width));
+            draw_mark(image, place + middle, text(name, " ", detail::number_text(slice.values[p], 4)), letter, Vec3(0.0),
+                      Vec3(1.0));
+            const Vec3 at = slice.place(place.x, place.y);
+            said[text(name, "_at")] = {at.x, at.y, at.z};
+        }
+        report["extremes"] = std::move(said);
     }
 
     static constexpr int kLeastLegend_px = 200;
@@ -167,7 +254,7 @@ private:
     SliceOptions options_;
     LookChoices choices_;  // the shape of the colours alone
     int contours_ = 0;
-    bool no_legend_ = false;
+    bool no_legend_ = false, axes_ = false, extremes_ = false, contour_labels_ = false;
     RefineArguments scheme_;
 };
 

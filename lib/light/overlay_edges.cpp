@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "coverage.h"
+#include "subvol/detail/ray_clip.h"
 #include "subvol/error.h"
 #include "subvol/overlay.h"
 #include "subvol/raster.h"
@@ -40,10 +41,25 @@ bool faces_eye(const HexMesh& mesh, const Topology& topology, const View& view, 
 
 class EdgeDrawer {
 public:
-    EdgeDrawer(Image& image, std::span<const float> depth, const View& view, const LineOptions& options)
-        : image_(image), depth_(depth), view_(view), options_(options) {}
+    EdgeDrawer(Image& image, std::span<const float> depth, const View& view, const LineOptions& options,
+               std::span<const CutPlane> faces)
+        : image_(image), depth_(depth), view_(view), options_(options), faces_(faces) {}
 
-    void draw(const Vec3& from, const Vec3& to, bool faces_eye) {
+    /// Draws what the faces of the clip leave of a line. on: the face that it lies on, which does not cut it; null: none
+    void draw(Vec3 from, Vec3 to, bool faces_eye, const CutPlane* on = nullptr) {
+        for (const CutPlane& face : faces_) {
+            if (&face == on) continue;
+            const double a = glm::dot(face.normal, from - face.point), b = glm::dot(face.normal, to - face.point);
+            if (a > 0 && b > 0) return;
+            const Vec3 between = from + (a / (a - b)) * (to - from);
+            if (a > 0) from = between;
+            if (b > 0) to = between;
+        }
+        draw_whole(from, to, faces_eye);
+    }
+
+private:
+    void draw_whole(const Vec3& from, const Vec3& to, bool faces_eye) {
         Vec3 a = view_.to_eye(from), b = view_.to_eye(to);
         // What is behind the eye is cut off.
         const double near = view_.perspective() ? 1e-6 * (std::abs(a.z) + std::abs(b.z)) : 0;
@@ -60,12 +76,36 @@ public:
         for_each_pixel_of_line(image_, view_.to_pixels(a), view_.to_pixels(b), options_.width_px, take);
     }
 
-private:
     Image& image_;
     std::span<const float> depth_;
     const View& view_;
     const LineOptions& options_;
+    std::span<const CutPlane> faces_;
 };
+
+/// Draws where a plane cuts the faces of cells: two crossings of a face's sides are an end each; a bent face may have four.
+void draw_cut(EdgeDrawer& drawer, const HexMesh& mesh, const Topology& topology, const CutPlane& plane, bool faces_eye,
+              const CutPlane* on) {
+    std::vector<double> heights(mesh.points.size());
+    for (std::size_t p = 0; p < heights.size(); ++p) heights[p] = glm::dot(plane.normal, mesh.points[p] - plane.point);
+    for (const auto& face : topology.faces) {
+        std::array<Vec3, 4> crossings;
+        std::size_t count = 0;
+        for (std::size_t k = 0; k < 4; ++k) {
+            const Index i = face[k], j = face[(k + 1) % 4];
+            if ((heights[i] > 0) == (heights[j] > 0)) continue;
+            const double t = heights[i] / (heights[i] - heights[j]);
+            crossings[count++] = mesh.points[i] + t * (mesh.points[j] - mesh.points[i]);
+        }
+        for (std::size_t k = 0; k + 1 < count; k += 2) drawer.draw(crossings[k], crossings[k + 1], faces_eye, on);
+    }
+}
+
+/// Whether a face of the clip, whose normal points to what is removed, is seen.
+bool is_seen(const CutPlane& face, const View& view) {
+    const Vec3 to_eye = view.perspective() ? view.eye() - face.point : -view.axes()[2];
+    return glm::dot(face.normal, to_eye) > 0;
+}
 
 }  // namespace
 
@@ -78,8 +118,8 @@ void check_sizes(const Image& image, std::span<const float> depth, const View& v
 
 }  // namespace
 
-void draw_edges(Image& image, std::span<const float> depth, const View& view, const Shells& shells,
-                const LineOptions& options) {
+void draw_edges(Image& image, std::span<const float> depth, const View& view, const Shells& shells, const LineOptions& options,
+                const Clip& clip) {
     check_sizes(image, depth, view);
     std::vector<std::array<Index, 2>> edges;
     const auto add = [&](Index a, Index b) { edges.push_back({std::min(a, b), std::max(a, b)}); };
@@ -89,14 +129,22 @@ void draw_edges(Image& image, std::span<const float> depth, const View& view, co
     for (const auto& [a, b] : shells.lines) add(a, b);
     std::sort(edges.begin(), edges.end());
     edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
-    EdgeDrawer drawer(image, depth, view, options);
+    Box box;
+    for (const Vec3& p : shells.points) box.add(p);
+    const RayClip cuts(clip, box.diagonal());
+    EdgeDrawer drawer(image, depth, view, options, cuts.faces());
     for (const auto& [a, b] : edges) drawer.draw(shells.points[a], shells.points[b], true);
 }
 
-void draw_edges(Image& image, std::span<const float> depth, const View& view, const HexMesh& mesh, const LineOptions& options) {
+void draw_edges(Image& image, std::span<const float> depth, const View& view, const HexMesh& mesh, const LineOptions& options,
+                const Clip& clip) {
     check_sizes(image, depth, view);
     const Topology topology = build_topology(mesh);
-    EdgeDrawer drawer(image, depth, view, options);
+    const RayClip cuts(clip, bounds(mesh).diagonal());
+    EdgeDrawer drawer(image, depth, view, options, cuts.faces());
+    for (const CutPlane& slice : cuts.slices()) draw_cut(drawer, mesh, topology, slice, true, nullptr);
+    if (cuts.slices_alone()) return;
+    for (const CutPlane& face : cuts.faces()) draw_cut(drawer, mesh, topology, face, is_seen(face, view), &face);
     for (std::size_t e = 0; e < topology.edges.size(); ++e) {
         bool on_hull = false, seen = false;
         for (const Index face : topology.edge_faces[e]) {

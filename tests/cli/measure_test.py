@@ -110,6 +110,19 @@ class Slice(Refusing):
             self.assertGreater((self.folder / name).stat().st_size, 500)
         self.assertAlmostEqual(made["inside"] * made["step"]**2, math.pi, delta=.25)
 
+    def test_coordinates_labels_and_marks(self):
+        plain = self.run_ok("slice", "model:ball:4", "-o", "a.png", "--resolution", 200, "--contours", 4, "--density", "x", "--json").json()
+        sizes = set()
+        for words in [], ["--axes"], ["--contour-labels"], ["--extremes"]:
+            made = self.run_ok("slice", "model:ball:4", "-o", "b.png", "--resolution", 200, "--contours", 4, "--density", "x", *words, "--json").json()
+            sizes.add((self.folder / "b.png").read_bytes())
+            self.assertEqual((made["width"], made["height"], made["min"]), (plain["width"], plain["height"], plain["min"]))
+        self.assertEqual(len(sizes), 4)
+        self.assertAlmostEqual(made["extremes"]["min_at"][0], made["min"], delta=1e-6)
+        for wrong, naming in (["--contour-labels"], "--contours"), (["--axes", "-o", "a.csv"], "--axes"), (["--extremes", "-o", "a.vtp"], "--extremes"):
+            done = subvol("slice", BOX, *([] if "-o" in wrong else ["-o", "a.png"]), *wrong, folder=self.folder)
+            self.assertEqual((done.code, naming in done.err), (2, True), done.err)
+
     def test_what_makes_no_sense_is_refused(self):
         for words, naming in [(["--plane", "0,0,0,0,0,0"], "direction"), (["--plane", "0,0,9,0,0,1"], "misses"),
                               (["--plane", "0,0,0"], "--plane"), (["--range", "1,0"], "--range"), (["--tf", "vridis"], "viridis"),

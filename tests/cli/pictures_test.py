@@ -27,6 +27,25 @@ echo 'Unknown encoder, alas' >&2
 exit 1
 """
 
+TWO_SETS = """*NODE
+1,0,0,0
+2,1,0,0
+3,1,1,0
+4,0,1,0
+5,0,0,1
+6,1,0,1
+7,1,1,1
+8,0,1,1
+9,2,0,0
+10,2,1,0
+11,2,0,1
+12,2,1,1
+*ELEMENT,TYPE=C3D8,ELSET=LEFT
+1,1,2,3,4,5,6,7,8
+*ELEMENT,TYPE=C3D8,ELSET=RIGHT
+2,2,9,10,3,6,11,12,7
+"""
+
 
 class Pictures(InFolder):
     def render(self, *arguments, path=None, size="48x32"):
@@ -234,6 +253,55 @@ class Looks(Pictures):
             for method in ["dense", "tets"]:
                 psnr = self.run_ok("compare", "splat.exr", method + ".exr", "--json").json()["psnr"]
                 self.assertGreater(psnr, 45, (name, method))
+
+    def test_opacities_of_a_solid_are_those_of_its_surface(self):
+        parts = ["--part-opacity", "half:0,0,0,1,0,0=.3"]
+        for words in ["--look", "solid", "--opacity", "0%:.2,100%:.6"], parts, [*parts, "--part-opacity", "half:0,0,0,-1,0,0=.6"]:
+            self.assertEqual(self.render("-o", "solid.exr", size="96x64").code, 0)
+            for method in ["splat", "dense", "tets"]:
+                done = self.render("-o", method + ".exr", "--method", method, *words, size="96x64")
+                self.assertEqual(done.code, 0, done.err)
+            for method in ["dense", "tets"]:
+                psnr = self.run_ok("compare", "splat.exr", method + ".exr", "--json").json()["psnr"]
+                self.assertGreater(psnr or 999, 28, (method, words))  # None: the same
+            self.assertLess(self.run_ok("compare", "splat.exr", "solid.exr", "--json").json()["psnr"], 32, words)
+        for words in ["--part-opacity", "half:0,0,0,1,0,0=1"], ["--look", "solid", "--opacity", "0%:1,100%:1"]:
+            self.assertEqual(self.render("-o", "opaque.exr", *words, size="96x64").code, 0)
+            psnr = self.run_ok("compare", "opaque.exr", "solid.exr", "--json").json()["psnr"]
+            self.assertGreater(psnr, 35, words)  # but for the outline, whose samples are taken elsewhere
+        for wrong, words in ((["--part-opacity", "half:0,0,0,1,0,0=.3", "--look", "volume"], "--look solid"), (["--part-opacity", "casing=.3"], "casing"),
+                             (["--part-opacity", "half:0,0,0,1,0,0=2"], "--part-opacity"),
+                             (["--look", "solid", "--opacity", "0%:.1,100%:1", "--slice", "0,0,0,1,0,0"], "--slice")):
+            done = self.render("-o", "x.png", *wrong)
+            self.assertEqual((done.code, words in done.err, done.err.count("\n")), (2, True, 1), done.err)
+
+    def test_parts_are_sets_of_cells_by_name(self):
+        (self.folder / "two.inp").write_text(TWO_SETS)
+        self.run_ok("render", "two.inp", "-o", "all.png", "--size", "64x48")
+        self.run_ok("render", "two.inp", "-o", "one.png", "--size", "64x48", "--part-opacity", "LEFT=.25")
+        self.run_ok("render", "two.inp", "-o", "none.png", "--size", "64x48", "--part-opacity", "LEFT=0", "--quiet")
+        self.assertEqual(len({self.bytes_of(name) for name in ("all.png", "one.png", "none.png")}), 3)
+
+    def test_extremes_are_marked_with_their_values(self):
+        said = self.run_ok("render", "model:ball:3", "-o", "a.png", "--size", "96x64", "--density", "z", "--extremes", "--json").json()
+        self.assertLess(said["extremes"]["min"], -.9)
+        self.assertGreater(said["extremes"]["max"], .9)
+        self.assertAlmostEqual(said["extremes"]["max_at"][2], said["extremes"]["max"], delta=.05)
+        half = self.run_ok("render", "model:ball:3", "-o", "b.png", "--size", "96x64", "--density", "z", "--extremes", "--clip", "0,0,0,0,0,1", "--json").json()
+        self.assertLess(half["extremes"]["max"], .1)
+        self.run_ok("render", "model:ball:3", "-o", "c.png", "--size", "96x64", "--density", "z")
+        self.assertNotEqual(self.bytes_of("a.png"), self.bytes_of("c.png"))
+        done = self.render("-o", "x.png", "--extremes", "--slice", "0,0,0,0,0,1")
+        self.assertEqual((done.code, "slice" in done.err), (2, True), done.err)
+
+    def test_edges_stay_with_what_is_left(self):
+        words = ["--edges", "--clip", "0,0,0,1,0,0", "--view", "front", "--background", "white"]
+        self.assertEqual(self.render("-o", "a.png", *words, size="96x64").code, 0)
+        self.assertEqual(self.render("-o", "b.png", *[word for word in words if word != "--edges"], size="96x64").code, 0)
+        a, b = (self.pixels(name)[2] for name in ("a.png", "b.png"))
+        changed = [x for row, other in zip(a, b) for x in range(96) if row[3 * x:3 * x + 3] != other[3 * x:3 * x + 3]]
+        self.assertGreater(len(changed), 30)
+        self.assertLess(max(changed), 52)  # the right half is cut away
 
     def test_wrong_cuts_are_refused(self):
         for wrong, naming in [(["--clip", "0,0,0,0,0"], "--clip"), (["--clip", "0,0,0,0,0,0"], "no length"),

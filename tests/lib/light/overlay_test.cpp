@@ -95,6 +95,67 @@ TEST(Overlay, HiddenEdgesAreHidden) {
     EXPECT_EQ(none, 0) << "behind an opaque surface";
 }
 
+TEST(Overlay, EdgesAreThoseOfWhatACutLeavesAndOfItsFace) {
+    const HexMesh mesh = test::make_box(4, 4, 4);
+    const std::vector<float> depth(64 * 64, std::numeric_limits<float>::infinity());
+    const View from_front({.eye = {2, -9, 2}, .target = {2, 0, 2}, .up = {0, 0, 1}, .ortho_height = 5}, 64, 64);
+    const double cell = 64 / 5.0;  // in pixels
+    const auto ink = [&](const Clip& clip) {
+        Image image(64, 64);
+        draw_edges(image, depth, from_front, mesh, {.width_px = 1}, clip);
+        double sum = 0;
+        for (int y = 0; y < 64; ++y) {
+            for (int x = 0; x < 64; ++x) sum += image.pixel(x, y)[3] > 0.02F ? 1 : 0;
+        }
+        return sum;
+    };
+    const double whole = ink({});
+    EXPECT_GT(whole, 10 * 4 * cell * 0.9) << "five lines each way";
+    const Clip half{.planes = {{{2, 0, 0}, {1, 0, 0}}}};
+    EXPECT_LT(ink(half), 0.65 * whole) << "nothing hangs where the body is cut away";
+    // Across the middle of cells, away from what hides: the face of the cut has the lines of its cells.
+    const Clip inside{.planes = {{{0, 1.5, 0}, {0, -1, 0}}}};
+    EXPECT_NEAR(ink(inside), whole, 0.1 * whole);
+    const Clip slice{.slices = {{{0, 1.5, 0}, {0, -1, 0}}}};
+    EXPECT_NEAR(ink(slice), whole, 0.1 * whole) << "the lines on the slice";
+    const Clip edge_on{.slices = {{{1.5, 0, 0}, {1, 0, 0}}}};
+    EXPECT_LT(ink(edge_on), 3 * 4 * cell) << "and nothing beside it";
+}
+
+TEST(Overlay, ScalesStandBesideTheirPlot) {
+    const PictureScale across{"x", -1, 1}, up{"z", 100, 300};
+    const PlotMargins margins = plot_margins_px(200, up);
+    Image image(margins.left + 300 + margins.right, margins.top + 200 + margins.bottom);
+    const PlotFrame frame{margins.left, margins.top, 300, 200};
+    draw_scales(image, frame, across, up, Vec3(0.0));
+    bool left = false, below = false;
+    for (int y = 0; y < image.height; ++y) {
+        for (int x = 0; x < image.width; ++x) {
+            if (image.pixel(x, y)[3] == 0) continue;
+            left = left || x < frame.left - 4;
+            below = below || y > frame.top + frame.height + 4;
+            const bool inside =
+                x > frame.left + 2 && x < frame.left + frame.width - 3 && y > frame.top + 2 && y < frame.top + frame.height - 3;
+            ASSERT_FALSE(inside) << "the plot is left alone";
+        }
+    }
+    EXPECT_TRUE(left && below);
+}
+
+TEST(Overlay, AMarkIsAtItsPlaceAndItsTextInThePicture) {
+    Image image(200, 100);
+    draw_mark(image, {195, 5}, "max 12.5", 12, Vec3(0.0), Vec3(1.0));
+    EXPECT_GT(image.pixel(190, 5)[3], 0.5F) << "an arm of the cross";
+    double ink = 0;
+    for (int x = 120; x < 185; ++x) {
+        for (int y = 0; y < 40; ++y) ink += image.pixel(x, y)[3];
+    }
+    EXPECT_GT(ink, 100) << "the label is at its left, where there is room";
+    Image outside(200, 100);
+    draw_mark(outside, {-3, 5}, "min", 12, Vec3(0.0), Vec3(1.0));
+    EXPECT_EQ(outside.rgba, Image(200, 100).rgba);
+}
+
 TEST(Overlay, EdgesBehindTheEyeAreNotSeenInParallelViewsEither) {
     const HexMesh mesh = test::make_box(1, 1, 1);
     const auto ink = [&](double along) {
@@ -193,6 +254,48 @@ TEST(Legends, HaveASwatchForEachCategoryThatFits) {
     EXPECT_EQ(swatches(12), 12u);
     EXPECT_GE(swatches(200), 15u);
     EXPECT_LE(swatches(200), 24u) << "the last row says how many more there are";
+}
+
+/// The middle of the pixels that are of a colour; none: -1.
+Vec2 middle_of(const Image& image, const Vec3& color, int& count) {
+    Vec2 sum(0.0);
+    count = 0;
+    for (int y = 0; y < image.height; ++y) {
+        for (int x = 0; x < image.width; ++x) {
+            const auto pixel = image.pixel(x, y);
+            if (pixel[3] != 1 || Vec3(pixel[0], pixel[1], pixel[2]) != color) continue;
+            sum += Vec2(x, y);
+            ++count;
+        }
+    }
+    return count > 0 ? sum / double(count) : Vec2(-1.0);
+}
+
+TEST(Legends, ColoursBeyondTheRangeAreTipsOfTheBar) {
+    const TransferFunction grey{{{0, Vec3(0.1)}, {10, Vec3(0.9)}}, {{0, 1}}};
+    const Vec3 red(1, 0, 0), blue(0, 0, 1);
+    LegendOptions options{.title = "T", .min = 0, .max = 10};
+    const LegendStyle below{.side = LegendSide::Bottom};
+    int reds = 0, blues = 0;
+    for (const bool upright : {true, false}) {
+        const LegendStyle style = upright ? LegendStyle{} : below;
+        const auto drawn = [&] {
+            const int extent = legend_extent_px(grey, options, style, 300);
+            Image image(upright ? extent : 400, upright ? 300 : extent);
+            draw_legend(image, grey, options, style, 300);
+            return image;
+        };
+        options.shape = {.below = red, .above = blue};
+        const Image tips = drawn();
+        const Vec2 low = middle_of(tips, red, reds), high = middle_of(tips, blue, blues);
+        EXPECT_GT(reds, 20);
+        EXPECT_NEAR(blues, reds, 0.5 * reds) << "a few pixels, whose rows are rounded";
+        EXPECT_GT(upright ? low.y - high.y : high.x - low.x, 150) << "at the two ends";
+        EXPECT_NEAR(upright ? low.x - high.x : low.y - high.y, 0, 2);
+        options.shape = {.above = blue};
+        (void)middle_of(drawn(), red, reds);
+        EXPECT_EQ(reds, 0);
+    }
 }
 
 TEST(Legends, StandBelowThePicture) {

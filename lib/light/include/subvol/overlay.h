@@ -5,6 +5,7 @@
 #include <string>
 
 #include "subvol/camera.h"
+#include "subvol/clip.h"
 #include "subvol/hex_mesh.h"
 #include "subvol/image.h"
 #include "subvol/legend.h"
@@ -43,17 +44,50 @@ struct LineOptions {
 
 void draw_line(Image& image, const Vec2& from, const Vec2& to, const LineOptions& options = {});
 
-/// Draws the edges on the boundary of a mesh. What is behind the surface that the picture shows is seen through it only as far
+/// Draws a text on a plate of `paper`, which is half transparent, moved as far as the picture's edges need.
+void draw_label(Image& image, const Vec2& place, const std::string& text, const TextOptions& options, const Vec3& paper);
+
+/// Marks a place by a cross with a label beside it; a place outside the picture has no mark.
+///
+/// size_px: of the text; hidden: something is before the place: the cross is faint
+void draw_mark(Image& image, const Vec2& place, const std::string& text, double size_px, const Vec3& ink, const Vec3& paper,
+               bool hidden = false);
+
+/// The coordinate along a side of a plot. first, last: at the left or lower end, and at the other one
+struct PictureScale {
+    std::string title{};
+    double first = 0, last = 1;
+};
+
+/// Where a plot stands in a picture, in pixels.
+struct PlotFrame {
+    int left = 0, top = 0, width = 0, height = 0;
+};
+
+/// The pixels about a plot that its scales need.
+struct PlotMargins {
+    int left = 0, right = 0, top = 0, bottom = 0;
+};
+
+/// height: of the plot, which decides the size of the letters; up: the scale at the left
+[[nodiscard]] PlotMargins plot_margins_px(int height, const PictureScale& up);
+
+/// Draws a frame about a plot, with ticks at round values and titles below and at the left.
+void draw_scales(Image& image, const PlotFrame& frame, const PictureScale& across, const PictureScale& up, const Vec3& ink);
+
+/// Draws the edges of a mesh's cells where the picture shows them: on its boundary, and where the clip's planes, box and slices
+/// cut the cells. What is behind the surface that the picture shows is seen through it only as far
 /// as that is transparent; a tenth of an edge's length counts as on the surface, for limits are not where their edges are.
 ///
 /// depth:  of the picture as of `SplatResult`
+/// clip:   that of the picture: what it takes away has no edges, nor has the boundary where slices are drawn alone
 /// throws: Error(InvalidInput) if the sizes of picture, depth and view differ, or as `build_topology`
 void draw_edges(Image& image, std::span<const float> depth, const View& view, const HexMesh& mesh,
-                const LineOptions& options = {});
+                const LineOptions& options = {}, const Clip& clip = {});
 
 /// Draws the edges of shells and the lines of beams in the same way.
 void draw_edges(Image& image, std::span<const float> depth, const View& view, const Shells& shells,
-                const LineOptions& options = {});
+                const LineOptions& options = {}, const Clip& clip = {});
 
 /// Draws the directions of the axes x, y, z in the lower left corner, red, green and blue, with their names.
 ///
