@@ -121,7 +121,7 @@ std::vector<Option> options_of(LookChoices& choices) {
         Option("opacity", choices.opacity)
             .help("V:A,V:A,…",
                   "opacities instead of those of --tf, linear in between: at values of the field or per cent of its range, "
-                  "such as 0%:0,50%:.2,100%:.9; with --look solid those of its surface, through which one sees its back"),
+                  "such as 0%:0,50%:.2,100%:.9; of a solid: of its surface"),
         Option("iso", WordValue{[&choices] { return choices.iso; },
                                 [&choices](const std::string& word, const std::string& where) {
                                     if (word.empty()) {

@@ -69,8 +69,8 @@ class WithoutWindow(InSession):
                  {"legend": True}, {"size": [160, 90]}],
                 [{"ortho": True}, {"view": "+x"}, {"axes": True}, {"edges": True}, {"look": "isosurface"}],
                 [{"edges": True}, {"method": "tets"}],  # which has no depths to hide lines by
-                [{"range": [.2, .9]}, {"log": True}, {"bands": 5}, {"below": [1, 0, 0]}, {"above": [0, 0, 1]}, {"legend": True}],
-                [{"log": True}, {"symlog": .1}, {"bands": 9}, {"bands": None}],
+                [{"range": [0.2, 0.9]}, {"log": True}, {"bands": 5}, {"below": [1, 0, 0]}, {"above": [0, 0, 1]}, {"size": [160, 90]}, {"legend": True}],
+                [{"range": [0.1, 1]}, {"log": True}, {"symlog": 0.1}, {"range": "field"}, {"bands": 9}, {"bands": None}],
                 [{"method": "dense"}, {"look": "xray"}, {"opacity_unit": 0.4}, {"size": [48, 27]}],
         ):
             command = self.view(*actions)["render"]

@@ -83,6 +83,7 @@
 #include "subvol/sample_tables.h"
 #include "subvol/scheme.h"
 #include "subvol/share.h"
+#include "subvol/shading.h"
 #include "subvol/shells.h"
 #include "subvol/split.h"
 #include "subvol/srgb.h"
