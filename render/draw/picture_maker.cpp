@@ -430,6 +430,8 @@ struct PictureMaker::State {
     /// The surface of a solid, one part of it seen through the other. Every process has all rows.
     Picture draw_translucent(const View& view, const Optics& optics) const {
         Picture picture{Image(view.width(), view.height())};
+        picture.facts["method"] = name_of(method());
+        picture.facts["backend"] = "cpu";
         picture.depth.assign(picture.image.rgba.size() / 4, std::numeric_limits<float>::infinity());
         ColoredSurface colored{skin->surface, skin->values.back()};
         for (const double value : skin->values.front())

@@ -58,6 +58,41 @@ void draw_histogram(WindowHost& host, const Canvas& canvas, ImU32 color) {
     }
 }
 
+using Knots = std::vector<TransferFunction::OpacityKnot>;
+
+/// Marks the knots that a curve needs between two of them, so that straight lines stay near it.
+void mark_needed(const Knots& knots, std::size_t from, std::size_t to, std::vector<bool>& needed) {
+    constexpr double kNear = 0.005;  // of an opacity
+    std::size_t farthest = from;
+    double most = kNear;
+    for (std::size_t k = from + 1; k < to; ++k) {
+        const double part = (knots[k].value - knots[from].value) / (knots[to].value - knots[from].value);
+        const double off = std::abs(knots[k].alpha - (knots[from].alpha + part * (knots[to].alpha - knots[from].alpha)));
+        if (off <= most) continue;
+        most = off;
+        farthest = k;
+    }
+    if (farthest == from) return;
+    needed[farthest] = true;
+    mark_needed(knots, from, farthest, needed);
+    mark_needed(knots, farthest, to, needed);
+}
+
+/// The knots of the curve that is shown. A scale that is not linear has hundreds, of which those stay that are needed.
+Knots knots_of(const WindowHost& host) {
+    constexpr std::size_t kMany = 32;
+    const Knots all = host.opacity();
+    if (all.size() <= kMany) return all;
+    std::vector<bool> needed(all.size());
+    needed.front() = needed.back() = true;
+    mark_needed(all, 0, all.size() - 1, needed);
+    Knots few;
+    for (std::size_t k = 0; k < all.size(); ++k) {
+        if (needed[k]) few.push_back(all[k]);
+    }
+    return few;
+}
+
 /// The knot within reach of the pointer; -1: none.
 int knot_at(const Canvas& canvas, const std::vector<TransferFunction::OpacityKnot>& knots, const ImVec2& pointer, float reach) {
     int nearest = -1;
@@ -72,7 +107,7 @@ int knot_at(const Canvas& canvas, const std::vector<TransferFunction::OpacityKno
 }
 
 void edit_knots(WindowHost& host, WindowMemory& memory, const Canvas& canvas) {
-    std::vector<TransferFunction::OpacityKnot> knots = host.opacity();
+    Knots knots = knots_of(host);
     const ImVec2 pointer = ImGui::GetIO().MousePos;
     const int near = knot_at(canvas, knots, pointer, 10 * memory.scale);
     if (ImGui::IsItemClicked(ImGuiMouseButton_Left)) {
@@ -105,7 +140,7 @@ void edit_knots(WindowHost& host, WindowMemory& memory, const Canvas& canvas) {
 
 void draw_curve(WindowHost& host, const WindowMemory& memory, const Canvas& canvas, ImU32 ink, ImU32 fill) {
     ImDrawList* list = ImGui::GetWindowDrawList();
-    const auto knots = host.opacity();
+    const Knots knots = knots_of(host);
     std::vector<ImVec2> line{{canvas.at.x, canvas.y(knots.front().alpha)}};
     for (const auto& knot : knots) line.emplace_back(canvas.x(knot.value), canvas.y(knot.alpha));
     line.emplace_back(canvas.at.x + canvas.width, canvas.y(knots.back().alpha));
