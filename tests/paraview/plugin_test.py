@@ -215,6 +215,24 @@ class Plugin(unittest.TestCase):
         expected = [np.sin(3 * x) + z * y for x, y, z in inside]
         self.assertTrue(np.allclose(grid.values(inside)[0], expected, atol=0.05), grid.values(inside))
 
+    def test_a_sequence_of_vdb(self):
+        names = []
+        for step in range(2):
+            names.append(f"step{step}.vtu")
+            fields = {"heat": self.mesh.fields["heat"] + 10 * step}
+            subvol.write_mesh(subvol.HexMesh(self.mesh.points, self.mesh.cells, fields), os.path.join(FOLDER, names[-1]))
+        with open(os.path.join(FOLDER, "run.pvd"), "w") as file:
+            sets = "".join(f'<DataSet timestep="{step}" file="{name}"/>' for step, name in enumerate(names))
+            file.write(f'<VTKFile type="Collection" version="0.1"><Collection>{sets}</Collection></VTKFile>')
+        run = simple.PVDReader(FileName=os.path.join(FOLDER, "run.pvd"))
+        simple.SaveData(os.path.join(FOLDER, "run.vdb"), proxy=run, Resolution=20, WriteTimeSteps=1)
+        means = []
+        for step in range(2):
+            grid, = subvol.read_vdb(os.path.join(FOLDER, f"run_{step}.vdb"))
+            means.append(grid.values([[0.0, 0.0, 0.0]])[0][0])
+        self.assertAlmostEqual(means[1] - means[0], 10, places=4)
+        simple.Delete(run)
+
     def test_bad_input_is_said(self):
         self.shown.SubvolOptions = "per_edges=2"
         pixels(self.view, "refused")  # the error is in ParaView's log; nothing is drawn
