@@ -137,6 +137,27 @@ def measure(
     bins:        intervals of the histogram [1 to 100000]
     """
 
+def mend_folds(
+    mesh: HexMesh, *, scheme: str = 'mcq', tension: float = 0.0625, crease_angle: Optional[float] = None,
+    levels: int = 5, irregular_levels: int = 2, tests: int = 1000, boundary_move: float = 0.1, rounds: int = 10,
+    progress: Progress = None
+) -> tuple[HexMesh, FoldCheck, dict[str, Any]]:
+    """Moves control points, as little as it can, until the limit is proved not to fold.
+
+    Returns the mesh, what `check_folds` finds of it, and a report: folded and open cells before, moved points, farthest_edges and
+    boundary_edges (the longest way of a point, and of one of the boundary, in its shortest edges), rounds, and the cells that are left, with reasons.
+
+    scheme:      mcq (smooth, through the control points), cc (Catmull-Clark), bsxw (Bajaj-Schaefer-Warren-Xu), linear [mcq,
+                 cc, bsxw, linear]
+    tension:     of mcq: 0 is linear; 1/16 reproduces cubics [0 to 0.125; with scheme='mcq']
+    crease_angle: keep boundary edges sharp that bend by more than this, in degrees (tetoct, boxspline: 60) [0 to 180]
+    levels:      cut a cell into eight parts up to L times where a test does not decide [0 to 8]
+    irregular_levels: refine cells near irregular edges up to L times [0 to 6]
+    tests:       the most tests of a cell [1 to 1000000]
+    boundary_move: points of the boundary may move by this part of their shortest edge [0 to 10]
+    rounds:      move points and check again up to N times [1 to 50]
+    """
+
 def page(
     mesh: HexMesh, field: Optional[str] = None, *, per_edge: int = 1, camera: Union[None, str, Camera] = None,
     tf: Union[None, str, TransferFunction] = None, title: str = '', unit: str = '', max_bytes: int = 24000000,
@@ -164,7 +185,7 @@ def page(
     range:       the range that the colour map and the percentages of opacity cover: MIN,MAX, per cents of the field's range
                  such as 10%,90%, or field (default: the field's range; a map from a file keeps its own values)
     opacity:     opacities instead of those of tf, linear in between: at values of the field or per cent of its range, such
-                 as 0%:0,50%:.2,100%:.9
+                 as 0%:0,50%:.2,100%:.9; of a solid: of its surface
     iso:         lit surfaces of these values, or per cents of the field's range: look isosurface with these instead of its
                  five [not with opacity]
     log:         spread the colour map by the logarithm of the values, which are above 0
@@ -373,7 +394,7 @@ def render(
     range:       the range that the colour map and the percentages of opacity cover: MIN,MAX, per cents of the field's range
                  such as 10%,90%, or field (default: the field's range; a map from a file keeps its own values)
     opacity:     opacities instead of those of tf, linear in between: at values of the field or per cent of its range, such
-                 as 0%:0,50%:.2,100%:.9
+                 as 0%:0,50%:.2,100%:.9; of a solid: of its surface
     iso:         lit surfaces of these values, or per cents of the field's range: look isosurface with these instead of its
                  five [not with opacity]
     log:         spread the colour map by the logarithm of the values, which are above 0
@@ -522,7 +543,7 @@ __all__ = [
     "InvalidInput", "LimitSamples", "MissingCapability", "Page", "PointsError", "ProbeSamples", "RbfVolume", "Refinement", "Series",
     "Slice", "Study", "StudyCase", "StudyResults", "SubvolWarning", "SurfaceMesh", "TransferFunction", "approximate", "as_field", "check_folds", "compare",
     "compare_fields", "compare_images", "evaluate", "evaluate_limit", "fit", "from_meshio", "from_pyvista", "from_vtk", "gl_devices", "kernels",
-    "measure", "model", "models", "only", "open_series", "page", "points_error", "probe", "quantity", "rasterize", "read_image", "read_mesh", "read_points",
+    "measure", "mend_folds", "model", "models", "only", "open_series", "page", "points_error", "probe", "quantity", "rasterize", "read_image", "read_mesh", "read_points",
     "read_vdb", "reduce", "render", "run_study", "sample", "sample_grid", "set_threads", "slice", "studies", "study", "subdivide",
     "surface", "to_meshio", "to_pyvista", "to_vtk", "warp", "write_image", "write_mesh", "write_points", "write_vdb", "write_wavelets",
 ]
