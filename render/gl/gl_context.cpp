@@ -71,9 +71,10 @@ void check_picture_size(int width, int height, const char* allowed) {
         allowed);
 }
 
-std::size_t memory_budget() {
+std::size_t memory_budget(bool hardware) {
     constexpr std::size_t kUnknown = std::size_t{1} << 31;
-    std::array<GLint, 4> kib{};  // ATI's query has four results; the first is the free memory
+    if (!hardware) return kUnknown;  // llvmpipe of Mesa 25 has both extensions, and says 20 MB for 20 GB
+    std::array<GLint, 4> kib{};      // ATI's query has four results; the first is the free memory
     if (epoxy_has_gl_extension("GL_NVX_gpu_memory_info"))
         glGetIntegerv(GL_GPU_MEMORY_INFO_CURRENT_AVAILABLE_VIDMEM_NVX, kib.data());
     else if (epoxy_has_gl_extension("GL_ATI_meminfo"))

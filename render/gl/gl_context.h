@@ -58,8 +58,8 @@ void free_in(const GlContext& context, std::unique_ptr<T>& owned) {
 void check_picture_size(int width, int height, const char* allowed);
 
 /// The bytes that work on the current context should take: three quarters of what is free on the device, or 2 GiB if the driver
-/// does not say.
-[[nodiscard]] std::size_t memory_budget();
+/// does not say, or is software, whose answers mean nothing.
+[[nodiscard]] std::size_t memory_budget(bool hardware);
 
 /// What shaders need beyond the least that OpenGL 4.5 guarantees, and what a device has: storage buffers in each kind of
 /// shader. The standard guarantees 8 of them, and none in vertex shaders.

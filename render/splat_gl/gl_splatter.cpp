@@ -156,7 +156,7 @@ public:
         GLint64 most = 0;
         glGetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &most);
         const std::size_t bytes = std::min(tuning.most_buffer_bytes, static_cast<std::size_t>(std::max<GLint64>(most, 0)));
-        const std::size_t memory = tuning.memory_bytes > 0 ? tuning.memory_bytes : memory_budget();
+        const std::size_t memory = tuning.memory_bytes > 0 ? tuning.memory_bytes : memory_budget(context.hardware());
         const std::uint32_t extras = GlExtras(scene).count;
         most_kernels_ =
             std::min(bytes / GlSplatBins::kernel_bytes(extras) - 1, memory / 2 / GlSplatBins::bytes_of_kernel(extras));

@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <cstdlib>
 #include <memory>
 
 #include "panel.h"
@@ -373,7 +374,17 @@ struct Gui {
     }
 };
 
+/// Whether the environment names no display. GLFW asks libraries that print messages of their own where there is none.
+bool has_no_display() {
+#ifdef __linux__
+    return std::getenv("DISPLAY") == nullptr && std::getenv("WAYLAND_DISPLAY") == nullptr;
+#else
+    return false;
+#endif
+}
+
 std::optional<std::string> run_window(WindowHost& host, const WindowStart& start) {
+    if (has_no_display()) return "there is no display (neither DISPLAY nor WAYLAND_DISPLAY is set)";
     glfwSetErrorCallback([](int, const char* why) { g_why = why; });
     const Glfw glfw;
     if (!glfw.on) return "there is no display (" + g_why + ")";
