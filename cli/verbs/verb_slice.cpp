@@ -177,7 +177,7 @@ private:
         report.timed("write", [&] { write_image(output_, image, background); });
     }
 
-    /// throws: Error(InvalidInput) if something is to be drawn into a file that is no picture
+    /// throws: Error(InvalidInput) if something is to be drawn into a file that is not a picture
     void check_notes() const {
         if (contour_labels_ && contours_ == 0)
             throw Error(ErrorCode::InvalidInput, "has no lines to label", "--contour-labels", "--contours N");

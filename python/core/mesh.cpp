@@ -119,7 +119,7 @@ std::vector<Option> options_of_grids(ReadOptions& options) {
 /// An array of a VTK grid: (name, whether at the cells, numbers).
 VtkGridArray vtk_array_of(const py::handle& given) {
     const auto [name, at_cells, numbers] = given.cast<std::tuple<std::string, bool, py::object>>();
-    const py::array array = array_from(numbers, Error(ErrorCode::InvalidInput, "is no array", name));
+    const py::array array = array_from(numbers, Error(ErrorCode::InvalidInput, "is not an array", name));
     const bool flat = array.ndim() < 2;
     const int components = flat ? 1 : static_cast<int>(array.shape(1));
     const py::array_t<double> rows =

@@ -36,7 +36,7 @@ public:
     vtkSetClampMacro(Reduction, int, 0, 16);
     vtkGetMacro(Reduction, int);
 
-    /// Of the last call of Render(): whether the picture was kept, and the seconds that it took.
+    /// Whether the last call of Render() kept the picture, and the seconds that it took.
     vtkGetMacro(Kept, bool);
     vtkGetMacro(Seconds, double);
 

@@ -17,7 +17,7 @@ public:
 
     int ProcessViewRequest(vtkInformationRequestKey* request, vtkInformation* in, vtkInformation* out) override;
 
-    // Of the mapper.
+    // The mapper has them.
     void SetMethod(const char* name) { Mapper->SetMethod(name); }
     void SetScheme(const char* name) { Mapper->SetScheme(name); }
     void SetShade(bool shade) { Mapper->SetShade(shade); }
