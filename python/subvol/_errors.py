@@ -20,7 +20,8 @@ class Error(Exception):
         return type(self).__name__
 
     def __str__(self) -> str:
-        return str(self.args[0])
+        message = str(self.args[0])
+        return f"{message} ({self.allowed})" if self.allowed and self.allowed not in message else message
 
 
 class InvalidInput(Error, ValueError):
@@ -30,8 +31,8 @@ class InvalidInput(Error, ValueError):
 class FileError(Error, OSError):
     """A file cannot be read or written."""
 
-    def __str__(self) -> str:
-        return str(self.args[0])
+    def __str__(self) -> str:  # OSError has its own
+        return Error.__str__(self)
 
 
 class MissingCapability(Error):

@@ -45,8 +45,7 @@ def main() -> int:
         try:
             print(convert(arguments.source, arguments.target, arguments.format))
         except (Error, OSError) as error:
-            allowed = getattr(error, "allowed", "")
-            print(f"subvol.convert: {error}{f' ({allowed})' if allowed else ''}", file=sys.stderr)
+            print(f"subvol.convert: {error}", file=sys.stderr)
             return 3 if isinstance(error, MissingCapability) else 2
     return 0
 

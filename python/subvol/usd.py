@@ -12,13 +12,14 @@ import argparse
 import os
 import re
 import sys
+import tempfile
 import warnings
 from collections.abc import Sequence
 from typing import Any, Optional, Union
 
 from ._arguments import Path, path_bytes
 from ._colors import TransferFunction
-from ._errors import Error, InvalidInput, SubvolWarning
+from ._errors import Error, FileError, InvalidInput, SubvolWarning
 from ._mesh import Series, open_series, read_mesh
 from ._vdb import Grid, read_vdb, write_vdb
 
@@ -48,32 +49,41 @@ def write_usd(path: Path, files: Union[Path, list[Path], tuple[Path, ...]], *, c
 
     Raises InvalidInput for another extension, no grids, or codes that are not one for each file and ascending; FileError.
     """
-    target = os.fsdecode(path_bytes(path))
-    if not target.endswith(".usda"):
-        raise InvalidInput(f"{path!s}: has an unknown extension (.usda)", str(path), ".usda")
+    target = _target(path)
     names = [os.fsdecode(path_bytes(file)) for file in (files if isinstance(files, (list, tuple)) else [files])]
     times = [float(code) for code in (range(len(names)) if codes is None else codes)]
     if not names or len(times) != len(names) or any(b <= a for a, b in zip(times, times[1:])):
         raise InvalidInput(f"codes: there are {len(times)} for {len(names)} files", "codes", "one for each file, ascending")
-    contents = [read_vdb(name) for name in names]
-    grids = contents[0]
-    for name, other in zip(names, contents):
-        if [grid.name for grid in other] != [grid.name for grid in grids]:
-            raise InvalidInput(f"{name}: has other grids than {names[0]}", str(name), ", ".join(grid.name for grid in grids))
-    text = _stage(os.path.splitext(os.path.basename(target))[0], contents, times, _colors(grids[0], tf, opacity_unit),
-                  [os.path.relpath(name, os.path.dirname(target) or ".").replace(os.sep, "/") for name in names])
-    made = target + ".part"
-    try:
-        with open(made, "w", encoding="utf-8") as file:
-            file.write(text)
-        os.replace(made, target)
-    finally:
-        if os.path.exists(made):
-            os.remove(made)
-
-
-def _colors(grid: Grid, tf: Union[None, str, TransferFunction], opacity_unit: Optional[float]) -> list[str]:
     function = tf if isinstance(tf, TransferFunction) else TransferFunction(tf or "viridis")
+    grids: list[str] = []
+    extents, colors = [], []
+    for name in names:  # one after the other: the grids of a long series need not fit into memory together
+        contents = read_vdb(name)
+        if not extents:
+            grids, colors = [grid.name for grid in contents], _colors(contents[0], function, opacity_unit)
+        elif [grid.name for grid in contents] != grids:
+            raise InvalidInput(f"{name}: has other grids than {names[0]}", name, ", ".join(grids))
+        extents.append(_list([_row(corner) for corner in contents[0].frame]))
+    text = _stage(os.path.splitext(os.path.basename(target))[0], grids, extents, times, colors,
+                  [os.path.relpath(name, os.path.dirname(target) or ".").replace(os.sep, "/") for name in names])
+    try:
+        with tempfile.TemporaryDirectory(dir=os.path.dirname(os.path.abspath(target))) as folder:
+            made = os.path.join(folder, "stage")
+            with open(made, "w", encoding="utf-8") as file:
+                file.write(text)
+            os.replace(made, target)
+    except OSError as error:
+        raise FileError(f"{target}: cannot be written: {error.strerror}", target) from None
+
+
+def _target(path: Path) -> str:
+    target = os.fsdecode(path_bytes(path))
+    if not target.endswith(".usda"):
+        raise InvalidInput(f"{path!s}: has an unknown extension", str(path), ".usda")
+    return target
+
+
+def _colors(grid: Grid, function: TransferFunction, opacity_unit: Optional[float]) -> list[str]:
     report = grid.report
     knots = function.knots(report["min"], report["max"])
     lower, upper = grid.frame
@@ -86,11 +96,27 @@ def _colors(grid: Grid, tf: Union[None, str, TransferFunction], opacity_unit: Op
 
 
 def _asset(file: str) -> str:
-    return f"@@@{file}@@@" if "@" in file else f"@./{file}@"
+    return f"@@@./{file}@@@" if "@" in file else f"@./{file}@"
 
 
-def _stage(title: str, contents: Sequence[Sequence[Grid]], times: Sequence[float], colors: Sequence[str], files: Sequence[str]) -> str:
-    root, grids, moves = _name(title), contents[0], len(files) > 1
+def _quoted(text: str) -> str:
+    return '"' + text.replace("\\", r"\\").replace('"', r"\"").replace("\n", r"\n") + '"'
+
+
+def _names(grids: Sequence[str]) -> list[str]:
+    """Prims for the grids, each with another name."""
+    names: list[str] = []
+    for grid in grids:
+        name, count = _name(grid), 1
+        while (each := name if count == 1 else f"{name}_{count}") in names:
+            count += 1
+        names.append(each)
+    return names
+
+
+def _stage(title: str, grids: Sequence[str], extents: Sequence[str], times: Sequence[float], colors: Sequence[str],
+           files: Sequence[str]) -> str:
+    root, prims, moves = _name(title), _names(grids), len(files) > 1
 
     def value(declaration: str, values: Sequence[str]) -> str:
         if not moves:
@@ -98,20 +124,16 @@ def _stage(title: str, contents: Sequence[Sequence[Grid]], times: Sequence[float
         samples = "".join(f"                {time:g}: {each},\n" for time, each in zip(times, values))
         return f"{declaration}.timeSamples = {{\n{samples}            }}"
 
-    extents = []
-    for each in contents:
-        lower, upper = each[0].frame
-        extents.append(_list([_row(lower), _row(upper)]))
     lines = ["#usda 1.0", "(", f'    defaultPrim = "{root}"', '    doc = "Written by OpenSubVol"', "    metersPerUnit = 1", '    upAxis = "Z"']
     if moves:
         lines += [f"    startTimeCode = {times[0]:g}", f"    endTimeCode = {times[-1]:g}", "    timeCodesPerSecond = 24"]
     lines += [")", "", f'def Xform "{root}" (', '    kind = "component"', ")", "{", '    def Volume "volume"', "    {",
               f"        {value('float3[] extent', extents)}"]
-    lines += [f"        rel field:{_name(grid.name)} = </{root}/volume/{_name(grid.name)}>" for grid in grids]
+    lines += [f"        rel field:{prim} = </{root}/volume/{prim}>" for prim in prims]
     lines += [f"        {line}" for line in colors]
-    for grid in grids:
-        lines += ["", f'        def OpenVDBAsset "{_name(grid.name)}"', "        {",
-                  '            token fieldDataType = "float"', f'            token fieldName = "{grid.name}"',
+    for grid, prim in zip(grids, prims):
+        lines += ["", f'        def OpenVDBAsset "{prim}"', "        {",
+                  '            token fieldDataType = "float"', f"            token fieldName = {_quoted(grid)}",
                   f"            {value('asset filePath', [_asset(file) for file in files])}", "        }"]
     return "\n".join([*lines, "    }", "}", ""])
 
@@ -122,12 +144,13 @@ def _steps(text: str, series: Series) -> range:
     found = re.fullmatch(r"(\d+)(?:-(\d+))?", text)
     chosen = range(int(found[1]), int(found[2] or found[1]) + 1) if found else range(0)
     if not chosen or chosen[-1] >= len(series):
-        raise InvalidInput(f"--steps: '{text}' is not a range of the {len(series)} steps", "--steps", f"all, A-B up to {len(series) - 1}")
+        raise InvalidInput(f"--steps: '{text}' is not a range of the steps", "--steps", f"all, or A-B up to {len(series) - 1}")
     return chosen
 
 
 def _convert(given: argparse.Namespace) -> str:
-    base = os.path.splitext(given.output)[0]
+    base = os.path.splitext(_target(given.output))[0]
+    function = TransferFunction(given.tf or "viridis")  # a wrong name is found before anything is written
     options: dict[str, Any] = {"resolution": given.resolution, "fields": given.field or None}
     if given.steps is None:
         files, codes = [base + ".vdb"], [0]
@@ -138,7 +161,7 @@ def _convert(given: argparse.Namespace) -> str:
         files = [f"{base}_{step:04}.vdb" for step in codes]
         for step, file in zip(codes, files):
             write_vdb(series[step], file, **options)
-    write_usd(given.output, files, codes=codes, tf=given.tf)
+    write_usd(given.output, files, codes=codes, tf=function)
     return f"{given.output}, and {len(files)} .vdb {'file' if len(files) == 1 else 'files'}"
 
 
@@ -156,8 +179,7 @@ def main() -> int:
         try:
             print(_convert(parser.parse_args()))
         except (Error, OSError) as error:
-            allowed = getattr(error, "allowed", "")
-            print(f"subvol.usd: {error}{f' ({allowed})' if allowed else ''}", file=sys.stderr)
+            print(f"subvol.usd: {error}", file=sys.stderr)
             return 2
     return 0
 

@@ -56,6 +56,19 @@ def test_steps_are_time_samples(tmp_path, ball):
     assert "startTimeCode = 3" in text and "endTimeCode = 5" in text
 
 
+def test_grids_whose_names_no_prim_may_have(tmp_path, ball):
+    field = ball.fields["density"]
+    odd = subvol.HexMesh(ball.points, ball.cells, {"a b": field, "a_b": field, 'say "x"': field})
+    subvol.write_vdb(odd, tmp_path / "a@1.vdb", resolution=10, fields=list(odd.fields))
+    write_usd(tmp_path / "a.usda", tmp_path / "a@1.vdb")
+    text = (tmp_path / "a.usda").read_text()
+    made = re.findall(r'def OpenVDBAsset "(\w+)"', text)
+    assert len(set(made)) == 3 and made == re.findall(r"rel field:(\w+) =", text)
+    assert text.count("@@@./a@1.vdb@@@") == 3
+    for name in re.findall(r"token fieldName = (.*)", text):
+        assert re.fullmatch(r'"(?:[^"\\]|\\.)*"', name), name
+
+
 def test_what_is_no_stage_is_refused(tmp_path, ball):
     subvol.write_vdb(ball, tmp_path / "a.vdb", resolution=10)
     with pytest.raises(subvol.InvalidInput, match="unknown extension"):
@@ -79,4 +92,8 @@ def test_from_the_command_line(tmp_path, ball):
     assert done.returncode == 0 and "1 .vdb file" in done.stdout, done.stderr
     assert "@./ball.vdb@" in (tmp_path / "ball.usda").read_text() and (tmp_path / "ball.vdb").exists()
     assert run(tmp_path / "none.vtu", "-o", tmp_path / "b.usda").returncode == 2
+    done = run(tmp_path / "ball.vtu", "-o", tmp_path / "c.usd", "--resolution", 12)
+    assert done.returncode == 2 and "unknown extension (.usda)\n" in done.stderr
+    assert run(tmp_path / "ball.vtu", "-o", tmp_path / "c.usda", "--resolution", 12, "--tf", "none").returncode == 2
+    assert not list(tmp_path.glob("c*"))
     assert "not a range" in run(tmp_path / "ball.vtu", "-o", tmp_path / "b.usda", "--steps", "4-9").stderr
