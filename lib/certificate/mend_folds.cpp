@@ -105,8 +105,6 @@ private:
         constexpr int kPatience = 3;
         int in_vain = 0;
         for (int round = 0; round < options_.rounds; ++round) {
-            report_progress(options_.folds.progress, "mend", static_cast<std::size_t>(round),
-                            static_cast<std::size_t>(options_.rounds));
             ++report.rounds;
             const std::size_t left = move_around(bad, round);
             if (left == 0) return;
@@ -146,14 +144,13 @@ private:
         }
         const int levels = round == 0 || options_.folds.scheme.kind == Scheme::Linear ? 1 : 2;
         MovablePatch movable(patch.mesh, options_.folds.scheme, levels, std::move(start), std::move(freedom), patch_cells);
-        patch.mesh.points = movable.move();
+        patch.mesh.points = movable.move(
+            [&](double part) { report_progress(options_.folds.progress, "mend", (round + part) / options_.rounds); });
         for (std::size_t p = 0; p < patch.points.size(); ++p) {
             if (moves[patch.points[p]] != 0) mesh_.points[patch.points[p]] = patch.mesh.points[p];
         }
 
-        FoldOptions folds = options_.folds;
-        folds.progress = nullptr;
-        const FoldCheck check = check_folds(patch.mesh, folds);
+        const FoldCheck check = check_folds(patch.mesh, options_.folds);
         std::size_t left = 0;
         for (std::size_t c = 0; c < patch.cells.size(); ++c) {
             if (patch_cells[c].role == CellRole::Around || !is_bad(check.verdicts[c])) continue;

@@ -177,7 +177,7 @@ std::vector<Vec3> MovablePatch::step(const std::vector<Vec3>& points, const std:
     return found;
 }
 
-std::vector<Vec3> MovablePatch::move() {
+std::vector<Vec3> MovablePatch::move(const std::function<void(double)>& done) {
     const auto moved = [&](const std::vector<Vec3>& step, double part) {
         std::vector<Vec3> points = points_;
         for (std::size_t p = 0; p < points.size(); ++p) {
@@ -196,6 +196,7 @@ std::vector<Vec3> MovablePatch::move() {
     for (int k = 0; k < kWeights; ++k, weight *= 10) {
         double now = cost(points_, lacks, weight);
         for (int n = 0; n < kNewton; ++n) {
+            done(static_cast<double>(k * kNewton + n) / (kWeights * kNewton));
             const std::vector<Vec3> way = step(points_, lacks, weight);
             double part = 1;
             bool better = false;

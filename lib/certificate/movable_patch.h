@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "subvol/hex_mesh.h"
@@ -41,8 +42,8 @@ public:
     MovablePatch(const HexMesh& patch, const SchemeOptions& scheme, int levels, std::vector<Vec3> start,
                  std::vector<Freedom> freedom, const std::vector<PatchCell>& cells);
 
-    /// The new points.
-    [[nodiscard]] std::vector<Vec3> move();
+    /// The new points. done: called before each step with the part of the work that is done, 0 to 1; may throw
+    [[nodiscard]] std::vector<Vec3> move(const std::function<void(double)>& done);
 
 private:
     /// A corner of a child: its points and what its determinant has to be, in `volume`.

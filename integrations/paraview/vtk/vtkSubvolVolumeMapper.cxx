@@ -329,6 +329,7 @@ void vtkSubvolVolumeMapper::SetMethod(const char* name) {
 }
 
 void vtkSubvolVolumeMapper::SetOption(const char* name, const char* text) {
+    if (name == nullptr) return;
     auto& options = Internals->options;
     const std::string value = text != nullptr ? text : "";
     const auto found = options.find(name);

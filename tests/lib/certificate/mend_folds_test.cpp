@@ -130,6 +130,16 @@ TEST(MendFolds, TheSameBitsForAnyNumberOfThreads) {
     EXPECT_EQ(mend_folds(mesh, {.rounds = 1}).mesh.points, many.points);
 }
 
+TEST(MendFolds, IsCancelledBetweenSteps) {
+    struct Cancel : Progress {
+        void report(std::string_view stage, double) override { mends = mends || stage == "mend"; }
+        [[nodiscard]] bool cancelled() const override { return mends; }
+        bool mends = false;
+    } progress;
+    EXPECT_THROW((void)mend_folds(overshooting(), {.folds = {.progress = &progress}}), Error);
+    EXPECT_TRUE(progress.mends);
+}
+
 TEST(MendFolds, OptionsAreChecked) {
     EXPECT_THAT(test::error_of([] { (void)mend_folds(make_box(3, 3, 3), {.boundary_edges = -1}); }),
                 HasSubstr("boundary_move"));

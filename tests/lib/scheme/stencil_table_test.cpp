@@ -8,7 +8,9 @@
 
 #include "lib/expect_error.h"
 #include "lib/test_meshes.h"
+#include "subvol/error.h"
 #include "subvol/refine.h"
+#include "transposed_table.h"
 
 namespace subvol {
 namespace stencil_table_test {
@@ -37,6 +39,25 @@ TEST_P(EveryTable, GivesBitwiseWhatRefineGives) {
     EXPECT_EQ(tables.apply(std::span<const double>(coordinates(mesh)), 3), coordinates(fine));
     EXPECT_EQ(tables.apply(std::span<const double>(mesh.attributes[0].values), 1), fine.attributes[0].values);
     EXPECT_EQ(tables.cells, fine.cells);
+}
+
+TEST_P(EveryTable, HasATranspose) {
+    const HexMesh mesh = irregular();
+    const RefinementTables tables = refinement_tables(build_topology(mesh), {.scheme = {GetParam()}, .levels = 1});
+    const StencilTable& table = tables.levels.front();
+    std::vector<double> fine(table.rows() * 2);
+    for (std::size_t k = 0; k < fine.size(); ++k) fine[k] = std::sin(static_cast<double>(k));
+    std::vector<double> expected(table.columns() * 2, 0);
+    const CsrMatrix matrix = table.csr();
+    for (std::size_t row = 0; row < table.rows(); ++row) {
+        for (std::size_t i = matrix.offsets[row]; i < matrix.offsets[row + 1]; ++i) {
+            for (std::size_t c = 0; c < 2; ++c) expected[2 * matrix.columns[i] + c] += matrix.weights[i] * fine[2 * row + c];
+        }
+    }
+    const std::vector<double> sums = detail::apply_transpose(table, fine, 2);
+    ASSERT_EQ(sums.size(), expected.size());
+    for (std::size_t k = 0; k < sums.size(); ++k) EXPECT_NEAR(sums[k], expected[k], 1e-12);
+    EXPECT_THROW((void)detail::apply_transpose(table, fine, 3), Error);
 }
 
 TEST_P(EveryTable, ServesAMeshThatMoves) {
