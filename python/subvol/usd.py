@@ -56,7 +56,8 @@ def write_usd(path: Path, files: Union[Path, list[Path], tuple[Path, ...]], *, c
         raise InvalidInput(f"codes: there are {len(times)} for {len(names)} files", "codes", "one for each file, ascending")
     function = tf if isinstance(tf, TransferFunction) else TransferFunction(tf or "viridis")
     grids: list[str] = []
-    extents, colors = [], []
+    extents: list[str] = []
+    colors: list[str] = []
     for name in names:  # one after the other: the grids of a long series need not fit into memory together
         contents = read_vdb(name)
         if not extents:
@@ -161,7 +162,7 @@ def _convert(given: argparse.Namespace) -> str:
         files = [f"{base}_{step:04}.vdb" for step in codes]
         for step, file in zip(codes, files):
             write_vdb(series[step], file, **options)
-    write_usd(given.output, files, codes=codes, tf=function)
+    write_usd(given.output, tuple(files), codes=codes, tf=function)
     return f"{given.output}, and {len(files)} .vdb {'file' if len(files) == 1 else 'files'}"
 
 
