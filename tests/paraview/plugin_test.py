@@ -47,6 +47,21 @@ def psnr(a, b):
     return -10 * np.log10(max(np.mean((a - b) ** 2), 1e-12))
 
 
+def frd_of_two_steps():
+    """A hexahedron in CalculiX's text, with a value at each node: ten times the step, and the node's number."""
+    corners = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1)]
+    text = "    1C\n    2C" + " " * 18 + "%12d" % 8 + " " * 37 + "1\n"
+    for k, point in enumerate(corners):
+        text += " -1%10d" % (k + 1) + "".join("%12.5E" % x for x in point) + "\n"
+    text += " -3\n    3C" + " " * 18 + "%12d" % 1 + " " * 37 + "1\n -1%10d%5d%5d%5d\n -2" % (1, 1, 0, 1)
+    text += "".join("%10d" % (k + 1) for k in range(8)) + "\n -3\n"
+    for step in (1, 2):
+        text += "  100CL%5d%12.5E%12d" % (100 + step, step, 8) + " " * 20 + "%2d%5d" % (0, step) + " " * 10 + " 1\n"
+        text += " -4  NDTEMP      1    1\n -5  T           1    1    0    0\n"
+        text += "".join(" -1%10d%12.5E\n" % (k + 1, 10 * step + k) for k in range(8)) + " -3\n"
+    return text + " 9999\n"
+
+
 class Plugin(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
@@ -232,6 +247,129 @@ class Plugin(unittest.TestCase):
             means.append(grid.values([[0.0, 0.0, 0.0]])[0][0])
         self.assertAlmostEqual(means[1] - means[0], 10, places=4)
         simple.Delete(run)
+
+    def test_limit_probe_at_the_points_of_another_mesh(self):
+        places = simple.Sphere(Center=[0.8, 0, 0], ThetaResolution=12, PhiResolution=9)  # in part outside
+        probe = simple.LimitProbe(Input=self.reader, Places=places, Gradients=1)
+        probe.UpdatePipeline()
+        drawn = servermanager.Fetch(probe)
+        points = vtk_to_numpy(drawn.GetPoints().GetData()).astype(float)
+        self.assert_probed(drawn.GetPointData(), points)
+        places.Center = [0, 0, 0]
+        probe.UpdatePipeline()
+        drawn = servermanager.Fetch(probe)
+        self.assertEqual(drawn.GetPointData().GetArray("vtkValidPointMask").GetRange(), (1, 1))
+        self.assertEqual(drawn.GetNumberOfCells(), places.GetDataInformation().GetNumberOfCells())
+        simple.Delete(probe)
+        simple.Delete(places)
+
+    def test_limit_line(self):
+        line = simple.LimitLine(Input=self.reader, Point1=[-2, 0.1, 0.2], Point2=[2, 0.1, 0.2], Count=41)
+        line.UpdatePipeline()
+        drawn = servermanager.Fetch(line)
+        self.assertEqual((drawn.GetNumberOfPoints(), drawn.GetNumberOfCells()), (41, 1))
+        lengths = vtk_to_numpy(drawn.GetPointData().GetArray("arc_length"))
+        self.assertTrue(np.allclose(lengths, np.linspace(0, 4, 41)))
+        self.assert_probed(drawn.GetPointData(), [[-2 + 4 * k / 40, 0.1, 0.2] for k in range(41)])
+        simple.Delete(line)
+
+    def assert_probed(self, data, places):
+        expected = subvol.probe(self.mesh, places)
+        inside = expected.inside
+        self.assertTrue(0 < inside.sum() < len(inside))
+        self.assertTrue(np.array_equal(vtk_to_numpy(data.GetArray("vtkValidPointMask")) == 1, inside))
+        values = vtk_to_numpy(data.GetArray("heat"))
+        # Places may differ in their last bit.
+        self.assertTrue(np.allclose(values[inside], expected.fields["heat"].ravel()[inside], atol=1e-9))
+        self.assertTrue(np.isnan(values[~inside]).all())
+        if data.GetArray("heat_gradient"):
+            slopes = vtk_to_numpy(data.GetArray("heat_gradient"))[inside]
+            self.assertTrue(np.allclose(slopes, expected.gradients["heat"].reshape(-1, 3)[inside], atol=1e-7))
+
+    def test_our_formats_are_read(self):
+        path = os.path.join(FOLDER, "two.mesh")
+        subvol.write_mesh(subvol.HexMesh(self.mesh.points, self.mesh.cells, {}), path)
+        read = simple.OpenDataFile(path)
+        read.UpdatePipeline()
+        drawn = servermanager.Fetch(read)
+        self.assertEqual(drawn.GetNumberOfCells(), len(self.mesh.cells))
+        self.assertTrue(np.allclose(vtk_to_numpy(drawn.GetPoints().GetData()), self.mesh.points))
+        simple.Delete(read)
+
+    def test_steps_of_a_format_that_paraview_lacks(self):
+        path = os.path.join(FOLDER, "beam.frd")
+        with open(path, "w") as file:
+            file.write(frd_of_two_steps())
+        read = simple.OpenDataFile(path)
+        self.assertEqual(list(read.TimestepValues), [1, 2])
+        for time in (1, 2):
+            read.UpdatePipeline(time)
+            self.assertEqual(servermanager.Fetch(read).GetPointData().GetArray("NDTEMP").GetRange(), (10 * time, 10 * time + 7))
+        simple.Delete(read)
+
+    def test_kernels_wavelets_and_bricks_are_written(self):
+        kernels = os.path.join(FOLDER, "ball.svk")
+        simple.SaveData(kernels, proxy=self.reader, Options="per_edge=2")
+        expected = subvol.sample(self.mesh, per_edge=2)
+        points = subvol.read_points(kernels)
+        self.assertTrue(np.array_equal(points.centers, expected.centers))
+        self.assertEqual(list(points.values), ["heat"])
+        fine = simple.SubdivideVolume(Input=self.reader, Levels=1)
+        wavelets = os.path.join(FOLDER, "ball.svw")
+        simple.SaveData(wavelets, proxy=fine, Options="tolerance=1e-4")
+        again = simple.OpenDataFile(wavelets)
+        again.UpdatePipeline()
+        self.assertEqual(again.GetDataInformation().GetNumberOfCells(), 8 * len(self.mesh.cells))
+        bricks = os.path.join(FOLDER, "ball.bricks")
+        simple.SaveData(bricks, proxy=self.reader, Options="bricks=3")
+        self.assertEqual(len([name for name in os.listdir(bricks) if name.endswith(".vtu")]), 3)
+        for proxy in (fine, again):
+            simple.Delete(proxy)
+
+    def test_blocks_are_one_mesh(self):
+        """The ball in three blocks, one of them without the field x."""
+        middles = self.mesh.points[self.mesh.cells].mean(1)
+        parts = [middles[:, 0] < 0, (middles[:, 0] >= 0) & (middles[:, 2] < 0), (middles[:, 0] >= 0) & (middles[:, 2] >= 0)]
+        self.assertTrue(all(part.any() for part in parts))
+        names = []
+        for k, part in enumerate(parts):
+            used, cells = np.unique(self.mesh.cells[part], return_inverse=True)
+            points = self.mesh.points[used]
+            names.append(f"part{k}.vtu")
+            fields = {"heat": self.mesh.fields["heat"][used], "x": points[:, 0]}
+            if k == 2:
+                del fields["x"]
+            subvol.write_mesh(subvol.HexMesh(points, cells.reshape(-1, 8), fields), os.path.join(FOLDER, names[-1]))
+        path = os.path.join(FOLDER, "parts.vtm")
+        with open(path, "w") as file:
+            sets = "".join(f'<DataSet index="{k}" file="{name}"/>' for k, name in enumerate(names))
+            file.write(f'<VTKFile type="vtkMultiBlockDataSet" version="1.0"><vtkMultiBlockDataSet>{sets}</vtkMultiBlockDataSet></VTKFile>')
+        expected = subvol.read_mesh(path)
+        self.assertEqual(expected.points.shape, self.mesh.points.shape)
+        simple.Hide(self.reader, self.view)
+        blocks = simple.XMLMultiBlockDataReader(FileName=[path])
+        shown = simple.Show(blocks, self.view)
+        simple.ColorBy(shown, ("POINTS", "heat"))
+        shown.SetRepresentationType("Subdivision splats")
+        shown.SetScalarBarVisibility(self.view, False)
+        shown.ScalarOpacityUnitDistance = 0.4
+        self.mesh, whole = expected, self.mesh
+        try:
+            self.assert_same(pixels(self.view, "blocks"), self.picture()[..., :3])
+        finally:
+            self.mesh = whole
+        simple.ColorBy(shown, ("POINTS", "x"))  # two of the blocks have it
+        colored = pixels(self.view, "blocks_x")
+        shown.SetScalarBarVisibility(self.view, False)
+        self.assertTrue(0.02 < (colored.max(-1) > 0.05).mean() < (self.picture()[..., 3] > 0.05).mean())
+        surface = simple.LimitSurface(Input=blocks, Boundary=1, Isovalues=[])
+        surface.UpdatePipeline()
+        self.assertEqual(surface.GetDataInformation().GetNumberOfCells(), len(subvol.surface(expected, boundary=True).triangles))
+        joined = simple.SubdivideVolume(Input=blocks, Levels=0)
+        joined.UpdatePipeline()
+        self.assertEqual(joined.GetDataInformation().GetNumberOfPoints(), len(whole.points))
+        for proxy in (surface, joined, blocks):
+            simple.Delete(proxy)
 
     def test_bad_input_is_said(self):
         self.shown.SubvolOptions = "per_edges=2"

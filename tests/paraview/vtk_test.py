@@ -8,9 +8,10 @@ import unittest
 import numpy as np
 import subvol
 import vtkmodules.vtkRenderingOpenGL2  # noqa: F401 (what draws)
-from subvol_vtk.SubvolVtk import vtkSubvolLimitSurface, vtkSubvolVdbWriter, vtkSubvolVolumeMapper
+from subvol_vtk.SubvolVtk import vtkSubvolLimitLine, vtkSubvolLimitProbe, vtkSubvolLimitSurface, vtkSubvolReader, vtkSubvolVdbWriter, \
+    vtkSubvolVolumeMapper, vtkSubvolWriter
 from vtkmodules.util.numpy_support import vtk_to_numpy
-from vtkmodules.vtkCommonDataModel import vtkPiecewiseFunction, vtkPlane, vtkPlaneCollection
+from vtkmodules.vtkCommonDataModel import vtkMultiBlockDataSet, vtkPiecewiseFunction, vtkPlane, vtkPlaneCollection
 from vtkmodules.vtkRenderingCore import vtkColorTransferFunction, vtkRenderer, vtkRenderWindow, vtkVolume, vtkVolumeProperty, vtkWindowToImageFilter
 
 SIZE = (200, 160)
@@ -121,6 +122,41 @@ class Mapper(unittest.TestCase):
         writer.SetResolution(40)
         writer.Write()
         self.assertEqual([grid.name for grid in subvol.read_vdb(os.path.join(FOLDER, "heat.vdb"))], ["heat"])
+
+    def test_bricks_of_blocks(self):
+        """Blocks become one mesh; the bricks of it are what subvol opens."""
+        blocks = vtkMultiBlockDataSet()
+        corners = np.array([[x, y, z] for z in (0, 1) for x, y in ((0, 0), (1, 0), (1, 1), (0, 1))], float)
+        for k in range(2):
+            blocks.SetBlock(k, subvol.to_vtk(subvol.HexMesh(corners + [k, 0, 0], [range(8)], {"heat": corners[:, 1].copy()})))
+        writer = vtkSubvolWriter()
+        writer.SetInputDataObject(blocks)
+        writer.SetFileName(os.path.join(FOLDER, "two.bricks"))
+        writer.SetOptions("bricks=2")
+        writer.Write()
+        self.assertEqual(sorted(name for name in os.listdir(writer.GetFileName()) if name.endswith(".vtu")),
+                         ["brick_00000.vtu", "brick_00001.vtu"])
+        line = vtkSubvolLimitLine()
+        line.SetInputDataObject(blocks)
+        line.SetPoint1(.5, .5, .5)
+        line.SetPoint2(1.5, .5, .5)
+        line.SetCount(5)
+        line.Update()
+        self.assertEqual(line.GetOutput().GetPointData().GetArray("vtkValidPointMask").GetRange(), (1, 1))
+
+    def test_reader_and_probe(self):
+        path = os.path.join(FOLDER, "ball.mesh")
+        subvol.write_mesh(subvol.HexMesh(self.mesh.points, self.mesh.cells, {}), path)
+        reader, probe = vtkSubvolReader(), vtkSubvolLimitProbe()
+        self.assertTrue(vtkSubvolReader.CanReadFile(path))
+        self.assertFalse(vtkSubvolReader.CanReadFile(os.path.join(FOLDER, "missing")))
+        reader.SetFileName(path)
+        probe.SetPlacesConnection(reader.GetOutputPort())
+        probe.SetMeshConnection(reader.GetOutputPort())
+        probe.SetReach(10)
+        probe.Update()
+        self.assertEqual(probe.GetOutput().GetPointData().GetArray("vtkValidPointMask").GetRange(), (1, 1))
+        self.assertEqual(probe.GetOutput().GetNumberOfCells(), len(self.mesh.cells))
 
 
 if __name__ == "__main__":

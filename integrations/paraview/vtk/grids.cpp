@@ -1,12 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "grids.h"
 
+#include <vtkAlgorithm.h>
 #include <vtkCellArray.h>
 #include <vtkCellData.h>
 #include <vtkCellIterator.h>
+#include <vtkCharArray.h>
+#include <vtkCompositeDataIterator.h>
+#include <vtkCompositeDataSet.h>
+#include <vtkDataSet.h>
 #include <vtkDoubleArray.h>
 #include <vtkFloatArray.h>
 #include <vtkIdTypeArray.h>
+#include <vtkInformation.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
 #include <vtkPoints.h>
@@ -16,8 +22,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
+#include "subvol/error.h"
 #include "subvol/vtk_grid.h"
 
 namespace subvol {
@@ -25,7 +33,7 @@ namespace subvol {
 namespace {
 
 /// Points and cells, and what marks ghosts.
-VtkUnstructuredGrid cells_of(vtkUnstructuredGridBase& grid) {
+VtkUnstructuredGrid cells_of(vtkDataSet& grid) {
     VtkUnstructuredGrid made;
     made.points.resize(static_cast<std::size_t>(grid.GetNumberOfPoints()));
     for (std::size_t p = 0; p < made.points.size(); ++p) {
@@ -60,44 +68,110 @@ VtkGridArray whole_array(vtkDataArray& array, bool at_cells) {
     return made;
 }
 
-void add_ghosts(vtkUnstructuredGridBase& grid, VtkUnstructuredGrid& made) {
-    const auto add = [&](vtkDataSetAttributes& from, bool at_cells) {
-        if (vtkDataArray* const ghosts = from.GetArray(vtkDataSetAttributes::GhostArrayName()))
-            made.arrays.push_back(whole_array(*ghosts, at_cells));
-    };
-    add(*grid.GetPointData(), false);
-    add(*grid.GetCellData(), true);
+void add_all(vtkDataSetAttributes& from, bool at_cells, VtkUnstructuredGrid& made) {
+    for (int a = 0; a < from.GetNumberOfArrays(); ++a) {
+        if (vtkDataArray* const array = from.GetArray(a)) made.arrays.push_back(whole_array(*array, at_cells));
+    }
+}
+
+constexpr const char* kNumbers = "GlobalNodeId";  // the same for the same point of two blocks
+
+void add_named(vtkDataSetAttributes& from, const char* name, bool at_cells, VtkUnstructuredGrid& made) {
+    if (vtkDataArray* const array = from.GetArray(name)) made.arrays.push_back(whole_array(*array, at_cells));
+}
+
+vtkDataArray* array_in(vtkDataSet& grid, const ShownArray& shown) {
+    vtkDataSetAttributes& from =
+        shown.at_cells ? static_cast<vtkDataSetAttributes&>(*grid.GetCellData()) : *grid.GetPointData();
+    return shown.name.empty() ? from.GetScalars() : from.GetArray(shown.name.c_str());
+}
+
+/// One number of each tuple.
+void keep_component(VtkGridArray& array, int component) {
+    if (component == ShownArray::kAll || array.components == 1) return;
+    const auto components = static_cast<std::size_t>(array.components);
+    const std::size_t tuples = array.values.size() / components;
+    for (std::size_t i = 0; i < tuples; ++i) {
+        const std::span<const double> tuple(array.values.data() + i * components, components);
+        double squares = 0;
+        for (const double v : tuple) squares += v * v;
+        array.values[i] = component >= 0 ? tuple[static_cast<std::size_t>(component)] : std::sqrt(squares);
+    }
+    array.values.resize(tuples);
+    array.components = 1;
+}
+
+std::vector<vtkDataSet*> blocks_of(vtkDataObject& data) {
+    if (vtkDataSet* const one = vtkDataSet::SafeDownCast(&data)) return {one};
+    std::vector<vtkDataSet*> blocks;
+    if (vtkCompositeDataSet* const several = vtkCompositeDataSet::SafeDownCast(&data)) {
+        const auto at = vtkSmartPointer<vtkCompositeDataIterator>::Take(several->NewIterator());
+        for (at->InitTraversal(); !at->IsDoneWithTraversal(); at->GoToNextItem()) {
+            vtkDataSet* const block = vtkDataSet::SafeDownCast(at->GetCurrentDataObject());
+            if (block != nullptr && block->GetNumberOfCells() > 0) blocks.push_back(block);
+        }
+    }
+    return blocks;
+}
+
+bool is_several(vtkDataObject& data) {
+    return vtkCompositeDataSet::SafeDownCast(&data) != nullptr;
+}
+
+ReadResult mesh_of(std::vector<VtkUnstructuredGrid> blocks, bool several) {
+    return several ? mesh_of_vtk(std::move(blocks)) : mesh_of_vtk(std::move(blocks.front()));
 }
 
 }  // namespace
 
-ReadResult mesh_of_grid(vtkUnstructuredGridBase& grid, const ShownArray& shown) {
-    VtkUnstructuredGrid made = cells_of(grid);
-    VtkGridArray values = whole_array(*shown.array, shown.at_cells);
-    const auto components = static_cast<std::size_t>(values.components);
-    for (std::size_t i = 0; i < values.values.size() / components; ++i) {
-        const std::span<const double> tuple(values.values.data() + i * components, components);
-        double squares = 0;
-        for (const double v : tuple) squares += v * v;
-        values.values[i] = shown.component >= 0 ? tuple[static_cast<std::size_t>(shown.component)] : std::sqrt(squares);
-    }
-    values.values.resize(values.values.size() / components);
-    values.components = 1;
-    made.arrays.push_back(std::move(values));
-    add_ghosts(grid, made);
-    return mesh_of_vtk(std::move(made));
+void take_cells(vtkInformation& port) {
+    port.Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkDataSet");
+    port.Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkCompositeDataSet");
 }
 
-ReadResult mesh_of_grid(vtkUnstructuredGridBase& grid) {
-    VtkUnstructuredGrid made = cells_of(grid);
-    const auto add = [&](vtkDataSetAttributes& from, bool at_cells) {
-        for (int a = 0; a < from.GetNumberOfArrays(); ++a) {
-            if (vtkDataArray* const array = from.GetArray(a)) made.arrays.push_back(whole_array(*array, at_cells));
-        }
-    };
-    add(*grid.GetPointData(), false);
-    add(*grid.GetCellData(), true);
-    return mesh_of_vtk(std::move(made));
+bool has_cells(vtkDataObject* data) {
+    if (data == nullptr) return false;
+    return std::ranges::any_of(blocks_of(*data), [](vtkDataSet* block) { return block->GetNumberOfCells() > 0; });
+}
+
+ShownArray shown_array(vtkAlgorithm& filter) {
+    vtkInformation* const chosen = filter.GetInputArrayInformation(0);
+    if (!chosen->Has(vtkDataObject::FIELD_NAME())) return {.component = ShownArray::kLength};
+    return {.name = chosen->Get(vtkDataObject::FIELD_NAME()),
+            .at_cells = chosen->Get(vtkDataObject::FIELD_ASSOCIATION()) == vtkDataObject::FIELD_ASSOCIATION_CELLS,
+            .component = ShownArray::kLength};
+}
+
+ReadResult mesh_of_data(vtkDataObject& data, const ShownArray& shown) {
+    const bool several = is_several(data), numbered = several && shown.name != kNumbers;
+    std::vector<VtkUnstructuredGrid> blocks;
+    for (vtkDataSet* const block : blocks_of(data)) {
+        vtkDataArray* const array = array_in(*block, shown);
+        if (array == nullptr) continue;
+        VtkUnstructuredGrid& made = blocks.emplace_back(cells_of(*block));
+        keep_component(made.arrays.emplace_back(whole_array(*array, shown.at_cells)), shown.component);
+        add_named(*block->GetPointData(), vtkDataSetAttributes::GhostArrayName(), false, made);
+        add_named(*block->GetCellData(), vtkDataSetAttributes::GhostArrayName(), true, made);
+        if (numbered) add_named(*block->GetPointData(), kNumbers, false, made);
+    }
+    if (blocks.empty()) {
+        throw Error(ErrorCode::InvalidInput,
+                    shown.name.empty() ? "no array is chosen" : "there is no array '" + shown.name + "'", "Field");
+    }
+    ReadResult read = mesh_of(std::move(blocks), several);
+    if (numbered) std::erase_if(read.mesh.attributes, [](const Attribute& field) { return field.name == kNumbers; });
+    return read;
+}
+
+ReadResult mesh_of_data(vtkDataObject& data) {
+    std::vector<VtkUnstructuredGrid> blocks;
+    for (vtkDataSet* const block : blocks_of(data)) {
+        VtkUnstructuredGrid& made = blocks.emplace_back(cells_of(*block));
+        add_all(*block->GetPointData(), false, made);
+        add_all(*block->GetCellData(), true, made);
+    }
+    if (blocks.empty()) throw Error(ErrorCode::InvalidInput, "there are no cells");
+    return mesh_of(std::move(blocks), is_several(data));
 }
 
 void add_array(vtkDataSetAttributes& to, const std::string& name, int components, std::span<const double> values) {
@@ -125,6 +199,29 @@ void set_grid(vtkUnstructuredGrid& grid, const HexMesh& mesh) {
     grid.SetCells(VTK_HEXAHEDRON, cells);
     for (const Attribute& field : mesh.attributes)
         add_array(*grid.GetPointData(), field.name, static_cast<int>(field.channels), field.values);
+}
+
+void add_probed(vtkDataSetAttributes& to, const ProbeResult& probed, bool gradients) {
+    constexpr double kOutside = std::numeric_limits<double>::quiet_NaN();
+    const std::size_t places = probed.cells.size();
+    for (const ProbedField& field : probed.fields) {
+        std::vector<double> values = field.values, slopes;
+        for (std::size_t p = 0; p < places; ++p) {
+            const auto first = values.begin() + static_cast<std::ptrdiff_t>(p * field.channels);
+            if (!probed.inside(p)) std::fill(first, first + static_cast<std::ptrdiff_t>(field.channels), kOutside);
+        }
+        add_array(to, field.name, static_cast<int>(field.channels), values);
+        if (!gradients) continue;
+        for (std::size_t k = 0; k < field.gradients.size(); ++k) {
+            for (int axis = 0; axis < 3; ++axis)
+                slopes.push_back(probed.inside(k / field.channels) ? field.gradients[k][axis] : kOutside);
+        }
+        add_array(to, field.name + "_gradient", static_cast<int>(3 * field.channels), slopes);
+    }
+    vtkNew<vtkCharArray> inside;
+    inside->SetName("vtkValidPointMask");
+    for (std::size_t p = 0; p < places; ++p) inside->InsertNextValue(probed.inside(p) ? 1 : 0);
+    to.AddArray(inside);
 }
 
 void set_surface(vtkPolyData& polygons, const LimitSurface& surface) {

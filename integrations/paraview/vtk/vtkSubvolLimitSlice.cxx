@@ -2,6 +2,7 @@
 #include "vtkSubvolLimitSlice.h"
 
 #include <vtkCellArray.h>
+#include <vtkDataObject.h>
 #include <vtkInformation.h>
 #include <vtkInformationVector.h>
 #include <vtkNew.h>
@@ -9,7 +10,6 @@
 #include <vtkPointData.h>
 #include <vtkPoints.h>
 #include <vtkPolyData.h>
-#include <vtkUnstructuredGridBase.h>
 
 #include <cmath>
 #include <vector>
@@ -28,7 +28,7 @@ void vtkSubvolLimitSlice::PrintSelf(ostream& os, vtkIndent indent) {
 }
 
 int vtkSubvolLimitSlice::FillInputPortInformation(int, vtkInformation* info) {
-    info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkUnstructuredGridBase");
+    take_cells(*info);
     return 1;
 }
 
@@ -63,16 +63,12 @@ void set_slice(vtkPolyData& polygons, const LimitSlice& slice) {
 }  // namespace
 
 int vtkSubvolLimitSlice::RequestData(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs) {
-    vtkUnstructuredGridBase* const grid = vtkUnstructuredGridBase::GetData(inputs[0]);
-    if (grid->GetNumberOfCells() == 0) return 1;
+    vtkDataObject* const data = vtkDataObject::GetData(inputs[0]);
+    if (!has_cells(data)) return 1;
     try {
         SliceOptions options{.resolution = Resolution};
         options.limit.scheme.kind = named<subvol::Scheme>(Scheme, "Scheme");
-        vtkDataArray* const array = GetInputArrayToProcess(0, grid);
-        if (array == nullptr) throw Error(ErrorCode::InvalidInput, "no array is chosen");
-        const bool at_cells = GetInputArrayAssociation(0, inputs) == vtkDataObject::FIELD_ASSOCIATION_CELLS;
-        const int component = array->GetNumberOfComponents() == 1 ? 0 : -1;
-        const HexMesh mesh = mesh_of_grid(*grid, {array, at_cells, component}).mesh;
+        const HexMesh mesh = mesh_of_data(*data, shown_array(*this)).mesh;
         const Vec3 point(Origin[0], Origin[1], Origin[2]), normal(Normal[0], Normal[1], Normal[2]);
         set_slice(*vtkPolyData::GetData(outputs), slice_limit(mesh, {}, point, normal, options));
     } catch (const std::exception& error) {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vtkSubvolLimitSurface.h"
 
+#include <vtkDataObject.h>
 #include <vtkInformation.h>
 #include <vtkInformationVector.h>
 #include <vtkNew.h>
 #include <vtkObjectFactory.h>
 #include <vtkPolyData.h>
-#include <vtkUnstructuredGridBase.h>
 
 #include "grids.h"
 #include "subvol/error.h"
@@ -34,13 +34,13 @@ void vtkSubvolLimitSurface::SetIsovalue(int number, double value) {
 }
 
 int vtkSubvolLimitSurface::FillInputPortInformation(int, vtkInformation* info) {
-    info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkUnstructuredGridBase");
+    take_cells(*info);
     return 1;
 }
 
 int vtkSubvolLimitSurface::RequestData(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs) {
-    vtkUnstructuredGridBase* const grid = vtkUnstructuredGridBase::GetData(inputs[0]);
-    if (grid->GetNumberOfCells() == 0) return 1;
+    vtkDataObject* const data = vtkDataObject::GetData(inputs[0]);
+    if (!has_cells(data)) return 1;
     try {
         const SurfaceOptions options{.scheme = {.kind = named<subvol::Scheme>(Scheme, "Scheme")},
                                      .isos = Isovalues,
@@ -48,14 +48,8 @@ int vtkSubvolLimitSurface::RequestData(vtkInformation*, vtkInformationVector** i
                                      .cap = Cap,
                                      .tolerance = Tolerance,
                                      .max_level = MaxLevel};
-        std::string field;
-        if (!Isovalues.empty()) {
-            vtkDataArray* const array = GetInputArrayToProcess(0, grid);
-            if (array == nullptr || array->GetName() == nullptr)
-                throw Error(ErrorCode::InvalidInput, "no array is chosen for the isosurfaces");
-            field = array->GetName();
-        }
-        const HexMesh mesh = mesh_of_grid(*grid).mesh;
+        const std::string field = Isovalues.empty() ? std::string() : shown_array(*this).name;
+        const HexMesh mesh = mesh_of_data(*data).mesh;
         set_surface(*vtkPolyData::GetData(outputs), limit_surface(mesh, field, options));
     } catch (const std::exception& error) {
         vtkErrorMacro(<< error.what());

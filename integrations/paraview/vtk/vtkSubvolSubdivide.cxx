@@ -2,6 +2,7 @@
 #include "vtkSubvolSubdivide.h"
 
 #include <vtkCellData.h>
+#include <vtkDataObject.h>
 #include <vtkInformation.h>
 #include <vtkInformationVector.h>
 #include <vtkNew.h>
@@ -25,18 +26,18 @@ void vtkSubvolSubdivide::PrintSelf(ostream& os, vtkIndent indent) {
 }
 
 int vtkSubvolSubdivide::FillInputPortInformation(int, vtkInformation* info) {
-    info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkUnstructuredGridBase");
+    take_cells(*info);
     return 1;
 }
 
 int vtkSubvolSubdivide::RequestData(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs) {
-    vtkUnstructuredGridBase* const grid = vtkUnstructuredGridBase::GetData(inputs[0]);
-    if (grid->GetNumberOfCells() == 0) return 1;
+    vtkDataObject* const data = vtkDataObject::GetData(inputs[0]);
+    if (!has_cells(data)) return 1;
     try {
         const SchemeOptions scheme{.kind = named<subvol::Scheme>(Scheme, "Scheme")};
         if (CheckFolds && Levels > 0)
             throw Error(ErrorCode::InvalidInput, "folds are those of level 0", "CheckFolds", "Levels 0");
-        const HexMesh mesh = mesh_of_grid(*grid).mesh;
+        const HexMesh mesh = mesh_of_data(*data).mesh;
         vtkUnstructuredGrid& fine = *vtkUnstructuredGrid::GetData(outputs);
         set_grid(fine, Levels > 0 ? refine(mesh, {.scheme = scheme, .levels = Levels}) : mesh);
         if (!CheckFolds) return 1;

@@ -5,7 +5,6 @@
 #include <vtkInformationVector.h>
 #include <vtkNew.h>
 #include <vtkObjectFactory.h>
-#include <vtkUnstructuredGridBase.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -36,17 +35,15 @@ void vtkSubvolVdbWriter::ClearArrays() {
 }
 
 int vtkSubvolVdbWriter::FillInputPortInformation(int, vtkInformation* info) {
-    info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkUnstructuredGridBase");
+    take_cells(*info);
     return 1;
 }
 
 void vtkSubvolVdbWriter::WriteData() {
-    vtkUnstructuredGridBase* const grid = vtkUnstructuredGridBase::SafeDownCast(GetInput());
     try {
         if (FileName.empty()) throw Error(ErrorCode::InvalidInput, "no file is named", "FileName");
-        if (grid == nullptr || grid->GetNumberOfCells() == 0)
-            throw Error(ErrorCode::InvalidInput, "there are no cells to write");
-        const HexMesh mesh = mesh_of_grid(*grid).mesh;
+        if (!has_cells(GetInput())) throw Error(ErrorCode::InvalidInput, "there are no cells to write");
+        const HexMesh mesh = mesh_of_data(*GetInput()).mesh;
         std::vector<std::string> fields = Arrays;
         for (const Attribute& field : mesh.attributes) {
             if (Arrays.empty() && (field.channels == 1 || field.channels == 3)) fields.push_back(field.name);

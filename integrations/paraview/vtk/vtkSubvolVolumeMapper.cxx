@@ -25,15 +25,13 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <numbers>
-#include <sstream>
 #include <string>
 #include <utility>
-#include <variant>
 #include <vector>
 
 #include "grids.h"
+#include "option_words.h"
 #include "subvol/error.h"
 #include "subvol/picture_maker.h"
 
@@ -212,14 +210,12 @@ std::vector<float> texels_of(const Image& image, int left, int bottom, int width
 /// What is kept between pictures. Each part has the key that it was made for.
 struct vtkSubvolVolumeMapper::State {
     std::string method = "splat";
-    std::map<std::string, std::string> options, more;  // set one by one, and in one text
+    OptionWords options, more;  // set one by one, and in one text
 
     struct MeshKey {
         vtkUnstructuredGridBase* grid = nullptr;
         vtkMTimeType changed = 0;
-        std::string array;
-        bool at_cells = false;
-        int component = 0;
+        ShownArray shown;
 
         bool operator==(const MeshKey&) const = default;
     };
@@ -245,15 +241,7 @@ struct vtkSubvolVolumeMapper::State {
     [[nodiscard]] MethodOptions method_options() const {
         PictureSettings settings;
         settings.options.style.method = named<Method>(method, "Method");
-        std::vector<Option> known = options_of(settings);
-        for (const auto& [name, text] : all_options()) {
-            const auto found = std::ranges::find_if(known, [&](const Option& option) { return option.key() == name; });
-            if (found == known.end()) throw Error(ErrorCode::InvalidInput, "there is no option '" + name + "'", "Options");
-            if (bool* const* const on = std::get_if<bool*>(&found->value))
-                **on = text != "0" && text != "false";
-            else
-                found->read(text, name);
-        }
+        set_options(options_of(settings), all_options());
         const auto given = all_options();
         subvol::check_options(
             bit(settings.options.style.method), BodyKind::Mesh,
@@ -268,18 +256,18 @@ struct vtkSubvolVolumeMapper::State {
         return made;
     }
 
-    [[nodiscard]] std::map<std::string, std::string> all_options() const {
-        std::map<std::string, std::string> all = options;
+    [[nodiscard]] OptionWords all_options() const {
+        OptionWords all = options;
         for (const auto& [name, text] : more) all[name] = text;
         return all;
     }
 
     /// Makes what does not depend on the view, unless it is there.
-    void prepare(const MeshKey& key, vtkDataArray* array, vtkMTimeType options_changed) {
+    void prepare(const MeshKey& key, vtkMTimeType options_changed) {
         if (!(mesh_key == key)) {
             maker.reset();
             mesh_key = {};
-            read = mesh_of_grid(*key.grid, {array, key.at_cells, key.component});
+            read = mesh_of_data(*key.grid, key.shown);
             mesh_key = key;
         }
         if (maker && maker_made == options_changed) return;
@@ -343,12 +331,7 @@ void vtkSubvolVolumeMapper::SetOption(const char* name, const char* text) {
 }
 
 void vtkSubvolVolumeMapper::SetOptions(const char* text) {
-    std::map<std::string, std::string> more;
-    std::istringstream words(text != nullptr ? text : "");
-    for (std::string word; words >> word;) {
-        const std::size_t equals = word.find('=');
-        more[word.substr(0, equals)] = equals == std::string::npos ? "1" : word.substr(equals + 1);
-    }
+    OptionWords more = words_of(text);
     if (more == Internals->more) return;
     Internals->more = std::move(more);
     Modified();
@@ -390,16 +373,16 @@ void vtkSubvolVolumeMapper::Render(vtkRenderer* renderer, vtkVolume* volume) {
                               .camera = {eye.eye.x, eye.eye.y, eye.eye.z, eye.target.x, eye.target.y, eye.target.z, eye.up.x,
                                          eye.up.y, eye.up.z, eye.fovy_deg, eye.ortho_height, placement.scale},
                               .depths = opaque_depths(*renderer, tile, placement.scale)};
-        const State::MeshKey mesh_key{grid, std::max(grid->GetMTime(), array->GetMTime()),
-                                      array->GetName() != nullptr ? array->GetName() : "", at_cells != 0,
-                                      component_of(property, *array)};
+        const State::MeshKey mesh_key{
+            grid, std::max(grid->GetMTime(), array->GetMTime()),
+            ShownArray{array->GetName() != nullptr ? array->GetName() : "", at_cells != 0, component_of(property, *array)}};
         if (state.quad && state.picture_key == key && state.mesh_key == mesh_key) {
             Kept = true;
             state.draw_kept(*renderer);
             return;
         }
         state.picture_key = {};
-        state.prepare(mesh_key, array, state.changed);
+        state.prepare(mesh_key, state.changed);
         PictureStyle style = state.method_options().style;
         for (int i = 0; ClippingPlanes != nullptr && i < ClippingPlanes->GetNumberOfItems(); ++i) {
             vtkPlane& plane = *ClippingPlanes->GetItem(i);  // its normal points to what is left

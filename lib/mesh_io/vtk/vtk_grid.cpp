@@ -2,10 +2,13 @@
 #include "subvol/vtk_grid.h"
 
 #include <algorithm>
+#include <optional>
 #include <span>
 #include <utility>
 
 #include "assemble.h"
+#include "join_pieces.h"
+#include "mesh_file.h"
 #include "subvol/detail/printable.h"
 #include "subvol/error.h"
 #include "text_scanner.h"
@@ -67,23 +70,52 @@ void take_cells(const VtkUnstructuredGrid& grid, VtkCellSorter& sorter) {
     }
 }
 
-}  // namespace
-
-ReadResult mesh_of_vtk(VtkUnstructuredGrid grid, const ReadOptions& options) {
+/// What a file with this grid has.
+///
+/// alone: false: a part of a mesh, which may have no cells
+MeshFile contents_of(VtkUnstructuredGrid grid, bool alone, const TextScanner& nowhere, const ReadOptions& options) {
     if (grid.points.size() >= kNone || grid.types.size() >= kNone) fail("too many points or cells");
     check_ends(grid.ends, grid.types.size(), grid.connectivity.size(), "ends of cells");
     if (!grid.face_ends.empty()) check_ends(grid.face_ends, grid.types.size(), grid.faces.size(), "ends of faces");
     check_arrays(grid);
-    TextScanner nowhere({}, kGridName, TextScanner::Comments::None);
-    nowhere.name_no_place();
     MeshFile found;
     for (const Vec3& point : grid.points) add_point(found, point, 0);
     VtkCellSorter sorter(nowhere, found, options);
     take_cells(grid, sorter);
     for (VtkGridArray& array : grid.arrays)
         found.arrays.push_back({std::move(array.name), array.components, array.at_cells, std::move(array.values)});
-    sorter.report(kGridName);
-    return assemble(std::move(found), nowhere, kGridName, kVtkNames, options);
+    sorter.report(alone ? std::optional(kGridName) : std::nullopt);
+    return found;
+}
+
+TextScanner no_text() {
+    TextScanner nowhere({}, kGridName, TextScanner::Comments::None);
+    nowhere.name_no_place();
+    return nowhere;
+}
+
+}  // namespace
+
+ReadResult mesh_of_vtk(VtkUnstructuredGrid grid, const ReadOptions& options) {
+    const TextScanner nowhere = no_text();
+    return assemble(contents_of(std::move(grid), true, nowhere, options), nowhere, kGridName, kVtkNames, options);
+}
+
+ReadResult mesh_of_vtk(std::vector<VtkUnstructuredGrid> blocks, const ReadOptions& options) {
+    const TextScanner nowhere = no_text();
+    std::vector<MeshFile> parts;
+    for (VtkUnstructuredGrid& block : blocks) {
+        if (block.points.empty()) continue;
+        MeshFile part = contents_of(std::move(block), false, nowhere, options);
+        refuse_not_finite(part, nowhere, kVtkNames);
+        parts.push_back(std::move(part));
+    }
+    if (parts.empty()) fail("no block has points");
+    MeshFile found = join_pieces(std::move(parts), "block", kGridName);
+    std::size_t cells = 0;
+    each_kind(found, [&](const auto& kind) { cells += kind.corners.size(); });
+    if (cells == 0) fail("no block has cells with a volume");
+    return assemble(std::move(found), kGridName, kVtkNames, options);
 }
 
 }  // namespace subvol

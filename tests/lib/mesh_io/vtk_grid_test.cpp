@@ -76,6 +76,39 @@ TEST_F(VtkGridInMemory, IsTheMeshOfItsFile) {
     }
 }
 
+VtkUnstructuredGrid one_cell(double x, const std::string& field) {
+    VtkUnstructuredGrid grid;
+    for (const Vec3& p : {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(1, 1, 0), Vec3(0, 1, 0)}) grid.points.push_back(p + Vec3(x, 0, 0));
+    for (int k = 0; k < 4; ++k) grid.points.push_back(grid.points[static_cast<std::size_t>(k)] + Vec3(0, 0, 1));
+    grid.types = {12};
+    grid.ends = {8};
+    grid.connectivity = {0, 1, 2, 3, 4, 5, 6, 7};
+    grid.arrays = {{"f", 1, false, std::vector<double>(8, x)}, {field, 1, false, std::vector<double>(8, 1)}};
+    return grid;
+}
+
+TEST_F(VtkGridInMemory, BlocksAreTheMeshOfAListOfTheirFiles) {
+    const std::vector<VtkUnstructuredGrid> blocks{one_cell(0, "a"), {}, one_cell(1, "b")};
+    write("a.vtu", vtu_of(blocks[0]));
+    write("b.vtu", vtu_of(blocks[2]));
+    const auto list = write("all.vtm",
+                            "<VTKFile type=\"vtkMultiBlockDataSet\"><vtkMultiBlockDataSet><DataSet index=\"0\" file=\"a.vtu\"/>"
+                            "<DataSet index=\"1\" file=\"b.vtu\"/></vtkMultiBlockDataSet></VTKFile>");
+    const ReadResult joined = mesh_of_vtk(blocks), read = read_mesh(list);
+    EXPECT_EQ(joined.mesh.points.size(), 12u);  // the four between both cells once
+    EXPECT_EQ(joined.mesh.points, read.mesh.points);
+    EXPECT_EQ(joined.mesh.cells, read.mesh.cells);
+    ASSERT_EQ(joined.mesh.attributes.size(), 1u);  // the others are not in both
+    EXPECT_EQ(joined.mesh.attributes[0].values, read.mesh.attributes[0].values);
+    EXPECT_EQ(joined.warnings, read.warnings);
+    std::vector<VtkUnstructuredGrid> none(2), quad{one_cell(0, "a")};
+    quad[0].types = {9};
+    quad[0].ends = {4};
+    quad[0].connectivity.resize(4);
+    expect_error(ErrorCode::InvalidInput, "no block has points", [&] { (void)mesh_of_vtk(none); });
+    expect_error(ErrorCode::InvalidInput, "no block has cells", [&] { (void)mesh_of_vtk(quad); });
+}
+
 TEST_F(VtkGridInMemory, RefusesArraysThatContradictEachOther) {
     const auto refused = [](const std::string& part, const auto& spoil) {
         VtkUnstructuredGrid grid = three_cells();

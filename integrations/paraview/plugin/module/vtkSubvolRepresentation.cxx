@@ -2,6 +2,7 @@
 #include "vtkSubvolRepresentation.h"
 
 #include <vtkAlgorithmOutput.h>
+#include <vtkCompositeDataSet.h>
 #include <vtkDataObject.h>
 #include <vtkInformation.h>
 #include <vtkInformationVector.h>
@@ -12,6 +13,10 @@
 #include <vtkPVView.h>
 #include <vtkRenderer.h>
 #include <vtkUnstructuredGrid.h>
+
+#include "../../vtk/grids.h"
+
+using namespace subvol;
 
 vtkStandardNewMacro(vtkSubvolRepresentation);
 
@@ -26,6 +31,7 @@ void vtkSubvolRepresentation::PrintSelf(ostream& os, vtkIndent indent) {
 
 int vtkSubvolRepresentation::FillInputPortInformation(int, vtkInformation* info) {
     info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkUnstructuredGridBase");
+    info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkCompositeDataSet");
     info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
     return 1;
 }
@@ -34,14 +40,30 @@ int vtkSubvolRepresentation::RequestData(vtkInformation* request, vtkInformation
                                          vtkInformationVector* outputs) {
     vtkMath::UninitializeBounds(DataBounds);
     vtkNew<vtkUnstructuredGrid> cells;
+    Joined = false;
     if (inputs[0]->GetNumberOfInformationObjects() == 1) {
-        if (vtkUnstructuredGrid* const input = vtkUnstructuredGrid::GetData(inputs[0])) {
+        vtkDataObject* const data = vtkDataObject::GetData(inputs[0]);
+        if (vtkUnstructuredGrid* const input = vtkUnstructuredGrid::SafeDownCast(data)) {
             cells->ShallowCopy(input);
-            cells->GetBounds(DataBounds);
+        } else if (has_cells(data)) {
+            Joined = true;
+            try {
+                ShownArray shown = shown_array(*this);
+                shown.component = ShownArray::kAll;
+                set_grid(*cells, mesh_of_data(*data, shown).mesh);
+            } catch (const std::exception& error) {
+                vtkErrorMacro(<< error.what());
+            }
         }
+        if (cells->GetNumberOfCells() > 0) cells->GetBounds(DataBounds);
     }
     Cells = cells;
     return Superclass::RequestData(request, inputs, outputs);
+}
+
+void vtkSubvolRepresentation::SetInputArrayToProcess(int index, int port, int connection, int association, const char* name) {
+    Superclass::SetInputArrayToProcess(index, port, connection, association, name);
+    if (Joined) MarkModified();
 }
 
 int vtkSubvolRepresentation::ProcessViewRequest(vtkInformationRequestKey* request, vtkInformation* in, vtkInformation* out) {
@@ -69,7 +91,8 @@ int vtkSubvolRepresentation::ProcessViewRequest(vtkInformationRequestKey* reques
 void vtkSubvolRepresentation::ChooseArray() {
     vtkInformation* const array = GetInputArrayInformation(0);
     const bool chosen = array != nullptr && array->Has(vtkDataObject::FIELD_NAME());
-    const bool at_cells = chosen && array->Get(vtkDataObject::FIELD_ASSOCIATION()) == vtkDataObject::FIELD_ASSOCIATION_CELLS;
+    const bool at_cells =
+        chosen && !Joined && array->Get(vtkDataObject::FIELD_ASSOCIATION()) == vtkDataObject::FIELD_ASSOCIATION_CELLS;
     Mapper->SetScalarMode(at_cells ? VTK_SCALAR_MODE_USE_CELL_FIELD_DATA : VTK_SCALAR_MODE_USE_POINT_FIELD_DATA);
     Mapper->SelectScalarArray(chosen ? array->Get(vtkDataObject::FIELD_NAME()) : "");
 }

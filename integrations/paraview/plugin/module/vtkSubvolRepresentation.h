@@ -7,13 +7,18 @@
 #include "vtkSubvolVolumeMapper.h"
 #include "vtkVolumeRepresentation.h"
 
-/// "Subdivision splats" of ParaView: the limit of an unstructured grid as a volume, drawn by vtkSubvolVolumeMapper, with a
-/// coarse picture while one turns the view. Cells are distributed among ranks as by ParaView's own volumes.
+/// "Subdivision splats" of ParaView: the limit of an unstructured grid, or of several blocks together, as a volume, drawn by
+/// vtkSubvolVolumeMapper, with a coarse picture while one turns the view. Cells are distributed among ranks as by ParaView's
+/// own volumes.
 class SUBVOLPARAVIEW_EXPORT vtkSubvolRepresentation : public vtkVolumeRepresentation {
 public:
     static vtkSubvolRepresentation* New();
     vtkTypeMacro(vtkSubvolRepresentation, vtkVolumeRepresentation);
     void PrintSelf(ostream& os, vtkIndent indent) override;
+
+    using vtkVolumeRepresentation::SetInputArrayToProcess;
+    /// Blocks are put together again, those that have the array.
+    void SetInputArrayToProcess(int index, int port, int connection, int association, const char* name) override;
 
     int ProcessViewRequest(vtkInformationRequestKey* request, vtkInformation* in, vtkInformation* out) override;
 
@@ -44,6 +49,7 @@ private:
 
     vtkNew<vtkSubvolVolumeMapper> Mapper;
     vtkSmartPointer<vtkDataObject> Cells;  // of this rank
+    bool Joined = false;                   // of blocks, with values at points
     int InteractiveReduction = 3;
 };
 

@@ -40,4 +40,11 @@ struct VtkUnstructuredGrid {
 /// throws: Error(InvalidInput) as `read_mesh`, or if the sizes of the arrays contradict each other or a point is not there
 [[nodiscard]] ReadResult mesh_of_vtk(VtkUnstructuredGrid grid, const ReadOptions& options = {});
 
+/// One mesh of several grids, as `read_mesh` makes it of a `.vtm` file that lists them: points are joined by an array
+/// `GlobalNodeId` where all grids have it, else where two are at the same place; arrays that a grid lacks are left out. Grids
+/// without points are no part of it.
+///
+/// throws: Error(InvalidInput) as for one grid, or if no grid has cells
+[[nodiscard]] ReadResult mesh_of_vtk(std::vector<VtkUnstructuredGrid> blocks, const ReadOptions& options = {});
+
 }  // namespace subvol
