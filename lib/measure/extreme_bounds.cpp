@@ -2,6 +2,7 @@
 #include "extreme_bounds.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "grid_measure.h"
@@ -23,22 +24,21 @@ double largest_step(std::span<const double> nodes) {
 }
 
 /// By how much nodes of the finest level differ from the parabolas through those of the level before, in the piece of that
-/// level that begins at `first`: the largest difference along each axis, summed.
-double bend_of_lines(std::span<const double> grid, std::size_t side, std::size_t first) {
+/// level that begins at `first`: along each axis, on each of its 25 lines, which are numbered along the next axis first.
+using LineBends = std::array<std::array<double, 25>, 3>;
+LineBends bends_of_lines(std::span<const double> grid, std::size_t side, std::size_t first) {
     const std::array<std::size_t, 3> strides{1, side, side * side};
-    double sum = 0;
+    LineBends bends;
     for (std::size_t axis = 0; axis < 3; ++axis) {
         const std::size_t step = strides[axis], other = strides[(axis + 1) % 3], third = strides[(axis + 2) % 3];
-        double largest = 0;
         for (std::size_t line = 0; line < 25; ++line) {
             const double* f = &grid[first + line % 5 * other + line / 5 * third];
             const double middle = 6 * f[2 * step], ends[2] = {f[0], f[4 * step]};
-            largest = std::max({largest, std::abs((3 * ends[0] + middle - ends[1]) / 8 - f[step]),
-                                std::abs((3 * ends[1] + middle - ends[0]) / 8 - f[3 * step])});
+            bends[axis][line] = std::max(std::abs((3 * ends[0] + middle - ends[1]) / 8 - f[step]),
+                                         std::abs((3 * ends[1] + middle - ends[0]) / 8 - f[3 * step]));
         }
-        sum += largest;
     }
-    return sum;
+    return bends;
 }
 
 /// The quadratic through a node and its 26 neighbours by central differences in steps of the grid.
@@ -82,24 +82,72 @@ struct NodeQuadratic {
     }
 };
 
-/// The largest value of the quadratic of the piece around a node, and what it lacks by its 27 nodes, and by how the finest
-/// level differs from the one before.
-double piece_bound(std::span<const double> grid, std::size_t side, std::size_t u, std::size_t v, std::size_t w) {
-    const double* middle = &grid[u + side * (v + side * w)];
-    const NodeQuadratic quadratic(middle, side);
-    const double bend = bend_of_lines(grid, side, u / 4 * 4 + side * (v / 4 * 4 + side * (w / 4 * 4))) / 2;
-    double highest = -HUGE_VAL, off = 0;
-    Vec3 best(0.0);
-    const auto row = static_cast<std::ptrdiff_t>(side);
-    for (int n = 0; n < static_cast<int>(kNodes); ++n) {
-        const std::array<int, 3> step{n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1};
-        const Vec3 at(step[0], step[1], step[2]);
-        const double value = middle[step[0] + row * (step[1] + row * step[2])];
-        if (value > highest) best = at;
-        highest = std::max(highest, value);
-        off = std::max(off, std::abs(quadratic.at(at) - value));
+constexpr std::size_t kPlaces = 5;  // along each axis, at which a piece is looked at: its nodes and the middles between them
+
+/// The values of the triquadratic piece around a node at 5³ places: one axis after the other.
+std::array<double, kPlaces * kPlaces * kPlaces> values_at_places(const double* middle, std::size_t side) {
+    const auto stretch = [](const double* f, std::size_t step, double* to, std::size_t to_step) {
+        const double a = f[0], b = f[step], c = f[2 * step];
+        to[0] = a;
+        to[to_step] = (3 * a + 6 * b - c) / 8;
+        to[2 * to_step] = b;
+        to[3 * to_step] = (3 * c + 6 * b - a) / 8;
+        to[4 * to_step] = c;
+    };
+    std::array<double, 9 * kPlaces> one;
+    std::array<double, 3 * kPlaces * kPlaces> two;
+    std::array<double, kPlaces * kPlaces * kPlaces> places;
+    const double* first = middle - 1 - side - side * side;
+    for (std::size_t n = 0; n < 9; ++n) stretch(first + side * (n % 3 + side * (n / 3)), 1, &one[kPlaces * n], 1);
+    for (std::size_t u = 0; u < kPlaces; ++u) {
+        for (std::size_t w = 0; w < 3; ++w) stretch(&one[u + 15 * w], kPlaces, &two[u + 25 * w], kPlaces);
     }
-    return std::max(highest, quadratic.at(quadratic.peak(best))) + bend + off / 2;
+    for (std::size_t n = 0; n < 25; ++n) stretch(&two[n], 25, &places[n], 25);
+    return places;
+}
+
+/// How far the parabola through three values rises above the middle one, if that is the largest.
+double vertex_excess(double before, double middle, double after) {
+    const double bend = 2 * middle - before - after;
+    return middle >= before && middle >= after && bend > 0 ? (after - before) * (after - before) / (8 * bend) : 0;
+}
+
+/// The largest value of the triquadratic piece around a node, and what the limit may differ from it. That is nothing at the
+/// nodes, and most half way between them: along each axis a part of by how much the finest level differs from the one before,
+/// on the lines beside. So a side on which a field is constant bounds the piece, however the field bends away from it.
+double piece_bound(std::span<const double> grid, std::size_t side, std::size_t u, std::size_t v, std::size_t w) {
+    constexpr std::array<std::size_t, 3> kStrides{1, kPlaces, kPlaces * kPlaces};
+    const auto values = values_at_places(&grid[u + side * (v + side * w)], side);
+    const LineBends bends = bends_of_lines(grid, side, u / 4 * 4 + side * (v / 4 * 4 + side * (w / 4 * 4)));
+    const std::array<std::size_t, 3> first{u / 2 * 2 % 4, v / 2 * 2 % 4, w / 2 * 2 % 4};  // of the piece among 5³ nodes
+    double bound = -HUGE_VAL;
+    for (std::size_t n = 0; n < values.size(); ++n) {
+        const std::array<std::size_t, 3> at{n % kPlaces, n / kPlaces % kPlaces, n / kPlaces / kPlaces};
+        double value = values[n];
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            if (at[axis] % 2 != 0) {
+                const std::size_t other = (axis + 1) % 3, third = (axis + 2) % 3;
+                double bend = 0;
+                for (std::size_t j = at[third] / 2; j <= (at[third] + 1) / 2; ++j) {
+                    for (std::size_t i = at[other] / 2; i <= (at[other] + 1) / 2; ++i) {
+                        bend = std::max(bend, bends[axis][first[other] + i + 5 * (first[third] + j)]);
+                    }
+                }
+                value += bend / 2;
+            }
+            const std::size_t step = kStrides[axis];
+            if (at[axis] > 0 && at[axis] + 1 < kPlaces) value += vertex_excess(values[n - step], values[n], values[n + step]);
+        }
+        bound = std::max(bound, value);
+    }
+    return bound;
+}
+
+/// Spreads the bits of a number, as the generator splitmix64 does.
+std::uint64_t mixed(std::uint64_t x) {
+    x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9ULL;
+    x = (x ^ (x >> 27)) * 0x94d049bb133111ebULL;
+    return x ^ (x >> 31);
 }
 
 }  // namespace
@@ -113,23 +161,31 @@ double first_bound(std::span<const double> grid, double known) {
     return high + kReach * largest_step(grid);
 }
 
-double finer_bound(std::span<const double> grid, std::size_t side, double known) {
+FinerBound finer_bound(std::span<const double> grid, std::size_t side, double known, double quantum) {
+    FinerBound found;
     const auto [low, high] = std::ranges::minmax(grid);
-    if (high + (high - low) < known) return -HUGE_VAL;
-    double bound = -HUGE_VAL;
+    if (high + (high - low) < known) return found;
     for (std::size_t w = 1; w < side; w += 2) {
         for (std::size_t v = 1; v < side; v += 2) {
-            for (std::size_t u = 1; u < side; u += 2) bound = std::max(bound, piece_bound(grid, side, u, v, w));
+            for (std::size_t u = 1; u < side; u += 2) {
+                const double bound = piece_bound(grid, side, u, v, w), value = grid[u + side * (v + side * w)];
+                found.bound = std::max(found.bound, bound);
+                found.alike += mixed(std::bit_cast<std::uint64_t>(std::round(value / quantum) + 0.0) ^
+                                     mixed(std::bit_cast<std::uint64_t>(std::round(bound / quantum) + 0.0)));
+            }
         }
     }
-    return bound;
+    return found;
 }
 
-std::array<double, 8> octant_bounds(std::span<const double, 125> grid) {
-    std::array<double, 8> bounds;
-    for (std::size_t k = 0; k < 8; ++k)
-        bounds[k] = piece_bound(grid, 5, 1 + 2 * (k & 1), 1 + 2 * (k >> 1 & 1), 1 + 2 * (k >> 2));
-    return bounds;
+OctantBounds octant_bounds(std::span<const double, 125> grid) {
+    OctantBounds found{};
+    for (std::size_t k = 0; k < 8; ++k) {
+        found.bounds[k] = piece_bound(grid, kPlaces, 1 + 2 * (k & 1), 1 + 2 * (k >> 1 & 1), 1 + 2 * (k >> 2));
+    }
+    const LineBends bends = bends_of_lines(grid, kPlaces, 0);
+    for (std::size_t axis = 0; axis < 3; ++axis) found.bends[axis] = std::ranges::max(bends[axis]) / 2;
+    return found;
 }
 
 Vec3 peak_near(std::span<const double> grid, std::size_t side, std::size_t node) {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 
 #include "extreme_bounds.h"
 #include "mesh_subset.h"
@@ -130,7 +131,7 @@ void ExtremeSearch::look(std::size_t part, Index cell, std::size_t number, doubl
     for (const GridMeasure::Extreme& one : found) {
         const std::size_t side = side_of(part, one.channel, one.sign > 0);
         sides_[side].add({one.sign * one.value, one.bound, cell, one.uvw, one.peak, step});
-        const Candidate candidate{static_cast<std::uint32_t>(number), static_cast<std::uint32_t>(side), one.bound};
+        const Candidate candidate{static_cast<std::uint32_t>(number), static_cast<std::uint32_t>(side), one.bound, one.alike};
         is_open(candidate) ? candidates_.push_back(candidate) : leave(candidate);
     }
     if (candidates_.size() > 2 * kept_ + kEnough) keep_open();
@@ -165,44 +166,100 @@ void ExtremeSearch::end_cells(std::span<const Index> cells) {
     kept_ = 0;
 }
 
+/// Of the cells that look alike, which a symmetric body or a flag has in thousands, one is looked at.
+void ExtremeSearch::leave_out_copies() {
+    std::set<std::array<std::uint64_t, 2>> met;
+    std::erase_if(boxes_, [&](const CellBox& box) { return !met.insert({box.side, box.alike}).second; });
+}
+
 struct ExtremeSearch::Surroundings {
     MeshSubset subset;
     LimitEvaluator limit;
 
-    Surroundings(const HexMesh& control, std::vector<std::uint8_t> cells, const SchemeOptions& scheme,
-                 const LimitExtent& extent)
-        : subset((grow(control, cells, kHaloOfLimit), detail::subset(control, cells))),
-          limit(subset.mesh, {.scheme = scheme}, extent) {}
+    Surroundings(MeshSubset cells, const LimitOptions& options, const LimitExtent& extent)
+        : subset(std::move(cells)), limit(subset.mesh, options, extent) {}
 
     [[nodiscard]] Index number(Index cell) const {
         return static_cast<Index>(std::ranges::lower_bound(subset.cells, cell) - subset.cells.begin());
     }
 };
 
+namespace {
+
+/// Some cells of a mesh, and those on which their limit depends.
+MeshSubset around(const HexMesh& mesh, std::vector<std::uint8_t> cells) {
+    grow(mesh, cells, kHaloOfLimit);
+    return subset(mesh, cells);
+}
+
+}  // namespace
+
 void ExtremeSearch::find(const HexMesh& control, const SchemeOptions& scheme, const LimitExtent& extent, Progress* progress,
                          std::vector<PartMeasure>& found) {
+    constexpr double kPartOfTolerance = 0.1;
+    constexpr std::size_t kManyBoxes = 64;
+    leave_out_copies();
+    LimitOptions options{.scheme = scheme};
+    options.scheme.crease_angle_deg.reset();
+    options.tolerance = std::max(options.tolerance, kPartOfTolerance * tolerance_);
+    std::vector<std::size_t> attribute_of;  // of each channel
+    for (std::size_t a = 0; a < control.attributes.size(); ++a) {
+        attribute_of.insert(attribute_of.end(), static_cast<std::size_t>(control.attributes[a].channels), a);
+    }
+    const auto attribute = [&](const CellBox& box) { return attribute_of[channel_of(box.side)]; };
+    // An attribute with many boxes is looked at alone, as places cost as much as they have channels; the others together.
+    std::vector<std::size_t> boxes(control.attributes.size(), 0);
+    for (const CellBox& box : boxes_) ++boxes[attribute(box)];
+    std::size_t room = std::max(kLeastBoxes, control.cells.size() / kCellsOfBox);
+    std::vector<CellBox> waiting = std::move(boxes_);
+    while (!waiting.empty()) {
+        const std::size_t first = attribute(waiting.front()), all = waiting.size();
+        const auto is_now = [&](std::size_t a) { return a == first || std::max(boxes[a], boxes[first]) < kManyBoxes; };
+        boxes_.clear();
+        std::vector<std::uint8_t> cells(control.cells.size(), 0);
+        std::erase_if(waiting, [&](const CellBox& box) {
+            if (!is_now(attribute(box))) return false;
+            boxes_.push_back(box);
+            cells[box.cell] = 1;
+            return true;
+        });
+        MeshSubset part = around(control, std::move(cells));
+        LimitExtent extent_of_part = extent;
+        extent_of_part.ranges.clear();
+        std::vector<Attribute> kept;
+        std::vector<std::size_t> columns;
+        for (std::size_t a = 0, column = 0; a < control.attributes.size(); ++a) {
+            const auto channels = static_cast<std::size_t>(control.attributes[a].channels);
+            for (std::size_t k = 0; k < channels; ++k) columns.push_back(column + k);
+            if (boxes[a] == 0 || !is_now(a)) continue;
+            column += channels;
+            kept.push_back(std::move(part.mesh.attributes[a]));
+            extent_of_part.ranges.push_back(extent.ranges[a]);
+        }
+        part.mesh.attributes = std::move(kept);
+        const std::size_t share = std::min(room, std::max(room * boxes_.size() / all, kBoxesAtOnce));
+        room -= halve_boxes(Surroundings(std::move(part), options, extent_of_part), columns, share, progress);
+    }
     std::vector<std::uint8_t> cells(control.cells.size(), 0);
     for (const Side& side : sides_) {
         for (const Start& start : side.starts) cells[start.cell] = 1;
     }
-    for (const CellBox& box : boxes_) cells[box.cell] = 1;
     if (std::ranges::find(cells, 1) == cells.end()) return;
-    SchemeOptions rules = scheme;
-    rules.crease_angle_deg.reset();
-    const Surroundings around(control, std::move(cells), rules, extent);
-    halve_boxes(around, std::max(kLeastBoxes, control.cells.size() / kCellsOfBox), progress);
-    climb_sides(around, progress, found);
+    options.tolerance = LimitOptions{}.tolerance;
+    climb_sides(Surroundings(around(control, std::move(cells)), options, extent), progress, found);
 }
 
 /// The most promising boxes first, some at once.
-void ExtremeSearch::halve_boxes(const Surroundings& around, std::size_t room, Progress* progress) {
+std::size_t ExtremeSearch::halve_boxes(const Surroundings& around, std::span<const std::size_t> columns, std::size_t room,
+                                       Progress* progress) {
     const std::size_t all = room;
     std::vector<std::size_t> halved(sides_.size(), 0);
     std::vector<LimitQuery> queries;
     std::array<double, kBoxNodes> grid;
     while (true) {
         std::erase_if(boxes_, [&](const CellBox& box) {
-            const bool ends = !is_open(box) || box.width < kLeastWidth || halved[box.side] >= kBoxesOfSide;
+            const bool ends = !is_open(box) || std::min({box.width.x, box.width.y, box.width.z}) < kLeastWidth ||
+                              halved[box.side] >= kBoxesOfSide;
             if (ends) leave(box);
             return ends;
         });
@@ -213,7 +270,7 @@ void ExtremeSearch::halve_boxes(const Surroundings& around, std::size_t room, Pr
         const std::vector<CellBox> batch(boxes_.begin(), boxes_.begin() + static_cast<std::ptrdiff_t>(count));
         boxes_.erase(boxes_.begin(), boxes_.begin() + static_cast<std::ptrdiff_t>(count));
         queries.clear();
-        std::map<std::array<double, 5>, std::size_t> first;  // of the queries of a box: those of several sides share them
+        std::map<std::array<double, 7>, std::size_t> first;  // of the queries of a box: those of several sides share them
         for (const CellBox& box : batch) {
             ++halved[box.side];
             if (!first.try_emplace(box.place(), queries.size()).second) continue;
@@ -224,28 +281,45 @@ void ExtremeSearch::halve_boxes(const Surroundings& around, std::size_t room, Pr
         for (const CellBox& box : batch) {
             const std::size_t query = first.at(box.place());
             for (std::size_t n = 0; n < kBoxNodes; ++n) {
-                grid[n] = sides_[box.side].sign * value_of(samples, query + n, channel_of(box.side));
+                grid[n] = sides_[box.side].sign * value_of(samples, query + n, columns[channel_of(box.side)]);
             }
             halve(box, grid);
         }
     }
     for (const CellBox& box : boxes_) leave(box);
     boxes_.clear();
+    return all - room;
 }
 
-/// Takes the best node, and the octants in which there may be better places.
+/// Takes the best node, and the parts in which there may be better places. A box is halved along those axes along which the
+/// limit is least known: along a ridge nothing is gained.
 void ExtremeSearch::halve(const CellBox& box, std::span<const double, 125> grid) {
+    constexpr double kWorth = 0.3;
     Side& side = sides_[box.side];
     const auto best = static_cast<std::size_t>(std::ranges::max_element(grid) - grid.begin());
-    const std::array<double, 8> bounds = octant_bounds(grid);
-    const double bound = std::max(grid[best], std::ranges::max(bounds)), width = box.width / 2;
-    side.add({side.sign * grid[best], bound, box.cell, box.node(best), box.node(best), box.width / 8});
+    const OctantBounds octants = octant_bounds(grid);
+    const double bound = std::max(grid[best], std::ranges::max(octants.bounds)),
+                 widest = std::max({box.width.x, box.width.y, box.width.z});
+    side.add({side.sign * grid[best], bound, box.cell, box.node(best), box.node(best), widest / 8});
+    std::size_t whole = 0;  // the bits of the axes that stay
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        if (octants.bends[axis] < kWorth * std::ranges::max(octants.bends)) whole |= std::size_t{1} << axis;
+    }
     for (std::size_t k = 0; k < 8; ++k) {
-        CellBox octant = box;
-        octant.bound = std::min(box.bound, bounds[k]);
-        octant.lower += width * Vec3(k & 1, k >> 1 & 1, k >> 2);
-        octant.width = width;
-        is_open(octant) ? boxes_.push_back(octant) : leave(octant);
+        if ((k & whole) != 0) continue;
+        CellBox part = box;
+        part.bound = -HUGE_VAL;
+        for (std::size_t n = 0; n < 8; ++n) {
+            if ((n & ~whole) == k) part.bound = std::max(part.bound, octants.bounds[n]);
+        }
+        part.bound = std::min(part.bound, box.bound);
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            if ((whole >> axis & 1) != 0) continue;
+            const auto a = static_cast<int>(axis);
+            part.width[a] /= 2;
+            if ((k >> axis & 1) != 0) part.lower[a] += part.width[a];
+        }
+        is_open(part) ? boxes_.push_back(part) : leave(part);
     }
 }
 

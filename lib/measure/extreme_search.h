@@ -13,8 +13,9 @@
 namespace subvol::detail {
 
 /// The extremes of the limit by branch and bound, for each channel and each part of a mesh: a cell is refined further while
-/// the limit may go beyond the best value so far between its nodes. What is left after the first levels is halved along u, v
-/// and w, box by box, and in the end the best places are followed in the limit itself.
+/// the limit may go beyond the best value so far between its nodes. What is left after the first levels is halved, box by box,
+/// along those of u, v and w along which it is least known; of cells that look alike, one is. In the end the best places are
+/// followed in the limit itself.
 class ExtremeSearch {
 public:
     /// scales:    of each channel, 1/range; 0 for a constant
@@ -30,6 +31,12 @@ public:
     /// The best values so far: the least one times −1, the largest.
     [[nodiscard]] std::array<double, 2> known(std::size_t part, std::size_t channel) const {
         return {sides_[side_of(part, channel, false)].best, sides_[side_of(part, channel, true)].best};
+    }
+
+    /// Values of a channel that differ by less count as the same; the channel is not constant.
+    [[nodiscard]] double quantum(std::size_t channel) const {
+        constexpr double kPartOfTolerance = 0.01;
+        return kPartOfTolerance * tolerance_ / scales_[channel];
     }
 
     /// Looks at the nodes of a cell.
@@ -75,10 +82,11 @@ private:
 
         void add(const Start& start);
     };
-    /// A cell in which the limit may have an extreme.
+    /// A cell in which the limit may have an extreme. alike: as that of the cell's extreme
     struct Candidate {
         std::uint32_t number, side;
         double bound;
+        std::uint64_t alike;
     };
 
     [[nodiscard]] std::size_t side_of(std::size_t part, std::size_t channel, bool high) const {
@@ -93,24 +101,29 @@ private:
         sides_[candidate.side].open = std::max(sides_[candidate.side].open, candidate.bound);
     }
     void keep_open();
+    void leave_out_copies();
 
     /// A part of a cell in which the limit may have an extreme. lower, width: in parameters of the cell
     struct CellBox : Candidate {
         Index cell = 0;
-        Vec3 lower{0.0};
-        double width = 1;
+        Vec3 lower{0.0}, width{1.0};
 
-        [[nodiscard]] std::array<double, 5> place() const {
-            return {static_cast<double>(cell), lower.x, lower.y, lower.z, width};
+        [[nodiscard]] auto place() const {
+            return std::array{static_cast<double>(cell), lower.x, lower.y, lower.z, width.x, width.y, width.z};
         }
         /// A node of 5³.
-        [[nodiscard]] Vec3 node(std::size_t n) const { return lower + width / 4 * Vec3(n % 5, n / 5 % 5, n / 25); }
+        [[nodiscard]] Vec3 node(std::size_t n) const { return lower + width / 4.0 * Vec3(n % 5, n / 5 % 5, n / 25); }
     };
     /// The cells of a mesh around starts and boxes, and their limit.
     struct Surroundings;
 
     [[nodiscard]] std::size_t channel_of(std::size_t side) const { return side / 2 % scales_.size(); }
-    void halve_boxes(const Surroundings& around, std::size_t room, Progress* progress);
+    /// Halves the boxes. Returns how many were.
+    ///
+    /// columns: of each channel, its number among those of the surroundings, if these have it
+    /// room:    so many at most
+    std::size_t halve_boxes(const Surroundings& around, std::span<const std::size_t> columns, std::size_t room,
+                            Progress* progress);
     void halve(const CellBox& box, std::span<const double, 125> grid);
     void climb_sides(const Surroundings& around, Progress* progress, std::vector<PartMeasure>& found) const;
 

@@ -279,18 +279,20 @@ void GridMeasure::read_channel(const DenseCell& grid, std::size_t channel) {
     }
 }
 
-void GridMeasure::add_extremes(const DenseCell& grid, std::size_t channel, const std::array<double, 2>& known,
+void GridMeasure::add_extremes(const DenseCell& grid, std::size_t channel, const std::array<double, 2>& known, double quantum,
                                std::vector<Extreme>& extremes) {
     const std::size_t side = grid.side;
     read_channel(grid, channel);
     for (const std::size_t s : {0u, 1u}) {
         for (double& value : channel_) value = -value;  // times -1, then times 1 again
-        const double bound = side > 3 ? finer_bound(channel_, side, known[s]) : first_bound(channel_, known[s]);
+        const auto [bound, alike] =
+            side > 3 ? finer_bound(channel_, side, known[s], quantum) : FinerBound{first_bound(channel_, known[s]), 0};
         if (bound < known[s]) continue;
         const auto node = static_cast<std::size_t>(std::ranges::max_element(channel_) - channel_.begin());
         Extreme found{channel, s == 0 ? -1.0 : 1.0, channel_[node], bound};
         found.uvw = Vec3(node % side, node / side % side, node / side / side) / static_cast<double>(side - 1);
         found.peak = side > 3 ? peak_near(channel_, side, node) : found.uvw;
+        found.alike = alike;
         extremes.push_back(found);
     }
 }

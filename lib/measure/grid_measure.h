@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -61,13 +62,17 @@ public:
     ///
     /// uvw:   where in the cell; peak: where the quadratic through the nodes around has it, from level 2 on
     /// bound: how far the limit may go between the nodes, an estimate
+    /// alike: the same for cells that look alike in this channel, from level 2 on; else 0
     struct Extreme {
         std::size_t channel = 0;
         double sign = 1, value = 0, bound = 0;
         Vec3 uvw{0.0}, peak{0.0};
+        std::uint64_t alike = 0;
     };
     /// Adds the extremes of the channel whose bounds reach what is known: the largest values times −1 and times 1.
-    void add_extremes(const DenseCell& grid, std::size_t channel, const std::array<double, 2>& known,
+    ///
+    /// quantum: values that differ by less are the same
+    void add_extremes(const DenseCell& grid, std::size_t channel, const std::array<double, 2>& known, double quantum,
                       std::vector<Extreme>& extremes);
 
 private:

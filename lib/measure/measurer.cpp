@@ -216,7 +216,7 @@ void Measurer::note_cell(const DenseCell& grid, int level, CellNote& note) {
     if (level > 1 && is_candidate_[grid.cell] == 0) return;
     for (std::size_t c = 0; c < channels_.size(); ++c) {
         if (channels_[c].scale == 0) continue;
-        measure.add_extremes(grid, c, extremes_.known(part_of(grid.cell), c), note.extremes);
+        measure.add_extremes(grid, c, extremes_.known(part_of(grid.cell), c), extremes_.quantum(c), note.extremes);
     }
 }
 

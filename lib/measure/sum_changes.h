@@ -20,15 +20,22 @@ class Rest;
 /// By how much the sums of the cells of a level differ from those of the level before: of integrals divided by the range.
 ///
 /// follows: of each sum, the part of its change that is expected to follow in the levels to come, with its sign; it is added
-/// left:    of each sum, the part of its change that may be left after that
+/// left:    of each sum, the part of its change that may be left after that: of what its cells sum up to with their signs, and
+///          of what does not cancel
 /// size: of a cell's change. What curves up along one axis and down along another changes a sum little, although much is left.
 ///       The cells beside it tell: the largest change of a cell and those across its sides counts
 class Changes {
+    static constexpr double kMostKnown = 0.25;  // a ratio of two levels that falls no further is not one of smooth pieces
+
 public:
     Changes(std::size_t sums, std::size_t cells, double part)
-        : follows(sums, 0), left(sums, part), sums_(sums), changes_(sums * cells), sizes_(sums * cells) {}
+        : follows(sums, 0), left(sums, {part, part}), sums_(sums), changes_(sums * cells), sizes_(sums * cells) {}
 
-    std::vector<double> follows, left;
+    struct Left {
+        double of_sum, of_spread;
+    };
+    std::vector<double> follows;
+    std::vector<Left> left;
 
     /// Some cells have changed by `before` at this level, and by `after` at the next one.
     ///
@@ -87,9 +94,11 @@ public:
     [[nodiscard]] double change(std::size_t number) const { return std::abs(sum(number)) + spread(number); }
 
     /// The largest part that may be left. left: of each sum
-    [[nodiscard]] double size(std::span<const double> left) const {
+    [[nodiscard]] double size(std::span<const Changes::Left> left) const {
         double most = 0;
-        for (std::size_t i = 0; i < sums_.size(); ++i) most = std::max(most, left[i] * change(i));
+        for (std::size_t i = 0; i < sums_.size(); ++i) {
+            most = std::max(most, left[i].of_sum * std::abs(sum(i)) + left[i].of_spread * spread(i));
+        }
         return most;
     }
 
@@ -100,12 +109,20 @@ private:
 inline void Changes::expect(const Rest& before, const Rest& after, std::span<const double> stray) {
     for (std::size_t i = 0; i < left.size(); ++i) {
         if (before.change(i) <= 0) continue;
-        const double ratio = (after.change(i) + (stray.empty() ? 0 : stray[i])) / before.change(i);
+        const double off = stray.empty() ? 0 : stray[i], all = (after.change(i) + off) / before.change(i),
+                     ratio = before.sum(i) != 0 ? after.sum(i) / before.sum(i) : 0;
+        // A sample whose cells agree on a ratio knows the next level but for what strays. The levels after it are less sure.
+        if (off > 0 && ratio > 0 && ratio < kMostKnown && 2 * off < std::abs(after.sum(i))) {
+            follows[i] = ratio / (1 - ratio);
+            left[i].of_sum = std::min(left[i].of_sum, 2 * off / std::abs(before.sum(i)) + ratio * ratio);
+            left[i].of_spread = std::min(left[i].of_spread, 2 * off / before.spread(i) + ratio * ratio);
+            continue;
+        }
         // Signs that cancel say nothing about what follows.
-        const bool has_sign = std::abs(before.sum(i)) > before.spread(i) && after.sum(i) / before.sum(i) > 0;
-        const double again = has_sign ? std::min(after.sum(i) / before.sum(i), 0.5) : 0;
+        const bool has_sign = std::abs(before.sum(i)) > before.spread(i) && ratio > 0;
+        const double again = has_sign ? std::min(ratio, 0.5) : 0, part = has_sign ? all : 2 * all;
         follows[i] = again / (1 - again);
-        left[i] = std::min(left[i], has_sign ? ratio : 2 * ratio);
+        left[i] = {std::min(left[i].of_sum, part), std::min(left[i].of_spread, part)};
     }
 }
 

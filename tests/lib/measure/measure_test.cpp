@@ -189,6 +189,41 @@ TEST(Measure, ExtremesOfManyFieldsAreKnownToTheTolerance) {
     EXPECT_NEAR(many.whole.fields[5].min.value, one.min.value, 1e-4);
 }
 
+// A flag at some points overshoots alike around each of them: in thousands of cells, of which none is passed over.
+TEST(Measure, ExtremesOfManyEqualPlacesAreKnownToTheTolerance) {
+    const auto flags = [](Index count) {
+        HexMesh mesh = test::make_box(5 * count, 5 * count, 5 * count);
+        mesh.attributes = {{"flag", 1, std::vector<double>(mesh.points.size(), 0)}};
+        for (std::size_t p = 0; p < mesh.points.size(); ++p) {
+            const auto is_middle = [&](double x) { return std::fmod(x, 5) == 2; };
+            const Vec3& at = mesh.points[p];
+            if (is_middle(at.x) && is_middle(at.y) && is_middle(at.z)) mesh.attributes[0].values[p] = 1;
+        }
+        return measure_limit(mesh).whole.fields[0];
+    };
+    const FieldMeasure one = flags(1), many = flags(6);
+    const double range = one.max.value - one.min.value;
+    EXPECT_LE(many.extreme_error, 1e-4 * range);
+    EXPECT_NEAR(many.max.value, one.max.value, 1e-6 * range);
+    EXPECT_NEAR(many.min.value, one.min.value, 1e-6 * range);
+}
+
+// One of many nearly equal places is the extreme: copies are told apart by less than the tolerance.
+TEST(Measure, TheLargestOfManyNearlyEqualPlacesIsFound) {
+    constexpr double kMore = 3e-4;
+    HexMesh mesh = test::make_box(30, 30, 30);
+    mesh.attributes = {{"flag", 1, std::vector<double>(mesh.points.size(), 0)}};
+    for (std::size_t p = 0; p < mesh.points.size(); ++p) {
+        const Vec3& at = mesh.points[p];
+        const auto is_middle = [&](double x) { return std::fmod(x, 5) == 2; };
+        if (!is_middle(at.x) || !is_middle(at.y) || !is_middle(at.z)) continue;
+        mesh.attributes[0].values[p] = at == Vec3(17, 12, 22) ? 1 + kMore : 1;
+    }
+    const FieldMeasure field = measure_limit(mesh).whole.fields[0];
+    EXPECT_NEAR(field.max.value, 1 + kMore, 1e-6);
+    EXPECT_LT(glm::length(field.max.place - Vec3(17, 12, 22)), 1e-2);
+}
+
 TEST(Measure, AConstantHasItsPlaceInACell) {
     HexMesh mesh = test::make_box(2, 2, 2);
     mesh.attributes = {{"f", 1, std::vector<double>(mesh.points.size(), 2.5)}};
