@@ -12,13 +12,12 @@
 #include "knot_values.h"
 #include "output_file.h"
 #include "points_file.h"
+#include "splat_gaussians.h"
 #include "subvol/detail/ply_rows.h"
-#include "subvol/detail/principal_axes.h"
 #include "subvol/detail/surface_io.h"
 #include "subvol/error.h"
 #include "subvol/points_io.h"
 #include "subvol/rbf_volume.h"
-#include "subvol/srgb.h"
 #include "subvol/transfer_function.h"
 #include "text_scanner.h"
 
@@ -31,27 +30,6 @@ inline constexpr std::array<std::string_view, 11> kSplatProperties{"scale_0", "s
                                                                    "rot_3",   "opacity", "f_dc_0",  "f_dc_1", "f_dc_2"};
 
 using PlySplat = std::array<float, kSplatProperties.size()>;
-
-constexpr double kPi = 3.14159265358979323846;
-
-constexpr double kConstantHarmonic = 0.28209479177387814;  // √(1/4π): a viewer's colour is .5 + this · f_dc
-
-constexpr double kLeastOpacity = 1.0 / 255;  // the least that a viewer can show; the logit of 0 is infinite
-
-/// σ of the Gaussian with the height and the integral of the kernel, in units of the support radius.
-double gaussian_width(const Kernel& kernel) {
-    constexpr int kSteps = 32;  // midpoints along each axis of an octant of the support
-    const double radius = support_radius(kernel), step = radius / kSteps;
-    double sum = 0;
-    for (int k = 0; k < kSteps; ++k) {
-        for (int j = 0; j < kSteps; ++j) {
-            for (int i = 0; i < kSteps; ++i) sum += kernel_value(kernel, step * Vec3(i + .5, j + .5, k + .5));
-        }
-    }
-    const double volume = 8 * sum * step * step * step / kernel_value(kernel, Vec3(0.0));
-    const double sigma = std::cbrt(volume) / std::sqrt(2 * kPi);
-    return std::isfinite(sigma) && sigma > 0 ? sigma / radius : 1.0 / 3;
-}
 
 /// The rotation that takes the axis to -y, which viewers of splats have at the top.
 Mat3 turn_to_viewers(UpAxis up) {
@@ -70,21 +48,16 @@ std::vector<PlySplat> ply_splats(const RbfVolume& volume, const Mat3& turn) {
     std::vector<PlySplat> splats(volume.size());
     if (splats.empty()) return splats;
     const auto [min, max] = std::minmax_element(values.begin(), values.end());
-    const TransferFunction function = transfer_function_preset("viridis", *min, *max);
-    const double width = gaussian_width(volume.kernel);
+    const std::vector<SplatGaussian> gaussians = splat_gaussians(volume, transfer_function_preset("viridis", *min, *max), turn);
     tbb::parallel_for(std::size_t{0}, splats.size(), [&](std::size_t i) {
-        const PrincipalAxes axes = principal_axes(volume.frames[i]);
-        const auto rotation = quaternion(turn * axes.directions);
-        const Vec3 color = color_at(function, values[i]);
-        const double alpha = std::max(alpha_at(function, values[i]), kLeastOpacity);
+        const SplatGaussian& gaussian = gaussians[i];
         PlySplat& splat = splats[i];
-        for (int k = 0; k < 3; ++k) {
-            const auto n = static_cast<std::size_t>(k);
-            splat[n] = static_cast<float>(std::log(width * axes.half_axes[k]));
-            splat[8 + n] = static_cast<float>((srgb_from_linear(color[k]) - .5) / kConstantHarmonic);
+        for (std::size_t k = 0; k < 3; ++k) {
+            splat[k] = static_cast<float>(std::log(gaussian.half_axes[k]));
+            splat[8 + k] = static_cast<float>(gaussian.harmonic[k]);
         }
-        for (std::size_t k = 0; k < 4; ++k) splat[3 + k] = static_cast<float>(rotation[k]);
-        splat[7] = static_cast<float>(std::log(alpha / (1 - alpha)));
+        for (std::size_t k = 0; k < 4; ++k) splat[3 + k] = static_cast<float>(gaussian.rotation[k]);
+        splat[7] = static_cast<float>(std::log(gaussian.opacity / (1 - gaussian.opacity)));
     });
     return splats;
 }

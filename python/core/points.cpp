@@ -9,6 +9,7 @@
 #include "subvol/reduce.h"
 #include "subvol/sample.h"
 #include "subvol/sample_mixed.h"
+#include "subvol/usd_file.h"
 #include "subvol/visible_points.h"
 
 namespace subvol::python {
@@ -241,6 +242,38 @@ void bind_points(py::module_& module) {
             write_points(path, volume, options);
         },
         py::arg("path"), py::arg("volume"));
+    module.def(
+        "write_usd",
+        [](const std::string& path, const std::vector<std::string>& grids, const std::vector<std::string>& files,
+           const std::vector<double>& codes, const std::vector<std::array<std::array<double, 3>, 2>>& boxes,
+           const TransferFunction& knots, double opacity_unit) {
+            UsdVolume volume{.grids = {}, .steps = {}, .colors = knots, .opacity_unit_world = opacity_unit};
+            for (const std::string& grid : grids) volume.grids.push_back({grid});
+            if (codes.size() != files.size()) {
+                throw Error(ErrorCode::InvalidInput,
+                            "there are " + std::to_string(codes.size()) + " for " + std::to_string(files.size()) + " files",
+                            "codes", "one for each file, ascending");
+            }
+            for (std::size_t k = 0; k < files.size(); ++k) {
+                const auto& [lower, upper] = boxes[k];
+                volume.steps.push_back(
+                    {codes[k], files[k], {Vec3(lower[0], lower[1], lower[2]), Vec3(upper[0], upper[1], upper[2])}});
+            }
+            const py::gil_scoped_release without_gil;
+            write_usd(path, volume);
+        },
+        py::arg("path"), py::arg("grids"), py::arg("files"), py::arg("codes"), py::arg("boxes"), py::arg("knots"),
+        py::arg("opacity_unit"));
+    module.def(
+        "write_usd_splats",
+        [](const std::string& path, const std::vector<const RbfVolume*>& steps, const std::vector<double>& codes,
+           const TransferFunction& knots) {
+            std::vector<RbfVolume> volumes;
+            for (const RbfVolume* const step : steps) volumes.push_back(*step);
+            const py::gil_scoped_release without_gil;
+            write_usd(path, volumes, codes, knots);
+        },
+        py::arg("path"), py::arg("steps"), py::arg("codes"), py::arg("knots"));
     module.def("fit", &fit, py::arg("shape"), py::arg("scheme"), py::arg("level"));
     module.def(
         "named_kernel", [](const std::string& name) { return to_json(named_kernel(name)); }, py::arg("name"));

@@ -17,7 +17,7 @@ from ._page import Page, page
 from ._pictures import FieldComparison, ImageComparison, compare, compare_fields, compare_images, read_image, render, write_image
 from ._points import fit, kernels, read_points, reduce, sample, write_points
 from ._studies import run_study, studies, study
-from ._vdb import Grid, rasterize, read_vdb, sample_grid, write_vdb
+from ._vdb import Grid, rasterize, read_vdb, sample_grid, write_usd, write_vdb
 
 __version__: str = _core.__version__
 
@@ -32,5 +32,5 @@ __all__ = [
     "compare_fields", "compare_images", "evaluate", "evaluate_limit", "fit", "from_meshio", "from_pyvista", "from_vtk", "gl_devices", "kernels",
     "measure", "mend_folds", "model", "models", "only", "open_series", "page", "points_error", "probe", "quantity", "rasterize", "read_image", "read_mesh", "read_points",
     "read_vdb", "reduce", "render", "run_study", "sample", "sample_grid", "set_threads", "slice", "studies", "study", "subdivide",
-    "surface", "to_meshio", "to_pyvista", "to_vtk", "warp", "write_image", "write_mesh", "write_points", "write_vdb", "write_wavelets",
+    "surface", "to_meshio", "to_pyvista", "to_vtk", "warp", "write_image", "write_mesh", "write_points", "write_usd", "write_vdb", "write_wavelets",
 ]

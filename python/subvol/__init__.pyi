@@ -16,7 +16,7 @@ from ._page import Page
 from ._pictures import FieldComparison, ImageComparison, compare, compare_fields, compare_images, read_image, write_image
 from ._points import kernels, read_points
 from ._studies import run_study, studies, study
-from ._vdb import Grid, read_vdb, sample_grid
+from ._vdb import Grid, read_vdb, sample_grid, write_usd
 from ._arguments import Kernel, Path
 from ._pictures import Drawable
 from ._progress import Progress
@@ -545,5 +545,5 @@ __all__ = [
     "compare_fields", "compare_images", "evaluate", "evaluate_limit", "fit", "from_meshio", "from_pyvista", "from_vtk", "gl_devices", "kernels",
     "measure", "mend_folds", "model", "models", "only", "open_series", "page", "points_error", "probe", "quantity", "rasterize", "read_image", "read_mesh", "read_points",
     "read_vdb", "reduce", "render", "run_study", "sample", "sample_grid", "set_threads", "slice", "studies", "study", "subdivide",
-    "surface", "to_meshio", "to_pyvista", "to_vtk", "warp", "write_image", "write_mesh", "write_points", "write_vdb", "write_wavelets",
+    "surface", "to_meshio", "to_pyvista", "to_vtk", "warp", "write_image", "write_mesh", "write_points", "write_usd", "write_vdb", "write_wavelets",
 ]

@@ -5,7 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, Optional, Union
 
+from . import _core
 from ._arguments import Path, extension, path_bytes, warn
+from ._colors import TransferFunction
 from ._core import HexMesh, RbfVolume
 from ._errors import InvalidInput
 from ._options import described
@@ -29,8 +31,6 @@ else:
 
 def _with_fields(mesh: HexMesh, fields: Optional[Sequence[str]]) -> HexMesh:
     """The mesh with the fields to be written: scalars, vectors of three, lengths of others."""
-    from . import _core
-
     mesh = mesh.without_unused_points()
     if fields is None:
         chosen, said = _core.select_field(mesh, None)
@@ -116,6 +116,46 @@ def read_vdb(path: Path) -> list[Grid]:
     from . import _grids
 
     return _grids.read_vdb(path_bytes(path))
+
+
+def write_usd(what: Union[Path, RbfVolume, Sequence[Union[Path, RbfVolume]]], path: Path, *, codes: Optional[Sequence[float]] = None,
+              tf: Union[None, str, TransferFunction] = None, opacity_unit: Optional[float] = None) -> None:
+    """Writes OpenUSD text (`.usda`): a Volume with a field for each grid of floats of `.vdb` files, which are named relative to it; or
+    kernels as a ParticleField3DGaussianSplat, with their values as attributes subvol:value:NAME.
+
+    what:         a `.vdb` file or kernels, or one of either for each time code, with the same grids or channels
+    codes:        the time codes; None: 0, 1, …
+    tf:           the colour map: a name, or a TransferFunction; None: viridis over the values of the first grid or channel
+    opacity_unit: of volumes, the distance that its opacities are for; None: 1/100 of the diagonal, as in pictures
+
+    Raises InvalidInput for another extension, no grids, or codes that are not one for each step and ascending; FileError.
+    """
+    steps: list[Any] = list(what) if isinstance(what, (list, tuple)) else [what]
+    times = [float(code) for code in (range(len(steps)) if codes is None else codes)]
+    function = tf if isinstance(tf, TransferFunction) else TransferFunction(tf or "viridis")
+    if steps and all(isinstance(step, RbfVolume) for step in steps):
+        if opacity_unit is not None:
+            raise InvalidInput("opacity_unit: is of volumes; the opacities of splats are those of the colour map", "opacity_unit")
+        ends = [values for step in steps for values in list(step.values.values())[:1] if len(values)]
+        low, high = min(float(each.min()) for each in ends), max(float(each.max()) for each in ends)
+        _core.write_usd_splats(path_bytes(path), steps, times, function.knots(low, high))
+        return
+    grids: list[str] = []
+    boxes, lows, highs = [], [], []
+    for step in steps:  # one after the other: the grids of a long series need not fit into memory together
+        contents = read_vdb(step)
+        names = [grid.name for grid in contents]
+        grids = grids or names
+        if names != grids:
+            raise InvalidInput(f"{step!s}: has other grids than {steps[0]!s}", str(step), ", ".join(grids))
+        boxes.append(contents[0].frame)
+        lows.append(contents[0].report["min"])
+        highs.append(contents[0].report["max"])
+    knots = function.knots(min(lows, default=0.0), max(highs, default=1.0))
+    unit = opacity_unit
+    if unit is None and boxes:
+        unit = sum((b - a) ** 2 for a, b in zip(*boxes[0])) ** 0.5 / 100
+    _core.write_usd(path_bytes(path), grids, [path_bytes(step) for step in steps], times, boxes, knots, 1.0 if unit is None else unit)
 
 
 def sample_grid(grid: Grid, spacing: float = 0, progress: Progress = None) -> RbfVolume:

@@ -1,13 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """OpenUSD as text."""
 import re
-import subprocess
-import sys
 
 import numpy as np
 import pytest
 import subvol
-from subvol.usd import write_usd
+from subvol import write_usd
 
 
 def prims(text):
@@ -22,7 +20,7 @@ def prims(text):
             path.append(name)
         elif line == "}":
             path.pop()
-        elif made := re.match(r"(?:custom )?(?:rel|[\w\[\]]+) ([\w:]+) = (.*)", line):
+        elif made := re.match(r"(?:custom |uniform )?(?:rel|[\w\[\]]+) ([\w:]+) = (.*)", line):
             found["/".join(path)][made[1]] = made[2] if path else None
     assert not path
     return found
@@ -32,7 +30,7 @@ def test_a_volume_names_the_grids_of_its_file(tmp_path, ball):
     twice = subvol.HexMesh(ball.points, ball.cells, {"density": ball.fields["density"], "2 x": 2 * ball.fields["density"]})
     (tmp_path / "grids").mkdir()
     grids = subvol.write_vdb(twice, tmp_path / "grids" / "ball.vdb", resolution=20, fields=["density", "2 x"])
-    write_usd(tmp_path / "1 ball.usda", tmp_path / "grids" / "ball.vdb", tf="plasma")
+    write_usd(tmp_path / "grids" / "ball.vdb", tmp_path / "1 ball.usda", tf="plasma")
     text = (tmp_path / "1 ball.usda").read_text()
     stage = prims(text)
     volume = stage["_1_ball/volume"]
@@ -50,7 +48,7 @@ def test_a_volume_names_the_grids_of_its_file(tmp_path, ball):
 def test_steps_are_time_samples(tmp_path, ball):
     for step in (3, 5):
         subvol.write_vdb(ball, tmp_path / f"a{step}.vdb", resolution=10)
-    write_usd(tmp_path / "a.usda", [tmp_path / "a3.vdb", tmp_path / "a5.vdb"], codes=[3, 5])
+    write_usd([tmp_path / "a3.vdb", tmp_path / "a5.vdb"], tmp_path / "a.usda", codes=[3, 5])
     text = (tmp_path / "a.usda").read_text()
     assert re.search(r"filePath\.timeSamples = \{\s*3: @\./a3\.vdb@,\s*5: @\./a5\.vdb@,\s*\}", text)
     assert "startTimeCode = 3" in text and "endTimeCode = 5" in text
@@ -60,7 +58,7 @@ def test_grids_whose_names_no_prim_may_have(tmp_path, ball):
     field = ball.fields["density"]
     odd = subvol.HexMesh(ball.points, ball.cells, {"a b": field, "a_b": field, 'say "x"': field})
     subvol.write_vdb(odd, tmp_path / "a@1.vdb", resolution=10, fields=list(odd.fields))
-    write_usd(tmp_path / "a.usda", tmp_path / "a@1.vdb")
+    write_usd(tmp_path / "a@1.vdb", tmp_path / "a.usda")
     text = (tmp_path / "a.usda").read_text()
     made = re.findall(r'def OpenVDBAsset "(\w+)"', text)
     assert len(set(made)) == 3 and made == re.findall(r"rel field:(\w+) =", text)
@@ -69,31 +67,47 @@ def test_grids_whose_names_no_prim_may_have(tmp_path, ball):
         assert re.fullmatch(r'"(?:[^"\\]|\\.)*"', name), name
 
 
+def rows(text):
+    return np.array(eval(text))
+
+
+def test_kernels_are_gaussian_splats(tmp_path, ball):
+    """The Gaussians of the .ply with splats, without its logarithms, and unturned."""
+    kernels = subvol.sample(ball)
+    write_usd(kernels, tmp_path / "a.usda")
+    splats = prims((tmp_path / "a.usda").read_text())["a/splats"]
+    assert splats["type"] == "ParticleField3DGaussianSplat" and splats["radiance:sphericalHarmonicsDegree"] == "0"
+    assert np.allclose(rows(splats["positions"]), kernels.centers, rtol=1e-6, atol=1e-6)
+    assert np.allclose(rows(splats["subvol:value:density"]), kernels.values["density"])
+    axes, turned = rows(splats["scales"]), rows(splats["orientations"])
+    assert np.allclose(np.linalg.norm(turned, axis=1), 1, atol=1e-6)
+    w, x, y, z = turned.T
+    first = np.stack([1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)], 1)  # where the rotation takes the x-axis
+    xx, xy, xz, yy, yz, zz = kernels.frames.T
+    frames = np.stack([np.stack([xx, xy, xz], 1), np.stack([xy, yy, yz], 1), np.stack([xz, yz, zz], 1)], 1)
+    along = np.sqrt(np.einsum("ni,nij,nj->n", first, frames, first))  # the support along the longest axis
+    assert np.allclose(axes[:, 0] / along, axes[0, 0] / along[0], rtol=1e-4)
+    opacities = rows(splats["opacities"])
+    values = kernels.values["density"]
+    assert np.allclose(opacities, np.maximum(0.5 * (values - values.min()) / np.ptp(values), 1 / 255), atol=1e-5)
+    colors = 0.5 + 0.28209479 * rows(splats["radiance:sphericalHarmonicsCoefficients"])
+    assert colors.min() > -1e-6 and colors.max() < 1 + 1e-6
+    extent = rows(splats["extent"])
+    assert (extent[0] < kernels.centers.min(0)).all() and (extent[1] > kernels.centers.max(0)).all()
+    write_usd([kernels, subvol.sample(ball, per_edge=2)], tmp_path / "b.usda", codes=[1, 4])
+    assert re.search(r"positions\.timeSamples = \{\s*1: \[\(", (tmp_path / "b.usda").read_text())
+    with pytest.raises(subvol.InvalidInput, match="of volumes"):
+        write_usd(kernels, tmp_path / "c.usda", opacity_unit=1)
+
+
 def test_what_is_no_stage_is_refused(tmp_path, ball):
     subvol.write_vdb(ball, tmp_path / "a.vdb", resolution=10)
     with pytest.raises(subvol.InvalidInput, match="unknown extension"):
-        write_usd(tmp_path / "a.usdc", tmp_path / "a.vdb")
+        write_usd(tmp_path / "a.vdb", tmp_path / "a.usdc")
     with pytest.raises(subvol.InvalidInput, match="there are 2 for 1 files"):
-        write_usd(tmp_path / "a.usda", tmp_path / "a.vdb", codes=[1, 2])
-    with pytest.raises(subvol.InvalidInput, match="there are 2 for 2 files"):
-        write_usd(tmp_path / "a.usda", [tmp_path / "a.vdb"] * 2, codes=[2, 1])
+        write_usd(tmp_path / "a.vdb", tmp_path / "a.usda", codes=[1, 2])
+    with pytest.raises(subvol.InvalidInput, match="ascending"):
+        write_usd([tmp_path / "a.vdb"] * 2, tmp_path / "a.usda", codes=[2, 1])
     with pytest.raises(subvol.FileError):
-        write_usd(tmp_path / "a.usda", tmp_path / "b.vdb")
+        write_usd(tmp_path / "b.vdb", tmp_path / "a.usda")
     assert not (tmp_path / "a.usda").exists()
-
-
-def test_from_the_command_line(tmp_path, ball):
-    subvol.write_mesh(ball, tmp_path / "ball.vtu")
-
-    def run(*arguments):
-        return subprocess.run([sys.executable, "-m", "subvol.usd", *map(str, arguments)], capture_output=True, text=True)
-
-    done = run(tmp_path / "ball.vtu", "-o", tmp_path / "ball.usda", "--resolution", 12, "--field", "density")
-    assert done.returncode == 0 and "1 .vdb file" in done.stdout, done.stderr
-    assert "@./ball.vdb@" in (tmp_path / "ball.usda").read_text() and (tmp_path / "ball.vdb").exists()
-    assert run(tmp_path / "none.vtu", "-o", tmp_path / "b.usda").returncode == 2
-    done = run(tmp_path / "ball.vtu", "-o", tmp_path / "c.usd", "--resolution", 12)
-    assert done.returncode == 2 and "unknown extension (.usda)\n" in done.stderr
-    assert run(tmp_path / "ball.vtu", "-o", tmp_path / "c.usda", "--resolution", 12, "--tf", "none").returncode == 2
-    assert not list(tmp_path.glob("c*"))
-    assert "not a range" in run(tmp_path / "ball.vtu", "-o", tmp_path / "b.usda", "--steps", "4-9").stderr

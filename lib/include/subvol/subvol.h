@@ -91,6 +91,7 @@
 #include "subvol/surface.h"
 #include "subvol/topology.h"
 #include "subvol/transfer_function.h"
+#include "subvol/usd_file.h"
 #include "subvol/vec.h"
 #include "subvol/version.h"
 #include "subvol/view_options.h"

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "subvol/rbf_volume.h"
+#include "subvol/transfer_function.h"
+
+namespace subvol::detail {
+
+/// √(1/4π): a viewer's colour is .5 + this · the constant term of its spherical harmonics.
+inline constexpr double kConstantHarmonic = 0.28209479177387814;
+
+/// The Gaussian of a kernel that viewers of splats draw.
+///
+/// half_axes: σ along each, world
+/// rotation:  a quaternion w x y z
+/// opacity:   at least 1/255
+/// harmonic:  the constant term of the colour of the screen
+struct SplatGaussian {
+    std::array<double, 3> half_axes{};
+    std::array<double, 4> rotation{};
+    double opacity = 0;
+    std::array<double, 3> harmonic{};
+};
+
+/// The Gaussians with the height and the integral of the kernels, and the colours of their first channel.
+///
+/// turn: a rotation of the world
+[[nodiscard]] std::vector<SplatGaussian> splat_gaussians(const RbfVolume& volume, const TransferFunction& function,
+                                                         const Mat3& turn = Mat3(1.0));
+
+}  // namespace subvol::detail
