@@ -41,8 +41,13 @@ bool is_hidden(const Picture& picture, double z, const Vec2& place) {
 
 }  // namespace
 
+View PictureNotes::view_of_volume(const View& view) const {
+    return flow ? ended_at(*flow, view) : view;
+}
+
 void PictureNotes::draw_shells(Picture& picture, const View& view) const {
-    if (shells) shells->draw_into(picture.image, picture.depth, view);
+    if (flow) flow->draw_into(picture.image, picture.depth, view);
+    if (shells) shells->draw_into(picture.image, picture.depth, view_of_volume(view));
 }
 
 void PictureNotes::draw_over(Picture& picture, const View& view) const {

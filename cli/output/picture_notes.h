@@ -36,6 +36,7 @@ struct PictureNotes {
     Clip clip{};                     // that of the pictures, which cuts edges
     std::vector<PictureMark> marks{};
     std::shared_ptr<const ShellScene> shells{};
+    std::shared_ptr<const ShellScene> flow{};  // streamlines and arrows
     Vec3 ink{0.0}, paper{1.0};
     std::vector<std::string> caption{};  // lines in the upper left corner
     TransferFunction function{};
@@ -44,7 +45,9 @@ struct PictureNotes {
     int legend_px = 0;      // its columns or rows
     int legend_height = 0;  // of the whole picture, by which its letters go
 
-    /// Draws shells and beams, which come first.
+    /// The view of the volume, whose rays end at streamlines and arrows.
+    [[nodiscard]] View view_of_volume(const View& view) const;
+    /// Draws streamlines, arrows, shells and beams, which come first.
     void draw_shells(Picture& picture, const View& view) const;
     /// Draws edges, marks, axes and the scale bar.
     void draw_over(Picture& picture, const View& view) const;

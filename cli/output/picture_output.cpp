@@ -108,7 +108,7 @@ Facts PictureOutput::write_sheet(const std::vector<View>& views, const DrawPictu
     bool blank = true;
     for (std::size_t i = 0; i < views.size(); ++i) {
         cameras_.emplace_back(facts_of(views[i].camera()));
-        Picture part = draw(views[i], progress);
+        Picture part = draw(notes_.view_of_volume(views[i]), progress);
         facts.merge(part.facts);
         notes_.draw_shells(part, views[i]);
         opacity_ = std::max(opacity_, most_opaque(part.image));  // before anything is drawn over it
@@ -147,7 +147,7 @@ Facts PictureOutput::write(const std::vector<View>& views, const DrawPicture& dr
         Progress* const progress = frames_ ? &of_frame : whole;
         report_progress(progress, "draw", 0);
         cameras_.emplace_back(facts_of(view.camera()));
-        Picture picture = draw(view, progress);
+        Picture picture = draw(notes_.view_of_volume(view), progress);
         facts.merge(picture.facts);
         if (silent_) {
             ++written_;

@@ -22,9 +22,11 @@
 #include "sampled_points.h"
 #include "share.h"
 #include "steps.h"
+#include "stream_arguments.h"
 #include "subvol/detail/number_text.h"
 #include "subvol/detail/points_frame.h"
 #include "subvol/error.h"
+#include "subvol/flow_surface.h"
 #include "subvol/method.h"
 #include "subvol/quantity.h"
 #include "subvol/shell_scene.h"
@@ -37,11 +39,13 @@ namespace {
 
 /// A mesh that is shown, in memory or in pieces, with the field of the opacities first and that of the colours last.
 ///
-/// box: of the mesh; without cells, of its points
+/// box:  of the mesh; without cells, of its points
+/// flow: the vectors at its points that are drawn
 struct ShownBody {
     BodyInput body;
     ShownField field, colors;
     Box box{};
+    Flow flow{};
 };
 
 /// Whether patches are coloured by their numbers.
@@ -72,23 +76,44 @@ Range with_values(Range range, std::span<const double> values) {
     return range;
 }
 
+/// Streamlines as tubes, and arrows, in the colours of the field that gives the colours.
+ShellScene flow_scene(const ShownBody& shown, const StreamArguments& streams, const ShownColors& colors,
+                      const RenderArguments& arguments, int samples, Progress* progress, Facts& facts) {
+    const HexMesh& mesh = *shown.body.source().mesh();
+    const RefineOptions refine = arguments.refine.options(0, progress);
+    Flow flow = shown.flow;
+    flow.limit = {.scheme = refine.scheme, .progress = progress};
+    if (!flow.stream_vectors.empty()) flow.seeds = streams.places(mesh, flow.limit);
+    return make_opaque_scene(mesh, flow_surface(mesh, flow, facts), refine, arguments.refine.levels, colors.optics, samples,
+                             arguments.clip);
+}
+
 /// Reads the mesh with its shells and beams. A scheme of tetrahedra refines it, and leaves those out.
 ///
 /// app:    of the command; options that bricks cannot have are refused
 /// alone:  Take: of shells without cells the mesh has points alone
 /// throws: Error(InvalidInput), also if a point is too far away to be drawn
 WithFacts<ShownBody> load_shown_body(const std::string& input, const CommonOptions& options, const RenderArguments& arguments,
-                                     const CLI::App& app, Progress* progress, ShellsAlone alone) {
+                                     const StreamArguments& streams, const CLI::App& app, Progress* progress,
+                                     ShellsAlone alone) {
     const bool refined = arguments.tets.asked();  // tetrahedra are refined by other rules than shells
     if (refined) alone = ShellsAlone::Refuse;
     Facts facts;
     CommonOptions reading = options;
     if (arguments.splat.color_field) reading.at_rest.push_back(*arguments.splat.color_field);
+    for (const std::string* const vector : {&streams.chosen.streamlines, &streams.chosen.glyphs}) {
+        if (!vector->empty()) reading.at_rest.push_back(*vector);
+    }
     BodyInput body = facts.unpack(open_body(input, reading, app, progress, !refined, alone));
+    Flow flow;
+    if (const HexMesh* const mesh = body.source().mesh(); mesh != nullptr && streams.chosen.any()) {
+        flow = flow_in(*mesh, streams.chosen, OptionNames::Flags, progress);
+        if (!reading.field && !reading.density) reading.field = streams.chosen.length_of(*mesh);
+    }
     if (draws_categories(reading)) reading.field = "patch";
     const std::string field = facts.unpack(body.select(reading, OtherFields::Drop, arguments.splat.color_field));
     facts.merge(body.refine(arguments.tets, default_tet_level(arguments.method), progress));
-    ShownBody shown{std::move(body), {field, {}}, {field, {}}};
+    ShownBody shown{std::move(body), {field, {}}, {field, {}}, {}, std::move(flow)};
     shown.field.range = shown.body.range(field);
     shown.field.unit = unit_of(shown.body.of_file, field);
     shown.colors = shown.field;
@@ -113,14 +138,19 @@ WithFacts<ShownBody> load_shown_body(const std::string& input, const CommonOptio
 }
 
 /// `make_notes` with the shells and beams on their limit.
-PictureNotes make_notes(const ShownBody& shown, const ShownColors& colors, RenderArguments& arguments, Progress* progress,
-                        Facts& facts) {
+PictureNotes make_notes(const ShownBody& shown, const ShownColors& colors, RenderArguments& arguments,
+                        const StreamArguments& streams, Progress* progress, Facts& facts) {
     const MeshSource source = shown.body.source();
     PictureNotes notes = make_notes(arguments.picture, colors, source.mesh());
     notes.clip = arguments.clip;
+    const int samples =
+        PictureStyle{.look = {.look = arguments.picture.look}, .samples = arguments.chosen.style.samples}.sample_count();
+    if (streams.chosen.any()) {
+        notes.flow = facts.timed(progress, "streamlines", [&] {
+            return std::make_shared<const ShellScene>(flow_scene(shown, streams, colors, arguments, samples, progress, facts));
+        });
+    }
     if (!shown.body.shells.empty()) {
-        const int samples =
-            PictureStyle{.look = {.look = arguments.picture.look}, .samples = arguments.chosen.style.samples}.sample_count();
         notes.shells = facts.timed(progress, "sheets", [&] {
             return std::make_shared<const ShellScene>(
                 make_shell_scene(*source.mesh(), shown.body.shells, arguments.refine.options(0, progress),
@@ -154,6 +184,7 @@ public:
             ->type_name("IMAGE")
             ->required();
         arguments_.add_to(app());
+        streams_.add_to(app());
         add_patches(
             "draw this patch of the boundary alone, as info lists them, or the hull of a set of cells, set:NAME (repeatable; "
             "all); "
@@ -172,7 +203,9 @@ public:
     [[nodiscard]] bool works_in_ranks() const override { return true; }
 
     int run(Report& report) override {
+        if (streams_.chosen.any()) veil_body(picture_.choices, arguments_.clip);
         arguments_.settle(kind_of_input(), app());
+        if (streams_.chosen.any()) check_streams();
         refuse_frames_per_second();
         check_parts();
         const Method method = arguments_.method;
@@ -236,6 +269,18 @@ private:
             throw Error(ErrorCode::InvalidInput, "is of parts of a volume, and --patch draws faces alone", "--part-opacity");
     }
 
+    /// throws: Error(InvalidInput) where streamlines and arrows are not drawn
+    void check_streams() const {
+        const std::string option = streams_.chosen.streamlines.empty() ? "--glyphs" : "--streamlines";
+        if (arguments_.body != BodyKind::Mesh)
+            throw Error(ErrorCode::InvalidInput, "needs a mesh of hexahedra in memory", option);
+        if (arguments_.method == Method::Footprints)
+            throw Error(ErrorCode::InvalidInput, "is not drawn within footprints", option, "--method splat, tets or dense");
+        if (!common().patches.empty() || !common().part_opacities.empty())
+            throw Error(ErrorCode::InvalidInput, "goes through a whole body", option,
+                        "no --patch and no --part-opacity; --opacity 0%:.2 makes its surface translucent");
+    }
+
     void refuse_frames_per_second() {
         if (is_video(output_)) return;
         refuse_options(app(), {"--fps", "--duration"}, "has no effect without a video (-o NAME.mp4, .webm or .gif)");
@@ -276,6 +321,9 @@ private:
                                     "--scale-bar",   "--part-opacity", "--extremes",
                                     "--shade",       "--shadows",      "--ambient-occlusion",
                                     "--color-field"});
+        group("Streamlines",
+              {"--streamlines", "--seeds", "--seed-count", "--stream-direction", "--stream-length", "--stream-time",
+               "--stream-tolerance", "--stream-step", "--tube-radius", "--glyphs", "--glyph-count", "--glyph-size"});
         group("Kernels",
               {"--per-edge", "--centers", "--spacing", "--spacing-voxels", "--tolerance", "--footprint", "--footprint-size",
                "--values", "--kernel", "--value-kernel", "--threshold", "--correction", "--reduce", "--refine"});
@@ -340,7 +388,7 @@ private:
 
     void set_notes(const ShownBody& mesh, const ShownColors& shown, PictureOutput& output, Report& report) {
         Facts facts;
-        PictureNotes notes = make_notes(mesh, shown, arguments_, report.progress(), facts);
+        PictureNotes notes = make_notes(mesh, shown, arguments_, streams_, report.progress(), facts);
         report.merge(facts);
         if (picture_.extremes) {
             PictureMaker maker = maker_of(body_of(mesh), report);
@@ -379,7 +427,8 @@ private:
 
     [[nodiscard]] ShownBody load_shown(const CommonOptions& options, Report& report, ShellsAlone alone = ShellsAlone::Refuse) {
         report["input"] = input_;  // for errors
-        ShownBody shown = report.unpack(load_shown_body(input_, options, arguments_, app(), report.progress(), alone));
+        ShownBody shown =
+            report.unpack(load_shown_body(input_, options, arguments_, streams_, app(), report.progress(), alone));
         moved_ = shown.body.moved;
         return shown;
     }
@@ -505,6 +554,7 @@ private:
     std::string input_;
     std::string output_;
     RenderArguments arguments_;
+    StreamArguments streams_;
     PictureArguments& picture_ = arguments_.picture;
     ShareArgument share_;
     std::optional<PictureShares> rows_{};  // this process draws some rows only

@@ -12,6 +12,7 @@
 #include "picture_arguments.h"
 #include "quantities.h"
 #include "refine_arguments.h"
+#include "stream_arguments.h"
 #include "subvol/detail/surface_share.h"
 #include "subvol/error.h"
 #include "subvol/limit_shells.h"
@@ -34,16 +35,19 @@ public:
                "  subvol surface part.vtu -o hot.stl --iso 350 --cap --tolerance 3e-4\n"
                "  subvol surface case -o inlet.vtp --patch inlet\n"
                "  subvol surface part.vtu -o skin.glb --boundary --color-field Temp --tf viridis\n"
+               "  subvol surface run.vtu -o flow.vtp --streamlines U --seeds line:0,0,0,0,0,1\n"
                "  subvol surface big.bricks -o iso.ply --iso 300\n"
                "  subvol surface big.vtu -o part2.svshare --part 2/4     a share, for join\n"
                "\n"
                "The points lie on the limit, with normals from its exact gradients. Cells are refined where the surface is, "
                "until the triangles are within the tolerance. JSON: points, triangles, area, volume (of what a watertight "
-               "surface encloses), watertight, euler, components, min_angle (degrees), deviation (world), level.") {
+               "surface encloses), watertight, euler, components, min_angle (degrees), deviation (world), level. streamlines: "
+               "count, points, length, outside (seeds), ends (how many for which reason).") {
         app().add_option("FILE", input_, input_help())->required();
         app()
             .add_option("-o,--output", output_,
-                        "the surface to write (.ply, .stl, .vtp, .obj, .glb, .vtkhdf; .svshare with --part)")
+                        "the surface to write (.ply, .stl, .vtp, .obj, .glb, .vtkhdf; .svshare with --part), or streamlines "
+                        "(.vtp, .csv)")
             ->type_name("FILE")
             ->required();
         app()
@@ -68,6 +72,10 @@ public:
                    Option("origin", origin_)
                        .help("X,Y,Z", "write points relative to this place: .stl rounds to 32-bit floats (default 0,0,0)"))
             ->transform(number_list(3, "5e6,4e6,0: a place near the body"));
+        streams_.add_lines_to(app());
+        for (const char* other : {"--iso", "--boundary", "--cap", "--patch", "--tolerance", "--max-level", "--keep-slivers",
+                                  "--origin", "--tf", "--color-field"})
+            app().get_option("--streamlines")->excludes(other);
         scheme_.add_scheme_to(app());
         share_.add_to(app(), "a range of the cells that the surface passes");
         set_essentials({"--output", "--iso", "--boundary", "--cap", "--tolerance", "--color-field", "--field", "--json"});
@@ -76,6 +84,7 @@ public:
     [[nodiscard]] bool works_in_ranks() const override { return true; }
 
     int run(Report& report) override {
+        if (!streams_.chosen.streamlines.empty()) return run_streams(report);
         if (share_.given()) {
             (void)share_of(share_);
             check_output(output_, {".svshare"});
@@ -149,6 +158,45 @@ public:
     }
 
 private:
+    /// Streamlines instead of a surface.
+    int run_streams(Report& report) {
+        if (share_.given()) throw Error(ErrorCode::InvalidInput, "has no effect with --streamlines", "--part");
+        check_output(output_, {".vtp", ".csv"});
+        const TetRefinement tets(scheme_);
+        if (tets.asked())
+            throw Error(ErrorCode::InvalidInput, "follows the limit of hexahedra", "--streamlines", "another --scheme");
+        report.if_long("fewer seeds, or a larger --stream-tolerance");
+        report["input"] = input_;
+        CommonOptions reading = common();
+        reading.at_rest.push_back(streams_.chosen.streamlines);
+        const BodyInput body = report.unpack(open_body(input_, reading, app(), report.progress()));
+        if (body.source().mesh() == nullptr)
+            throw Error(ErrorCode::InvalidInput, "needs a mesh in memory", "--streamlines", "the mesh itself");
+        HexMesh mesh = *body.source().mesh();
+        std::vector<double> vectors =
+            of_option("--streamlines", [&] { return vectors_of(mesh, streams_.chosen.streamlines, report.progress()); });
+        if (common().field) {
+            const Attribute shown = select_field(mesh, common().field, report.progress()).scalar;
+            mesh.attributes = {shown};
+        }
+        std::erase_if(mesh.attributes, [&](const Attribute& a) { return a.name == streams_.chosen.streamlines; });
+        mesh.attributes.push_back({streams_.chosen.streamlines, 3, std::move(vectors)});
+        const LimitOptions limit{.scheme = scheme_.options(0, report.progress()).scheme, .progress = report.progress()};
+        StreamlineOptions options = streams_.chosen.lines;
+        options.limit = limit;
+        options.progress = report.progress();
+        const Streamlines lines = report.timed("streamlines", [&] {
+            return trace_streamlines(mesh, streams_.chosen.streamlines, streams_.places(mesh, limit), options);
+        });
+        report.merge(facts_of(lines));
+        if (lines.count() == 0)
+            throw Error(ErrorCode::InvalidInput, "no seed lies in the volume", "--seeds",
+                        "places in the body, whose box info shows");
+        report.timed("write", [&] { write_streamlines(output_, lines); });
+        report["output"] = output_;
+        return 0;
+    }
+
     /// The whole surface, of one process or of all ranks; nothing if this process has only a share of it, which is written or
     /// sent to rank 0.
     template <class Whole, class Part>
@@ -167,6 +215,7 @@ private:
     bool keep_slivers_ = false;
     RefineArguments scheme_;
     ShareArgument share_;
+    StreamArguments streams_;
 };
 
 }  // namespace

@@ -69,7 +69,9 @@ struct LimitProbe::State {
         subvol::check_options(options);
     }
 
-    void run(std::span<const Vec3> places, std::span<const std::size_t> to, Progress* progress, ProbeResult& result) const;
+    [[nodiscard]] ProbeResult empty_result(std::size_t places) const;
+    void run(std::span<const Vec3> places, std::span<const std::size_t> to, std::vector<Open> open,
+             std::span<const NearPlace> candidates, Progress* progress, ProbeResult& result) const;
     [[nodiscard]] std::vector<Open> find(std::span<const Vec3> places, std::vector<NearPlace>& candidates) const;
     void settle(Open& open, std::size_t query, const LimitSamples& samples, const Vec3& place, std::span<const std::size_t> to,
                 std::span<const NearPlace> candidates, ProbeResult& result) const;
@@ -130,12 +132,10 @@ std::vector<Open> LimitProbe::State::find(std::span<const Vec3> places, std::vec
     return open;
 }
 
-/// to: the numbers of the places in the result
-void LimitProbe::State::run(std::span<const Vec3> places, std::span<const std::size_t> to, Progress* progress,
-                            ProbeResult& result) const {
+/// to: the numbers of the places in the result; open: those that are searched for
+void LimitProbe::State::run(std::span<const Vec3> places, std::span<const std::size_t> to, std::vector<Open> open,
+                            std::span<const NearPlace> candidates, Progress* progress, ProbeResult& result) const {
     const std::size_t done = *std::ranges::min_element(to);  // the batches before
-    std::vector<NearPlace> candidates;
-    std::vector<Open> open = find(places, candidates);
     std::vector<LimitQuery> queries;
     std::vector<Vec3> positions;
     for (int round = 0; round < kMostProbeRounds && !open.empty(); ++round) {
@@ -203,17 +203,43 @@ void LimitProbe::State::write(const Open& open, std::size_t query, const LimitSa
     }
 }
 
+ProbeResult LimitProbe::State::empty_result(std::size_t places) const {
+    ProbeResult result;
+    result.cells.assign(places, kNone);
+    result.parameters.assign(places, Vec3(0.0));
+    result.distances.assign(places, 0);
+    for (const Attribute& attribute : mesh.attributes) {
+        const auto channels = static_cast<std::size_t>(attribute.channels);
+        result.fields.push_back({attribute.name, channels, std::vector<double>(places * channels),
+                                 std::vector<Vec3>(places * channels, Vec3(0.0))});
+    }
+    return result;
+}
+
+ProbeResult LimitProbe::near(std::span<const Vec3> places, std::span<const LimitQuery> starts) const {
+    check(places);
+    if (starts.size() != places.size()) {
+        throw Error(ErrorCode::InvalidInput,
+                    "there are " + std::to_string(starts.size()) + " starts for " + std::to_string(places.size()) + " places",
+                    "LimitProbe::near");
+    }
+    ProbeResult result = state_->empty_result(places.size());
+    if (places.empty()) return result;
+    std::vector<std::size_t> numbers(places.size());
+    std::vector<NearPlace> candidates(places.size());
+    std::vector<Open> open;
+    for (std::size_t p = 0; p < places.size(); ++p) {
+        numbers[p] = p;
+        candidates[p].place = starts[p];
+        open.push_back({p, starts[p], p, p + 1});
+    }
+    state_->run(places, numbers, std::move(open), candidates, nullptr, result);
+    return result;
+}
+
 ProbeResult LimitProbe::at(std::span<const Vec3> places, Progress* progress) const {
     check(places);
-    ProbeResult result;
-    result.cells.assign(places.size(), kNone);
-    result.parameters.assign(places.size(), Vec3(0.0));
-    result.distances.assign(places.size(), 0);
-    for (const Attribute& attribute : state_->mesh.attributes) {
-        const auto channels = static_cast<std::size_t>(attribute.channels);
-        result.fields.push_back({attribute.name, channels, std::vector<double>(places.size() * channels),
-                                 std::vector<Vec3>(places.size() * channels, Vec3(0.0))});
-    }
+    ProbeResult result = state_->empty_result(places.size());
     std::vector<Vec3> sorted;  // near ones after each other: they share what they read
     std::vector<std::size_t> numbers;
     for (std::size_t begin = 0; begin < places.size(); begin += kPlacesAtOnce) {
@@ -224,7 +250,9 @@ ProbeResult LimitProbe::at(std::span<const Vec3> places, Progress* progress) con
             sorted.push_back(batch[p]);
             numbers.push_back(begin + p);
         }
-        state_->run(sorted, numbers, progress, result);
+        std::vector<NearPlace> candidates;
+        std::vector<Open> open = state_->find(sorted, candidates);
+        state_->run(sorted, numbers, std::move(open), candidates, progress, result);
     }
     report_progress(progress, "probe", 1);
     return result;

@@ -16,6 +16,7 @@
 #include "subvol/error.h"
 #include "subvol/facts.h"
 #include "subvol/hex_mesh.h"
+#include "subvol/limit.h"
 #include "subvol/mesh_sets.h"
 #include "subvol/optics.h"
 #include "subvol/option.h"
@@ -123,6 +124,10 @@ struct PictureLight {
     LookOptions options;
     Optics optics;
 };
+
+/// Seeds of streamlines: None: middles of cells; a text or several as of `parse_seeds`; else places (n,3).
+[[nodiscard]] std::vector<Vec3> seeds_in(const HexMesh& mesh, const py::object& seeds, std::size_t count,
+                                         const LimitOptions& limit);
 
 /// A scheme of hexahedra, or of tetrahedra. rules: all but its kind
 struct GivenScheme {

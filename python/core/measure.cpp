@@ -5,6 +5,7 @@
 
 #include "bind.h"
 #include "subvol/approximate.h"
+#include "subvol/flow_surface.h"
 #include "subvol/limit_slice.h"
 #include "subvol/limit_surface.h"
 #include "subvol/measure.h"
@@ -233,6 +234,55 @@ py::dict slice(const HexMesh& mesh, const std::string& field, const std::array<d
     return result;
 }
 
+struct GivenStreamlines {
+    std::size_t seed_count = 30;
+    StreamlineOptions lines{};
+};
+
+std::vector<Option> keywords_of(GivenStreamlines& given) {
+    std::vector<Option> all = scheme_and(given.lines.limit.scheme);
+    FlowChoices any;
+    const std::vector<Option> of_any = options_of(any);
+    all.push_back(Option("seed-count", given.seed_count)
+                      .between(1, 100000)
+                      .help("N", std::ranges::find(of_any, "seed-count", &Option::name)->sentence));
+    std::ranges::move(options_of(given.lines), std::back_inserter(all));
+    return all;
+}
+
+py::dict streamlines(const HexMesh& mesh, const std::string& vector, const py::object& seeds,
+                     const std::optional<std::string>& path, const py::object& progress, const py::kwargs& given) {
+    GivenStreamlines chosen;
+    set_options(keywords_of(chosen), given);
+    HexMesh traced = mesh;
+    std::erase_if(traced.attributes, [&](const Attribute& a) { return a.name == vector; });
+    const std::vector<Vec3> places = seeds_in(mesh, seeds, chosen.seed_count, chosen.lines.limit);
+    Streamlines found = result_of(progress, [&](Progress* listener) {
+        traced.attributes.push_back({vector, 3, vectors_of(mesh, vector, listener)});
+        chosen.lines.progress = listener;
+        Streamlines lines = trace_streamlines(traced, vector, places, chosen.lines);
+        if (path) write_streamlines(*path, lines);
+        return lines;
+    });
+    const auto numbers_from = [](const std::vector<std::size_t>& numbers) {
+        return owned(std::vector<std::int64_t>(numbers.begin(), numbers.end()), {length(numbers.size())});
+    };
+    py::dict result;
+    result["report"] = dict_of(facts_of(found));
+    py::list ends;
+    for (const auto& [first, last] : found.ends)
+        ends.append(py::make_tuple(std::string(name_of(first)), std::string(name_of(last))));
+    const py::ssize_t points = length(found.points.size());
+    result["points"] = owned(std::move(found.points));
+    result["times"] = owned(std::move(found.times), {points});
+    result["offsets"] = numbers_from(found.firsts);
+    result["seeds"] = numbers_from(found.seeds);
+    result["outside"] = numbers_from(found.outside);
+    result["ends"] = ends;
+    put_fields(std::move(found.fields), nullptr, result);
+    return result;
+}
+
 py::dict surface(const HexMesh& mesh, const std::string& field, std::vector<double> isos,
                  const std::optional<std::string>& path, const std::array<double, 3>& origin, const py::object& progress,
                  const py::kwargs& given) {
@@ -271,6 +321,24 @@ py::dict surface(const HexMesh& mesh, const std::string& field, std::vector<doub
 }
 
 }  // namespace
+
+std::vector<Vec3> seeds_in(const HexMesh& mesh, const py::object& seeds, std::size_t count, const LimitOptions& limit) {
+    if (seeds.is_none()) {
+        const py::gil_scoped_release without_gil;
+        return middles_of_cells(mesh, count, limit);
+    }
+    if (py::isinstance<py::str>(seeds)) return parse_seeds(seeds.cast<std::string>(), count);
+    const bool is_list = py::isinstance<py::list>(seeds) || py::isinstance<py::tuple>(seeds);
+    if (is_list && py::len(seeds) > 0 && py::isinstance<py::str>(py::sequence(seeds)[0])) {
+        std::vector<Vec3> places;
+        for (const py::handle text : seeds) {
+            const std::vector<Vec3> more = parse_seeds(text.cast<std::string>(), count);
+            places.insert(places.end(), more.begin(), more.end());
+        }
+        return places;
+    }
+    return vectors(seeds, "seeds");
+}
 
 py::dict dict_of(FoldCheck found) {
     std::vector<std::uint8_t> verdicts;
@@ -346,6 +414,9 @@ void bind_measure(py::module_& module) {
     module.def("slice", &slice, py::arg("mesh"), py::arg("field"), py::arg("point"), py::arg("normal"), py::arg("progress"));
     module.def("surface", &surface, py::arg("mesh"), py::arg("field"), py::arg("isos"), py::arg("path"), py::arg("origin"),
                py::arg("progress"));
+    module.def("streamlines", &streamlines, py::arg("mesh"), py::arg("vector"), py::arg("seeds"), py::arg("path"),
+               py::arg("progress"));
+    describe_call<GivenStreamlines>(module, "streamlines");
     GivenProbe given;
     describe(module, "probe", options_of(given));
     describe_call<PointsErrorOptions>(module, "points_error");

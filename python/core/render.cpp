@@ -6,6 +6,7 @@
 #include "bind.h"
 #include "picture.h"
 #include "subvol/boundary_values.h"
+#include "subvol/flow_surface.h"
 #include "subvol/gl_device.h"
 #include "subvol/picture_maker.h"
 #include "subvol/shell_scene.h"
@@ -19,6 +20,7 @@ namespace {
 struct GivenPicture : PictureSettings {
     LookChoices look{};
     ViewOptions eye{};
+    FlowChoices flow{};
 };
 
 /// Python has sizes as pairs, and turntables as lists of cameras.
@@ -36,6 +38,7 @@ std::vector<Option> options_of(GivenPicture& given) {
     });
     std::ranges::move(options_of(given.look), std::back_inserter(all));
     std::ranges::copy_if(options_of(given.eye), std::back_inserter(all), &of_one_picture, &Option::name);
+    std::ranges::move(options_of(given.flow), std::back_inserter(all));
     return all;
 }
 
@@ -73,6 +76,8 @@ py::dict report_of(const Facts& facts) {
 /// colors:   a mesh whose field gives the colours; null: the one that is shown
 /// patches:  shells to which the points of `mesh`, which has no cells, belong; null: a volume is drawn
 /// channels: of the points
+/// source:   of the mesh, with all of its fields; null: no streamlines are drawn
+/// seeds:    of streamlines, as for `seeds_in`
 struct DrawnBody {
     const HexMesh* mesh = nullptr;
     const HexMesh* colors = nullptr;
@@ -80,6 +85,8 @@ struct DrawnBody {
     const RbfVolume* points = nullptr;
     std::vector<std::size_t> channels{};
     const Voxels* voxels = nullptr;
+    const HexMesh* source = nullptr;
+    py::object seeds = py::none();
 };
 
 /// The patches of a mesh, alone.
@@ -100,6 +107,47 @@ Picture render_patches(const HexMesh& mesh, const Shells& patches, const View& v
     return picture;
 }
 
+/// The field, and the look and opacities of the body, of pictures with streamlines or arrows.
+py::tuple flow_defaults(const HexMesh& mesh, const py::dict& given) {
+    GivenPicture chosen;
+    set_options(options_of(chosen), given);
+    if (!chosen.flow.any()) return py::make_tuple(py::none(), py::dict());
+    veil_body(chosen.look, chosen.options.style.clip);
+    py::dict look;
+    if (chosen.look.look) look["look"] = *chosen.look.look;
+    if (chosen.look.opacity) look["opacity"] = *chosen.look.opacity;
+    return py::make_tuple(chosen.flow.length_of(mesh), look);
+}
+
+/// The tubes and arrows of a picture; nothing without them.
+std::optional<ShellScene> flow_scene(const DrawnBody& drawn, const HexMesh* shown, Method method, const PictureLight& light,
+                                     const py::dict& keywords, const py::object& progress, Facts& facts) {
+    GivenPicture given;
+    set_options(options_of(given), keywords);
+    if (!given.flow.any()) {
+        if (!drawn.seeds.is_none()) throw Error(ErrorCode::InvalidInput, "has no effect without streamlines", "seeds");
+        return {};
+    }
+    const std::string option = given.flow.streamlines.empty() ? "glyphs" : "streamlines";
+    if (drawn.source == nullptr || drawn.patches != nullptr)
+        throw Error(ErrorCode::InvalidInput, "needs a mesh of hexahedra, and no patch", option);
+    if (method == Method::Footprints)
+        throw Error(ErrorCode::InvalidInput, "is not drawn within footprints", option, "method splat, tets or dense");
+    const PictureStyle style{.look = light.options, .samples = given.options.style.samples};
+    const RefineOptions refine = given.refinement;
+    const LimitOptions limit{.scheme = refine.scheme};
+    std::vector<Vec3> seeds;
+    if (!given.flow.streamlines.empty()) seeds = seeds_in(*shown, drawn.seeds, given.flow.seed_count, limit);
+    return result_of(progress, [&](Progress* listener) {
+        Flow flow = flow_in(*drawn.source, given.flow, OptionNames::Keywords, listener);
+        flow.limit = limit;
+        flow.limit.progress = listener;
+        flow.seeds = std::move(seeds);
+        return make_opaque_scene(*shown, flow_surface(*shown, flow, facts), refine, given.levels, light.optics,
+                                 style.sample_count(), given.options.style.clip);
+    });
+}
+
 Picture render(const DrawnBody& drawn, const std::string& method_name, const View& view, const PictureLight& light,
                const py::dict& given, const py::object& progress) {
     const auto method = named<Method>(method_name, "method");
@@ -116,8 +164,15 @@ Picture render(const DrawnBody& drawn, const std::string& method_name, const Vie
     check_method(method, body.kind(), OptionNames::Keywords);
     check_options(
         bit(method), body.kind(), [&](std::string_view name) { return text_of(given, name); }, OptionNames::Keywords);
+    Facts facts;
+    const HexMesh* const shown = drawn.colors != nullptr ? &two_fields : drawn.mesh;
+    const auto flow = flow_scene(drawn, shown, method, light, given, progress, facts);
     PictureMaker maker(std::move(body), method_options(method, light, given));
-    subvol::Picture picture = result_of(progress, [&](Progress* listener) { return maker.draw(view, light.optics, listener); });
+    const View of_volume = flow ? ended_at(*flow, view) : view;
+    subvol::Picture picture =
+        result_of(progress, [&](Progress* listener) { return maker.draw(of_volume, light.optics, listener); });
+    if (flow) flow->draw_into(picture.image, picture.depth, view);
+    picture.facts.merge(facts);
     picture.facts["camera"] = facts_of(view.camera());
     return {std::move(picture.image), std::move(picture.depth), report_of(picture.facts), camera_text(view.camera())};
 }
@@ -161,13 +216,16 @@ void bind_render(py::module_& module) {
     py::class_<BoundaryValues>(module, "BoundaryValues", "A boundary with the limit's values on it.");
     py::class_<DrawnBody>(module, "DrawnBody", "What render() draws.")
         .def(py::init([](const HexMesh* mesh, const HexMesh* colors, const Shells* patches, const RbfVolume* points,
-                         const std::vector<std::size_t>& channels,
-                         const Voxels* voxels) { return DrawnBody{mesh, colors, patches, points, channels, voxels}; }),
+                         const std::vector<std::size_t>& channels, const Voxels* voxels, const HexMesh* source,
+                         const py::object& seeds) {
+                 return DrawnBody{mesh, colors, patches, points, channels, voxels, source, seeds};
+             }),
              py::arg("mesh").none(true) = py::none(), py::arg("colors").none(true) = py::none(),
              py::arg("patches").none(true) = py::none(), py::arg("points").none(true) = py::none(),
              py::arg("channels") = std::vector<std::size_t>{}, py::arg("voxels").none(true) = py::none(),
-             py::keep_alive<1, 2>(), py::keep_alive<1, 3>(), py::keep_alive<1, 4>(), py::keep_alive<1, 5>(),
-             py::keep_alive<1, 7>());
+             py::arg("source").none(true) = py::none(), py::arg("seeds") = py::none(), py::keep_alive<1, 2>(),
+             py::keep_alive<1, 3>(), py::keep_alive<1, 4>(), py::keep_alive<1, 5>(), py::keep_alive<1, 7>(),
+             py::keep_alive<1, 8>());
     py::class_<Shells>(module, "Patches", "Patches of a mesh as faces, each patch with its own points.")
         .def_property_readonly(
             "mesh",
@@ -198,6 +256,7 @@ void bind_render(py::module_& module) {
     module.def(
         "draws_kernels", [](const std::string& method) { return draws_kernels(named<Method>(method, "method")); },
         py::arg("method"));
+    module.def("flow_defaults", &flow_defaults, py::arg("mesh"), py::arg("given"));
     module.def("gl_devices", &devices);
     GivenPicture given;
     describe(module, "render", options_of(given));

@@ -10,7 +10,7 @@ from ._core import Camera, Field, HexMesh, Image, RbfVolume, Refinement, Study, 
 from ._errors import Cancelled, Error, FileError, InvalidInput, MissingCapability, SubvolWarning
 from ._exchange import from_meshio, from_pyvista, to_meshio, to_pyvista, to_vtk
 from ._fields import LimitSamples, as_field, evaluate
-from ._measure import FoldCheck, PointsError, ProbeSamples, Slice, SurfaceMesh
+from ._measure import FoldCheck, PointsError, ProbeSamples, Slice, StreamlineSet, SurfaceMesh
 from ._mesh import Series, model, models, only, open_series, quantity, warp, write_mesh, write_wavelets
 from ._page import Page
 from ._pictures import FieldComparison, ImageComparison, compare, compare_fields, compare_images, read_image, write_image
@@ -309,19 +309,23 @@ def reduce(
 def render(
     what: Drawable, *, method: str = 'splat', camera: Union[None, str, Camera] = None,
     size: tuple[int, int] = (512, 512), field: Optional[str] = None, tf: Union[None, str, TransferFunction] = None,
-    patch: Union[None, str, Sequence[str]] = None, ray_ends: Optional[npt.ArrayLike] = None, scheme: str = 'mcq',
-    tension: float = 0.0625, crease_angle: Optional[float] = None, levels: Optional[int] = None, per_edge: int = 1,
-    spacing: float = 0.0, tolerance: float = 0.0, centers: bool = False, values: str = 'scheme',
-    kernel: Kernel = 'compact', value_kernel: Kernel = 'paper_bc', correction: str = 'second', backend: str = 'auto',
-    device: Optional[int] = None, sheets: int = 0, shadows: bool = False, ambient_occlusion: float = 0.0,
-    samples: Optional[int] = None, image_tolerance: Optional[float] = None, order: str = 'topological',
-    kbuffer: int = 6, lod: Optional[float] = None, seconds: Optional[float] = None, shade: bool = False,
-    color_field: Optional[str] = None, clip: Optional[npt.ArrayLike] = None, clip_box: Optional[npt.ArrayLike] = None,
+    patch: Union[None, str, Sequence[str]] = None, ray_ends: Optional[npt.ArrayLike] = None,
+    seeds: Union[None, str, Sequence[str], npt.ArrayLike] = None, scheme: str = 'mcq', tension: float = 0.0625,
+    crease_angle: Optional[float] = None, levels: Optional[int] = None, per_edge: int = 1, spacing: float = 0.0,
+    tolerance: float = 0.0, centers: bool = False, values: str = 'scheme', kernel: Kernel = 'compact',
+    value_kernel: Kernel = 'paper_bc', correction: str = 'second', backend: str = 'auto', device: Optional[int] = None,
+    sheets: int = 0, shadows: bool = False, ambient_occlusion: float = 0.0, samples: Optional[int] = None,
+    image_tolerance: Optional[float] = None, order: str = 'topological', kbuffer: int = 6, lod: Optional[float] = None,
+    seconds: Optional[float] = None, shade: bool = False, color_field: Optional[str] = None,
+    clip: Optional[npt.ArrayLike] = None, clip_box: Optional[npt.ArrayLike] = None,
     slice: Optional[npt.ArrayLike] = None, around: bool = False, look: Optional[str] = None,
     opacity_unit: Optional[float] = None, clamp: bool = False, range: Optional[str] = None,
     opacity: Optional[str] = None, iso: Union[float, str] = '', log: bool = False, symlog: Optional[float] = None,
     bands: Optional[int] = None, below: Optional[str] = None, above: Optional[str] = None, view: str = 'iso',
-    fit: bool = False, ortho: bool = False, progress: Progress = None
+    fit: bool = False, ortho: bool = False, streamlines: str = '', seed_count: int = 30, stream_direction: str = 'both',
+    stream_length: Optional[float] = None, stream_time: Optional[float] = None, stream_tolerance: float = 1e-06,
+    stream_step: float = 0.01, tube_radius: float = 0.003, glyphs: str = '', glyph_count: int = 400,
+    glyph_size: float = 0.06, progress: Progress = None
 ) -> Image:
     """Draws a mesh, points or a grid: the picture of `subvol render` with the same options, bit for bit.
 
@@ -335,6 +339,8 @@ def render(
     patch:       patches of `mesh.patches` that are drawn alone, or "all"; coloured by patch, or by `field`
     ray_ends:    (height, width) eye depths at which the rays of each pixel end, as where they meet something opaque that another
                  program draws; infinity: they do not. Not with method="footprints"
+    seeds:       where the streamlines of `streamlines` start, as for `subvol.streamlines`. The body is thin then, unless its look or
+                 opacities are chosen or it is cut
     scheme:      mcq (smooth, through the control points), cc (Catmull-Clark), bsxw (Bajaj-Schaefer-Warren-Xu), linear [mcq,
                  cc, bsxw, linear]
     tension:     of mcq: 0 is linear; 1/16 reproduces cubics [0 to 0.125; with scheme='mcq']
@@ -408,6 +414,22 @@ def render(
                  -z, iso, front, back, left, right, top, bottom; not with camera]
     fit:         move the camera along its line of sight until the whole box is in the picture
     ortho:       use an orthographic camera, as high as the box needs or as the JSON file's ortho_height
+    streamlines: draw streamlines of this vector as tubes, in the colours of the field that is shown, which is the length of
+                 the vector unless one is named
+    seed_count:  how many seeds: of each text that says where they are, or of middles of cells [1 to 100000; with
+                 streamlines]
+    stream_direction: follow the field both ways, forward or backward [both, forward, backward; with streamlines]
+    stream_length: no streamline is longer to either side of its seed (default: two diagonals of the body) [more than 0;
+                 with streamlines]
+    stream_time: nor does it take longer [more than 0; with streamlines]
+    stream_tolerance: the error of a step along a streamline, as a part of the diagonal [more than 0, at most 0.01; with
+                 streamlines]
+    stream_step: no step along a streamline is longer, as a part of the diagonal [1e-05 to 0.5; with streamlines]
+    tube_radius: the radius of the tubes that show streamlines, as a part of the diagonal [1e-05 to 0.1; with streamlines]
+    glyphs:      draw arrows along this vector, as long as it is large, in middles of cells that stand for as much volume
+                 each
+    glyph_count: the number of arrows, at most one in each cell [1 to 1000000; with glyphs]
+    glyph_size:  the length of the longest arrow, as a part of the diagonal [0.0001 to 1; with glyphs]
 
     Cuts are rows of six numbers, each a list or an array. Returns an Image: `numpy.asarray(image)` is (height, width, 4) float32,
     linear, premultiplied, without a copy. Its `report` has counts and seconds.
@@ -458,6 +480,30 @@ def slice(
     tension:     of mcq: 0 is linear; 1/16 reproduces cubics [0 to 0.125; with scheme='mcq']
     crease_angle: keep boundary edges sharp that bend by more than this, in degrees (tetoct, boxspline: 60) [0 to 180]
     resolution:  places along the longer side [2 to 20000]
+    """
+
+def streamlines(
+    mesh: HexMesh, vector: str, seeds: Union[None, str, Sequence[str], npt.ArrayLike] = None, *,
+    path: Optional[Path] = None, scheme: str = 'mcq', tension: float = 0.0625, crease_angle: Optional[float] = None,
+    seed_count: int = 30, stream_direction: str = 'both', stream_length: Optional[float] = None,
+    stream_time: Optional[float] = None, stream_tolerance: float = 1e-06, stream_step: float = 0.01,
+    progress: Progress = None
+) -> StreamlineSet:
+    """Streamlines of a vector field of the limit, such as "U" or "grad(T)", by Dormand and Prince's method.
+
+    seeds:       places (n,3); or texts: "at:x,y,z", "line:x0,y0,z0,x1,y1,z1", "disk:x,y,z,nx,ny,nz,r", "sphere:x,y,z,r",
+                 "box:x0,y0,z0,x1,y1,z1"; None: the middles of cells
+    path:        also write them: .vtp, .csv
+    scheme:      mcq (smooth, through the control points), cc (Catmull-Clark), bsxw (Bajaj-Schaefer-Warren-Xu), linear [mcq,
+                 cc, bsxw, linear]
+    tension:     of mcq: 0 is linear; 1/16 reproduces cubics [0 to 0.125; with scheme='mcq']
+    crease_angle: keep boundary edges sharp that bend by more than this, in degrees (tetoct, boxspline: 60) [0 to 180]
+    seed_count:  how many seeds: of each text that says where they are, or of middles of cells [1 to 100000]
+    stream_direction: follow the field both ways, forward or backward [both, forward, backward]
+    stream_length: no streamline is longer to either side of its seed (default: two diagonals of the body) [more than 0]
+    stream_time: nor does it take longer [more than 0]
+    stream_tolerance: the error of a step along a streamline, as a part of the diagonal [more than 0, at most 0.01]
+    stream_step: no step along a streamline is longer, as a part of the diagonal [1e-05 to 0.5]
     """
 
 def subdivide(
@@ -541,9 +587,9 @@ def write_vdb(
 __all__ = [
     "Camera", "Cancelled", "Error", "Field", "FieldComparison", "FileError", "FoldCheck", "Grid", "HexMesh", "Image", "ImageComparison",
     "InvalidInput", "LimitSamples", "MissingCapability", "Page", "PointsError", "ProbeSamples", "RbfVolume", "Refinement", "Series",
-    "Slice", "Study", "StudyCase", "StudyResults", "SubvolWarning", "SurfaceMesh", "TransferFunction", "approximate", "as_field", "check_folds", "compare",
+    "Slice", "StreamlineSet", "Study", "StudyCase", "StudyResults", "SubvolWarning", "SurfaceMesh", "TransferFunction", "approximate", "as_field", "check_folds", "compare",
     "compare_fields", "compare_images", "evaluate", "evaluate_limit", "fit", "from_meshio", "from_pyvista", "from_vtk", "gl_devices", "kernels",
     "measure", "mend_folds", "model", "models", "only", "open_series", "page", "points_error", "probe", "quantity", "rasterize", "read_image", "read_mesh", "read_points",
-    "read_vdb", "reduce", "render", "run_study", "sample", "sample_grid", "set_threads", "slice", "studies", "study", "subdivide",
+    "read_vdb", "reduce", "render", "run_study", "sample", "sample_grid", "set_threads", "slice", "streamlines", "studies", "study", "subdivide",
     "surface", "to_meshio", "to_pyvista", "to_vtk", "warp", "write_image", "write_mesh", "write_points", "write_usd", "write_vdb", "write_wavelets",
 ]

@@ -208,6 +208,41 @@ class SurfaceMesh:
     report: dict[str, Any]
 
 
+@dataclass(frozen=True)
+class StreamlineSet:
+    """Line i has the points from offsets[i] to offsets[i + 1]. points: (n,3); times: (n,), 0 at the seed and negative before it; fields,
+    gradients: at the points, by name; offsets: (lines + 1,); seeds: (lines,), the number of each line's seed; ends: (first, last) of each
+    line: why they are its ends, "boundary", "still", "length", "time", "steps", or "seed"; outside: numbers of seeds without a line;
+    report: streamlines with count, points, length, outside, ends"""
+
+    points: npt.NDArray[np.float64]
+    times: npt.NDArray[np.float64]
+    fields: dict[str, npt.NDArray[np.float64]]
+    gradients: dict[str, npt.NDArray[np.float64]]
+    offsets: npt.NDArray[np.int64]
+    seeds: npt.NDArray[np.int64]
+    ends: list[tuple[str, str]]
+    outside: npt.NDArray[np.int64]
+    report: dict[str, Any]
+
+
+@described
+def streamlines(mesh: HexMesh, vector: str, seeds: Union[None, str, Sequence[str], npt.ArrayLike] = None, *, path: Optional[Path] = None,
+                progress: Progress = None, **options: Any) -> StreamlineSet:
+    """Streamlines of a vector field of the limit, such as "U" or "grad(T)", by Dormand and Prince's method.
+
+    seeds:       places (n,3); or texts: "at:x,y,z", "line:x0,y0,z0,x1,y1,z1", "disk:x,y,z,nx,ny,nz,r", "sphere:x,y,z,r",
+                 "box:x0,y0,z0,x1,y1,z1"; None: the middles of cells
+    path:        also write them: .vtp, .csv
+    {keywords}
+    """
+    with listening(progress) as listener:
+        found: dict[str, Any] = _core.streamlines(mesh, vector, seeds, None if path is None else os.fsdecode(path), listener, **options)
+    for said in found["report"].pop("warnings", []):
+        warn(said)
+    return StreamlineSet(**found)
+
+
 @described
 def surface(mesh: HexMesh, iso: Union[float, Sequence[float], None] = None, field: Optional[str] = None, *, boundary: Optional[bool] = None,
             path: Optional[Path] = None, origin: Optional[npt.ArrayLike] = None, progress: Progress = None, **options: Any) -> SurfaceMesh:

@@ -26,8 +26,8 @@ Drawable = Union[HexMesh, RbfVolume, Grid]
 @described
 def render(what: Drawable, *, method: str = "splat", camera: Union[None, str, Camera] = None, size: tuple[int, int] = (512, 512),
            field: Optional[str] = None, tf: Union[None, str, TransferFunction] = None,
-           patch: Union[None, str, Sequence[str]] = None, ray_ends: Optional[npt.ArrayLike] = None, progress: Progress = None,
-           **options: Any) -> Image:
+           patch: Union[None, str, Sequence[str]] = None, ray_ends: Optional[npt.ArrayLike] = None,
+           seeds: Union[None, str, Sequence[str], npt.ArrayLike] = None, progress: Progress = None, **options: Any) -> Image:
     """Draws a mesh, points or a grid: the picture of `subvol render` with the same options, bit for bit.
 
     A keyword that has no effect with the method is refused; docs/pictures.md has the table. None leaves the default.
@@ -40,6 +40,8 @@ def render(what: Drawable, *, method: str = "splat", camera: Union[None, str, Ca
     patch:       patches of `mesh.patches` that are drawn alone, or "all"; coloured by patch, or by `field`
     ray_ends:    (height, width) eye depths at which the rays of each pixel end, as where they meet something opaque that another
                  program draws; infinity: they do not. Not with method="footprints"
+    seeds:       where the streamlines of `streamlines` start, as for `subvol.streamlines`. The body is thin then, unless its look or
+                 opacities are chosen or it is cut
     {keywords}
 
     Cuts are rows of six numbers, each a list or an array. Returns an Image: `numpy.asarray(image)` is (height, width, 4) float32,
@@ -64,9 +66,13 @@ def render(what: Drawable, *, method: str = "splat", camera: Union[None, str, Ca
         what = patches.mesh
         if field is None:
             field, tf = "patch", tf or "categories"
+    source = what.without_unused_points() if isinstance(what, HexMesh) and patches is None else None
+    if source is not None and ("streamlines" in given or "glyphs" in given):
+        length, thin = _core.flow_defaults(source, given)
+        field, given = (length if field is None else field), {**given, **thin}
     mesh = _selected(what, field) if isinstance(what, HexMesh) else None
     other = _selected(what, color_field) if isinstance(what, HexMesh) and color_field is not None else None
-    body, shown, colors, bounds = _body_of(what if mesh is None else mesh, other, patches, field, color_field)
+    body, shown, colors, bounds = _body_of(what if mesh is None else mesh, other, patches, field, color_field, source, seeds)
     bounds = bounds if frame is None else frame
     light = _light_of(given, tf, mesh is not None and not options.get("shade"), shown, colors or shown, bounds)
     eye = _camera_of(light, given, camera, size, what if mesh is None else mesh, bounds)
@@ -82,23 +88,23 @@ _Range = tuple[float, float]
 
 
 def _body_of(what: Drawable, colors: Optional[HexMesh], patches: Optional[_core.Patches], field: Optional[str],
-             color_field: Optional[str]) -> tuple[_core.DrawnBody, _Range, Optional[_Range], npt.NDArray[Any]]:
+             color_field: Optional[str], source: Optional[HexMesh], seeds: object) -> tuple[_core.DrawnBody, _Range, Optional[_Range], npt.NDArray[Any]]:
     """What is drawn, the range of its field, that of the field of the colours if it is another, and its bounds."""
     if isinstance(what, HexMesh):
         if colors is not None and list(colors.fields) == list(what.fields):
             colors = None
         of_colors = None if colors is None else _range_of(next(iter(colors.fields.values())))
         bounds = what.bounds if patches is None else np.stack([what.points.min(0), what.points.max(0)])
-        return _core.DrawnBody(mesh=what, colors=colors, patches=patches), _range_of(next(iter(what.fields.values()))), of_colors, bounds
+        return _core.DrawnBody(mesh=what, colors=colors, patches=patches, source=source, seeds=seeds), _range_of(next(iter(what.fields.values()))), of_colors, bounds
     if isinstance(what, RbfVolume):
         names = list(what.values)
         channels = [_channel(names, field)]
         if color_field is not None:
             channels.append(_channel(names, color_field))
         ranges = [_range_of(what.values[names[channel]]) for channel in channels]
-        return _core.DrawnBody(points=what, channels=channels), ranges[0], ranges[1] if len(ranges) > 1 else None, _core.frame_of(what)
+        return _core.DrawnBody(points=what, channels=channels, seeds=seeds), ranges[0], ranges[1] if len(ranges) > 1 else None, _core.frame_of(what)
     about = what.report
-    return _core.DrawnBody(voxels=what.voxels()), (about["min"], about["max"]), None, np.array(what.frame)
+    return _core.DrawnBody(voxels=what.voxels(), seeds=seeds), (about["min"], about["max"]), None, np.array(what.frame)
 
 
 def _channel(names: list[str], field: Optional[str]) -> int:

@@ -406,6 +406,10 @@ void check_sizes(const Image& image, std::span<const float> depth, const Colored
 
 }  // namespace
 
+std::vector<float> depths_of(const Surface& surface, const View& view) {
+    return std::move(TriangleRaster(surface, view, Clip{}).depth.values);
+}
+
 void draw_shells(Image& image, std::span<float> depth, const ColoredSurface& shells, const Surface& boundary, const View& view,
                  const Optics& optics, const ShellOptions& options) {
     check_sizes(image, depth, shells, view);
@@ -413,7 +417,8 @@ void draw_shells(Image& image, std::span<float> depth, const ColoredSurface& she
     if (!shells.opacities.empty()) return draw_veils(image, shells, boundary, view, optics, options);
     const int samples = options.samples;
     const View fine = view.resized(samples * view.width(), samples * view.height());
-    const TriangleRaster hits(shells.surface, fine, options.clip);
+    const Clip uncut;
+    const TriangleRaster hits(shells.surface, fine, options.whole ? uncut : options.clip);
     const Raster<float> enters = entries(boundary, fine, options.clip);
     const ShellLight light(shells, hits.eye, fine, optics, options.shading);
     tbb::parallel_for(0, view.height(), [&](int y) {

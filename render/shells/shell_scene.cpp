@@ -21,10 +21,17 @@ int levels_of(const Shells& shells, std::optional<int> most) {
     return most ? std::min(levels, *most) : levels;
 }
 
+/// The boundary of a volume on the limit, as pictures have it; empty without cells.
+Surface boundary_of(const HexMesh& mesh, RefineOptions refine, std::optional<int> most) {
+    if (mesh.cells.empty()) return {};
+    refine.levels = picture_levels(mesh, most);
+    return boundary_values(mesh, refine).surface;
+}
+
 }  // namespace
 
 void ShellScene::draw_into(Image& image, std::span<float> depth, const View& view) const {
-    draw_shells(image, depth, drawn, boundary, view, optics, {.samples = samples, .clip = clip});
+    draw_shells(image, depth, drawn, boundary, view, optics, {.samples = samples, .clip = clip, .whole = whole});
 }
 
 ShellScene make_shell_scene(const HexMesh& mesh, const Shells& shells, RefineOptions refine, std::optional<int> most,
@@ -47,12 +54,22 @@ ShellScene make_shell_scene(const HexMesh& mesh, const Shells& shells, RefineOpt
         for (const Index p : drawn.sources) colored.opacities.push_back(of_point[p]);
     }
     colored.surface = std::move(drawn.surface);
-    Surface boundary;
-    if (!mesh.cells.empty()) {
-        refine.levels = picture_levels(mesh, most);
-        boundary = boundary_values(mesh, refine).surface;
-    }
-    return {std::move(colored), std::move(boundary), std::move(control), optics, std::max(1, samples), clip};
+    return {std::move(colored), boundary_of(mesh, refine, most), std::move(control), optics, std::max(1, samples), clip};
+}
+
+ShellScene make_opaque_scene(const HexMesh& mesh, ColoredSurface drawn, RefineOptions refine, std::optional<int> most,
+                             const Optics& optics, int samples, const Clip& clip) {
+    return {std::move(drawn), boundary_of(mesh, std::move(refine), most), {}, optics, std::max(1, samples), clip, true};
+}
+
+View ended_at(const ShellScene& scene, View view) {
+    constexpr float kBeyond = 1 + 2e-5F;  // so that what touches an opaque boundary from inside does not open it
+    std::vector<float> ends = depths_of(scene.drawn.surface, view);
+    for (float& end : ends) end *= kBeyond;
+    const std::span<const float> before = view.ray_ends();
+    for (std::size_t i = 0; i < before.size(); ++i) ends[i] = std::min(ends[i], before[i]);
+    view.end_rays(std::move(ends));
+    return view;
 }
 
 }  // namespace subvol

@@ -70,6 +70,9 @@ def test_splats_for_other_viewers_stand_upright(tmp_path, command):
     (["--clip-box", "-.4,-.6,-.5,.5,.3,.6", "--slice", "0,0,0,0,1,0", "--around", "--look", "volume"],
      {"clip_box": (-.4, -.6, -.5, .5, .3, .6), "slice": (0, 0, 0, 0, 1, 0), "around": True, "look": "volume"}),
     (["--sheets", "40", "--look", "volume"], {"sheets": 40, "look": "volume"}),
+    (["--streamlines", "grad(density)", "--seeds", "line:-.5,0,0,.5,0,0", "--seed-count", "4", "--glyphs", "grad(density)", "--glyph-count", "9"],
+     {"streamlines": "grad(density)", "seeds": "line:-.5,0,0,.5,0,0", "seed_count": 4, "glyphs": "grad(density)", "glyph_count": 9}),
+    (["--glyphs", "grad(density)", "--method", "tets", "--look", "volume"], {"glyphs": "grad(density)", "method": "tets", "look": "volume"}),
     (["--lod", "20", "--per-edge", "2", "--look", "volume"], {"lod": 20, "per_edge": 2, "look": "volume"}),
 ])
 def test_pictures(tmp_path, command, flags, options):

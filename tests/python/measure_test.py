@@ -179,3 +179,26 @@ def test_a_field_is_approximated():
     assert report["refined"] == 1 and len(coarse.cells) == 64
     with pytest.raises(subvol.InvalidInput, match="there is no field to approximate"):
         subvol.approximate(control, subvol.HexMesh(fine.points, fine.cells))
+
+
+def test_streamlines_are_arrays_of_points_and_times(ball, tmp_path):
+    mesh = subvol.HexMesh(ball.points, ball.cells, {"U": np.tile([0.0, 0.0, 2.0], (len(ball.points), 1)), "T": ball.points[:, 2]})
+    with pytest.warns(subvol.SubvolWarning, match="1 of 3 seeds"):
+        lines = subvol.streamlines(mesh, "U", [[0, 0, 0], [9, 9, 9], [.3, 0, 0]], path=tmp_path / "lines.vtp")
+    assert lines.seeds.tolist() == [0, 2] and lines.outside.tolist() == [1] and lines.offsets[-1] == len(lines.points)
+    assert lines.ends == [("boundary", "boundary")] * 2
+    assert np.allclose(lines.points[:, 2], 2 * lines.times, atol=1e-6)
+    assert np.allclose(lines.fields["T"], lines.points[:, 2], atol=1e-6) and lines.fields["U"].shape == (len(lines.points), 3)
+    assert "Lines" in (tmp_path / "lines.vtp").read_text()
+    one = subvol.streamlines(mesh, "U", "at:0,0,0", stream_direction="forward", stream_time=.1)
+    assert one.times[-1] == .1 and one.ends == [("seed", "time")]
+    assert subvol.streamlines(mesh, "grad(T)", seed_count=5).report["streamlines"]["count"] == 5
+    for wrong in ("nowhere", ["at:0,0,0", "line:1"]):
+        with pytest.raises(subvol.InvalidInput, match="seeds"):
+            subvol.streamlines(mesh, "U", wrong)
+    with pytest.raises(subvol.InvalidInput, match="component"):
+        subvol.streamlines(mesh, "T")
+    with pytest.raises(subvol.InvalidInput, match="seeds: has no effect"):
+        subvol.render(mesh, seeds="at:0,0,0", size=(8, 8))
+    with pytest.raises(subvol.InvalidInput, match="streamlines: needs a mesh"):
+        subvol.render(subvol.sample(ball), streamlines="U", size=(8, 8))

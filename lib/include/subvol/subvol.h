@@ -88,6 +88,8 @@
 #include "subvol/split.h"
 #include "subvol/srgb.h"
 #include "subvol/stencil_table.h"
+#include "subvol/stream_surface.h"
+#include "subvol/streamlines.h"
 #include "subvol/surface.h"
 #include "subvol/topology.h"
 #include "subvol/transfer_function.h"

@@ -5,6 +5,7 @@
 
 #include "subvol/boundary_shading.h"
 #include "subvol/draw_shells.h"
+#include "subvol/flow_surface.h"
 #include "subvol/gl_device.h"
 #include "subvol/method.h"
 #include "subvol/picture_maker.h"

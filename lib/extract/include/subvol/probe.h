@@ -68,6 +68,13 @@ public:
     /// cost:   parallel; best are many places in one call. Bitwise the same for any number of threads
     [[nodiscard]] ProbeResult at(std::span<const Vec3> places, Progress* progress = nullptr) const;
 
+    /// `at` for places that are near to known ones, such as the next places of a path. The search goes from there through the
+    /// faces of cells and ends at the hull: what lies beyond it counts as outside, as does the other side of a crack.
+    ///
+    /// starts: places of the limit, one for each
+    /// throws: Error(InvalidInput) as `at` and `evaluate_limit`, or if there are not as many starts
+    [[nodiscard]] ProbeResult near(std::span<const Vec3> places, std::span<const LimitQuery> starts) const;
+
     [[nodiscard]] const HexMesh& mesh() const;
     /// Returns the bounding box of the limit, slightly enlarged.
     [[nodiscard]] Box box() const;

@@ -23,11 +23,16 @@ struct ColoredSurface {
 
 /// samples: those of the picture: n × n places in each pixel
 /// clip:    that of the picture, without its slices
+/// whole:   the clip cuts the volume, but not the triangles
 struct ShellOptions {
     Shading shading{};
     int samples = 1;
     Clip clip{};
+    bool whole = false;
 };
+
+/// The eye depths at which rays through the middles of pixels meet triangles, rows from the top; infinity where they do not.
+[[nodiscard]] std::vector<float> depths_of(const Surface& surface, const View& view);
 
 /// Draws triangles, lit on either side, into the finished picture of a volume: before it or behind it. Opaque ones that lie
 /// within the volume, or between parts of it, are drawn behind it, as far as that is transparent; where the volume is opaque

@@ -21,6 +21,7 @@ struct ShellScene {
     Optics optics;
     int samples = 1;
     Clip clip{};
+    bool whole = false;  // the clip cuts the volume alone
 
     /// Draws into a finished picture, as `subvol::draw_shells`.
     void draw_into(Image& image, std::span<float> depth, const View& view) const;
@@ -36,5 +37,14 @@ struct ShellScene {
 [[nodiscard]] ShellScene make_shell_scene(const HexMesh& mesh, const Shells& shells, RefineOptions refine,
                                           std::optional<int> most, const Optics& optics, int samples, const Clip& clip,
                                           std::span<const float> opacities = {});
+
+/// Opaque triangles in or about a volume, such as tubes along its streamlines, which the clip of the picture does not cut.
+///
+/// mesh: of the volume that may hide them, on the limit
+[[nodiscard]] ShellScene make_opaque_scene(const HexMesh& mesh, ColoredSurface drawn, RefineOptions refine,
+                                           std::optional<int> most, const Optics& optics, int samples, const Clip& clip);
+
+/// The view with rays that end at the triangles of a scene, so that a volume is drawn up to these.
+[[nodiscard]] View ended_at(const ShellScene& scene, View view);
 
 }  // namespace subvol
