@@ -54,6 +54,14 @@ struct PieceTables {
                                                             const std::filesystem::path& folder, const ReadOptions& options,
                                                             Progress* progress, std::string& why);
 
+/// Turns left-handed hexahedra of tables that have no other cells: the same cells as `orient_cells` of the whole mesh, if its
+/// cells can be of one hand at all (not where they meet as in a Möbius strip).
+///
+/// folder:  for the faces of cells
+/// returns: how many were turned
+/// cost:    where a cell has a negative volume, O(n log n), some 144 bytes a cell on disk and five in memory; else one pass
+std::size_t orient_tables(PieceTables& tables, const std::filesystem::path& folder, Progress* progress);
+
 /// Splits all cells of such tables into hexahedra, as `split_into_hexes` does: the same points and cells in the same order.
 ///
 /// The keys of new points (the sorted corners of their edge, face or cell) are sorted in buckets on disk, which numbers them;

@@ -52,17 +52,11 @@ private:
     std::array<SpillFile, 3> files_;
 };
 
-/// How many cells are turned round, and how many are folded.
-struct Hands {
-    std::size_t turned = 0, folded = 0;
-};
-
-/// The centres of the cells of the tables, and how many cells have a negative volume or are folded. Those of a negative volume
-/// are left-handed, or a point was moved through them: only their neighbours, which a brick has, tell (`orient_cells`).
-std::unique_ptr<CellCenters> centers_of(const PieceTables& tables, const std::filesystem::path& folder, Hands& found,
+/// The centres of the cells of the tables, and how many cells are folded.
+std::unique_ptr<CellCenters> centers_of(const PieceTables& tables, const std::filesystem::path& folder, std::size_t& folded,
                                         Progress* progress) {
     auto centers = std::make_unique<SpilledCenters>(tables.cells, folder);
-    std::atomic<std::size_t> turned = 0, folded = 0;
+    std::atomic<std::size_t> found = 0;
     std::vector<std::array<Index, 8>> cells;
     std::vector<Vec3> points;
     std::array<std::vector<double>, 3> coordinates;
@@ -75,22 +69,16 @@ std::unique_ptr<CellCenters> centers_of(const PieceTables& tables, const std::fi
         tables.coordinates.read_some(corners.points(), records_of(points));
         for (auto& values : coordinates) values.resize(cells.size());
         parallel_each(cells.size(), [&](std::size_t c) {
-            // The centre of a left-handed cell is computed from the cell as it will be stored, turned, so that the sum has the
-            // same order of terms as in memory, and the same bits.
             std::array<Vec3, 8> x;
             for (std::size_t k = 0; k < 8; ++k) x[k] = points[corners.place(cells[c][k])];
-            if (!tables.turned && cell_volume(x) < 0) {
-                std::swap_ranges(x.begin(), x.begin() + 4, x.begin() + 4);
-                ++turned;
-            }
-            if (is_folded(x)) ++folded;
+            if (is_folded(x)) ++found;
             Vec3 sum(0.0);
             for (const Vec3& corner : x) sum += corner;
             for (int axis = 0; axis < 3; ++axis) coordinates[static_cast<std::size_t>(axis)][c] = sum[axis] / 8.0;
         });
         for (std::size_t axis = 0; axis < 3; ++axis) centers->write(axis, begin, coordinates[axis]);
     }
-    found = {turned, folded};
+    folded = found;
     return centers;
 }
 
@@ -102,8 +90,7 @@ public:
     BrickMaker(const PieceTables& tables, const BrickCells& cells, std::string list, const PiecesOptions& pieces, int layers)
         : tables_(tables), cells_(cells), list_(std::move(list)), pieces_(pieces), layers_(layers) {}
 
-    /// hands: are counted of the owned cells
-    [[nodiscard]] MeshPiece make(std::size_t b, Hands& hands) const {
+    [[nodiscard]] MeshPiece make(std::size_t b) const {
         std::vector<Index> stored = cells_.stored(b);
         MeshPiece brick;
         const std::span<const Index> owned_cells = cells_.owned_by(b);
@@ -114,7 +101,7 @@ public:
             brick.cell_numbers.push_back(c);
             brick.owned_cells.push_back(owned);
         }
-        brick.mesh = mesh_of(stored, brick, b, hands);
+        brick.mesh = mesh_of(stored, brick, b);
         // Values at cells become the mean of the cells at each point. A point of the outermost layer lacks some of its cells,
         // so one layer more was gathered, which is dropped here.
         if (tables_.cell_values) {  // the last layer was for the values at the points of the others
@@ -127,7 +114,7 @@ public:
     }
 
 private:
-    [[nodiscard]] HexMesh mesh_of(const std::vector<Index>& stored, MeshPiece& brick, std::size_t b, Hands& hands) const {
+    [[nodiscard]] HexMesh mesh_of(const std::vector<Index>& stored, MeshPiece& brick, std::size_t b) const {
         MeshFile part;
         part.turned = tables_.turned;
         part.hexes.corners.resize(stored.size());
@@ -154,16 +141,7 @@ private:
         if (tables_.cell_values) {
             for (Index c = 0; c < stored.size(); ++c) part.hexes.numbers.push_back(c);
         }
-        std::vector<Index> first;
-        for (const auto& cell : part.hexes.corners) first.push_back(cell[0]);
         HexMesh mesh = assemble(std::move(part), list_, names_in_parts(), {.cell_values = CellValues::Mean}).mesh;
-        for (std::size_t c = 0; c < stored.size(); ++c) {
-            if (brick.owned_cells[c] == 0) continue;
-            std::array<Vec3, 8> x;
-            for (std::size_t k = 0; k < 8; ++k) x[k] = mesh.points[mesh.cells[c][k]];
-            hands.turned += mesh.cells[c][0] != first[c];
-            hands.folded += is_folded(x);
-        }
         std::erase_if(mesh.attributes,
                       [](const Attribute& field) { return field.name == kNodeNumbers || field.name == kGhosts; });
         return mesh;
@@ -218,8 +196,9 @@ PiecesSplit split_pieces(const std::filesystem::path& folder, const std::filesys
     const std::unique_ptr<PieceTables> tables =
         tables_of_pieces(*files, list, beside, pieces.read, options.progress, done.held_whole);
     if (!tables) return done;
-    Hands hands;
-    std::vector<std::uint32_t> brick_of_cell = bricks_of_cells(*centers_of(*tables, beside, hands, options.progress), options);
+    const std::size_t turned = orient_tables(*tables, beside, options.progress);
+    std::size_t folded = 0;
+    std::vector<std::uint32_t> brick_of_cell = bricks_of_cells(*centers_of(*tables, beside, folded, options.progress), options);
     ByteHash id;
     id.add({reinterpret_cast<const char*>(&tables->hash), sizeof tables->hash});
     // The id stands for all that the bricks depend on, so that an interrupted split is continued only if it would make the same
@@ -232,23 +211,16 @@ PiecesSplit split_pieces(const std::filesystem::path& folder, const std::filesys
                                              options.halo_layers + (tables->cell_values ? 1 : 0));
     const std::size_t count = cells.first.size() - 1;
     const BrickMaker maker(*tables, cells, list, pieces, options.halo_layers);
-    Hands of_bricks;
     for (std::size_t b = 0; b < count; ++b) {
         report_progress(options.progress, "split", b, count);
-        // Random bricks may be empty: they are not written. Bricks of an earlier run that are whole are not made again, unless
-        // there are cells to be counted in them.
-        if (cells.owned_by(b).empty()) continue;
-        const bool kept = writer.keeps(b);
-        if (kept && hands.turned == 0) continue;
-        const MeshPiece brick = maker.make(b, of_bricks);
-        if (!kept) writer.write(b, brick);
+        // Random bricks may be empty: they are not written. Bricks of an earlier run that are whole are not made again.
+        if (!cells.owned_by(b).empty() && !writer.keeps(b)) writer.write(b, maker.make(b));
     }
     report_progress(options.progress, "split", 1);
     done.result = writer.finish();
     done.warnings = std::move(tables->warnings);
-    if (hands.turned > 0) hands = of_bricks;
-    if (hands.turned > 0) done.warnings.push_back(cells_turned(hands.turned, tables->cells));
-    if (hands.folded > 0) done.warnings.push_back(cells_folded(hands.folded, tables->cells));
+    if (turned > 0) done.warnings.push_back(cells_turned(turned, tables->cells));
+    if (folded > 0) done.warnings.push_back(cells_folded(folded, tables->cells));
     return done;
 }
 

@@ -5,40 +5,26 @@
 // of their volumes with these signs gives its hand.
 #include <algorithm>
 #include <array>
-#include <tuple>
 #include <vector>
 
-#include "subvol/cell.h"
+#include "handed_face.h"
 #include "subvol/hex_mesh.h"
 
 namespace subvol {
 
-namespace {
+using detail::HandedFace;
 
-/// A face of a cell: its points from the smallest on, in the direction of the smaller neighbour; reversed: against the order
-/// that is outward for a right-handed cell.
-struct HandedFace {
-    std::array<Index, 4> points;
-    Index cell;
-    bool reversed;
-};
+namespace {
 
 std::vector<HandedFace> handed_faces(const HexMesh& mesh) {
     std::vector<HandedFace> faces;
-    faces.reserve(6 * mesh.cells.size());
+    faces.reserve(kCellFaces.size() * mesh.cells.size());
     for (std::size_t c = 0; c < mesh.cells.size(); ++c) {
-        for (const auto& side : kCellFaces) {
-            std::array<Index, 4> points{};
-            for (std::size_t k = 0; k < 4; ++k) points[k] = mesh.cells[c][static_cast<std::size_t>(side[k])];
-            std::rotate(points.begin(), std::ranges::min_element(points), points.end());
-            const bool reversed = points[1] > points[3];
-            if (reversed) std::swap(points[1], points[3]);
-            faces.push_back({points, static_cast<Index>(c), reversed});
+        for (std::size_t side = 0; side < kCellFaces.size(); ++side) {
+            faces.emplace_back(mesh.cells[c], static_cast<Index>(c), side);
         }
     }
-    std::ranges::sort(faces, [](const HandedFace& a, const HandedFace& b) {
-        return std::tie(a.points, a.cell) < std::tie(b.points, b.cell);
-    });
+    std::ranges::sort(faces);
     return faces;
 }
 

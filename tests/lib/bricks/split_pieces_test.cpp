@@ -156,6 +156,22 @@ TEST_F(SplitPieces, FoldedCellsAreNotTurned) {
     EXPECT_EQ(split_pieces(path("f.bricks"), pieces, {}, {.bricks = 3}).warnings, split.warnings) << "of bricks that were kept";
 }
 
+// A tower whose lower third is folded back: the cells there have negative volumes, though they are of the hand of those above,
+// which bricks at the bottom do not see.
+TEST_F(SplitPieces, TheHandOfACellIsThatOfItsPartInTheWholeMesh) {
+    HexMesh mesh = test::make_box(2, 2, 24);
+    for (Vec3& x : mesh.points) {
+        if (x.z < 8) x.z = 16.5 - x.z;  // the lower third is folded back over the middle
+    }
+    for (std::size_t c = 0; c < mesh.cells.size(); c += 3) {
+        std::swap_ranges(mesh.cells[c].begin(), mesh.cells[c].begin() + 4, mesh.cells[c].begin() + 4);
+    }
+    const std::filesystem::path pieces = write_pieces(mesh, cut(mesh, false), {});
+    expect_same_bricks(pieces, {.bricks = 6}, "");
+    EXPECT_THAT(split_pieces(path("h.bricks"), pieces, {}, {.bricks = 6}).warnings,
+                testing::Contains(HasSubstr("32 of 96 hexahedra")));
+}
+
 TEST_F(SplitPieces, OtherMeshesAreHeldWhole) {
     EXPECT_TRUE(split_pieces(path("b"), write("a.mesh", "")).held_whole.empty());
     const HexMesh mesh = test::make_box(2, 2, 2);
