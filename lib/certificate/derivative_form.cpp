@@ -359,11 +359,61 @@ DerivativeForm make_form(const BoxType& type) {
     return form;
 }
 
-// What a proof needs of a type, in which the last two axes may have any order.
+// Interval arithmetic in the norm that the proof needs, the largest row sum: a matrix of doubles, and by how much the row sums
+// of the difference to the true matrix may be off. `up` is more than the rounding of any sum or bound here.
+constexpr double kUnitRoundoff = 0x1p-53;
+
+double up(double x) {
+    return x * (1 + 0x1p-40);
+}
+
+double norm(const MatrixXd& matrix) {
+    return up(matrix.cwiseAbs().rowwise().sum().maxCoeff());
+}
+
+// The rounding of a sum of `terms` products, in parts of the sum of their magnitudes, whatever its order. Underflow is far
+// below.
+double rounding(Eigen::Index terms) {
+    return 1.01 * static_cast<double>(terms + 1) * kUnitRoundoff;
+}
+
+struct Enclosure {
+    MatrixXd near;
+    double off = 0;
+
+    [[nodiscard]] double most() const { return up(norm(near) + off); }
+};
+
+// by: exact, of the norm `by_norm`; terms: at most so many in a row of it
+template <class Matrix>
+Enclosure times(const Matrix& by, double by_norm, Eigen::Index terms, const Enclosure& with) {
+    return {by * with.near, up(by_norm * (with.off + rounding(terms) * norm(with.near)))};
+}
+
+Enclosure minus(const Enclosure& a, const Enclosure& b) {
+    MatrixXd near = a.near - b.near;
+    const double rounded = 2 * kUnitRoundoff * norm(near);
+    return {std::move(near), up(a.off + b.off + rounded)};
+}
+
+// Whether all entries are multiples of 2⁻ᵇⁱᵗˢ below a limit.
+bool is_dyadic(const MatrixXd& matrix, int bits, double limit) {
+    const MatrixXd scaled = matrix * std::ldexp(1.0, bits);
+    return scaled == MatrixXd(scaled.array().round()) && matrix.cwiseAbs().maxCoeff() < limit;
+}
+
+// What a proof needs of a type, in which the last two axes may have any order: 3 B and V, which are exact, and W, which is as
+// it is.
 struct ProofForm {
-    MatrixXd bernstein, kept, weights;  // B, V and W
-    std::array<Eigen::SparseMatrix<double>, 8> steps;
+    struct Step {
+        Eigen::SparseMatrix<double> matrix;
+        double norm = 0;
+        Eigen::Index terms = 0;  // in its fullest row
+    };
+    MatrixXd three_bernstein, kept, weights;
+    std::array<Step, 8> steps;
     double kappa = 0;
+    bool exact = false;  // the steps are dyadic, and 3 B takes V to three times the derivatives
 };
 
 BoxType in_order(BoxType type) {
@@ -374,11 +424,18 @@ BoxType in_order(BoxType type) {
 ProofForm proof_form(const BoxType& type, const BoxType& root, double kappa) {
     const BoxType sorted = in_order(type);
     const DerivativeForm& form = derivative_form(sorted);
-    ProofForm proof{form.bernstein, form.kept, {}, {}, sorted == root ? kappa : derivative_bound(sorted).value_or(HUGE_VAL)};
+    ProofForm proof{
+        form.three_bernstein, form.kept, {}, {}, sorted == root ? kappa : derivative_bound(sorted).value_or(HUGE_VAL)};
     const auto& steps = steps_of(type);
-    for (std::size_t s = 0; s < 8; ++s) proof.steps[s] = steps[s].sparseView();
+    constexpr int kBitsOfSteps = 10;
+    proof.exact = is_exact(form);
+    for (std::size_t s = 0; s < 8; ++s) {
+        proof.exact = proof.exact && is_dyadic(steps[s], kBitsOfSteps, 16);
+        const auto terms = (steps[s].array() != 0).rowwise().count().maxCoeff();
+        proof.steps[s] = {steps[s].sparseView(), norm(steps[s]), static_cast<Eigen::Index>(terms)};
+    }
     if (sorted != type) {
-        proof.bernstein = with_exchanged_axes(form.bernstein, sorted);
+        proof.three_bernstein = with_exchanged_axes(form.three_bernstein, sorted);
         const std::size_t n = size_of(sorted, 1), m = size_of(sorted, 2);
         for (std::size_t d = 0; d < differences_of(type); ++d) {
             proof.kept.row(index(exchanged(d, n, m))) = form.kept.row(index(d));
@@ -412,7 +469,8 @@ public:
 
     bool run(std::size_t& parts) {
         const ProofForm& form = of(root_);
-        const bool proved = visit(MatrixXd::Identity(form.bernstein.cols(), form.bernstein.cols()), form.bernstein, root_, 0);
+        const Eigen::Index count = form.three_bernstein.cols();
+        const bool proved = visit({MatrixXd::Identity(count, count)}, {form.three_bernstein}, root_, 0);
         parts = parts_;
         return proved;
     }
@@ -423,25 +481,32 @@ private:
         return found != forms_.end() ? found->second : forms_.emplace(type, proof_form(type, root_, kappa_)).first->second;
     }
 
-    // product: D of the way from the root; restricted: the root's polynomial on this part
-    bool visit(const MatrixXd& product, const MatrixXd& restricted, const BoxType& type, int level) {
+    // product:    D of the way from the root
+    // restricted: three times the root's polynomial on this part
+    bool visit(const Enclosure& product, const Enclosure& restricted, const BoxType& type, int level) {
         constexpr int kFirstLevel = 3, kLastLevel = 8;
-        constexpr double kRounding = 1e-9;
         constexpr std::size_t kMostParts = 8000;
         const ProofForm& form = of(type);
+        if (!form.exact) return false;
         if (level >= kFirstLevel) {
             if (++parts_ > kMostParts) return false;
-            const double gamma = (form.bernstein * product - restricted).cwiseAbs().rowwise().sum().maxCoeff() + kRounding;
+            const auto dense = [](const MatrixXd& by, const Enclosure& with) { return times(by, norm(by), by.cols(), with); };
+            const double gamma = up(minus(dense(form.three_bernstein, product), restricted).most() / 3);
             if (gamma <= kappa_) {
-                const double rho =
-                    (product - form.kept * (form.weights * product)).cwiseAbs().rowwise().sum().maxCoeff() + kRounding;
-                if (rho < 1 && gamma + rho * form.kappa <= kappa_) return true;
+                const double rho = minus(product, dense(form.kept, dense(form.weights, product))).most();
+                if (rho < 1 && up(gamma + rho * form.kappa) <= kappa_) return true;
             }
             if (level == kLastLevel) return false;
         }
         for (std::size_t s = 0; s < 8; ++s) {
             if (is_mirror_image(s, level)) continue;
-            if (!visit(form.steps[s] * product, restrictions_[s] * restricted, child_type(type, s), level + 1)) return false;
+            const ProofForm::Step& step = form.steps[s];
+            constexpr double kNormOfRestriction = 1;  // its rows are convex weights
+            if (!visit(times(step.matrix, step.norm, step.terms, product),
+                       times(restrictions_[s], kNormOfRestriction, restrictions_[s].cols(), restricted), child_type(type, s),
+                       level + 1)) {
+                return false;
+            }
         }
         return true;
     }
@@ -470,8 +535,12 @@ const DerivativeForm& derivative_form(const BoxType& type) {
     return kept.get(type, [&] { return make_form(type); });
 }
 
+// 3 B was halved at most four times since it was a multiple of 2⁻²⁴. With 32 bits, 6 of V and 8 for the number of terms, the
+// sums are exact in doubles.
 bool is_exact(const DerivativeForm& form) {
-    return form.three_bernstein * form.kept == three_targets(form.type, exponents_of(form.type));
+    constexpr int kBits = 28;
+    return is_dyadic(form.three_bernstein, kBits, 16) && is_dyadic(form.kept, 0, 64) && form.kept.rows() <= 256 &&
+           form.three_bernstein * form.kept == three_targets(form.type, exponents_of(form.type));
 }
 
 bool proves(const BoxType& type, double kappa, std::size_t& parts) {

@@ -61,10 +61,12 @@ struct DerivativeForm {
 /// Whether 3 B takes V exactly to three times the derivatives.
 [[nodiscard]] bool is_exact(const DerivativeForm& form);
 
-/// Proves that κ is a bound for a type, given those of its descendants (`derivative_bound`).
+/// Proves that κ is a bound for a type, given those of its descendants (`derivative_bound`), in interval arithmetic.
 ///
-/// All sums are of at most 180 products of numbers below 16, and the matrices D of dyadic numbers, so that rounding changes
-/// Σ|γ| and ρ by less than 1e-9, which is added to them. parts: how many were looked at
+/// D_s, 3 B and V are dyadic and exact, which is checked, and W may be any matrix. Their products are doubles with a bound of
+/// the row sums of all that was rounded, so that the sums Σ|γ| and ρ are upper bounds.
+///
+/// parts: how many were looked at
 [[nodiscard]] bool proves(const BoxType& type, double kappa, std::size_t& parts);
 
 }  // namespace subvol::detail

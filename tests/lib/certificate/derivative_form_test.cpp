@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <array>
 
 #include "cell_parts.h"
@@ -41,6 +42,19 @@ TEST(DerivativeForm, StepsAreExact) {
             const Eigen::MatrixXd scaled = step * 1024;
             EXPECT_EQ(scaled, Eigen::MatrixXd(scaled.array().round())) << name_of(type);
             EXPECT_EQ((step.rowwise().sum().array() - 1).abs().maxCoeff(), 0) << name_of(type);
+        }
+    }
+}
+
+// A bound is proved from those of the children's types, so none may wait for another in a circle.
+TEST(DerivativeForm, ChildrenOfTypesAreBoundedBeforeThem) {
+    const auto types = bounded_types();
+    for (std::size_t k = 0; k < types.size(); ++k) {
+        for (std::size_t child = 0; child < 8; ++child) {
+            BoxType type = child_type(types[k], child);
+            if (type[1] < type[2]) std::swap(type[1], type[2]);
+            const auto at = std::ranges::find(types, type);
+            EXPECT_LE(at - types.begin(), static_cast<std::ptrdiff_t>(k)) << name_of(types[k]) << child;
         }
     }
 }
