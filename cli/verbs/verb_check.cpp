@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "input.h"
+#include "mesh_figures.h"
 #include "options.h"
 #include "outputs.h"
 #include "quantities.h"
@@ -84,11 +85,8 @@ private:
 
     static void put(const FoldCheck& found, std::size_t cells, Report& report) {
         const FoldReport& all = found.report;
-        const std::size_t undecided = all.open + all.irregular;
-        report["verdict"] = all.folded > 0 ? "folded" : undecided > 0 ? "undecided" : "sound";
-        report["cells"] =
-            Json{{"proved", all.proved}, {"folded", all.folded}, {"undecided", undecided}, {"irregular", all.irregular}};
-        report["open_volume"] = all.open_volume + all.irregular_volume;
+        const Json facts = fold_facts(all);
+        for (const char* name : {"verdict", "cells", "open_volume"}) report[name] = facts.at(name);
         report["tests"] = all.tests;
         Json places = Json::array();
         for (const FoldPlace& at : found.places) {

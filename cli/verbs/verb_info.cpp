@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <optional>
 #include <span>
 
 #include "bricks_input.h"
@@ -14,6 +15,7 @@
 #include "points_input.h"
 #include "share.h"
 #include "steps.h"
+#include "subvol/certificate.h"
 #include "subvol/detail/byte_hash.h"
 #include "subvol/error.h"
 #include "subvol/join_grids.h"
@@ -44,9 +46,14 @@ public:
         : Verb(program, "info", "Print statistics of a mesh, a .vdb file or a kernel file, and check the mesh for errors.",
                "  subvol info model:ball\n"
                "  subvol info ball.vdb --at 0,0,0 --at .5,0,0\n"
-               "  subvol info --gl") {
+               "  subvol info part.vtu --folds\n"
+               "  subvol info --gl\n"
+               "\n"
+               "JSON with --folds: folds, with verdict, cells {proved, folded, undecided, irregular} and open_volume, as of "
+               "check.") {
         app().add_option("FILE", input_, text(input_help(), ", or a .vdb file, or points (.ply, .vtp, .svk)"));
         app().add_flag("--list-fields", list_fields_, "print the names of a mesh's fields only, one a line");
+        app().add_flag("--folds", folds_, "how many cells are proved not to fold in the limit of MCQ (check: where they fold)");
         app().add_flag("--gl", gl_, "list the OpenGL devices that can splat");
         app()
             .add_option("--at", points_,
@@ -77,6 +84,9 @@ public:
                         ranks() != nullptr ? "info in several processes" : "--part");
         }
         set_refinement();
+        if (folds_ && (list_fields_ || input_.empty() || shares(share_) || kind_ == InputKind::Bricks || is_no_mesh())) {
+            throw Error(ErrorCode::InvalidInput, "needs a mesh in one piece, and one process", "--folds", "no --folds");
+        }
         if (is_no_mesh()) refuse_mesh_options(app(), "needs a mesh; these are points or grids");
         if (list_fields_) return list_fields(report);
         if (gl_) describe_gl(report);
@@ -196,6 +206,11 @@ private:
                                         {"max", field.max}});
             if (!field.unit.empty()) report["fields"].back()["unit"] = field.unit;
         }
+        std::optional<FoldReport> folds;
+        if (folds_) {
+            folds = report.timed("folds", [&] { return check_folds(read.mesh, {.progress = report.progress()}).report; });
+            report["folds"] = fold_facts(*folds);
+        }
         if (tets_.asked()) {
             report["refined"] = json_of(report.unpack(tets_.figures(used_mesh(read.mesh, {}), 2, report.progress())));
         }
@@ -204,6 +219,7 @@ private:
         std::string lines = mesh_lines(read, about, report.json().at("seconds"), steps_text(report.json()));
         lines.pop_back();
         report.say(lines);
+        if (folds) report.say(fold_lines(*folds, read.mesh.cells.size()));
         if (tets_.asked()) report.say(refined_lines(report.json().at("refined")));
         report.all_said();
     }
@@ -373,6 +389,7 @@ private:
 
     std::string input_;
     bool gl_ = false;
+    bool folds_ = false;
     bool list_fields_ = false;
     InputKind kind_ = InputKind::Mesh;
     std::vector<std::string> points_;

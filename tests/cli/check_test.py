@@ -44,6 +44,18 @@ class Check(InFolder):
             code, found = self.check("a.mesh", "--scheme", scheme)
             self.assertEqual((code, found["verdict"]), (0, "sound"))
 
+    def test_info_counts_them_on_request(self):
+        (self.folder / "a.mesh").write_text(box(7, lambda x, y, z: (x + {3: .85, 5: -.85}.get(x, 0), y, z)))
+        _, found = self.check("a.mesh")
+        about = self.run_ok("info", "a.mesh", "--folds", "--json").json()
+        self.assertEqual(about["folds"], {key: found[key] for key in ("verdict", "cells", "open_volume")})
+        self.assertNotIn("folds", self.run_ok("info", "a.mesh", "--json").json())
+        said = [line for line in self.run_ok("info", "a.mesh", "--folds").out.splitlines() if line.startswith("folds")]
+        self.assertEqual(len(said), 1)
+        self.assertIn(f"{found['cells']['folded']} folded", said[0])
+        for arguments in (["--gl", "--folds"], ["a.mesh", "--folds", "--list-fields"], ["a.mesh", "--folds", "--json", "--part", "1/2"]):
+            self.assertEqual(subvol("info", *arguments, folder=self.folder).code, 2)
+
     def test_folds_are_mended(self):
         pushed = lambda x, y, z: (x + 1.3 * (x == y == z == 3), y, z)
         (self.folder / "a.mesh").write_text(box(6, pushed))
