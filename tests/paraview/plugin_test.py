@@ -147,7 +147,15 @@ class Plugin(unittest.TestCase):
         self.shown.SubvolMethod, self.shown.SubvolScheme, self.shown.SubvolOptions = "splat", "cc", "per_edge=2"
         self.assert_same(pixels(self.view, "scheme"), self.picture(scheme="cc", per_edge=2)[..., :3])
         self.shown.SubvolShade = 1
+        self.view.UseLight = 0  # the library's key light instead of ParaView's kit
+        key = simple.AddLight(view=self.view)
+        key.Type, key.Coords, key.Position, key.FocalPoint = "Directional", "Camera", [-0.5, 0.7, 0.5], [0, 0, 0]
         self.assert_same(pixels(self.view, "shade"), self.picture(scheme="cc", per_edge=2, shade=True)[..., :3])
+        lit = []
+        for place in ([-3, 0, 0.5], [0, 3, 0.5]):  # surfaces inside are lit on either side, so other sides would hardly differ
+            key.Position = place
+            lit.append(pixels(self.view, "light"))
+        self.assertGreater(np.abs(lit[0] - lit[1]).max(), 0.05)
 
     def test_opaque_geometry_inside_has_no_seam(self):
         ends, met = self.slice_at(0.2)
@@ -176,6 +184,30 @@ class Plugin(unittest.TestCase):
             self.assert_same(pixels(self.view, "moved"), self.picture()[..., :3])
         finally:
             self.mesh = whole
+
+    def test_stereo_is_two_cameras(self):
+        """Each eye stands beside the camera, and the point that it looks at stays in the middle."""
+        shift, distance = 20, np.linalg.norm(np.array(TARGET) - EYE)  # pixels that the line of sight is off the middle, doubled
+        per_slope = SIZE[1] / np.tan(np.radians(ANGLE / 2))  # pixels, doubled
+        slope = shift / per_slope
+        forward = (np.array(TARGET) - EYE) / distance
+        right = np.cross(forward, UP)
+        right /= np.linalg.norm(right)
+        wide = (SIZE[0] + shift, SIZE[1])
+        drawn = {}
+        for name, side in (("Left", -1), ("Right", 1)):
+            self.view.StereoType, self.view.StereoRender = name, 1
+            for angle in (1, 2 * np.degrees(np.arctan(slope))):  # VTK keeps its matrices until the camera changes
+                self.view.EyeAngle = angle
+                self.view.StillRender()
+            drawn[name] = pixels(self.view, f"stereo_{name}")
+            by = side * slope * distance * right
+            moved = subvol.Camera(EYE + by, TARGET + by, UP, ANGLE)
+            expected = np.asarray(subvol.render(self.mesh, camera=moved, size=wide, tf=self.transfer_function(), look="volume", opacity_unit=0.4,
+                                                backend="cpu"))[..., :3]
+            # The right eye sees what it looks at to the left of its line of sight.
+            self.assert_same(drawn[name], expected[:, :SIZE[0]] if side > 0 else expected[:, shift:])
+        self.assertGreater(np.abs(drawn["Left"] - drawn["Right"]).max(), 0.05)
 
     def test_a_larger_screenshot_of_tiles(self):
         large = [4 * side for side in SIZE]

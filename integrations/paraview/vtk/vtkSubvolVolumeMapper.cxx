@@ -3,6 +3,8 @@
 
 #include <vtkCamera.h>
 #include <vtkColorTransferFunction.h>
+#include <vtkLight.h>
+#include <vtkLightCollection.h>
 #include <vtkMatrix4x4.h>
 #include <vtkNew.h>
 #include <vtkObjectFactory.h>
@@ -22,6 +24,7 @@
 #include <vtk_glew.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <limits>
@@ -34,6 +37,7 @@
 #include "option_words.h"
 #include "subvol/error.h"
 #include "subvol/picture_maker.h"
+#include "subvol/shading.h"
 
 using namespace subvol;
 
@@ -63,21 +67,40 @@ struct Tile {
     bool operator==(const Tile&) const = default;
 };
 
-Tile tile_of(vtkRenderer& renderer) {
+/// Where a camera stands and looks to, in its own axes (right, up) as VTK's matrix says.
+///
+/// moved:      in stereo, to the right, world units
+/// off_middle: of the window, in its halves: the line of sight is so far to the left of the window's middle, and below
+struct Aim {
+    double moved = 0;
+    std::array<double, 2> off_middle{};
+};
+
+Aim aim_of(vtkRenderer& renderer) {
+    vtkMatrix4x4& matrix = *renderer.GetActiveCamera()->GetProjectionTransformMatrix(renderer.GetTiledAspectRatio(), -1, 1);
+    vtkCamera& camera = *renderer.GetActiveCamera();
+    const double* const center = camera.GetWindowCenter();
+    if (!camera.GetStereo()) return {0, {center[0], center[1]}};
+    // Stereo is a shear: x + s z + t in place of x, with z from the eye against the view.
+    const double right = matrix.GetElement(0, 0);
+    return {-matrix.GetElement(0, 3) / right, {matrix.GetElement(0, 2), matrix.GetElement(1, 2)}};
+}
+
+/// exact: the window may not be off the middle by parts of a pixel. Else it is moved by at most a quarter of one
+Tile tile_of(vtkRenderer& renderer, const Aim& aim, bool exact) {
     Tile tile;
     renderer.GetTiledSizeAndOrigin(&tile.width, &tile.height, &tile.window_x, &tile.window_y);
-    const double* const center = renderer.GetActiveCamera()->GetWindowCenter();
-    const auto place = [](double off_middle, int size, int& whole, int& first) {
+    const auto place = [&](double off_middle, int size, int& whole, int& first) {
         const double shift = off_middle * size;
         constexpr double kRounding = 1e-3;
-        if (std::abs(shift - std::round(shift)) > kRounding)
+        if (exact && std::abs(shift - std::round(shift)) > kRounding)
             throw Error(ErrorCode::InvalidInput, "the window is off the middle by parts of a pixel", "Camera");
         const auto pixels = static_cast<int>(std::lround(shift));
         whole = size + std::abs(pixels);
         first = std::max(0, pixels);
     };
-    place(center[0], tile.width, tile.whole_width, tile.x);
-    place(center[1], tile.height, tile.whole_height, tile.y);
+    place(aim.off_middle[0], tile.width, tile.whole_width, tile.x);
+    place(aim.off_middle[1], tile.height, tile.whole_height, tile.y);
     return tile;
 }
 
@@ -116,11 +139,14 @@ Vec3 vec(const double* x) {
     return {x[0], x[1], x[2]};
 }
 
-Camera camera_of(vtkCamera& camera, const Placement& placement, double taller) {
+/// moved: to the right
+Camera camera_of(vtkCamera& camera, const Placement& placement, double taller, double moved) {
     constexpr double kDegree = std::numbers::pi / 180;
     const double half_angle = camera.GetViewAngle() / 2 * kDegree;
-    return {.eye = placement.in_mesh(vec(camera.GetPosition())),
-            .target = placement.in_mesh(vec(camera.GetFocalPoint())),
+    const Vec3 eye = vec(camera.GetPosition()), target = vec(camera.GetFocalPoint());
+    const Vec3 by = moved * glm::normalize(glm::cross(target - eye, vec(camera.GetViewUp())));
+    return {.eye = placement.in_mesh(eye + by),
+            .target = placement.in_mesh(target + by),
             .up = placement.direction_in_mesh(vec(camera.GetViewUp())),
             .fovy_deg = 2 * std::atan(taller * std::tan(half_angle)) / kDegree,
             .ortho_height = camera.GetParallelProjection() ? 2 * taller * camera.GetParallelScale() / placement.scale : 0};
@@ -130,9 +156,37 @@ Camera camera_of(vtkCamera& camera, const Placement& placement, double taller) {
 void check_camera(vtkCamera& camera) {
     const double* const shear = camera.GetViewShear();
     if (shear[0] == 0 && shear[1] == 0 && !camera.GetUseHorizontalViewAngle() && !camera.GetUseOffAxisProjection() &&
-        !camera.GetStereo())
+        !(camera.GetStereo() && camera.GetParallelProjection()))
         return;
-    throw Error(ErrorCode::InvalidInput, "the camera is stereo, sheared, or its angle is that of the width", "Camera");
+    throw Error(ErrorCode::InvalidInput,
+                "the camera is sheared, in stereo without perspective, or its angle is that of the width", "Camera");
+}
+
+/// Light from the direction of the brightest light that is not at the eye; without one, all of it comes from the eye.
+Shading shading_of(vtkRenderer& renderer) {
+    Shading shading;
+    shading.key = {0, 0, -1};
+    vtkCamera& camera = *renderer.GetActiveCamera();
+    const Vec3 forward = glm::normalize(vec(camera.GetDirectionOfProjection()));
+    const Vec3 right = glm::normalize(glm::cross(forward, vec(camera.GetViewUp()))), up = glm::cross(right, forward);
+    double brightest = 0;
+    vtkLightCollection& lights = *renderer.GetLights();
+    vtkCollectionSimpleIterator at;
+    lights.InitTraversal(at);
+    while (vtkLight* const light = lights.GetNextLight(at)) {
+        const Vec3 color = light->GetIntensity() * vec(light->GetDiffuseColor());
+        const double bright = glm::dot(color, Vec3(0.2126, 0.7152, 0.0722));
+        double from[3], to[3];
+        light->GetTransformedPosition(from);
+        light->GetTransformedFocalPoint(to);
+        const Vec3 towards = vec(from) - vec(to);
+        if (!light->GetSwitch() || light->LightTypeIsHeadlight() || !(bright > brightest) || !(glm::length(towards) > 0))
+            continue;
+        brightest = bright;
+        const Vec3 unit = glm::normalize(towards);
+        shading.key = {glm::dot(unit, right), glm::dot(unit, up), glm::dot(unit, forward)};
+    }
+    return shading;
 }
 
 /// The eye depths of what has been drawn in a tile, in the mesh's units, rows from the top; those of the rest of the picture
@@ -222,6 +276,7 @@ struct vtkSubvolVolumeMapper::State {
     MeshKey mesh_key;
     ReadResult read;
     vtkMTimeType maker_made = 0;  // the mapper's options at that time
+    Vec3 maker_light{0.0};        // to the key light, where surfaces are lit
     std::unique_ptr<PictureMaker> maker;
 
     struct PictureKey {
@@ -263,17 +318,22 @@ struct vtkSubvolVolumeMapper::State {
     }
 
     /// Makes what does not depend on the view, unless it is there.
-    void prepare(const MeshKey& key, vtkMTimeType options_changed) {
+    void prepare(const MeshKey& key, vtkMTimeType options_changed, const Shading& light) {
         if (!(mesh_key == key)) {
             maker.reset();
             mesh_key = {};
             read = mesh_of_data(*key.grid, key.shown);
             mesh_key = key;
         }
-        if (maker && maker_made == options_changed) return;
+        constexpr double kSame = 1e-6;  // lights that turn with the camera are the same but for rounding
+        MethodOptions made = method_options();
+        const bool lit = made.splat.shading.has_value();
+        if (maker && maker_made == options_changed && (!lit || glm::length(light.key - maker_light) < kSame)) return;
         maker.reset();
-        maker = std::make_unique<PictureMaker>(PictureBody{.mesh = read.mesh}, method_options());
+        if (lit) made.splat.shading = light;
+        maker = std::make_unique<PictureMaker>(PictureBody{.mesh = read.mesh}, made);
         maker_made = options_changed;
+        maker_light = light.key;
     }
 
     void draw_kept(vtkRenderer& renderer) {
@@ -359,20 +419,23 @@ void vtkSubvolVolumeMapper::Render(vtkRenderer* renderer, vtkVolume* volume) {
         vtkCamera& camera = *renderer->GetActiveCamera();
         check_camera(camera);
         const Placement placement = placement_of(*volume);
-        const Tile tile = tile_of(*renderer);
-        const Camera eye = camera_of(camera, placement, tile.taller());
+        const Aim aim = aim_of(*renderer);
+        const Tile tile = tile_of(*renderer, aim, !camera.GetStereo());
+        const Camera eye = camera_of(camera, placement, tile.taller(), aim.moved);
         const bool turning = renderer->GetRenderWindow()->GetDesiredUpdateRate() > kManyFrames;
         const int reduction = !tile.is_whole() ? 1 : Reduction > 0 ? Reduction : turning ? kReductionWhileTurning : 1;
-        State::PictureKey key{.mapper = GetMTime(),
-                              .property = property.GetMTime(),
-                              .colors = property.GetRGBTransferFunction()->GetMTime(),
-                              .opacities = property.GetScalarOpacity()->GetMTime(),
-                              .planes = ClippingPlanes != nullptr ? ClippingPlanes->GetMTime() : 0,
-                              .tile = tile,
-                              .reduction = reduction,
-                              .camera = {eye.eye.x, eye.eye.y, eye.eye.z, eye.target.x, eye.target.y, eye.target.z, eye.up.x,
-                                         eye.up.y, eye.up.z, eye.fovy_deg, eye.ortho_height, placement.scale},
-                              .depths = opaque_depths(*renderer, tile, placement.scale)};
+        const Shading light = shading_of(*renderer);
+        State::PictureKey key{
+            .mapper = GetMTime(),
+            .property = property.GetMTime(),
+            .colors = property.GetRGBTransferFunction()->GetMTime(),
+            .opacities = property.GetScalarOpacity()->GetMTime(),
+            .planes = ClippingPlanes != nullptr ? ClippingPlanes->GetMTime() : 0,
+            .tile = tile,
+            .reduction = reduction,
+            .camera = {eye.eye.x, eye.eye.y, eye.eye.z, eye.target.x, eye.target.y, eye.target.z, eye.up.x, eye.up.y, eye.up.z,
+                       eye.fovy_deg, eye.ortho_height, placement.scale, light.key.x, light.key.y, light.key.z},
+            .depths = opaque_depths(*renderer, tile, placement.scale)};
         const State::MeshKey mesh_key{
             grid, std::max(grid->GetMTime(), array->GetMTime()),
             ShownArray{array->GetName() != nullptr ? array->GetName() : "", at_cells != 0, component_of(property, *array)}};
@@ -382,7 +445,7 @@ void vtkSubvolVolumeMapper::Render(vtkRenderer* renderer, vtkVolume* volume) {
             return;
         }
         state.picture_key = {};
-        state.prepare(mesh_key, state.changed);
+        state.prepare(mesh_key, state.changed, light);
         PictureStyle style = state.method_options().style;
         for (int i = 0; ClippingPlanes != nullptr && i < ClippingPlanes->GetNumberOfItems(); ++i) {
             vtkPlane& plane = *ClippingPlanes->GetItem(i);  // its normal points to what is left
