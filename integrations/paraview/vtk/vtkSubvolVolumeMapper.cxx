@@ -190,12 +190,13 @@ Shading shading_of(vtkRenderer& renderer) {
 }
 
 /// The eye depths of what has been drawn in a tile, in the mesh's units, rows from the top; those of the rest of the picture
-/// are 0, so that nothing is drawn there.
+/// are 0, so that nothing is drawn there. None if nothing has been drawn and the tile is the whole picture.
 std::vector<float> opaque_depths(vtkRenderer& renderer, const Tile& tile, double scale) {
     auto& window = *vtkOpenGLRenderWindow::SafeDownCast(renderer.GetRenderWindow());
     std::vector<float> buffer(static_cast<std::size_t>(tile.width) * static_cast<std::size_t>(tile.height));
     window.GetZbufferData(tile.window_x, tile.window_y, tile.window_x + tile.width - 1, tile.window_y + tile.height - 1,
                           buffer.data());
+    if (tile.is_whole() && std::ranges::all_of(buffer, [](float z) { return z >= 1; })) return {};
     vtkCamera& camera = *renderer.GetActiveCamera();
     const double near = camera.GetClippingRange()[0], far = camera.GetClippingRange()[1];
     const bool parallel = camera.GetParallelProjection() != 0;
@@ -454,7 +455,7 @@ void vtkSubvolVolumeMapper::Render(vtkRenderer* renderer, vtkVolume* volume) {
         }
         state.maker->set_style(style);
         View view(eye, tile.whole_width, tile.whole_height);
-        view.end_rays(key.depths);
+        if (!key.depths.empty()) view.end_rays(key.depths);
         if (reduction > 1)
             view = view.resized((tile.width + reduction - 1) / reduction, (tile.height + reduction - 1) / reduction);
         const Optics optics(function_of(property), property.GetScalarOpacityUnitDistance() / placement.scale);
