@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <map>
 #include <set>
+#include <utility>
 
 #include "extreme_bounds.h"
 #include "mesh_subset.h"
@@ -196,26 +197,37 @@ MeshSubset around(const HexMesh& mesh, std::vector<std::uint8_t> cells) {
 
 void ExtremeSearch::find(const HexMesh& control, const SchemeOptions& scheme, const LimitExtent& extent, Progress* progress,
                          std::vector<PartMeasure>& found) {
-    constexpr double kPartOfTolerance = 0.1;
-    constexpr std::size_t kManyBoxes = 64;
-    leave_out_copies();
     LimitOptions options{.scheme = scheme};
     options.scheme.crease_angle_deg.reset();
+    halve_all(control, options, extent, progress);
+    std::vector<std::uint8_t> cells(control.cells.size(), 0);
+    for (const Side& side : sides_) {
+        for (const Start& start : side.starts) cells[start.cell] = 1;
+    }
+    if (std::ranges::find(cells, 1) == cells.end()) return;
+    climb_sides(Surroundings(around(control, std::move(cells)), options, extent), progress, found);
+}
+
+/// Attribute by attribute where they have many boxes, as a place costs as much as it has channels; the others together.
+void ExtremeSearch::halve_all(const HexMesh& control, LimitOptions options, const LimitExtent& extent, Progress* progress) {
+    constexpr double kPartOfTolerance = 0.1;
+    constexpr std::size_t kManyBoxes = 64;
     options.tolerance = std::max(options.tolerance, kPartOfTolerance * tolerance_);
+    leave_out_copies();
     std::vector<std::size_t> attribute_of;  // of each channel
     for (std::size_t a = 0; a < control.attributes.size(); ++a) {
         attribute_of.insert(attribute_of.end(), static_cast<std::size_t>(control.attributes[a].channels), a);
     }
     const auto attribute = [&](const CellBox& box) { return attribute_of[channel_of(box.side)]; };
-    // An attribute with many boxes is looked at alone, as places cost as much as they have channels; the others together.
-    std::vector<std::size_t> boxes(control.attributes.size(), 0);
-    for (const CellBox& box : boxes_) ++boxes[attribute(box)];
+    std::vector<std::size_t> counts(control.attributes.size(), 0);
+    for (const CellBox& box : boxes_) ++counts[attribute(box)];
     std::size_t room = std::max(kLeastBoxes, control.cells.size() / kCellsOfBox);
-    std::vector<CellBox> waiting = std::move(boxes_);
+    std::vector<CellBox> waiting = std::exchange(boxes_, {});
     while (!waiting.empty()) {
         const std::size_t first = attribute(waiting.front()), all = waiting.size();
-        const auto is_now = [&](std::size_t a) { return a == first || std::max(boxes[a], boxes[first]) < kManyBoxes; };
-        boxes_.clear();
+        const auto is_now = [&](std::size_t a) {
+            return counts[a] > 0 && (a == first || std::max(counts[a], counts[first]) < kManyBoxes);
+        };
         std::vector<std::uint8_t> cells(control.cells.size(), 0);
         std::erase_if(waiting, [&](const CellBox& box) {
             if (!is_now(attribute(box))) return false;
@@ -224,29 +236,20 @@ void ExtremeSearch::find(const HexMesh& control, const SchemeOptions& scheme, co
             return true;
         });
         MeshSubset part = around(control, std::move(cells));
-        LimitExtent extent_of_part = extent;
-        extent_of_part.ranges.clear();
-        std::vector<Attribute> kept;
+        const std::vector<Attribute> before = std::exchange(part.mesh.attributes, {});
+        LimitExtent of_part = extent;
+        of_part.ranges.clear();
         std::vector<std::size_t> columns;
-        for (std::size_t a = 0, column = 0; a < control.attributes.size(); ++a) {
-            const auto channels = static_cast<std::size_t>(control.attributes[a].channels);
-            for (std::size_t k = 0; k < channels; ++k) columns.push_back(column + k);
-            if (boxes[a] == 0 || !is_now(a)) continue;
-            column += channels;
-            kept.push_back(std::move(part.mesh.attributes[a]));
-            extent_of_part.ranges.push_back(extent.ranges[a]);
+        for (std::size_t a = 0, column = 0; a < before.size(); ++a) {
+            for (int k = 0; k < before[a].channels; ++k) columns.push_back(column + static_cast<std::size_t>(k));
+            if (!is_now(a)) continue;
+            column += static_cast<std::size_t>(before[a].channels);
+            part.mesh.attributes.push_back(before[a]);
+            of_part.ranges.push_back(extent.ranges[a]);
         }
-        part.mesh.attributes = std::move(kept);
         const std::size_t share = std::min(room, std::max(room * boxes_.size() / all, kBoxesAtOnce));
-        room -= halve_boxes(Surroundings(std::move(part), options, extent_of_part), columns, share, progress);
+        room -= halve_boxes(Surroundings(std::move(part), options, of_part), columns, share, progress);
     }
-    std::vector<std::uint8_t> cells(control.cells.size(), 0);
-    for (const Side& side : sides_) {
-        for (const Start& start : side.starts) cells[start.cell] = 1;
-    }
-    if (std::ranges::find(cells, 1) == cells.end()) return;
-    options.tolerance = LimitOptions{}.tolerance;
-    climb_sides(Surroundings(around(control, std::move(cells)), options, extent), progress, found);
 }
 
 /// The most promising boxes first, some at once.

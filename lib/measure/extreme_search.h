@@ -118,6 +118,7 @@ private:
     struct Surroundings;
 
     [[nodiscard]] std::size_t channel_of(std::size_t side) const { return side / 2 % scales_.size(); }
+    void halve_all(const HexMesh& control, LimitOptions options, const LimitExtent& extent, Progress* progress);
     /// Halves the boxes. Returns how many were.
     ///
     /// columns: of each channel, its number among those of the surroundings, if these have it
