@@ -15,9 +15,9 @@ class Editor {
     this.selected = 0;
   }
 
-  // transfer: {color, opacity}, changed in place; scale: colours over [0,1]
-  set(field, transfer, scale, colorRange, histogram) {
-    Object.assign(this, { field, transfer, scale, colorRange, histogram });
+  // transfer: {color, opacity}, changed in place; colors: {scale, kind, bands, tips}, as of `spreadColors`, colours over [0,1]
+  set(field, transfer, colors, colorRange, histogram) {
+    Object.assign(this, { field, transfer, colors, colorRange, histogram });
     this.low = Math.min(field.min, transfer.opacity[0][0]);
     this.high = Math.max(field.max, transfer.opacity.at(-1)[0]);
     if (!(this.high > this.low)) this.high = this.low + 1;
@@ -25,8 +25,8 @@ class Editor {
   }
 
   recolor() {
-    const [a, b] = this.colorRange;
-    this.transfer.color = this.scale.map(([t, ...rgb]) => [a + t * (b - a), ...rgb]);
+    const { scale, kind, bands, tips } = this.colors, positive = this.colorRange[0] > 0;
+    this.transfer.color = spreadColors(scale, this.colorRange, kind === 'log' && !positive ? 'linear' : kind, bands, tips);
   }
 
   // Places in CSS pixels.

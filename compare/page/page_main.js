@@ -3,6 +3,14 @@
 
 const kFirstSheets = 1e9;  // as few sheets as there may be: something is soon to be seen, even without a GPU
 
+const kCoarsest = 16, kFirstSide = 96;  // parts of a side; about how many pixels the sides of the first picture have
+
+// A view for a picture of fewer pixels.
+const smaller = (view, c) => {
+  const size = (n) => Math.max(16, Math.round(n / c));
+  return { ...view, width: size(view.width), height: size(view.height) };
+};
+
 const $ = (id) => document.getElementById(id);
 
 function fail(error) {
@@ -33,11 +41,12 @@ class Page {
     this.resize();
   }
 
-  // The transfer function of the file: its colours over [0,1], and their range.
+  // The transfer function of the file: its colours over [0,1] without those of the tips, and their range.
   given(field) {
-    const a = field.color[0][0], b = field.color.at(-1)[0] > a ? field.color.at(-1)[0] : a + 1;
+    const a = field.color[0][0], b = field.color.at(-1)[0] > a ? field.color.at(-1)[0] : a + 1, tips = tipsOf(field.color);
+    const inner = field.color.slice(tips.below ? 1 : 0, tips.above ? -1 : undefined);
     return { transfer: { color: field.color.map((k) => k.slice()), opacity: field.opacity.map((k) => k.slice()) },
-      scale: field.color.map(([v, ...rgb]) => [(v - a) / (b - a), ...rgb]), range: [a, b] };
+      colors: { scale: inner.map(([v, ...rgb]) => [(v - a) / (b - a), ...rgb]), kind: 'linear', bands: 0, tips }, range: [a, b] };
   }
 
   fillControls() {
@@ -62,7 +71,10 @@ class Page {
     this.tellOpacities();
     this.painter.setScene(this.step, this.field);
     const current = this.transfers[this.field];
-    this.editor.set(this.head.fields[this.field], current.transfer, current.scale, current.range, this.histogram());
+    this.editor.set(this.head.fields[this.field], current.transfer, current.colors, current.range, this.histogram());
+    $('scale').value = current.colors.kind;
+    $('bands').value = current.colors.bands;
+    $('scale').options[1].disabled = !(current.range[0] > 0);
     this.painter.setTransfer(current.transfer, this.head.opacityUnit);
     this.drawLegend();
   }
@@ -92,12 +104,10 @@ class Page {
     on('steps', 'input', step);
     on('look', 'change', (e) => { this.look = e.value; this.tellOpacities(); this.leaveComparison(); this.drawLegend(); this.refresh(); });
     on('colors', 'change', (e) => {
-      const current = this.transfers[this.field];
-      current.scale = this.editor.scale = e.value ? this.head.presets[e.value] : this.given(this.head.fields[this.field]).scale;
-      this.editor.recolor();
-      this.editor.draw();
-      this.transferChanged(false);
+      this.recolor({ scale: e.value ? this.head.presets[e.value] : this.given(this.head.fields[this.field]).colors.scale });
     });
+    on('scale', 'change', (e) => this.recolor({ kind: e.value }));
+    on('bands', 'change', (e) => this.recolor({ bands: Number(e.value) }));
     on('restore', 'click', () => {
       this.transfers[this.field] = this.given(this.head.fields[this.field]);
       $('colors').value = '';
@@ -173,7 +183,16 @@ class Page {
     });
   }
 
+  // change: of the colours of the field that is shown
+  recolor(change) {
+    Object.assign(this.transfers[this.field].colors, change);
+    this.editor.recolor();
+    this.editor.draw();
+    this.transferChanged(false);
+  }
+
   transferChanged(opacities) {
+    $('scale').options[1].disabled = !(this.transfers[this.field].range[0] > 0);
     this.painter.setTransfer(this.transfers[this.field].transfer, this.head.opacityUnit);
     this.leaveComparison();
     this.drawLegend();
@@ -239,31 +258,38 @@ class Page {
         this.shown();
         continue;
       }
-      await this.drawCoarse(view, clip);
+      const slow = await this.drawCoarse(view, clip);
+      // Where even a coarse picture takes long, finer ones come one after the other: each costs a part of the next.
+      for (let c = this.coarseness / 2; slow && c >= 2 && token === this.token; c /= 2) {
+        const better = await this.drawFine(smaller(view, c), clip, () => token !== this.token, c);
+        if (better) this.painter.show(better, this.background());
+      }
       if (token !== this.token) continue;
-      const fine = await this.drawFine(view, clip, () => token !== this.token);
+      const fine = await this.drawFine(view, clip, () => token !== this.token, 1);
       if (fine) this.painter.show(fine, this.background());
       if (fine) this.shown();
     }
   }
 
-  // A picture of fewer pixels and sheets, as many as a fifteenth of a second allows.
+  // A picture of fewer pixels and sheets, as many as a fifteenth of a second allows. Returns whether it took long all the same.
   async drawCoarse(view, clip) {
-    const c = this.coarseness, sheets = this.firstPicture ? 1 + c / 2 : kFirstSheets, size = (n) => Math.max(16, Math.round(n / c));
-    const start = performance.now(), work = this.painter.drawVolume({ ...view, width: size(view.width), height: size(view.height) }, clip, sheets);
+    if (!this.firstPicture) this.coarseness = Math.max(8, Math.min(kCoarsest, Math.sqrt(view.width * view.height) / kFirstSide));
+    const c = this.coarseness, sheets = this.firstPicture ? 1 + c / 2 : kFirstSheets;
+    const start = performance.now(), work = this.painter.drawVolume(smaller(view, c), clip, sheets);
     let step = work.next();
     while (!step.done) step = work.next();
     this.painter.show(step.value, this.background());
     await this.gl.done();
     const milliseconds = performance.now() - start;
-    if (milliseconds > 120) this.coarseness = Math.min(8, c * 1.5);
+    if (milliseconds > 120) this.coarseness = Math.min(milliseconds > 480 ? kCoarsest : Math.max(8, c), c * 1.5);
     if (milliseconds < 40) this.coarseness = Math.max(1.01, c / 1.25);
     this.shown();
+    return milliseconds > 480;
   }
 
-  // Sheet after sheet, with pauses in which the page can react. Returns nothing if it was given up.
-  async drawFine(view, clip, givenUp) {
-    const work = this.painter.drawVolume(view, clip, 1);
+  // Sheet after sheet, with pauses in which the page can react. Returns nothing if it was given up. coarser: fewer sheets
+  async drawFine(view, clip, givenUp, coarser) {
+    const work = this.painter.drawVolume(view, clip, coarser);
     let batch = 2, step = work.next();
     while (!step.done) {
       const start = performance.now();
@@ -320,6 +346,16 @@ class Page {
     for (let y = top; y < bottom; ++y) {
       c.fillStyle = cssColor(colorAt(transfer, field.min + (bottom - y) / (bottom - top) * (high - field.min)));
       c.fillRect(left, y, right - left, 1.5);
+    }
+    const tips = tipsOf(transfer.color), half = (right - left) / 2;
+    for (const [rgb, y, out] of [[tips.below, bottom, 9], [tips.above, top, -9]]) {  // triangles in the colours beyond the range
+      if (!rgb) continue;
+      c.fillStyle = cssColor(rgb);
+      c.beginPath();
+      c.moveTo(left, y);
+      c.lineTo(right, y);
+      c.lineTo(left + half, y + out);
+      c.fill();
     }
   }
 
@@ -378,7 +414,7 @@ class Page {
     this.drawing = true;
     try {
       const view = this.camera.view(width, height), clip = this.clipPlane();
-      const drawn = this.look === 'solid' ? this.painter.drawSolid(view, clip, 2) : await this.drawFine(view, clip, () => false);
+      const drawn = this.look === 'solid' ? this.painter.drawSolid(view, clip, 2) : await this.drawFine(view, clip, () => false, 1);
       return this.painter.pixels(drawn);
     } finally {
       this.drawing = false;

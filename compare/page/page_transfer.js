@@ -20,6 +20,44 @@ function between(knots, v, channel) {
 function colorAt(transfer, v) { return [1, 2, 3].map((c) => between(transfer.color, v, c)); }
 function alphaAt(transfer, v) { return between(transfer.opacity, v, 1); }
 
+// How far along a range a value is, 0 to 1, by a scale: linear, of logarithms, or of these on both sides of 0, linear within a
+// hundredth of the larger end. And the value that is so far along.
+function scaleOf(kind, [a, b]) {
+  const near = Math.max(Math.abs(a), Math.abs(b)) / 100;
+  const to = kind === 'log' ? Math.log : kind === 'symlog' ? (v) => Math.sign(v) * Math.log1p(Math.abs(v) / near) : (v) => v;
+  const from = kind === 'log' ? Math.exp : kind === 'symlog' ? (x) => Math.sign(x) * near * Math.expm1(Math.abs(x)) : (x) => x;
+  const low = to(a), high = to(b);
+  return (t) => t <= 0 ? a : t >= 1 ? b : from(low + t * (high - low));
+}
+
+// Knots of colours over a range, from those over [0,1]. bands: as many colours, the first and the last those of the ends; 0: no
+// bands. tips: the colours below and above the range, or null
+function spreadColors(scale, range, kind, bands, tips) {
+  const valueAt = scaleOf(kind, range), knots = [], colors = { color: scale };
+  if (bands > 0) {
+    for (let i = 0; i < bands; ++i) {
+      const rgb = colorAt(colors, bands > 1 ? i / (bands - 1) : 0.5);
+      knots.push([valueAt(i / bands), ...rgb], [valueAt((i + 1) / bands), ...rgb]);
+    }
+  } else if (kind === 'linear') {
+    for (const [t, ...rgb] of scale) knots.push([valueAt(t), ...rgb]);
+  } else {
+    const places = [...new Set([...scale.map((knot) => knot[0]), ...Array.from({ length: 65 }, (_, i) => i / 64)])].sort((a, b) => a - b);
+    for (const t of places) knots.push([valueAt(t), ...colorAt(colors, t)]);
+  }
+  if (tips.below) knots.unshift([range[0], ...tips.below]);
+  if (tips.above) knots.push([range[1], ...tips.above]);
+  return knots;
+}
+
+// The colours that a function has below and above its range, where they jump at its ends: knots at one value, which the command
+// moves a billionth of the range apart.
+function tipsOf(color) {
+  const near = 2e-9 * (color.at(-1)[0] - color[0][0]);
+  const tip = (end, inner) => inner && Math.abs(end[0] - inner[0]) <= near ? end.slice(1) : null;
+  return { below: tip(color[0], color[1]), above: tip(color.at(-1), color.at(-2)) };
+}
+
 // Prefix integrals of extinction and emission, as in lib/light: rows for what is below and above the cells at the ends. Within a
 // cell the integral from its lower end to the part s is s · (mean − (1 − s) · bend). unit: of the opacities
 function makeTable(transfer, unit) {

@@ -228,6 +228,12 @@ private:
             FileSet& whole = sets_[set.name];
             for (const Index number : set.numbers) whole.numbers.push_back(first + number);
         }
+        // A block is a set of cells, too, by which parts are chosen; the readers of some formats have made these sets.
+        if (piece.blocks.size() == 1 &&
+            std::ranges::find(piece.sets, piece.blocks[0].name, &FileSet::name) == piece.sets.end()) {
+            FileSet& whole = sets_[piece.blocks[0].name];
+            for (std::size_t number = first; number < cells_; ++number) whole.numbers.push_back(static_cast<Index>(number));
+        }
         std::vector<Index> nodes;
         for (std::size_t k = 0; k < piece.curved.size(); ++k) {
             nodes.clear();

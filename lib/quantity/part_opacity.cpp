@@ -38,6 +38,7 @@ PartOpacity parse_part_opacity(const std::string& text) {
     double opacity = 0;
     Option("opacity", opacity).between(0, 1).read(text.substr(sign + 1), text);
     const std::string region = text.substr(0, sign);
+    if (region.starts_with("block:")) return {Region("set:" + region.substr(6)), opacity};
     return {Region(region.find(':') == std::string::npos ? "set:" + region : region), opacity};
 }
 
@@ -45,6 +46,10 @@ TranslucentParts translucent_parts(const HexMesh& mesh, std::span<const PartOpac
     std::vector<std::size_t> numbers(mesh.cells.size(), kRest);
     const std::size_t hidden = parts.size() + 1;
     for (std::size_t k = 0; k < parts.size(); ++k) {
+        if (parts[k].region.kind() == Region::Kind::Set && sets.sets.empty()) {
+            throw Error(ErrorCode::InvalidInput, "there is no set \"" + parts[k].region.quantity() + "\"", {},
+                        "the mesh has no sets of cells and no blocks; a region such as half:0,0,0,1,0,0=.3 or where:T>500=.3");
+        }
         const auto cells = cells_in(mesh, std::span(&parts[k].region, 1), sets);
         const std::size_t number = parts[k].opacity >= 1 ? kRest : parts[k].opacity <= 0 ? hidden : k + 1;
         for (std::size_t c = 0; c < cells.size(); ++c) {

@@ -8,6 +8,7 @@
 #include "subvol/boundary_values.h"
 #include "subvol/flow_surface.h"
 #include "subvol/gl_device.h"
+#include "subvol/part_opacity.h"
 #include "subvol/picture_maker.h"
 #include "subvol/shell_scene.h"
 #include "subvol/view_options.h"
@@ -76,6 +77,7 @@ py::dict report_of(const Facts& facts) {
 /// colors:   a mesh whose field gives the colours; null: the one that is shown
 /// patches:  shells to which the points of `mesh`, which has no cells, belong; null: a volume is drawn
 /// channels: of the points
+/// parts:    translucent parts of a solid, of which the mesh is the rest; null: there are none
 /// source:   of the mesh, with all of its fields; null: no streamlines are drawn
 /// seeds:    of streamlines, as for `seeds_in`
 struct DrawnBody {
@@ -85,6 +87,7 @@ struct DrawnBody {
     const RbfVolume* points = nullptr;
     std::vector<std::size_t> channels{};
     const Voxels* voxels = nullptr;
+    const TranslucentParts* parts = nullptr;
     const HexMesh* source = nullptr;
     py::object seeds = py::none();
 };
@@ -104,6 +107,13 @@ Picture render_patches(const HexMesh& mesh, const Shells& patches, const View& v
         make_shell_scene(mesh, patches, refine, chosen.levels, light.optics, style.sample_count(), chosen.options.style.clip)
             .draw_into(picture.image, picture.depth, view);
     });
+    return picture;
+}
+
+/// A picture of nothing, into which surfaces are drawn.
+subvol::Picture empty_picture(const View& view) {
+    subvol::Picture picture{subvol::Image(view.width(), view.height()), {}};
+    picture.depth.assign(picture.image.rgba.size() / 4, std::numeric_limits<float>::infinity());
     return picture;
 }
 
@@ -167,11 +177,26 @@ Picture render(const DrawnBody& drawn, const std::string& method_name, const Vie
     Facts facts;
     const HexMesh* const shown = drawn.colors != nullptr ? &two_fields : drawn.mesh;
     const auto flow = flow_scene(drawn, shown, method, light, given, progress, facts);
-    PictureMaker maker(std::move(body), method_options(method, light, given));
     const View of_volume = flow ? ended_at(*flow, view) : view;
-    subvol::Picture picture =
-        result_of(progress, [&](Progress* listener) { return maker.draw(of_volume, light.optics, listener); });
+    const bool empty = drawn.parts != nullptr && drawn.mesh->cells.empty();
+    const MethodOptions options = method_options(method, light, given);
+    subvol::Picture picture = result_of(progress, [&](Progress* listener) {
+        return empty ? empty_picture(view) : PictureMaker(std::move(body), options).draw(of_volume, light.optics, listener);
+    });
     if (flow) flow->draw_into(picture.image, picture.depth, view);
+    if (drawn.parts != nullptr) {
+        GivenPicture chosen;
+        set_options(options_of(chosen), given);
+        const PictureStyle style{.look = light.options, .samples = chosen.options.style.samples};
+        run(progress, [&](Progress* listener) {
+            RefineOptions refine = chosen.refinement;
+            refine.progress = listener;
+            make_shell_scene(*drawn.mesh, drawn.parts->shells, refine, chosen.levels, light.optics, style.sample_count(),
+                             chosen.options.style.clip, drawn.parts->opacities)
+                .draw_into(picture.image, picture.depth, view);
+        });
+        picture.facts["opaque_cells"] = drawn.parts->rest.cells.size();
+    }
     picture.facts.merge(facts);
     picture.facts["camera"] = facts_of(view.camera());
     return {std::move(picture.image), std::move(picture.depth), report_of(picture.facts), camera_text(view.camera())};
@@ -216,16 +241,16 @@ void bind_render(py::module_& module) {
     py::class_<BoundaryValues>(module, "BoundaryValues", "A boundary with the limit's values on it.");
     py::class_<DrawnBody>(module, "DrawnBody", "What render() draws.")
         .def(py::init([](const HexMesh* mesh, const HexMesh* colors, const Shells* patches, const RbfVolume* points,
-                         const std::vector<std::size_t>& channels, const Voxels* voxels, const HexMesh* source,
-                         const py::object& seeds) {
-                 return DrawnBody{mesh, colors, patches, points, channels, voxels, source, seeds};
+                         const std::vector<std::size_t>& channels, const Voxels* voxels, const TranslucentParts* parts,
+                         const HexMesh* source, const py::object& seeds) {
+                 return DrawnBody{mesh, colors, patches, points, channels, voxels, parts, source, seeds};
              }),
              py::arg("mesh").none(true) = py::none(), py::arg("colors").none(true) = py::none(),
              py::arg("patches").none(true) = py::none(), py::arg("points").none(true) = py::none(),
              py::arg("channels") = std::vector<std::size_t>{}, py::arg("voxels").none(true) = py::none(),
-             py::arg("source").none(true) = py::none(), py::arg("seeds") = py::none(), py::keep_alive<1, 2>(),
-             py::keep_alive<1, 3>(), py::keep_alive<1, 4>(), py::keep_alive<1, 5>(), py::keep_alive<1, 7>(),
-             py::keep_alive<1, 8>());
+             py::arg("parts").none(true) = py::none(), py::arg("source").none(true) = py::none(), py::arg("seeds") = py::none(),
+             py::keep_alive<1, 2>(), py::keep_alive<1, 3>(), py::keep_alive<1, 4>(), py::keep_alive<1, 5>(),
+             py::keep_alive<1, 7>(), py::keep_alive<1, 8>(), py::keep_alive<1, 9>());
     py::class_<Shells>(module, "Patches", "Patches of a mesh as faces, each patch with its own points.")
         .def_property_readonly(
             "mesh",
@@ -236,6 +261,26 @@ void bind_render(py::module_& module) {
                 return points;
             },
             "The points, without cells, with the fields and, last, \"patch\": the number of each.");
+    py::class_<TranslucentParts>(module, "TranslucentParts", "Parts of a solid with opacities of their own, and the rest.")
+        .def_property_readonly("rest", [](const TranslucentParts& parts) { return parts.rest; })
+        .def_property_readonly("points", [](const TranslucentParts& parts) { return owned(parts.shells.points); })
+        .def_property_readonly("values", [](const TranslucentParts& parts) {
+            const std::vector<double>& values = parts.shells.attributes.front().values;
+            return owned(values, {length(values.size())});
+        });
+    module.def(
+        "translucent_parts",
+        [](const HexMesh& mesh, const py::object& source, const std::vector<std::string>& texts) {
+            try {
+                std::vector<PartOpacity> parts;
+                for (const std::string& text : texts) parts.push_back(parse_part_opacity(text));
+                return translucent_parts(mesh, parts, sets_of(source));
+            } catch (const Error& error) {
+                throw Error(error.code(), (error.where().empty() ? "" : error.where() + ": ") + error.message(), "part_opacity",
+                            error.allowed());
+            }
+        },
+        py::arg("mesh"), py::arg("source"), py::arg("texts"));
     module.def(
         "choose_patches",
         [](const py::object& mesh, const std::vector<std::string>& names) {

@@ -309,15 +309,15 @@ def reduce(
 def render(
     what: Drawable, *, method: str = 'splat', camera: Union[None, str, Camera] = None,
     size: tuple[int, int] = (512, 512), field: Optional[str] = None, tf: Union[None, str, TransferFunction] = None,
-    patch: Union[None, str, Sequence[str]] = None, ray_ends: Optional[npt.ArrayLike] = None,
-    seeds: Union[None, str, Sequence[str], npt.ArrayLike] = None, scheme: str = 'mcq', tension: float = 0.0625,
-    crease_angle: Optional[float] = None, levels: Optional[int] = None, per_edge: int = 1, spacing: float = 0.0,
-    tolerance: float = 0.0, centers: bool = False, values: str = 'scheme', kernel: Kernel = 'compact',
-    value_kernel: Kernel = 'paper_bc', correction: str = 'second', backend: str = 'auto', device: Optional[int] = None,
-    sheets: int = 0, shadows: bool = False, ambient_occlusion: float = 0.0, samples: Optional[int] = None,
-    image_tolerance: Optional[float] = None, order: str = 'topological', kbuffer: int = 6, lod: Optional[float] = None,
-    seconds: Optional[float] = None, shade: bool = False, color_field: Optional[str] = None,
-    clip: Optional[npt.ArrayLike] = None, clip_box: Optional[npt.ArrayLike] = None,
+    patch: Union[None, str, Sequence[str]] = None, part_opacity: Union[None, str, Sequence[str]] = None,
+    ray_ends: Optional[npt.ArrayLike] = None, seeds: Union[None, str, Sequence[str], npt.ArrayLike] = None,
+    scheme: str = 'mcq', tension: float = 0.0625, crease_angle: Optional[float] = None, levels: Optional[int] = None,
+    per_edge: int = 1, spacing: float = 0.0, tolerance: float = 0.0, centers: bool = False, values: str = 'scheme',
+    kernel: Kernel = 'compact', value_kernel: Kernel = 'paper_bc', correction: str = 'second', backend: str = 'auto',
+    device: Optional[int] = None, sheets: int = 0, shadows: bool = False, ambient_occlusion: float = 0.0,
+    samples: Optional[int] = None, image_tolerance: Optional[float] = None, order: str = 'topological',
+    kbuffer: int = 6, lod: Optional[float] = None, seconds: Optional[float] = None, shade: bool = False,
+    color_field: Optional[str] = None, clip: Optional[npt.ArrayLike] = None, clip_box: Optional[npt.ArrayLike] = None,
     slice: Optional[npt.ArrayLike] = None, around: bool = False, look: Optional[str] = None,
     opacity_unit: Optional[float] = None, clamp: bool = False, range: Optional[str] = None,
     opacity: Optional[str] = None, iso: Union[float, str] = '', log: bool = False, symlog: Optional[float] = None,
@@ -337,6 +337,8 @@ def render(
     size:        width and height in pixels
     field:       what is drawn; tf may also be a TransferFunction, camera a Camera
     patch:       patches of `mesh.patches` that are drawn alone, or "all"; coloured by patch, or by `field`
+    part_opacity: opacities of parts of a solid, such as "casing=.2" (a set of cells) or "half:0,0,0,1,0,0=.3" (a region as of `only`), or
+                 several; 0 leaves a part out
     ray_ends:    (height, width) eye depths at which the rays of each pixel end, as where they meet something opaque that another
                  program draws; infinity: they do not. Not with method="footprints"
     seeds:       where the streamlines of `streamlines` start, as for `subvol.streamlines`. The body is thin then, unless its look or

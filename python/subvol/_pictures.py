@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core
-from ._arguments import Path, path_bytes, warn
+from ._arguments import TET_SCHEMES, Path, path_bytes, warn
 from ._colors import TransferFunction, _camera_of, _light_of, _range_of
 from ._core import Camera, Field, HexMesh, Image, RbfVolume
 from ._errors import InvalidInput
@@ -26,7 +26,8 @@ Drawable = Union[HexMesh, RbfVolume, Grid]
 @described
 def render(what: Drawable, *, method: str = "splat", camera: Union[None, str, Camera] = None, size: tuple[int, int] = (512, 512),
            field: Optional[str] = None, tf: Union[None, str, TransferFunction] = None,
-           patch: Union[None, str, Sequence[str]] = None, ray_ends: Optional[npt.ArrayLike] = None,
+           patch: Union[None, str, Sequence[str]] = None, part_opacity: Union[None, str, Sequence[str]] = None,
+           ray_ends: Optional[npt.ArrayLike] = None,
            seeds: Union[None, str, Sequence[str], npt.ArrayLike] = None, progress: Progress = None, **options: Any) -> Image:
     """Draws a mesh, points or a grid: the picture of `subvol render` with the same options, bit for bit.
 
@@ -38,6 +39,8 @@ def render(what: Drawable, *, method: str = "splat", camera: Union[None, str, Ca
     size:        width and height in pixels
     field:       what is drawn; tf may also be a TransferFunction, camera a Camera
     patch:       patches of `mesh.patches` that are drawn alone, or "all"; coloured by patch, or by `field`
+    part_opacity: opacities of parts of a solid, such as "casing=.2" (a set of cells) or "half:0,0,0,1,0,0=.3" (a region as of `only`), or
+                 several; 0 leaves a part out
     ray_ends:    (height, width) eye depths at which the rays of each pixel end, as where they meet something opaque that another
                  program draws; infinity: they do not. Not with method="footprints"
     seeds:       where the streamlines of `streamlines` start, as for `subvol.streamlines`. The body is thin then, unless its look or
@@ -73,9 +76,13 @@ def render(what: Drawable, *, method: str = "splat", camera: Union[None, str, Ca
     mesh = _selected(what, field) if isinstance(what, HexMesh) else None
     other = _selected(what, color_field) if isinstance(what, HexMesh) and color_field is not None else None
     body, shown, colors, bounds = _body_of(what if mesh is None else mesh, other, patches, field, color_field, source, seeds)
+    framed = what if mesh is None else mesh
+    if part_opacity is not None:
+        body, shown, bounds, framed = _parts_of(what, mesh, [part_opacity] if isinstance(part_opacity, str) else list(part_opacity),
+                                                patches is not None, given)
     bounds = bounds if frame is None else frame
     light = _light_of(given, tf, mesh is not None and not options.get("shade"), shown, colors or shown, bounds)
-    eye = _camera_of(light, given, camera, size, what if mesh is None else mesh, bounds)
+    eye = _camera_of(light, given, camera, size, framed, bounds)
     with listening(progress) as listener:
         image = _core.render(body, method, eye, (int(size[0]), int(size[1])), ray_ends, light, given, listener)
     image.report["background"] = light.background
@@ -105,6 +112,31 @@ def _body_of(what: Drawable, colors: Optional[HexMesh], patches: Optional[_core.
         return _core.DrawnBody(points=what, channels=channels, seeds=seeds), ranges[0], ranges[1] if len(ranges) > 1 else None, _core.frame_of(what)
     about = what.report
     return _core.DrawnBody(voxels=what.voxels(), seeds=seeds), (about["min"], about["max"]), None, np.array(what.frame)
+
+
+def _parts_of(what: Drawable, mesh: Optional[HexMesh], texts: list[str], patches: bool,
+              given: dict[str, Any]) -> tuple[_core.DrawnBody, _Range, npt.NDArray[Any], HexMesh]:
+    """Translucent parts and the rest: what is drawn, the range of its field, its bounds, and the points that a view frames."""
+    def refuse(reason: str, allowed: str) -> InvalidInput:
+        return InvalidInput(f"part_opacity: {reason} ({allowed})", "part_opacity", allowed)
+
+    for name in ("color_field", "streamlines", "glyphs"):
+        if name in given:
+            raise refuse("is of parts of a volume in the colours of one field", f"without {name}")
+    if given.get("look", "solid") != "solid" or "opacity" in given or "opacity_unit" in given or "iso" in given or given.get("shade"):
+        raise refuse("is of the surfaces of a solid", "look='solid' without opacity")
+    if not isinstance(what, HexMesh) or mesh is None:
+        raise refuse("needs a mesh of hexahedra", "a mesh")
+    if given.get("scheme") in TET_SCHEMES:
+        raise refuse("needs the limit of hexahedra", "another scheme")
+    if patches:
+        raise refuse("is of parts of a volume, and patch draws faces alone", "without patch")
+    parts = _core.translucent_parts(mesh, what, texts)
+    rest = parts.rest.without_unused_points() if len(parts.rest.cells) else parts.rest
+    values = np.concatenate([next(iter(rest.fields.values())), parts.values])
+    points = np.concatenate([rest.points, parts.points])
+    framed = HexMesh(points if len(rest.cells) else parts.points, np.empty((0, 8), dtype=np.int64))
+    return _core.DrawnBody(mesh=rest, parts=parts), _range_of(values), np.stack([points.min(0), points.max(0)]), framed
 
 
 def _channel(names: list[str], field: Optional[str]) -> int:

@@ -84,9 +84,11 @@ void set_cuts(GlTetFrame& frame, const View& view, double middle_depth, const Ra
     frame.slices = clip.slices().size();
     frame.slices_alone = clip.slices_alone();
     frame.ends_rays = view.ends_rays();
-    for (std::size_t i = 0; i < view.ray_ends().size(); ++i) {
+    if (!frame.ends_rays) return;
+    for (int i = 0; i < view.width() * view.height(); ++i) {  // they may have been given for another number of pixels
         if (i % 4 == 0) frame.cuts.emplace_back();
-        frame.cuts.back()[i % 4] = static_cast<float>((double{view.ray_ends()[i]} - middle_depth) / frame.scale);
+        const double end = view.ray_end(i % view.width() + 0.5, i / view.width() + 0.5);
+        frame.cuts.back()[i % 4] = static_cast<float>((end - middle_depth) / frame.scale);
     }
 }
 

@@ -300,8 +300,11 @@ struct PixelRays {
 
     /// The picture's colour is that of the rays that meet the volume, alike for all of them; where a shell lies over the volume
     /// nothing is left of it.
-    void mix_into(std::span<float, 4> pixel, double rays) const {
-        const double left = of_volume > 0 ? 1.0 - double(over_volume) / of_volume : 1.0 - double(alone) / rays;
+    ///
+    /// ended: rays of the volume have ended at shells, so that what they hide is not in the picture
+    void mix_into(std::span<float, 4> pixel, double rays, bool ended) const {
+        const double hidden = of_volume > 0 ? double(over_volume) / of_volume : double(alone) / rays;
+        const double left = ended ? 1.0 : 1.0 - hidden;
         const double opacity = of_volume > 0 ? std::min(1.0, double{pixel[3]} * rays / of_volume) : 0.0;
         const Vec3 added = (before + (1 - opacity) * behind) / rays;
         for (std::size_t c = 0; c < 3; ++c) {
@@ -435,7 +438,7 @@ void draw_shells(Image& image, std::span<float> depth, const ColoredSurface& she
                 ++(!first ? rays.under_volume : volume ? rays.over_volume : rays.alone);
                 if (first) rays.nearest = std::min(rays.nearest, hits.depth.at(column, row));
             }
-            if (rays.any()) rays.mix_into(image.pixel(x, y), samples * samples);
+            if (rays.any()) rays.mix_into(image.pixel(x, y), samples * samples, options.whole);
             if (depth.empty() || !rays.any_first()) continue;
             float& seen = depth[pixel_index(view.width(), x, y)];
             seen = std::min(seen, rays.nearest);

@@ -63,13 +63,16 @@ ShellScene make_opaque_scene(const HexMesh& mesh, ColoredSurface drawn, RefineOp
 }
 
 View ended_at(const ShellScene& scene, View view) {
-    constexpr float kBeyond = 1 + 2e-5F;  // so that what touches an opaque boundary from inside does not open it
-    std::vector<float> ends = depths_of(scene.drawn.surface, view);
-    for (float& end : ends) end *= kBeyond;
-    const std::span<const float> before = view.ray_ends();
-    for (std::size_t i = 0; i < before.size(); ++i) ends[i] = std::min(ends[i], before[i]);
-    view.end_rays(std::move(ends));
-    return view;
+    constexpr float kBeyond = 1 + 2e-4F;  // so that what touches an opaque boundary from inside does not open it
+    View fine = view.resized(scene.samples * view.width(), scene.samples * view.height());
+    std::vector<float> ends = depths_of(scene.drawn.surface, fine);
+    for (std::size_t i = 0; i < ends.size(); ++i) {
+        const auto width = static_cast<std::size_t>(fine.width());
+        const double before = fine.ray_end(static_cast<double>(i % width) + 0.5, static_cast<double>(i / width) + 0.5);
+        ends[i] = std::min(kBeyond * ends[i], static_cast<float>(before));
+    }
+    fine.end_rays(std::move(ends));
+    return fine.resized(view.width(), view.height());
 }
 
 }  // namespace subvol

@@ -249,6 +249,36 @@ class InTheBrowser(unittest.TestCase):
         self.assertEqual(self.browser.requests(), [])
         self.assertEqual(self.browser.complaints(), [])
 
+    def choose(self, element, value):
+        self.browser.evaluate(f"(s => {{ s.value = '{value}'; s.dispatchEvent(new Event('change')); }})(document.getElementById('{element}'))")
+
+    def test_colours_have_scales_and_bands(self):
+        self.command("page", "model:ball:4", "-o", "s.html", "--density", "exp(4*z)", "--range", "1,40", "--below", "red", "--above", "white")
+        self.open("s.html", 300)
+        at = "(v => colorAt(subvolPage.transfers[0].transfer, v))"
+        self.assertEqual(self.browser.evaluate(f"{at}(.5)"), [1, 0, 0])
+        self.assertEqual(self.browser.evaluate(f"{at}(41)"), [1, 1, 1])
+        self.assertEqual(self.browser.evaluate("tipsOf(subvolPage.transfers[0].transfer.color)"), {"below": [1, 0, 0], "above": [1, 1, 1]})
+        self.shot("page_tips.png")
+        middle = self.browser.evaluate(f"{at}(20.5)")
+        self.choose("scale", "log")
+        for found, expected in zip(self.browser.evaluate(f"{at}(Math.sqrt(40))"), middle):
+            self.assertAlmostEqual(found, expected, delta=.02)  # halfway between 1 and 40 by ratios
+        self.choose("bands", 4)
+        self.assertEqual(self.browser.evaluate(f"new Set([1.2, 3, 8, 20, 30, 39].map((v) => {at}(v).join())).size"), 4)
+        self.assertEqual(self.browser.evaluate(f"{at}(.5)"), [1, 0, 0])  # the tips stay
+        self.shot("page_bands.png")
+        self.choose("scale", "symlog")
+        self.choose("colors", "coolwarm")
+        self.assertEqual(self.browser.evaluate("new Set([1.01, 30, 39].map((v) => colorAt(subvolPage.transfers[0].transfer, v).join())).size"), 2)
+        self.browser.evaluate("document.getElementById('restore').click()")
+        self.assertEqual(self.browser.evaluate(f"{at}(20.5)"), middle)
+        self.assertEqual(self.browser.evaluate("[document.getElementById('scale').value, document.getElementById('bands').value]"), ["linear", "0"])
+        self.command("page", "model:ball:3", "-o", "n.html")
+        self.open("n.html", 300)
+        self.assertTrue(self.browser.evaluate("document.getElementById('scale').options[1].disabled"))  # values below 0 have no logarithm
+        self.assertEqual(self.browser.complaints(), [])
+
     def test_colours_have_the_values_of_their_ends(self):
         self.command("page", "model:ball:4", "-o", "u.html", "--unit", "K")
         self.open("u.html", 300)

@@ -72,6 +72,9 @@ def test_splats_for_other_viewers_stand_upright(tmp_path, command):
     (["--sheets", "40", "--look", "volume"], {"sheets": 40, "look": "volume"}),
     (["--streamlines", "grad(density)", "--seeds", "line:-.5,0,0,.5,0,0", "--seed-count", "4", "--glyphs", "grad(density)", "--glyph-count", "9"],
      {"streamlines": "grad(density)", "seeds": "line:-.5,0,0,.5,0,0", "seed_count": 4, "glyphs": "grad(density)", "glyph_count": 9}),
+    (["--part-opacity", "half:0,0,0,1,0,0=.3", "--part-opacity", "half:0,.2,0,0,1,0=0"],
+     {"part_opacity": ["half:0,0,0,1,0,0=.3", "half:0,.2,0,0,1,0=0"]}),
+    (["--part-opacity", "sphere:0,0,0,9=.4"], {"part_opacity": "sphere:0,0,0,9=.4"}),
     (["--glyphs", "grad(density)", "--method", "tets", "--look", "volume"], {"glyphs": "grad(density)", "method": "tets", "look": "volume"}),
     (["--lod", "20", "--per-edge", "2", "--look", "volume"], {"lod": 20, "per_edge": 2, "look": "volume"}),
 ])

@@ -276,3 +276,24 @@ def test_a_transparent_png_keeps_its_alpha(tmp_path):
     np.testing.assert_allclose(again[..., :3], np.asarray(image)[..., :3], atol=.02)
     with pytest.raises(subvol.InvalidInput, match="transparent"):
         subvol.write_image(image, tmp_path / "a.jpg", "none")
+
+
+def test_opacities_of_parts_are_of_solids(ball):
+    for wrong, words in (({"look": "volume"}, "surfaces of a solid"), ({"opacity": "0%:.2"}, "surfaces of a solid"), ({"streamlines": "grad(density)"}, "without streamlines"),
+                         ({"scheme": "tetoct"}, "hexahedra")):
+        with pytest.raises(subvol.InvalidInput, match=words):
+            subvol.render(ball, size=(8, 8), part_opacity="half:0,0,0,1,0,0=.3", **wrong)
+    with pytest.raises(subvol.InvalidInput, match="part_opacity: there is no set"):
+        subvol.render(ball, size=(8, 8), part_opacity=["casing=.3"])
+    with pytest.raises(subvol.InvalidInput, match="part_opacity: needs a mesh"):
+        subvol.render(subvol.sample(ball), size=(8, 8), part_opacity="half:0,0,0,1,0,0=.3")
+
+
+def test_tubes_leave_no_gaps_in_an_opaque_body(ball):
+    for clip in ((0, 0, 0, 0, 1, 0), (0, 0, 0, 0, -1, 0)):
+        options = {"size": (120, 90), "look": "solid", "clip": clip, "field": "density"}
+        body = np.asarray(subvol.render(ball, **options))
+        tubes = np.asarray(subvol.render(ball, streamlines="grad(density)", seeds="box:-.6,-.6,-.6,.6,.6,.6", tube_radius=.01, **options))
+        assert np.abs(tubes - body).max() > .1, "some lie before the body"
+        lost = body[..., 3] - tubes[..., 3]
+        assert lost.max() <= .25 + 1e-6 and (lost > 1e-3).sum() <= 4, "at most one of four samples, where a tube goes through the surface"

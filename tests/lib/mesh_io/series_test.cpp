@@ -163,6 +163,8 @@ TEST_F(Series, BlocksAreListedAndChosen) {
     EXPECT_EQ(all.blocks[1].name, "solid/right");
     EXPECT_EQ(all.blocks[1].cells, 2u);
     EXPECT_EQ(all.blocks[2].name, "1");
+    ASSERT_EQ(all.sets.sets.size(), 3u) << "blocks are sets of cells, too";
+    EXPECT_EQ(find_set(all.sets, "solid/right").cells, (std::vector<Index>{1, 2}));
     EXPECT_THAT(all.warnings, Contains("1 file of surfaces (.vtp) ignored"));
     expect_row(read_mesh(path("all.vtm"), {.blocks = {"solid/right", "1"}}), 3);
     EXPECT_THAT(error("all.vtm", {.blocks = {"fluid"}}),

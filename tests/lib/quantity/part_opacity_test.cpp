@@ -42,6 +42,7 @@ TEST(PartOpacity, PartsMayBeLeftOutAndTheLastOneCounts) {
     const TranslucentParts hidden = parts_of(mesh, {"end=0"}, sets);
     EXPECT_EQ(hidden.rest.cells.size(), all - 4);
     EXPECT_TRUE(hidden.shells.empty());
+    EXPECT_EQ(parts_of(mesh, {"block:end=0"}, sets).rest.cells.size(), all - 4);
     EXPECT_EQ(parts_of(mesh, {"end=0", "half:-1,0,0,1,0,0=1"}, sets).rest.cells.size(), all);
 }
 
@@ -54,7 +55,9 @@ TEST(PartOpacity, RefusesWhatIsNoPartOrNoOpacity) {
     refuses("=.5", "gives no part an opacity");
     refuses("half:1,0,0,1,0,0=1.5", "1.5");
     refuses("half:1,0,0,1,0,0=much", "much");
-    refuses("casing=.5", "casing");
+    refuses("casing=.5", "there is no set \"casing\" (the mesh has no sets of cells and no blocks; a region such as half:");
+    test::expect_error(ErrorCode::InvalidInput, "the mesh has: end",
+                       [&] { (void)parts_of(mesh, {"casing=.5"}, {{}, {{"end", {0}}}}); });
     refuses("half:-1,0,0,1,0,0=0", "no part is left");
 }
 

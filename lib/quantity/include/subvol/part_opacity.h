@@ -15,7 +15,7 @@ namespace subvol {
 
 /// A part of a solid whose surface has an opacity of its own, such as "casing=.2" or "half:0,0,0,1,0,0=.3".
 ///
-/// region: a Region, or the name of a set of cells
+/// region: a Region, or the name of a set of cells or, as block:NAME too, of a block
 /// opacity: 0 to 1; 0: the part is not drawn, 1: it is drawn as the rest
 struct PartOpacity {
     Region region;

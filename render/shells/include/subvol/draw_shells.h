@@ -23,7 +23,8 @@ struct ColoredSurface {
 
 /// samples: those of the picture: n × n places in each pixel
 /// clip:    that of the picture, without its slices
-/// whole:   the clip cuts the volume, but not the triangles
+/// whole:   the clip cuts the volume, but not the triangles, and each ray of the volume has ended where it meets them
+///          (`View::end_rays` with the depths at all places)
 struct ShellOptions {
     Shading shading{};
     int samples = 1;

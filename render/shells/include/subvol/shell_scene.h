@@ -21,7 +21,7 @@ struct ShellScene {
     Optics optics;
     int samples = 1;
     Clip clip{};
-    bool whole = false;  // the clip cuts the volume alone
+    bool whole = false;  // as of ShellOptions
 
     /// Draws into a finished picture, as `subvol::draw_shells`.
     void draw_into(Image& image, std::span<float> depth, const View& view) const;
@@ -44,7 +44,7 @@ struct ShellScene {
 [[nodiscard]] ShellScene make_opaque_scene(const HexMesh& mesh, ColoredSurface drawn, RefineOptions refine,
                                            std::optional<int> most, const Optics& optics, int samples, const Clip& clip);
 
-/// The view with rays that end at the triangles of a scene, so that a volume is drawn up to these.
+/// The view with rays that end at the triangles of a scene, so that a volume is drawn up to these: each of the scene's samples.
 [[nodiscard]] View ended_at(const ShellScene& scene, View view);
 
 }  // namespace subvol
