@@ -269,6 +269,14 @@ void bind_render(py::module_& module) {
             return owned(values, {length(values.size())});
         });
     module.def(
+        "only_points",
+        [](const py::object& points) {
+            HexMesh mesh;
+            mesh.points = vectors(points, "points");
+            return mesh;
+        },
+        py::arg("points"));
+    module.def(
         "translucent_parts",
         [](const HexMesh& mesh, const py::object& source, const std::vector<std::string>& texts) {
             try {

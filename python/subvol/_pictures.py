@@ -135,7 +135,7 @@ def _parts_of(what: Drawable, mesh: Optional[HexMesh], texts: list[str], patches
     rest = parts.rest.without_unused_points() if len(parts.rest.cells) else parts.rest
     values = np.concatenate([next(iter(rest.fields.values())), parts.values])
     points = np.concatenate([rest.points, parts.points])
-    framed = HexMesh(points if len(rest.cells) else parts.points, np.empty((0, 8), dtype=np.int64))
+    framed = _core.only_points(points if len(rest.cells) else parts.points)
     return _core.DrawnBody(mesh=rest, parts=parts), _range_of(values), np.stack([points.min(0), points.max(0)]), framed
 
 

@@ -56,8 +56,9 @@ TEST(PartOpacity, RefusesWhatIsNoPartOrNoOpacity) {
     refuses("half:1,0,0,1,0,0=1.5", "1.5");
     refuses("half:1,0,0,1,0,0=much", "much");
     refuses("casing=.5", "there is no set \"casing\" (the mesh has no sets of cells and no blocks; a region such as half:");
-    test::expect_error(ErrorCode::InvalidInput, "the mesh has: end",
-                       [&] { (void)parts_of(mesh, {"casing=.5"}, {{}, {{"end", {0}}}}); });
+    test::expect_error(ErrorCode::InvalidInput, "the mesh has: end", [&] {
+        (void)parts_of(mesh, {"casing=.5"}, {{}, {{"end", {0}}}});
+    });
     refuses("half:-1,0,0,1,0,0=0", "no part is left");
 }
 
