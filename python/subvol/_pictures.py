@@ -133,10 +133,11 @@ def _parts_of(what: Drawable, mesh: Optional[HexMesh], texts: list[str], patches
         raise refuse("is of parts of a volume, and patch draws faces alone", "without patch")
     parts = _core.translucent_parts(mesh, what, texts)
     rest = parts.rest.without_unused_points() if len(parts.rest.cells) else parts.rest
-    values = np.concatenate([next(iter(rest.fields.values())), parts.values])
-    points = np.concatenate([rest.points, parts.points])
-    framed = _core.only_points(points if len(rest.cells) else parts.points)
-    return _core.DrawnBody(mesh=rest, parts=parts), _range_of(values), np.stack([points.min(0), points.max(0)]), framed
+    values, points = parts.values, parts.points
+    if len(rest.cells):
+        values = np.concatenate([next(iter(rest.fields.values())), values])
+        points = np.concatenate([rest.points, points])
+    return _core.DrawnBody(mesh=rest, parts=parts), _range_of(values), np.stack([points.min(0), points.max(0)]), _core.only_points(points)
 
 
 def _channel(names: list[str], field: Optional[str]) -> int:
