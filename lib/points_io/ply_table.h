@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <bit>
+#include <cstddef>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "number_type.h"
+#include "text_scanner.h"
+
+namespace subvol::detail {
+
+// PLY as a format of tables, whatever they mean.
+
+/// counts: the type of the lengths if the property is a list; nothing if it is a single number
+struct PlyProperty {
+    std::string name;
+    NumberType type;
+    std::optional<NumberType> counts;
+};
+
+struct PlyElement {
+    std::string name;
+    std::size_t count = 0;
+    std::vector<PlyProperty> properties;
+};
+
+struct PlyHeader {
+    bool ascii = true;
+    std::endian order = std::endian::little;
+    std::vector<std::string> comments;
+    std::vector<PlyElement> elements;
+};
+
+/// The values of a property, in the order of the rows. lengths: of the lists, one for each row
+struct PlyColumn {
+    std::vector<double> values;
+    std::vector<std::size_t> lengths;
+};
+
+using PlyTable = std::map<std::string, PlyColumn, std::less<>>;
+
+/// Reads the header to the end of its last line. in: at the start of the file
+///
+/// throws: Error(InvalidInput)
+[[nodiscard]] PlyHeader read_ply_header(TextScanner& in);
+
+/// Reads the rows of the next element and keeps the properties with the names in `wanted`.
+///
+/// throws: Error(InvalidInput)
+[[nodiscard]] PlyTable read_ply_element(TextScanner& in, const PlyHeader& header, const PlyElement& element,
+                                        const std::set<std::string, std::less<>>& wanted);
+
+}  // namespace subvol::detail

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "subvol/control_mesh.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "castle.h"
+#include "shape_fitter.h"
+#include "subvol/cell.h"
+#include "subvol/detail/parallel_each.h"
+#include "subvol/error.h"
+
+namespace subvol {
+
+using namespace detail;
+
+namespace {
+
+Box box_of(const Surface& surface) {
+    Box box;
+    for (const auto& t : surface.triangles) {
+        for (const Index p : t) box.add(surface.points[p]);
+    }
+    return box;
+}
+
+/// Cubes inside the surface. added: gets how many more were needed
+HexMesh cubes_inside(const Surface& surface, const ControlMeshOptions& options, double side, std::size_t& added) {
+    const Box box = box_of(surface);
+    const Vec3 counts = box.size() / side + 3.0;
+    constexpr double kEmpty = 64;  // cubes of the grid for each of the mesh
+    if (counts.x * counts.y * counts.z > kEmpty * static_cast<double>(options.max_cells)) {
+        throw Error(ErrorCode::InvalidInput, "the grid would have too many cubes", option_name("cells", options.names),
+                    "fewer cells");
+    }
+    CubeGrid grid(box, side);
+    const SurfaceTree tree(surface);
+    std::vector<float> likeness(grid.size());
+    parallel_each(grid.size(),
+                  [&](std::size_t c) { likeness[c] = static_cast<float>(std::abs(tree.winding(grid.center(c)))); });
+    grid.choose(std::move(likeness));
+    const auto count = [&] { return static_cast<std::size_t>(std::ranges::count(grid.chosen(), 1)); };
+    const std::size_t before = count();
+    if (before == 0) {
+        throw Error(ErrorCode::InvalidInput, "no cell has its middle inside the surface", "surface",
+                    "a closed surface, and more cells if it is thin");
+    }
+    grid.make_manifold();
+    added = count() - before;
+    if (before + added > options.max_cells) {
+        throw Error(ErrorCode::InvalidInput, "there would be " + std::to_string(before + added) + " cells",
+                    option_name("cells", options.names), "fewer cells, or more with --max-cells");
+    }
+    return grid.cells();
+}
+
+std::size_t parts_of(const HexMesh& mesh) {
+    std::vector<Index> root(mesh.points.size());
+    for (Index p = 0; p < root.size(); ++p) root[p] = p;
+    const auto find = [&](Index p) {
+        while (root[p] != p) p = root[p] = root[root[p]];
+        return p;
+    };
+    for (const auto& cell : mesh.cells) {
+        for (const Index p : cell) root[find(p)] = find(cell[0]);
+    }
+    std::size_t parts = 0;
+    for (Index p = 0; p < root.size(); ++p) parts += root[p] == p ? 1 : 0;
+    return parts;
+}
+
+}  // namespace
+
+std::vector<Option> options_of(ControlMeshOptions& options) {
+    return {Option("cells", options.cells).between(2, 1000).help("N", "cells along the longest side of the surface's box"),
+            Option("max-cells", options.max_cells).between(1, 1'000'000'000).help("N", "the most cells that may be made"),
+            Option("rounds", options.rounds)
+                .between(1, 100)
+                .help("N", "how often the points are drawn to the nearest places of the surface"),
+            Option("mend", options.mend).help("", "move points until the limit does not fold"),
+            Option("boundary-move", options.boundary_edges)
+                .between(0, 10)
+                .help("PART", "points of the boundary may move by this part of their shortest edge then")};
+}
+
+Facts facts_of(const ControlMeshReport& report) {
+    Facts facts = facts_of(report.shape);
+    facts["parts"] = report.parts;
+    facts["added"] = report.added;
+    facts["side_world"] = report.side_world;
+    facts["least_determinant"] = report.least_determinant;
+    return facts;
+}
+
+ControlMesh control_mesh_of(const Surface& surface, const ControlMeshOptions& given) {
+    ControlMeshOptions options = given;
+    check_options(options);
+    check_options(options.scheme);
+    validate(surface);
+    const Vec3 size = box_of(surface).size();
+    ControlMeshReport report;
+    report.side_world = std::max({size.x, size.y, size.z}) / options.cells;
+    if (!(report.side_world > 0)) throw Error(ErrorCode::InvalidInput, "the surface is a point", "surface");
+    HexMesh mesh = with_layer(cubes_inside(surface, options, report.side_world, report.added));
+    report.parts = parts_of(mesh);
+    report.shape.before = shape_error(mesh, surface, options.scheme);
+
+    // The first rounds have control cells, as the limit of cubes is none of the surface's.
+    SchemeOptions linear = options.scheme;
+    linear.kind = Scheme::Linear;
+    constexpr double kFirst = 1, kMore = 1.5;
+    double weight = kFirst;
+    int rounds = 0;
+    const std::vector<Vec3> start = mesh.points;
+    for (const bool last : {false, true}) {
+        const ShapeFitter fitter(build_topology(mesh), surface, last ? options.scheme : linear, 1);
+        for (const int end = last ? options.rounds : options.rounds / 2; rounds < end; ++rounds, weight *= kMore) {
+            report_progress(options.progress, "shape", static_cast<double>(rounds) / options.rounds);
+            mesh.points = fitter.relaxed(mesh.points, report.side_world, weight);
+        }
+    }
+    report.shape.rounds = rounds;
+    ShapeOptions ending;
+    ending.scheme = options.scheme;
+    ending.mend = options.mend;
+    ending.boundary_edges = options.boundary_edges;
+    ending.progress = options.progress;
+    mesh = finished(std::move(mesh), surface, ending, report.shape);
+    for (std::size_t p = 0; p < start.size(); ++p) {
+        report.shape.moved_world = std::max(report.shape.moved_world, glm::distance(start[p], mesh.points[p]));
+    }
+    report.least_determinant = least_determinant(mesh);
+    return {std::move(mesh), std::move(report)};
+}
+
+}  // namespace subvol

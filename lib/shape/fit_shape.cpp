@@ -1,0 +1,337 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "subvol/fit_shape.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "shape_fitter.h"
+#include "subvol/detail/parallel_each.h"
+#include "subvol/detail/parallel_sums.h"
+#include "subvol/error.h"
+
+// A step looks for the nearest places of the surface and the boundary x = A c, both ways, and finds the ways d of the control
+// points c that minimise
+//
+//     Σ w (n·A d + distance)²  +  part Σ w |A d|²  +  stiffness Σ |dᵢ − dⱼ|²  +  evenness Σ |cᵢ + dᵢ − cⱼ − dⱼ|²
+//
+// over edges, n being the direction of the distance, so that the boundary may slide along the surface but not far.
+
+namespace subvol {
+
+using namespace detail;
+
+namespace {
+
+using Vectors = std::vector<Vec3>;
+
+constexpr double kSliding = 0.01;  // the part
+
+double product_of(const Vectors& a, const Vectors& b) {
+    return parallel_sums(1, a.size(), [&](std::size_t i, std::vector<double>& sum) { sum[0] += glm::dot(a[i], b[i]); })[0];
+}
+
+/// Places spread evenly over a surface: at equal steps of its area, in each triangle at the next of a sequence of low
+/// discrepancy.
+///
+/// source: [roberts2018]
+Vectors places_on(const Surface& surface, std::size_t count) {
+    std::vector<double> sums{0};
+    for (const auto& t : surface.triangles) {
+        const Vec3 &a = surface.points[t[0]], &b = surface.points[t[1]], &c = surface.points[t[2]];
+        sums.push_back(sums.back() + glm::length(glm::cross(b - a, c - a)));
+    }
+    Vectors places;
+    for (std::size_t i = 0; i < count; ++i) {
+        const double at = (static_cast<double>(i) + 0.5) / static_cast<double>(count) * sums.back();
+        const auto above = std::ranges::upper_bound(sums, at);
+        const std::size_t t = std::min<std::size_t>(static_cast<std::size_t>(above - sums.begin()), sums.size() - 1) - 1;
+        constexpr double kFirst = 0.7548776662466927, kSecond = 0.5698402909980532;  // 1/g and 1/g² with g³ = g + 1
+        double whole = 0;
+        double u = std::modf(kFirst * static_cast<double>(i), &whole), v = std::modf(kSecond * static_cast<double>(i), &whole);
+        if (u + v > 1) {
+            u = 1 - u;
+            v = 1 - v;
+        }
+        const auto& corners = surface.triangles[t];
+        const Vec3& a = surface.points[corners[0]];
+        places.push_back(a + u * (surface.points[corners[1]] - a) + v * (surface.points[corners[2]] - a));
+    }
+    return places;
+}
+
+}  // namespace
+
+namespace detail {
+
+double least_determinant(const HexMesh& mesh) {
+    double least = 1;
+    for (const auto& cell : mesh.cells) {
+        least = std::min(least, least_determinant(cell, [&](Index p) { return mesh.points[p]; }));
+    }
+    return least;
+}
+
+ShapeFitter::ShapeFitter(const Topology& control, const Surface& surface, const SchemeOptions& scheme, int levels)
+    : cells_(control.cells),
+      edges_(control.edges),
+      point_edges_(control.point_edges),
+      boundary_points_(static_cast<std::size_t>(std::ranges::count(control.point_on_boundary, 1))),
+      children_(refinement_tables(control, {.scheme = scheme, .levels = 1})),
+      matrix_(control, scheme, levels),
+      tree_(surface),
+      samples_(places_on(surface, matrix_.rows())) {
+}
+
+std::vector<ShapeFitter::Pull> ShapeFitter::pulls(const Vectors& boundary) const {
+    // All places of the boundary have the same weight, those of the surface too: as much as there are control points there.
+    const Surface limit{boundary, matrix_.triangles()};
+    const SurfaceTree limit_tree(limit);
+    const std::size_t count = boundary.size() + samples_.size();
+    const double weight = static_cast<double>(boundary_points_) / static_cast<double>(count);
+    std::vector<Pull> made(count);
+    // What is farther away than a side is long may be the wrong place.
+    double length = 0;
+    for (const auto& t : limit.triangles) length += glm::distance(boundary[t[0]], boundary[t[1]]);
+    length *= 2 / static_cast<double>(limit.triangles.size());
+    const auto trust = [&](double distance) { return 1 / (1 + distance * distance / (length * length)); };
+    parallel_each(boundary.size(), [&](std::size_t p) {
+        const SurfacePlace near = tree_.nearest(boundary[p]);
+        const auto point = static_cast<Index>(p);
+        made[p] = {{point, point, point}, {1, 0, 0}, near.toward, near.distance, weight * trust(near.distance)};
+    });
+    parallel_each(samples_.size(), [&](std::size_t s) {
+        const SurfacePlace near = limit_tree.nearest(samples_[s]);
+        made[boundary.size() + s] = {limit.triangles[near.triangle], near.weights, -near.toward, near.distance,
+                                     weight * trust(near.distance)};
+    });
+    return made;
+}
+
+Vectors ShapeFitter::solved(const std::vector<Pull>& pulls, const Vectors& control, const ShapeWeights& weights) const {
+    const std::size_t fine = matrix_.rows();
+    const auto along_edges = [&](const Vectors& x, double weight, Vectors& sums) {
+        if (weight == 0) return;
+        parallel_each(sums.size(), [&](std::size_t p) {
+            for (const Index e : point_edges_[static_cast<Index>(p)]) {
+                const auto [a, b] = edges_[e];
+                sums[p] += weight * (x[p] - x[a == p ? b : a]);
+            }
+        });
+    };
+    const auto applied = [&](const Vectors& d) {
+        const Vectors moved = matrix_.apply(d);
+        Vectors sums = gathered(pulls, [&](const Pull& pull) {
+            const Vec3 way = place_of(pull, moved);
+            return pull.weight * (glm::dot(pull.direction, way) * pull.direction + kSliding * way);
+        });
+        along_edges(d, weights.stiffness + weights.evenness, sums);
+        return sums;
+    };
+    const std::vector<double> squares =
+        matrix_.squares(std::vector<double>(fine, static_cast<double>(boundary_points_) / static_cast<double>(pulls.size())));
+    std::vector<double> diagonal(control.size());
+    parallel_each(control.size(), [&](std::size_t p) {
+        const auto degree = static_cast<double>(point_edges_[static_cast<Index>(p)].size());
+        diagonal[p] = squares[p] + (weights.stiffness + weights.evenness) * degree;
+        if (!(diagonal[p] > 0)) diagonal[p] = 1;
+    });
+
+    Vectors rest = gathered(pulls, [](const Pull& pull) { return -pull.weight * pull.distance * pull.direction; });
+    Vectors even(control.size(), Vec3(0.0));
+    along_edges(control, weights.evenness, even);
+    for (std::size_t p = 0; p < rest.size(); ++p) rest[p] -= even[p];
+    const auto scaled = [&](Vectors x) {
+        parallel_each(x.size(), [&](std::size_t p) { x[p] /= diagonal[p]; });
+        return x;
+    };
+    Vectors found(control.size(), Vec3(0.0)), eased = scaled(rest), way = eased;
+    double left = product_of(rest, eased);
+    constexpr int kSteps = 300;
+    constexpr double kEnough = 1e-8;
+    const double enough = kEnough * left;
+    for (int k = 0; k < kSteps && left > enough; ++k) {
+        const Vectors image = applied(way);
+        const double length = left / product_of(way, image);
+        parallel_each(found.size(), [&](std::size_t p) {
+            found[p] += length * way[p];
+            rest[p] -= length * image[p];
+        });
+        eased = scaled(rest);
+        const double next = product_of(rest, eased);
+        const double ratio = next / left;
+        parallel_each(way.size(), [&](std::size_t p) { way[p] = eased[p] + ratio * way[p]; });
+        left = next;
+    }
+    return found;
+}
+
+Vectors ShapeFitter::step(const Vectors& control, const ShapeWeights& weights) const {
+    Vectors ways = solved(pulls(matrix_.apply(control)), control, weights);
+    keep_sound(control, ways);
+    for (std::size_t p = 0; p < ways.size(); ++p) ways[p] += control[p];
+    return ways;
+}
+
+// Points of cells that would become too bad go a part of the way only, those of the worst ones not at all.
+void ShapeFitter::keep_sound(const Vectors& control, Vectors& ways) const {
+    std::vector<double> least(cells_.size());
+    parallel_each(cells_.size(), [&](std::size_t c) {
+        constexpr double kSound = 0.2, kPart = 0.98;
+        const double now = least_determinant(cells_[c], [&](Index p) { return control[p]; });
+        least[c] = now > 0 ? std::min(kSound, kPart * now) : now;
+    });
+    std::vector<double> parts(control.size(), 1.0);
+    constexpr int kTries = 12;
+    constexpr double kLess = 0.6;
+    for (int k = 0; k < kTries; ++k) {
+        std::vector<std::uint8_t> bad(cells_.size());
+        parallel_each(cells_.size(), [&](std::size_t c) {
+            bad[c] = least_determinant(cells_[c], [&](Index p) { return control[p] + parts[p] * ways[p]; }) < least[c] ? 1 : 0;
+        });
+        std::vector<std::uint8_t> slower(control.size(), 0);
+        for (std::size_t c = 0; c < cells_.size(); ++c) {
+            if (bad[c] == 0) continue;
+            for (const Index p : cells_[c]) slower[p] = 1;
+        }
+        bool any = false;
+        for (std::size_t p = 0; p < slower.size(); ++p) {
+            if (slower[p] == 0) continue;
+            any = true;
+            parts[p] = k + 1 == kTries ? 0 : kLess * parts[p];
+        }
+        if (!any) break;
+    }
+    for (std::size_t p = 0; p < ways.size(); ++p) ways[p] *= parts[p];
+}
+
+ShapeError ShapeFitter::error(const Vectors& control) const {
+    const Vectors boundary = matrix_.apply(control);
+    const std::vector<Pull> found = pulls(boundary);
+    ShapeError error;
+    for (std::size_t k = 0; k < found.size(); ++k) {
+        const bool missed = k >= boundary.size();
+        const double distance = found[k].distance;
+        (missed ? error.missed_rms : error.rms) += distance * distance;
+        double& most = missed ? error.missed_max : error.max;
+        if (distance <= most) continue;
+        most = distance;
+        (missed ? error.missed_at : error.max_at) = missed ? samples_[k - boundary.size()] : boundary[k];
+    }
+    error.rms = std::sqrt(error.rms / static_cast<double>(boundary.size()));
+    error.missed_rms = std::sqrt(error.missed_rms / static_cast<double>(samples_.size()));
+    return error;
+}
+
+HexMesh finished(HexMesh mesh, const Surface& surface, const ShapeOptions& options, ShapeReport& report) {
+    FoldOptions folds;
+    folds.scheme = options.scheme;
+    folds.progress = options.progress;
+    if (options.mend) {
+        MendOptions mending;
+        mending.folds = folds;
+        mending.boundary_edges = options.boundary_edges;
+        Mended mended = mend_folds(std::move(mesh), mending);
+        report.folds = mended.check.report;
+        report.mended = mended.report.before.folded + mended.report.before.open;
+        mesh = std::move(mended.mesh);
+    } else {
+        report.folds = check_folds(mesh, folds).report;
+    }
+    report.after = shape_error(mesh, surface, options.scheme);
+    return mesh;
+}
+
+}  // namespace detail
+
+void validate(const Surface& surface) {
+    if (surface.triangles.empty()) throw Error(ErrorCode::InvalidInput, "the surface has no triangles", "surface");
+    for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
+        for (const Index p : surface.triangles[t]) {
+            if (p >= surface.points.size()) {
+                throw Error(ErrorCode::InvalidInput, "triangle " + std::to_string(t) + " has the corner " + std::to_string(p),
+                            "surface", "below " + std::to_string(surface.points.size()));
+            }
+            const Vec3& x = surface.points[p];
+            if (!std::isfinite(x.x) || !std::isfinite(x.y) || !std::isfinite(x.z)) {
+                throw Error(ErrorCode::InvalidInput, "point " + std::to_string(p) + " is not finite", "surface");
+            }
+        }
+    }
+}
+
+std::vector<Option> options_of(ShapeOptions& options) {
+    return {Option("shape-rounds", options.rounds)
+                .between(1, 1000)
+                .help("N", "look for the nearest places and move the points up to N times"),
+            Option("stiffness", options.stiffness)
+                .between(1e-6, 1e6)
+                .help("S", "how much neighbours move together: more for surfaces with noise"),
+            Option("mend", options.mend).help("", "move points until the limit does not fold"),
+            Option("boundary-move", options.boundary_edges)
+                .between(0, 10)
+                .help("PART", "points of the boundary may move by this part of their shortest edge then")};
+}
+
+Facts facts_of(const ShapeReport& report) {
+    Facts facts;
+    const auto put = [&](const std::string& name, const ShapeError& error) {
+        Facts& group = facts.group(name);
+        group["rms"] = error.rms;
+        group["max"] = error.max;
+        group["max_at"] = std::array{error.max_at.x, error.max_at.y, error.max_at.z};
+        group["missed_rms"] = error.missed_rms;
+        group["missed_max"] = error.missed_max;
+        group["missed_at"] = std::array{error.missed_at.x, error.missed_at.y, error.missed_at.z};
+    };
+    put("before", report.before);
+    put("after", report.after);
+    facts["rounds"] = report.rounds;
+    facts["moved_world"] = report.moved_world;
+    Facts& folds = facts.group("folds");
+    folds["proved"] = report.folds.proved;
+    folds["folded"] = report.folds.folded;
+    folds["undecided"] = report.folds.open + report.folds.irregular;
+    folds["irregular"] = report.folds.irregular;
+    folds["mended"] = report.mended;
+    return facts;
+}
+
+ShapeError shape_error(const HexMesh& mesh, const Surface& surface, const SchemeOptions& scheme) {
+    validate(mesh);
+    validate(surface);
+    return ShapeFitter(build_topology(mesh), surface, scheme, 2).error(mesh.points);
+}
+
+FittedShape fit_shape(HexMesh mesh, const Surface& surface, const ShapeOptions& given) {
+    ShapeOptions options = given;
+    check_options(options);
+    check_options(options.scheme);
+    validate(mesh);
+    validate(surface);
+    if (options.scheme.crease_angle_deg) tag_creases(mesh, *options.scheme.crease_angle_deg);
+    options.scheme.crease_angle_deg.reset();
+    ShapeReport report;
+    report.before = shape_error(mesh, surface, options.scheme);
+    const ShapeFitter fitter(build_topology(mesh), surface, options.scheme, 1);
+    const std::vector<Vec3> start = mesh.points;
+    double best = std::numeric_limits<double>::infinity();
+    for (int round = 0; round < options.rounds; ++round) {
+        report_progress(options.progress, "fit shape", static_cast<double>(round) / options.rounds);
+        std::vector<Vec3> points = fitter.step(mesh.points, {.stiffness = options.stiffness});
+        const ShapeError error = fitter.error(points);
+        const double sum = error.rms * error.rms + error.missed_rms * error.missed_rms;
+        constexpr double kProgress = 0.999;
+        if (!(sum < kProgress * best)) break;
+        best = sum;
+        mesh.points = std::move(points);
+        ++report.rounds;
+    }
+    mesh = finished(std::move(mesh), surface, options, report);
+    for (std::size_t p = 0; p < start.size(); ++p) {
+        report.moved_world = std::max(report.moved_world, glm::distance(start[p], mesh.points[p]));
+    }
+    return {std::move(mesh), report};
+}
+
+}  // namespace subvol

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "subvol/fit_shape.h"
+
+namespace subvol {
+
+/// cells:     along the longest side of the surface's box
+/// max_cells: that may be made
+/// rounds:    how often the nearest places are looked for, each time with half as much weight again for distances
+/// scheme, mend, boundary_edges, names, progress: as in `ShapeOptions`
+struct ControlMeshOptions {
+    SchemeOptions scheme{};
+    int cells = 24;
+    std::size_t max_cells = 2'000'000;
+    int rounds = 15;
+    bool mend = true;
+    double boundary_edges = 0.2;
+    OptionNames names = OptionNames::Keywords;
+    Progress* progress = nullptr;
+};
+
+/// The options without those of the scheme.
+[[nodiscard]] std::vector<Option> options_of(ControlMeshOptions& options);
+
+/// shape:      how far the limit's boundary is from the surface; before: as cubes with a layer around them
+/// parts:      of the mesh, that are not joined
+/// added:      cubes that were needed to make the boundary of the cubes a surface
+/// side_world: of a cube
+/// least_determinant: over the corners of all cells, of its edges divided by their lengths: 1 for cubes, negative if a control
+///             cell is turned inside out
+struct ControlMeshReport {
+    ShapeReport shape;
+    std::size_t parts = 0, added = 0;
+    double side_world = 0;
+    double least_determinant = 0;
+};
+
+/// The report under its members' names.
+[[nodiscard]] Facts facts_of(const ControlMeshReport& report);
+
+struct ControlMesh {
+    HexMesh mesh;
+    ControlMeshReport report;
+};
+
+/// A mesh of hexahedra whose limit fills a closed surface.
+///
+/// Cubes of a grid whose middles lie inside become cells, with a layer of cells around them, so that none has two sides at the
+/// boundary. Then the distortion of the cells' children is made as small as it can be, while the boundary of the limit is drawn
+/// to the surface, more and more; and points are moved where the limit folds still (`mend_folds`). Sharp edges of the surface
+/// become round, by about a part of a cell.
+///
+/// surface: closed; small holes are closed where most of the surface winds about a place. Either side may be outside
+/// throws:  Error(InvalidInput) if the surface is not valid, if no cube has its middle inside, or if an option is out of range;
+///          Error(Cancelled)
+/// cost:    some 6 ms a cell, and as much for folds; parallel, the same bits for any number of threads
+/// source:  [marechal2009] for layers over cubes, [barill2018] for what is inside, [garanzha2021] for distortions
+[[nodiscard]] ControlMesh control_mesh_of(const Surface& surface, const ControlMeshOptions& options = {});
+
+}  // namespace subvol

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "subvol/facts.h"
+#include "subvol/hex_mesh.h"
+#include "subvol/mend_folds.h"
+#include "subvol/option.h"
+#include "subvol/progress.h"
+#include "subvol/scheme.h"
+#include "subvol/surface.h"
+
+namespace subvol {
+
+/// rounds:    how often the nearest places are looked for and the points moved, at most
+/// stiffness: the weight with which neighbours move together, beside the distances about a control point; > 0
+/// mend:      points move where the limit folds or may fold, those of the boundary along it mostly (`mend_folds`)
+/// boundary_edges: how far those of the boundary may move then, as a part of their shortest edge
+/// names:     how errors call the options
+struct ShapeOptions {
+    SchemeOptions scheme{};
+    int rounds = 10;
+    double stiffness = 0.01;
+    bool mend = true;
+    double boundary_edges = 0.2;
+    OptionNames names = OptionNames::Keywords;
+    Progress* progress = nullptr;
+};
+
+/// The options without those of the scheme.
+[[nodiscard]] std::vector<Option> options_of(ShapeOptions& options);
+
+/// Distances between the boundary of a limit and a surface, in the world.
+///
+/// rms, max:       from places of the boundary to the surface, and max_at: the place that is farthest
+/// missed_rms, missed_max, missed_at: from places of the surface to the boundary: large where the mesh does not reach
+struct ShapeError {
+    double rms = 0, max = 0, missed_rms = 0, missed_max = 0;
+    Vec3 max_at{0.0}, missed_at{0.0};
+};
+
+/// Measures a boundary at the vertices of level 2, 25 for each side, and a surface at as many places.
+///
+/// throws: Error(InvalidInput) as `refine`, or if the surface is not valid
+[[nodiscard]] ShapeError shape_error(const HexMesh& mesh, const Surface& surface, const SchemeOptions& scheme = {});
+
+/// before, after: of the fit; rounds: that were made; moved_world: the longest way of a control point
+/// folds:  of the limit in the end; mended: the cells that folded or were undecided though they are regular, before they were
+///         mended
+struct ShapeReport {
+    ShapeError before, after;
+    int rounds = 0;
+    double moved_world = 0;
+    FoldReport folds;
+    std::size_t mended = 0;
+};
+
+/// The report under its members' names.
+[[nodiscard]] Facts facts_of(const ShapeReport& report);
+
+struct FittedShape {
+    HexMesh mesh;
+    ShapeReport report;
+};
+
+/// Moves control points so that the boundary of the limit lies on a surface: in the least squares sense, by Gauss-Newton steps
+/// with the nearest places of both. Points inside follow those around them; no control cell is turned inside out. Whether the
+/// limit folds is checked in the end (`check_folds`).
+///
+/// surface: closed or open; which side is outside does not matter
+/// throws:  Error(InvalidInput) as `refine`, if the surface is not valid, or if an option is out of range
+/// cost:    some 2 ms for each side of a cell at the boundary, and memory for one level of the mesh; parallel, the same bits
+/// for
+///          any number of threads
+[[nodiscard]] FittedShape fit_shape(HexMesh mesh, const Surface& surface, const ShapeOptions& options = {});
+
+/// throws: Error(InvalidInput) if there is no triangle, a corner does not exist, or a point of a triangle is not finite
+void validate(const Surface& surface);
+
+}  // namespace subvol

@@ -1,0 +1,244 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "subvol/read_surface.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "ply_table.h"
+#include "subvol/detail/printable.h"
+#include "subvol/detail/read_file.h"
+#include "subvol/error.h"
+#include "subvol/fit_shape.h"
+#include "text_scanner.h"
+
+namespace subvol {
+
+using namespace detail;
+
+namespace {
+
+constexpr std::size_t kStlHead = 84, kStlTriangle = 50;  // bytes
+
+/// A fan of triangles about the first corner of a polygon; triangles with a corner twice are left out.
+void add_polygon(std::span<const Index> corners, Surface& surface) {
+    for (std::size_t k = 2; k < corners.size(); ++k) {
+        const std::array<Index, 3> t{corners[0], corners[k - 1], corners[k]};
+        if (t[0] != t[1] && t[1] != t[2] && t[2] != t[0]) surface.triangles.push_back(t);
+    }
+}
+
+/// Makes points at the same place one.
+Surface welded(const std::vector<Vec3>& corners) {
+    std::vector<std::size_t> order(corners.size());
+    for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
+    const auto key = [&](std::size_t i) { return std::array{corners[i].x, corners[i].y, corners[i].z}; };
+    std::ranges::sort(order, [&](std::size_t a, std::size_t b) { return key(a) != key(b) ? key(a) < key(b) : a < b; });
+    std::vector<std::size_t> first(corners.size());
+    for (std::size_t k = 0; k < order.size(); ++k) {
+        first[order[k]] = k > 0 && key(order[k]) == key(order[k - 1]) ? first[order[k - 1]] : order[k];
+    }
+    Surface surface;
+    std::vector<Index> numbers(corners.size(), kNone);
+    for (std::size_t t = 0; t + 2 < corners.size(); t += 3) {
+        std::array<Index, 3> triangle;
+        for (std::size_t k = 0; k < 3; ++k) {
+            Index& number = numbers[first[t + k]];
+            if (number == kNone) {
+                number = static_cast<Index>(surface.points.size());
+                surface.points.push_back(corners[t + k]);
+            }
+            triangle[k] = number;
+        }
+        add_polygon(triangle, surface);
+    }
+    return surface;
+}
+
+Surface read_binary_stl(std::string_view text) {
+    std::vector<Vec3> corners;
+    const std::size_t count = (text.size() - kStlHead) / kStlTriangle;
+    corners.reserve(3 * count);
+    for (std::size_t t = 0; t < count; ++t) {
+        const std::string_view row = text.substr(kStlHead + t * kStlTriangle, kStlTriangle);
+        constexpr std::size_t kFloat = 4, kNormal = 12;
+        for (std::size_t k = 0; k < 3; ++k) {
+            Vec3& x = corners.emplace_back();
+            for (std::size_t a = 0; a < 3; ++a) {
+                x[static_cast<int>(a)] =
+                    real_from(row.substr(kNormal + kFloat * (3 * k + a)), NumberType::Float32, std::endian::little);
+            }
+        }
+    }
+    return welded(corners);
+}
+
+Vec3 read_point(TextScanner& in, const Place& place) {
+    Vec3 x;
+    for (int a = 0; a < 3; ++a) x[a] = in.real(place);
+    return x;
+}
+
+Surface read_text_stl(TextScanner& in) {
+    std::vector<Vec3> corners;
+    while (!in.at_end()) {
+        const std::string_view key = in.word();
+        if (key == "vertex") {
+            corners.push_back(read_point(in, {"vertex", static_cast<std::int64_t>(corners.size())}));
+        } else if (key == "endfacet" && corners.size() % 3 != 0) {
+            in.fail("a facet does not have 3 vertices");
+        } else if (key == "solid" || key == "endsolid") {
+            std::ignore = in.line();
+        } else if (key == "normal") {
+            std::ignore = read_point(in, {"normal"});
+        } else if (key != "facet" && key != "outer" && key != "loop" && key != "endloop" && key != "endfacet") {
+            in.fail(in_quotes(key) + " is not a word of an .stl file", "facet, vertex, endsolid");
+        }
+    }
+    return welded(corners);
+}
+
+Surface read_stl(std::string_view text, std::string_view name) {
+    constexpr std::size_t kCount = 80;
+    if (text.size() >= kStlHead) {
+        const auto count =
+            static_cast<std::uint64_t>(integer_from(text.substr(kCount), NumberType::UInt32, std::endian::little));
+        if (text.size() - kStlHead == count * kStlTriangle) return read_binary_stl(text);
+        if (!text.starts_with("solid")) {
+            TextScanner in(text, name, TextScanner::Comments::None);
+            in.name_bytes();
+            in.fail_at(kCount, "the file should have " + std::to_string(count) + " triangles",
+                       "it has room for " + std::to_string((text.size() - kStlHead) / kStlTriangle));
+        }
+    }
+    TextScanner in(text, name, TextScanner::Comments::None);
+    if (!text.starts_with("solid")) in.fail("not an STL file: it is neither binary nor begins with \"solid\"");
+    return read_text_stl(in);
+}
+
+/// One corner of an .obj face: "7", "7/1", "7/1/2" or "7//2"; from the end if negative.
+Index obj_corner(std::string_view word, std::size_t points, TextScanner& in) {
+    const std::string_view digits = word.substr(0, word.find('/'));
+    std::int64_t number = 0;
+    try {
+        TextScanner one(digits, "", TextScanner::Comments::None);
+        number = one.integer({"corner"});
+    } catch (const Error&) {
+        in.fail(in_quotes(word) + " is not a corner of a face", "such as 7 or 7/1/2");
+    }
+    const auto count = static_cast<std::int64_t>(points);
+    const std::int64_t at = number > 0 ? number - 1 : count + number;
+    if (number == 0 || at < 0 || at >= count) {
+        in.fail("a face has the corner " + std::to_string(number), "1 to " + std::to_string(points) + ", the points so far");
+    }
+    return static_cast<Index>(at);
+}
+
+Surface read_obj(std::string_view text, std::string_view name) {
+    TextScanner in(text, name, TextScanner::Comments::Hash);
+    Surface surface;
+    std::vector<Index> polygon;
+    while (!in.at_end()) {
+        const std::string_view key = in.word();
+        if (key == "v") {
+            surface.points.push_back(read_point(in, {"vertex", static_cast<std::int64_t>(surface.points.size())}));
+            std::ignore = in.line();
+        } else if (key == "f") {
+            polygon.clear();
+            std::string_view rest = in.line();
+            rest = rest.substr(0, rest.find('#'));
+            for (rest = trimmed(rest); !rest.empty(); rest = trimmed(rest)) {
+                const std::size_t end = std::min(rest.find_first_of(" \t"), rest.size());
+                polygon.push_back(obj_corner(rest.substr(0, end), surface.points.size(), in));
+                rest.remove_prefix(end);
+            }
+            if (polygon.size() < 3) in.fail("a face has fewer than 3 corners");
+            add_polygon(polygon, surface);
+        } else {
+            std::ignore = in.line();
+        }
+    }
+    return surface;
+}
+
+Surface read_ply_surface(std::string_view text, std::string_view name) {
+    TextScanner in(text, name, TextScanner::Comments::None);
+    const PlyHeader header = read_ply_header(in);
+    if (!header.ascii) in.name_bytes();
+    Surface surface;
+    bool points_read = false;
+    for (const PlyElement& element : header.elements) {
+        if (element.name == "vertex") {
+            const PlyTable table = read_ply_element(in, header, element, {"x", "y", "z"});
+            std::array<const std::vector<double>*, 3> columns{};
+            for (std::size_t a = 0; a < 3; ++a) {
+                const auto found = table.find(std::array{"x", "y", "z"}[a]);
+                if (found == table.end() || found->second.values.size() != element.count) {
+                    in.fail("element \"vertex\" has no numbers x, y and z");
+                }
+                columns[a] = &found->second.values;
+            }
+            for (std::size_t p = 0; p < element.count; ++p) {
+                surface.points.emplace_back((*columns[0])[p], (*columns[1])[p], (*columns[2])[p]);
+            }
+            points_read = true;
+        } else if (element.name == "face") {
+            const PlyTable table = read_ply_element(in, header, element, {"vertex_indices", "vertex_index"});
+            if (table.empty() || table.begin()->second.lengths.size() != element.count) {
+                in.fail("element \"face\" has no list vertex_indices");
+            }
+            if (!points_read) in.fail("element \"face\" comes before \"vertex\"");
+            const PlyColumn& corners = table.begin()->second;
+            std::vector<Index> polygon;
+            std::size_t next = 0;
+            for (std::size_t f = 0; f < element.count; ++f) {
+                polygon.clear();
+                for (std::size_t k = 0; k < corners.lengths[f]; ++k) {
+                    const double corner = corners.values[next++];
+                    if (!(corner >= 0 && corner < static_cast<double>(surface.points.size()))) {
+                        in.fail("face " + std::to_string(f) + " has a corner that is not a vertex",
+                                "0 to " + std::to_string(surface.points.size() - 1));
+                    }
+                    polygon.push_back(static_cast<Index>(corner));
+                }
+                add_polygon(polygon, surface);
+            }
+        } else {
+            std::ignore = read_ply_element(in, header, element, {});
+        }
+    }
+    return surface;
+}
+
+}  // namespace
+
+bool is_surface_file(const std::filesystem::path& path) {
+    const std::string format = upper_case(path.extension().string());
+    return format == ".STL" || format == ".OBJ" || format == ".PLY";
+}
+
+Surface read_surface(const std::filesystem::path& path) {
+    const std::string format = upper_case(path.extension().string());
+    if (!is_surface_file(path)) {
+        throw Error(ErrorCode::InvalidInput, in_quotes(path.extension().string()) + " is not a format of surfaces",
+                    path.string(), ".stl, .obj, .ply");
+    }
+    const std::string text = read_text(path), name = path.string();
+    Surface surface = format == ".STL"   ? read_stl(text, name)
+                      : format == ".OBJ" ? read_obj(text, name)
+                                         : read_ply_surface(text, name);
+    try {
+        validate(surface);
+    } catch (const Error& error) {
+        throw Error(error.code(), error.what(), name);
+    }
+    return surface;
+}
+
+}  // namespace subvol

@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <ceres/gradient_problem.h>
+#include <ceres/gradient_problem_solver.h>
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+#include "shape_fitter.h"
+#include "subvol/detail/parallel_each.h"
+#include "transposed_table.h"
+
+namespace subvol::detail {
+
+namespace {
+
+/// A corner of a cell: its edges in sides as the columns of a matrix, with determinant D. Its distortion is
+///
+///     |J|² / χ^⅔ + ½ (D² + 1) / χ,      χ = (D + √(ε² + D²)) / 2
+///
+/// which is least for a cube and, where ε is 0, infinite where D is not positive. With ε it is finite there and draws D
+/// upwards.
+struct Distortion {
+    double value;
+    Mat3 gradient;  // by the edges
+};
+
+Distortion distortion_of(const Mat3& j, double epsilon) {
+    constexpr double kSize = 0.5;
+    const Mat3 cofactors(glm::cross(j[1], j[2]), glm::cross(j[2], j[0]), glm::cross(j[0], j[1]));
+    const double d = glm::dot(j[0], cofactors[0]);
+    const double root = std::sqrt(epsilon * epsilon + d * d);
+    const double chi = 0.5 * (d + root), slope = chi / root;
+    const double square = glm::dot(j[0], j[0]) + glm::dot(j[1], j[1]) + glm::dot(j[2], j[2]);
+    const double power = std::pow(chi, -2.0 / 3.0);
+    const double size = (d * d + 1) / chi;
+    const double by_d = -2.0 / 3.0 * square * power / chi * slope + kSize * (2 * d / chi - size / chi * slope);
+    return {square * power + kSize * size, 2 * power * j + by_d * cofactors};
+}
+
+Mat3 edges_at(const std::array<Index, 8>& cell, std::size_t corner, const Vec3* points) {
+    const Vec3& x = points[cell[corner]];
+    const auto& [a, b, c] = kCornerNeighbors[corner];
+    return {points[cell[a]] - x, points[cell[b]] - x, points[cell[c]] - x};
+}
+
+}  // namespace
+
+/// What is minimised, as a function of the control points in sides.
+class ShapeEnergy : public ceres::FirstOrderFunction {
+public:
+    ShapeEnergy(const ShapeFitter& fitter, const std::vector<Vec3>& control, double side, double weight)
+        : fitter_(fitter), pulls_(fitter.pulls(fitter.matrix_.apply(control))), side_(side), weight_(weight), start_(control) {
+        const std::vector<Vec3> children = fine(control.data());
+        for (const auto& cell : fitter_.children_.cells) {
+            for (std::size_t k = 0; k < 8; ++k) least_ = std::min(least_, glm::determinant(edges_at(cell, k, children.data())));
+        }
+        least_ *= 8 / (side * side * side);
+        constexpr double kPart = 0.04, kTiny = 1e-6;
+        const double below = std::min(least_, 0.0);
+        epsilon_ = std::sqrt(kTiny + kPart * below * below);
+    }
+
+    [[nodiscard]] int NumParameters() const override { return static_cast<int>(3 * start_.size()); }
+
+    bool Evaluate(const double* parameters, double* cost, double* gradient) const override {
+        const auto* points = reinterpret_cast<const Vec3*>(parameters);
+        const std::size_t count = start_.size();
+        const std::vector<Vec3> children = fine(points);
+        // The last place is the sum of the distortions.
+        std::vector<double> slopes =
+            parallel_sums(3 * children.size() + 1, fitter_.children_.cells.size(), [&](std::size_t c, std::vector<double>& to) {
+                const auto& cell = fitter_.children_.cells[c];
+                constexpr double kCorners = 64;  // of the children of a cell
+                for (std::size_t k = 0; k < 8; ++k) {
+                    const Distortion at = distortion_of(2.0 * edges_at(cell, k, children.data()), epsilon_);
+                    to.back() += at.value / kCorners;
+                    for (std::size_t e = 0; e < 3; ++e) {
+                        const Index end = cell[kCornerNeighbors[k][e]];
+                        for (int axis = 0; axis < 3; ++axis) {
+                            const double slope = 2 * at.gradient[static_cast<int>(e)][axis] / kCorners;
+                            to[3 * end + static_cast<std::size_t>(axis)] += slope;
+                            to[3 * cell[k] + static_cast<std::size_t>(axis)] -= slope;
+                        }
+                    }
+                }
+            });
+        const double distortions = slopes.back();
+        slopes.pop_back();
+        const std::vector<double> sums = apply_transpose(fitter_.children_.levels[0], slopes, 3);
+        std::vector<Vec3> moved(count);
+        for (std::size_t p = 0; p < count; ++p) moved[p] = points[p] - start_[p] / side_;
+        const std::vector<Vec3> ways = fitter_.matrix_.apply(moved);
+        const auto rest = [&](const ShapeFitter::Pull& pull, const Vec3& way) {
+            return glm::dot(pull.direction, way) + pull.distance / side_;
+        };
+        constexpr double kSliding = 0.001;
+        double distances = 0;
+        for (const ShapeFitter::Pull& pull : pulls_) {
+            const Vec3 way = ShapeFitter::place_of(pull, ways);
+            const double far = rest(pull, way);
+            distances += pull.weight * (far * far + kSliding * glm::dot(way, way));
+        }
+        *cost = distortions + weight_ * distances;
+        if (gradient != nullptr) {
+            const std::vector<Vec3> forces = fitter_.gathered(pulls_, [&](const ShapeFitter::Pull& pull) {
+                const Vec3 way = ShapeFitter::place_of(pull, ways);
+                return 2 * weight_ * pull.weight * (rest(pull, way) * pull.direction + kSliding * way);
+            });
+            for (std::size_t p = 0; p < count; ++p) {
+                for (std::size_t axis = 0; axis < 3; ++axis) {
+                    gradient[3 * p + axis] = sums[3 * p + axis] + forces[p][static_cast<int>(axis)];
+                }
+            }
+        }
+        return std::isfinite(*cost);
+    }
+
+private:
+    [[nodiscard]] std::vector<Vec3> fine(const Vec3* points) const {
+        std::vector<Vec3> children(fitter_.children_.points());
+        fitter_.children_.levels[0].apply(std::span<const double>(&points->x, 3 * start_.size()), 3,
+                                          std::span<double>(&children.front().x, 3 * children.size()));
+        return children;
+    }
+
+    const ShapeFitter& fitter_;
+    std::vector<ShapeFitter::Pull> pulls_;
+    double side_, weight_;
+    std::vector<Vec3> start_;
+    double least_ = 1, epsilon_ = 0;
+};
+
+std::vector<Vec3> ShapeFitter::relaxed(const std::vector<Vec3>& control, double side, double weight) const {
+    std::vector<Vec3> points = control;
+    for (Vec3& x : points) x /= side;
+    const ceres::GradientProblem problem(new ShapeEnergy(*this, control, side, weight));
+    ceres::GradientProblemSolver::Options options;
+    constexpr int kSteps = 30;
+    options.max_num_iterations = kSteps;
+    options.logging_type = ceres::SILENT;
+    options.function_tolerance = 1e-5;
+    ceres::GradientProblemSolver::Summary summary;
+    ceres::Solve(options, problem, &points.front().x, &summary);
+    for (Vec3& x : points) x *= side;
+    return points;
+}
+
+}  // namespace subvol::detail

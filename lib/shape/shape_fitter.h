@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "subvol/cell.h"
+#include "subvol/detail/parallel_sums.h"
+#include "subvol/fit_shape.h"
+#include "subvol/refine.h"
+#include "subvol/topology.h"
+#include "surface_matrix.h"
+#include "surface_tree.h"
+
+namespace subvol::detail {
+
+/// Weights beside that of the distances about a control point, which is 1.
+///
+/// stiffness: of differences of the ways along edges: neighbours move together
+/// evenness:  of differences of the positions along edges: they become equally long, and the surface is drawn inwards
+struct ShapeWeights {
+    double stiffness = 0.01, evenness = 0;
+};
+
+/// The least of the determinants at the corners of a cell, of its edges divided by their lengths: 1 for a cube, at most 0 if it
+/// is turned inside out there. position: of a point
+template <class Position>
+double least_determinant(const std::array<Index, 8>& cell, const Position& position) {
+    double least = 1;
+    for (std::size_t k = 0; k < 8; ++k) {
+        const Vec3 x = position(cell[k]);
+        std::array<Vec3, 3> edges;
+        for (std::size_t e = 0; e < 3; ++e) {
+            const Vec3 edge = position(cell[kCornerNeighbors[k][e]]) - x;
+            const double length = glm::length(edge);
+            edges[e] = length > 0 ? edge / length : Vec3(0.0);
+        }
+        least = std::min(least, glm::dot(edges[0], glm::cross(edges[1], edges[2])));
+    }
+    return least;
+}
+
+/// The least over all cells.
+[[nodiscard]] double least_determinant(const HexMesh& mesh);
+
+class ShapeEnergy;
+
+/// The boundary of a limit and a surface that it is fitted to.
+class ShapeFitter {
+public:
+    /// levels: how fine the boundary is where it is compared
+    ShapeFitter(const Topology& control, const Surface& surface, const SchemeOptions& scheme, int levels);
+
+    /// A Gauss-Newton step: the new control points.
+    [[nodiscard]] std::vector<Vec3> step(const std::vector<Vec3>& control, const ShapeWeights& weights) const;
+
+    [[nodiscard]] ShapeError error(const std::vector<Vec3>& control) const;
+
+    /// A distance that should be 0: that of a place of the boundary, a sum over up to three of its points, along a direction.
+    struct Pull {
+        std::array<Index, 3> points;
+        Vec3 weights, direction;
+        double distance, weight;
+    };
+
+    /// The points with less distorted cells and the boundary nearer to the surface, by quasi-Newton steps. Cells that are
+    /// turned inside out are turned back where they can be.
+    ///
+    /// The distortion is that of the children of cells.
+    ///
+    /// side:   of a cell that is not distorted at all
+    /// weight: of the squares of distances in sides, about each control point of the boundary, beside the distortion of a
+    /// corner source: [garanzha2021]
+    [[nodiscard]] std::vector<Vec3> relaxed(const std::vector<Vec3>& control, double side, double weight) const;
+
+private:
+    friend class ShapeEnergy;
+
+    void keep_sound(const std::vector<Vec3>& control, std::vector<Vec3>& ways) const;
+    [[nodiscard]] std::vector<Pull> pulls(const std::vector<Vec3>& boundary) const;
+    /// What forces on the places are at the control points. force: of a pull
+    template <class Force>
+    [[nodiscard]] std::vector<Vec3> gathered(const std::vector<Pull>& pulls, const Force& force) const {
+        const std::vector<double> sums =
+            parallel_sums(3 * matrix_.rows(), pulls.size(), [&](std::size_t k, std::vector<double>& to) {
+                const Vec3 f = force(pulls[k]);
+                for (std::size_t i = 0; i < 3; ++i) {
+                    const double weight = pulls[k].weights[static_cast<int>(i)];
+                    for (std::size_t axis = 0; axis < 3; ++axis) {
+                        to[3 * pulls[k].points[i] + axis] += weight * f[static_cast<int>(axis)];
+                    }
+                }
+            });
+        std::vector<Vec3> forces(matrix_.rows());
+        for (std::size_t p = 0; p < forces.size(); ++p) forces[p] = {sums[3 * p], sums[3 * p + 1], sums[3 * p + 2]};
+        return matrix_.transposed(forces);
+    }
+    /// A place of the boundary.
+    [[nodiscard]] static Vec3 place_of(const Pull& pull, const std::vector<Vec3>& boundary) {
+        Vec3 x(0.0);
+        for (std::size_t i = 0; i < 3; ++i) x += pull.weights[static_cast<int>(i)] * boundary[pull.points[i]];
+        return x;
+    }
+    [[nodiscard]] std::vector<Vec3> solved(const std::vector<Pull>& pulls, const std::vector<Vec3>& control,
+                                           const ShapeWeights& weights) const;
+
+    std::vector<std::array<Index, 8>> cells_;
+    FlatArray<std::array<Index, 2>> edges_;
+    IndexRows point_edges_;
+    std::size_t boundary_points_;
+    RefinementTables children_;
+    SurfaceMatrix matrix_;
+    SurfaceTree tree_;
+    std::vector<Vec3> samples_;  // of the surface, each for an equal area
+};
+
+/// The end of a fit: folds are mended if that is asked for, and the report gets what is known in the end.
+[[nodiscard]] HexMesh finished(HexMesh mesh, const Surface& surface, const ShapeOptions& options, ShapeReport& report);
+
+}  // namespace subvol::detail

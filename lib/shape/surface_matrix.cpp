@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "surface_matrix.h"
+
+#include <algorithm>
+
+#include "subvol/cell.h"
+#include "subvol/detail/parallel_each.h"
+#include "subvol/limit.h"
+#include "subvol/refine.h"
+
+namespace subvol::detail {
+
+namespace {
+
+/// Some rows of a table.
+CsrMatrix rows_of(const StencilTable& table, std::span<const Index> rows) {
+    const CsrMatrix all = table.csr();
+    CsrMatrix some;
+    for (const Index row : rows) {
+        for (std::size_t k = all.offsets[row]; k < all.offsets[row + 1]; ++k) {
+            some.columns.push_back(all.columns[k]);
+            some.weights.push_back(all.weights[k]);
+        }
+        some.offsets.push_back(some.columns.size());
+    }
+    return some;
+}
+
+CsrMatrix transpose_of(const CsrMatrix& matrix, std::size_t columns) {
+    CsrMatrix made;
+    made.offsets.assign(columns + 1, 0);
+    for (const Index column : matrix.columns) ++made.offsets[column + 1];
+    for (std::size_t c = 0; c < columns; ++c) made.offsets[c + 1] += made.offsets[c];
+    made.columns.resize(matrix.columns.size());
+    made.weights.resize(matrix.columns.size());
+    std::vector<std::size_t> next(made.offsets.begin(), made.offsets.end() - 1);
+    for (std::size_t row = 0; row + 1 < matrix.offsets.size(); ++row) {
+        for (std::size_t k = matrix.offsets[row]; k < matrix.offsets[row + 1]; ++k) {
+            const std::size_t at = next[matrix.columns[k]]++;
+            made.columns[at] = static_cast<Index>(row);
+            made.weights[at] = matrix.weights[k];
+        }
+    }
+    return made;
+}
+
+std::vector<Vec3> product_with(const CsrMatrix& matrix, std::span<const Vec3> values) {
+    std::vector<Vec3> sums(matrix.offsets.size() - 1, Vec3(0.0));
+    parallel_each(sums.size(), [&](std::size_t row) {
+        for (std::size_t k = matrix.offsets[row]; k < matrix.offsets[row + 1]; ++k) {
+            sums[row] += matrix.weights[k] * values[matrix.columns[k]];
+        }
+    });
+    return sums;
+}
+
+}  // namespace
+
+SurfaceMatrix::SurfaceMatrix(const Topology& control, const SchemeOptions& scheme, int levels) : columns_(control.point_count) {
+    RefinementTables tables = refinement_tables(control, {.scheme = scheme, .levels = levels});
+    StencilTable table = tables.over_control_points();
+    HexMesh finest;
+    finest.points.resize(table.rows());
+    finest.cells = std::move(tables.cells);
+    finest.creases = std::move(tables.creases);
+    finest.sharp_faces = std::move(tables.sharp_faces);
+    tables.levels.clear();
+    const Topology topology = build_topology(finest);
+    if (!interpolates(scheme.kind)) table = limit_stencils(topology, scheme.kind).after(table);
+    std::vector<Index> number(table.rows(), kNone), points;
+    const auto numbered = [&](Index point) {
+        if (number[point] == kNone) {
+            number[point] = static_cast<Index>(points.size());
+            points.push_back(point);
+        }
+        return number[point];
+    };
+    for (Index c = 0; c < topology.cells.size(); ++c) {
+        for (std::size_t side = 0; side < 6; ++side) {
+            if (!topology.face_on_hull(topology.cell_faces[c][side])) continue;
+            std::array<Index, 4> quad;
+            for (std::size_t k = 0; k < 4; ++k) quad[k] = numbered(topology.cells[c][kCellFaces[side][k]]);
+            triangles_.push_back({quad[0], quad[1], quad[2]});
+            triangles_.push_back({quad[0], quad[2], quad[3]});
+        }
+    }
+    matrix_ = rows_of(table, points);
+    transpose_ = transpose_of(matrix_, columns_);
+}
+
+std::vector<Vec3> SurfaceMatrix::apply(std::span<const Vec3> control) const {
+    return product_with(matrix_, control);
+}
+
+std::vector<Vec3> SurfaceMatrix::transposed(std::span<const Vec3> values) const {
+    return product_with(transpose_, values);
+}
+
+std::vector<double> SurfaceMatrix::squares(std::span<const double> weights) const {
+    std::vector<double> sums(columns_, 0);
+    parallel_each(columns_, [&](std::size_t c) {
+        for (std::size_t k = transpose_.offsets[c]; k < transpose_.offsets[c + 1]; ++k) {
+            sums[c] += weights[transpose_.columns[k]] * transpose_.weights[k] * transpose_.weights[k];
+        }
+    });
+    return sums;
+}
+
+}  // namespace subvol::detail

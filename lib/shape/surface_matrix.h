@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "subvol/scheme.h"
+#include "subvol/stencil_table.h"
+#include "subvol/surface.h"
+#include "subvol/topology.h"
+
+namespace subvol::detail {
+
+/// The limit of the boundary at the points of level `levels` as rows of weights over the control points, and triangles between
+/// these points.
+///
+/// triangles: two for each quad, counter-clockwise seen from outside
+/// rows:      of the points that triangles use
+class SurfaceMatrix {
+public:
+    SurfaceMatrix(const Topology& control, const SchemeOptions& scheme, int levels);
+
+    [[nodiscard]] std::size_t rows() const { return matrix_.offsets.size() - 1; }
+    [[nodiscard]] const std::vector<std::array<Index, 3>>& triangles() const { return triangles_; }
+
+    [[nodiscard]] std::vector<Vec3> apply(std::span<const Vec3> control) const;
+    /// The transpose; the same bits for any number of threads.
+    [[nodiscard]] std::vector<Vec3> transposed(std::span<const Vec3> values) const;
+    /// The sums of the squares of each column times the weights of the rows: the diagonal of AᵀWA.
+    [[nodiscard]] std::vector<double> squares(std::span<const double> weights) const;
+
+private:
+    std::size_t columns_ = 0;
+    CsrMatrix matrix_, transpose_;
+    std::vector<std::array<Index, 3>> triangles_;
+};
+
+}  // namespace subvol::detail
