@@ -11,6 +11,7 @@
 
 #include "subvol/detail/vdb_file.h"
 #include "subvol/grid_error.h"
+#include "subvol/grid_surface.h"
 #include "subvol/join_grids.h"
 #include "subvol/nanovdb.h"
 #include "subvol/rasterize.h"
@@ -42,6 +43,7 @@ struct VdbFunctions {
     void (*write_vdb)(const std::filesystem::path&, std::span<const VdbGrid>, VdbCompression);
     void (*write_vdb_file)(const detail::AtomicFile&, const std::filesystem::path&, std::span<const VdbGrid>, VdbCompression);
     std::vector<VdbGrid> (*read_vdb)(const std::filesystem::path&);
+    Surface (*grid_surface)(const VdbGrid&, std::optional<double>);
     bool (*has_nanovdb)();
     void (*write_nanovdb)(const std::filesystem::path&, std::span<const VdbGrid>);
 

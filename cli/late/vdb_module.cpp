@@ -24,6 +24,7 @@ const subvol::cli::VdbFunctions* subvol_openvdb() {
         .write_vdb = &write_vdb,
         .write_vdb_file = &detail::write_vdb,
         .read_vdb = &read_vdb,
+        .grid_surface = &grid_surface,
         .has_nanovdb = &has_nanovdb,
         .write_nanovdb = &write_nanovdb,
         .write_vdb_points = &write_vdb_points,

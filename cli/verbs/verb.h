@@ -97,6 +97,7 @@ private:
 [[nodiscard]] std::unique_ptr<Verb> make_page_verb(CLI::App& program);
 [[nodiscard]] std::unique_ptr<Verb> make_probe_verb(CLI::App& program);
 [[nodiscard]] std::unique_ptr<Verb> make_check_verb(CLI::App& program);
+[[nodiscard]] std::unique_ptr<Verb> make_mesh_verb(CLI::App& program);
 [[nodiscard]] std::unique_ptr<Verb> make_approximate_verb(CLI::App& program);
 [[nodiscard]] std::unique_ptr<Verb> make_slice_verb(CLI::App& program);
 [[nodiscard]] std::unique_ptr<Verb> make_surface_verb(CLI::App& program);

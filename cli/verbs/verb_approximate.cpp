@@ -10,7 +10,9 @@
 #include "refine_arguments.h"
 #include "subvol/approximate.h"
 #include "subvol/error.h"
+#include "subvol/fit_shape.h"
 #include "subvol/mesh_io.h"
+#include "subvol/read_surface.h"
 #include "text.h"
 #include "verb.h"
 
@@ -23,18 +25,23 @@ constexpr int kPlacesPerEdge = 4;
 class ApproximateVerb : public Verb {
 public:
     explicit ApproximateVerb(CLI::App& program)
-        : Verb(program, "approximate", "Fit the fields of a control mesh to data: a finer mesh, a grid, or scattered samples.",
+        : Verb(program, "approximate",
+               "Fit a control mesh to data: its fields to a mesh, a grid or samples, its shape to a surface.",
                "  subvol approximate fine.vtu --onto coarse.vtu -o fitted.vtu\n"
                "  subvol approximate smoke.vdb --onto model:twist:12 -o smoke.vtu --refine 2 --tolerance .01\n"
                "  subvol approximate measured.csv --onto part.vtu -o fitted.vtu --smoothing 1e-3\n"
+               "  subvol approximate scan.stl --shape --onto block.vtu -o fitted.vtu\n"
                "\n"
                "Least squares through the limit: a field that is a limit of the control mesh is found again.\n"
                "JSON: samples, outside, snapped, unseen, iterations, refined, fields {name: rms, rms_boundary, max, max_at, "
-               "range}, points, cells.") {
+               "range}, points, cells; with --shape also shape {before, after: rms, max, missed_rms, missed_max and their "
+               "places; "
+               "rounds, moved_world, folds}.") {
         app()
             .add_option(
                 "DATA", input_,
-                "a mesh, a .vdb grid of floats (0 where it is not active), or a table (.csv, .txt) of x, y, z and values")
+                "a mesh, a .vdb grid of floats (0 where it is not active), a table (.csv, .txt) of x, y, z and values, or "
+                "with --shape a surface (.stl, .obj, .ply)")
             ->required();
         app().add_option("--onto", onto_, "the control mesh: a file or model:NAME:RESOLUTION")->type_name("MESH")->required();
         app()
@@ -43,6 +50,11 @@ public:
             ->required();
         scheme_.add_scheme_to(app());
         add_options(app(), options_of(options_));
+        CLI::Option* shape =
+            app().add_flag("--shape", shape_, "move the control points first: the limit's boundary to that of DATA");
+        add_options(app(), options_of(shaping_));
+        for (const char* name : {"--shape-rounds", "--stiffness", "--keep-folds", "--boundary-move"})
+            app().get_option(name)->needs(shape);
     }
 
     int run(Report& report) override {
@@ -55,11 +67,17 @@ public:
         if (kind_of(onto_) == InputKind::Bricks) {
             throw Error(ErrorCode::InvalidInput, "is a folder of bricks", onto_, "a mesh in one piece");
         }
-        const HexMesh onto = report.unpack(load_mesh(onto_, CommonOptions{}, report.progress()));
+        HexMesh onto = report.unpack(load_mesh(onto_, CommonOptions{}, report.progress()));
         report["input"] = input_;
         report["onto"] = onto_;
-        const HexMesh samples = read_data(onto, options, report);
-        const Approximation made = report.timed("fit", [&] { return approximate(onto, samples, options); });
+        Approximation made;
+        if (is_surface()) {
+            made.mesh = shaped(std::move(onto), read_surface_data(report), report);
+        } else {
+            const HexMesh samples = read_data(onto, options, report);
+            if (shape_) onto = shaped(std::move(onto), boundary_surface(samples), report);
+            made = report.timed("fit", [&] { return approximate(onto, samples, options); });
+        }
         for (const std::string& warning : report.timed("write", [&] { return write_mesh(output_, made.mesh, {}); })) {
             report.warn(warning);
         }
@@ -68,8 +86,43 @@ public:
     }
 
 private:
+    /// A .ply file has kernels, unless its shape is asked for.
+    [[nodiscard]] bool is_surface() const { return is_surface_file(input_) && (shape_ || extension_of(input_) != ".ply"); }
+
+    [[nodiscard]] Surface read_surface_data(Report& report) {
+        if (!shape_) throw Error(ErrorCode::InvalidInput, "has no fields, only a shape", input_, "--shape with it");
+        refuse_mesh_options(app(), "needs a mesh; this is a surface");
+        refuse_options(app(), {"--field", "--levels", "--reach", "--smoothing", "--iterations", "--refine", "--tolerance"},
+                       "is about fields; a surface has none");
+        return report.timed("read", [&] { return read_surface(input_); });
+    }
+
+    [[nodiscard]] HexMesh shaped(HexMesh onto, const Surface& surface, Report& report) {
+        FitShapeOptions options = shaping_;
+        options.scheme = scheme_.options(0, report.progress()).scheme;
+        options.names = OptionNames::Flags;
+        options.progress = report.progress();
+        ShapedMesh made = report.timed("shape", [&] { return fit_shape(std::move(onto), surface, options); });
+        Facts found;
+        found["shape"] = facts_of(made.report);
+        report.merge(found);
+        const ShapeError &before = made.report.before, &after = made.report.after;
+        report.say(text("shape       boundary ", after.rms, " RMS from the surface (before ", before.rms, "), at most ",
+                        after.max, " at ", after.max_at.x, ", ", after.max_at.y, ", ", after.max_at.z));
+        report.say(text("            surface ", after.missed_rms, " RMS from the boundary (before ", before.missed_rms,
+                        "), at most ", after.missed_max));
+        const FoldReport& folds = made.report.folds;
+        report.say(text("folds       ", folds.proved, " cells proved not to fold, ", folds.folded, " folded, ", folds.open,
+                        " undecided, ", folds.irregular, " near irregular edges"));
+        return std::move(made.mesh);
+    }
+
     [[nodiscard]] HexMesh read_data(const HexMesh& onto, const ApproximateOptions& options, Report& report) {
         const std::string extension = extension_of(input_);
+        if (shape_ && (extension == ".csv" || extension == ".txt" || is_vdb_file(input_))) {
+            throw Error(ErrorCode::InvalidInput, "has no shape", "--shape",
+                        "a mesh or a surface; of a grid subvol mesh makes one");
+        }
         if (extension == ".csv" || extension == ".txt") {
             refuse_mesh_options(app(), "needs a mesh; this is a table");
             refuse_options(app(), {"--field"}, "needs a mesh or a grid; of a table all columns are taken");
@@ -107,10 +160,14 @@ private:
 
     void put(const Approximation& made, Report& report) const {
         const ApproximateReport& found = made.report;
-        report.merge(facts_of(found));
+        if (!is_surface()) report.merge(facts_of(found));
         report["points"] = made.mesh.points.size();
         report["cells"] = made.mesh.cells.size();
         report["output"] = output_;
+        if (is_surface()) {
+            report.all_said();
+            return;
+        }
         report.say(text("samples     ", found.samples,
                         found.snapped > 0 ? text(", ", found.snapped, " of them moved to the boundary") : "",
                         found.outside > 0 ? text("; ", found.outside, " more lie outside and are left out") : ""));
@@ -129,6 +186,8 @@ private:
     std::string input_, onto_, output_;
     RefineArguments scheme_;
     ApproximateOptions options_;
+    FitShapeOptions shaping_;
+    bool shape_ = false;
 };
 
 }  // namespace

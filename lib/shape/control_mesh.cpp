@@ -77,10 +77,11 @@ std::vector<Option> options_of(ControlMeshOptions& options) {
             Option("rounds", options.rounds)
                 .between(1, 100)
                 .help("N", "how often the points are drawn to the nearest places of the surface"),
-            Option("mend", options.mend).help("", "move points until the limit does not fold"),
+            Option("keep-folds", options.keep_folds).help("leave the points where they are if the limit folds"),
             Option("boundary-move", options.boundary_edges)
                 .between(0, 10)
-                .help("PART", "points of the boundary may move by this part of their shortest edge then")};
+                .not_with("keep-folds")
+                .help("PART", "points of the boundary may move by this part of their shortest edge where the limit folds")};
 }
 
 Facts facts_of(const ControlMeshReport& report) {
@@ -113,16 +114,16 @@ ControlMesh control_mesh_of(const Surface& surface, const ControlMeshOptions& gi
     int rounds = 0;
     const std::vector<Vec3> start = mesh.points;
     for (const bool last : {false, true}) {
-        const ShapeFitter fitter(build_topology(mesh), surface, last ? options.scheme : linear, 1);
+        const ShapeFitter fitter(build_topology(mesh), surface, last ? options.scheme : linear);
         for (const int end = last ? options.rounds : options.rounds / 2; rounds < end; ++rounds, weight *= kMore) {
             report_progress(options.progress, "shape", static_cast<double>(rounds) / options.rounds);
             mesh.points = fitter.relaxed(mesh.points, report.side_world, weight);
         }
     }
     report.shape.rounds = rounds;
-    ShapeOptions ending;
+    FitShapeOptions ending;
     ending.scheme = options.scheme;
-    ending.mend = options.mend;
+    ending.keep_folds = options.keep_folds;
     ending.boundary_edges = options.boundary_edges;
     ending.progress = options.progress;
     mesh = finished(std::move(mesh), surface, ending, report.shape);

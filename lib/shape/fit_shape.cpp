@@ -9,6 +9,7 @@
 #include "subvol/detail/parallel_each.h"
 #include "subvol/detail/parallel_sums.h"
 #include "subvol/error.h"
+#include "subvol/limit.h"
 
 // A step looks for the nearest places of the surface and the boundary x = A c, both ways, and finds the ways d of the control
 // points c that minimise
@@ -31,35 +32,6 @@ double product_of(const Vectors& a, const Vectors& b) {
     return parallel_sums(1, a.size(), [&](std::size_t i, std::vector<double>& sum) { sum[0] += glm::dot(a[i], b[i]); })[0];
 }
 
-/// Places spread evenly over a surface: at equal steps of its area, in each triangle at the next of a sequence of low
-/// discrepancy.
-///
-/// source: [roberts2018]
-Vectors places_on(const Surface& surface, std::size_t count) {
-    std::vector<double> sums{0};
-    for (const auto& t : surface.triangles) {
-        const Vec3 &a = surface.points[t[0]], &b = surface.points[t[1]], &c = surface.points[t[2]];
-        sums.push_back(sums.back() + glm::length(glm::cross(b - a, c - a)));
-    }
-    Vectors places;
-    for (std::size_t i = 0; i < count; ++i) {
-        const double at = (static_cast<double>(i) + 0.5) / static_cast<double>(count) * sums.back();
-        const auto above = std::ranges::upper_bound(sums, at);
-        const std::size_t t = std::min<std::size_t>(static_cast<std::size_t>(above - sums.begin()), sums.size() - 1) - 1;
-        constexpr double kFirst = 0.7548776662466927, kSecond = 0.5698402909980532;  // 1/g and 1/g² with g³ = g + 1
-        double whole = 0;
-        double u = std::modf(kFirst * static_cast<double>(i), &whole), v = std::modf(kSecond * static_cast<double>(i), &whole);
-        if (u + v > 1) {
-            u = 1 - u;
-            v = 1 - v;
-        }
-        const auto& corners = surface.triangles[t];
-        const Vec3& a = surface.points[corners[0]];
-        places.push_back(a + u * (surface.points[corners[1]] - a) + v * (surface.points[corners[2]] - a));
-    }
-    return places;
-}
-
 }  // namespace
 
 namespace detail {
@@ -72,40 +44,17 @@ double least_determinant(const HexMesh& mesh) {
     return least;
 }
 
-ShapeFitter::ShapeFitter(const Topology& control, const Surface& surface, const SchemeOptions& scheme, int levels)
+ShapeFitter::ShapeFitter(const Topology& control, const Surface& surface, const SchemeOptions& scheme)
     : cells_(control.cells),
       edges_(control.edges),
       point_edges_(control.point_edges),
       boundary_points_(static_cast<std::size_t>(std::ranges::count(control.point_on_boundary, 1))),
       children_(refinement_tables(control, {.scheme = scheme, .levels = 1})),
-      matrix_(control, scheme, levels),
-      tree_(surface),
-      samples_(places_on(surface, matrix_.rows())) {
-}
+      matrix_(control, scheme),
+      distances_(surface, matrix_.rows()) {}
 
-std::vector<ShapeFitter::Pull> ShapeFitter::pulls(const Vectors& boundary) const {
-    // All places of the boundary have the same weight, those of the surface too: as much as there are control points there.
-    const Surface limit{boundary, matrix_.triangles()};
-    const SurfaceTree limit_tree(limit);
-    const std::size_t count = boundary.size() + samples_.size();
-    const double weight = static_cast<double>(boundary_points_) / static_cast<double>(count);
-    std::vector<Pull> made(count);
-    // What is farther away than a side is long may be the wrong place.
-    double length = 0;
-    for (const auto& t : limit.triangles) length += glm::distance(boundary[t[0]], boundary[t[1]]);
-    length *= 2 / static_cast<double>(limit.triangles.size());
-    const auto trust = [&](double distance) { return 1 / (1 + distance * distance / (length * length)); };
-    parallel_each(boundary.size(), [&](std::size_t p) {
-        const SurfacePlace near = tree_.nearest(boundary[p]);
-        const auto point = static_cast<Index>(p);
-        made[p] = {{point, point, point}, {1, 0, 0}, near.toward, near.distance, weight * trust(near.distance)};
-    });
-    parallel_each(samples_.size(), [&](std::size_t s) {
-        const SurfacePlace near = limit_tree.nearest(samples_[s]);
-        made[boundary.size() + s] = {limit.triangles[near.triangle], near.weights, -near.toward, near.distance,
-                                     weight * trust(near.distance)};
-    });
-    return made;
+std::vector<Pull> ShapeFitter::pulls(const Vectors& control) const {
+    return distances_.pulls({matrix_.apply(control), matrix_.triangles()}, static_cast<double>(boundary_points_));
 }
 
 Vectors ShapeFitter::solved(const std::vector<Pull>& pulls, const Vectors& control, const ShapeWeights& weights) const {
@@ -122,7 +71,7 @@ Vectors ShapeFitter::solved(const std::vector<Pull>& pulls, const Vectors& contr
     const auto applied = [&](const Vectors& d) {
         const Vectors moved = matrix_.apply(d);
         Vectors sums = gathered(pulls, [&](const Pull& pull) {
-            const Vec3 way = place_of(pull, moved);
+            const Vec3 way = pull.sum_of(moved);
             return pull.weight * (glm::dot(pull.direction, way) * pull.direction + kSliding * way);
         });
         along_edges(d, weights.stiffness + weights.evenness, sums);
@@ -167,7 +116,7 @@ Vectors ShapeFitter::solved(const std::vector<Pull>& pulls, const Vectors& contr
 }
 
 Vectors ShapeFitter::step(const Vectors& control, const ShapeWeights& weights) const {
-    Vectors ways = solved(pulls(matrix_.apply(control)), control, weights);
+    Vectors ways = solved(pulls(control), control, weights);
     keep_sound(control, ways);
     for (std::size_t p = 0; p < ways.size(); ++p) ways[p] += control[p];
     return ways;
@@ -206,28 +155,14 @@ void ShapeFitter::keep_sound(const Vectors& control, Vectors& ways) const {
 }
 
 ShapeError ShapeFitter::error(const Vectors& control) const {
-    const Vectors boundary = matrix_.apply(control);
-    const std::vector<Pull> found = pulls(boundary);
-    ShapeError error;
-    for (std::size_t k = 0; k < found.size(); ++k) {
-        const bool missed = k >= boundary.size();
-        const double distance = found[k].distance;
-        (missed ? error.missed_rms : error.rms) += distance * distance;
-        double& most = missed ? error.missed_max : error.max;
-        if (distance <= most) continue;
-        most = distance;
-        (missed ? error.missed_at : error.max_at) = missed ? samples_[k - boundary.size()] : boundary[k];
-    }
-    error.rms = std::sqrt(error.rms / static_cast<double>(boundary.size()));
-    error.missed_rms = std::sqrt(error.missed_rms / static_cast<double>(samples_.size()));
-    return error;
+    return distances_.error({matrix_.apply(control), matrix_.triangles()});
 }
 
-HexMesh finished(HexMesh mesh, const Surface& surface, const ShapeOptions& options, ShapeReport& report) {
+HexMesh finished(HexMesh mesh, const Surface& surface, const FitShapeOptions& options, FitShapeReport& report) {
     FoldOptions folds;
     folds.scheme = options.scheme;
     folds.progress = options.progress;
-    if (options.mend) {
+    if (!options.keep_folds) {
         MendOptions mending;
         mending.folds = folds;
         mending.boundary_edges = options.boundary_edges;
@@ -260,20 +195,21 @@ void validate(const Surface& surface) {
     }
 }
 
-std::vector<Option> options_of(ShapeOptions& options) {
+std::vector<Option> options_of(FitShapeOptions& options) {
     return {Option("shape-rounds", options.rounds)
                 .between(1, 1000)
                 .help("N", "look for the nearest places and move the points up to N times"),
             Option("stiffness", options.stiffness)
                 .between(1e-6, 1e6)
                 .help("S", "how much neighbours move together: more for surfaces with noise"),
-            Option("mend", options.mend).help("", "move points until the limit does not fold"),
+            Option("keep-folds", options.keep_folds).help("leave the points where they are if the limit folds"),
             Option("boundary-move", options.boundary_edges)
                 .between(0, 10)
-                .help("PART", "points of the boundary may move by this part of their shortest edge then")};
+                .not_with("keep-folds")
+                .help("PART", "points of the boundary may move by this part of their shortest edge where the limit folds")};
 }
 
-Facts facts_of(const ShapeReport& report) {
+Facts facts_of(const FitShapeReport& report) {
     Facts facts;
     const auto put = [&](const std::string& name, const ShapeError& error) {
         Facts& group = facts.group(name);
@@ -300,20 +236,26 @@ Facts facts_of(const ShapeReport& report) {
 ShapeError shape_error(const HexMesh& mesh, const Surface& surface, const SchemeOptions& scheme) {
     validate(mesh);
     validate(surface);
-    return ShapeFitter(build_topology(mesh), surface, scheme, 2).error(mesh.points);
+    constexpr int kLevel = 2;
+    HexMesh fine = on_limit(refine(mesh, {.scheme = scheme, .levels = kLevel}), scheme.kind);
+    Hull hull = hull_of(build_topology(fine));
+    Surface boundary;
+    for (const Index p : hull.points) boundary.points.push_back(fine.points[p]);
+    boundary.triangles = std::move(hull.triangles);
+    return SurfaceDistances(surface, boundary.points.size()).error(boundary);
 }
 
-FittedShape fit_shape(HexMesh mesh, const Surface& surface, const ShapeOptions& given) {
-    ShapeOptions options = given;
+ShapedMesh fit_shape(HexMesh mesh, const Surface& surface, const FitShapeOptions& given) {
+    FitShapeOptions options = given;
     check_options(options);
     check_options(options.scheme);
     validate(mesh);
     validate(surface);
     if (options.scheme.crease_angle_deg) tag_creases(mesh, *options.scheme.crease_angle_deg);
     options.scheme.crease_angle_deg.reset();
-    ShapeReport report;
+    FitShapeReport report;
     report.before = shape_error(mesh, surface, options.scheme);
-    const ShapeFitter fitter(build_topology(mesh), surface, options.scheme, 1);
+    const ShapeFitter fitter(build_topology(mesh), surface, options.scheme);
     const std::vector<Vec3> start = mesh.points;
     double best = std::numeric_limits<double>::infinity();
     for (int round = 0; round < options.rounds; ++round) {

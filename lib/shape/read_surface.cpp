@@ -10,6 +10,8 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <tuple>
+#include <utility>
 
 #include "ply_table.h"
 #include "subvol/detail/printable.h"
@@ -167,6 +169,26 @@ Surface read_obj(std::string_view text, std::string_view name) {
     return surface;
 }
 
+/// Strips of triangles, each with two corners of the last; -1 ends a strip. Every other one is turned round.
+void add_strips(std::span<const double> corners, Surface& surface, const TextScanner& in) {
+    std::size_t first = 0;
+    for (std::size_t k = 0; k < corners.size(); ++k) {
+        if (corners[k] == -1) {
+            first = k + 1;
+            continue;
+        }
+        if (!(corners[k] >= 0 && corners[k] < static_cast<double>(surface.points.size()))) {
+            in.fail("a strip has a corner that is not a vertex",
+                    "0 to " + std::to_string(surface.points.size() - 1) + ", or -1");
+        }
+        if (k < first + 2) continue;
+        std::array<Index, 3> t{static_cast<Index>(corners[k - 2]), static_cast<Index>(corners[k - 1]),
+                               static_cast<Index>(corners[k])};
+        if ((k - first) % 2 == 1) std::swap(t[0], t[1]);
+        add_polygon(t, surface);
+    }
+}
+
 Surface read_ply_surface(std::string_view text, std::string_view name) {
     TextScanner in(text, name, TextScanner::Comments::None);
     const PlyHeader header = read_ply_header(in);
@@ -209,6 +231,11 @@ Surface read_ply_surface(std::string_view text, std::string_view name) {
                 }
                 add_polygon(polygon, surface);
             }
+        } else if (element.name == "tristrips") {
+            const PlyTable table = read_ply_element(in, header, element, {"vertex_indices"});
+            if (!points_read || table.empty())
+                in.fail("element \"tristrips\" comes before \"vertex\", or has no vertex_indices");
+            add_strips(table.begin()->second.values, surface, in);
         } else {
             std::ignore = read_ply_element(in, header, element, {});
         }

@@ -50,7 +50,7 @@ Mat3 edges_at(const std::array<Index, 8>& cell, std::size_t corner, const Vec3* 
 class ShapeEnergy : public ceres::FirstOrderFunction {
 public:
     ShapeEnergy(const ShapeFitter& fitter, const std::vector<Vec3>& control, double side, double weight)
-        : fitter_(fitter), pulls_(fitter.pulls(fitter.matrix_.apply(control))), side_(side), weight_(weight), start_(control) {
+        : fitter_(fitter), pulls_(fitter.pulls(control)), side_(side), weight_(weight), start_(control) {
         const std::vector<Vec3> children = fine(control.data());
         for (const auto& cell : fitter_.children_.cells) {
             for (std::size_t k = 0; k < 8; ++k) least_ = std::min(least_, glm::determinant(edges_at(cell, k, children.data())));
@@ -91,20 +91,20 @@ public:
         std::vector<Vec3> moved(count);
         for (std::size_t p = 0; p < count; ++p) moved[p] = points[p] - start_[p] / side_;
         const std::vector<Vec3> ways = fitter_.matrix_.apply(moved);
-        const auto rest = [&](const ShapeFitter::Pull& pull, const Vec3& way) {
+        const auto rest = [&](const Pull& pull, const Vec3& way) {
             return glm::dot(pull.direction, way) + pull.distance / side_;
         };
         constexpr double kSliding = 0.001;
         double distances = 0;
-        for (const ShapeFitter::Pull& pull : pulls_) {
-            const Vec3 way = ShapeFitter::place_of(pull, ways);
+        for (const Pull& pull : pulls_) {
+            const Vec3 way = pull.sum_of(ways);
             const double far = rest(pull, way);
             distances += pull.weight * (far * far + kSliding * glm::dot(way, way));
         }
         *cost = distortions + weight_ * distances;
         if (gradient != nullptr) {
-            const std::vector<Vec3> forces = fitter_.gathered(pulls_, [&](const ShapeFitter::Pull& pull) {
-                const Vec3 way = ShapeFitter::place_of(pull, ways);
+            const std::vector<Vec3> forces = fitter_.gathered(pulls_, [&](const Pull& pull) {
+                const Vec3 way = pull.sum_of(ways);
                 return 2 * weight_ * pull.weight * (rest(pull, way) * pull.direction + kSliding * way);
             });
             for (std::size_t p = 0; p < count; ++p) {
@@ -125,7 +125,7 @@ private:
     }
 
     const ShapeFitter& fitter_;
-    std::vector<ShapeFitter::Pull> pulls_;
+    std::vector<Pull> pulls_;
     double side_, weight_;
     std::vector<Vec3> start_;
     double least_ = 1, epsilon_ = 0;

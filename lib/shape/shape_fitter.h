@@ -8,8 +8,8 @@
 #include "subvol/fit_shape.h"
 #include "subvol/refine.h"
 #include "subvol/topology.h"
+#include "surface_distances.h"
 #include "surface_matrix.h"
-#include "surface_tree.h"
 
 namespace subvol::detail {
 
@@ -47,20 +47,13 @@ class ShapeEnergy;
 /// The boundary of a limit and a surface that it is fitted to.
 class ShapeFitter {
 public:
-    /// levels: how fine the boundary is where it is compared
-    ShapeFitter(const Topology& control, const Surface& surface, const SchemeOptions& scheme, int levels);
+    /// surface: referred to
+    ShapeFitter(const Topology& control, const Surface& surface, const SchemeOptions& scheme);
 
     /// A Gauss-Newton step: the new control points.
     [[nodiscard]] std::vector<Vec3> step(const std::vector<Vec3>& control, const ShapeWeights& weights) const;
 
     [[nodiscard]] ShapeError error(const std::vector<Vec3>& control) const;
-
-    /// A distance that should be 0: that of a place of the boundary, a sum over up to three of its points, along a direction.
-    struct Pull {
-        std::array<Index, 3> points;
-        Vec3 weights, direction;
-        double distance, weight;
-    };
 
     /// The points with less distorted cells and the boundary nearer to the surface, by quasi-Newton steps. Cells that are
     /// turned inside out are turned back where they can be.
@@ -76,7 +69,7 @@ private:
     friend class ShapeEnergy;
 
     void keep_sound(const std::vector<Vec3>& control, std::vector<Vec3>& ways) const;
-    [[nodiscard]] std::vector<Pull> pulls(const std::vector<Vec3>& boundary) const;
+    [[nodiscard]] std::vector<Pull> pulls(const std::vector<Vec3>& control) const;
     /// What forces on the places are at the control points. force: of a pull
     template <class Force>
     [[nodiscard]] std::vector<Vec3> gathered(const std::vector<Pull>& pulls, const Force& force) const {
@@ -94,12 +87,6 @@ private:
         for (std::size_t p = 0; p < forces.size(); ++p) forces[p] = {sums[3 * p], sums[3 * p + 1], sums[3 * p + 2]};
         return matrix_.transposed(forces);
     }
-    /// A place of the boundary.
-    [[nodiscard]] static Vec3 place_of(const Pull& pull, const std::vector<Vec3>& boundary) {
-        Vec3 x(0.0);
-        for (std::size_t i = 0; i < 3; ++i) x += pull.weights[static_cast<int>(i)] * boundary[pull.points[i]];
-        return x;
-    }
     [[nodiscard]] std::vector<Vec3> solved(const std::vector<Pull>& pulls, const std::vector<Vec3>& control,
                                            const ShapeWeights& weights) const;
 
@@ -109,11 +96,10 @@ private:
     std::size_t boundary_points_;
     RefinementTables children_;
     SurfaceMatrix matrix_;
-    SurfaceTree tree_;
-    std::vector<Vec3> samples_;  // of the surface, each for an equal area
+    SurfaceDistances distances_;
 };
 
 /// The end of a fit: folds are mended if that is asked for, and the report gets what is known in the end.
-[[nodiscard]] HexMesh finished(HexMesh mesh, const Surface& surface, const ShapeOptions& options, ShapeReport& report);
+[[nodiscard]] HexMesh finished(HexMesh mesh, const Surface& surface, const FitShapeOptions& options, FitShapeReport& report);
 
 }  // namespace subvol::detail

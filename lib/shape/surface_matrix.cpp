@@ -56,22 +56,13 @@ std::vector<Vec3> product_with(const CsrMatrix& matrix, std::span<const Vec3> va
 
 }  // namespace
 
-SurfaceMatrix::SurfaceMatrix(const Topology& control, const SchemeOptions& scheme, int levels) : columns_(control.point_count) {
-    RefinementTables tables = refinement_tables(control, {.scheme = scheme, .levels = levels});
-    StencilTable table = tables.over_control_points();
-    HexMesh finest;
-    finest.points.resize(table.rows());
-    finest.cells = std::move(tables.cells);
-    finest.creases = std::move(tables.creases);
-    finest.sharp_faces = std::move(tables.sharp_faces);
-    tables.levels.clear();
-    const Topology topology = build_topology(finest);
-    if (!interpolates(scheme.kind)) table = limit_stencils(topology, scheme.kind).after(table);
-    std::vector<Index> number(table.rows(), kNone), points;
+Hull hull_of(const Topology& topology) {
+    Hull hull;
+    std::vector<Index> number(topology.point_count, kNone);
     const auto numbered = [&](Index point) {
         if (number[point] == kNone) {
-            number[point] = static_cast<Index>(points.size());
-            points.push_back(point);
+            number[point] = static_cast<Index>(hull.points.size());
+            hull.points.push_back(point);
         }
         return number[point];
     };
@@ -80,11 +71,26 @@ SurfaceMatrix::SurfaceMatrix(const Topology& control, const SchemeOptions& schem
             if (!topology.face_on_hull(topology.cell_faces[c][side])) continue;
             std::array<Index, 4> quad;
             for (std::size_t k = 0; k < 4; ++k) quad[k] = numbered(topology.cells[c][kCellFaces[side][k]]);
-            triangles_.push_back({quad[0], quad[1], quad[2]});
-            triangles_.push_back({quad[0], quad[2], quad[3]});
+            hull.triangles.push_back({quad[0], quad[1], quad[2]});
+            hull.triangles.push_back({quad[0], quad[2], quad[3]});
         }
     }
-    matrix_ = rows_of(table, points);
+    return hull;
+}
+
+SurfaceMatrix::SurfaceMatrix(const Topology& control, const SchemeOptions& scheme) : columns_(control.point_count) {
+    RefinementTables tables = refinement_tables(control, {.scheme = scheme, .levels = 1});
+    StencilTable table = std::move(tables.levels[0]);
+    HexMesh finest;
+    finest.points.resize(table.rows());
+    finest.cells = std::move(tables.cells);
+    finest.creases = std::move(tables.creases);
+    finest.sharp_faces = std::move(tables.sharp_faces);
+    const Topology topology = build_topology(finest);
+    if (!interpolates(scheme.kind)) table = limit_stencils(topology, scheme.kind).after(table);
+    Hull hull = hull_of(topology);
+    triangles_ = std::move(hull.triangles);
+    matrix_ = rows_of(table, hull.points);
     transpose_ = transpose_of(matrix_, columns_);
 }
 

@@ -12,14 +12,18 @@
 
 namespace subvol::detail {
 
-/// The limit of the boundary at the points of level `levels` as rows of weights over the control points, and triangles between
-/// these points.
-///
-/// triangles: two for each quad, counter-clockwise seen from outside
-/// rows:      of the points that triangles use
+/// The hull of a mesh: its points, and two triangles over them for each quad, counter-clockwise seen from outside.
+struct Hull {
+    std::vector<Index> points;
+    std::vector<std::array<Index, 3>> triangles;
+};
+[[nodiscard]] Hull hull_of(const Topology& topology);
+
+/// The limit of the boundary at the points of level 1 as rows of weights over the control points, and triangles between these
+/// points.
 class SurfaceMatrix {
 public:
-    SurfaceMatrix(const Topology& control, const SchemeOptions& scheme, int levels);
+    SurfaceMatrix(const Topology& control, const SchemeOptions& scheme);
 
     [[nodiscard]] std::size_t rows() const { return matrix_.offsets.size() - 1; }
     [[nodiscard]] const std::vector<std::array<Index, 3>>& triangles() const { return triangles_; }

@@ -5,6 +5,8 @@
 
 #include "bind.h"
 #include "subvol/approximate.h"
+#include "subvol/control_mesh.h"
+#include "subvol/fit_shape.h"
 #include "subvol/flow_surface.h"
 #include "subvol/limit_slice.h"
 #include "subvol/limit_surface.h"
@@ -15,6 +17,7 @@
 #include "subvol/points_error.h"
 #include "subvol/probe.h"
 #include "subvol/quantity.h"
+#include "subvol/read_surface.h"
 
 namespace subvol::python {
 namespace {
@@ -399,9 +402,70 @@ py::tuple approximate_of(const HexMesh& onto, const py::object& points, const py
     return py::make_tuple(std::move(made.mesh), dict_of(facts_of(made.report)));
 }
 
+Surface surface_of(const py::object& points, const py::object& triangles) {
+    Surface surface;
+    surface.points = vectors(points, "points");
+    const auto corners = py::array_t<std::int64_t, py::array::c_style | py::array::forcecast>::ensure(triangles);
+    if (!corners || corners.ndim() != 2 || corners.shape(1) != 3) {
+        throw Error(ErrorCode::InvalidInput, "must be an array of shape (n,3)", "triangles");
+    }
+    const auto rows = corners.unchecked<2>();
+    for (py::ssize_t t = 0; t < rows.shape(0); ++t) {
+        auto& triangle = surface.triangles.emplace_back();
+        for (py::ssize_t k = 0; k < 3; ++k) {
+            const std::int64_t corner = rows(t, k);
+            if (corner < 0 || corner >= static_cast<std::int64_t>(surface.points.size())) {
+                throw Error(ErrorCode::InvalidInput,
+                            "triangle " + std::to_string(t) + " has the corner " + std::to_string(corner), "triangles",
+                            "0 to " + std::to_string(surface.points.size()) + ", not included");
+            }
+            triangle[static_cast<std::size_t>(k)] = static_cast<Index>(corner);
+        }
+    }
+    return surface;
+}
+
+py::tuple fit_shape_of(const HexMesh& mesh, const py::object& points, const py::object& triangles, const py::object& progress,
+                       const py::kwargs& keywords) {
+    FitShapeOptions options;
+    set_options(keywords_of(options), keywords);
+    const Surface surface = surface_of(points, triangles);
+    ShapedMesh made = result_of(progress, [&](Progress* listener) {
+        options.progress = listener;
+        return fit_shape(mesh, surface, options);
+    });
+    return py::make_tuple(std::move(made.mesh), dict_of(facts_of(made.report)));
+}
+
+py::tuple control_mesh(const py::object& points, const py::object& triangles, const py::object& progress,
+                       const py::kwargs& keywords) {
+    ControlMeshOptions options;
+    set_options(keywords_of(options), keywords);
+    const Surface surface = surface_of(points, triangles);
+    ControlMesh made = result_of(progress, [&](Progress* listener) {
+        options.progress = listener;
+        return control_mesh_of(surface, options);
+    });
+    return py::make_tuple(std::move(made.mesh), dict_of(facts_of(made.report)));
+}
+
+py::tuple read_triangles(const std::string& path) {
+    Surface surface = read_surface(path);
+    std::vector<std::int64_t> corners;
+    corners.reserve(3 * surface.triangles.size());
+    for (const auto& t : surface.triangles) corners.insert(corners.end(), t.begin(), t.end());
+    const py::ssize_t count = length(surface.triangles.size());
+    return py::make_tuple(owned(std::move(surface.points)), owned(std::move(corners), {count, 3}));
+}
+
 void bind_measure(py::module_& module) {
     module.def("approximate", &approximate_of, py::arg("onto"), py::arg("points"), py::arg("fields"), py::arg("progress"));
     describe_call<ApproximateOptions>(module, "approximate");
+    module.def("fit_shape", &fit_shape_of, py::arg("mesh"), py::arg("points"), py::arg("triangles"), py::arg("progress"));
+    describe_call<FitShapeOptions>(module, "fit_shape");
+    module.def("control_mesh", &control_mesh, py::arg("points"), py::arg("triangles"), py::arg("progress"));
+    describe_call<ControlMeshOptions>(module, "control_mesh");
+    module.def("read_surface", &read_triangles, py::arg("path"));
     module.def("check_folds", &check_folds_of, py::arg("mesh"), py::arg("progress"));
     describe_call<FoldOptions>(module, "check_folds");
     module.def("mend_folds", &mend_folds_of, py::arg("mesh"), py::arg("progress"));

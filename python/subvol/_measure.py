@@ -124,6 +124,43 @@ def approximate(onto: HexMesh, samples: Union[HexMesh, npt.ArrayLike], fields: O
         return _core.approximate(onto, samples, fields or {}, listener, **options)
 
 
+def read_surface(path: Path) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.int64]]:
+    """The points (n,3) and triangles (m,3) of an .stl, .obj or .ply file. Polygons become fans of triangles."""
+    points, triangles = _core.read_surface(os.fspath(path))
+    return points, triangles
+
+
+@described
+def fit_shape(mesh: HexMesh, points: npt.ArrayLike, triangles: npt.ArrayLike, *, progress: Progress = None,
+              **options: Any) -> tuple[HexMesh, dict[str, Any]]:
+    """Moves control points so that the boundary of the limit lies on a surface of triangles, by least squares.
+
+    points, triangles: (n,3) and (m,3), as `read_surface` and `surface` have them.
+    Returns the mesh, and a report: before and after, the distances of the boundary from the surface (rms, max, max_at) and of the surface
+    from the boundary (missed_rms, missed_max, missed_at), rounds, moved_world, and folds.
+
+    {keywords}
+    """
+    with listening(progress) as listener:
+        fitted, report = _core.fit_shape(mesh, points, triangles, listener, **options)
+        return fitted, report
+
+
+@described
+def control_mesh(points: npt.ArrayLike, triangles: npt.ArrayLike, *, progress: Progress = None,
+                 **options: Any) -> tuple[HexMesh, dict[str, Any]]:
+    """A mesh of hexahedra whose limit fills a closed surface of triangles.
+
+    points, triangles: (n,3) and (m,3), as `read_surface` and `surface` have them; either side may be outside.
+    Returns the mesh, and a report as of `fit_shape`, with parts (that are not joined), added, side_world and least_determinant.
+
+    {keywords}
+    """
+    with listening(progress) as listener:
+        mesh, report = _core.control_mesh(points, triangles, listener, **options)
+        return mesh, report
+
+
 @dataclass(frozen=True)
 class FoldCheck:
     """verdicts: (cells,) 0 proved, 1 folded, 2 open, 3 irregular; open: (cells,), the part of each cell that is not decided; of the

@@ -8,13 +8,13 @@ namespace subvol {
 /// cells:     along the longest side of the surface's box
 /// max_cells: that may be made
 /// rounds:    how often the nearest places are looked for, each time with half as much weight again for distances
-/// scheme, mend, boundary_edges, names, progress: as in `ShapeOptions`
+/// scheme, keep_folds, boundary_edges, names, progress: as in `FitShapeOptions`
 struct ControlMeshOptions {
     SchemeOptions scheme{};
     int cells = 24;
     std::size_t max_cells = 2'000'000;
     int rounds = 15;
-    bool mend = true;
+    bool keep_folds = false;
     double boundary_edges = 0.2;
     OptionNames names = OptionNames::Keywords;
     Progress* progress = nullptr;
@@ -30,7 +30,7 @@ struct ControlMeshOptions {
 /// least_determinant: over the corners of all cells, of its edges divided by their lengths: 1 for cubes, negative if a control
 ///             cell is turned inside out
 struct ControlMeshReport {
-    ShapeReport shape;
+    FitShapeReport shape;
     std::size_t parts = 0, added = 0;
     double side_world = 0;
     double least_determinant = 0;

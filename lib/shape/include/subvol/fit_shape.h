@@ -15,21 +15,21 @@ namespace subvol {
 
 /// rounds:    how often the nearest places are looked for and the points moved, at most
 /// stiffness: the weight with which neighbours move together, beside the distances about a control point; > 0
-/// mend:      points move where the limit folds or may fold, those of the boundary along it mostly (`mend_folds`)
-/// boundary_edges: how far those of the boundary may move then, as a part of their shortest edge
+/// keep_folds: points do not move where the limit folds or may fold (`mend_folds`)
+/// boundary_edges: how far those of the boundary may move for folds, along it mostly, as a part of their shortest edge
 /// names:     how errors call the options
-struct ShapeOptions {
+struct FitShapeOptions {
     SchemeOptions scheme{};
     int rounds = 10;
     double stiffness = 0.01;
-    bool mend = true;
+    bool keep_folds = false;
     double boundary_edges = 0.2;
     OptionNames names = OptionNames::Keywords;
     Progress* progress = nullptr;
 };
 
 /// The options without those of the scheme.
-[[nodiscard]] std::vector<Option> options_of(ShapeOptions& options);
+[[nodiscard]] std::vector<Option> options_of(FitShapeOptions& options);
 
 /// Distances between the boundary of a limit and a surface, in the world.
 ///
@@ -48,7 +48,7 @@ struct ShapeError {
 /// before, after: of the fit; rounds: that were made; moved_world: the longest way of a control point
 /// folds:  of the limit in the end; mended: the cells that folded or were undecided though they are regular, before they were
 ///         mended
-struct ShapeReport {
+struct FitShapeReport {
     ShapeError before, after;
     int rounds = 0;
     double moved_world = 0;
@@ -57,11 +57,11 @@ struct ShapeReport {
 };
 
 /// The report under its members' names.
-[[nodiscard]] Facts facts_of(const ShapeReport& report);
+[[nodiscard]] Facts facts_of(const FitShapeReport& report);
 
-struct FittedShape {
+struct ShapedMesh {
     HexMesh mesh;
-    ShapeReport report;
+    FitShapeReport report;
 };
 
 /// Moves control points so that the boundary of the limit lies on a surface: in the least squares sense, by Gauss-Newton steps
@@ -73,7 +73,7 @@ struct FittedShape {
 /// cost:    some 2 ms for each side of a cell at the boundary, and memory for one level of the mesh; parallel, the same bits
 /// for
 ///          any number of threads
-[[nodiscard]] FittedShape fit_shape(HexMesh mesh, const Surface& surface, const ShapeOptions& options = {});
+[[nodiscard]] ShapedMesh fit_shape(HexMesh mesh, const Surface& surface, const FitShapeOptions& options = {});
 
 /// throws: Error(InvalidInput) if there is no triangle, a corner does not exist, or a point of a triangle is not finite
 void validate(const Surface& surface);

@@ -1,0 +1,44 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""Control meshes of closed surfaces: cells, distances in cells, folds, CPU seconds and memory of `subvol mesh`.
+
+usage: control_meshes.py [--subvol build/release/bin/subvol] [--cells 16 24 32] SURFACE...
+
+Prints a table for docs/approximate.md."""
+
+import argparse
+import json
+import os
+import subprocess
+import tempfile
+from pathlib import Path
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("surfaces", nargs="+")
+    parser.add_argument("--subvol", default="build/release/bin/subvol")
+    parser.add_argument("--cells", type=int, nargs="+", default=[16, 24, 32])
+    given = parser.parse_args()
+    print("| surface | triangles | cells | boundary from surface: RMS, largest | surface from boundary | folded | undecided | mended "
+          "| CPU s | MB |\n|---|---|---|---|---|---|---|---|---|---|")
+    for surface in given.surfaces:
+        for cells in given.cells:
+            with tempfile.TemporaryDirectory() as folder:
+                command = [given.subvol, "mesh", surface, "-o", f"{folder}/made.vtu", "--cells", str(cells), "--json"]
+                process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
+                text = process.stdout.read()
+                _, status, use = os.wait4(process.pid, 0)
+                if os.waitstatus_to_exitcode(status) not in (0, 1):
+                    print(f"| {Path(surface).stem} | | {cells} | no mesh |")
+                    continue
+                found = json.loads(text)
+                side, after, folds = found["side_world"], found["after"], found["folds"]
+                print(f"| {Path(surface).stem} | {found['triangles']:,} | {found['cells']:,} | {after['rms'] / side:.3f}, {after['max'] / side:.2f} "
+                      f"| {after['missed_rms'] / side:.3f}, {after['missed_max'] / side:.2f} | {folds['folded']} "
+                      f"| {folds['undecided'] - folds['irregular']} | {folds['mended']} | {use.ru_utime + use.ru_stime:.0f} "
+                      f"| {use.ru_maxrss / 1024:.0f} |", flush=True)
+
+
+if __name__ == "__main__":
+    main()

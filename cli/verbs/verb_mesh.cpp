@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <CLI/CLI.hpp>
+#include <algorithm>
+
+#include "grid_input.h"
+#include "options.h"
+#include "outputs.h"
+#include "refine_arguments.h"
+#include "subvol/control_mesh.h"
+#include "subvol/error.h"
+#include "subvol/mesh_io.h"
+#include "subvol/read_surface.h"
+#include "text.h"
+#include "vdb_functions.h"
+#include "verb.h"
+
+namespace subvol::cli {
+namespace {
+
+class MeshVerb : public Verb {
+public:
+    explicit MeshVerb(CLI::App& program)
+        : Verb(program, "mesh", "Make a control mesh whose limit fills a closed surface, or a part of a grid.",
+               "  subvol mesh part.stl -o part.vtu\n"
+               "  subvol mesh statue.obj -o statue.vtu --cells 48\n"
+               "  subvol mesh smoke.vdb -o smoke.vtu --iso .01\n"
+               "\n"
+               "Sharp edges become round, by a part of a cell. The exit code is 1 if the limit folds.\n"
+               "JSON: triangles, points, cells, before and after {rms, max, max_at: of the boundary from the surface; "
+               "missed_rms, "
+               "missed_max, missed_at: of the surface from the boundary}, rounds, moved_world, folds {proved, folded, "
+               "undecided, irregular, mended}, parts, added, side_world, least_determinant.") {
+        app().add_option("FILE", input_, "a closed surface (.stl, .obj, .ply), or a .vdb grid of floats")->required();
+        app().add_option("-o,--output", output_, "the control mesh (.vtu, .vtkhdf)")->type_name("FILE")->required();
+        app()
+            .add_option("--iso", iso_,
+                        "of a grid: the surface where it has this value (fog: half of its greatest; level sets: 0)")
+            ->type_name("V");
+        scheme_.add_scheme_to(app());
+        add_options(app(), options_of(options_));
+        set_essentials({"--cells", "--iso", "--scheme", "--keep-folds", "--output", "--json"});
+    }
+
+    int run(Report& report) override {
+        check_output(output_, {".vtu", ".vtkhdf"});
+        ControlMeshOptions options = options_;
+        options.scheme = scheme_.options(0, report.progress()).scheme;
+        options.names = OptionNames::Flags;
+        options.progress = report.progress();
+        report.if_long("fewer --cells");
+        report["input"] = input_;
+        const Surface surface = read(report);
+        report["triangles"] = surface.triangles.size();
+        const ControlMesh made = report.timed("shape", [&] { return control_mesh_of(surface, options); });
+        for (const std::string& warning : report.timed("write", [&] { return write_mesh(output_, made.mesh, {}); })) {
+            report.warn(warning);
+        }
+        put(made, report);
+        return made.report.shape.folds.folded > 0 ? 1 : 0;
+    }
+
+private:
+    [[nodiscard]] Surface read(Report& report) {
+        if (is_vdb_file(input_)) {
+            const VdbGrid grid = report.unpack(load_grid(input_, common(), report.progress()));
+            return report.timed("surface", [&] { return vdb().grid_surface(grid, iso_); });
+        }
+        if (!is_surface_file(input_)) {
+            throw Error(ErrorCode::InvalidInput, "is not a surface", input_,
+                        "an .stl, .obj or .ply file of triangles, or a .vdb grid");
+        }
+        refuse_mesh_options(app(), "needs a grid; this is a surface");
+        refuse_options(app(), {"--field", "--iso"}, "needs a grid; this is a surface");
+        return report.timed("read", [&] { return read_surface(input_); });
+    }
+
+    void put(const ControlMesh& made, Report& report) const {
+        const ControlMeshReport& found = made.report;
+        report.merge(facts_of(found));
+        report["points"] = made.mesh.points.size();
+        report["cells"] = made.mesh.cells.size();
+        report["output"] = output_;
+        const ShapeError& error = found.shape.after;
+        const auto sides = [&](double world) { return text(world / found.side_world); };
+        report.say(text("mesh          ", counted(made.mesh.cells.size(), "cell"), " of ", found.side_world, " with ",
+                        counted(made.mesh.points.size(), "point"),
+                        found.parts > 1 ? text(", in ", found.parts, " parts that are not joined") : ""));
+        report.say(text("boundary      ", error.rms, " RMS from the surface (", sides(error.rms), " cells), at most ",
+                        error.max, " at ", error.max_at.x, ", ", error.max_at.y, ", ", error.max_at.z));
+        report.say(text("surface       ", error.missed_rms, " RMS from the boundary (", sides(error.missed_rms),
+                        " cells), at most ", error.missed_max, " at ", error.missed_at.x, ", ", error.missed_at.y, ", ",
+                        error.missed_at.z));
+        const FoldReport& folds = found.shape.folds;
+        report.say(text("folds         ", folds.proved, " cells proved not to fold, ", folds.folded, " folded, ", folds.open,
+                        " undecided, ", folds.irregular, " near irregular edges"));
+        if (error.missed_max > found.side_world) {
+            report.warn(text("a part of the surface is ", sides(error.missed_max),
+                             " cells away from the mesh: more --cells reach into thinner parts"));
+        }
+        report.all_said();
+    }
+
+    std::string input_, output_;
+    std::optional<double> iso_;
+    RefineArguments scheme_;
+    ControlMeshOptions options_;
+};
+
+}  // namespace
+
+std::unique_ptr<Verb> make_mesh_verb(CLI::App& program) {
+    return std::make_unique<MeshVerb>(program);
+}
+
+}  // namespace subvol::cli

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "surface_distances.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "subvol/detail/parallel_each.h"
+
+namespace subvol::detail {
+
+namespace {
+
+/// Places spread evenly over a surface: at equal steps of its area, in each triangle at the next of a sequence of low
+/// discrepancy.
+///
+/// source: [roberts2018]
+std::vector<Vec3> places_on(const Surface& surface, std::size_t count) {
+    std::vector<double> sums{0};
+    for (const auto& t : surface.triangles) {
+        const Vec3 &a = surface.points[t[0]], &b = surface.points[t[1]], &c = surface.points[t[2]];
+        sums.push_back(sums.back() + glm::length(glm::cross(b - a, c - a)));
+    }
+    std::vector<Vec3> places;
+    for (std::size_t i = 0; i < count; ++i) {
+        const double at = (static_cast<double>(i) + 0.5) / static_cast<double>(count) * sums.back();
+        const auto above = std::ranges::upper_bound(sums, at);
+        const std::size_t t = std::min<std::size_t>(static_cast<std::size_t>(above - sums.begin()), sums.size() - 1) - 1;
+        constexpr double kFirst = 0.7548776662466927, kSecond = 0.5698402909980532;  // 1/g and 1/g² with g³ = g + 1
+        double whole = 0;
+        double u = std::modf(kFirst * static_cast<double>(i), &whole), v = std::modf(kSecond * static_cast<double>(i), &whole);
+        if (u + v > 1) {
+            u = 1 - u;
+            v = 1 - v;
+        }
+        const auto& corners = surface.triangles[t];
+        const Vec3& a = surface.points[corners[0]];
+        places.push_back(a + u * (surface.points[corners[1]] - a) + v * (surface.points[corners[2]] - a));
+    }
+    return places;
+}
+
+}  // namespace
+
+SurfaceDistances::SurfaceDistances(const Surface& surface, std::size_t places)
+    : tree_(surface), places_(places_on(surface, places)) {
+}
+
+std::vector<Pull> SurfaceDistances::pulls(const Surface& boundary, double weight) const {
+    const SurfaceTree boundary_tree(boundary);
+    double length = 0;
+    for (const auto& t : boundary.triangles) length += glm::distance(boundary.points[t[0]], boundary.points[t[1]]);
+    length *= 2 / static_cast<double>(boundary.triangles.size());  // of a side of the level before
+    const std::size_t first = boundary.points.size(), count = first + places_.size();
+    const auto weight_at = [&](double distance) {
+        return weight / static_cast<double>(count) / (1 + distance * distance / (length * length));
+    };
+    std::vector<Pull> made(count);
+    parallel_each(first, [&](std::size_t p) {
+        const SurfacePlace near = tree_.nearest(boundary.points[p]);
+        const auto point = static_cast<Index>(p);
+        made[p] = {{point, point, point}, {1, 0, 0}, near.toward, near.distance, weight_at(near.distance)};
+    });
+    parallel_each(places_.size(), [&](std::size_t k) {
+        const SurfacePlace near = boundary_tree.nearest(places_[k]);
+        made[first + k] = {boundary.triangles[near.triangle], near.weights, -near.toward, near.distance,
+                           weight_at(near.distance)};
+    });
+    return made;
+}
+
+ShapeError SurfaceDistances::error(const Surface& boundary) const {
+    const std::vector<Pull> found = pulls(boundary, 1);
+    const std::size_t first = boundary.points.size();
+    ShapeError error;
+    for (std::size_t k = 0; k < found.size(); ++k) {
+        const bool missed = k >= first;
+        const double distance = found[k].distance;
+        (missed ? error.missed_rms : error.rms) += distance * distance;
+        double& most = missed ? error.missed_max : error.max;
+        if (distance <= most) continue;
+        most = distance;
+        (missed ? error.missed_at : error.max_at) = missed ? places_[k - first] : boundary.points[k];
+    }
+    error.rms = std::sqrt(error.rms / static_cast<double>(first));
+    error.missed_rms = std::sqrt(error.missed_rms / static_cast<double>(places_.size()));
+    return error;
+}
+
+}  // namespace subvol::detail

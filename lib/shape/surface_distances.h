@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "subvol/fit_shape.h"
+#include "surface_tree.h"
+
+namespace subvol::detail {
+
+/// A distance that should be 0: that of a place of the boundary, a sum over up to three of its points, along a direction.
+struct Pull {
+    std::array<Index, 3> points;
+    Vec3 weights, direction;
+    double distance, weight;
+
+    /// The place, or how it moves, by the boundary's points.
+    [[nodiscard]] Vec3 sum_of(const std::vector<Vec3>& boundary) const {
+        Vec3 x(0.0);
+        for (std::size_t i = 0; i < 3; ++i) x += weights[static_cast<int>(i)] * boundary[points[i]];
+        return x;
+    }
+};
+
+/// Distances between a surface and boundaries: from the points of these, and from places that are spread evenly over the
+/// surface.
+class SurfaceDistances {
+public:
+    /// surface: referred to; places: how many
+    SurfaceDistances(const Surface& surface, std::size_t places);
+
+    /// The distances from all points of a boundary, then those from all places. The weights sum to `weight`, but for distances
+    /// longer than a side of the boundary, which may be to the wrong place.
+    [[nodiscard]] std::vector<Pull> pulls(const Surface& boundary, double weight) const;
+
+    [[nodiscard]] ShapeError error(const Surface& boundary) const;
+
+private:
+    SurfaceTree tree_;
+    std::vector<Vec3> places_;
+};
+
+}  // namespace subvol::detail

@@ -1,0 +1,75 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`subvol mesh` and `approximate --shape`: surfaces and grids become control meshes."""
+
+import unittest
+
+from command import InFolder, subvol
+
+
+class Mesh(InFolder):
+    def make(self, *words):
+        return self.run_ok("mesh", *words, "--json").json()
+
+    def ball(self, name="ball.stl"):
+        self.run_ok("surface", "model:ball:4", "--boundary", "-o", name, "--tolerance", "1e-3", "--quiet")
+
+    def test_a_surface_is_filled(self):
+        for name in ("ball.stl", "ball.obj", "ball.ply"):
+            self.ball(name)
+            found = self.make(name, "-o", "ball.vtu", "--cells", "6", "--quiet")
+            self.assertEqual((found["folds"]["folded"], found["parts"]), (0, 1))
+            self.assertLess(found["after"]["max"], .1 * found["side_world"])
+            self.assertLess(found["after"]["rms"], .2 * found["before"]["rms"])
+        info = self.run_ok("info", "ball.vtu", "--json").json()
+        self.assertEqual((info["cells"], info["points"]), (found["cells"], found["points"]))
+        filled = self.run_ok("probe", "ball.vtu", "--density", "1", "--stats", "--json").json()["stats"]["whole"]["volume"]
+        ball = self.run_ok("probe", "model:ball:4", "--density", "1", "--stats", "--json").json()["stats"]["whole"]["volume"]
+        self.assertLess(abs(filled / ball - 1), .02)
+
+    def test_a_part_of_a_grid_is_filled(self):
+        # density is 1 − |x|² or so inside the ball: where it is above a value is a smaller ball
+        self.run_ok("vdb", "model:ball:4", "--density", "2-x*x-y*y-z*z", "-o", "fog.vdb", "--resolution", "40", "--sdf", "--quiet")
+        whole = self.make("fog.vdb", "-o", "whole.vtu", "--cells", "6", "--iso", ".5")
+        part = self.make("fog.vdb", "-o", "part.vtu", "--cells", "6", "--iso", "1.75")
+        self.assertLess(part["side_world"], .75 * whole["side_world"])
+        self.assertEqual(part["folds"]["folded"], 0)
+        distances = self.make("fog.vdb", "--field", "sdf", "-o", "set.vtu", "--cells", "6")
+        self.assertAlmostEqual(distances["side_world"] / whole["side_world"], 1, 1)
+
+    def test_a_shape_is_fitted(self):
+        self.ball()
+        found = self.run_ok("approximate", "ball.stl", "--shape", "--onto", "model:twist:3", "-o", "fitted.vtu", "--keep-folds", "--json").json()
+        self.assertLess(found["shape"]["after"]["missed_rms"], .5 * found["shape"]["before"]["missed_rms"])
+        self.assertNotIn("fields", found)
+        # A mesh gives its shape and then its fields.
+        self.run_ok("subdivide", "model:twist:4", "--density", "x+2*y", "-o", "fine.vtu", "--levels", "2", "--quiet")
+        both = self.run_ok("approximate", "fine.vtu", "--shape", "--onto", "model:twist:2", "-o", "both.vtu", "--json").json()
+        self.assertLess(both["shape"]["after"]["rms"], both["shape"]["before"]["rms"])
+        self.assertLess(both["fields"]["density"]["max"], .05 * both["fields"]["density"]["range"])
+
+    def test_says_what_is_wrong(self):
+        self.ball()
+        (self.folder / "flat.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
+        (self.folder / "bad.obj").write_text("v 0 0 0\nf 1 2 3\n")
+        self.run_ok("vdb", "model:ball:2", "-o", "fog.vdb", "--resolution", "16", "--quiet")
+        for words, part in ((["none.stl"], "none.stl"), (["flat.obj"], "no cell has its middle inside the surface"),
+                            (["bad.obj"], "bad.obj, line 2: a face has the corner 2"), (["model:ball"], "is not a surface"),
+                            (["ball.stl", "--iso", "1"], "--iso: needs a grid"), (["ball.stl", "--field", "T"], "--field: needs a grid"),
+                            (["ball.stl", "--cells", "1"], "--cells"), (["ball.stl", "--max-cells", "10"], "--cells: "),
+                            (["ball.stl", "--keep-folds", "--boundary-move", ".5"], "--boundary-move"),
+                            (["fog.vdb", "--iso", "77"], "has the value 77 nowhere"), (["fog.vdb", "--field", "T"], "T")):
+            done = subvol("mesh", *words, "-o", "made.vtu", folder=self.folder)
+            self.assertEqual(done.code, 2, (words, done.err))
+            self.assertIn(part, done.err)
+            self.assertNotIn("made.vtu", self.files())
+        for words, part in ((["ball.stl"], "ball.stl: has no fields, only a shape (--shape with it)"),
+                            (["ball.stl", "--shape", "--refine", "1"], "--refine"), (["fog.vdb", "--shape"], "--shape: has no shape"),
+                            (["model:ball:2", "--stiffness", "1"], "--stiffness")):
+            done = subvol("approximate", *words, "--onto", "model:twist:2", "-o", "made.vtu", folder=self.folder)
+            self.assertEqual(done.code, 2, (words, done.err))
+            self.assertIn(part, done.err)
+            self.assertNotIn("made.vtu", self.files())
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
+#include <tbb/global_control.h>
+
+#include <cmath>
+#include <numbers>
+#include <random>
+
+#include "lib/shape/shapes.h"
+#include "lib/temp_folder.h"
+#include "lib/test_meshes.h"
+#include "shape_fitter.h"
+#include "subvol/control_mesh.h"
+
+namespace subvol {
+namespace shape_test {
+
+using test::error_of;
+using testing::HasSubstr;
+
+double volume_of(const HexMesh& mesh) {
+    const HexMesh fine = refine(mesh, {.levels = 2});
+    double all = 0;
+    for (const auto& cell : fine.cells) {
+        std::array<Vec3, 8> x;
+        for (std::size_t k = 0; k < 8; ++k) x[k] = fine.points[cell[k]];
+        all += cell_volume(x);
+    }
+    return all;
+}
+
+TEST(FitShape, FindsTheFlatSidesOfABoxAgain) {
+    HexMesh mesh = test::make_box(4, 4, 4);
+    const Surface sides = boundary_surface(mesh);
+    const Topology topology = build_topology(mesh);
+    std::mt19937 dice(3);
+    std::uniform_real_distribution<double> off(-0.15, 0.15);
+    for (Index p = 0; p < mesh.points.size(); ++p) {
+        if (topology.point_on_boundary[p] != 0) mesh.points[p] += Vec3(off(dice), off(dice), off(dice));
+    }
+    const ShapedMesh made = fit_shape(mesh, sides, {.rounds = 40, .stiffness = 1e-4, .keep_folds = true});
+    EXPECT_GT(made.report.before.rms, 0.03);
+    EXPECT_LT(made.report.after.max, 1e-4);
+    EXPECT_LT(made.report.after.missed_max, 1e-4);
+    EXPECT_EQ(made.report.folds.proved, mesh.cells.size());
+}
+
+TEST(FitShape, ABlockBecomesABall) {
+    HexMesh mesh = test::make_box(4, 4, 4);
+    for (Vec3& x : mesh.points) {
+        x = 0.5 * (x - 2.0);
+        const double most = std::max({std::abs(x.x), std::abs(x.y), std::abs(x.z)});
+        if (glm::length(x) > 0) x *= 1 - 0.4 * most * (1 - most / glm::length(x));  // its corners are rounder than a box's
+    }
+    const Surface ball = test::sphere(24);
+    const ShapedMesh made = fit_shape(mesh, ball, {.rounds = 40, .keep_folds = true});
+    EXPECT_GT(made.report.before.rms, 0.1);
+    EXPECT_LT(made.report.after.rms, 0.01);
+    EXPECT_LT(made.report.after.missed_rms, 0.01);
+    EXPECT_GT(detail::least_determinant(made.mesh), 0);
+    EXPECT_NEAR(volume_of(made.mesh), 4 * std::numbers::pi / 3, 0.02);
+}
+
+TEST(FitShape, SaysHowFarAMeshIsFromASurface) {
+    const HexMesh mesh = test::make_box(3, 3, 3);
+    Surface sides = boundary_surface(mesh);
+    const ShapeError same = shape_error(mesh, sides, {.kind = Scheme::Linear});
+    EXPECT_LT(same.max, 1e-12);
+    EXPECT_LT(same.missed_max, 1e-12);
+    for (Vec3& x : sides.points) x += Vec3(.25, 0, 0);
+    const ShapeError moved = shape_error(mesh, sides, {.kind = Scheme::Linear});
+    EXPECT_NEAR(moved.max, .25, 1e-12);
+    EXPECT_NEAR(moved.missed_max, .25, 1e-12);
+}
+
+TEST(ControlMesh, FillsABall) {
+    const Surface ball = test::sphere(24);
+    const ControlMesh made = control_mesh_of(ball, {.cells = 8});
+    EXPECT_EQ(made.report.parts, 1U);
+    EXPECT_EQ(made.report.shape.folds.folded, 0U);
+    EXPECT_EQ(made.report.shape.folds.open, 0U);
+    EXPECT_GT(made.report.least_determinant, 0.2);
+    EXPECT_LT(made.report.shape.after.max, 0.05 * made.report.side_world);
+    EXPECT_LT(made.report.shape.after.missed_max, 0.05 * made.report.side_world);
+    EXPECT_NEAR(volume_of(made.mesh), 4 * std::numbers::pi / 3, 0.01);
+}
+
+TEST(ControlMesh, DoesNotDependOnTheSideThatIsOutsideNorOnThreads) {
+    const Surface ball = test::sphere(10);
+    const ControlMeshOptions options{.cells = 5, .rounds = 6};
+    const HexMesh made = control_mesh_of(ball, options).mesh;
+    Surface turned = ball;
+    for (auto& t : turned.triangles) std::swap(t[0], t[1]);
+    EXPECT_EQ(control_mesh_of(turned, options).mesh.cells, made.cells);
+    const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+    EXPECT_EQ(control_mesh_of(ball, options).mesh.points, made.points);
+}
+
+TEST(ControlMesh, OfARingHasItsHole) {
+    Surface ring;
+    constexpr int kAround = 48, kAcross = 20;
+    for (int i = 0; i < kAround; ++i) {
+        for (int j = 0; j < kAcross; ++j) {
+            const double a = 2 * std::numbers::pi * i / kAround, b = 2 * std::numbers::pi * j / kAcross;
+            const double r = 2 + 0.7 * std::cos(b);
+            ring.points.emplace_back(r * std::cos(a), r * std::sin(a), 0.7 * std::sin(b));
+            const auto at = [](int u, int v) { return static_cast<Index>(u % kAround * kAcross + v % kAcross); };
+            ring.triangles.push_back({at(i, j), at(i + 1, j), at(i + 1, j + 1)});
+            ring.triangles.push_back({at(i, j), at(i + 1, j + 1), at(i, j + 1)});
+        }
+    }
+    const ControlMesh made = control_mesh_of(ring, {.cells = 16});
+    const Topology topology = build_topology(made.mesh);
+    long points = 0, edges = 0, faces = 0;
+    for (Index p = 0; p < topology.point_count; ++p) points += topology.point_on_boundary[p];
+    for (Index e = 0; e < topology.edges.size(); ++e) edges += topology.edge_on_boundary[e];
+    for (Index f = 0; f < topology.faces.size(); ++f) faces += topology.face_on_hull(f) ? 1 : 0;
+    EXPECT_EQ(points - edges + faces, 0);  // the Euler number of a torus
+    EXPECT_EQ(made.report.shape.folds.folded, 0U);
+    EXPECT_LT(made.report.shape.after.rms, 0.03 * made.report.side_world);
+}
+
+TEST(ControlMesh, SaysWhatIsWrong) {
+    Surface surface = test::sphere(4);
+    EXPECT_THAT(error_of([&] { std::ignore = control_mesh_of(surface, {.cells = 1}); }), HasSubstr("cells: 1 is out of range"));
+    EXPECT_THAT(error_of([&] { std::ignore = control_mesh_of(surface, {.cells = 100, .max_cells = 1000}); }),
+                HasSubstr("cells: the grid would have too many cubes"));
+    EXPECT_THAT(error_of([&] { std::ignore = control_mesh_of(surface, {.cells = 20, .max_cells = 1000}); }),
+                HasSubstr("cells: there would be"));
+    EXPECT_THAT(error_of([&] { std::ignore = control_mesh_of({surface.points, {}}); }), HasSubstr("has no triangles"));
+    Surface flat{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}};
+    EXPECT_THAT(error_of([&] { std::ignore = control_mesh_of(flat); }), HasSubstr("no cell has its middle inside"));
+    surface.triangles[3][1] = 99999;
+    EXPECT_THAT(error_of([&] { std::ignore = control_mesh_of(surface); }), HasSubstr("triangle 3 has the corner 99999"));
+    surface = test::sphere(4);
+    surface.points[surface.triangles[0][0]].x = NAN;
+    EXPECT_THAT(error_of([&] { std::ignore = fit_shape(test::make_box(2, 2, 2), surface); }), HasSubstr("is not finite"));
+}
+
+TEST(ShapeFitter, TurnsACellBackThatWasTurnedInsideOut) {
+    HexMesh mesh = test::make_box(3, 3, 3);
+    const Surface sides = boundary_surface(mesh);
+    const Index inner = 1 + 4 * (1 + 4 * 1);
+    mesh.points[inner] += Vec3(1.6, 1.6, 1.6);
+    ASSERT_LT(detail::least_determinant(mesh), 0);
+    const detail::ShapeFitter fitter(build_topology(mesh), sides, {.kind = Scheme::Linear});
+    for (int k = 0; k < 3; ++k) mesh.points = fitter.relaxed(mesh.points, 1, 10);
+    EXPECT_GT(detail::least_determinant(mesh), 0.5);
+}
+
+}  // namespace shape_test
+}  // namespace subvol
