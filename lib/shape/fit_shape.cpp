@@ -49,9 +49,11 @@ ShapeFitter::ShapeFitter(const Topology& control, const Surface& surface, const 
       edges_(control.edges),
       point_edges_(control.point_edges),
       boundary_points_(static_cast<std::size_t>(std::ranges::count(control.point_on_boundary, 1))),
-      children_(refinement_tables(control, {.scheme = scheme, .levels = 1})),
+      children_(scheme.kind == Scheme::Linear ? RefinementTables{control.point_count, {}, control.cells, {}, {}}
+                                              : refinement_tables(control, {.scheme = scheme, .levels = 1})),
       matrix_(control, scheme),
-      distances_(surface, matrix_.rows()) {}
+      distances_(surface, matrix_.rows()) {
+}
 
 std::vector<Pull> ShapeFitter::pulls(const Vectors& control) const {
     return distances_.pulls({matrix_.apply(control), matrix_.triangles()}, static_cast<double>(boundary_points_));

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <span>
+#include <utility>
 
 #include "shape_fitter.h"
 #include "subvol/detail/parallel_each.h"
@@ -55,7 +56,7 @@ public:
         for (const auto& cell : fitter_.children_.cells) {
             for (std::size_t k = 0; k < 8; ++k) least_ = std::min(least_, glm::determinant(edges_at(cell, k, children.data())));
         }
-        least_ *= 8 / (side * side * side);
+        least_ *= std::pow(parts() / side, 3);
         constexpr double kPart = 0.04, kTiny = 1e-6;
         const double below = std::min(least_, 0.0);
         epsilon_ = std::sqrt(kTiny + kPart * below * below);
@@ -67,18 +68,18 @@ public:
         const auto* points = reinterpret_cast<const Vec3*>(parameters);
         const std::size_t count = start_.size();
         const std::vector<Vec3> children = fine(points);
+        const double corners = 8 * std::pow(parts(), 3);  // of the children of a cell
         // The last place is the sum of the distortions.
         std::vector<double> slopes =
             parallel_sums(3 * children.size() + 1, fitter_.children_.cells.size(), [&](std::size_t c, std::vector<double>& to) {
                 const auto& cell = fitter_.children_.cells[c];
-                constexpr double kCorners = 64;  // of the children of a cell
                 for (std::size_t k = 0; k < 8; ++k) {
-                    const Distortion at = distortion_of(2.0 * edges_at(cell, k, children.data()), epsilon_);
-                    to.back() += at.value / kCorners;
+                    const Distortion at = distortion_of(parts() * edges_at(cell, k, children.data()), epsilon_);
+                    to.back() += at.value / corners;
                     for (std::size_t e = 0; e < 3; ++e) {
                         const Index end = cell[kCornerNeighbors[k][e]];
                         for (int axis = 0; axis < 3; ++axis) {
-                            const double slope = 2 * at.gradient[static_cast<int>(e)][axis] / kCorners;
+                            const double slope = parts() * at.gradient[static_cast<int>(e)][axis] / corners;
                             to[3 * end + static_cast<std::size_t>(axis)] += slope;
                             to[3 * cell[k] + static_cast<std::size_t>(axis)] -= slope;
                         }
@@ -87,7 +88,8 @@ public:
             });
         const double distortions = slopes.back();
         slopes.pop_back();
-        const std::vector<double> sums = apply_transpose(fitter_.children_.levels[0], slopes, 3);
+        std::vector<double> sums = std::move(slopes);
+        for (const StencilTable& table : fitter_.children_.levels) sums = apply_transpose(table, sums, 3);
         std::vector<Vec3> moved(count);
         for (std::size_t p = 0; p < count; ++p) moved[p] = points[p] - start_[p] / side_;
         const std::vector<Vec3> ways = fitter_.matrix_.apply(moved);
@@ -117,10 +119,13 @@ public:
     }
 
 private:
+    /// How many children a cell has along an edge.
+    [[nodiscard]] double parts() const { return fitter_.children_.levels.empty() ? 1 : 2; }
+
     [[nodiscard]] std::vector<Vec3> fine(const Vec3* points) const {
         std::vector<Vec3> children(fitter_.children_.points());
-        fitter_.children_.levels[0].apply(std::span<const double>(&points->x, 3 * start_.size()), 3,
-                                          std::span<double>(&children.front().x, 3 * children.size()));
+        fitter_.children_.apply(std::span<const double>(&points->x, 3 * start_.size()), 3,
+                                std::span<double>(&children.front().x, 3 * children.size()));
         return children;
     }
 

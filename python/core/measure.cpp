@@ -55,6 +55,14 @@ std::vector<Option> keywords_of(ApproximateOptions& options) {
     return scheme_and(options.scheme, options_of(options));
 }
 
+std::vector<Option> keywords_of(FitShapeOptions& options) {
+    return scheme_and(options.scheme, options_of(options));
+}
+
+std::vector<Option> keywords_of(ControlMeshOptions& options) {
+    return scheme_and(options.scheme, options_of(options));
+}
+
 std::vector<Option> keywords_of(PatchOptions& options) {
     return scheme_and(options.scheme);
 }
