@@ -48,10 +48,11 @@ bool Verb::chosen() const {
 
 std::vector<std::unique_ptr<Verb>> make_verbs(CLI::App& program) {
     std::vector<std::unique_ptr<Verb>> verbs;
-    for (auto make : {make_model_verb, make_info_verb,  make_subdivide_verb,   make_fit_verb,   make_points_verb,
-                      make_vdb_verb,   make_usd_verb,   make_render_verb,      make_view_verb,  make_page_verb,
-                      make_probe_verb, make_check_verb, make_mesh_verb, make_approximate_verb, make_slice_verb, make_surface_verb,
-                      make_split_verb, make_join_verb,  make_compare_verb,     make_study_verb, make_demo_verb}) {
+    for (auto make :
+         {make_model_verb,   make_info_verb,        make_subdivide_verb, make_fit_verb,     make_points_verb, make_vdb_verb,
+          make_usd_verb,     make_render_verb,      make_view_verb,      make_page_verb,    make_probe_verb,  make_check_verb,
+          make_mesh_verb,    make_approximate_verb, make_slice_verb,     make_surface_verb, make_split_verb,  make_join_verb,
+          make_compare_verb, make_study_verb,       make_demo_verb}) {
         verbs.push_back(make(program));
     }
     return verbs;

@@ -10,7 +10,7 @@ from ._core import Camera, Field, HexMesh, Image, RbfVolume, Refinement, Study, 
 from ._errors import Cancelled, Error, FileError, InvalidInput, MissingCapability, SubvolWarning
 from ._exchange import from_meshio, from_pyvista, to_meshio, to_pyvista, to_vtk
 from ._fields import LimitSamples, as_field, evaluate
-from ._measure import FoldCheck, PointsError, ProbeSamples, Slice, StreamlineSet, SurfaceMesh
+from ._measure import FoldCheck, PointsError, ProbeSamples, Slice, StreamlineSet, SurfaceMesh, read_surface
 from ._mesh import Series, model, models, only, open_series, quantity, warp, write_mesh, write_wavelets
 from ._page import Page
 from ._pictures import FieldComparison, ImageComparison, compare, compare_fields, compare_images, read_image, write_image
@@ -62,6 +62,28 @@ def check_folds(
     tests:       the most tests of a cell [1 to 1000000]
     """
 
+def control_mesh(
+    points: npt.ArrayLike, triangles: npt.ArrayLike, *, scheme: str = 'mcq', tension: float = 0.0625,
+    crease_angle: Optional[float] = None, cells: int = 24, max_cells: int = 2000000, rounds: int = 15,
+    keep_folds: bool = False, boundary_move: float = 0.2, progress: Progress = None
+) -> tuple[HexMesh, dict[str, Any]]:
+    """A mesh of hexahedra whose limit fills a closed surface of triangles.
+
+    points, triangles: (n,3) and (m,3), as `read_surface` and `surface` have them; either side may be outside.
+    Returns the mesh, and a report as of `fit_shape`, with parts (that are not joined), added, side_world and least_determinant.
+
+    scheme:      mcq (smooth, through the control points), cc (Catmull-Clark), bsxw (Bajaj-Schaefer-Warren-Xu), linear [mcq,
+                 cc, bsxw, linear]
+    tension:     of mcq: 0 is linear; 1/16 reproduces cubics [0 to 0.125; with scheme='mcq']
+    crease_angle: keep boundary edges sharp that bend by more than this, in degrees (tetoct, boxspline: 60) [0 to 180]
+    cells:       cells along the longest side of the surface's box [2 to 1000]
+    max_cells:   the most cells that may be made [1 to 1000000000]
+    rounds:      how often the points are drawn to the nearest places of the surface [1 to 100]
+    keep_folds:  leave the points where they are if the limit folds
+    boundary_move: points of the boundary may move by this part of their shortest edge where the limit folds [0 to 10; not
+                 with keep_folds]
+    """
+
 def evaluate_limit(
     mesh: HexMesh, cells: npt.ArrayLike, uvw: npt.ArrayLike, *, scheme: str = 'mcq', tension: float = 0.0625,
     crease_angle: Optional[float] = None, tolerance: float = 1e-06, max_levels: int = 10, progress: Progress = None
@@ -92,6 +114,28 @@ def fit(
     extent:      the distance at which bc and cardinal end [0.001 to 3]
     terms:       number of gaussians in a sum [1 to 6]
     sign_slip:   fit bc with the sign error of the paper's fits in the inner cubic coefficient
+    """
+
+def fit_shape(
+    mesh: HexMesh, points: npt.ArrayLike, triangles: npt.ArrayLike, *, scheme: str = 'mcq', tension: float = 0.0625,
+    crease_angle: Optional[float] = None, shape_rounds: int = 10, stiffness: float = 0.01, keep_folds: bool = False,
+    boundary_move: float = 0.2, progress: Progress = None
+) -> tuple[HexMesh, dict[str, Any]]:
+    """Moves control points so that the boundary of the limit lies on a surface of triangles, by least squares.
+
+    points, triangles: (n,3) and (m,3), as `read_surface` and `surface` have them.
+    Returns the mesh, and a report: before and after, the distances of the boundary from the surface (rms, max, max_at) and of the surface
+    from the boundary (missed_rms, missed_max, missed_at), rounds, moved_world, and folds.
+
+    scheme:      mcq (smooth, through the control points), cc (Catmull-Clark), bsxw (Bajaj-Schaefer-Warren-Xu), linear [mcq,
+                 cc, bsxw, linear]
+    tension:     of mcq: 0 is linear; 1/16 reproduces cubics [0 to 0.125; with scheme='mcq']
+    crease_angle: keep boundary edges sharp that bend by more than this, in degrees (tetoct, boxspline: 60) [0 to 180]
+    shape_rounds: look for the nearest places and move the points up to N times [1 to 1000]
+    stiffness:   how much neighbours move together: more for surfaces with noise [1e-06 to 1e+06]
+    keep_folds:  leave the points where they are if the limit folds
+    boundary_move: points of the boundary may move by this part of their shortest edge where the limit folds [0 to 10; not
+                 with keep_folds]
     """
 
 def from_vtk(
@@ -590,8 +634,8 @@ __all__ = [
     "Camera", "Cancelled", "Error", "Field", "FieldComparison", "FileError", "FoldCheck", "Grid", "HexMesh", "Image", "ImageComparison",
     "InvalidInput", "LimitSamples", "MissingCapability", "Page", "PointsError", "ProbeSamples", "RbfVolume", "Refinement", "Series",
     "Slice", "StreamlineSet", "Study", "StudyCase", "StudyResults", "SubvolWarning", "SurfaceMesh", "TransferFunction", "approximate", "as_field", "check_folds", "compare",
-    "compare_fields", "compare_images", "evaluate", "evaluate_limit", "fit", "from_meshio", "from_pyvista", "from_vtk", "gl_devices", "kernels",
-    "measure", "mend_folds", "model", "models", "only", "open_series", "page", "points_error", "probe", "quantity", "rasterize", "read_image", "read_mesh", "read_points",
+    "compare_fields", "compare_images", "control_mesh", "evaluate", "evaluate_limit", "fit", "fit_shape", "from_meshio", "from_pyvista", "from_vtk", "gl_devices", "kernels",
+    "measure", "mend_folds", "model", "models", "only", "open_series", "page", "points_error", "probe", "quantity", "rasterize", "read_image", "read_mesh", "read_points", "read_surface",
     "read_vdb", "reduce", "render", "run_study", "sample", "sample_grid", "set_threads", "slice", "streamlines", "studies", "study", "subdivide",
     "surface", "to_meshio", "to_pyvista", "to_vtk", "warp", "write_image", "write_mesh", "write_points", "write_usd", "write_vdb", "write_wavelets",
 ]

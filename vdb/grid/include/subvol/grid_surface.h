@@ -8,7 +8,8 @@
 
 namespace subvol {
 
-/// The closed surface where a grid of floats has a value: between fog and its surroundings, or at the distance 0 of a level set.
+/// The closed surface where a grid of floats has a value: between fog and its surroundings, or at the distance 0 of a level
+/// set.
 ///
 /// value:  without one 0 for a level set, and half of the greatest value for fog
 /// returns: triangles, of which either side may be outside
