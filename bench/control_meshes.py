@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Control meshes of closed surfaces: cells, distances in cells, folds, CPU seconds and memory of `subvol mesh`.
 
-usage: control_meshes.py [--subvol build/release/bin/subvol] [--cells 16 24 32] SURFACE...
+usage: control_meshes.py SURFACE... [--subvol build/release/bin/subvol] [--cells 16 24 32]
 
 Prints a table for docs/approximate.md."""
 

@@ -27,7 +27,7 @@ struct StreamArguments {
 
     /// The seeds in a mesh.
     ///
-    /// throws: Error(InvalidInput) for texts that are no seeds; Error(Io)
+    /// throws: Error(InvalidInput) if a text names neither seeds nor a file of them; Error(Io)
     [[nodiscard]] std::vector<Vec3> places(const HexMesh& mesh, const LimitOptions& limit) const;
 
 private:

@@ -51,7 +51,7 @@ public:
         const InputKind kind = kind_of(inputs_.front());
         for (const std::string& input : inputs_) {
             if (kind_of(input) != kind || (kind != InputKind::Mesh && kind != InputKind::Grid && kind != InputKind::Points))
-                throw Error(ErrorCode::InvalidInput, "is no mesh, .vdb file or points, or not as the first", input,
+                throw Error(ErrorCode::InvalidInput, "is neither a mesh nor a .vdb file or points, or not as the first", input,
                             "one mesh, or several .vdb files, or several files of points");
         }
         if (kind == InputKind::Mesh) {

@@ -167,7 +167,7 @@ void ExtremeSearch::end_cells(std::span<const Index> cells) {
     kept_ = 0;
 }
 
-/// Of the cells that look alike, which a symmetric body or a flag has in thousands, one is looked at.
+/// One cell stands for all that look alike, of which a symmetric body or a flag has thousands.
 void ExtremeSearch::leave_out_copies() {
     std::set<std::array<std::uint64_t, 2>> met;
     std::erase_if(boxes_, [&](const CellBox& box) { return !met.insert({box.side, box.alike}).second; });

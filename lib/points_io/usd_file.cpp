@@ -140,7 +140,7 @@ private:
     std::size_t depth_ = 0;
 };
 
-/// Refuses what is no stage before its file is begun.
+/// Refuses a volume that cannot be written before its file is begun.
 void check(const std::filesystem::path& path, std::size_t steps, std::span<const double> codes) {
     if (path.extension() != ".usda") throw Error(ErrorCode::InvalidInput, "has an unknown extension", path.string(), ".usda");
     if (steps == 0 || steps != codes.size() || !std::ranges::is_sorted(codes, std::ranges::less_equal()))

@@ -97,6 +97,10 @@ ControlMesh control_mesh_of(const Surface& surface, const ControlMeshOptions& gi
     ControlMeshOptions options = given;
     check_options(options);
     check_options(options.scheme);
+    if (options.scheme.crease_angle_deg) {
+        throw Error(ErrorCode::InvalidInput, "has no effect: the boundary of the mesh becomes smooth",
+                    option_name("crease-angle", options.names), "creases of the mesh when it is used");
+    }
     validate(surface);
     const Vec3 size = box_of(surface).size();
     ControlMeshReport report;

@@ -14,9 +14,9 @@
 // A step looks for the nearest places of the surface and the boundary x = A c, both ways, and finds the ways d of the control
 // points c that minimise
 //
-//     Σ w (n·A d + distance)²  +  part Σ w |A d|²  +  stiffness Σ |dᵢ − dⱼ|²  +  evenness Σ |cᵢ + dᵢ − cⱼ − dⱼ|²
+//     Σ w (n·A d + distance)²  +  part Σ w |A d|²  +  stiffness Σ |dᵢ − dⱼ|²
 //
-// over edges, n being the direction of the distance, so that the boundary may slide along the surface but not far.
+// the last sum over edges, n being the direction of the distance, so that the boundary may slide along the surface but not far.
 
 namespace subvol {
 
@@ -30,6 +30,43 @@ constexpr double kSliding = 0.01;  // the part
 
 double product_of(const Vectors& a, const Vectors& b) {
     return parallel_sums(1, a.size(), [&](std::size_t i, std::vector<double>& sum) { sum[0] += glm::dot(a[i], b[i]); })[0];
+}
+
+/// The boundary of the limit by its vertices of level 2. Of the cells only those at the boundary are refined, where that gives
+/// points of the limit.
+Surface fine_boundary(const HexMesh& mesh, const SchemeOptions& scheme) {
+    const Topology topology = build_topology(mesh);
+    std::vector<Index> cells;
+    for (Index c = 0; c < topology.cells.size(); ++c) {
+        const bool at_boundary =
+            std::ranges::any_of(topology.cell_faces[c], [&](Index face) { return topology.face_on_hull(face); });
+        if (at_boundary || !interpolates(scheme.kind)) cells.push_back(c);
+    }
+    constexpr int kLevels = 2;
+    constexpr std::size_t kDescendants = 64;
+    const HexMesh fine = on_limit(refine_cells(mesh, cells, {.scheme = scheme, .levels = kLevels}), scheme.kind);
+    Surface boundary;
+    std::vector<Index> number(fine.points.size(), kNone);
+    for (std::size_t c = 0; c < fine.cells.size(); ++c) {
+        const auto& faces = topology.cell_faces[cells[c / kDescendants]];
+        for (std::size_t side = 0; side < 6; ++side) {
+            // A child lies at a side of its parent where its corner does.
+            const auto at_side = [&](std::size_t corner) { return std::ranges::count(kCellFaces[side], corner) > 0; };
+            if (!topology.face_on_hull(faces[side]) || !at_side(c % 8) || !at_side(c / 8 % 8)) continue;
+            std::array<Index, 4> quad;
+            for (std::size_t k = 0; k < 4; ++k) {
+                const Index p = fine.cells[c][kCellFaces[side][k]];
+                if (number[p] == kNone) {
+                    number[p] = static_cast<Index>(boundary.points.size());
+                    boundary.points.push_back(fine.points[p]);
+                }
+                quad[k] = number[p];
+            }
+            boundary.triangles.push_back({quad[0], quad[1], quad[2]});
+            boundary.triangles.push_back({quad[0], quad[2], quad[3]});
+        }
+    }
+    return boundary;
 }
 
 }  // namespace
@@ -59,44 +96,37 @@ std::vector<Pull> ShapeFitter::pulls(const Vectors& control) const {
     return distances_.pulls({matrix_.apply(control), matrix_.triangles()}, static_cast<double>(boundary_points_));
 }
 
-Vectors ShapeFitter::solved(const std::vector<Pull>& pulls, const Vectors& control, const ShapeWeights& weights) const {
+Vectors ShapeFitter::solved(const std::vector<Pull>& pulls, double stiffness) const {
     const std::size_t fine = matrix_.rows();
-    const auto along_edges = [&](const Vectors& x, double weight, Vectors& sums) {
-        if (weight == 0) return;
-        parallel_each(sums.size(), [&](std::size_t p) {
-            for (const Index e : point_edges_[static_cast<Index>(p)]) {
-                const auto [a, b] = edges_[e];
-                sums[p] += weight * (x[p] - x[a == p ? b : a]);
-            }
-        });
-    };
     const auto applied = [&](const Vectors& d) {
         const Vectors moved = matrix_.apply(d);
         Vectors sums = gathered(pulls, [&](const Pull& pull) {
             const Vec3 way = pull.sum_of(moved);
             return pull.weight * (glm::dot(pull.direction, way) * pull.direction + kSliding * way);
         });
-        along_edges(d, weights.stiffness + weights.evenness, sums);
+        parallel_each(sums.size(), [&](std::size_t p) {
+            for (const Index e : point_edges_[static_cast<Index>(p)]) {
+                const auto [a, b] = edges_[e];
+                sums[p] += stiffness * (d[p] - d[a == p ? b : a]);
+            }
+        });
         return sums;
     };
     const std::vector<double> squares =
         matrix_.squares(std::vector<double>(fine, static_cast<double>(boundary_points_) / static_cast<double>(pulls.size())));
-    std::vector<double> diagonal(control.size());
-    parallel_each(control.size(), [&](std::size_t p) {
+    std::vector<double> diagonal(squares.size());
+    parallel_each(diagonal.size(), [&](std::size_t p) {
         const auto degree = static_cast<double>(point_edges_[static_cast<Index>(p)].size());
-        diagonal[p] = squares[p] + (weights.stiffness + weights.evenness) * degree;
+        diagonal[p] = squares[p] + stiffness * degree;
         if (!(diagonal[p] > 0)) diagonal[p] = 1;
     });
 
     Vectors rest = gathered(pulls, [](const Pull& pull) { return -pull.weight * pull.distance * pull.direction; });
-    Vectors even(control.size(), Vec3(0.0));
-    along_edges(control, weights.evenness, even);
-    for (std::size_t p = 0; p < rest.size(); ++p) rest[p] -= even[p];
     const auto scaled = [&](Vectors x) {
         parallel_each(x.size(), [&](std::size_t p) { x[p] /= diagonal[p]; });
         return x;
     };
-    Vectors found(control.size(), Vec3(0.0)), eased = scaled(rest), way = eased;
+    Vectors found(rest.size(), Vec3(0.0)), eased = scaled(rest), way = eased;
     double left = product_of(rest, eased);
     constexpr int kSteps = 300;
     constexpr double kEnough = 1e-8;
@@ -117,8 +147,8 @@ Vectors ShapeFitter::solved(const std::vector<Pull>& pulls, const Vectors& contr
     return found;
 }
 
-Vectors ShapeFitter::step(const Vectors& control, const ShapeWeights& weights) const {
-    Vectors ways = solved(pulls(control), control, weights);
+Vectors ShapeFitter::step(const Vectors& control, double stiffness) const {
+    Vectors ways = solved(pulls(control), stiffness);
     keep_sound(control, ways);
     for (std::size_t p = 0; p < ways.size(); ++p) ways[p] += control[p];
     return ways;
@@ -238,12 +268,7 @@ Facts facts_of(const FitShapeReport& report) {
 ShapeError shape_error(const HexMesh& mesh, const Surface& surface, const SchemeOptions& scheme) {
     validate(mesh);
     validate(surface);
-    constexpr int kLevel = 2;
-    HexMesh fine = on_limit(refine(mesh, {.scheme = scheme, .levels = kLevel}), scheme.kind);
-    Hull hull = hull_of(build_topology(fine));
-    Surface boundary;
-    for (const Index p : hull.points) boundary.points.push_back(fine.points[p]);
-    boundary.triangles = std::move(hull.triangles);
+    const Surface boundary = fine_boundary(mesh, scheme);
     return SurfaceDistances(surface, boundary.points.size()).error(boundary);
 }
 
@@ -262,7 +287,7 @@ ShapedMesh fit_shape(HexMesh mesh, const Surface& surface, const FitShapeOptions
     double best = std::numeric_limits<double>::infinity();
     for (int round = 0; round < options.rounds; ++round) {
         report_progress(options.progress, "fit shape", static_cast<double>(round) / options.rounds);
-        std::vector<Vec3> points = fitter.step(mesh.points, {.stiffness = options.stiffness});
+        std::vector<Vec3> points = fitter.step(mesh.points, options.stiffness);
         const ShapeError error = fitter.error(points);
         const double sum = error.rms * error.rms + error.missed_rms * error.missed_rms;
         constexpr double kProgress = 0.999;

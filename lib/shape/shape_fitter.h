@@ -13,14 +13,6 @@
 
 namespace subvol::detail {
 
-/// Weights beside that of the distances about a control point, which is 1.
-///
-/// stiffness: of differences of the ways along edges: neighbours move together
-/// evenness:  of differences of the positions along edges: they become equally long, and the surface is drawn inwards
-struct ShapeWeights {
-    double stiffness = 0.01, evenness = 0;
-};
-
 /// The least of the determinants at the corners of a cell, of its edges divided by their lengths: 1 for a cube, at most 0 if it
 /// is turned inside out there. position: of a point
 template <class Position>
@@ -51,7 +43,9 @@ public:
     ShapeFitter(const Topology& control, const Surface& surface, const SchemeOptions& scheme);
 
     /// A Gauss-Newton step: the new control points.
-    [[nodiscard]] std::vector<Vec3> step(const std::vector<Vec3>& control, const ShapeWeights& weights) const;
+    ///
+    /// stiffness: the weight of differences of the ways along edges, beside that of the distances about a control point, 1
+    [[nodiscard]] std::vector<Vec3> step(const std::vector<Vec3>& control, double stiffness) const;
 
     [[nodiscard]] ShapeError error(const std::vector<Vec3>& control) const;
 
@@ -87,8 +81,7 @@ private:
         for (std::size_t p = 0; p < forces.size(); ++p) forces[p] = {sums[3 * p], sums[3 * p + 1], sums[3 * p + 2]};
         return matrix_.transposed(forces);
     }
-    [[nodiscard]] std::vector<Vec3> solved(const std::vector<Pull>& pulls, const std::vector<Vec3>& control,
-                                           const ShapeWeights& weights) const;
+    [[nodiscard]] std::vector<Vec3> solved(const std::vector<Pull>& pulls, double stiffness) const;
 
     std::vector<std::array<Index, 8>> cells_;
     FlatArray<std::array<Index, 2>> edges_;

@@ -12,7 +12,7 @@ namespace subvol {
 namespace {
 
 constexpr std::size_t kTubeSides = 12;  // 30 degrees between normals: smooth where they are drawn
-// Of an arrow of length 1.
+// Parts of an arrow of length 1.
 constexpr double kShaftRadius = 0.035, kHeadRadius = 0.1, kHeadLength = 0.35;
 
 /// Two vectors across a direction, of unit length.

@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core
-from ._arguments import TET_SCHEMES, Path, warn
+from ._arguments import TET_SCHEMES, Path, path_bytes, warn
 from ._core import HexMesh, RbfVolume
 from ._errors import InvalidInput
 from ._options import described
@@ -126,7 +126,7 @@ def approximate(onto: HexMesh, samples: Union[HexMesh, npt.ArrayLike], fields: O
 
 def read_surface(path: Path) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.int64]]:
     """The points (n,3) and triangles (m,3) of an .stl, .obj or .ply file. Polygons become fans of triangles."""
-    points, triangles = _core.read_surface(os.fspath(path))
+    points, triangles = _core.read_surface(path_bytes(path))
     return points, triangles
 
 

@@ -154,6 +154,27 @@ def test_folds_are_proved_or_placed():
     np.testing.assert_array_equal(mirrored.cells, np.arange(len(twist.cells)))
 
 
+def test_surfaces_become_meshes(tmp_path):
+    ball = subvol.model("ball", 4)
+    surface = subvol.surface(ball, path=tmp_path / "ball.stl", tolerance=5e-3)
+    points, triangles = subvol.read_surface(tmp_path / "ball.stl")
+    assert triangles.shape == surface.triangles.shape
+    np.testing.assert_allclose(np.sort(points, axis=0), np.sort(surface.points, axis=0), atol=1e-6)
+    mesh, report = subvol.control_mesh(points, triangles, cells=6)
+    assert report["folds"]["folded"] == 0
+    assert report["after"]["max"] < .1 * report["side_world"]
+    moved = subvol.HexMesh(mesh.points * 1.05, mesh.cells)
+    shaped, fit = subvol.fit_shape(moved, points, triangles, keep_folds=True)
+    assert fit["after"]["rms"] < .2 * fit["before"]["rms"]
+    assert shaped.cells.shape == mesh.cells.shape
+    with pytest.raises(subvol.InvalidInput, match=r"triangles: must be an array of shape \(n,3\)"):
+        subvol.control_mesh(points, triangles[:, :2])
+    with pytest.raises(subvol.InvalidInput, match="triangle 0 has the corner -1"):
+        subvol.control_mesh(points, triangles * 0 - 1)
+    with pytest.raises(subvol.InvalidInput, match="cells: 1 is out of range"):
+        subvol.control_mesh(points, triangles, cells=1)
+
+
 def test_folds_are_mended():
     twist = subvol.model("twist", 6)
     points = twist.points.copy()

@@ -17,7 +17,7 @@ public:
 
     vtkSetMacro(FileName, std::string);
     vtkGetMacro(FileName, std::string);
-    /// Of kernels and wavelets.
+    /// Kernels and wavelets have them.
     vtkSetMacro(Scheme, std::string);
     vtkGetMacro(Scheme, std::string);
     /// Options of these commands by their names in Python: "per_edge=2", "tolerance=1e-4", "bricks=8".

@@ -128,6 +128,8 @@ TEST(ControlMesh, SaysWhatIsWrong) {
     EXPECT_THAT(error_of([&] { std::ignore = control_mesh_of(surface, {.cells = 20, .max_cells = 1000}); }),
                 HasSubstr("cells: there would be"));
     EXPECT_THAT(error_of([&] { std::ignore = control_mesh_of({surface.points, {}}); }), HasSubstr("has no triangles"));
+    EXPECT_THAT(error_of([&] { std::ignore = control_mesh_of(surface, {.scheme = {.crease_angle_deg = 30}}); }),
+                HasSubstr("crease_angle: has no effect"));
     Surface flat{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}};
     EXPECT_THAT(error_of([&] { std::ignore = control_mesh_of(flat); }), HasSubstr("no cell has its middle inside"));
     surface.triangles[3][1] = 99999;

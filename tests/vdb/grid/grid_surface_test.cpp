@@ -18,7 +18,7 @@ using testing::HasSubstr;
 
 /// The grids of a ball of radius 1: fog of 2 − |x|², and distances.
 std::vector<VdbGrid> grids_of_ball() {
-    HexMesh ball = make_model("ball", 4);
+    HexMesh ball = make_model("ball", 8);
     ball.attributes = {{.name = "fog", .channels = 1, .values = {}}};
     for (const Vec3& x : ball.points) ball.attributes[0].values.push_back(2 - glm::dot(x, x));
     RasterizeOptions options;

@@ -4,6 +4,7 @@
 /// All of subvol::vdb: OpenVDB grids and files.
 
 #include "subvol/grid_error.h"
+#include "subvol/grid_surface.h"
 #include "subvol/join_grids.h"
 #include "subvol/nanovdb.h"
 #include "subvol/rasterize.h"

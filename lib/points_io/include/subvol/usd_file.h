@@ -44,7 +44,7 @@ struct UsdVolume {
 /// the stage. OpenUSD has no shader of its own for volumes, so the colour map is written as attributes of the volume:
 /// subvol:colorValues, subvol:colors (linear), subvol:opacityValues, subvol:opacities, subvol:opacityUnit.
 ///
-/// throws: Error(InvalidInput) for another extension, or if there are no grids, no stepsor codes that do not ascend;
+/// throws: Error(InvalidInput) for another extension, or if there are no grids, no steps, or codes that do not ascend;
 ///         Error(Io)
 void write_usd(const std::filesystem::path& path, const UsdVolume& volume);
 
