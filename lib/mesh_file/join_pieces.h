@@ -11,7 +11,7 @@
 namespace subvol::detail {
 
 /// The arrays that number points and cells over all parts of a mesh, the first choice first.
-inline constexpr std::string_view kNodeNumberMap = "node_num_map";  // of Exodus, which is no field
+inline constexpr std::string_view kNodeNumberMap = "node_num_map";  // of Exodus; not a field
 inline constexpr std::array<std::string_view, 4> kPointNumberArrays{"GlobalNodeId", "GlobalNodeID", "GlobalPointIds",
                                                                     kNodeNumberMap};
 inline constexpr std::array<std::string_view, 3> kCellNumberArrays{"GlobalCellId", "GlobalElementId", "GlobalCellIds"};

@@ -51,7 +51,7 @@ void set_kind_and_range(const openvdb::GridBase& grid, GridReport& report) {
 
 constexpr const char *kFrameLower = "subvol_frame_lower", *kFrameUpper = "subvol_frame_upper";
 
-/// The stored frame; empty if there is none, or numbers that are no box.
+/// The stored frame; empty if there is none, or if its numbers do not make a box.
 Box stored_frame(const openvdb::GridBase& grid) {
     const auto lower = grid.getMetadata<openvdb::Vec3DMetadata>(kFrameLower);
     const auto upper = grid.getMetadata<openvdb::Vec3DMetadata>(kFrameUpper);

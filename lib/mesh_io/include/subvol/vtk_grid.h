@@ -42,7 +42,7 @@ struct VtkUnstructuredGrid {
 
 /// One mesh of several grids, as `read_mesh` makes it of a `.vtm` file that lists them: points are joined by an array
 /// `GlobalNodeId` where all grids have it, else where two are at the same place; arrays that a grid lacks are left out. Grids
-/// without points are no part of it.
+/// without points are left out.
 ///
 /// throws: Error(InvalidInput) as for one grid, or if no grid has cells
 [[nodiscard]] ReadResult mesh_of_vtk(std::vector<VtkUnstructuredGrid> blocks, const ReadOptions& options = {});
