@@ -33,10 +33,10 @@ def main():
                     print(f"| {Path(surface).stem} | | {cells} | no mesh |")
                     continue
                 found = json.loads(text)
-                side, after, folds = found["side_world"], found["after"], found["folds"]
+                side, after, folds = found["side_world"], found["after"], found["folds"]["cells"]
                 print(f"| {Path(surface).stem} | {found['triangles']:,} | {found['cells']:,} | {after['rms'] / side:.3f}, {after['max'] / side:.2f} "
                       f"| {after['missed_rms'] / side:.3f}, {after['missed_max'] / side:.2f} | {folds['folded']} "
-                      f"| {folds['undecided'] - folds['irregular']} | {folds['mended']} | {use.ru_utime + use.ru_stime:.0f} "
+                      f"| {folds['undecided'] - folds['irregular']} | {found['mended']} | {use.ru_utime + use.ru_stime:.0f} "
                       f"| {use.ru_maxrss / 1024:.0f} |", flush=True)
 
 

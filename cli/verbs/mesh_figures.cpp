@@ -249,25 +249,12 @@ std::string mesh_lines(const ReadResult& read, const detail::MeshShare& joined, 
     return aligned(lines);
 }
 
-Json fold_facts(const FoldReport& folds) {
-    const std::size_t undecided = folds.open + folds.irregular;
-    return {{"verdict", folds.folded > 0 ? "folded"
-                        : undecided > 0  ? "undecided"
-                                         : "sound"},
-            {"cells",
-             {{"proved", folds.proved}, {"folded", folds.folded}, {"undecided", undecided}, {"irregular", folds.irregular}}},
-            {"open_volume", folds.open_volume + folds.irregular_volume}};
-}
-
-std::string fold_lines(const FoldReport& folds, std::size_t cells) {
-    std::vector<std::string> parts{
-        text(count_text(folds.proved), " of ", counted(cells, "cell"), " proved not to fold in the limit of MCQ")};
+std::string fold_text(const FoldReport& folds, std::size_t cells) {
+    std::vector<std::string> parts{text(count_text(folds.proved), " of ", counted(cells, "cell"), " proved not to fold")};
     if (folds.folded > 0) parts.push_back(text(count_text(folds.folded), " folded (check says where)"));
     if (folds.open > 0) parts.push_back(text(count_text(folds.open), " undecided"));
     if (folds.irregular > 0) parts.push_back(text(count_text(folds.irregular), " near irregular edges not decided"));
-    std::string lines = aligned({{"folds", join(parts)}});
-    lines.pop_back();
-    return lines;
+    return join(parts);
 }
 
 std::string refined_lines(const Json& figures) {

@@ -62,11 +62,8 @@ inline constexpr std::size_t kCellsNamed = 8;
 /// inverted: the first inverted cells
 [[nodiscard]] std::string verdict(const MeshReport& report, std::span<const std::size_t> inverted);
 
-/// {verdict: sound, folded or undecided; cells: {proved, folded, undecided, irregular}; open_volume}
-[[nodiscard]] Json fold_facts(const FoldReport& folds);
-
-/// A line about whether the limit folds. cells: of the mesh
-[[nodiscard]] std::string fold_lines(const FoldReport& folds, std::size_t cells);
+/// Whether the limit folds, in words. cells: of the mesh
+[[nodiscard]] std::string fold_text(const FoldReport& folds, std::size_t cells);
 
 /// A line about the mesh that a scheme of tetrahedra makes, from `TetRefinement::figures`.
 [[nodiscard]] std::string refined_lines(const Json& figures);

@@ -3,6 +3,7 @@
 
 #include "grid_input.h"
 #include "input.h"
+#include "mesh_figures.h"
 #include "options.h"
 #include "outputs.h"
 #include "places_input.h"
@@ -36,7 +37,7 @@ public:
                "JSON: samples, outside, snapped, unseen, iterations, refined, fields {name: rms, rms_boundary, max, max_at, "
                "range}, points, cells; with --shape also shape {before, after: rms, max, missed_rms, missed_max and their "
                "places; "
-               "rounds, moved_world, folds}.") {
+               "rounds, moved_world, folds, mended}.") {
         app()
             .add_option(
                 "DATA", input_,
@@ -111,9 +112,7 @@ private:
                         after.max, " at ", after.max_at.x, ", ", after.max_at.y, ", ", after.max_at.z));
         report.say(text("            surface ", after.missed_rms, " RMS from the boundary (before ", before.missed_rms,
                         "), at most ", after.missed_max));
-        const FoldReport& folds = made.report.folds;
-        report.say(text("folds       ", folds.proved, " cells proved not to fold, ", folds.folded, " folded, ", folds.open,
-                        " undecided, ", folds.irregular, " near irregular edges"));
+        report.say(text("folds       ", fold_text(made.report.folds, made.mesh.cells.size())));
         return std::move(made.mesh);
     }
 

@@ -85,8 +85,7 @@ private:
 
     static void put(const FoldCheck& found, std::size_t cells, Report& report) {
         const FoldReport& all = found.report;
-        const Json facts = fold_facts(all);
-        for (const char* name : {"verdict", "cells", "open_volume"}) report[name] = facts.at(name);
+        report.merge(facts_of(all));
         report["tests"] = all.tests;
         Json places = Json::array();
         for (const FoldPlace& at : found.places) {

@@ -209,7 +209,9 @@ private:
         std::optional<FoldReport> folds;
         if (folds_) {
             folds = report.timed("folds", [&] { return check_folds(read.mesh, {.progress = report.progress()}).report; });
-            report["folds"] = fold_facts(*folds);
+            Facts found;
+            found["folds"] = facts_of(*folds);
+            report.merge(found);
         }
         if (tets_.asked()) {
             report["refined"] = json_of(report.unpack(tets_.figures(used_mesh(read.mesh, {}), 2, report.progress())));
@@ -219,7 +221,7 @@ private:
         std::string lines = mesh_lines(read, about, report.json().at("seconds"), steps_text(report.json()));
         lines.pop_back();
         report.say(lines);
-        if (folds) report.say(fold_lines(*folds, read.mesh.cells.size()));
+        if (folds) report.say(text("folds        ", fold_text(*folds, read.mesh.cells.size()), "; of the limit of MCQ"));
         if (tets_.asked()) report.say(refined_lines(report.json().at("refined")));
         report.all_said();
     }

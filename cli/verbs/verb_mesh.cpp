@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "grid_input.h"
+#include "mesh_figures.h"
 #include "options.h"
 #include "outputs.h"
 #include "refine_arguments.h"
@@ -28,8 +29,8 @@ public:
                "Sharp edges become round, by a part of a cell. The exit code is 1 if the limit folds.\n"
                "JSON: triangles, points, cells, before and after {rms, max, max_at: of the boundary from the surface; "
                "missed_rms, "
-               "missed_max, missed_at: of the surface from the boundary}, rounds, moved_world, folds {proved, folded, "
-               "undecided, irregular, mended}, parts, added, side_world, least_determinant.") {
+               "missed_max, missed_at: of the surface from the boundary}, rounds, moved_world, folds (as of check), mended, "
+               "parts, added, side_world, min_scaled_jacobian.") {
         app().add_option("FILE", input_, "a closed surface (.stl, .obj, .ply), or a .vdb grid of floats")->required();
         app().add_option("-o,--output", output_, "the control mesh (.vtu, .vtkhdf)")->type_name("FILE")->required();
         app()
@@ -90,9 +91,7 @@ private:
         report.say(text("surface       ", error.missed_rms, " RMS from the boundary (", sides(error.missed_rms),
                         " cells), at most ", error.missed_max, " at ", error.missed_at.x, ", ", error.missed_at.y, ", ",
                         error.missed_at.z));
-        const FoldReport& folds = found.shape.folds;
-        report.say(text("folds         ", folds.proved, " cells proved not to fold, ", folds.folded, " folded, ", folds.open,
-                        " undecided, ", folds.irregular, " near irregular edges"));
+        report.say(text("folds         ", fold_text(found.shape.folds, made.mesh.cells.size())));
         if (error.missed_max > found.side_world) {
             report.warn(text("a part of the surface is ", sides(error.missed_max),
                              " cells away from the mesh: more --cells reach into thinner parts"));

@@ -352,6 +352,19 @@ std::vector<Option> options_of(FoldOptions& options) {
             Option("tests", options.tests).between(1, 1000000).help("N", "the most tests of a cell")};
 }
 
+Facts facts_of(const FoldReport& report) {
+    const std::size_t undecided = report.open + report.irregular;
+    Facts facts;
+    facts["verdict"] = report.folded > 0 ? "folded" : undecided > 0 ? "undecided" : "sound";
+    Facts& cells = facts.group("cells");
+    cells["proved"] = report.proved;
+    cells["folded"] = report.folded;
+    cells["undecided"] = undecided;
+    cells["irregular"] = report.irregular;
+    facts["open_volume"] = report.open_volume + report.irregular_volume;
+    return facts;
+}
+
 FoldCheck check_folds(const HexMesh& mesh, const FoldOptions& options) {
     check_options(options);
     check_options(options.scheme);

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "space_order.h"
+#include "subvol/detail/across.h"
 #include "subvol/detail/number_text.h"
 #include "subvol/detail/printable.h"
 #include "subvol/error.h"
@@ -65,9 +66,7 @@ std::vector<Vec3> in_sphere(const Vec3& center, double radius, std::size_t count
 
 /// In a spiral with as much area for each place.
 std::vector<Vec3> on_disk(const Vec3& center, const Vec3& normal, double radius, std::size_t count) {
-    const Vec3 along = glm::normalize(normal), x = glm::abs(along);
-    const Vec3 other = x.x <= x.y && x.x <= x.z ? Vec3(1, 0, 0) : x.y <= x.z ? Vec3(0, 1, 0) : Vec3(0, 0, 1);
-    const Vec3 u = glm::normalize(glm::cross(along, other)), v = glm::cross(along, u);
+    const auto [u, v] = detail::across(glm::normalize(normal));
     const double turn = std::numbers::pi * (3 - std::sqrt(5.0));
     std::vector<Vec3> places;
     for (std::size_t i = 0; i < count; ++i) {

@@ -81,9 +81,7 @@ public:
     Tracer(const LimitProbe& probe, std::size_t field, const StreamlineOptions& options)
         : probe_(probe), field_(field), options_(options) {
         const HexMesh& mesh = probe.mesh();
-        Box box;
-        for (const Vec3& p : mesh.points) box.add(p);
-        diagonal_ = box.diagonal();
+        diagonal_ = bounds(mesh).diagonal();
         most_length_ = options.length_world.value_or(kUsualLength * diagonal_);
         const std::vector<double>& values = mesh.attributes[field].values;
         for (std::size_t p = 0; 3 * p < values.size(); ++p) {

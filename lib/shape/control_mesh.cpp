@@ -3,12 +3,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "castle.h"
 #include "shape_fitter.h"
 #include "subvol/cell.h"
+#include "subvol/detail/number_text.h"
 #include "subvol/detail/parallel_each.h"
 #include "subvol/error.h"
+#include "subvol/mesh_report.h"
 
 namespace subvol {
 
@@ -72,16 +75,14 @@ std::size_t parts_of(const HexMesh& mesh) {
 }  // namespace
 
 std::vector<Option> options_of(ControlMeshOptions& options) {
-    return {Option("cells", options.cells).between(2, 1000).help("N", "cells along the longest side of the surface's box"),
-            Option("max-cells", options.max_cells).between(1, 1'000'000'000).help("N", "the most cells that may be made"),
-            Option("rounds", options.rounds)
-                .between(1, 100)
-                .help("N", "how often the points are drawn to the nearest places of the surface"),
-            Option("keep-folds", options.keep_folds).help("leave the points where they are if the limit folds"),
-            Option("boundary-move", options.boundary_edges)
-                .between(0, 10)
-                .not_with("keep-folds")
-                .help("PART", "points of the boundary may move by this part of their shortest edge where the limit folds")};
+    std::vector<Option> all{
+        Option("cells", options.cells).between(2, 1000).help("N", "cells along the longest side of the surface's box"),
+        Option("max-cells", options.max_cells).between(1, 1'000'000'000).help("N", "the most cells that may be made"),
+        Option("rounds", options.rounds)
+            .between(1, 100)
+            .help("N", "how often the points are drawn to the nearest places of the surface")};
+    std::ranges::move(options_of(options.folds), std::back_inserter(all));
+    return all;
 }
 
 Facts facts_of(const ControlMeshReport& report) {
@@ -89,7 +90,7 @@ Facts facts_of(const ControlMeshReport& report) {
     facts["parts"] = report.parts;
     facts["added"] = report.added;
     facts["side_world"] = report.side_world;
-    facts["least_determinant"] = report.least_determinant;
+    facts["min_scaled_jacobian"] = report.min_scaled_jacobian;
     return facts;
 }
 
@@ -105,7 +106,13 @@ ControlMesh control_mesh_of(const Surface& surface, const ControlMeshOptions& gi
     const Vec3 size = box_of(surface).size();
     ControlMeshReport report;
     report.side_world = std::max({size.x, size.y, size.z}) / options.cells;
-    if (!(report.side_world > 0)) throw Error(ErrorCode::InvalidInput, "the surface is a point", "surface");
+    constexpr double kSmallest = 1e-60, kLargest = 1e60;  // so that powers of it are numbers
+    if (!(report.side_world > kSmallest && report.side_world < kLargest)) {
+        throw Error(
+            ErrorCode::InvalidInput,
+            "the surface has no size that can be worked with: a cell would have the side " + number_text(report.side_world),
+            "surface", "1e-60 to 1e60");
+    }
     HexMesh mesh = with_layer(cubes_inside(surface, options, report.side_world, report.added));
     report.parts = parts_of(mesh);
     report.shape.before = shape_error(mesh, surface, options.scheme);
@@ -127,14 +134,13 @@ ControlMesh control_mesh_of(const Surface& surface, const ControlMeshOptions& gi
     report.shape.rounds = rounds;
     FitShapeOptions ending;
     ending.scheme = options.scheme;
-    ending.keep_folds = options.keep_folds;
-    ending.boundary_edges = options.boundary_edges;
+    ending.folds = options.folds;
     ending.progress = options.progress;
     mesh = finished(std::move(mesh), surface, ending, report.shape);
     for (std::size_t p = 0; p < start.size(); ++p) {
         report.shape.moved_world = std::max(report.shape.moved_world, glm::distance(start[p], mesh.points[p]));
     }
-    report.least_determinant = least_determinant(mesh);
+    report.min_scaled_jacobian = measure_cells(mesh).min_scaled_jacobian;
     return {std::move(mesh), std::move(report)};
 }
 

@@ -4,12 +4,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 
 #include "shape_fitter.h"
 #include "subvol/detail/parallel_each.h"
 #include "subvol/detail/parallel_sums.h"
 #include "subvol/error.h"
 #include "subvol/limit.h"
+#include "subvol/mesh_report.h"
+#include "surface_builder.h"
 
 // A step looks for the nearest places of the surface and the boundary x = A c, both ways, and finds the ways d of the control
 // points c that minimise
@@ -45,8 +48,7 @@ Surface fine_boundary(const HexMesh& mesh, const SchemeOptions& scheme) {
     constexpr int kLevels = 2;
     constexpr std::size_t kDescendants = 64;
     const HexMesh fine = on_limit(refine_cells(mesh, cells, {.scheme = scheme, .levels = kLevels}), scheme.kind);
-    Surface boundary;
-    std::vector<Index> number(fine.points.size(), kNone);
+    SurfaceBuilder boundary(fine.points.size());
     for (std::size_t c = 0; c < fine.cells.size(); ++c) {
         const auto& faces = topology.cell_faces[cells[c / kDescendants]];
         for (std::size_t side = 0; side < 6; ++side) {
@@ -54,32 +56,17 @@ Surface fine_boundary(const HexMesh& mesh, const SchemeOptions& scheme) {
             const auto at_side = [&](std::size_t corner) { return std::ranges::count(kCellFaces[side], corner) > 0; };
             if (!topology.face_on_hull(faces[side]) || !at_side(c % 8) || !at_side(c / 8 % 8)) continue;
             std::array<Index, 4> quad;
-            for (std::size_t k = 0; k < 4; ++k) {
-                const Index p = fine.cells[c][kCellFaces[side][k]];
-                if (number[p] == kNone) {
-                    number[p] = static_cast<Index>(boundary.points.size());
-                    boundary.points.push_back(fine.points[p]);
-                }
-                quad[k] = number[p];
-            }
-            boundary.triangles.push_back({quad[0], quad[1], quad[2]});
-            boundary.triangles.push_back({quad[0], quad[2], quad[3]});
+            for (std::size_t k = 0; k < 4; ++k) quad[k] = fine.cells[c][kCellFaces[side][k]];
+            std::ranges::rotate(quad, std::ranges::min_element(quad));
+            boundary.add(quad);
         }
     }
-    return boundary;
+    return boundary.finish([&](Index p) { return fine.points[p]; });
 }
 
 }  // namespace
 
 namespace detail {
-
-double least_determinant(const HexMesh& mesh) {
-    double least = 1;
-    for (const auto& cell : mesh.cells) {
-        least = std::min(least, least_determinant(cell, [&](Index p) { return mesh.points[p]; }));
-    }
-    return least;
-}
 
 ShapeFitter::ShapeFitter(const Topology& control, const Surface& surface, const SchemeOptions& scheme)
     : cells_(control.cells),
@@ -156,10 +143,15 @@ Vectors ShapeFitter::step(const Vectors& control, double stiffness) const {
 
 // Points of cells that would become too bad go a part of the way only, those of the worst ones not at all.
 void ShapeFitter::keep_sound(const Vectors& control, Vectors& ways) const {
+    const auto quality = [&](std::size_t c, const auto& position) {
+        std::array<Vec3, 8> corners;
+        for (std::size_t k = 0; k < 8; ++k) corners[k] = position(cells_[c][k]);
+        return min_scaled_jacobian(corners);
+    };
     std::vector<double> least(cells_.size());
     parallel_each(cells_.size(), [&](std::size_t c) {
         constexpr double kSound = 0.2, kPart = 0.98;
-        const double now = least_determinant(cells_[c], [&](Index p) { return control[p]; });
+        const double now = quality(c, [&](Index p) { return control[p]; });
         least[c] = now > 0 ? std::min(kSound, kPart * now) : now;
     });
     std::vector<double> parts(control.size(), 1.0);
@@ -168,7 +160,7 @@ void ShapeFitter::keep_sound(const Vectors& control, Vectors& ways) const {
     for (int k = 0; k < kTries; ++k) {
         std::vector<std::uint8_t> bad(cells_.size());
         parallel_each(cells_.size(), [&](std::size_t c) {
-            bad[c] = least_determinant(cells_[c], [&](Index p) { return control[p] + parts[p] * ways[p]; }) < least[c] ? 1 : 0;
+            bad[c] = quality(c, [&](Index p) { return control[p] + parts[p] * ways[p]; }) < least[c] ? 1 : 0;
         });
         std::vector<std::uint8_t> slower(control.size(), 0);
         for (std::size_t c = 0; c < cells_.size(); ++c) {
@@ -194,10 +186,10 @@ HexMesh finished(HexMesh mesh, const Surface& surface, const FitShapeOptions& op
     FoldOptions folds;
     folds.scheme = options.scheme;
     folds.progress = options.progress;
-    if (!options.keep_folds) {
+    if (!options.folds.keep) {
         MendOptions mending;
         mending.folds = folds;
-        mending.boundary_edges = options.boundary_edges;
+        mending.boundary_edges = options.folds.boundary_edges;
         Mended mended = mend_folds(std::move(mesh), mending);
         report.folds = mended.check.report;
         report.mended = mended.report.before.folded + mended.report.before.open;
@@ -227,18 +219,23 @@ void validate(const Surface& surface) {
     }
 }
 
-std::vector<Option> options_of(FitShapeOptions& options) {
-    return {Option("shape-rounds", options.rounds)
-                .between(1, 1000)
-                .help("N", "look for the nearest places and move the points up to N times"),
-            Option("stiffness", options.stiffness)
-                .between(1e-6, 1e6)
-                .help("S", "how much neighbours move together: more for surfaces with noise"),
-            Option("keep-folds", options.keep_folds).help("leave the points where they are if the limit folds"),
-            Option("boundary-move", options.boundary_edges)
+std::vector<Option> options_of(ShapeFolds& folds) {
+    return {Option("keep-folds", folds.keep).help("leave the points where they are if the limit folds"),
+            Option("boundary-move", folds.boundary_edges)
                 .between(0, 10)
                 .not_with("keep-folds")
                 .help("PART", "points of the boundary may move by this part of their shortest edge where the limit folds")};
+}
+
+std::vector<Option> options_of(FitShapeOptions& options) {
+    std::vector<Option> all{Option("shape-rounds", options.rounds)
+                                .between(1, 1000)
+                                .help("N", "look for the nearest places and move the points up to N times"),
+                            Option("stiffness", options.stiffness)
+                                .between(1e-6, 1e6)
+                                .help("S", "how much neighbours move together: more for surfaces with noise")};
+    std::ranges::move(options_of(options.folds), std::back_inserter(all));
+    return all;
 }
 
 Facts facts_of(const FitShapeReport& report) {
@@ -256,12 +253,8 @@ Facts facts_of(const FitShapeReport& report) {
     put("after", report.after);
     facts["rounds"] = report.rounds;
     facts["moved_world"] = report.moved_world;
-    Facts& folds = facts.group("folds");
-    folds["proved"] = report.folds.proved;
-    folds["folded"] = report.folds.folded;
-    folds["undecided"] = report.folds.open + report.folds.irregular;
-    folds["irregular"] = report.folds.irregular;
-    folds["mended"] = report.mended;
+    facts["folds"] = facts_of(report.folds);
+    facts["mended"] = report.mended;
     return facts;
 }
 

@@ -47,12 +47,12 @@ Mat3 edges_at(const std::array<Index, 8>& cell, std::size_t corner, const Vec3* 
 
 }  // namespace
 
-/// What is minimised, as a function of the control points in sides.
+/// What is minimised, as a function of the ways of the control points from their start, in sides.
 class ShapeEnergy : public ceres::FirstOrderFunction {
 public:
     ShapeEnergy(const ShapeFitter& fitter, const std::vector<Vec3>& control, double side, double weight)
         : fitter_(fitter), pulls_(fitter.pulls(control)), side_(side), weight_(weight), start_(control) {
-        const std::vector<Vec3> children = fine(control.data());
+        const std::vector<Vec3> children = fine(control);
         for (const auto& cell : fitter_.children_.cells) {
             for (std::size_t k = 0; k < 8; ++k) least_ = std::min(least_, glm::determinant(edges_at(cell, k, children.data())));
         }
@@ -65,8 +65,12 @@ public:
     [[nodiscard]] int NumParameters() const override { return static_cast<int>(3 * start_.size()); }
 
     bool Evaluate(const double* parameters, double* cost, double* gradient) const override {
-        const auto* points = reinterpret_cast<const Vec3*>(parameters);
         const std::size_t count = start_.size();
+        std::vector<Vec3> ways(count), points(count);
+        for (std::size_t p = 0; p < count; ++p) {
+            ways[p] = {parameters[3 * p], parameters[3 * p + 1], parameters[3 * p + 2]};
+            points[p] = start_[p] / side_ + ways[p];
+        }
         const std::vector<Vec3> children = fine(points);
         const double corners = 8 * std::pow(parts(), 3);  // of the children of a cell
         // The last place is the sum of the distortions.
@@ -90,23 +94,21 @@ public:
         slopes.pop_back();
         std::vector<double> sums = std::move(slopes);
         for (const StencilTable& table : fitter_.children_.levels) sums = apply_transpose(table, sums, 3);
-        std::vector<Vec3> moved(count);
-        for (std::size_t p = 0; p < count; ++p) moved[p] = points[p] - start_[p] / side_;
-        const std::vector<Vec3> ways = fitter_.matrix_.apply(moved);
+        const std::vector<Vec3> boundary_ways = fitter_.matrix_.apply(ways);
         const auto rest = [&](const Pull& pull, const Vec3& way) {
             return glm::dot(pull.direction, way) + pull.distance / side_;
         };
         constexpr double kSliding = 0.001;
         double distances = 0;
         for (const Pull& pull : pulls_) {
-            const Vec3 way = pull.sum_of(ways);
+            const Vec3 way = pull.sum_of(boundary_ways);
             const double far = rest(pull, way);
             distances += pull.weight * (far * far + kSliding * glm::dot(way, way));
         }
         *cost = distortions + weight_ * distances;
         if (gradient != nullptr) {
             const std::vector<Vec3> forces = fitter_.gathered(pulls_, [&](const Pull& pull) {
-                const Vec3 way = pull.sum_of(ways);
+                const Vec3 way = pull.sum_of(boundary_ways);
                 return 2 * weight_ * pull.weight * (rest(pull, way) * pull.direction + kSliding * way);
             });
             for (std::size_t p = 0; p < count; ++p) {
@@ -122,9 +124,9 @@ private:
     /// How many children a cell has along an edge.
     [[nodiscard]] double parts() const { return fitter_.children_.levels.empty() ? 1 : 2; }
 
-    [[nodiscard]] std::vector<Vec3> fine(const Vec3* points) const {
+    [[nodiscard]] std::vector<Vec3> fine(const std::vector<Vec3>& points) const {
         std::vector<Vec3> children(fitter_.children_.points());
-        fitter_.children_.apply(std::span<const double>(&points->x, 3 * start_.size()), 3,
+        fitter_.children_.apply(std::span<const double>(&points.front().x, 3 * points.size()), 3,
                                 std::span<double>(&children.front().x, 3 * children.size()));
         return children;
     }
@@ -137,8 +139,7 @@ private:
 };
 
 std::vector<Vec3> ShapeFitter::relaxed(const std::vector<Vec3>& control, double side, double weight) const {
-    std::vector<Vec3> points = control;
-    for (Vec3& x : points) x /= side;
+    std::vector<Vec3> ways(control.size(), Vec3(0.0));
     const ceres::GradientProblem problem(new ShapeEnergy(*this, control, side, weight));
     ceres::GradientProblemSolver::Options options;
     constexpr int kSteps = 30;
@@ -146,8 +147,9 @@ std::vector<Vec3> ShapeFitter::relaxed(const std::vector<Vec3>& control, double 
     options.logging_type = ceres::SILENT;
     options.function_tolerance = 1e-5;
     ceres::GradientProblemSolver::Summary summary;
-    ceres::Solve(options, problem, &points.front().x, &summary);
-    for (Vec3& x : points) x *= side;
+    ceres::Solve(options, problem, &ways.front().x, &summary);
+    std::vector<Vec3> points = control;
+    for (std::size_t p = 0; p < points.size(); ++p) points[p] += side * ways[p];
     return points;
 }
 

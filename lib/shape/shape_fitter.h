@@ -13,27 +13,6 @@
 
 namespace subvol::detail {
 
-/// The least of the determinants at the corners of a cell, of its edges divided by their lengths: 1 for a cube, at most 0 if it
-/// is turned inside out there. position: of a point
-template <class Position>
-double least_determinant(const std::array<Index, 8>& cell, const Position& position) {
-    double least = 1;
-    for (std::size_t k = 0; k < 8; ++k) {
-        const Vec3 x = position(cell[k]);
-        std::array<Vec3, 3> edges;
-        for (std::size_t e = 0; e < 3; ++e) {
-            const Vec3 edge = position(cell[kCornerNeighbors[k][e]]) - x;
-            const double length = glm::length(edge);
-            edges[e] = length > 0 ? edge / length : Vec3(0.0);
-        }
-        least = std::min(least, glm::dot(edges[0], glm::cross(edges[1], edges[2])));
-    }
-    return least;
-}
-
-/// The least over all cells.
-[[nodiscard]] double least_determinant(const HexMesh& mesh);
-
 class ShapeEnergy;
 
 /// The boundary of a limit and a surface that it is fitted to.

@@ -3,10 +3,10 @@
 
 #include <algorithm>
 
-#include "subvol/cell.h"
 #include "subvol/detail/parallel_each.h"
 #include "subvol/limit.h"
 #include "subvol/refine.h"
+#include "surface_builder.h"
 
 namespace subvol::detail {
 
@@ -56,28 +56,6 @@ std::vector<Vec3> product_with(const CsrMatrix& matrix, std::span<const Vec3> va
 
 }  // namespace
 
-Hull hull_of(const Topology& topology) {
-    Hull hull;
-    std::vector<Index> number(topology.point_count, kNone);
-    const auto numbered = [&](Index point) {
-        if (number[point] == kNone) {
-            number[point] = static_cast<Index>(hull.points.size());
-            hull.points.push_back(point);
-        }
-        return number[point];
-    };
-    for (Index c = 0; c < topology.cells.size(); ++c) {
-        for (std::size_t side = 0; side < 6; ++side) {
-            if (!topology.face_on_hull(topology.cell_faces[c][side])) continue;
-            std::array<Index, 4> quad;
-            for (std::size_t k = 0; k < 4; ++k) quad[k] = numbered(topology.cells[c][kCellFaces[side][k]]);
-            hull.triangles.push_back({quad[0], quad[1], quad[2]});
-            hull.triangles.push_back({quad[0], quad[2], quad[3]});
-        }
-    }
-    return hull;
-}
-
 SurfaceMatrix::SurfaceMatrix(const Topology& control, const SchemeOptions& scheme) : columns_(control.point_count) {
     RefinementTables tables = refinement_tables(control, {.scheme = scheme, .levels = 1});
     StencilTable table = std::move(tables.levels[0]);
@@ -88,9 +66,14 @@ SurfaceMatrix::SurfaceMatrix(const Topology& control, const SchemeOptions& schem
     finest.sharp_faces = std::move(tables.sharp_faces);
     const Topology topology = build_topology(finest);
     if (!interpolates(scheme.kind)) table = limit_stencils(topology, scheme.kind).after(table);
-    Hull hull = hull_of(topology);
-    triangles_ = std::move(hull.triangles);
-    matrix_ = rows_of(table, hull.points);
+    SurfaceBuilder hull(topology.point_count);
+    for (Index c = 0; c < topology.cells.size(); ++c) {
+        for (const Index face : topology.cell_faces[c]) {
+            if (topology.face_on_hull(face)) hull.add(outward_quad(topology, c, face));
+        }
+    }
+    matrix_ = rows_of(table, hull.used());
+    triangles_ = hull.finish([&](Index p) { return finest.points[p]; }).triangles;
     transpose_ = transpose_of(matrix_, columns_);
 }
 

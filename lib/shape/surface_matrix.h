@@ -12,13 +12,6 @@
 
 namespace subvol::detail {
 
-/// The hull of a mesh: its points, and two triangles over them for each quad, counter-clockwise seen from outside.
-struct Hull {
-    std::vector<Index> points;
-    std::vector<std::array<Index, 3>> triangles;
-};
-[[nodiscard]] Hull hull_of(const Topology& topology);
-
 /// The limit of the boundary at the points of level 1 as rows of weights over the control points, and triangles between these
 /// points.
 class SurfaceMatrix {

@@ -4,8 +4,9 @@
 #include <numbers>
 #include <string>
 
+#include "shell_triangles.h"
+#include "subvol/detail/across.h"
 #include "subvol/error.h"
-#include "subvol/limit_shells.h"
 
 namespace subvol {
 
@@ -14,24 +15,16 @@ namespace {
 constexpr std::size_t kSides = 8;  // of a tube
 constexpr double kBend = 0.98;     // cosine: less bent joints need no ball, as the gap is narrower than a tenth of the radius
 
-/// Two vectors across a direction, of unit length.
-std::array<Vec3, 2> across(const Vec3& along) {
-    const Vec3 a(std::abs(along.x), std::abs(along.y), std::abs(along.z));
-    const Vec3 other = a.x <= a.y && a.x <= a.z ? Vec3(1, 0, 0) : a.y <= a.z ? Vec3(0, 1, 0) : Vec3(0, 0, 1);
-    const Vec3 u = glm::normalize(glm::cross(along, other));
-    return {u, glm::cross(along, u)};
-}
-
-class TubeMaker {
+class TubeMaker : detail::ShellTriangles {
 public:
-    TubeMaker(ShellSurface& to, double radius) : to_(to), radius_(radius) {}
+    TubeMaker(ShellSurface& to, double radius) : ShellTriangles(to), radius_(radius) {}
 
     void tube(const Shells& shells, Index a, Index b) {
         const Vec3 step = shells.points[b] - shells.points[a];
         const double length = glm::length(step);
         if (!(length > 0)) return;
-        const auto [u, v] = across(step / length);
-        const std::size_t first = to_.surface.points.size();
+        const auto [u, v] = detail::across(step / length);
+        const std::size_t first = next_point();
         for (std::size_t k = 0; k < kSides; ++k) {
             const double angle = 2 * std::numbers::pi * static_cast<double>(k) / kSides;
             const Vec3 offset = radius_ * (std::cos(angle) * u + std::sin(angle) * v);
@@ -56,7 +49,7 @@ public:
             const Vec3 ab = glm::normalize(a + b), bc = glm::normalize(b + c), ca = glm::normalize(c + a);
             for (const auto& corners :
                  {std::array{a, ab, ca}, std::array{ab, b, bc}, std::array{ca, bc, c}, std::array{ab, bc, ca}}) {
-                const std::size_t first = to_.surface.points.size();
+                const std::size_t first = next_point();
                 for (const Vec3& corner : corners) add(shells.points[p] + radius_ * corner, p);
                 triangle(first, first + 1, first + 2);
             }
@@ -64,15 +57,6 @@ public:
     }
 
 private:
-    void add(const Vec3& point, Index source) {
-        to_.surface.points.push_back(point);
-        to_.sources.push_back(source);
-    }
-    void triangle(std::size_t a, std::size_t b, std::size_t c) {
-        to_.surface.triangles.push_back({static_cast<Index>(a), static_cast<Index>(b), static_cast<Index>(c)});
-    }
-
-    ShellSurface& to_;
     double radius_;
 };
 

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "shell_triangles.h"
+#include "subvol/detail/across.h"
 #include "subvol/error.h"
 
 namespace subvol {
@@ -15,22 +17,14 @@ constexpr std::size_t kTubeSides = 12;  // 30 degrees between normals: smooth wh
 // Parts of an arrow of length 1.
 constexpr double kShaftRadius = 0.035, kHeadRadius = 0.1, kHeadLength = 0.35;
 
-/// Two vectors across a direction, of unit length.
-std::array<Vec3, 2> frame_across(const Vec3& along) {
-    const Vec3 a = glm::abs(along);
-    const Vec3 other = a.x <= a.y && a.x <= a.z ? Vec3(1, 0, 0) : a.y <= a.z ? Vec3(0, 1, 0) : Vec3(0, 0, 1);
-    const Vec3 u = glm::normalize(glm::cross(along, other));
-    return {u, glm::cross(along, u)};
-}
-
 /// Surfaces made of rings about a line.
-class Rings {
+class Rings : detail::ShellTriangles {
 public:
-    explicit Rings(ShellSurface& to) : to_(to) {}
+    using ShellTriangles::ShellTriangles;
 
     /// Adds a ring, and the side between it and the one before.
     void ring(const Vec3& center, const Vec3& u, const Vec3& v, double radius, Index source) {
-        const std::size_t first = to_.surface.points.size();
+        const std::size_t first = next_point();
         for (std::size_t k = 0; k < kTubeSides; ++k) {
             const double angle = 2 * std::numbers::pi * static_cast<double>(k) / kTubeSides;
             add(center + radius * (std::cos(angle) * u + std::sin(angle) * v), source);
@@ -45,7 +39,7 @@ public:
 
     /// Closes the last ring, or begins a new line with a closed one that `ring` adds next.
     void close(const Vec3& center, Index source) {
-        const std::size_t middle = to_.surface.points.size();
+        const std::size_t middle = next_point();
         add(center, source);
         for (std::size_t k = 0; k < kTubeSides; ++k) triangle(*before_ + k, *before_ + (k + 1) % kTubeSides, middle);
     }
@@ -53,15 +47,6 @@ public:
     void begin() { before_.reset(); }
 
 private:
-    void add(const Vec3& point, Index source) {
-        to_.surface.points.push_back(point);
-        to_.sources.push_back(source);
-    }
-    void triangle(std::size_t a, std::size_t b, std::size_t c) {
-        to_.surface.triangles.push_back({static_cast<Index>(a), static_cast<Index>(b), static_cast<Index>(c)});
-    }
-
-    ShellSurface& to_;
     std::optional<std::size_t> before_{};
 };
 
@@ -107,7 +92,7 @@ ShellSurface tube_surface(const Streamlines& lines, double radius_world) {
             if (!(glm::length(along) > 0)) continue;
             along = glm::normalize(along);
             u -= glm::dot(u, along) * along;
-            u = glm::length(u) > 1e-6 ? glm::normalize(u) : frame_across(along)[0];
+            u = glm::length(u) > 1e-6 ? glm::normalize(u) : detail::across(along)[0];
             const auto source = static_cast<Index>(kept[k]);
             rings.ring(here, u, glm::cross(along, u), radius_world, source);
             if (k == 0 || k + 1 == kept.size()) rings.close(here, source);
@@ -133,7 +118,7 @@ ShellSurface arrow_surface(std::span<const Vec3> places, std::span<const Vec3> v
         if (!(speed > 0)) continue;
         const Vec3 along = vectors[p] / speed;
         const double length = speed / largest * longest_world;
-        const auto [u, v] = frame_across(along);
+        const auto [u, v] = detail::across(along);
         const auto source = static_cast<Index>(p);
         const auto at = [&](double t) { return places[p] + (t - 0.5) * length * along; };
         rings.begin();

@@ -138,6 +138,10 @@ std::vector<ShapeReport> shapes_of_parts(const HexMesh& mesh, std::size_t begin,
 
 }  // namespace
 
+double min_scaled_jacobian(const std::array<Vec3, 8>& corners) {
+    return measure(corners).min_scaled_jacobian;
+}
+
 ShapeReport measure_cells(const HexMesh& mesh) {
     ShapeReport report;
     for (const ShapeReport& part : shapes_of_parts(mesh, 0, summed_parts(mesh))) {

@@ -29,6 +29,9 @@ public:
         triangles_.push_back({q[0], q[2], q[3]});
     }
 
+    /// The points that the quads use, in the order of the surface's.
+    [[nodiscard]] const std::vector<Index>& used() const { return used_; }
+
     /// position(point of the mesh) is called in parallel.
     template <class Position>
     Surface finish(const Position& position) {

@@ -137,7 +137,7 @@ def fit_shape(mesh: HexMesh, points: npt.ArrayLike, triangles: npt.ArrayLike, *,
 
     points, triangles: (n,3) and (m,3), as `read_surface` and `surface` have them.
     Returns the mesh, and a report: before and after, the distances of the boundary from the surface (rms, max, max_at) and of the surface
-    from the boundary (missed_rms, missed_max, missed_at), rounds, moved_world, and folds.
+    from the boundary (missed_rms, missed_max, missed_at), rounds, moved_world, folds (verdict, cells, open_volume), and mended.
 
     {keywords}
     """
@@ -152,7 +152,7 @@ def control_mesh(points: npt.ArrayLike, triangles: npt.ArrayLike, *, progress: P
     """A mesh of hexahedra whose limit fills a closed surface of triangles.
 
     points, triangles: (n,3) and (m,3), as `read_surface` and `surface` have them; either side may be outside.
-    Returns the mesh, and a report as of `fit_shape`, with parts (that are not joined), added, side_world and least_determinant.
+    Returns the mesh, and a report as of `fit_shape`, with parts (that are not joined), added, side_world and min_scaled_jacobian.
 
     {keywords}
     """

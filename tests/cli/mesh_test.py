@@ -17,7 +17,7 @@ class Mesh(InFolder):
         for name in ("ball.stl", "ball.obj", "ball.ply"):
             self.ball(name)
             found = self.make(name, "-o", "ball.vtu", "--cells", "6", "--quiet")
-            self.assertEqual((found["folds"]["folded"], found["parts"]), (0, 1))
+            self.assertEqual((found["folds"]["cells"]["folded"], found["parts"]), (0, 1))
             self.assertLess(found["after"]["max"], .1 * found["side_world"])
             self.assertLess(found["after"]["rms"], .2 * found["before"]["rms"])
         info = self.run_ok("info", "ball.vtu", "--json").json()
@@ -32,7 +32,7 @@ class Mesh(InFolder):
         whole = self.make("fog.vdb", "-o", "whole.vtu", "--cells", "6", "--iso", ".5")
         part = self.make("fog.vdb", "-o", "part.vtu", "--cells", "6", "--iso", "1.75")
         self.assertLess(part["side_world"], .75 * whole["side_world"])
-        self.assertEqual(part["folds"]["folded"], 0)
+        self.assertEqual(part["folds"]["cells"]["folded"], 0)
         distances = self.make("fog.vdb", "--field", "sdf", "-o", "set.vtu", "--cells", "6")
         self.assertAlmostEqual(distances["side_world"] / whole["side_world"], 1, 1)
 

@@ -161,7 +161,7 @@ def test_surfaces_become_meshes(tmp_path):
     assert triangles.shape == surface.triangles.shape
     np.testing.assert_allclose(np.sort(points, axis=0), np.sort(surface.points, axis=0), atol=1e-6)
     mesh, report = subvol.control_mesh(points, triangles, cells=6)
-    assert report["folds"]["folded"] == 0
+    assert report["folds"]["cells"]["folded"] == 0
     assert report["after"]["max"] < .1 * report["side_world"]
     moved = subvol.HexMesh(mesh.points * 1.05, mesh.cells)
     shaped, fit = subvol.fit_shape(moved, points, triangles, keep_folds=True)

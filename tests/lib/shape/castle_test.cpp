@@ -6,6 +6,7 @@
 #include <random>
 
 #include "shape_fitter.h"
+#include "subvol/mesh_report.h"
 #include "subvol/topology.h"
 
 namespace subvol {
@@ -91,7 +92,7 @@ TEST(WithLayer, LeavesCellsOneSideAtTheBoundaryAndKeepsThemSound) {
         sides += here;
     }
     EXPECT_EQ(mesh.cells.size(), cubes.cells.size() + sides);
-    EXPECT_GT(detail::least_determinant(mesh), 0.2);
+    EXPECT_GT(measure_cells(mesh).min_scaled_jacobian, 0.2);
     double volume = 0, before = 0;
     const auto sum = [](const HexMesh& of) {
         double all = 0;

@@ -11,6 +11,7 @@
 #include "lib/test_meshes.h"
 #include "shape_fitter.h"
 #include "subvol/control_mesh.h"
+#include "subvol/mesh_report.h"
 
 namespace subvol {
 namespace shape_test {
@@ -38,7 +39,7 @@ TEST(FitShape, FindsTheFlatSidesOfABoxAgain) {
     for (Index p = 0; p < mesh.points.size(); ++p) {
         if (topology.point_on_boundary[p] != 0) mesh.points[p] += Vec3(off(dice), off(dice), off(dice));
     }
-    const ShapedMesh made = fit_shape(mesh, sides, {.rounds = 40, .stiffness = 1e-4, .keep_folds = true});
+    const ShapedMesh made = fit_shape(mesh, sides, {.rounds = 40, .stiffness = 1e-4, .folds = {.keep = true}});
     EXPECT_GT(made.report.before.rms, 0.03);
     EXPECT_LT(made.report.after.max, 1e-4);
     EXPECT_LT(made.report.after.missed_max, 1e-4);
@@ -53,11 +54,11 @@ TEST(FitShape, ABlockBecomesABall) {
         if (glm::length(x) > 0) x *= 1 - 0.4 * most * (1 - most / glm::length(x));  // its corners are rounder than a box's
     }
     const Surface ball = test::sphere(24);
-    const ShapedMesh made = fit_shape(mesh, ball, {.rounds = 40, .keep_folds = true});
+    const ShapedMesh made = fit_shape(mesh, ball, {.rounds = 40, .folds = {.keep = true}});
     EXPECT_GT(made.report.before.rms, 0.1);
     EXPECT_LT(made.report.after.rms, 0.01);
     EXPECT_LT(made.report.after.missed_rms, 0.01);
-    EXPECT_GT(detail::least_determinant(made.mesh), 0);
+    EXPECT_GT(measure_cells(made.mesh).min_scaled_jacobian, 0);
     EXPECT_NEAR(volume_of(made.mesh), 4 * std::numbers::pi / 3, 0.02);
 }
 
@@ -79,7 +80,7 @@ TEST(ControlMesh, FillsABall) {
     EXPECT_EQ(made.report.parts, 1U);
     EXPECT_EQ(made.report.shape.folds.folded, 0U);
     EXPECT_EQ(made.report.shape.folds.open, 0U);
-    EXPECT_GT(made.report.least_determinant, 0.2);
+    EXPECT_GT(made.report.min_scaled_jacobian, 0.2);
     EXPECT_LT(made.report.shape.after.max, 0.05 * made.report.side_world);
     EXPECT_LT(made.report.shape.after.missed_max, 0.05 * made.report.side_world);
     EXPECT_NEAR(volume_of(made.mesh), 4 * std::numbers::pi / 3, 0.01);
@@ -94,6 +95,16 @@ TEST(ControlMesh, DoesNotDependOnTheSideThatIsOutsideNorOnThreads) {
     EXPECT_EQ(control_mesh_of(turned, options).mesh.cells, made.cells);
     const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
     EXPECT_EQ(control_mesh_of(ball, options).mesh.points, made.points);
+}
+
+TEST(ControlMesh, IsTheSameFarFromTheOrigin) {
+    Surface ball = test::sphere(10);
+    const ControlMeshOptions options{.cells = 5};
+    const ControlMeshReport near = control_mesh_of(ball, options).report;
+    for (Vec3& x : ball.points) x += Vec3(1e6, 2e6, 0);
+    const ControlMeshReport far = control_mesh_of(ball, options).report;
+    EXPECT_LT(far.shape.after.rms, 1.1 * near.shape.after.rms);
+    EXPECT_LT(far.shape.after.missed_rms, 1.1 * near.shape.after.missed_rms);
 }
 
 TEST(ControlMesh, OfARingHasItsHole) {
@@ -130,6 +141,7 @@ TEST(ControlMesh, SaysWhatIsWrong) {
     EXPECT_THAT(error_of([&] { std::ignore = control_mesh_of({surface.points, {}}); }), HasSubstr("has no triangles"));
     EXPECT_THAT(error_of([&] { std::ignore = control_mesh_of(surface, {.scheme = {.crease_angle_deg = 30}}); }),
                 HasSubstr("crease_angle: has no effect"));
+    EXPECT_THAT(error_of([&] { std::ignore = control_mesh_of(test::sphere(4, 1e200)); }), HasSubstr("has no size that can be"));
     Surface flat{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}};
     EXPECT_THAT(error_of([&] { std::ignore = control_mesh_of(flat); }), HasSubstr("no cell has its middle inside"));
     surface.triangles[3][1] = 99999;
@@ -144,10 +156,10 @@ TEST(ShapeFitter, TurnsACellBackThatWasTurnedInsideOut) {
     const Surface sides = boundary_surface(mesh);
     const Index inner = 1 + 4 * (1 + 4 * 1);
     mesh.points[inner] += Vec3(1.6, 1.6, 1.6);
-    ASSERT_LT(detail::least_determinant(mesh), 0);
+    ASSERT_LT(measure_cells(mesh).min_scaled_jacobian, 0);
     const detail::ShapeFitter fitter(build_topology(mesh), sides, {.kind = Scheme::Linear});
     for (int k = 0; k < 3; ++k) mesh.points = fitter.relaxed(mesh.points, 1, 10);
-    EXPECT_GT(detail::least_determinant(mesh), 0.5);
+    EXPECT_GT(measure_cells(mesh).min_scaled_jacobian, 0.5);
 }
 
 }  // namespace shape_test

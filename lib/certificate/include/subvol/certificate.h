@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "subvol/facts.h"
 #include "subvol/hex_mesh.h"
 #include "subvol/option.h"
 #include "subvol/progress.h"
@@ -65,6 +66,10 @@ struct FoldReport {
     int deepest = 0;
     std::vector<std::string> warnings;
 };
+
+/// "verdict" (sound, folded or undecided), "cells" with proved, folded, undecided and irregular (those of the undecided that
+/// are near irregular edges), and "open_volume" of the undecided.
+[[nodiscard]] Facts facts_of(const FoldReport& report);
 
 /// verdicts: of the cells; open: the part of each that is not decided, 0 to 1; places: of the folded cells, in their order
 struct FoldCheck {

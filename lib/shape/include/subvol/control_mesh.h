@@ -8,14 +8,13 @@ namespace subvol {
 /// cells:     along the longest side of the surface's box
 /// max_cells: that may be made
 /// rounds:    how often the nearest places are looked for, each time with half as much weight again for distances
-/// scheme, keep_folds, boundary_edges, names, progress: as in `FitShapeOptions`; the scheme without an angle of creases
+/// scheme, folds, names, progress: as in `FitShapeOptions`; the scheme without an angle of creases
 struct ControlMeshOptions {
     SchemeOptions scheme{};
     int cells = 24;
     std::size_t max_cells = 2'000'000;
     int rounds = 15;
-    bool keep_folds = false;
-    double boundary_edges = 0.2;
+    ShapeFolds folds{};
     OptionNames names = OptionNames::Keywords;
     Progress* progress = nullptr;
 };
@@ -27,13 +26,12 @@ struct ControlMeshOptions {
 /// parts:      of the mesh, that are not joined
 /// added:      cubes that were needed to make the boundary of the cubes a surface
 /// side_world: of a cube
-/// least_determinant: over the corners of all cells, of its edges divided by their lengths: 1 for cubes, negative if a control
-///             cell is turned inside out
+/// min_scaled_jacobian: of the control cells: 1 for cubes, negative if one is turned inside out at a corner
 struct ControlMeshReport {
     FitShapeReport shape;
     std::size_t parts = 0, added = 0;
     double side_world = 0;
-    double least_determinant = 0;
+    double min_scaled_jacobian = 0;
 };
 
 /// The report under its members' names.

@@ -13,17 +13,24 @@
 
 namespace subvol {
 
+/// keep:           points do not move where the limit folds or may fold; else they do, by `mend_folds`
+/// boundary_edges: how far those of the boundary may move then, along it mostly, as a part of their shortest edge
+struct ShapeFolds {
+    bool keep = false;
+    double boundary_edges = 0.2;
+};
+
+[[nodiscard]] std::vector<Option> options_of(ShapeFolds& folds);
+
 /// rounds:    how often the nearest places are looked for and the points moved, at most
 /// stiffness: the weight with which neighbours move together, beside the distances about a control point; > 0
-/// keep_folds: points do not move where the limit folds or may fold (`mend_folds`)
-/// boundary_edges: how far those of the boundary may move for folds, along it mostly, as a part of their shortest edge
+/// folds:     what happens where the limit folds
 /// names:     how errors call the options
 struct FitShapeOptions {
     SchemeOptions scheme{};
     int rounds = 10;
     double stiffness = 0.01;
-    bool keep_folds = false;
-    double boundary_edges = 0.2;
+    ShapeFolds folds{};
     OptionNames names = OptionNames::Keywords;
     Progress* progress = nullptr;
 };

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <map>
 #include <string>
 #include <vector>
@@ -50,6 +51,9 @@ struct ShapeReport {
 
 /// The numbers of the first cells with a negative Jacobian at a corner, ascending.
 [[nodiscard]] std::vector<std::size_t> inverted_cells(const HexMesh& mesh, std::size_t at_most);
+
+/// The least at the corners of a cell, in VTK order: 1 for a cube, at most 0 where the cell is turned inside out or degenerate.
+[[nodiscard]] double min_scaled_jacobian(const std::array<Vec3, 8>& corners);
 
 /// cost: parallel; the same for any number of threads
 [[nodiscard]] ShapeReport measure_cells(const HexMesh& mesh);
