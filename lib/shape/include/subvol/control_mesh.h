@@ -52,7 +52,7 @@ struct ControlMesh {
 /// surface: closed; small holes are closed where most of the surface winds about a place. Either side may be outside
 /// throws:  Error(InvalidInput) if the surface is not valid, if no cube has its middle inside, or if an option is out of range;
 ///          Error(Cancelled)
-/// cost:    some 2 to 5 ms and 30 kB a cell; parallel, the same bits for any number of threads
+/// cost:    some 1 to 5 ms and 10 kB a cell, more where folds are mended; parallel, the same bits for any number of threads
 /// source:  [marechal2009] for layers over cubes, [barill2018] for what is inside, [garanzha2021] for distortions
 [[nodiscard]] ControlMesh control_mesh_of(const Surface& surface, const ControlMeshOptions& options = {});
 
