@@ -57,7 +57,7 @@ Surface fine_boundary(const HexMesh& mesh, const SchemeOptions& scheme) {
             if (!topology.face_on_hull(faces[side]) || !at_side(c % 8) || !at_side(c / 8 % 8)) continue;
             std::array<Index, 4> quad;
             for (std::size_t k = 0; k < 4; ++k) quad[k] = fine.cells[c][kCellFaces[side][k]];
-            std::ranges::rotate(quad, std::ranges::min_element(quad));
+            std::rotate(quad.begin(), std::ranges::min_element(quad), quad.end());
             boundary.add(quad);
         }
     }

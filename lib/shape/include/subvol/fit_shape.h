@@ -78,8 +78,7 @@ struct ShapedMesh {
 /// surface: closed or open; which side is outside does not matter
 /// throws:  Error(InvalidInput) as `refine`, if the surface is not valid, or if an option is out of range
 /// cost:    some 2 ms for each side of a cell at the boundary, and memory for one level of the mesh; parallel, the same bits
-/// for
-///          any number of threads
+///          for any number of threads
 [[nodiscard]] ShapedMesh fit_shape(HexMesh mesh, const Surface& surface, const FitShapeOptions& options = {});
 
 /// throws: Error(InvalidInput) if there is no triangle, a corner does not exist, or a point of a triangle is not finite
