@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "subvol/cell.h"
-#include "subvol/topology.h"
 
 namespace subvol::detail {
 
@@ -147,42 +146,6 @@ HexMesh CubeGrid::cells() const {
         }
     }
     return mesh;
-}
-
-HexMesh with_layer(const HexMesh& mesh) {
-    const Topology topology = build_topology(mesh);
-    std::vector<Vec3> middles(mesh.points.size(), Vec3(0.0));
-    std::vector<double> counts(mesh.points.size(), 0);
-    for (const auto& cell : mesh.cells) {
-        Vec3 middle(0.0);
-        for (const Index p : cell) middle += mesh.points[p] / 8.0;
-        for (const Index p : cell) {
-            middles[p] += middle;
-            counts[p] += 1;
-        }
-    }
-    HexMesh made;
-    made.points = mesh.points;
-    made.cells = mesh.cells;
-    std::vector<Index> outer(mesh.points.size(), kNone);
-    constexpr double kInwards = 0.5;
-    for (Index p = 0; p < mesh.points.size(); ++p) {
-        if (topology.point_on_boundary[p] == 0) continue;
-        outer[p] = static_cast<Index>(made.points.size());
-        made.points.push_back(mesh.points[p]);
-        made.points[p] += kInwards * (middles[p] / counts[p] - mesh.points[p]);
-    }
-    for (Index c = 0; c < mesh.cells.size(); ++c) {
-        for (std::size_t side = 0; side < 6; ++side) {
-            if (!topology.face_on_hull(topology.cell_faces[c][side])) continue;
-            auto& cell = made.cells.emplace_back();
-            for (std::size_t k = 0; k < 4; ++k) {
-                cell[k] = mesh.cells[c][kCellFaces[side][k]];
-                cell[4 + k] = outer[cell[k]];
-            }
-        }
-    }
-    return made;
 }
 
 }  // namespace subvol::detail

@@ -41,13 +41,4 @@ private:
     std::vector<float> likeness_;
 };
 
-/// The mesh with a layer of cells on its boundary, so that each cell has one side there at most.
-///
-///     ┌───┬───┐      ┌───┬───┐   The points of the old boundary move inwards, by a part of the way to the middles of their
-///     │   │   │      ├┐ ┌┴┐ ┌┤   cells, and new ones take their places.
-///     └───┴───┘      └┴─┴─┴─┴┘
-///
-/// The boundary has to be a surface. Attributes are dropped.
-[[nodiscard]] HexMesh with_layer(const HexMesh& mesh);
-
 }  // namespace subvol::detail

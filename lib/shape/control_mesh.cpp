@@ -6,7 +6,9 @@
 #include <iterator>
 
 #include "castle.h"
+#include "layers.h"
 #include "shape_fitter.h"
+#include "sharp_paths.h"
 #include "subvol/cell.h"
 #include "subvol/detail/number_text.h"
 #include "subvol/detail/parallel_each.h"
@@ -18,6 +20,8 @@ namespace subvol {
 using namespace detail;
 
 namespace {
+
+constexpr double kStraight = 180;
 
 Box box_of(const Surface& surface) {
     Box box;
@@ -72,6 +76,19 @@ std::size_t parts_of(const HexMesh& mesh) {
     return parts;
 }
 
+/// What is known of sharp edges.
+SharpEdgeReport report_of(const SharpEdges& sharp, const SharpPaths& paths, const std::array<double, 2>& error) {
+    SharpEdgeReport report;
+    report.curves = sharp.curves.size();
+    report.missed = paths.missed.size();
+    for (const SharpCurve& curve : sharp.curves) report.length_world += curve.length();
+    for (const Index k : paths.missed) report.missed_length_world += sharp.curves[k].length();
+    report.creases = paths.creases.size();
+    report.rms = error[0];
+    report.max = error[1];
+    return report;
+}
+
 }  // namespace
 
 std::vector<Option> options_of(ControlMeshOptions& options) {
@@ -80,7 +97,10 @@ std::vector<Option> options_of(ControlMeshOptions& options) {
         Option("max-cells", options.max_cells).between(1, 1'000'000'000).help("N", "the most cells that may be made"),
         Option("rounds", options.rounds)
             .between(1, 100)
-            .help("N", "how often the points are drawn to the nearest places of the surface")};
+            .help("N", "how often the points are drawn to the nearest places of the surface"),
+        Option("sharp-angle", options.sharp_angle_deg)
+            .between(1, kStraight)
+            .help("DEG", "edges of the surface that are bent by more become creases of the mesh (180: none)")};
     std::ranges::move(options_of(options.folds), std::back_inserter(all));
     return all;
 }
@@ -90,6 +110,14 @@ Facts facts_of(const ControlMeshReport& report) {
     facts["parts"] = report.parts;
     facts["added"] = report.added;
     facts["side_world"] = report.side_world;
+    Facts& sharp = facts.group("sharp");
+    sharp["curves"] = report.sharp.curves;
+    sharp["missed"] = report.sharp.missed;
+    sharp["length_world"] = report.sharp.length_world;
+    sharp["missed_length_world"] = report.sharp.missed_length_world;
+    sharp["creases"] = report.sharp.creases;
+    sharp["rms"] = report.sharp.rms;
+    sharp["max"] = report.sharp.max;
     facts["min_scaled_jacobian"] = report.min_scaled_jacobian;
     return facts;
 }
@@ -116,22 +144,38 @@ ControlMesh control_mesh_of(const Surface& surface, const ControlMeshOptions& gi
     HexMesh mesh = with_layer(cubes_inside(surface, options, report.side_world, report.added));
     report.parts = parts_of(mesh);
     report.shape.before = shape_error(mesh, surface, options.scheme);
-
-    // The first rounds have control cells, as the limit of cubes is none of the surface's.
-    SchemeOptions linear = options.scheme;
-    linear.kind = Scheme::Linear;
-    constexpr double kFirst = 1, kMore = 1.5;
-    double weight = kFirst;
-    int rounds = 0;
-    const std::vector<Vec3> start = mesh.points;
-    for (const bool last : {false, true}) {
-        const ShapeFitter fitter(build_topology(mesh), surface, last ? options.scheme : linear);
-        for (const int end = last ? options.rounds : options.rounds / 2; rounds < end; ++rounds, weight *= kMore) {
-            report_progress(options.progress, "shape", static_cast<double>(rounds) / options.rounds);
-            mesh.points = fitter.relaxed(mesh.points, report.side_world, weight);
+    std::vector<Vec3> start = mesh.points;
+    const SharpEdges sharp = options.sharp_angle_deg < kStraight
+                                 ? sharp_edges(surface, options.sharp_angle_deg, report.side_world)
+                                 : SharpEdges{};
+    SharpPaths paths;
+    const auto rounds_of = [&](Scheme kind, int first, int end) {
+        SchemeOptions scheme = options.scheme;
+        scheme.kind = kind;
+        ShapeFitter fitter(build_topology(mesh), surface, scheme);
+        fitter.follow(sharp, paths);
+        for (int round = first; round < end; ++round) {
+            report_progress(options.progress, "shape", static_cast<double>(round) / options.rounds);
+            constexpr double kMore = 1.5;
+            mesh.points = fitter.relaxed(mesh.points, report.side_world, std::pow(kMore, round));
         }
+        report.shape.rounds += end - first;
+        return fitter.sharp_error(mesh.points);
+    };
+    // The first rounds have control cells, as the limit of cubes is none of the surface's.
+    const int half = options.rounds / 2;
+    rounds_of(Scheme::Linear, 0, half);
+    if (!sharp.curves.empty()) paths = sharp_paths(mesh, sharp, report.side_world);
+    if (!paths.creases.empty()) {
+        std::vector<std::array<Index, 2>> along = paths.creases;
+        along.insert(along.end(), paths.cuts.begin(), paths.cuts.end());
+        mesh = with_layer_along(mesh, along);
+        mesh.creases = paths.creases;
+        start = mesh.points;
+        rounds_of(Scheme::Linear, half / 2, half);
     }
-    report.shape.rounds = rounds;
+    const auto sharp_error = rounds_of(options.scheme.kind, half, options.rounds);
+    report.sharp = report_of(sharp, paths, sharp_error);
     FitShapeOptions ending;
     ending.scheme = options.scheme;
     ending.folds = options.folds;

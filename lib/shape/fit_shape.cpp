@@ -80,7 +80,11 @@ ShapeFitter::ShapeFitter(const Topology& control, const Surface& surface, const 
 }
 
 std::vector<Pull> ShapeFitter::pulls(const Vectors& control) const {
-    return distances_.pulls({matrix_.apply(control), matrix_.triangles()}, static_cast<double>(boundary_points_));
+    const Surface boundary{matrix_.apply(control), matrix_.triangles()};
+    std::vector<Pull> made = distances_.pulls(boundary, static_cast<double>(boundary_points_));
+    constexpr double kSharp = 1;
+    std::ranges::move(sharp_.pulls(boundary.points, kSharp), std::back_inserter(made));
+    return made;
 }
 
 Vectors ShapeFitter::solved(const std::vector<Pull>& pulls, double stiffness) const {

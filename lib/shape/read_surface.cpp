@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "ply_table.h"
+#include "subvol/detail/point_welder.h"
 #include "subvol/detail/printable.h"
 #include "subvol/detail/read_file.h"
 #include "subvol/error.h"
@@ -38,20 +39,13 @@ void add_polygon(std::span<const Index> corners, Surface& surface) {
 
 /// Makes points at the same place one.
 Surface welded(const std::vector<Vec3>& corners) {
-    std::vector<std::size_t> order(corners.size());
-    for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
-    const auto key = [&](std::size_t i) { return std::array{corners[i].x, corners[i].y, corners[i].z}; };
-    std::ranges::sort(order, [&](std::size_t a, std::size_t b) { return key(a) != key(b) ? key(a) < key(b) : a < b; });
-    std::vector<std::size_t> first(corners.size());
-    for (std::size_t k = 0; k < order.size(); ++k) {
-        first[order[k]] = k > 0 && key(order[k]) == key(order[k - 1]) ? first[order[k - 1]] : order[k];
-    }
+    PointWelder welder(corners, 0);
     Surface surface;
     std::vector<Index> numbers(corners.size(), kNone);
     for (std::size_t t = 0; t + 2 < corners.size(); t += 3) {
         std::array<Index, 3> triangle;
         for (std::size_t k = 0; k < 3; ++k) {
-            Index& number = numbers[first[t + k]];
+            Index& number = numbers[welder.join(static_cast<Index>(t + k))];
             if (number == kNone) {
                 number = static_cast<Index>(surface.points.size());
                 surface.points.push_back(corners[t + k]);

@@ -8,6 +8,7 @@
 #include "subvol/fit_shape.h"
 #include "subvol/refine.h"
 #include "subvol/topology.h"
+#include "sharp_pulls.h"
 #include "surface_distances.h"
 #include "surface_matrix.h"
 
@@ -20,6 +21,16 @@ class ShapeFitter {
 public:
     /// surface: referred to
     ShapeFitter(const Topology& control, const Surface& surface, const SchemeOptions& scheme);
+
+    /// Creases are drawn to sharp edges of the surface, too, by `relaxed`.
+    ///
+    /// paths: the creases of the control mesh; sharp: referred to
+    void follow(const SharpEdges& sharp, const SharpPaths& paths) { sharp_ = SharpPulls(sharp, paths, matrix_); }
+
+    /// The distances of creases from sharp edges: root mean square and largest.
+    [[nodiscard]] std::array<double, 2> sharp_error(const std::vector<Vec3>& control) const {
+        return sharp_.error(matrix_.apply(control));
+    }
 
     /// A Gauss-Newton step: the new control points.
     ///
@@ -69,6 +80,7 @@ private:
     RefinementTables children_;
     SurfaceMatrix matrix_;
     SurfaceDistances distances_;
+    SharpPulls sharp_;
 };
 
 /// The end of a fit: folds are mended if that is asked for, and the report gets what is known in the end.

@@ -73,6 +73,13 @@ SurfaceMatrix::SurfaceMatrix(const Topology& control, const SchemeOptions& schem
         }
     }
     matrix_ = rows_of(table, hull.used());
+    rows_of_points_.assign(topology.point_count, kNone);
+    for (Index row = 0; row < hull.used().size(); ++row) rows_of_points_[hull.used()[row]] = row;
+    for (std::size_t k = 0; k < control.creases.size(); ++k) {
+        const auto [first, middle] = finest.creases[2 * k];
+        const Index last = finest.creases[2 * k + 1][0];
+        crease_rows_.push_back({rows_of_points_[first], rows_of_points_[middle], rows_of_points_[last]});
+    }
     triangles_ = hull.finish([&](Index p) { return finest.points[p]; }).triangles;
     transpose_ = transpose_of(matrix_, columns_);
 }

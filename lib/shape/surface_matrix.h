@@ -21,6 +21,11 @@ public:
     [[nodiscard]] std::size_t rows() const { return matrix_.offsets.size() - 1; }
     [[nodiscard]] const std::vector<std::array<Index, 3>>& triangles() const { return triangles_; }
 
+    /// The row of a control point on the boundary.
+    [[nodiscard]] Index row_of(Index control) const { return rows_of_points_[control]; }
+    /// For each crease of the control mesh the rows of one end, the middle and the other end.
+    [[nodiscard]] const std::vector<std::array<Index, 3>>& crease_rows() const { return crease_rows_; }
+
     [[nodiscard]] std::vector<Vec3> apply(std::span<const Vec3> control) const;
     /// The transpose; the same bits for any number of threads.
     [[nodiscard]] std::vector<Vec3> transposed(std::span<const Vec3> values) const;
@@ -30,7 +35,8 @@ public:
 private:
     std::size_t columns_ = 0;
     CsrMatrix matrix_, transpose_;
-    std::vector<std::array<Index, 3>> triangles_;
+    std::vector<std::array<Index, 3>> triangles_, crease_rows_;
+    std::vector<Index> rows_of_points_;
 };
 
 }  // namespace subvol::detail

@@ -7,6 +7,7 @@ namespace subvol {
 
 /// cells:     along the longest side of the surface's box
 /// max_cells: that may be made
+/// sharp_angle_deg: edges of the surface that are bent by more become creases; 180: none
 /// rounds:    how often the nearest places are looked for, each time with half as much weight again for distances
 /// scheme, folds, names, progress: as in `FitShapeOptions`; the scheme without an angle of creases
 struct ControlMeshOptions {
@@ -14,6 +15,7 @@ struct ControlMeshOptions {
     int cells = 24;
     std::size_t max_cells = 2'000'000;
     int rounds = 15;
+    double sharp_angle_deg = 40;
     ShapeFolds folds{};
     OptionNames names = OptionNames::Keywords;
     Progress* progress = nullptr;
@@ -22,6 +24,17 @@ struct ControlMeshOptions {
 /// The options without those of the scheme.
 [[nodiscard]] std::vector<Option> options_of(ControlMeshOptions& options);
 
+/// The sharp edges of a surface, as chains, and the creases of a mesh that follow them.
+///
+/// missed:   chains without creases, as others are too near or the mesh does not reach them
+/// rms, max: distances of the creases from the chains
+struct SharpEdgeReport {
+    std::size_t curves = 0, missed = 0;
+    double length_world = 0, missed_length_world = 0;
+    std::size_t creases = 0;
+    double rms = 0, max = 0;
+};
+
 /// shape:      how far the limit's boundary is from the surface; before: as cubes with a layer around them
 /// parts:      of the mesh, that are not joined
 /// added:      cubes that were needed to make the boundary of the cubes a surface
@@ -29,6 +42,7 @@ struct ControlMeshOptions {
 /// min_scaled_jacobian: of the control cells: 1 for cubes, negative if one is turned inside out at a corner
 struct ControlMeshReport {
     FitShapeReport shape;
+    SharpEdgeReport sharp;
     std::size_t parts = 0, added = 0;
     double side_world = 0;
     double min_scaled_jacobian = 0;

@@ -1,0 +1,252 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sharp_edges.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "subvol/detail/parallel_each.h"
+#include "subvol/detail/point_welder.h"
+
+namespace subvol::detail {
+
+namespace {
+
+/// An edge of two triangles, by its points, the smaller first.
+struct BentEdge {
+    std::array<Index, 2> ends;
+    std::array<Index, 2> triangles;
+};
+
+/// The edges that exactly two triangles share. same_place: how far apart points are that are the same
+std::vector<BentEdge> edges_of_two(const Surface& surface, double same_place) {
+    PointWelder welder(surface.points, same_place);
+    std::vector<Index> first(surface.points.size());
+    for (Index p = 0; p < first.size(); ++p) first[p] = welder.join(p);
+    struct Side {
+        std::array<Index, 2> ends;
+        Index triangle;
+    };
+    std::vector<Side> sides;
+    sides.reserve(3 * surface.triangles.size());
+    for (Index t = 0; t < surface.triangles.size(); ++t) {
+        const auto& corners = surface.triangles[t];
+        for (std::size_t k = 0; k < 3; ++k) {
+            const Index a = first[corners[k]], b = first[corners[(k + 1) % 3]];
+            if (a != b) sides.push_back({{std::min(a, b), std::max(a, b)}, t});
+        }
+    }
+    std::ranges::sort(sides, {}, [](const Side& s) { return std::pair(s.ends, s.triangle); });
+    std::vector<BentEdge> edges;
+    for (std::size_t k = 0, end = 0; k < sides.size(); k = end) {
+        while (end < sides.size() && sides[end].ends == sides[k].ends) ++end;
+        if (end - k == 2) edges.push_back({sides[k].ends, {sides[k].triangle, sides[k + 1].triangle}});
+    }
+    return edges;
+}
+
+/// Whether the surface is bent by more than an angle at an edge and beside it.
+class Bend {
+public:
+    Bend(const Surface& surface, double angle_deg, double side)
+        : surface_(surface), tree_(surface), least_(std::cos(angle_deg * std::numbers::pi / 180)), away_(kAway * side) {
+        const double part = kPart * angle_deg * std::numbers::pi / 180;
+        beside_ = std::cos(part);
+    }
+
+    [[nodiscard]] bool at(const BentEdge& edge) const {
+        const Vec3 &a = surface_.points[edge.ends[0]], &b = surface_.points[edge.ends[1]];
+        const double length = glm::distance(a, b);
+        if (!(length > 0)) return false;
+        const Vec3 along = (b - a) / length;
+        std::array<Vec3, 2> inwards, normals;
+        for (std::size_t k = 0; k < 2; ++k) {
+            const auto& t = surface_.triangles[edge.triangles[k]];
+            const Vec3 middle = (surface_.points[t[0]] + surface_.points[t[1]] + surface_.points[t[2]]) / 3.0 - a;
+            const Vec3 across = middle - glm::dot(middle, along) * along;
+            if (!(glm::length(across) > 0)) return false;
+            inwards[k] = glm::normalize(across);
+            // As if the first triangle saw the edge from a to b and the second one from b to a.
+            normals[k] = k == 0 ? glm::cross(along, inwards[k]) : glm::cross(inwards[k], along);
+        }
+        if (glm::dot(normals[0], normals[1]) > least_) return false;
+        for (std::size_t k = 0; k < 2; ++k) {
+            const Vec3 seen = tree_.normal(tree_.nearest(0.5 * (a + b) + away_ * inwards[k]).triangle);
+            normals[k] = glm::dot(seen, normals[k]) < 0 ? -seen : seen;
+        }
+        return glm::dot(normals[0], normals[1]) < beside_;
+    }
+
+private:
+    static constexpr double kAway = 0.25, kPart = 0.6;
+
+    const Surface& surface_;
+    SurfaceTree tree_;
+    double least_, beside_ = 0, away_;
+};
+
+/// The chains of some edges.
+class Chains {
+public:
+    Chains(const Surface& surface, std::vector<std::array<Index, 2>> edges) : surface_(surface), edges_(std::move(edges)) {
+        for (std::size_t e = 0; e < edges_.size(); ++e) {
+            for (const Index p : edges_[e]) ends_.push_back({p, e});
+        }
+        std::ranges::sort(ends_);
+    }
+
+    /// chain: of each edge, one of the curves
+    SharpEdges traced(std::vector<std::size_t>& chain) const {
+        constexpr auto kOpen = static_cast<std::size_t>(-1);
+        SharpEdges made;
+        chain.assign(edges_.size(), kOpen);
+        std::vector<std::pair<Index, Index>> corners;  // a point and its number
+        for (std::size_t k = 0; k < ends_.size(); ++k) {
+            const Index p = ends_[k].first;
+            if ((k > 0 && ends_[k - 1].first == p) || !corner(p)) continue;
+            corners.emplace_back(p, static_cast<Index>(made.corners.size()));
+            made.corners.push_back(surface_.points[p]);
+        }
+        const auto trace = [&](Index start, std::size_t edge, bool closed) {
+            SharpCurve curve{{surface_.points[start]}};
+            Index at = start;
+            for (;;) {
+                chain[edge] = made.curves.size();
+                at = edges_[edge][edges_[edge][0] == at ? 1 : 0];
+                curve.points.push_back(surface_.points[at]);
+                if (at == start || corner(at)) break;
+                for (const auto& [p, e] : at_point(at)) {
+                    if (e != edge) {
+                        edge = e;
+                        break;
+                    }
+                }
+            }
+            if (!closed) {
+                const auto number = [&](Index p) { return std::ranges::lower_bound(corners, std::pair(p, Index{0}))->second; };
+                curve.corners = {number(start), number(at)};
+            }
+            made.curves.push_back(std::move(curve));
+        };
+        for (const auto& [p, e] : ends_) {
+            if (corner(p) && chain[e] == kOpen) trace(p, e, false);
+        }
+        for (std::size_t e = 0; e < edges_.size(); ++e) {
+            if (chain[e] == kOpen) trace(edges_[e][0], e, true);
+        }
+        return made;
+    }
+
+private:
+    [[nodiscard]] std::span<const std::pair<Index, std::size_t>> at_point(Index p) const {
+        const auto [first, last] = std::ranges::equal_range(ends_, p, {}, [](const auto& end) { return end.first; });
+        return {first, last};
+    }
+
+    [[nodiscard]] bool corner(Index p) const {
+        const auto here = at_point(p);
+        if (here.size() != 2) return true;
+        std::array<Vec3, 2> away;
+        for (std::size_t k = 0; k < 2; ++k) {
+            const auto& [a, b] = edges_[here[k].second];
+            away[k] = glm::normalize(surface_.points[a == p ? b : a] - surface_.points[p]);
+        }
+        constexpr double kTurn = -0.64;  // the cosine of 130°: a turn by 50°
+        return glm::dot(away[0], away[1]) > kTurn;
+    }
+
+    const Surface& surface_;
+    std::vector<std::array<Index, 2>> edges_;
+    std::vector<std::pair<Index, std::size_t>> ends_;  // the edges at each point
+};
+
+}  // namespace
+
+double SharpCurve::length() const {
+    double sum = 0;
+    for (std::size_t k = 1; k < points.size(); ++k) sum += glm::distance(points[k - 1], points[k]);
+    return sum;
+}
+
+Vec3 SharpCurve::at(double part) const {
+    double left = part * length();
+    for (std::size_t k = 1; k < points.size(); ++k) {
+        const double step = glm::distance(points[k - 1], points[k]);
+        if (left <= step && step > 0) return points[k - 1] + left / step * (points[k] - points[k - 1]);
+        left -= step;
+    }
+    return points.back();
+}
+
+SharpEdges sharp_edges(const Surface& surface, double angle_deg, double side) {
+    constexpr double kSame = 1e-5;  // sides
+    const std::vector<BentEdge> all = edges_of_two(surface, kSame * side);
+    const Bend bend(surface, angle_deg, side);
+    std::vector<std::uint8_t> bent(all.size());
+    parallel_each(all.size(), [&](std::size_t e) { bent[e] = bend.at(all[e]) ? 1 : 0; });
+    std::vector<std::array<Index, 2>> edges;
+    for (std::size_t e = 0; e < all.size(); ++e) {
+        if (bent[e] != 0) edges.push_back(all[e].ends);
+    }
+    constexpr double kSpur = 3, kRing = 6, kMean = 1.5;  // sides
+    for (;;) {
+        std::vector<std::size_t> chain;
+        SharpEdges found = Chains(surface, edges).traced(chain);
+        std::vector<std::size_t> ends(found.corners.size(), 0);
+        for (const SharpCurve& curve : found.curves) {
+            for (const Index c : curve.corners) {
+                if (c != kNone) ++ends[c];
+            }
+        }
+        // The length of all curves that are joined.
+        std::vector<std::size_t> parent(found.curves.size()), first_at(found.corners.size(), parent.size());
+        const auto root = [&](std::size_t k) {
+            while (parent[k] != k) k = parent[k] = parent[parent[k]];
+            return k;
+        };
+        for (std::size_t k = 0; k < parent.size(); ++k) {
+            parent[k] = k;
+            for (const Index c : found.curves[k].corners) {
+                if (c == kNone) continue;
+                if (first_at[c] == parent.size()) first_at[c] = k;
+                parent[root(k)] = root(first_at[c]);
+            }
+        }
+        std::vector<double> joined(parent.size(), 0);
+        std::vector<std::size_t> curves(parent.size(), 0);
+        for (std::size_t k = 0; k < parent.size(); ++k) {
+            joined[root(k)] += found.curves[k].length();
+            ++curves[root(k)];
+        }
+        std::vector<std::uint8_t> noise(found.curves.size(), 0);
+        for (std::size_t k = 0; k < noise.size(); ++k) {
+            const SharpCurve& curve = found.curves[k];
+            const bool free = !curve.closed() && (ends[curve.corners[0]] == 1 || ends[curve.corners[1]] == 1);
+            const std::size_t all = root(k);
+            noise[k] = (free && curve.length() < kSpur * side) || joined[all] < kRing * side ||
+                               joined[all] < kMean * side * static_cast<double>(curves[all])
+                           ? 1
+                           : 0;
+        }
+        if (std::ranges::count(noise, 1) == 0) return found;
+        std::vector<std::array<Index, 2>> kept;
+        for (std::size_t e = 0; e < edges.size(); ++e) {
+            if (noise[chain[e]] == 0) kept.push_back(edges[e]);
+        }
+        edges = std::move(kept);
+    }
+}
+
+CurveTree::CurveTree(const SharpCurve& curve) {
+    segments_.points = curve.points;
+    for (Index k = 1; k < curve.points.size(); ++k) segments_.triangles.push_back({k - 1, k, k});
+    tree_.emplace(segments_);
+}
+
+CurvePlace CurveTree::nearest(const Vec3& x) const {
+    const SurfacePlace place = tree_->nearest(x);
+    const auto& segment = segments_.triangles[place.triangle];
+    return {place.point, glm::normalize(segments_.points[segment[1]] - segments_.points[segment[0]])};
+}
+
+}  // namespace subvol::detail

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "subvol/surface.h"
+#include "surface_tree.h"
+
+namespace subvol::detail {
+
+/// A chain of edges along which a surface is sharp.
+///
+/// points:  in their order; of a closed chain the first one again at its end
+/// corners: of the `SharpEdges`, where it begins and ends; the first is kNone for a closed chain
+struct SharpCurve {
+    std::vector<Vec3> points;
+    std::array<Index, 2> corners{kNone, kNone};
+
+    [[nodiscard]] bool closed() const { return corners[0] == kNone; }
+    [[nodiscard]] double length() const;
+    /// The place at a part of the length.
+    [[nodiscard]] Vec3 at(double part) const;
+};
+
+/// corners: where chains meet, end or turn sharply
+struct SharpEdges {
+    std::vector<Vec3> corners;
+    std::vector<SharpCurve> curves;
+};
+
+/// The edges of a surface where it is bent by more than an angle, also as seen from a part of a cell away. What is
+/// noise is left out: chains that end freely within a few cells, small rings, and nets of chains shorter than a cell or two.
+///
+/// side: of a cell
+[[nodiscard]] SharpEdges sharp_edges(const Surface& surface, double angle_deg, double side);
+
+/// The place of a curve that is nearest to a point, and the curve's direction there.
+struct CurvePlace {
+    Vec3 point, along;
+};
+
+class CurveTree {
+public:
+    explicit CurveTree(const SharpCurve& curve);
+    // The tree refers to the segments.
+    CurveTree(const CurveTree&) = delete;
+    CurveTree& operator=(const CurveTree&) = delete;
+
+    [[nodiscard]] CurvePlace nearest(const Vec3& x) const;
+
+private:
+    Surface segments_;  // triangles with a corner twice
+    std::optional<SurfaceTree> tree_;
+};
+
+}  // namespace subvol::detail
