@@ -26,11 +26,12 @@ public:
                "  subvol mesh statue.obj -o statue.vtu --cells 48\n"
                "  subvol mesh smoke.vdb -o smoke.vtu --iso .01\n"
                "\n"
-               "Sharp edges become round, by a part of a cell. The exit code is 1 if the limit folds.\n"
+               "Sharp edges become creases. The exit code is 1 if the limit folds.\n"
                "JSON: triangles, points, cells, before and after {rms, max, max_at: of the boundary from the surface; "
                "missed_rms, "
                "missed_max, missed_at: of the surface from the boundary}, rounds, moved_world, folds (as of check), mended, "
-               "parts, added, side_world, min_scaled_jacobian.") {
+               "sharp {curves, missed: chains of sharp edges, and those without creases; length_world, missed_length_world, "
+               "creases, rms, max: of the creases from the chains}, parts, added, side_world, min_scaled_jacobian.") {
         app().add_option("FILE", input_, "a closed surface (.stl, .obj, .ply), or a .vdb grid of floats")->required();
         app().add_option("-o,--output", output_, "the control mesh (.vtu, .vtkhdf)")->type_name("FILE")->required();
         app()
@@ -39,7 +40,7 @@ public:
             ->type_name("V");
         scheme_.add_scheme_to(app());
         add_options(app(), options_of(options_));
-        set_essentials({"--cells", "--iso", "--scheme", "--keep-folds", "--output", "--json"});
+        set_essentials({"--cells", "--sharp-angle", "--iso", "--scheme", "--keep-folds", "--output", "--json"});
     }
 
     int run(Report& report) override {
@@ -91,10 +92,18 @@ private:
         report.say(text("surface       ", error.missed_rms, " RMS from the boundary (", sides(error.missed_rms),
                         " cells), at most ", error.missed_max, " at ", error.missed_at.x, ", ", error.missed_at.y, ", ",
                         error.missed_at.z));
+        if (const SharpEdgeReport& sharp = found.sharp; sharp.curves > 0) {
+            report.say(text("sharp edges   ", counted(sharp.curves - sharp.missed, "chain"), " of ", sharp.curves, " as ",
+                            counted(sharp.creases, "crease"), ", ", sharp.rms, " RMS from them, at most ", sharp.max));
+        }
         report.say(text("folds         ", fold_text(found.shape.folds, made.mesh.cells.size())));
         if (error.missed_max > found.side_world) {
             report.warn(text("a part of the surface is ", sides(error.missed_max),
                              " cells away from the mesh: more --cells reach into thinner parts"));
+        }
+        if (found.sharp.missed > 0) {
+            report.warn(text("sharp edges of the length ", found.sharp.missed_length_world, " of ", found.sharp.length_world,
+                             " become round, as no edges of the mesh can follow them: more --cells may"));
         }
         report.all_said();
     }

@@ -47,9 +47,10 @@ VtkXmlWriter::VtkXmlWriter(OutputFile& out, const std::string& data_set) : out_(
 // compressed size of each. These sizes are known only at the end: the header is then overwritten, so that no more than kAtOnce
 // blocks need to be in memory.
 void VtkXmlWriter::write_array(const char* type, std::string_view name, std::size_t components, std::size_t bytes,
-                               const Fill& fill) {
+                               const Fill& fill, std::optional<std::size_t> tuples) {
     line("<DataArray type=\"" + std::string(type) + "\" Name=\"" + attribute_value(name) + "\" NumberOfComponents=\"" +
-         std::to_string(components) + "\" format=\"binary\">");
+         std::to_string(components) + (tuples ? "\" NumberOfTuples=\"" + std::to_string(*tuples) : std::string()) +
+         "\" format=\"binary\">");
     const std::size_t count = (bytes + kBlock - 1) / kBlock;
     std::vector<std::uint64_t> header{count, kBlock, bytes % kBlock};
     header.resize(3 + count);

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <cstring>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -38,10 +39,7 @@ public:
 
     template <class Number>
     void array(std::string_view name, std::size_t components, std::span<const Number> values) {
-        write_array(kVtkType<Number>, name, components, values.size_bytes(),
-                    [&](std::size_t first, std::span<std::byte> block) {
-                        std::memcpy(block.data(), reinterpret_cast<const std::byte*>(values.data()) + first, block.size());
-                    });
+        write_array(kVtkType<Number>, name, components, values.size_bytes(), bytes_of(values));
     }
     /// The same for values that are computed while they are written. value(i): the i-th value; called by several threads
     template <class Number, class Value>
@@ -54,6 +52,11 @@ public:
                         }
                     });
     }
+    /// An array of one component, for FieldData.
+    template <class Number>
+    void field(std::string_view name, std::span<const Number> values) {
+        write_array(kVtkType<Number>, name, 1, values.size_bytes(), bytes_of(values), values.size());
+    }
     /// An array of strings, for FieldData.
     void strings(std::string_view name, std::span<const std::string> values);
 
@@ -62,7 +65,16 @@ public:
 
 private:
     using Fill = std::function<void(std::size_t first_byte, std::span<std::byte> block)>;
-    void write_array(const char* type, std::string_view name, std::size_t components, std::size_t bytes, const Fill& fill);
+    /// tuples: to be said, as FieldData needs it
+    void write_array(const char* type, std::string_view name, std::size_t components, std::size_t bytes, const Fill& fill,
+                     std::optional<std::size_t> tuples = {});
+
+    template <class Number>
+    static Fill bytes_of(std::span<const Number> values) {
+        return [values](std::size_t first, std::span<std::byte> block) {
+            std::memcpy(block.data(), reinterpret_cast<const std::byte*>(values.data()) + first, block.size());
+        };
+    }
 
     OutputFile& out_;
     std::string data_set_;

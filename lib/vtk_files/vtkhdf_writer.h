@@ -30,6 +30,8 @@ public:
         out_.put("/VTKHDF/PointData/" + unique, values, components > 1 ? components : 0);
         return unique;
     }
+    /// An array of one component that belongs to the whole mesh.
+    void field(const std::string& name, std::span<const std::int64_t> values) { out_.put("/VTKHDF/FieldData/" + name, values); }
     void commit() { out_.commit(); }
 
 private:

@@ -207,6 +207,9 @@ private:
         // Polyhedra are split once all arrays are there.
         read_arrays(part.points, "PointData", false, found);
         read_arrays(part.cells, "CellData", true, found);
+        if (const std::string sharp = kRoot + "/FieldData/" + kSharpArray; alone && file_.has(sharp)) {
+            take_sharp_numbers(file_.integers(sharp), found);
+        }
         sorter.report(alone ? std::optional<std::string_view>(file_.name()) : std::nullopt);
         refuse_not_finite(found, in_, kVtkNames);
     }
@@ -265,8 +268,8 @@ std::vector<std::string> write_vtkhdf(const std::filesystem::path& path, const H
             out.array(attribute.name, std::span<const double>(attribute.values), static_cast<std::size_t>(attribute.channels));
         if (name != attribute.name) warnings.push_back("field " + in_quotes(attribute.name) + " is called " + in_quotes(name));
     }
+    if (!mesh.creases.empty() || !mesh.sharp_faces.empty()) out.field(kSharpArray, sharp_numbers(mesh));
     out.commit();
-    if (!mesh.creases.empty() || !mesh.sharp_faces.empty()) warnings.push_back(sharp_counts(mesh) + " not written");
     return warnings;
 }
 

@@ -174,6 +174,9 @@ private:
             found_.warnings.push_back(std::to_string(pieces_) + " pieces put together" +
                                       (options_.weld ? "" : "; points where they touch stay apart without welding"));
         drop_partial_arrays();
+        if (const pugi::xml_node sharp = grid.child("FieldData").find_child_by_attribute("DataArray", "Name", kSharpArray)) {
+            take_sharp_numbers(arrays_.integers(sharp), found_);
+        }
         sorter_.report(may_be_empty ? std::nullopt : std::optional(file_));
     }
 
@@ -466,11 +469,15 @@ void write_piece(VtkXmlWriter& out, const Contents& contents) {
 std::vector<std::string> write(const std::filesystem::path& path, const Contents& contents) {
     OutputFile out(path);
     VtkXmlWriter xml(out, "UnstructuredGrid");
+    if (!contents.mesh.creases.empty() || !contents.mesh.sharp_faces.empty()) {
+        xml.line("<FieldData>");
+        xml.field<std::int64_t>(kSharpArray, sharp_numbers(contents.mesh));
+        xml.line("</FieldData>");
+    }
     write_piece(xml, contents);
     xml.end();
     out.commit();
-    if (contents.mesh.creases.empty() && contents.mesh.sharp_faces.empty()) return {};
-    return {sharp_counts(contents.mesh) + " not written"};
+    return {};
 }
 
 }  // namespace

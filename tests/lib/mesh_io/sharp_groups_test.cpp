@@ -210,7 +210,30 @@ TEST_F(SharpGroups, AreWrittenAsMeditAndReadAgain) {
     expect_plane_and_lines(read_mesh(file, {.sharp = {"1"}}).mesh);
     EXPECT_EQ(sets_of(read_mesh(file, {.sharp = {"Ridges", "1"}}).mesh.creases), sets_of(mesh.creases));
     EXPECT_TRUE(read_mesh(file).mesh.creases.empty());
-    EXPECT_THAT(write_mesh(path("b.vtu"), mesh), testing::ElementsAre("3 creases and 4 sharp faces not written"));
+}
+
+TEST_F(SharpGroups, AreInFilesOfVtkAndReadAgain) {
+    HexMesh mesh = read("a.mesh", medit(), {"7", "3", "Ridges"}).mesh;
+    const auto file = path("b.vtu");
+    EXPECT_TRUE(write_mesh(file, mesh).empty());
+    const ReadResult again = read_mesh(file);
+    expect_plane_and_lines(again.mesh);
+    EXPECT_TRUE(again.warnings.empty());
+
+    // A program that leaves out a cell keeps the list.
+    std::string text = test::read_bytes(file);
+    const std::size_t at = text.find("<FieldData>"), end = text.find("</FieldData>");
+    const std::string list = text.substr(at, end - at);
+    mesh.creases.clear();
+    mesh.sharp_faces.clear();
+    mesh.cells.pop_back();
+    std::ignore = write_mesh(path("less.vtu"), mesh);
+    text = test::read_bytes(path("less.vtu"));
+    text.insert(text.find("<Piece"), list + "</FieldData>");
+    std::ofstream(path("less.vtu")) << text;
+    const ReadResult less = read_mesh(path("less.vtu"));
+    EXPECT_THAT(less.warnings, testing::ElementsAre(HasSubstr("of creases and sharp faces ignored: it is of another mesh")));
+    EXPECT_TRUE(less.mesh.creases.empty() && less.mesh.sharp_faces.empty());
 }
 
 TEST_F(SharpGroups, AreWeldedWithTheirCells) {

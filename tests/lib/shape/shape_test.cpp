@@ -3,13 +3,17 @@
 #include <tbb/global_control.h>
 
 #include <cmath>
+#include <map>
 #include <numbers>
 #include <random>
+#include <set>
 
+#include "layers.h"
 #include "lib/shape/shapes.h"
 #include "lib/temp_folder.h"
 #include "lib/test_meshes.h"
 #include "shape_fitter.h"
+#include "sharp_paths.h"
 #include "subvol/control_mesh.h"
 #include "subvol/mesh_report.h"
 
@@ -129,6 +133,99 @@ TEST(ControlMesh, OfARingHasItsHole) {
     EXPECT_EQ(points - edges + faces, 0);  // the Euler number of a torus
     EXPECT_EQ(made.report.shape.folds.folded, 0U);
     EXPECT_LT(made.report.shape.after.rms, 0.03 * made.report.side_world);
+}
+
+/// A box turned in space, so that no cube has its directions.
+Surface turned_box(const Vec3& size) {
+    Surface box = boundary_surface(test::make_box(2, 2, 2));
+    for (Vec3& x : box.points) {
+        x *= 0.5 * size;
+        x = {x.x * std::cos(.5) - x.y * std::sin(.5), x.x * std::sin(.5) + x.y * std::cos(.5), x.z};
+        x = {x.x, x.y * std::cos(.35) - x.z * std::sin(.35), x.y * std::sin(.35) + x.z * std::cos(.35)};
+    }
+    return box;
+}
+
+TEST(ControlMesh, KeepsTheEdgesOfABox) {
+    const Surface box = turned_box({1, 1, 1});
+    const ControlMesh made = control_mesh_of(box, {.cells = 10});
+    const ControlMeshReport& found = made.report;
+    EXPECT_EQ(found.sharp.curves, 12U);
+    EXPECT_EQ(found.sharp.missed, 0U);
+    EXPECT_NEAR(found.sharp.length_world, 12, 1e-9);
+    EXPECT_EQ(found.sharp.creases, made.mesh.creases.size());
+    EXPECT_LT(found.sharp.max, 0.03 * found.side_world);
+    EXPECT_LT(found.shape.after.max, 0.06 * found.side_world);
+    EXPECT_LT(found.shape.after.missed_max, 0.06 * found.side_world);
+    EXPECT_NEAR(volume_of(made.mesh), 1, 1e-3);
+    EXPECT_EQ(found.shape.folds.folded, 0U);
+    EXPECT_GT(found.min_scaled_jacobian, 0);
+
+    const ControlMesh round = control_mesh_of(box, {.cells = 10, .sharp_angle_deg = 180});
+    EXPECT_EQ(round.report.sharp.curves, 0U);
+    EXPECT_GT(round.report.shape.after.missed_max, 4 * found.shape.after.missed_max);
+}
+
+TEST(SharpPaths, PathsMeetInCornersAlone) {
+    const Surface box = turned_box({2, 1, 1});
+    const detail::SharpEdges sharp = detail::sharp_edges(box, 40, 0.1);
+    ASSERT_EQ(sharp.curves.size(), 12U);
+    ASSERT_EQ(sharp.corners.size(), 8U);
+    const HexMesh mesh = control_mesh_of(box, {.cells = 16, .rounds = 4, .sharp_angle_deg = 180, .folds = {.keep = true}}).mesh;
+    const detail::SharpPaths paths = detail::sharp_paths(mesh, sharp, 0.12);
+    EXPECT_TRUE(paths.missed.empty());
+    std::map<Index, std::size_t> edges;
+    for (const auto& crease : paths.creases) {
+        for (const Index p : crease) ++edges[p];
+    }
+    std::set<Index> corners;
+    for (const auto& [point, corner] : paths.corners) corners.insert(point);
+    EXPECT_EQ(corners.size(), 8U);
+    for (const auto& [point, count] : edges) EXPECT_EQ(count, corners.contains(point) ? 3U : 2U);
+
+    // Each point of a path has one more edge on either side; each cell has at most one side at the boundary, and that at most
+    // one edge of the paths, but at corners.
+    const HexMesh layered = detail::with_layer_along(mesh, paths.creases);
+    const Topology topology = build_topology(layered);
+    const std::set<std::array<Index, 2>> creases(paths.creases.begin(), paths.creases.end());
+    for (const auto& [point, count] : edges) {
+        std::size_t around = 0;
+        for (const Index e : topology.point_edges[point]) around += topology.edge_on_boundary[e];
+        EXPECT_EQ(around, 2 * count);
+    }
+    for (Index f = 0; f < topology.faces.size(); ++f) {
+        if (!topology.face_on_hull(f)) continue;
+        std::size_t sides = 0;
+        for (const Index e : topology.face_edges[f]) sides += creases.contains(topology.edges[e]) ? 1 : 0;
+        EXPECT_LE(sides, 1U);
+    }
+    const auto volume = [](const HexMesh& m) {
+        double all = 0;
+        for (const auto& cell : m.cells) {
+            std::array<Vec3, 8> x;
+            for (std::size_t k = 0; k < 8; ++k) x[k] = m.points[cell[k]];
+            all += cell_volume(x);
+        }
+        return all;
+    };
+    // The boundary has the same points and two more for each point of a path, at its sides.
+    EXPECT_GT(layered.cells.size(), mesh.cells.size() + 2 * paths.creases.size());
+    EXPECT_NEAR(volume(layered), volume(mesh), 0.02);
+}
+
+TEST(SharpEdges, NoiseIsNone) {
+    Surface ball = test::sphere(24);
+    std::mt19937 dice(7);
+    std::uniform_real_distribution<double> off(-0.02, 0.02);
+    for (Vec3& x : ball.points) x *= 1 + off(dice);
+    EXPECT_TRUE(detail::sharp_edges(ball, 40, 0.2).curves.empty());
+    // A ring that is bent: the rim of a half ball, whose points are not shared by the two sides.
+    Surface half = test::sphere(24);
+    for (Vec3& x : half.points) x.z = std::max(x.z, 0.0);
+    const detail::SharpEdges rim = detail::sharp_edges(half, 40, 0.2);
+    ASSERT_EQ(rim.curves.size(), 1U);
+    EXPECT_TRUE(rim.curves[0].closed());
+    EXPECT_NEAR(rim.curves[0].length(), 2 * std::numbers::pi, 0.1);
 }
 
 TEST(ControlMesh, SaysWhatIsWrong) {

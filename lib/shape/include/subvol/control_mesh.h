@@ -7,8 +7,8 @@ namespace subvol {
 
 /// cells:     along the longest side of the surface's box
 /// max_cells: that may be made
-/// sharp_angle_deg: edges of the surface that are bent by more become creases; 180: none
 /// rounds:    how often the nearest places are looked for, each time with half as much weight again for distances
+/// sharp_angle_deg: edges of the surface that are bent by more become creases of the mesh; 180: none
 /// scheme, folds, names, progress: as in `FitShapeOptions`; the scheme without an angle of creases
 struct ControlMeshOptions {
     SchemeOptions scheme{};
@@ -60,8 +60,9 @@ struct ControlMesh {
 ///
 /// Cubes of a grid whose middles lie inside become cells, with a layer of cells around them, so that none has two sides at the
 /// boundary. Then the distortion of the cells' children is made as small as it can be, while the boundary of the limit is drawn
-/// to the surface, more and more; and points are moved where the limit folds still (`mend_folds`). Sharp edges of the surface
-/// become round, by about a part of a cell.
+/// to the surface, more and more; and points are moved where the limit folds still (`mend_folds`). Chains of sharp edges become
+/// creases, with a layer of cells on both sides. Where that cannot be, as in chains nearer to each other than a cell, edges
+/// become round, by a part of a cell.
 ///
 /// surface: closed; small holes are closed where most of the surface winds about a place. Either side may be outside
 /// throws:  Error(InvalidInput) if the surface is not valid, if no cube has its middle inside, or if an option is out of range;
