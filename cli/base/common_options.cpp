@@ -60,8 +60,7 @@ void add_common_options(CLI::App& app, CommonOptions& options, Reads reads) {
             ->type_name("FIELD[*S|*auto]");
         app.add_option("--only", options.only,
                        "only the cells in a region: block:A,B, box:x0,y0,z0,x1,y1,z1, sphere:x,y,z,r, half:px,py,pz,nx,ny,nz, "
-                       "set:NAME or "
-                       "where:EXPR (repeatable: in all of them)")
+                       "set:NAME, fold:VERDICT or where:EXPR (repeatable: in all of them)")
             ->group(of_meshes)
             ->type_name("REGION")
             ->allow_extra_args(false);

@@ -445,7 +445,7 @@ LimitMeasure measure_limit_in(const HexMesh& mesh, std::span<const Region> regio
     for (const Region& region : regions) (region.chooses_cells() ? cells : space).push_back(region);
     if (cells.empty()) return RegionMeasurer(mesh, space, options).measure();
     if (!options.groups.empty()) {
-        throw Error(ErrorCode::InvalidInput, "chooses cells, which have no groups then", "where:" + cells.front().quantity(),
+        throw Error(ErrorCode::InvalidInput, "chooses cells, which have no groups then", cells.front().text(),
                     "parts of space");
     }
     const HexMesh part = only_in(mesh, cells);

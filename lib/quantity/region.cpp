@@ -6,8 +6,10 @@
 #include <limits>
 #include <optional>
 #include <string_view>
+#include <tuple>
 
 #include "mesh_subset.h"
+#include "subvol/certificate.h"
 #include "subvol/detail/parallel_each.h"
 #include "subvol/error.h"
 #include "subvol/option.h"
@@ -16,7 +18,7 @@
 namespace subvol {
 namespace {
 
-constexpr const char* kKinds = "box:x0,y0,z0,x1,y1,z1, sphere:x,y,z,r, half:px,py,pz,nx,ny,nz, where:EXPRESSION, set:NAME";
+constexpr const char* kKinds = "box:x0,y0,z0,x1,y1,z1, sphere:x,y,z,r, half:px,py,pz,nx,ny,nz, where:EXPRESSION, set:NAME, fold:VERDICT";
 
 std::vector<double> numbers_of(const std::string& text, std::string_view list, std::size_t count) {
     std::vector<double> numbers;
@@ -35,9 +37,25 @@ std::vector<double> numbers_of(const std::string& text, std::string_view list, s
     return numbers;
 }
 
+/// Calls use(name) for each name of a list with commas between.
+template <class Use>
+void each_name(const std::string& names, const Use& use) {
+    for (std::size_t at = 0; at <= names.size();) {
+        const std::size_t comma = std::min(names.find(',', at), names.size());
+        use(names.substr(at, comma - at));
+        at = comma + 1;
+    }
+}
+
+std::vector<FoldVerdict> verdicts_of(const std::string& names) {
+    std::vector<FoldVerdict> verdicts;
+    each_name(names, [&](const std::string& name) { verdicts.push_back(named<FoldVerdict>(name, "fold")); });
+    return verdicts;
+}
+
 }  // namespace
 
-Region::Region(const std::string& text) {
+Region::Region(const std::string& text) : text_(text) {
     const auto flat = [&](const std::string& why) {
         throw Error(ErrorCode::InvalidInput, "'" + text + "' " + why, {}, kKinds);
     };
@@ -64,6 +82,10 @@ Region::Region(const std::string& text) {
     } else if ((name == "where" || name == "set") && !rest.empty()) {
         kind_ = name == "set" ? Kind::Set : Kind::Where;
         quantity_ = rest;
+    } else if (name == "fold" && !rest.empty()) {
+        kind_ = Kind::Fold;
+        quantity_ = rest;
+        std::ignore = verdicts_of(quantity_);
     } else {
         flat("is not a region");
     }
@@ -105,11 +127,16 @@ std::vector<std::uint8_t> cells_of_sets(const HexMesh& mesh, const std::string& 
         add(*whole);
         return inside;
     }
-    for (std::size_t at = 0; at <= names.size();) {
-        const std::size_t comma = std::min(names.find(',', at), names.size());
-        add(find_set(sets, names.substr(at, comma - at)));
-        at = comma + 1;
-    }
+    each_name(names, [&](const std::string& name) { add(find_set(sets, name)); });
+    return inside;
+}
+
+/// Those with one of several verdicts.
+std::vector<std::uint8_t> cells_of_verdicts(const HexMesh& mesh, const std::string& names) {
+    const std::vector<FoldVerdict> wanted = verdicts_of(names);
+    const FoldCheck check = check_folds(mesh);
+    std::vector<std::uint8_t> inside(mesh.cells.size());
+    for (std::size_t c = 0; c < inside.size(); ++c) inside[c] = std::ranges::count(wanted, check.verdicts[c]) > 0 ? 1 : 0;
     return inside;
 }
 
@@ -118,9 +145,11 @@ std::vector<std::uint8_t> cells_of_sets(const HexMesh& mesh, const std::string& 
 std::vector<std::uint8_t> cells_in(const HexMesh& mesh, std::span<const Region> regions, const MeshSets& sets) {
     std::vector<std::uint8_t> inside(mesh.cells.size(), 1);
     for (const Region& region : regions) {
-        if (region.kind() == Region::Kind::Set) {
-            const std::vector<std::uint8_t> of_sets = cells_of_sets(mesh, region.quantity(), sets);
-            for (std::size_t c = 0; c < inside.size(); ++c) inside[c] = inside[c] && of_sets[c];
+        if (region.kind() == Region::Kind::Set || region.kind() == Region::Kind::Fold) {
+            const std::vector<std::uint8_t> named = region.kind() == Region::Kind::Set
+                                                        ? cells_of_sets(mesh, region.quantity(), sets)
+                                                        : cells_of_verdicts(mesh, region.quantity());
+            for (std::size_t c = 0; c < inside.size(); ++c) inside[c] = inside[c] && named[c];
             continue;
         }
         const bool where = region.kind() == Region::Kind::Where;

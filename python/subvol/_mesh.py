@@ -111,8 +111,8 @@ def only(mesh: HexMesh, *regions: str) -> HexMesh:
     """The cells that lie in all of some regions, as a mesh of its own; the cells beside them no longer shape their limit.
 
     regions: "box:x0,y0,z0,x1,y1,z1", "sphere:x,y,z,r", "half:px,py,pz,nx,ny,nz" (cells by their centres; a plane's normal points into
-             the half), "set:A,B": the cells of `mesh.sets`, or "where:T>500": a quantity that is not 0 at half of a cell's corners
-             or more
+             the half), "set:A,B": the cells of `mesh.sets`, "where:T>500": a quantity that is not 0 at half of a cell's corners
+             or more, or "fold:folded,open": the cells with these verdicts of `check_folds`
     """
     return _core.only(mesh, list(regions))
 

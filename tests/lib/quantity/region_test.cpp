@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "subvol/certificate.h"
 #include "subvol/region.h"
 
 #include <gtest/gtest.h>
@@ -37,6 +38,12 @@ TEST(Region, TakesCellsByTheirCentres) {
     EXPECT_EQ(cells(mesh, {"half:1,0,0,1,0,0"}), 48u) << "the side of the normal";
     EXPECT_EQ(cells(mesh, {"sphere:2,2,2,0.9"}), 8u);
     EXPECT_EQ(cells(mesh, {"half:1,0,0,1,0,0", "half:0,1,0,0,-1,0"}), 12u) << "all of them";
+    HexMesh bent = mesh;
+    bent.points[bent.cells[0][6]] += 3.0 * (bent.points[bent.cells[0][0]] - bent.points[bent.cells[0][6]]);
+    const std::size_t folded = check_folds(bent).report.folded;
+    EXPECT_GT(folded, 0u);
+    EXPECT_EQ(cells(bent, {"fold:folded"}), folded);
+    EXPECT_EQ(cells(mesh, {"fold:proved,folded"}), mesh.cells.size());
     EXPECT_EQ(cells(mesh, {"where:T>=20"}), 48u) << "cells with half of their corners";
     EXPECT_EQ(cells(mesh, {"where:x<=1"}), 32u) << "those beside the ones in it have four corners";
 }
@@ -62,6 +69,8 @@ TEST(Region, RefusesWhatIsNone) {
     refused("no normal", "half:0,0,0,0,0,0");
     refused("is not a region", "cube:1");
     refused("is not a region", "where:");
+    refused("is not a region", "fold:");
+    refused("fold: 'folds' is unknown: did you mean folded?", "fold:proved,folds");
     refused("is not a region", "");
     test::expect_error(ErrorCode::InvalidInput, "no cell", [] { (void)cells(box_with_field(), {"sphere:9,9,9,1"}); });
 }

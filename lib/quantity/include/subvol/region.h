@@ -11,32 +11,36 @@
 
 namespace subvol {
 
-/// A part of space, the cells where a quantity is not 0, or those of named sets:
+/// A part of space, the cells where a quantity is not 0, those of named sets, or those whose limit folds:
 ///
 ///     box:x0,y0,z0,x1,y1,z1    sphere:x,y,z,r    half:px,py,pz,nx,ny,nz    where:T>500    set:rotor,stator
+///     fold:folded,open
 ///
 /// half: the side of the plane through p that the normal n points to
 /// where: a quantity as for `field_of`. A cell belongs to the region if it is not 0 at half of its corners or more
+/// fold: the cells with one of these verdicts of `check_folds`, of the scheme MCQ
 class Region {
 public:
-    enum class Kind { Box, Sphere, Half, Where, Set };
+    enum class Kind { Box, Sphere, Half, Where, Set, Fold };
 
     /// throws: Error(InvalidInput) if the text does not say a region, or one without volume
     Region(const std::string& text);
 
     [[nodiscard]] Kind kind() const { return kind_; }
+    [[nodiscard]] const std::string& text() const { return text_; }
     /// Whether it consists of whole cells, not of a part of space.
-    [[nodiscard]] bool chooses_cells() const { return kind_ == Kind::Where || kind_ == Kind::Set; }
+    [[nodiscard]] bool chooses_cells() const { return kind_ == Kind::Where || kind_ == Kind::Set || kind_ == Kind::Fold; }
     /// About how far inside a part of space a place lies (world), negative outside. It is exact near the faces, and changes
     /// by no more than the distance between two places.
     [[nodiscard]] double depth(const Vec3& place) const;
     /// The same behind each of its faces: a box has six, others one.
     [[nodiscard]] std::size_t faces() const { return kind_ == Kind::Box ? 6 : 1; }
     [[nodiscard]] double depth(const Vec3& place, std::size_t face) const;
-    /// The quantity of `where`; the names of `set`, with commas between.
+    /// The quantity of `where`; the names of `set` and `fold`, with commas between.
     [[nodiscard]] const std::string& quantity() const { return quantity_; }
 
 private:
+    std::string text_;
     Kind kind_ = Kind::Box;
     Box box_{};
     Vec3 point_{0.0}, normal_{0.0};
