@@ -20,8 +20,8 @@ std::array<Index, 2> in_order(const std::array<Index, 2>& edge) {
     return {std::min(edge[0], edge[1]), std::max(edge[0], edge[1])};
 }
 
-/// How far from a curve a path may lie, in sides.
-constexpr double kFar = 1.6;
+/// How far from a curve a path may lie, and from a corner its point, in sides: control meshes do not reach far into tips.
+constexpr double kFar = 2, kFarCorner = 3;
 
 /// The points and edges of a mesh's boundary, some of them taken.
 class BoundaryGraph {
@@ -44,7 +44,7 @@ public:
     /// The free point nearest to a place with at least so many edges; kNone if none is near.
     [[nodiscard]] Index nearest(const Vec3& place, std::size_t edges) const {
         Index best = kNone;
-        double least = kFar * side_;
+        double least = kFarCorner * side_;
         for (const Index p : points_) {
             const double distance = glm::distance(mesh_.points[p], place);
             if (taken_[p] != 0 || distance >= least || at(p).size() < edges) continue;
