@@ -14,14 +14,21 @@ import tempfile
 from pathlib import Path
 
 
+def sharp_text(sharp, side):
+    if sharp["length_world"] == 0:
+        return "none | "
+    missed = sharp["missed_length_world"] / sharp["length_world"]
+    return f"{sharp['rms'] / side:.3f}, {sharp['max'] / side:.2f} | {100 * missed:.0f} %"
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("surfaces", nargs="+")
     parser.add_argument("--subvol", default="build/release/bin/subvol")
     parser.add_argument("--cells", type=int, nargs="+", default=[16, 24, 32])
     given = parser.parse_args()
-    print("| surface | triangles | cells | boundary from surface: RMS, largest | surface from boundary | folded | undecided | mended "
-          "| CPU s | MB |\n|---|---|---|---|---|---|---|---|---|---|")
+    print("| surface | triangles | cells | boundary from surface: RMS, largest | surface from boundary | creases from sharp edges "
+          "| of them missed | folded | undecided | mended | CPU s | MB |\n|---|---|---|---|---|---|---|---|---|---|---|---|")
     for surface in given.surfaces:
         for cells in given.cells:
             with tempfile.TemporaryDirectory() as folder:
@@ -35,7 +42,7 @@ def main():
                 found = json.loads(text)
                 side, after, folds = found["side_world"], found["after"], found["folds"]["cells"]
                 print(f"| {Path(surface).stem} | {found['triangles']:,} | {found['cells']:,} | {after['rms'] / side:.3f}, {after['max'] / side:.2f} "
-                      f"| {after['missed_rms'] / side:.3f}, {after['missed_max'] / side:.2f} | {folds['folded']} "
+                      f"| {after['missed_rms'] / side:.3f}, {after['missed_max'] / side:.2f} | {sharp_text(found['sharp'], side)} | {folds['folded']} "
                       f"| {folds['undecided'] - folds['irregular']} | {found['mended']} | {use.ru_utime + use.ru_stime:.0f} "
                       f"| {use.ru_maxrss / 1024:.0f} |", flush=True)
 

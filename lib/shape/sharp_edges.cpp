@@ -139,8 +139,8 @@ public:
 
 private:
     [[nodiscard]] std::span<const std::pair<Index, std::size_t>> at_point(Index p) const {
-        const auto [first, last] = std::ranges::equal_range(ends_, p, {}, [](const auto& end) { return end.first; });
-        return {first, last};
+        const auto point = [](const auto& end) { return end.first; };
+        return {std::ranges::lower_bound(ends_, p, {}, point), std::ranges::upper_bound(ends_, p, {}, point)};
     }
 
     [[nodiscard]] bool corner(Index p) const {
@@ -222,9 +222,9 @@ SharpEdges sharp_edges(const Surface& surface, double angle_deg, double side) {
         for (std::size_t k = 0; k < noise.size(); ++k) {
             const SharpCurve& curve = found.curves[k];
             const bool free = !curve.closed() && (ends[curve.corners[0]] == 1 || ends[curve.corners[1]] == 1);
-            const std::size_t all = root(k);
-            noise[k] = (free && curve.length() < kSpur * side) || joined[all] < kRing * side ||
-                               joined[all] < kMean * side * static_cast<double>(curves[all])
+            const std::size_t whole = root(k);
+            noise[k] = (free && curve.length() < kSpur * side) || joined[whole] < kRing * side ||
+                               joined[whole] < kMean * side * static_cast<double>(curves[whole])
                            ? 1
                            : 0;
         }

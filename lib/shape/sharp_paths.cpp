@@ -21,7 +21,7 @@ std::array<Index, 2> in_order(const std::array<Index, 2>& edge) {
 }
 
 /// How far from a curve a path may lie, and from a corner its point, in sides: control meshes do not reach far into tips.
-constexpr double kFar = 2, kFarCorner = 3;
+constexpr double kPathReach = 2, kCornerReach = 3;
 
 /// The points and edges of a mesh's boundary, some of them taken.
 class BoundaryGraph {
@@ -44,7 +44,7 @@ public:
     /// The free point nearest to a place with at least so many edges; kNone if none is near.
     [[nodiscard]] Index nearest(const Vec3& place, std::size_t edges) const {
         Index best = kNone;
-        double least = kFarCorner * side_;
+        double least = kCornerReach * side_;
         for (const Index p : points_) {
             const double distance = glm::distance(mesh_.points[p], place);
             if (taken_[p] != 0 || distance >= least || at(p).size() < edges) continue;
@@ -67,7 +67,7 @@ public:
         return path_where(
             from, [&](Index p) { return p == to; },
             [&](Index p, Index q) {
-                if (q != to && far(mesh_.points[q]) > kFar) return std::numeric_limits<double>::infinity();
+                if (q != to && far(mesh_.points[q]) > kPathReach) return std::numeric_limits<double>::infinity();
                 const double off = far(0.5 * (mesh_.points[p] + mesh_.points[q]));
                 constexpr double kOff = 16;
                 return glm::distance(mesh_.points[q], mesh_.points[p]) * (1 + kOff * off * off);
@@ -122,8 +122,8 @@ private:
     }
 
     [[nodiscard]] std::span<const std::pair<Index, Index>> at(Index p) const {
-        const auto [first, last] = std::ranges::equal_range(ends_, p, {}, [](const auto& end) { return end.first; });
-        return {first, last};
+        const auto point = [](const auto& end) { return end.first; };
+        return {std::ranges::lower_bound(ends_, p, {}, point), std::ranges::upper_bound(ends_, p, {}, point)};
     }
 
     const HexMesh& mesh_;
@@ -214,8 +214,8 @@ private:
         }
     }
 
-    /// Edges by which paths that end freely go on to other paths, or to the other end of the same one. Those that cannot are left
-    /// out.
+    /// Edges by which paths that end freely go on to other paths, or to the other end of the same one. Those that cannot are
+    /// left out.
     [[nodiscard]] std::vector<std::array<Index, 2>> cuts_from_ends(std::vector<Crease>& creases, std::vector<Index>& missed) {
         std::map<Index, std::set<Index>> curves_at;
         std::map<Index, std::size_t> edges_at;
