@@ -229,6 +229,8 @@ std::string mesh_lines(const ReadResult& read, const detail::MeshShare& joined, 
         lines.emplace_back("touching", counted(mesh.nonmanifold_edges, "edge") + " and " +
                                            counted(mesh.nonmanifold_points, "point") + " where parts touch");
     }
+    if (!read.mesh.creases.empty()) lines.emplace_back("creases", counted(read.mesh.creases.size(), "edge"));
+    if (!read.mesh.sharp_faces.empty()) lines.emplace_back("sharp faces", count_text(read.mesh.sharp_faces.size()));
     if (mesh.singular_nodes > 0) lines.emplace_back("singular nodes", count_text(mesh.singular_nodes));
     const Vec3 size = mesh.bounds.size();
     for (int axis = 0; axis < 3; ++axis) {

@@ -197,6 +197,8 @@ private:
                                 {"points", shells.points},         {"attached_points", shells.attached},
                                 {"free_edges", shells.free_edges}, {"nonmanifold_edges", shells.nonmanifold_edges}};
         }
+        if (!read.mesh.creases.empty()) report["creases"] = read.mesh.creases.size();
+        if (!read.mesh.sharp_faces.empty()) report["sharp_faces"] = read.mesh.sharp_faces.size();
         report["fields"] = Json::array();
         for (const FieldInfo& field : read.fields) {
             report["fields"].push_back({{"name", field.name},
