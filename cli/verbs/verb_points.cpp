@@ -25,6 +25,7 @@
 #include "subvol/kernel_hierarchy.h"
 #include "subvol/points_error.h"
 #include "subvol/points_io.h"
+#include "subvol/series_file.h"
 #include "subvol/wavelet_file.h"
 #include "tet_refinement.h"
 #include "text.h"
@@ -89,6 +90,42 @@ Facts write_wavelets_reported(const std::string& path, const HexMesh& mesh, cons
     return facts;
 }
 
+/// Writes steps within a most error. returns: what was kept
+Facts write_series_reported(const std::string& path, const MeshSteps& steps, const SeriesFileOptions& options) {
+    Facts facts;
+    const SeriesFileReport written =
+        facts.timed(options.progress, "series", [&] { return write_series_file(path, steps, options); });
+    facts["steps"] = written.steps;
+    facts["key_steps"] = written.key_steps;
+    facts["meshes"] = written.meshes;
+    facts["points"] = written.points;
+    facts["cells"] = written.cells;
+    facts["bytes"] = written.bytes;
+    facts["mesh_bytes"] = written.mesh_bytes;
+    double most = 0;
+    std::vector<Facts> arrays;
+    for (const SeriesArrayReport& array : written.arrays) {
+        if (!array.name.empty()) most = std::max(most, array.max);
+        Facts& kept = arrays.emplace_back();
+        kept["name"] = array.name;
+        kept["channels"] = array.channels;
+        kept["steps"] = array.steps;
+        kept["bytes"] = array.bytes;
+        kept["max"] = array.max;
+        kept["exact"] = array.exact;
+    }
+    facts["max"] = most;
+    facts["point_max"] = written.arrays.front().max;
+    facts["arrays"] = arrays;
+    facts["inverted_cells"] = written.inverted_cells;
+    facts["output"] = path;
+    if (written.inverted_cells > written.inverted_cells_before) {
+        facts.warn(text(count_text(written.inverted_cells - written.inverted_cells_before),
+                        " cells are inverted after rounding; a smaller --max-point-error keeps their shapes"));
+    }
+    return facts;
+}
+
 class PointsVerb : public Verb {
 public:
     explicit PointsVerb(CLI::App& program)
@@ -102,11 +139,13 @@ public:
                "  subvol points big.vtu -o part2.ply --part 2/4        a share, for join\n"
                "  subvol points big.vtu -o big.svk                     with levels of detail\n"
                "  subvol points fine.vtu -o fine.svw --wavelet-tolerance 1e-3   compressed\n"
+               "  subvol points run.foam -o run.svw --step all --max-error 1e-3   all steps, compressed\n"
                "\n"
                "The boundary of NAME.vtp, of NAME.vdb and of a .ply with --splats is in NAME.boundary.vtp.") {
         app().add_option("FILE", input_, text(input_help(), "; or a .vdb grid of floats"))->required();
         app()
-            .add_option("-o,--output", output_, "the points to write (.ply, .vtp, .svk, .vdb; .svw with --wavelet-tolerance)")
+            .add_option("-o,--output", output_,
+                        "the points to write (.ply, .vtp, .svk, .vdb; .svw with --wavelet-tolerance or --max-error)")
             ->type_name("FILE")
             ->required();
         add_options(app(), options_of(written_));
@@ -135,6 +174,24 @@ public:
                                     "the same for the points, in parts of the mesh's longest side (default: a tenth of "
                                     "--wavelet-tolerance, and less where cells would be inverted)")
                               .only_with("wavelet-tolerance"));
+        add_option(app(),
+                   Option("max-error", max_error_)
+                       .between(1e-12, 1)
+                       .help("T",
+                             "write the mesh with all its fields (.svw), compressed, instead of kernels: each value is off by "
+                             "at most T, in parts of the field's range in all steps; with --step all a series")
+                       .not_with("wavelet-tolerance"));
+        add_option(app(),
+                   Option("max-point-error", max_point_error_)
+                       .between(1e-12, 1)
+                       .help("T",
+                             "the same for the coordinates of points, in parts of the mesh's longest side (default: a tenth of "
+                             "--max-error, and less where cells would be inverted)")
+                       .only_with("max-error"));
+        add_option(app(), Option("key-steps", key_steps_)
+                              .between(1, 1000)
+                              .help("K", "every K steps one that does not depend on others: no more are decoded to read one")
+                              .only_with("max-error"));
         refine_.add_to(app(), "sample the refined mesh of this level instead of the limit");
         share_.add_to(app(), "a range of the points in their order, of bricks, or of the steps");
         set_essentials({"--output", "--field", "--per-edge", "--spacing", "--tolerance", "--footprint", "--threshold",
@@ -143,6 +200,7 @@ public:
                                     "--footprint-size", "--threshold", "--tf", "--reduce", "--refine", "--merge"});
         group("What kernels are", {"--values", "--kernel", "--value-kernel", "--correction", "--error"});
         group("Wavelets", {"--wavelet-tolerance", "--wavelet-point-tolerance"});
+        group("Compressed meshes", {"--max-error", "--max-point-error", "--key-steps"});
         group("The limit", {"--scheme", "--tension", "--levels", "--crease-angle"});
     }
 
@@ -150,8 +208,10 @@ public:
 
     int run(Report& report) override {
         if (wavelet_tolerance_) return write_wavelets(report);
+        if (max_error_) return write_series(report);
         if (output_.ends_with(".svw")) {
-            throw Error(ErrorCode::InvalidInput, "wavelets need a tolerance", output_, "--wavelet-tolerance 1e-3");
+            throw Error(ErrorCode::InvalidInput, "a compressed mesh needs a tolerance", output_,
+                        "--wavelet-tolerance 1e-3 or --max-error 1e-3");
         }
         check_output(output_, {".ply", ".vtp", ".svk", ".vdb"});
         const std::string extension = std::filesystem::path(output_).extension().string();
@@ -221,6 +281,43 @@ private:
         HexMesh mesh = report.unpack(load_mesh(input_, common(), report.progress()));
         mesh = report.unpack(with_selected_field(std::move(mesh), common()));
         report.merge(write_wavelets_reported(output_, mesh, options));
+        return 0;
+    }
+
+    /// The mesh, or with --step several steps of it, with all fields or that of --field.
+    int write_series(Report& report) {
+        check_output(output_, {".svw"});
+        refuse_options(app(), kOfKernels,
+                       "makes kernels; --max-error writes a mesh, of which `subvol points` then makes kernels");
+        refuse_options(app(), {"--scheme", "--tension", "--levels", "--crease-angle"},
+                       "is of the limit; --max-error keeps the mesh as it is");
+        const InputKind kind = kind_of(input_);
+        if (kind == InputKind::Bricks || kind == InputKind::Grid || ranks() != nullptr) {
+            throw Error(ErrorCode::InvalidInput, "a compressed mesh needs one mesh in memory", input_, "a mesh file");
+        }
+        const SeriesFileOptions options{.tolerance = *max_error_,
+                                        .point_tolerance = max_point_error_,
+                                        .key_steps = key_steps_,
+                                        .progress = report.progress()};
+        report["input"] = input_;
+        const auto read = [&](const CommonOptions& one) {
+            HexMesh mesh = report.unpack(load_mesh(input_, one, nullptr));
+            return one.field || one.density ? report.unpack(with_selected_field(std::move(mesh), one)) : mesh;
+        };
+        if (!asks_for_steps(common())) {
+            const HexMesh mesh = read(common());
+            report.merge(write_series_reported(output_, {{mesh.time.value_or(0)}, [&](std::size_t) { return mesh; }}, options));
+            return 0;
+        }
+        const MeshSeries series = open_series(input_);
+        const FrameRange range = chosen_steps(series, common());
+        const CommonOptions all = report.unpack(for_steps(input_, common(), range, report.progress()));
+        const auto first = series.times.begin() + range.first;
+        report.merge(
+            write_series_reported(output_,
+                                  {{first, first + range.count()},
+                                   [&](std::size_t k) { return read(of_step(all, range.first + static_cast<int>(k))); }},
+                                  options));
         return 0;
     }
 
@@ -347,7 +444,8 @@ private:
     std::string output_;
     PointsWriteOptions written_;
     bool clamp_ = false, error_ = false;
-    std::optional<double> merge_error_, wavelet_tolerance_, wavelet_point_tolerance_;
+    std::optional<double> merge_error_, wavelet_tolerance_, wavelet_point_tolerance_, max_error_, max_point_error_;
+    int key_steps_ = SeriesFileOptions{}.key_steps;
     std::string transfer_function_;
     ShareArgument share_;
     SampleArguments sample_;

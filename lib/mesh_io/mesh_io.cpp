@@ -10,6 +10,7 @@
 #include <tuple>
 
 #include "formats.h"
+#include "series_format.h"
 #include "subvol/cell_means.h"
 #include "subvol/detail/number_text.h"
 #include "subvol/error.h"
@@ -37,8 +38,24 @@ ReadResult read_grid_and_flow(const std::filesystem::path& path, const ReadOptio
     return read_plot3d(grid_text, path.string(), options, {flow_text, flow_file});
 }
 
-ReadResult read_wavelets(std::string_view text, std::string_view file, const ReadOptions&) {
-    ReadResult result{.mesh = read_wavelet_mesh(text, std::string(file)), .fields = {}, .warnings = {}};
+// Whether a .svw file has steps. What is no regular file is not looked into, as it could be read only once.
+bool has_steps(const std::filesystem::path& path) {
+    return not_regular(path).empty() && is_series_text(read_range(path, 0, kSeriesMagic.size()));
+}
+
+std::vector<double> wavelet_times(const std::filesystem::path& path) {
+    return has_steps(path) ? series_file_times(path) : std::vector<double>();
+}
+
+ReadResult read_wavelets(const std::filesystem::path& path, const ReadOptions& options) {
+    ReadResult result;
+    if (has_steps(path)) {
+        const std::size_t step = chosen_step(options, series_file_times(path).size(), path.string(), result.warnings);
+        result.mesh = read_series_file(path, step);
+    } else {
+        std::ignore = chosen_step(options, 1, path.string(), result.warnings);
+        result.mesh = read_wavelet_mesh(read_text(path), path.string());
+    }
     for (const Attribute& a : result.mesh.attributes) {
         const auto channels = static_cast<std::size_t>(a.channels);
         FieldInfo& field = result.fields.emplace_back(FieldInfo{a.name, "point", a.channels});
@@ -99,7 +116,7 @@ constexpr std::array<MeshFormat, 22> kFormats{{
      .part = read_foam_part,
      .finite_volumes = true},
     {.extensions = {".inp"}, .name = "Abaqus", .read = read_inp, .blocks = true},
-    {.extensions = {".svw"}, .name = "wavelets", .read = read_file<read_wavelets>},
+    {.extensions = {".svw"}, .name = "wavelets", .read = read_wavelets, .times = wavelet_times},
 }};
 
 bool is_left_out(const MeshFormat& format, bool writable_only) {

@@ -167,9 +167,9 @@ std::optional<std::string_view> LzmaReader::next() {
     return std::string_view(piece_).substr(0, piece_.size() - lzma.avail_out);
 }
 
-std::string compressed_numbers(std::string_view bytes) {
+std::string compressed_numbers(std::string_view bytes, Effort effort) {
     lzma_options_lzma options{};
-    lzma_lzma_preset(&options, 9);
+    lzma_lzma_preset(&options, effort == Effort::Most ? 9 : 0);
     options.dict_size = static_cast<std::uint32_t>(std::clamp<std::size_t>(bytes.size(), 1 << 16, 1 << 26));
     options.lc = 0;  // a number says little about the next one
     options.pb = 0;

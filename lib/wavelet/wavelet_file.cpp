@@ -11,6 +11,7 @@
 #include "subvol/mesh_report.h"
 #include "subvol/wavelet.h"
 #include "vtu_bytes.h"
+#include "wavelet_bytes.h"
 #include "wavelet_format.h"
 
 namespace subvol {
@@ -19,51 +20,10 @@ using namespace detail;
 
 namespace {
 
-class Bytes {
-public:
-    void number(std::uint64_t n) {
-        for (; n >= 128; n >>= 7) text_ += static_cast<char>((n & 127) | 128);
-        text_ += static_cast<char>(n);
-    }
-    void byte(std::uint64_t n) { text_ += static_cast<char>(n); }
-    void real(double x) {
-        const auto bits = std::bit_cast<std::uint64_t>(x);
-        for (int k = 0; k < 8; ++k) byte(bits >> 8 * k & 255);
-    }
-    void text(std::string_view t) {
-        number(t.size());
-        text_ += t;
-    }
-    [[nodiscard]] const std::string& all() const { return text_; }
-
-private:
-    std::string text_;
-};
-
 void check_part(double tolerance, const std::string& what) {
     if (!(tolerance > 0 && tolerance <= 1)) {
         throw Error(ErrorCode::InvalidInput, "the " + what + " is " + std::to_string(tolerance), "wavelets",
                     "greater than 0, at most 1");
-    }
-}
-
-void put_mesh(const HexMesh& mesh, Bytes& out) {
-    out.number(mesh.points.size());
-    out.number(mesh.cells.size());
-    std::array<Index, 8> before{};
-    for (const auto& cell : mesh.cells) {
-        for (std::size_t k = 0; k < 8; ++k) {
-            out.number(folded(static_cast<std::int64_t>(cell[k]) - static_cast<std::int64_t>(before[k])));
-        }
-        before = cell;
-    }
-    out.number(mesh.creases.size());
-    for (const auto& crease : mesh.creases) {
-        for (const Index p : crease) out.number(p);
-    }
-    out.number(mesh.sharp_faces.size());
-    for (const auto& face : mesh.sharp_faces) {
-        for (const Index p : face) out.number(p);
     }
 }
 

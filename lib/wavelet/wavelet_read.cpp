@@ -6,94 +6,12 @@
 #include "subvol/error.h"
 #include "subvol/wavelet.h"
 #include "vtu_bytes.h"
+#include "wavelet_bytes.h"
 #include "wavelet_format.h"
 
 namespace subvol::detail {
 
 namespace {
-
-class Contents {
-public:
-    /// more: where the bytes after these come from; length: of all
-    Contents(std::string_view bytes, const std::string& file, LzmaReader* more = nullptr, std::uint64_t length = 0)
-        : bytes_(bytes), file_(file), more_(more), length_left_(more == nullptr ? bytes.size() : length) {}
-
-    [[noreturn]] void fail(const std::string& what, const std::string& allowed = {}) const {
-        throw Error(ErrorCode::InvalidInput, what, file_, allowed);
-    }
-
-    std::uint64_t byte() {
-        if (length_left_ == 0) fail("the contents end too early");
-        if (bytes_.empty()) load_more();
-        const auto b = static_cast<unsigned char>(bytes_.front());
-        bytes_.remove_prefix(1);
-        --length_left_;
-        return b;
-    }
-
-    std::uint64_t number() {
-        std::uint64_t n = 0;
-        for (int shift = 0; shift < 64; shift += 7) {
-            const std::uint64_t b = byte();
-            if (shift == 63 && b > 1) break;
-            n |= (b & 127) << shift;
-            if (b < 128) return n;
-        }
-        fail("a number has more than 64 bits");
-    }
-
-    std::int64_t signed_number() { return unfolded(number()); }
-
-    /// How many things follow, each of at least so many bytes.
-    std::size_t count(const char* of, std::size_t bytes_each) {
-        const std::uint64_t n = number();
-        if (n > length_left_ / bytes_each) fail(std::to_string(n) + " " + of + " do not fit into the file");
-        return n;
-    }
-
-    double real() {
-        std::uint64_t bits = 0;
-        for (int k = 0; k < 8; ++k) bits |= byte() << 8 * k;
-        return std::bit_cast<double>(bits);
-    }
-
-    std::string text() {
-        const std::size_t n = count("bytes of a name", 1);
-        std::string t;
-        for (std::size_t i = 0; i < n; ++i) t += static_cast<char>(byte());
-        return t;
-    }
-
-    Index point(std::size_t points) {
-        const std::uint64_t n = number();
-        if (n >= points) fail("point " + std::to_string(n) + " is named", "there are " + std::to_string(points));
-        return static_cast<Index>(n);
-    }
-
-    [[nodiscard]] std::size_t left() const { return length_left_; }
-
-    /// Everything has been read, and there is nothing else.
-    void expect_end() {
-        if (left() > 0) fail(std::to_string(left()) + " bytes follow the last array");
-        if (more_ == nullptr) return;
-        const auto rest = more_->next();
-        if (!bytes_.empty() || !rest || !rest->empty()) fail(kDamaged);
-    }
-
-    static constexpr const char* kDamaged = "the compressed contents are damaged";
-
-private:
-    void load_more() {
-        const auto piece = more_ == nullptr ? std::nullopt : more_->next();
-        if (!piece || piece->empty()) fail(kDamaged);
-        bytes_ = *piece;
-    }
-
-    std::string_view bytes_;
-    const std::string& file_;
-    LzmaReader* more_;
-    std::uint64_t length_left_;
-};
 
 SchemeOptions read_scheme(Contents& in) {
     const std::uint64_t kind = in.number();
@@ -101,48 +19,6 @@ SchemeOptions read_scheme(Contents& in) {
     SchemeOptions scheme{.kind = static_cast<Scheme>(kind), .tension = in.real()};
     if (!std::isfinite(scheme.tension)) in.fail("the tension is not a finite number");
     return scheme;
-}
-
-/// Refuses a last cell that no mesh has: few bytes of a compressed file can stand for millions of them.
-void check_cell(const HexMesh& mesh, const Contents& in) {
-    const auto& cell = mesh.cells.back();
-    std::array<Index, 8> sorted = cell;
-    std::ranges::sort(sorted);
-    const bool twice = std::ranges::adjacent_find(sorted) != sorted.end();
-    if (!twice && (mesh.cells.size() < 2 || cell != mesh.cells[mesh.cells.size() - 2])) return;
-    in.fail("cell " + std::to_string(mesh.cells.size() - 1) + (twice ? " has a corner twice" : " is there twice"));
-}
-
-/// The control mesh; its points are all at the origin.
-HexMesh read_control_mesh(Contents& in) {
-    HexMesh mesh;
-    const std::size_t points = in.count("points", 3);
-    const std::size_t cells = in.count("cells", 8);
-    if (points > 8 * cells) in.fail(std::to_string(points) + " points are more than the corners of the cells");
-    std::array<std::int64_t, 8> corners{};
-    for (std::size_t c = 0; c < cells; ++c) {
-        auto& cell = mesh.cells.emplace_back();
-        for (std::size_t k = 0; k < 8; ++k) {
-            const std::int64_t change = in.signed_number();
-            const auto most = static_cast<std::int64_t>(points);
-            if (change < -corners[k] || change >= most - corners[k]) {
-                in.fail("a corner of cell " + std::to_string(c) + " is not a point", "there are " + std::to_string(points));
-            }
-            corners[k] += change;
-            cell[k] = static_cast<Index>(corners[k]);
-        }
-        check_cell(mesh, in);
-    }
-    mesh.points.assign(points, Vec3(0));
-    mesh.creases.resize(in.count("creases", 2));
-    for (auto& crease : mesh.creases) {
-        for (Index& p : crease) p = in.point(points);
-    }
-    mesh.sharp_faces.resize(in.count("sharp faces", 4));
-    for (auto& face : mesh.sharp_faces) {
-        for (Index& p : face) p = in.point(points);
-    }
-    return mesh;
 }
 
 int read_levels(Contents& in) {
@@ -217,7 +93,7 @@ HexMesh read_contents(Contents& in, const std::string& file) {
     const SchemeOptions scheme = read_scheme(in);
     const int levels = read_levels(in);
     try {
-        const HexMesh control = read_control_mesh(in);
+        const HexMesh control = read_cells(in, 3);
         validate(control);
         const Topology topology = build_topology(control);
         check_size(topology, levels, in);

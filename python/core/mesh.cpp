@@ -13,6 +13,7 @@
 #include "subvol/model.h"
 #include "subvol/quantity.h"
 #include "subvol/region.h"
+#include "subvol/series_file.h"
 #include "subvol/surface.h"
 #include "subvol/topology.h"
 #include "subvol/vtk_grid.h"
@@ -232,6 +233,40 @@ py::dict write_wavelets(const std::string& path, const HexMesh& mesh, double tol
     return figures;
 }
 
+/// read: a call that returns the mesh of a step
+py::dict write_series(const std::string& path, const std::vector<double>& times, const py::function& read, double max_error,
+                      const std::optional<double>& max_point_error, int key_steps, const py::object& progress) {
+    const MeshSteps steps{times, [&](std::size_t step) {
+                              const py::gil_scoped_acquire gil;
+                              return read(step).cast<HexMesh>();
+                          }};
+    const SeriesFileReport report = result_of(progress, [&](Progress* listener) {
+        return write_series_file(
+            path, steps,
+            {.tolerance = max_error, .point_tolerance = max_point_error, .key_steps = key_steps, .progress = listener});
+    });
+    py::dict figures, arrays;
+    for (const SeriesArrayReport& array : report.arrays) {
+        py::dict kept;
+        kept["channels"] = array.channels;
+        kept["steps"] = array.steps;
+        kept["bytes"] = array.bytes;
+        kept["max"] = array.max;
+        kept["exact"] = array.exact;
+        arrays[py::str(array.name)] = kept;
+    }
+    figures["steps"] = report.steps;
+    figures["key_steps"] = report.key_steps;
+    figures["meshes"] = report.meshes;
+    figures["points"] = report.points;
+    figures["cells"] = report.cells;
+    figures["bytes"] = report.bytes;
+    figures["mesh_bytes"] = report.mesh_bytes;
+    figures["inverted_cells"] = report.inverted_cells;
+    figures["arrays"] = arrays;
+    return figures;
+}
+
 constexpr const char* kSets = "_sets";
 
 }  // namespace
@@ -319,6 +354,8 @@ void bind_mesh(py::module_& module) {
         py::arg("path"), py::arg("mesh"));
     module.def("write_wavelets", &write_wavelets, py::arg("path"), py::arg("mesh"), py::arg("tolerance"),
                py::arg("point_tolerance"), py::arg("scheme"), py::arg("levels"), py::arg("progress"));
+    module.def("write_series", &write_series, py::arg("path"), py::arg("times"), py::arg("read"), py::arg("max_error"),
+               py::arg("max_point_error"), py::arg("key_steps"), py::arg("progress"));
     module.def(
         "quantity",
         [](const HexMesh& mesh, const std::string& source) {

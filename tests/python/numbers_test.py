@@ -17,6 +17,7 @@ CALLS = {
     "surface": lambda mesh, points, folder, **more: subvol.surface(mesh, **more),
     "read_mesh": lambda mesh, points, folder, **more: subvol.read_mesh(folder / "mesh.vtu", **more),
     "write_wavelets": lambda mesh, points, folder, **more: subvol.write_wavelets(subvol.subdivide(mesh), folder / "out.svw", **more),
+    "write_series": lambda mesh, points, folder, **more: subvol.write_series(mesh, folder / "out.svw", **more),
     "subdivide": lambda mesh, points, folder, **more: subvol.subdivide(mesh, **more),
     "render": lambda mesh, points, folder, **more: subvol.render(mesh, **{"size": (8, 8), **more}),
     "sample": lambda mesh, points, folder, **more: subvol.sample(mesh, **more),

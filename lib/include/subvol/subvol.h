@@ -85,6 +85,7 @@
 #include "subvol/sample_pieces.h"
 #include "subvol/sample_tables.h"
 #include "subvol/scheme.h"
+#include "subvol/series_file.h"
 #include "subvol/shading.h"
 #include "subvol/share.h"
 #include "subvol/shells.h"

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "subvol/hex_mesh.h"
+#include "subvol/option.h"
+#include "subvol/progress.h"
+
+namespace subvol {
+
+/// The meshes of a series, each read when it is asked for. `write_series_file` reads each twice, in order: once for the ranges
+/// of fields, once for the values.
+///
+/// times: one for each step, ascending
+/// read:  the mesh of a step, from 0
+struct MeshSteps {
+    std::vector<double> times;
+    std::function<HexMesh(std::size_t step)> read;
+};
+
+/// tolerance:       most error of each value of a field, in parts of the field's range in all steps (of vectors: of the longest
+///                  side of the box of their values); [1e-12,1]
+/// point_tolerance: most distance of each coordinate from where it was, in parts of the longest side of the mesh in the first
+///                  step; if not given a tenth of `tolerance`, and less where cells would be inverted
+/// key_steps:       every so many steps one does not depend on others, so that no more are decoded to read one; 1 to 1000
+struct SeriesFileOptions {
+    double tolerance = 1e-3;
+    std::optional<double> point_tolerance{};
+    int key_steps = 10;
+    Progress* progress = nullptr;
+};
+
+/// max-error, max-point-error, key-steps
+[[nodiscard]] std::vector<Option> options_of(SeriesFileOptions& options);
+
+/// What was kept of an array.
+///
+/// name:  empty for the points
+/// steps: that have it
+/// bytes: about how many it takes in all steps
+/// max:   the largest error of a value, in the parts that the tolerance is in
+/// exact: values that are kept as they are, since they are not finite or rounding would exceed the tolerance
+struct SeriesArrayReport {
+    std::string name;
+    int channels = 1;
+    std::size_t steps = 0;
+    std::uint64_t bytes = 0;
+    double max = 0;
+    std::size_t exact = 0;
+};
+
+/// arrays:     the points, then the fields in the order in which they appear
+/// meshes:     how often the cells are stored: once, and once more for each step that has others than the step before
+/// mesh_bytes: what they take
+/// points, cells, inverted_cells: of the last step as it is read; inverted_cells_before: as it was
+struct SeriesFileReport {
+    std::size_t steps = 0;
+    std::size_t key_steps = 0;
+    std::size_t meshes = 0;
+    std::size_t points = 0;
+    std::size_t cells = 0;
+    std::vector<SeriesArrayReport> arrays;
+    std::uint64_t bytes = 0;
+    std::uint64_t mesh_bytes = 0;
+    std::size_t inverted_cells_before = 0;
+    std::size_t inverted_cells = 0;
+};
+
+/// Writes meshes of any hexahedra as a `.svw` file of steps: cells once, and each value as a whole number of steps of its
+/// quantization, less what its neighbours or the step before predict, compressed. No value is farther from what it was than
+/// the tolerance; values that are not finite are kept. `read_mesh` and `open_series` read it. Points and cells keep their
+/// order.
+///
+/// throws: Error(InvalidInput) if there is no step, an option is out of range, times do not ascend, or a mesh has more points
+///         than corners of cells; Error(Io); what `steps.read` throws
+/// cost:   one step is in memory, and the whole numbers of three; the same bits for any number of threads
+SeriesFileReport write_series_file(const std::filesystem::path& path, const MeshSteps& steps,
+                                   const SeriesFileOptions& options = {});
+
+/// The same for one mesh, whose time is kept.
+SeriesFileReport write_series_file(const std::filesystem::path& path, const HexMesh& mesh,
+                                   const SeriesFileOptions& options = {});
+
+}  // namespace subvol

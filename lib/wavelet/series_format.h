@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "subvol/hex_mesh.h"
+#include "value_prediction.h"
+
+namespace subvol::detail {
+
+// A .svw file of steps: kSeriesMagic; place, length and unpacked length of the index (8 bytes each, lowest first); meshes and
+// steps one after the other; the index. Numbers are as in wavelet_format.h.
+//
+//   mesh    compressed: points and cells, creases, sharp faces, as in a file of wavelets
+//   step    for each array a byte, 1 if the step has it; then for each channel of these
+//             a byte: the prediction and, times 4, what of earlier steps it is added to (Spatial, Temporal)
+//             a byte: how many bytes each residual has; 0: all are 0
+//             exact values: how many; for each its point as the difference from the one before, and a real
+//           for each of these arrays how many bounds, 0 or as many as channels; two reals each
+//           for each block the number of its bytes; the blocks, compressed. A block has the residuals of channels one after the
+//             other, each as planes of bytes, lowest first, without sign as 0, -1, 1, -2, …; it ends with the channel with
+//             which it reaches kBlockBytes
+//   index   compressed:
+//             meshes: how many; for each place, length, unpacked length
+//             arrays: how many; for each its name, channels, and of each channel origin, step, least, greatest value (reals).
+//               The first array has the points, and no name.
+//             steps: how many; for each its time (real), the number of its mesh, 1 if it is a key step, place, length
+
+inline constexpr std::string_view kSeriesMagic = "subvol-series-1\n";
+inline constexpr std::size_t kSeriesHead = kSeriesMagic.size() + 24;
+inline constexpr std::size_t kBlockBytes = std::size_t{1} << 20;
+inline constexpr std::int64_t kMostQuantized = std::int64_t{1} << 48;
+
+/// From which values of a step the residual is predicted.
+enum class Spatial : std::uint8_t { None, ByNumber, InCells, BetweenSheets };
+/// What the step before, or the two before, predict.
+enum class Temporal : std::uint8_t { None, Same, Linear };
+
+/// How a channel is made of whole numbers: origin + n · step, within [min, max].
+struct Quantization {
+    double origin = 0, step = 0, min = 0, max = 0;
+
+    [[nodiscard]] double value(std::int64_t n) const {
+        const double x = origin + static_cast<double>(n) * step, near = 1e-6 * step;
+        return x < min + near ? min : x > max - near ? max : x;  // the ends are whole numbers of steps, but for rounding
+    }
+};
+
+struct SeriesArray {
+    std::string name;
+    std::vector<Quantization> channels;
+};
+
+struct SeriesPlace {
+    std::uint64_t place = 0, length = 0;
+};
+
+struct SeriesMesh {
+    SeriesPlace place;
+    std::uint64_t unpacked = 0;
+};
+
+struct SeriesStep {
+    double time = 0;
+    std::size_t mesh = 0;
+    bool key = true;
+    SeriesPlace place;
+};
+
+struct SeriesIndex {
+    std::vector<SeriesMesh> meshes;
+    std::vector<SeriesArray> arrays;
+    std::vector<SeriesStep> steps;
+};
+
+/// What the steps before predict for value `p`.
+[[nodiscard]] inline std::int64_t earlier(Temporal temporal, const std::vector<std::int64_t>& before,
+                                          const std::vector<std::int64_t>& two_before, std::size_t p) {
+    if (temporal == Temporal::None) return 0;
+    return temporal == Temporal::Same ? before[p] : 2 * before[p] - two_before[p];
+}
+
+/// Whether a text begins as a file of steps does.
+[[nodiscard]] bool is_series_text(std::string_view text);
+
+/// The times of a file of steps; of one step none.
+///
+/// throws: Error(InvalidInput) if the file is not right
+[[nodiscard]] std::vector<double> series_file_times(const std::filesystem::path& path);
+
+/// The mesh of a step, from 0; nothing: the last one.
+///
+/// throws: Error(InvalidInput) if the file is not right, or has no such step
+[[nodiscard]] HexMesh read_series_file(const std::filesystem::path& path, std::size_t step);
+
+}  // namespace subvol::detail

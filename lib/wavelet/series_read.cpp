@@ -1,0 +1,407 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <tbb/parallel_for.h>
+
+#include <system_error>
+
+#include "series_format.h"
+#include "subvol/detail/read_file.h"
+#include "subvol/error.h"
+#include "vtu_bytes.h"
+#include "wavelet_bytes.h"
+
+namespace subvol::detail {
+
+namespace {
+
+constexpr std::size_t kMostChannels = 1000;
+constexpr int kMostResidualBytes = 7;
+constexpr std::int64_t kMostChange = 4 * kMostQuantized;
+
+/// The bytes of a file, each range only if it is there.
+class SeriesBytes {
+public:
+    explicit SeriesBytes(const std::filesystem::path& path) : path_(path), file_(path.string()) {
+        std::error_code error;
+        size_ = std::filesystem::file_size(path, error);
+        if (error) throw Error(ErrorCode::Io, "cannot be read: " + error.message(), file_);
+    }
+
+    [[nodiscard]] std::string range(const SeriesPlace& place, const char* what) const {
+        if (place.place > size_ || place.length > size_ - place.place) fail(std::string(what) + " is not in the file");
+        std::string bytes = read_range(path_, place.place, place.length);
+        if (bytes.size() != place.length) fail(std::string(what) + " is not in the file");
+        return bytes;
+    }
+
+    [[noreturn]] void fail(const std::string& what, const std::string& allowed = {}) const {
+        throw Error(ErrorCode::InvalidInput, what, file_, allowed);
+    }
+
+    /// Refuses memory that so few bytes do not stand for: no more than 8192 times them, or 256 MB.
+    void expect_growth(std::uint64_t packed, std::uint64_t unpacked) const {
+        constexpr std::uint64_t kAlways = std::uint64_t{256} << 20, kMostGrowth = 8192;
+        if (unpacked <= kAlways || unpacked / kMostGrowth <= packed) return;
+        fail(std::to_string(packed) + " bytes say that they are " + std::to_string(unpacked),
+             "at most 8192 times as many, or 256 MB");
+    }
+
+    [[nodiscard]] std::string unpacked(const std::string& packed, std::uint64_t length) const {
+        expect_growth(packed.size(), length);
+        auto contents = decompressed(Compressor::Lzma, packed, length);
+        if (!contents) fail(Contents::kDamaged);
+        return std::move(*contents);
+    }
+
+    [[nodiscard]] std::uint64_t size() const { return size_; }
+    [[nodiscard]] const std::string& file() const { return file_; }
+
+private:
+    std::filesystem::path path_;
+    std::string file_;
+    std::uint64_t size_ = 0;
+};
+
+SeriesPlace read_place(Contents& in) {
+    SeriesPlace place;
+    place.place = in.number();
+    place.length = in.number();
+    return place;
+}
+
+Quantization read_quantization(Contents& in) {
+    Quantization q;
+    for (double* x : {&q.origin, &q.step, &q.min, &q.max}) {
+        *x = in.real();
+        if (!std::isfinite(*x)) in.fail("a number of a quantization is not finite");
+    }
+    if (q.step < 0 || q.min > q.max) in.fail("a quantization has a step or a range below 0");
+    return q;
+}
+
+SeriesIndex read_index(const SeriesBytes& bytes) {
+    const std::string head = bytes.range({0, kSeriesHead}, "the head");
+    if (!is_series_text(head)) bytes.fail("not a file of steps", "it begins with subvol-series-1");
+    std::array<std::uint64_t, 3> numbers{};
+    for (std::size_t k = 0; k < 24; ++k) {
+        numbers[k / 8] |= std::uint64_t{static_cast<unsigned char>(head[kSeriesMagic.size() + k])} << 8 * (k % 8);
+    }
+    const std::string contents = bytes.unpacked(bytes.range({numbers[0], numbers[1]}, "the index"), numbers[2]);
+    Contents in(contents, bytes.file());
+    SeriesIndex index;
+    const std::size_t meshes = in.count("meshes", 3);
+    for (std::size_t k = 0; k < meshes; ++k) {
+        SeriesMesh mesh{read_place(in), 0};
+        mesh.unpacked = in.number();
+        index.meshes.push_back(mesh);
+    }
+    const std::size_t arrays = in.count("arrays", 3);
+    for (std::size_t a = 0; a < arrays; ++a) {
+        SeriesArray array{in.text(), {}};
+        const std::size_t channels = in.count("channels", 32);
+        if (a == 0 && channels != 3) in.fail("points have " + std::to_string(channels) + " coordinates", "3");
+        if (channels == 0 || channels > kMostChannels) {
+            in.fail("an array has " + std::to_string(channels) + " channels", "1 to 1000");
+        }
+        for (std::size_t c = 0; c < channels; ++c) array.channels.push_back(read_quantization(in));
+        index.arrays.push_back(std::move(array));
+    }
+    if (arrays == 0) in.fail("there are no points");
+    const std::size_t steps = in.count("steps", 12);
+    if (steps == 0) in.fail("there is no step");
+    for (std::size_t k = 0; k < steps; ++k) {
+        SeriesStep step;
+        step.time = in.real();
+        step.mesh = in.number();
+        step.key = in.number() != 0;
+        step.place = read_place(in);
+        if (!std::isfinite(step.time) || (k > 0 && !(step.time > index.steps.back().time)))
+            in.fail("the times of steps do not ascend");
+        if (step.mesh >= meshes)
+            in.fail("step " + std::to_string(k) + " has mesh " + std::to_string(step.mesh),
+                    std::to_string(meshes) + " are there");
+        if (!step.key && (k == 0 || step.mesh != index.steps.back().mesh))
+            in.fail("step " + std::to_string(k) + " depends on another mesh");
+        index.steps.push_back(step);
+    }
+    in.expect_end();
+    return index;
+}
+
+/// The predictions of a mesh, each made when a step has it.
+class LazyPredictions {
+public:
+    explicit LazyPredictions(const HexMesh& mesh) : points_(mesh.points.size()) {
+        HexMesh cells_alone;
+        cells_alone.points.resize(mesh.points.size());
+        cells_alone.cells = mesh.cells;
+        topology_ = build_topology(cells_alone);
+    }
+
+    void make(Spatial spatial) {
+        auto& made = made_[static_cast<std::size_t>(spatial)];
+        if (spatial == Spatial::None || made) return;
+        made = spatial == Spatial::ByNumber  ? predict_by_number(points_)
+               : spatial == Spatial::InCells ? predict_in_cells(topology_)
+                                             : predict_between_sheets(topology_);
+    }
+    /// Null for Spatial::None.
+    [[nodiscard]] const ValuePrediction* made(Spatial spatial) const {
+        const auto& made = made_[static_cast<std::size_t>(spatial)];
+        return made ? &*made : nullptr;
+    }
+
+private:
+    std::size_t points_;
+    Topology topology_;
+    std::array<std::optional<ValuePrediction>, 4> made_;
+};
+
+/// The values of an array in a step: as whole numbers, and those that are kept as they are.
+struct StepChannel {
+    Spatial spatial = Spatial::None;
+    Temporal temporal = Temporal::None;
+    std::size_t bytes_each = 0;
+    std::size_t block = 0, place_in_block = 0;
+    std::vector<std::size_t> exact_points;
+    std::vector<double> exact_values;
+    std::vector<std::int64_t> numbers;
+};
+
+struct StepArray {
+    bool present = false;
+    std::vector<StepChannel> channels;
+    std::vector<std::array<double, 2>> bounds;
+};
+
+/// Decodes steps one after the other, from a key step on.
+class StepDecoder {
+public:
+    StepDecoder(const SeriesBytes& bytes, const SeriesIndex& index, HexMesh mesh)
+        : bytes_(bytes), index_(index), mesh_(std::move(mesh)), predictions_(mesh_) {}
+
+    void decode(std::size_t step) {
+        const SeriesPlace& place = index_.steps[step].place;
+        const std::string text = bytes_.range(place, "a step");
+        Contents in(text, bytes_.file());
+        if (index_.steps[step].key) last_ = two_before_ = {};
+        std::vector<StepArray> arrays(index_.arrays.size());
+        read_head(in, arrays);
+        const std::vector<std::string> blocks = read_blocks(in, text, arrays);
+        std::vector<StepChannel*> channels;
+        std::vector<std::array<const std::vector<std::int64_t>*, 2>> known;
+        for (std::size_t a = 0; a < arrays.size(); ++a) {
+            for (std::size_t c = 0; c < arrays[a].channels.size(); ++c) {
+                channels.push_back(&arrays[a].channels[c]);
+                known.push_back({numbers_of(last_, a, c), numbers_of(two_before_, a, c)});
+                const std::size_t needed = static_cast<std::size_t>(channels.back()->temporal);
+                for (std::size_t k = 0; k < needed; ++k) {
+                    if (known.back()[k] == nullptr) bytes_.fail("an array depends on a step that does not have it");
+                }
+                predictions_.make(channels.back()->spatial);
+            }
+        }
+        tbb::parallel_for(std::size_t{0}, channels.size(),
+                          [&](std::size_t k) { decode_channel(*channels[k], known[k], blocks); });
+        two_before_ = std::move(last_);
+        last_ = std::move(arrays);
+    }
+
+    /// The mesh of the step that was decoded last.
+    [[nodiscard]] HexMesh take() {
+        HexMesh mesh = std::move(mesh_);
+        for (std::size_t a = 0; a < last_.size(); ++a) {
+            if (!last_[a].present) continue;
+            std::vector<double> values = values_of(a);
+            if (a == 0) {
+                for (std::size_t p = 0; p < mesh.points.size(); ++p) {
+                    mesh.points[p] = Vec3(values[3 * p], values[3 * p + 1], values[3 * p + 2]);
+                }
+                continue;
+            }
+            mesh.attributes.push_back({index_.arrays[a].name, static_cast<int>(index_.arrays[a].channels.size()),
+                                       std::move(values), last_[a].bounds});
+        }
+        return mesh;
+    }
+
+private:
+    [[nodiscard]] std::size_t points() const { return mesh_.points.size(); }
+
+    [[nodiscard]] static const std::vector<std::int64_t>* numbers_of(const std::vector<StepArray>& step, std::size_t array,
+                                                                     std::size_t channel) {
+        return step.empty() || !step[array].present ? nullptr : &step[array].channels[channel].numbers;
+    }
+
+    void read_head(Contents& in, std::vector<StepArray>& arrays) const {
+        std::uint64_t channels = 0;
+        for (std::size_t a = 0; a < arrays.size(); ++a) {
+            arrays[a].present = in.byte() != 0;
+            if (arrays[a].present) channels += index_.arrays[a].channels.size();
+            if (a == 0 && !arrays[a].present) in.fail("a step has no points");
+        }
+        bytes_.expect_growth(bytes_.size(), channels * points() * sizeof(double));
+        for (std::size_t a = 0; a < arrays.size(); ++a) {
+            if (!arrays[a].present) continue;
+            arrays[a].channels.resize(index_.arrays[a].channels.size());
+            for (StepChannel& channel : arrays[a].channels) read_channel(in, channel);
+        }
+        for (std::size_t a = 0; a < arrays.size(); ++a) {
+            if (!arrays[a].present) continue;
+            const std::size_t bounds = in.count("bounds", 16);
+            if (bounds != 0 && (a == 0 || bounds != arrays[a].channels.size()))
+                in.fail("an array has bounds for other channels");
+            for (std::size_t k = 0; k < bounds; ++k) {
+                const double low = in.real(), high = in.real();
+                if (!(low <= high)) in.fail("the bounds of an array are not in order");
+                arrays[a].bounds.push_back({low, high});
+            }
+        }
+    }
+
+    void read_channel(Contents& in, StepChannel& channel) const {
+        const std::uint64_t mode = in.byte();
+        if (mode / 4 > 2) in.fail("there is no prediction " + std::to_string(mode));
+        channel.spatial = static_cast<Spatial>(mode % 4);
+        channel.temporal = static_cast<Temporal>(mode / 4);
+        channel.bytes_each = in.byte();
+        if (channel.bytes_each > kMostResidualBytes) {
+            in.fail("residuals of " + std::to_string(channel.bytes_each) + " bytes", "at most 7");
+        }
+        const std::size_t exact = in.count("exact values", 9);
+        std::uint64_t point = 0;
+        for (std::size_t k = 0; k < exact; ++k) {
+            const std::uint64_t change = in.number();
+            if (change >= points() || point + change >= points()) in.fail("an exact value is at no point");
+            point += change;
+            channel.exact_points.push_back(point);
+            channel.exact_values.push_back(in.real());
+        }
+    }
+
+    [[nodiscard]] std::vector<std::string> read_blocks(Contents& in, const std::string& text,
+                                                       std::vector<StepArray>& arrays) const {
+        std::vector<std::size_t> sizes;
+        bool full = true;
+        for (StepArray& array : arrays) {
+            for (StepChannel& channel : array.channels) {
+                if (channel.bytes_each == 0) continue;
+                if (full) sizes.push_back(0);
+                channel.block = sizes.size() - 1;
+                channel.place_in_block = sizes.back();
+                sizes.back() += channel.bytes_each * points();
+                full = sizes.back() >= kBlockBytes;
+            }
+        }
+        std::vector<SeriesPlace> packed;
+        for (std::size_t b = 0; b < sizes.size(); ++b) packed.push_back({0, in.number()});
+        std::uint64_t place = text.size() - in.left(), unpacked = 0;
+        for (std::size_t b = 0; b < sizes.size(); ++b) {
+            packed[b].place = place;
+            if (packed[b].length > text.size() - place) in.fail("a block of a step is not in the file");
+            place += packed[b].length;
+            unpacked += sizes[b];
+        }
+        if (place != text.size()) in.fail("bytes follow the last block of a step");
+        bytes_.expect_growth(text.size(), unpacked);
+        std::vector<std::string> blocks(sizes.size());
+        tbb::parallel_for(std::size_t{0}, sizes.size(), [&](std::size_t b) {
+            auto block =
+                decompressed(Compressor::Lzma, std::string_view(text).substr(packed[b].place, packed[b].length), sizes[b]);
+            if (!block) bytes_.fail(Contents::kDamaged);
+            blocks[b] = std::move(*block);
+        });
+        return blocks;
+    }
+
+    void decode_channel(StepChannel& channel, const std::array<const std::vector<std::int64_t>*, 2>& known,
+                        const std::vector<std::string>& blocks) {
+        static const std::vector<std::int64_t> kNothing;
+        const auto &last = known[0] ? *known[0] : kNothing, &two_before = known[1] ? *known[1] : kNothing;
+        const ValuePrediction* prediction = predictions_.made(channel.spatial);
+        std::vector<std::int64_t>& numbers = channel.numbers;
+        numbers.resize(points());
+        const char* planes = channel.bytes_each == 0 ? nullptr : blocks[channel.block].data() + channel.place_in_block;
+        const auto residual = [&](std::size_t i) {
+            std::uint64_t rest = 0;
+            for (std::size_t plane = 0; plane < channel.bytes_each; ++plane) {
+                rest |= std::uint64_t{static_cast<unsigned char>(planes[plane * points() + i])} << 8 * plane;
+            }
+            return unfolded(rest);
+        };
+        const auto within = [&](std::int64_t n, std::int64_t most) {
+            if (n < -most || n > most) bytes_.fail("a value of a step is too large");
+            return n;
+        };
+        for (std::size_t i = 0; i < numbers.size(); ++i) {
+            if (prediction == nullptr) {
+                numbers[i] = within(residual(i), kMostChange);
+            } else {
+                numbers[prediction->order[i]] = within(prediction->predict(i, numbers) + residual(i), kMostChange);
+            }
+        }
+        for (std::size_t p = 0; p < numbers.size(); ++p) {
+            numbers[p] = within(numbers[p] + earlier(channel.temporal, last, two_before, p), kMostQuantized);
+        }
+    }
+
+    [[nodiscard]] std::vector<double> values_of(std::size_t array) const {
+        const auto& quantizations = index_.arrays[array].channels;
+        const std::size_t channels = quantizations.size(), count = last_[array].channels.front().numbers.size();
+        std::vector<double> values(channels * count);
+        for (std::size_t c = 0; c < channels; ++c) {
+            const StepChannel& channel = last_[array].channels[c];
+            for (std::size_t p = 0; p < count; ++p) values[p * channels + c] = quantizations[c].value(channel.numbers[p]);
+            for (std::size_t k = 0; k < channel.exact_points.size(); ++k) {
+                values[channel.exact_points[k] * channels + c] = channel.exact_values[k];
+            }
+        }
+        return values;
+    }
+
+    const SeriesBytes& bytes_;
+    const SeriesIndex& index_;
+    HexMesh mesh_;
+    LazyPredictions predictions_;
+    std::vector<StepArray> last_, two_before_;
+};
+
+HexMesh read_cells_of(const SeriesBytes& bytes, const SeriesMesh& stored) {
+    const std::string contents = bytes.unpacked(bytes.range(stored.place, "a mesh"), stored.unpacked);
+    Contents in(contents, bytes.file());
+    HexMesh mesh = read_cells(in, 0);
+    in.expect_end();
+    return mesh;
+}
+
+}  // namespace
+
+bool is_series_text(std::string_view text) {
+    return text.starts_with(kSeriesMagic);
+}
+
+std::vector<double> series_file_times(const std::filesystem::path& path) {
+    std::vector<double> times;
+    for (const SeriesStep& step : read_index(SeriesBytes(path)).steps) times.push_back(step.time);
+    return times;
+}
+
+HexMesh read_series_file(const std::filesystem::path& path, std::size_t step) {
+    const SeriesBytes bytes(path);
+    const SeriesIndex index = read_index(bytes);
+    if (step >= index.steps.size()) bytes.fail("there is no step " + std::to_string(step));
+    std::size_t key = step;
+    while (!index.steps[key].key) --key;
+    try {
+        StepDecoder decoder(bytes, index, read_cells_of(bytes, index.meshes[index.steps[step].mesh]));
+        for (std::size_t k = key; k <= step; ++k) decoder.decode(k);
+        HexMesh mesh = decoder.take();
+        if (index.steps.size() > 1) mesh.time = index.steps[step].time;
+        validate(mesh);
+        return mesh;
+    } catch (const Error& error) {
+        if (error.where() == bytes.file()) throw;
+        throw Error(error.code(), error.message(), bytes.file(), error.allowed());
+    }
+}
+
+}  // namespace subvol::detail
