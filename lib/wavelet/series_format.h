@@ -20,7 +20,9 @@ namespace subvol::detail {
 // A .svw file of steps: kSeriesMagic; place, length and unpacked length of the index (8 bytes each, lowest first); meshes and
 // steps one after the other; the index. Numbers are as in wavelet_format.h.
 //
-//   mesh    compressed: points and cells, creases, sharp faces, as in a file of wavelets
+//   mesh    compressed: levels; points and cells, creases, sharp faces, as in a file of wavelets; refined so often they are
+//   those
+//             of the steps
 //   step    for each array a byte, 1 if the step has it; then for each channel of these
 //             a byte: the prediction and, times 4, what of earlier steps it is added to (Spatial, Temporal)
 //             a byte: how many bytes each residual has; 0: all are 0
@@ -38,19 +40,21 @@ namespace subvol::detail {
 inline constexpr std::string_view kSeriesMagic = "subvol-series-1\n";
 inline constexpr std::size_t kSeriesHead = kSeriesMagic.size() + 24;
 inline constexpr std::size_t kBlockBytes = std::size_t{1} << 20;
-inline constexpr std::int64_t kMostQuantized = std::int64_t{1} << 48;
+inline constexpr int kFractionBits = 8;
+inline constexpr std::int64_t kMostQuantized = std::int64_t{1} << 50;
 
 /// From which values of a step the residual is predicted.
 enum class Spatial : std::uint8_t { None, ByNumber, InCells, BetweenSheets };
 /// What the step before, or the two before, predict.
 enum class Temporal : std::uint8_t { None, Same, Linear };
 
-/// How a channel is made of whole numbers: origin + n · step, within [min, max].
+/// How a channel is made of whole numbers: origin + n · step / 2⁸, within [min, max]. A residual of 1 changes n by 2⁸: what is
+/// predicted may lie between steps.
 struct Quantization {
     double origin = 0, step = 0, min = 0, max = 0;
 
     [[nodiscard]] double value(std::int64_t n) const {
-        const double x = origin + static_cast<double>(n) * step, near = 1e-6 * step;
+        const double x = origin + std::ldexp(static_cast<double>(n), -kFractionBits) * step, near = 1e-6 * step;
         return x < min + near ? min : x > max - near ? max : x;  // the ends are whole numbers of steps, but for rounding
     }
 };
@@ -88,6 +92,11 @@ struct SeriesIndex {
     if (temporal == Temporal::None) return 0;
     return temporal == Temporal::Same ? before[p] : 2 * before[p] - two_before[p];
 }
+
+inline constexpr int kMostLevels = 6;
+
+/// The cells, creases and sharp faces of a mesh that was refined; its points are at the origin.
+[[nodiscard]] HexMesh refined_cells(const HexMesh& coarse, int levels);
 
 /// Whether a text begins as a file of steps does.
 [[nodiscard]] bool is_series_text(std::string_view text);

@@ -6,6 +6,7 @@
 #include "series_format.h"
 #include "subvol/detail/read_file.h"
 #include "subvol/error.h"
+#include "subvol/refine.h"
 #include "vtu_bytes.h"
 #include "wavelet_bytes.h"
 
@@ -14,7 +15,7 @@ namespace subvol::detail {
 namespace {
 
 constexpr std::size_t kMostChannels = 1000;
-constexpr int kMostResidualBytes = 7;
+constexpr int kMostResidualBytes = 6;
 constexpr std::int64_t kMostChange = 4 * kMostQuantized;
 
 /// The bytes of a file, each range only if it is there.
@@ -265,7 +266,7 @@ private:
         channel.temporal = static_cast<Temporal>(mode / 4);
         channel.bytes_each = in.byte();
         if (channel.bytes_each > kMostResidualBytes) {
-            in.fail("residuals of " + std::to_string(channel.bytes_each) + " bytes", "at most 7");
+            in.fail("residuals of " + std::to_string(channel.bytes_each) + " bytes", "at most 6");
         }
         const std::size_t exact = in.count("exact values", 9);
         std::uint64_t point = 0;
@@ -326,7 +327,7 @@ private:
             for (std::size_t plane = 0; plane < channel.bytes_each; ++plane) {
                 rest |= std::uint64_t{static_cast<unsigned char>(planes[plane * points() + i])} << 8 * plane;
             }
-            return unfolded(rest);
+            return unfolded(rest) * (std::int64_t{1} << kFractionBits);
         };
         const auto within = [&](std::int64_t n, std::int64_t most) {
             if (n < -most || n > most) bytes_.fail("a value of a step is too large");
@@ -368,12 +369,23 @@ private:
 HexMesh read_cells_of(const SeriesBytes& bytes, const SeriesMesh& stored) {
     const std::string contents = bytes.unpacked(bytes.range(stored.place, "a mesh"), stored.unpacked);
     Contents in(contents, bytes.file());
+    const std::uint64_t levels = in.number();
+    if (levels > kMostLevels) in.fail("the number of levels is " + std::to_string(levels), "0 to 6");
     HexMesh mesh = read_cells(in, 0);
     in.expect_end();
-    return mesh;
+    if (levels == 0) return mesh;
+    constexpr std::uint64_t kBytesOfCell = 512;  // while it is refined
+    bytes.expect_growth(bytes.size(), (kBytesOfCell * mesh.cells.size()) << 3 * levels);
+    return refined_cells(mesh, static_cast<int>(levels));
 }
 
 }  // namespace
+
+HexMesh refined_cells(const HexMesh& coarse, int levels) {
+    HexMesh fine = refine(coarse, {.scheme = {.kind = Scheme::Linear}, .levels = levels});
+    fine.attributes.clear();
+    return fine;
+}
 
 bool is_series_text(std::string_view text) {
     return text.starts_with(kSeriesMagic);

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Values are rounded to whole numbers first, and these are predicted: the error is that of the rounding, whatever the
-// prediction, and both sides compute with whole numbers alone. Which prediction is best differs from field to field and from
-// step to step, so that all are tried, and the one is taken whose residuals are compressed best.
+// Each value is predicted from values as they are read again, and what it differs from its prediction is rounded to whole
+// steps: the error is that of this rounding, whatever the prediction. Both sides compute in whole numbers, 2⁸ to a step, so
+// that every machine reads the same. Which prediction is best differs from field to field and from step to step: all are tried,
+// and the one is taken whose residuals are compressed best.
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -12,6 +13,7 @@
 #include "series_format.h"
 #include "subvol/detail/parallel_each.h"
 #include "subvol/error.h"
+#include "subvol/hierarchy.h"
 #include "subvol/mesh_report.h"
 #include "subvol/series_file.h"
 #include "vtu_bytes.h"
@@ -63,7 +65,8 @@ Quantization quantization(const ChannelRange& range, double most) {
     }
     const bool around_zero = range.min < 0 && range.max > 0;
     const double length = around_zero ? std::max(range.max, -range.min) : range.size();
-    const double steps = std::max(1.0, std::ceil(length / (2 * most) * (1 + 1e-9)));
+    // A residual is rounded by half a step at most, and a target by half of 2⁻⁸ of one.
+    const double steps = std::max(1.0, std::ceil(length / (2 * most) * (1 + 1e-9 + std::ldexp(1.0, -kFractionBits))));
     return {around_zero ? 0 : range.min, length / steps, range.min, range.max};
 }
 
@@ -72,7 +75,8 @@ std::vector<double> rounded_values(std::span<const double> values, std::span<con
     std::vector<double> rounded(values.begin(), values.end());
     parallel_each(rounded.size(), [&](std::size_t i) {
         const Quantization& q = channels[i % channels.size()];
-        if (std::isfinite(rounded[i]) && q.step > 0) rounded[i] = q.value(std::llround((rounded[i] - q.origin) / q.step));
+        if (std::isfinite(rounded[i]) && q.step > 0)
+            rounded[i] = q.value(std::llround((rounded[i] - q.origin) / q.step) * (std::int64_t{1} << kFractionBits));
     });
     return rounded;
 }
@@ -87,6 +91,26 @@ std::size_t inverted_cells_at(const HexMesh& mesh, std::span<const double> place
 
 bool same_cells(const HexMesh& a, const HexMesh& b) {
     return a.points.size() == b.points.size() && a.cells == b.cells && a.creases == b.creases && a.sharp_faces == b.sharp_faces;
+}
+
+/// A mesh whose refinement has the same cells, numbered alike.
+struct CoarseCells {
+    HexMesh mesh;
+    int levels = 0;
+};
+
+std::optional<CoarseCells> coarse_cells(const HexMesh& cells) {
+    try {
+        // A control mesh that was refined may itself have the cells of a coarser one, but in another order.
+        for (int levels = find_hierarchy(cells, {.levels = kMostLevels}).levels; levels > 0; --levels) {
+            CoarseCells found{find_hierarchy(cells, {.levels = levels}).coarse, levels};
+            found.mesh.points.assign(found.mesh.points.size(), Vec3(0));
+            found.mesh.attributes.clear();
+            if (same_cells(refined_cells(found.mesh, levels), cells)) return found;
+        }
+    } catch (const Error&) {  // it refines none
+    }
+    return std::nullopt;
 }
 
 /// What the first look at all steps finds: ranges, and how exact points have to be.
@@ -169,36 +193,40 @@ private:
     double length_ = 0, point_error_ = 0;
 };
 
-/// A channel of a step as whole numbers.
+/// A channel in parts of steps; 0 where a value is not finite or too large.
+std::vector<std::int64_t> targets_of(std::span<const double> values, std::size_t channel, std::size_t channels,
+                                     const Quantization& q) {
+    std::vector<std::int64_t> targets(values.size() / channels, 0);
+    if (q.step == 0) return targets;
+    for (std::size_t p = 0; p < targets.size(); ++p) {
+        const double part = std::ldexp((values[p * channels + channel] - q.origin) / q.step, kFractionBits);
+        if (std::abs(part) <= static_cast<double>(kMostQuantized / 2)) targets[p] = std::llround(part);
+    }
+    return targets;
+}
+
+/// What is kept of a channel.
 ///
 /// exact: the points whose values are kept as they are, and these
-struct ChannelNumbers {
-    std::vector<std::int64_t> numbers;
+struct KeptValues {
     std::vector<std::size_t> exact_points;
     std::vector<double> exact_values;
     double max_error = 0;
 };
 
-ChannelNumbers quantized(std::span<const double> values, std::size_t channel, std::size_t channels, const Quantization& q,
-                         double most) {
-    ChannelNumbers made;
-    made.numbers.resize(values.size() / channels);
-    for (std::size_t p = 0; p < made.numbers.size(); ++p) {
-        const double x = values[p * channels + channel];
-        const double part = q.step > 0 ? (x - q.origin) / q.step : 0;
-        const bool small = std::abs(part) <= static_cast<double>(kMostQuantized);  // not if it is not a number
-        const std::int64_t n = small ? std::llround(part) : 0;
-        const double error = std::abs(q.value(n) - x);
-        if (small && error <= most) {
-            made.max_error = std::max(made.max_error, error);
-            made.numbers[p] = n;
+KeptValues kept_values(std::span<const double> values, std::size_t channel, std::size_t channels, const Quantization& q,
+                       std::span<const std::int64_t> numbers, double most) {
+    KeptValues kept;
+    for (std::size_t p = 0; p < numbers.size(); ++p) {
+        const double x = values[p * channels + channel], error = std::abs(q.value(numbers[p]) - x);
+        if (error <= most) {
+            kept.max_error = std::max(kept.max_error, error);
             continue;
         }
-        made.exact_points.push_back(p);
-        made.exact_values.push_back(x);
-        made.numbers[p] = 0;
+        kept.exact_points.push_back(p);
+        kept.exact_values.push_back(x);
     }
-    return made;
+    return kept;
 }
 
 /// The predictions of a mesh.
@@ -222,20 +250,31 @@ struct Predictions {
     }
 };
 
-/// Residuals as planes of bytes.
+/// Residuals as planes of bytes, and the numbers that they give.
 struct Residuals {
     std::size_t bytes_each = 0;
     std::string planes;
+    std::vector<std::int64_t> numbers;
 };
 
-Residuals residuals_of(const std::vector<std::int64_t>& numbers, const ValuePrediction* prediction) {
-    std::vector<std::uint64_t> rest(numbers.size());
+/// base: what earlier steps predict
+Residuals residuals_of(const std::vector<std::int64_t>& targets, const std::vector<std::int64_t>& base,
+                       const ValuePrediction* prediction) {
+    constexpr std::int64_t kHalf = std::int64_t{1} << (kFractionBits - 1);
+    Residuals made;
+    std::vector<std::int64_t>& changes = made.numbers;
+    changes.resize(targets.size());
+    std::vector<std::uint64_t> rest(targets.size());
     std::uint64_t all = 0;
-    for (std::size_t i = 0; i < numbers.size(); ++i) {
-        rest[i] = folded(prediction == nullptr ? numbers[i] : numbers[prediction->order[i]] - prediction->predict(i, numbers));
+    for (std::size_t i = 0; i < targets.size(); ++i) {
+        const std::size_t p = prediction == nullptr ? i : prediction->order[i];
+        const std::int64_t predicted = prediction == nullptr ? 0 : prediction->predict(i, changes);
+        const std::int64_t residual = (targets[p] - base[p] - predicted + kHalf) >> kFractionBits;
+        changes[p] = predicted + residual * (std::int64_t{1} << kFractionBits);
+        rest[i] = folded(residual);
         all |= rest[i];
     }
-    Residuals made;
+    for (std::size_t p = 0; p < changes.size(); ++p) changes[p] += base[p];
     made.bytes_each = (static_cast<std::size_t>(std::bit_width(all)) + 7) / 8;
     made.planes.resize(made.bytes_each * rest.size());
     for (std::size_t plane = 0; plane < made.bytes_each; ++plane) {
@@ -252,12 +291,14 @@ struct Mode {
 
 /// What is tried, given how many steps before are known.
 std::vector<Mode> modes(std::size_t steps_before) {
-    std::vector<Mode> tried{
-        {Spatial::ByNumber, Temporal::None}, {Spatial::InCells, Temporal::None}, {Spatial::BetweenSheets, Temporal::None}};
-    for (const Spatial spatial : {Spatial::None, Spatial::ByNumber, Spatial::InCells, Spatial::BetweenSheets}) {
+    std::vector<Mode> tried;
+    if (steps_before > 0) tried.push_back({Spatial::None, Temporal::Same});
+    for (const Spatial spatial : {Spatial::ByNumber, Spatial::InCells, Spatial::BetweenSheets}) {
+        tried.push_back({spatial, Temporal::None});
         if (steps_before > 0) tried.push_back({spatial, Temporal::Same});
         if (steps_before > 1) tried.push_back({spatial, Temporal::Linear});
     }
+    if (steps_before > 1) tried.push_back({Spatial::None, Temporal::Linear});
     return tried;
 }
 
@@ -268,17 +309,16 @@ struct CodedChannel {
 };
 
 /// before: the numbers in the steps before, the latest first; empty ones are not known
-CodedChannel coded(const std::vector<std::int64_t>& numbers, const std::array<const std::vector<std::int64_t>*, 2>& before,
+CodedChannel coded(const std::vector<std::int64_t>& targets, const std::array<const std::vector<std::int64_t>*, 2>& before,
                    const Predictions& predictions) {
     static const std::vector<std::int64_t> kNothing;
     const std::vector<std::int64_t>&last = before[0] ? *before[0] : kNothing, &two_before = before[1] ? *before[1] : kNothing;
     CodedChannel best;
-    if (numbers == last) return {{Spatial::None, Temporal::Same}, {}, 0};
     best.bytes = std::numeric_limits<std::uint64_t>::max();
-    std::vector<std::int64_t> changes(numbers.size());
+    std::vector<std::int64_t> base(targets.size());
     for (const Mode mode : modes(last.empty() ? 0 : two_before.empty() ? 1 : 2)) {
-        for (std::size_t p = 0; p < numbers.size(); ++p) changes[p] = numbers[p] - earlier(mode.temporal, last, two_before, p);
-        Residuals residuals = residuals_of(changes, predictions.of(mode.spatial));
+        for (std::size_t p = 0; p < base.size(); ++p) base[p] = earlier(mode.temporal, last, two_before, p);
+        Residuals residuals = residuals_of(targets, base, predictions.of(mode.spatial));
         const std::uint64_t bytes = residuals.planes.empty() ? 0 : compressed_numbers(residuals.planes, Effort::Least).size();
         if (bytes >= best.bytes) continue;
         best = {mode, std::move(residuals), bytes};
@@ -345,7 +385,9 @@ private:
         cells_.creases = mesh.creases;
         cells_.sharp_faces = mesh.sharp_faces;
         Bytes out;
-        put_mesh(mesh, out);
+        const std::optional<CoarseCells> coarse = coarse_cells(cells_);
+        out.number(coarse ? static_cast<std::uint64_t>(coarse->levels) : 0);
+        put_mesh(coarse ? coarse->mesh : cells_, out);
         const std::string packed = compressed_numbers(out.all());
         index_.meshes.push_back({{file_.position(), packed.size()}, out.all().size()});
         report_.mesh_bytes += packed.size();
@@ -364,8 +406,8 @@ private:
         struct Task {
             std::size_t array, channel;
             std::span<const double> values;
-            ChannelNumbers numbers{};
             CodedChannel coded{};
+            KeptValues kept{};
         };
         const std::vector<double> places = coordinates(mesh.points);
         Bytes head;
@@ -387,28 +429,29 @@ private:
         tbb::parallel_for(std::size_t{0}, tasks.size(), [&](std::size_t t) {
             Task& task = tasks[t];
             const auto& channels = index_.arrays[task.array].channels;
-            task.numbers =
-                quantized(task.values, task.channel, channels.size(), channels[task.channel], survey_.most_error(task.array));
+            const Quantization& q = channels[task.channel];
             const History& history = before_[task.array];
             std::array<const std::vector<std::int64_t>*, 2> known{};
             for (std::size_t k = 0; k < 2 && k < history.size(); ++k) known[k] = &history[k][task.channel];
-            task.coded = coded(task.numbers.numbers, known, *predictions_);
+            task.coded = coded(targets_of(task.values, task.channel, channels.size(), q), known, *predictions_);
+            task.kept = kept_values(task.values, task.channel, channels.size(), q, task.coded.residuals.numbers,
+                                    survey_.most_error(task.array));
         });
         for (const Task& task : tasks) {
             head.byte(static_cast<std::uint64_t>(task.coded.mode.spatial) +
                       4 * static_cast<std::uint64_t>(task.coded.mode.temporal));
             head.byte(task.coded.residuals.bytes_each);
-            head.number(task.numbers.exact_points.size());
+            head.number(task.kept.exact_points.size());
             std::size_t last = 0;
-            for (std::size_t k = 0; k < task.numbers.exact_points.size(); ++k) {
-                head.number(task.numbers.exact_points[k] - last);
-                head.real(task.numbers.exact_values[k]);
-                last = task.numbers.exact_points[k];
+            for (std::size_t k = 0; k < task.kept.exact_points.size(); ++k) {
+                head.number(task.kept.exact_points[k] - last);
+                head.real(task.kept.exact_values[k]);
+                last = task.kept.exact_points[k];
             }
             SeriesArrayReport& kept = report_.arrays[task.array];
-            kept.bytes += task.coded.bytes + 10 * task.numbers.exact_points.size();
-            kept.exact += task.numbers.exact_points.size();
-            kept.max = std::max(kept.max, task.numbers.max_error / survey_.unit(task.array));
+            kept.bytes += task.coded.bytes + 10 * task.kept.exact_points.size();
+            kept.exact += task.kept.exact_points.size();
+            kept.max = std::max(kept.max, task.kept.max_error / survey_.unit(task.array));
         }
         for (const Attribute* attribute : there) {
             head.number(attribute == nullptr ? 0 : attribute->bounds.size());
@@ -419,14 +462,14 @@ private:
             }
         }
         put_blocks(tasks, head);
-        measure_shapes(mesh, places);
+        measure_shapes(mesh, places, tasks);
         for (Task& task : tasks) {
             History& history = before_[task.array];
             if (task.channel == 0) {
                 history.insert(history.begin(), std::vector<std::vector<std::int64_t>>());
                 history.resize(std::min<std::size_t>(history.size(), 2));
             }
-            history.front().push_back(std::move(task.numbers.numbers));
+            history.front().push_back(std::move(task.coded.residuals.numbers));
         }
     }
 
@@ -447,9 +490,17 @@ private:
         for (const std::string& block : blocks) file_.write(block);
     }
 
-    void measure_shapes(const HexMesh& mesh, std::span<const double> places) {
+    /// The first three tasks have the coordinates.
+    template <class Tasks>
+    void measure_shapes(const HexMesh& mesh, std::span<const double> places, const Tasks& tasks) {
+        std::vector<double> kept(places.begin(), places.end());
+        for (std::size_t c = 0; c < 3; ++c) {
+            const auto& numbers = tasks[c].coded.residuals.numbers;
+            for (std::size_t p = 0; p < numbers.size(); ++p) kept[3 * p + c] = index_.arrays[0].channels[c].value(numbers[p]);
+            for (const std::size_t p : tasks[c].kept.exact_points) kept[3 * p + c] = places[3 * p + c];
+        }
         report_.inverted_cells_before = inverted_cells_at(mesh, places);
-        report_.inverted_cells = inverted_cells_at(mesh, rounded_values(places, index_.arrays.front().channels));
+        report_.inverted_cells = inverted_cells_at(mesh, kept);
     }
 
     void put_index() {

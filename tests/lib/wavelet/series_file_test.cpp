@@ -19,6 +19,7 @@
 #include "subvol/mesh_series.h"
 #include "subvol/model.h"
 #include "subvol/refine.h"
+#include "subvol/topology.h"
 #include "value_prediction.h"
 
 namespace subvol {
@@ -170,9 +171,17 @@ TEST_F(SeriesFile, OtherCellsAndFieldsBeginAnew) {
     }
 }
 
+TEST_F(SeriesFile, TheCellsOfARefinedMeshTakeWhatThoseOfItsControlMeshDo) {
+    const HexMesh coarse = make_model("ball", 3);
+    const std::uint64_t once = write_series_file(path("a.svw"), refine(coarse, {.levels = 1})).mesh_bytes;
+    const HexMesh fine = refine(coarse, {.levels = 2});
+    EXPECT_EQ(write_series_file(path("a.svw"), fine).mesh_bytes, once);
+    EXPECT_EQ(read_mesh(path("a.svw")).mesh.cells, fine.cells);
+}
+
 TEST_F(SeriesFile, CreasesAndSharpFacesAreKept) {
-    HexMesh mesh = test::make_box(3, 3, 3);
-    tag_creases(mesh, 60);
+    HexMesh mesh = make_model("ball", 4);
+    tag_creases(mesh, 10);
     ASSERT_FALSE(mesh.creases.empty());
     write_series_file(path("a.svw"), mesh);
     EXPECT_EQ(read_mesh(path("a.svw")).mesh.creases, mesh.creases);
