@@ -93,6 +93,8 @@ struct SeriesIndex {
     return temporal == Temporal::Same ? before[p] : 2 * before[p] - two_before[p];
 }
 
+/// Few bytes stand for no more cells than these; larger meshes are stored cell by cell.
+inline constexpr std::size_t kMostRefinedCells = std::size_t{1} << 22;
 inline constexpr int kMostLevels = 6;
 
 /// The cells, creases and sharp faces of a mesh that was refined; its points are at the origin.

@@ -374,8 +374,10 @@ HexMesh read_cells_of(const SeriesBytes& bytes, const SeriesMesh& stored) {
     HexMesh mesh = read_cells(in, 0);
     in.expect_end();
     if (levels == 0) return mesh;
-    constexpr std::uint64_t kBytesOfCell = 512;  // while it is refined
-    bytes.expect_growth(bytes.size(), (kBytesOfCell * mesh.cells.size()) << 3 * levels);
+    if (mesh.cells.size() > kMostRefinedCells >> 3 * levels) {
+        in.fail(std::to_string(levels) + " levels of " + std::to_string(mesh.cells.size()) + " cells are too many",
+                "at most 4194304 cells that are refined");
+    }
     return refined_cells(mesh, static_cast<int>(levels));
 }
 

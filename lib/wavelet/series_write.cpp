@@ -100,6 +100,7 @@ struct CoarseCells {
 };
 
 std::optional<CoarseCells> coarse_cells(const HexMesh& cells) {
+    if (cells.cells.size() > kMostRefinedCells) return std::nullopt;
     try {
         // A control mesh that was refined may itself have the cells of a coarser one, but in another order.
         for (int levels = find_hierarchy(cells, {.levels = kMostLevels}).levels; levels > 0; --levels) {
