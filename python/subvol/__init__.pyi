@@ -11,7 +11,7 @@ from ._errors import Cancelled, Error, FileError, InvalidInput, MissingCapabilit
 from ._exchange import from_meshio, from_pyvista, to_meshio, to_pyvista, to_vtk
 from ._fields import LimitSamples, as_field, evaluate
 from ._measure import FoldCheck, PointsError, ProbeSamples, Slice, StreamlineSet, SurfaceMesh, read_surface
-from ._mesh import Series, model, models, only, open_series, quantity, warp, write_mesh, write_wavelets
+from ._mesh import Series, model, models, only, open_series, quantity, warp, write_mesh, write_series, write_wavelets
 from ._page import Page
 from ._pictures import FieldComparison, ImageComparison, compare, compare_fields, compare_images, read_image, write_image
 from ._points import kernels, read_points
@@ -65,7 +65,7 @@ def check_folds(
 def control_mesh(
     points: npt.ArrayLike, triangles: npt.ArrayLike, *, scheme: str = 'mcq', tension: float = 0.0625,
     crease_angle: Optional[float] = None, cells: int = 24, max_cells: int = 2000000, rounds: int = 15,
-    keep_folds: bool = False, boundary_move: float = 0.2, progress: Progress = None
+    sharp_angle: float = 40.0, keep_folds: bool = False, boundary_move: float = 0.2, progress: Progress = None
 ) -> tuple[HexMesh, dict[str, Any]]:
     """A mesh of hexahedra whose limit fills a closed surface of triangles.
 
@@ -79,6 +79,7 @@ def control_mesh(
     cells:       cells along the longest side of the surface's box [2 to 1000]
     max_cells:   the most cells that may be made [1 to 1000000000]
     rounds:      how often the points are drawn to the nearest places of the surface [1 to 100]
+    sharp_angle: edges of the surface that are bent by more become creases of the mesh (180: none) [1 to 180]
     keep_folds:  leave the points where they are if the limit folds
     boundary_move: points of the boundary may move by this part of their shortest edge where the limit folds [0 to 10; not
                  with keep_folds]
@@ -637,5 +638,5 @@ __all__ = [
     "compare_fields", "compare_images", "control_mesh", "evaluate", "evaluate_limit", "fit", "fit_shape", "from_meshio", "from_pyvista", "from_vtk", "gl_devices", "kernels",
     "measure", "mend_folds", "model", "models", "only", "open_series", "page", "points_error", "probe", "quantity", "rasterize", "read_image", "read_mesh", "read_points", "read_surface",
     "read_vdb", "reduce", "render", "run_study", "sample", "sample_grid", "set_threads", "slice", "streamlines", "studies", "study", "subdivide",
-    "surface", "to_meshio", "to_pyvista", "to_vtk", "warp", "write_image", "write_mesh", "write_points", "write_usd", "write_vdb", "write_wavelets",
+    "surface", "to_meshio", "to_pyvista", "to_vtk", "warp", "write_image", "write_mesh", "write_points", "write_series", "write_usd", "write_vdb", "write_wavelets",
 ]
