@@ -76,8 +76,10 @@ void PictureArguments::add_light_to(CLI::App& app) {
     app.add_flag("--axes", axes, "draw the directions of x, y and z in the lower left corner");
     app.add_flag("--scale-bar", scale_bar,
                  "draw a bar of a round length in the lower right corner, at the depth of the box's centre");
-    app.add_flag("--edges", edges,
-                 "splat: draw the edges of the control mesh over the picture, also where it is cut; hidden lines hidden");
+    app.add_flag(
+        "--edges", edges,
+        "draw the edges of the control mesh into the picture, also where it is cut; hidden lines hidden, and in a volume "
+        "as far as what is before them is opaque");
     app.add_flag(
         "--extremes", extremes,
         "mark the places of the least and the largest value, with the values: of a solid's boundary, else of the control "

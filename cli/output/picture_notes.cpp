@@ -42,23 +42,36 @@ bool is_hidden(const Picture& picture, double z, const Vec2& place) {
 }  // namespace
 
 View PictureNotes::view_of_volume(const View& view) const {
-    return flow ? ended_at(*flow, view) : view;
+    const View ended = flow ? ended_at(*flow, view) : view;
+    return shells && shells->ended ? ended_at(*shells, ended) : ended;
 }
 
 void PictureNotes::draw_shells(Picture& picture, const View& view) const {
-    if (flow) flow->draw_into(picture.image, picture.depth, view);
-    if (shells) shells->draw_into(picture.image, picture.depth, view_of_volume(view));
+    if (flow) flow->draw_into(picture.image, picture.depth, shells && shells->ended ? ended_at(*shells, view) : view);
+    if (shells) shells->draw_into(picture.image, picture.depth, flow ? ended_at(*flow, view) : view);
 }
 
-void PictureNotes::draw_over(Picture& picture, const View& view) const {
-    if (edges != nullptr) {
-        const double scale = std::max(1.0, std::min(view.width(), view.height()) / 512.0);
-        if (!edges->cells.empty())
-            draw_edges(picture.image, picture.depth, view, *edges, {.width_px = scale, .color = ink, .alpha = 0.6}, clip);
-        if (shells) {
-            draw_edges(picture.image, picture.depth, view, shells->control, {.width_px = scale, .color = ink, .alpha = 0.6},
-                       clip);
-        }
+DrawnLines PictureNotes::draw_within(const View& view, const DrawPicture& draw, Progress* progress) const {
+    DrawnLines drawn;
+    if (edges == nullptr || boundary == nullptr) return drawn;
+    const LineOptions style = edge_style(view, ink);
+    std::vector<LineSample> samples = edge_samples(view, *edges, style, clip);
+    if (shells) {
+        const std::vector<LineSample> more = edge_samples(view, shells->control, style, clip);
+        samples.insert(samples.end(), more.begin(), more.end());
+    }
+    drawn.lines = sort_lines(samples, *boundary, view_of_volume(view), clip);
+    for (const LineLayer& layer : drawn.lines.within) drawn.ended.push_back(draw(ended_at(layer, view), progress).image);
+    return drawn;
+}
+
+void PictureNotes::draw_over(Picture& picture, const View& view, const DrawnLines& lines) const {
+    if (edges != nullptr && within) {
+        draw_lines(picture.image, lines.lines, lines.ended, ink);
+    } else if (edges != nullptr) {
+        const LineOptions style = edge_style(view, ink);
+        if (!edges->cells.empty()) draw_edges(picture.image, picture.depth, view, *edges, style, clip);
+        if (shells) draw_edges(picture.image, picture.depth, view, shells->control, style, clip);
     }
     for (const PictureMark& mark : marks) {
         const Vec3 at = view.to_eye(mark.place);

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <vector>
 
 #include "picture_arguments.h"
 #include "subvol/legend.h"
+#include "subvol/lines_in_volume.h"
 #include "subvol/overlay.h"
 #include "subvol/picture_maker.h"
 
@@ -28,12 +30,23 @@ struct PictureMark {
     std::string text{};
 };
 
+/// Draws the picture of a view.
+using DrawPicture = std::function<Picture(const View&, Progress*)>;
+
+/// Lines in the depth of a volume, and the pictures of rays that end at them.
+struct DrawnLines {
+    SortedLines lines{};
+    std::vector<Image> ended{};
+};
+
 /// What is drawn over the pictures of a run: shells and beams, axes, edges of the control mesh, a legend beside them.
 struct PictureNotes {
     bool axes = false;
-    std::optional<Vec3> scale_at{};  // a scale bar is for lengths at this point
-    const HexMesh* edges = nullptr;  // of this mesh
-    Clip clip{};                     // that of the pictures, which cuts edges
+    std::optional<Vec3> scale_at{};     // a scale bar is for lengths at this point
+    const HexMesh* edges = nullptr;     // of this mesh
+    Clip clip{};                        // that of the pictures, which cuts edges
+    bool within = false;                // edges lie in the depth of the body; else the picture has the depths
+    const Surface* boundary = nullptr;  // of that body
     std::vector<PictureMark> marks{};
     std::shared_ptr<const ShellScene> shells{};
     std::shared_ptr<const ShellScene> flow{};  // streamlines and arrows
@@ -45,12 +58,14 @@ struct PictureNotes {
     int legend_px = 0;      // its columns or rows
     int legend_height = 0;  // of the whole picture, by which its letters go
 
-    /// The view of the volume, whose rays end at streamlines and arrows.
+    /// The view of the volume, whose rays end at streamlines, arrows, and shells in a transparent body.
     [[nodiscard]] View view_of_volume(const View& view) const;
     /// Draws streamlines, arrows, shells and beams, which come first.
     void draw_shells(Picture& picture, const View& view) const;
+    /// The edges that lie in the depth of a transparent body.
+    [[nodiscard]] DrawnLines draw_within(const View& view, const DrawPicture& draw, Progress* progress) const;
     /// Draws edges, marks, axes and the scale bar.
-    void draw_over(Picture& picture, const View& view) const;
+    void draw_over(Picture& picture, const View& view, const DrawnLines& lines) const;
     /// Writes the name of a view into its upper left corner.
     void name_view(Picture& picture, const std::string& name) const;
     /// Draws the caption. Makes room at the right or below for the legend, and draws it.

@@ -110,10 +110,11 @@ Facts PictureOutput::write_sheet(const std::vector<View>& views, const DrawPictu
         cameras_.emplace_back(facts_of(views[i].camera()));
         Picture part = draw(notes_.view_of_volume(views[i]), progress);
         facts.merge(part.facts);
+        const DrawnLines within = notes_.draw_within(views[i], draw, progress);
         notes_.draw_shells(part, views[i]);
         opacity_ = std::max(opacity_, most_opaque(part.image));  // before anything is drawn over it
         blank = blank && is_png && is_blank(part.image, background_);
-        notes_.draw_over(part, views[i]);
+        notes_.draw_over(part, views[i], within);
         notes_.name_view(part, sheet_[i]);
         const int number = static_cast<int>(i);
         const int left = number % columns_ * width, top = number / columns_ * height;
@@ -149,6 +150,7 @@ Facts PictureOutput::write(const std::vector<View>& views, const DrawPicture& dr
         cameras_.emplace_back(facts_of(view.camera()));
         Picture picture = draw(notes_.view_of_volume(view), progress);
         facts.merge(picture.facts);
+        const DrawnLines within = notes_.draw_within(view, draw, progress);
         if (silent_) {
             ++written_;
             continue;
@@ -160,7 +162,7 @@ Facts PictureOutput::write(const std::vector<View>& views, const DrawPicture& dr
             warn_if_blank(is_blank(picture.image, background_), opacity, facts);
         }
         const detail::Stopwatch watch;
-        notes_.draw_over(picture, view);
+        notes_.draw_over(picture, view, within);
         notes_.add_legend(picture);
         const bool alone = picture.image.width == view.width();  // without a legend beside it
         write_frame(written_++, picture, alone ? camera_text(view.camera()) : std::string());

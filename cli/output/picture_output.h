@@ -2,7 +2,6 @@
 #pragma once
 
 #include <filesystem>
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -14,9 +13,6 @@
 #include "video_file.h"
 
 namespace subvol::cli {
-
-/// Draws the picture of a view.
-using DrawPicture = std::function<Picture(const View&, Progress*)>;
 
 /// Where the pictures of a run go: one file, numbered files NAME_0000.png and so on, or a video.
 class PictureOutput {
@@ -44,6 +40,9 @@ public:
 
     /// What is drawn over every picture from now on.
     void set_notes(PictureNotes notes) { notes_ = std::move(notes); }
+    /// Whether edges lie in the depth of the body, whose boundary is needed.
+    [[nodiscard]] bool draws_within() const { return notes_.within; }
+    void set_boundary(const Surface& boundary) { notes_.boundary = &boundary; }
 
     /// Draws and writes one picture for each view, after those of earlier calls.
     ///

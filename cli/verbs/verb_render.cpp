@@ -143,6 +143,10 @@ PictureNotes make_notes(const ShownBody& shown, const ShownColors& colors, Rende
     const MeshSource source = shown.body.source();
     PictureNotes notes = make_notes(arguments.picture, colors, source.mesh());
     notes.clip = arguments.clip;
+    const bool transparent = arguments.picture.look != Look::Solid || arguments.picture.choices.opacity;
+    const bool ends_rays = arguments.method != Method::Footprints;  // else lines lie before or behind the whole
+    notes.within =
+        ends_rays && (transparent || !draws_kernels(arguments.method)) && notes.edges != nullptr && !notes.edges->cells.empty();
     const int samples =
         PictureStyle{.look = {.look = arguments.picture.look}, .samples = arguments.chosen.style.samples}.sample_count();
     if (streams.chosen.any()) {
@@ -152,9 +156,11 @@ PictureNotes make_notes(const ShownBody& shown, const ShownColors& colors, Rende
     }
     if (!shown.body.shells.empty()) {
         notes.shells = facts.timed(progress, "sheets", [&] {
-            return std::make_shared<const ShellScene>(
+            ShellScene scene =
                 make_shell_scene(*source.mesh(), shown.body.shells, arguments.refine.options(0, progress),
-                                 arguments.refine.levels, colors.optics, samples, arguments.clip, shown.body.opacities));
+                                 arguments.refine.levels, colors.optics, samples, arguments.clip, shown.body.opacities);
+            scene.ended = ends_rays && transparent && shown.body.opacities.empty();
+            return std::make_shared<const ShellScene>(std::move(scene));
         });
     }
     return notes;
@@ -205,7 +211,8 @@ public:
     int run(Report& report) override {
         if (streams_.chosen.any()) veil_body(picture_.choices, arguments_.clip);
         arguments_.settle(kind_of_input(), app());
-        if (streams_.chosen.any()) check_streams();
+        check_flow(streams_.chosen, arguments_.method, arguments_.body,
+                   common().patches.empty() && common().part_opacities.empty(), OptionNames::Flags);
         refuse_frames_per_second();
         check_parts();
         const Method method = arguments_.method;
@@ -267,18 +274,6 @@ private:
             throw Error(ErrorCode::InvalidInput, "needs a mesh of hexahedra in memory", "--part-opacity");
         if (!common().patches.empty())
             throw Error(ErrorCode::InvalidInput, "is of parts of a volume, and --patch draws faces alone", "--part-opacity");
-    }
-
-    /// throws: Error(InvalidInput) where streamlines and arrows are not drawn
-    void check_streams() const {
-        const std::string option = streams_.chosen.streamlines.empty() ? "--glyphs" : "--streamlines";
-        if (arguments_.body != BodyKind::Mesh)
-            throw Error(ErrorCode::InvalidInput, "needs a mesh of hexahedra in memory", option);
-        if (arguments_.method == Method::Footprints)
-            throw Error(ErrorCode::InvalidInput, "is not drawn within footprints", option, "--method splat, tets or dense");
-        if (!common().patches.empty() || !common().part_opacities.empty())
-            throw Error(ErrorCode::InvalidInput, "goes through a whole body", option,
-                        "no --patch and no --part-opacity; --opacity 0%:.2 makes its surface translucent");
     }
 
     void refuse_frames_per_second() {
@@ -353,6 +348,11 @@ private:
 
     static void write(PictureMaker& maker, const std::vector<View>& views, const Optics& optics, PictureOutput& output,
                       Report& report) {
+        if (output.draws_within()) {
+            Facts facts;
+            output.set_boundary(maker.boundary(optics, report.progress(), facts));
+            report.merge(facts);
+        }
         const auto draw = [&](const View& view, Progress* progress) { return maker.draw(view, optics, progress); };
         report.merge(output.write(views, draw, report.progress()));
     }

@@ -21,6 +21,7 @@
 #include "sampled_points.h"
 #include "splat_arguments.h"
 #include "steps.h"
+#include "stream_arguments.h"
 #include "subvol/detail/points_frame.h"
 #include "subvol/detail/read_file.h"
 #include "subvol/error.h"
@@ -78,6 +79,7 @@ public:
             ->type_name("NAME")
             ->check(offered(view_methods()));
         picture_.add_to(app());
+        streams_.add_to(app());
         const auto described = options_of(settings_);
         add_option(app(), *std::ranges::find(described, "samples", &Option::name));
         sample_.add_to(app());
@@ -94,6 +96,9 @@ public:
                           "--value-kernel", "--correction"});
         group("The limit", {"--scheme", "--tension", "--levels", "--crease-angle"});
         group("Cuts", {"--clip", "--clip-box", "--slice", "--around"});
+        group("Streamlines",
+              {"--streamlines", "--seeds", "--seed-count", "--stream-direction", "--stream-length", "--stream-time",
+               "--stream-tolerance", "--stream-step", "--tube-radius", "--glyphs", "--glyph-count", "--glyph-size"});
         group("Methods", {"--method", "--samples", "--backend", "--device", "--sheets", "--plain-sums"});
     }
 
@@ -107,7 +112,11 @@ public:
         std::unique_ptr<ViewSession> session;
         if (!input_.empty()) {
             report["input"] = input_;
-            session = session_of({input_, common()}, !headless || !script_.empty(), report, report.progress());
+            Input first{input_, common()};
+            for (const std::string* const vector : {&streams_.chosen.streamlines, &streams_.chosen.glyphs}) {
+                if (!vector->empty()) first.options.at_rest.push_back(*vector);
+            }
+            session = session_of(first, !headless || !script_.empty(), report, report.progress());
             report["field"] = session->body().field();
             if (!saved_.empty()) session->run(Json{{"load_state", saved_}}.dump());
         }
@@ -132,6 +141,7 @@ private:
                                                           Progress* progress) {
         const bool voxels = !holds_points(input.file) && is_vdb_file(input.file);
         const bool points = voxels || holds_points(input.file);
+        if (streams_.chosen.any()) veil_body(picture_.choices, clip_);
         picture_.settle_look(!points);
         picture_.check();
         const std::size_t warnings_before = report.json().value("warnings", Json::array()).size();
@@ -145,11 +155,13 @@ private:
                               : points    ? BodyKind::Kernels
                               : from.tets ? BodyKind::Tets
                                           : BodyKind::Mesh;
+        check_flow(streams_.chosen, method_, kind, true, OptionNames::Flags);
         check_options(method_may_change ? methods_of(kind) : bit(method_), kind, given_options(app()));
         if (points) from.points = voxels ? voxels_of_file(input, report, progress) : points_of_file(input, report, progress);
         HexMesh mesh =
             points ? mesh_of_points(*from.points.volume) : report.unpack(load_mesh(input.file, input.options, progress));
         std::optional<std::string> field = input.options.density ? std::optional<std::string>("density") : input.options.field;
+        if (streams_.chosen.any() && !field) field = streams_.chosen.length_of(mesh);
         if (points && !field) field = from.points.volume->channels.front().name;
         ViewBody body = points ? view_body(mesh, from.points, field) : view_body(mesh, field);
         if (from.tets) {
@@ -253,6 +265,7 @@ private:
         picture_.choices.range.reset();
         picture_.choices.opacity.reset();
         picture_.eye.camera.reset();
+        streams_ = {};
         clip_ = {};
     }
 
@@ -283,6 +296,7 @@ private:
         state.axes = picture_.axes;
         state.clip = clip_;
         state.edges = picture_.edges;
+        state.flow = {streams_.chosen, streams_.seeds};
         return state;
     }
 
@@ -307,6 +321,10 @@ private:
                 .times = times,
                 .write_picture = write,
                 .measure = measure,
+                .seeds =
+                    [](const ViewFlow& flow, const HexMesh& mesh, const LimitOptions& limit) {
+                        return StreamArguments{flow.chosen, flow.seeds}.places(mesh, limit);
+                    },
                 .more_words = given_words(false, input.options),
                 .read_words = given_words(true, input.options)};
     }
@@ -319,13 +337,22 @@ private:
         return std::ranges::any_of(described, same) || name == "--density" || name == "--weld" || name == "--interpolate-time";
     }
 
+    /// Whether an option is about streamlines or arrows.
+    [[nodiscard]] static bool is_of_flow(const std::string& name) {
+        FlowChoices any;
+        const auto described = options_of(any);
+        return name == "--seeds" ||
+               std::ranges::any_of(described, [&](const Option& option) { return "--" + option.name == name; });
+    }
+
     /// The options that were given and that no action changes, as words. reading: those for reading the input, else the others
     [[nodiscard]] std::vector<std::string> given_words(bool reading, const CommonOptions& options) {
         std::vector<std::string> words;
         for (const CLI::Option* option : app().get_options()) {
             const std::string name = option->get_name();
             if (option->count() == 0 || option->get_positional() || is_of_reading(name) != reading) continue;
-            if (std::ranges::any_of(kOfTheState, [&](const char* known) { return name == known; })) continue;
+            if (std::ranges::any_of(kOfTheState, [&](const char* known) { return name == known; }) || is_of_flow(name))
+                continue;
             for (const std::string& value : option->results()) {
                 words.push_back(name);
                 if (option->get_items_expected_max() > 0) words.push_back(value);
@@ -343,6 +370,7 @@ private:
     MethodOptions settings_;  // what options choose of them
     bool window_ = false;
     PictureArguments picture_;
+    StreamArguments streams_;
     Clip clip_;
     SampleArguments sample_;
     SplatArguments splat_;

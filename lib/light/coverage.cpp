@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "coverage.h"
+#include "subvol/detail/coverage.h"
 
 #include <algorithm>
 #include <cmath>
@@ -84,14 +84,14 @@ void fill(Image& image, std::span<const std::vector<Vec2>> polygons, const Vec3&
     areas.for_each([&](int x, int y, double cover) { put_over(image, x, y, rgb, cover); });
 }
 
-void for_each_pixel_of_line(const Image& image, const Vec2& from, const Vec2& to, double width_px,
+void for_each_pixel_of_line(int width, int height, const Vec2& from, const Vec2& to, double width_px,
                             const std::function<void(int, int, double, double)>& take) {
     const Vec2 along = to - from;
     const double squared = glm::dot(along, along), reach = 0.5 * width_px + 0.5;
     if (!std::isfinite(squared)) return;
     const auto in = [](double v, int most) { return static_cast<int>(std::clamp(std::floor(v), 0.0, double(most))); };
-    const int top = in(std::min(from.y, to.y) - reach, image.height);
-    const int bottom = in(std::max(from.y, to.y) + reach + 1, image.height);
+    const int top = in(std::min(from.y, to.y) - reach, height);
+    const int bottom = in(std::max(from.y, to.y) + reach + 1, height);
     for (int y = top; y < bottom; ++y) {
         // The part of the line that can reach this row, so that slanted lines do not visit their whole box.
         double t0 = 0, t1 = 1;
@@ -101,7 +101,7 @@ void for_each_pixel_of_line(const Image& image, const Vec2& from, const Vec2& to
             t1 = std::clamp(std::max(a, b), 0.0, 1.0);
         }
         const double xa = from.x + t0 * along.x, xb = from.x + t1 * along.x;
-        const int left = in(std::min(xa, xb) - reach, image.width), right = in(std::max(xa, xb) + reach + 1, image.width);
+        const int left = in(std::min(xa, xb) - reach, width), right = in(std::max(xa, xb) + reach + 1, width);
         for (int x = left; x < right; ++x) {
             const Vec2 centre(x + 0.5, y + 0.5);
             const double t = squared > 0 ? std::clamp(glm::dot(centre - from, along) / squared, 0.0, 1.0) : 0.0;

@@ -4,7 +4,7 @@
 #include <limits>
 #include <vector>
 
-#include "coverage.h"
+#include "subvol/detail/coverage.h"
 #include "subvol/detail/ray_clip.h"
 #include "subvol/error.h"
 #include "subvol/overlay.h"
@@ -39,13 +39,14 @@ bool faces_eye(const HexMesh& mesh, const Topology& topology, const View& view, 
     return glm::dot(normal, middle - inside) * glm::dot(normal, to_eye) > 0;
 }
 
-class EdgeDrawer {
+/// The pixels of lines, each given to take(x, y, sample).
+template <class Take>
+class EdgeLines {
 public:
-    EdgeDrawer(Image& image, std::span<const float> depth, const View& view, const LineOptions& options,
-               std::span<const CutPlane> faces)
-        : image_(image), depth_(depth), view_(view), options_(options), faces_(faces) {}
+    EdgeLines(const View& view, const LineOptions& options, std::span<const CutPlane> faces, const Take& take)
+        : view_(view), options_(options), faces_(faces), take_(take) {}
 
-    /// Draws what the faces of the clip leave of a line. on: the face that it lies on, which does not cut it; null: none
+    /// Gives what the faces of the clip leave of a line. on: the face that it lies on, which does not cut it; null: none
     void draw(Vec3 from, Vec3 to, bool faces_eye, const CutPlane* on = nullptr) {
         for (const CutPlane& face : faces_) {
             if (&face == on) continue;
@@ -69,22 +70,22 @@ private:
         const double slack = kOnSurface * glm::length(b - a);
         const auto take = [&](int x, int y, double cover, double t) {
             const double z = view_.perspective() ? 1 / ((1 - t) / a.z + t / b.z) : (1 - t) * a.z + t * b.z;
-            const bool seen =
-                faces_eye && z - slack <= static_cast<double>(depth_about(depth_, image_.width, image_.height, x, y));
-            (seen ? put_over : put_under)(image_, x, y, options_.color, options_.alpha * cover);
+            take_(x, y,
+                  LineSample{static_cast<std::uint32_t>(pixel_index(view_.width(), x, y)), faces_eye, static_cast<float>(z),
+                             static_cast<float>(slack), static_cast<float>(options_.alpha * cover)});
         };
-        for_each_pixel_of_line(image_, view_.to_pixels(a), view_.to_pixels(b), options_.width_px, take);
+        for_each_pixel_of_line(view_.width(), view_.height(), view_.to_pixels(a), view_.to_pixels(b), options_.width_px, take);
     }
 
-    Image& image_;
-    std::span<const float> depth_;
     const View& view_;
     const LineOptions& options_;
     std::span<const CutPlane> faces_;
+    const Take& take_;
 };
 
 /// Draws where a plane cuts the faces of cells: two crossings of a face's sides are an end each; a bent face may have four.
-void draw_cut(EdgeDrawer& drawer, const HexMesh& mesh, const Topology& topology, const CutPlane& plane, bool faces_eye,
+template <class Lines>
+void draw_cut(Lines& drawer, const HexMesh& mesh, const Topology& topology, const CutPlane& plane, bool faces_eye,
               const CutPlane* on) {
     std::vector<double> heights(mesh.points.size());
     for (std::size_t p = 0; p < heights.size(); ++p) heights[p] = glm::dot(plane.normal, mesh.points[p] - plane.point);
@@ -107,20 +108,13 @@ bool is_seen(const CutPlane& face, const View& view) {
     return glm::dot(face.normal, to_eye) > 0;
 }
 
-}  // namespace
-
-namespace {
-
 void check_sizes(const Image& image, std::span<const float> depth, const View& view) {
     if (depth.size() != image.rgba.size() / 4 || view.width() != image.width || view.height() != image.height)
         throw Error(ErrorCode::InvalidInput, "the picture, its depths and the view are not of one size", "edges");
 }
 
-}  // namespace
-
-void draw_edges(Image& image, std::span<const float> depth, const View& view, const Shells& shells, const LineOptions& options,
-                const Clip& clip) {
-    check_sizes(image, depth, view);
+template <class Take>
+void each_edge_pixel(const View& view, const Shells& shells, const LineOptions& options, const Clip& clip, const Take& take) {
     std::vector<std::array<Index, 2>> edges;
     const auto add = [&](Index a, Index b) { edges.push_back({std::min(a, b), std::max(a, b)}); };
     for (const auto& quad : shells.quads) {
@@ -132,16 +126,15 @@ void draw_edges(Image& image, std::span<const float> depth, const View& view, co
     Box box;
     for (const Vec3& p : shells.points) box.add(p);
     const RayClip cuts(clip, box.diagonal());
-    EdgeDrawer drawer(image, depth, view, options, cuts.faces());
+    EdgeLines drawer(view, options, cuts.faces(), take);
     for (const auto& [a, b] : edges) drawer.draw(shells.points[a], shells.points[b], true);
 }
 
-void draw_edges(Image& image, std::span<const float> depth, const View& view, const HexMesh& mesh, const LineOptions& options,
-                const Clip& clip) {
-    check_sizes(image, depth, view);
+template <class Take>
+void each_edge_pixel(const View& view, const HexMesh& mesh, const LineOptions& options, const Clip& clip, const Take& take) {
     const Topology topology = build_topology(mesh);
     const RayClip cuts(clip, bounds(mesh).diagonal());
-    EdgeDrawer drawer(image, depth, view, options, cuts.faces());
+    EdgeLines drawer(view, options, cuts.faces(), take);
     for (const CutPlane& slice : cuts.slices()) draw_cut(drawer, mesh, topology, slice, true, nullptr);
     if (cuts.slices_alone()) return;
     for (const CutPlane& face : cuts.faces()) draw_cut(drawer, mesh, topology, face, is_seen(face, view), &face);
@@ -155,6 +148,49 @@ void draw_edges(Image& image, std::span<const float> depth, const View& view, co
         const auto& [a, b] = topology.edges[e];
         if (on_hull) drawer.draw(mesh.points[a], mesh.points[b], seen);
     }
+}
+
+/// Lines one over the other, each before what the picture shows or behind it.
+template <class Lines>
+void draw_lines_of(Image& image, std::span<const float> depth, const View& view, const Lines& lines, const LineOptions& options,
+                   const Clip& clip) {
+    check_sizes(image, depth, view);
+    each_edge_pixel(view, lines, options, clip, [&](int x, int y, const LineSample& line) {
+        const bool seen = line.faces_eye && double{line.depth} - double{line.slack} <=
+                                                static_cast<double>(depth_about(depth, image.width, image.height, x, y));
+        (seen ? put_over : put_under)(image, x, y, options.color, double{line.cover});
+    });
+}
+
+template <class Lines>
+std::vector<LineSample> samples_of(const View& view, const Lines& lines, const LineOptions& options, const Clip& clip) {
+    std::vector<LineSample> samples;
+    each_edge_pixel(view, lines, options, clip, [&](int, int, const LineSample& line) { samples.push_back(line); });
+    return samples;
+}
+
+}  // namespace
+
+LineOptions edge_style(const View& view, const Vec3& ink) {
+    return {.width_px = std::max(1.0, std::min(view.width(), view.height()) / 512.0), .color = ink, .alpha = 0.6};
+}
+
+void draw_edges(Image& image, std::span<const float> depth, const View& view, const Shells& shells, const LineOptions& options,
+                const Clip& clip) {
+    draw_lines_of(image, depth, view, shells, options, clip);
+}
+
+void draw_edges(Image& image, std::span<const float> depth, const View& view, const HexMesh& mesh, const LineOptions& options,
+                const Clip& clip) {
+    draw_lines_of(image, depth, view, mesh, options, clip);
+}
+
+std::vector<LineSample> edge_samples(const View& view, const HexMesh& mesh, const LineOptions& options, const Clip& clip) {
+    return samples_of(view, mesh, options, clip);
+}
+
+std::vector<LineSample> edge_samples(const View& view, const Shells& shells, const LineOptions& options, const Clip& clip) {
+    return samples_of(view, shells, options, clip);
 }
 
 }  // namespace subvol

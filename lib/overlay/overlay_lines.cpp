@@ -8,8 +8,8 @@
 #include <string_view>
 #include <vector>
 
-#include "coverage.h"
 #include "overlay_texts.h"
+#include "subvol/detail/coverage.h"
 #include "subvol/detail/number_text.h"
 #include "subvol/overlay.h"
 #include "subvol/srgb.h"
@@ -137,7 +137,7 @@ double text_width_px(const std::string& text, double size_px) {
 }
 
 void draw_line(Image& image, const Vec2& from, const Vec2& to, const LineOptions& options) {
-    for_each_pixel_of_line(image, from, to, options.width_px, [&](int x, int y, double cover, double) {
+    for_each_pixel_of_line(image.width, image.height, from, to, options.width_px, [&](int x, int y, double cover, double) {
         put_over(image, x, y, options.color, options.alpha * cover);
     });
 }

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "coverage.h"
+#include "subvol/detail/coverage.h"
 #include "subvol/detail/round_ticks.h"
 #include "subvol/overlay.h"
 

@@ -129,8 +129,16 @@ py::tuple flow_defaults(const HexMesh& mesh, const py::dict& given) {
     return py::make_tuple(chosen.flow.length_of(mesh), look);
 }
 
+/// Refuses streamlines and arrows where they are not drawn.
+void refuse_flow(const py::dict& given, const std::string& method, bool hexes, bool whole) {
+    GivenPicture chosen;
+    set_options(options_of(chosen), given);
+    check_flow(chosen.flow, named<Method>(method, "method"), hexes ? BodyKind::Mesh : BodyKind::Kernels, whole,
+               OptionNames::Keywords);
+}
+
 /// The tubes and arrows of a picture; nothing without them.
-std::optional<ShellScene> flow_scene(const DrawnBody& drawn, const HexMesh* shown, Method method, const PictureLight& light,
+std::optional<ShellScene> flow_scene(const DrawnBody& drawn, const HexMesh* shown, const PictureLight& light,
                                      const py::dict& keywords, const py::object& progress, Facts& facts) {
     GivenPicture given;
     set_options(options_of(given), keywords);
@@ -138,11 +146,6 @@ std::optional<ShellScene> flow_scene(const DrawnBody& drawn, const HexMesh* show
         if (!drawn.seeds.is_none()) throw Error(ErrorCode::InvalidInput, "has no effect without streamlines", "seeds");
         return {};
     }
-    const std::string option = given.flow.streamlines.empty() ? "glyphs" : "streamlines";
-    if (drawn.source == nullptr || drawn.patches != nullptr)
-        throw Error(ErrorCode::InvalidInput, "needs a mesh of hexahedra, and no patch", option);
-    if (method == Method::Footprints)
-        throw Error(ErrorCode::InvalidInput, "is not drawn within footprints", option, "method splat, tets or dense");
     const PictureStyle style{.look = light.options, .samples = given.options.style.samples};
     const RefineOptions refine = given.refinement;
     const LimitOptions limit{.scheme = refine.scheme};
@@ -176,7 +179,7 @@ Picture render(const DrawnBody& drawn, const std::string& method_name, const Vie
         bit(method), body.kind(), [&](std::string_view name) { return text_of(given, name); }, OptionNames::Keywords);
     Facts facts;
     const HexMesh* const shown = drawn.colors != nullptr ? &two_fields : drawn.mesh;
-    const auto flow = flow_scene(drawn, shown, method, light, given, progress, facts);
+    const auto flow = flow_scene(drawn, shown, light, given, progress, facts);
     const View of_volume = flow ? ended_at(*flow, view) : view;
     const bool empty = drawn.parts != nullptr && drawn.mesh->cells.empty();
     const MethodOptions options = method_options(method, light, given);
@@ -309,6 +312,7 @@ void bind_render(py::module_& module) {
     module.def(
         "draws_kernels", [](const std::string& method) { return draws_kernels(named<Method>(method, "method")); },
         py::arg("method"));
+    module.def("check_flow", &refuse_flow, py::arg("given"), py::arg("method"), py::arg("hexes"), py::arg("whole"));
     module.def("flow_defaults", &flow_defaults, py::arg("mesh"), py::arg("given"));
     module.def("gl_devices", &devices);
     GivenPicture given;

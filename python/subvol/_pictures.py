@@ -70,6 +70,9 @@ def render(what: Drawable, *, method: str = "splat", camera: Union[None, str, Ca
         if field is None:
             field, tf = "patch", tf or "categories"
     source = what.without_unused_points() if isinstance(what, HexMesh) and patches is None else None
+    if "streamlines" in given or "glyphs" in given:
+        _core.check_flow(given, method, isinstance(what, HexMesh) and given.get("scheme") not in TET_SCHEMES,
+                         patches is None and part_opacity is None)
     if source is not None and ("streamlines" in given or "glyphs" in given):
         length, thin = _core.flow_defaults(source, given)
         field, given = (length if field is None else field), {**given, **thin}
@@ -120,9 +123,8 @@ def _parts_of(what: Drawable, mesh: Optional[HexMesh], texts: list[str], patches
     def refuse(reason: str, allowed: str) -> InvalidInput:
         return InvalidInput(f"part_opacity: {reason} ({allowed})", "part_opacity", allowed)
 
-    for name in ("color_field", "streamlines", "glyphs"):
-        if name in given:
-            raise refuse("is of parts of a volume in the colours of one field", f"without {name}")
+    if "color_field" in given:
+        raise refuse("is of parts of a volume in the colours of one field", "without color_field")
     if given.get("look", "solid") != "solid" or "opacity" in given or "opacity_unit" in given or "iso" in given or given.get("shade"):
         raise refuse("is of the surfaces of a solid", "look='solid' without opacity")
     if not isinstance(what, HexMesh) or mesh is None:

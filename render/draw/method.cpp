@@ -68,7 +68,7 @@ constexpr std::array kUses{
     OptionUse{"shadows", "shadows", kSplat, kAll & ~kBricks, kNoShadows},
     OptionUse{"ambient-occlusion", "ambient_occlusion", kSplat, kAll & ~kBricks, kNoShadows},
     OptionUse{"color-field", "color_field", kKernels, kMeshes | kPoints, "it draws one field"},
-    OptionUse{"edges", "", kKernels, kMeshes, "it finds no depths that could hide lines"},
+    OptionUse{"edges", "", kKernels | kCells, kMeshes, "voxels have no cells"},
     OptionUse{"clip", "clip", kEvery & ~bit(Method::Footprints), kAll, kNoCuts},
     OptionUse{"clip-box", "clip_box", kEvery & ~bit(Method::Footprints), kAll, kNoCuts},
     OptionUse{"slice", "slice", kEvery & ~bit(Method::Footprints), kAll, kNoCuts},
@@ -201,6 +201,21 @@ void check_options(Methods methods, BodyKind body, const GivenOptions& given, Op
         const bool in_bricks = body == BodyKind::Bricks;
         if ((use.bodies & bit(body)) == 0 || (in_bricks && (use.bricks & use.methods & methods) == 0))
             throw Error(ErrorCode::InvalidInput, "has no effect on " + std::string(noun_of(body)), shown(use, names));
+    }
+}
+
+void check_flow(const FlowChoices& flow, Method method, BodyKind body, bool whole, OptionNames names) {
+    if (!flow.any()) return;
+    const std::string option = option_name(flow.streamlines.empty() ? "glyphs" : "streamlines", names);
+    if (body != BodyKind::Mesh) throw Error(ErrorCode::InvalidInput, "needs a mesh of hexahedra in memory", option);
+    if (method == Method::Footprints) {
+        throw Error(ErrorCode::InvalidInput, "is not drawn within footprints", option,
+                    option_name("method", names) + " splat, tets or dense");
+    }
+    if (!whole) {
+        throw Error(ErrorCode::InvalidInput, "goes through a whole body", option,
+                    "no " + option_name("patch", names) + " and no " + option_name("part-opacity", names) + "; " +
+                        option_name("opacity", names) + " 0%:.2 makes its surface translucent");
     }
 }
 

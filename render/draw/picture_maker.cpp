@@ -533,6 +533,11 @@ const BoundaryValues& PictureMaker::skin(Progress* progress, Facts& facts) {
     return state_->skin_of_mesh(progress, facts);
 }
 
+const Surface& PictureMaker::boundary(const Optics& optics, Progress* progress, Facts& facts) {
+    const bool of_kernels = draws_kernels(state_->method()) && !state_->is_translucent() && !state_->options.seconds;
+    return of_kernels ? state_->kernels(optics, progress, facts).boundary : state_->skin_of_mesh(progress, facts).surface;
+}
+
 const RbfVolume& PictureMaker::kernels(const Optics& optics, Progress* progress, Facts& facts) {
     return state_->kernels(optics, progress, facts);
 }

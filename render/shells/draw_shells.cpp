@@ -409,8 +409,8 @@ void check_sizes(const Image& image, std::span<const float> depth, const Colored
 
 }  // namespace
 
-std::vector<float> depths_of(const Surface& surface, const View& view) {
-    return std::move(TriangleRaster(surface, view, Clip{}).depth.values);
+std::vector<float> depths_of(const Surface& surface, const View& view, const Clip& clip) {
+    return std::move(TriangleRaster(surface, view, clip).depth.values);
 }
 
 void draw_shells(Image& image, std::span<float> depth, const ColoredSurface& shells, const Surface& boundary, const View& view,
@@ -438,7 +438,7 @@ void draw_shells(Image& image, std::span<float> depth, const ColoredSurface& she
                 ++(!first ? rays.under_volume : volume ? rays.over_volume : rays.alone);
                 if (first) rays.nearest = std::min(rays.nearest, hits.depth.at(column, row));
             }
-            if (rays.any()) rays.mix_into(image.pixel(x, y), samples * samples, options.whole);
+            if (rays.any()) rays.mix_into(image.pixel(x, y), samples * samples, options.ended);
             if (depth.empty() || !rays.any_first()) continue;
             float& seen = depth[pixel_index(view.width(), x, y)];
             seen = std::min(seen, rays.nearest);

@@ -21,17 +21,17 @@ int levels_of(const Shells& shells, std::optional<int> most) {
     return most ? std::min(levels, *most) : levels;
 }
 
-/// The boundary of a volume on the limit, as pictures have it; empty without cells.
+}  // namespace
+
 Surface boundary_of(const HexMesh& mesh, RefineOptions refine, std::optional<int> most) {
     if (mesh.cells.empty()) return {};
     refine.levels = picture_levels(mesh, most);
     return boundary_values(mesh, refine).surface;
 }
 
-}  // namespace
-
 void ShellScene::draw_into(Image& image, std::span<float> depth, const View& view) const {
-    draw_shells(image, depth, drawn, boundary, view, optics, {.samples = samples, .clip = clip, .whole = whole});
+    draw_shells(image, depth, drawn, boundary, view, optics,
+                {.samples = samples, .clip = clip, .whole = whole, .ended = ended});
 }
 
 ShellScene make_shell_scene(const HexMesh& mesh, const Shells& shells, RefineOptions refine, std::optional<int> most,
@@ -59,13 +59,13 @@ ShellScene make_shell_scene(const HexMesh& mesh, const Shells& shells, RefineOpt
 
 ShellScene make_opaque_scene(const HexMesh& mesh, ColoredSurface drawn, RefineOptions refine, std::optional<int> most,
                              const Optics& optics, int samples, const Clip& clip) {
-    return {std::move(drawn), boundary_of(mesh, std::move(refine), most), {}, optics, std::max(1, samples), clip, true};
+    return {std::move(drawn), boundary_of(mesh, std::move(refine), most), {}, optics, std::max(1, samples), clip, true, true};
 }
 
 View ended_at(const ShellScene& scene, View view) {
     constexpr float kBeyond = 1 + 2e-4F;  // so that what touches an opaque boundary from inside does not open it
     View fine = view.resized(scene.samples * view.width(), scene.samples * view.height());
-    std::vector<float> ends = depths_of(scene.drawn.surface, fine);
+    std::vector<float> ends = depths_of(scene.drawn.surface, fine, scene.whole ? Clip{} : scene.clip);
     for (std::size_t i = 0; i < ends.size(); ++i) {
         const auto width = static_cast<std::size_t>(fine.width());
         const double before = fine.ray_end(static_cast<double>(i % width) + 0.5, static_cast<double>(i / width) + 0.5);

@@ -20,6 +20,7 @@
 #include <cmath>
 
 #include "splat_cpu.h"
+#include "subvol/detail/across.h"
 
 namespace subvol::detail {
 
@@ -53,14 +54,14 @@ struct LightSheets {
 
 /// to_light: of unit length
 LightSheets sheets_along(const SplatScene& scene, const Classification& classification, const Vec3& to_light, int nodes) {
-    const Vec3 size = glm::abs(to_light);
-    const Vec3 up = size.x <= size.y && size.x <= size.z ? Vec3(1, 0, 0) : size.y <= size.z ? Vec3(0, 1, 0) : Vec3(0, 0, 1);
     const double width = 1.02 * scene.diagonal;
-    LightSheets light{
-        View({.eye = scene.middle + scene.diagonal * to_light, .target = scene.middle, .up = up, .ortho_height = width}, nodes,
-             nodes),
-        {},
-        {}};
+    LightSheets light{View({.eye = scene.middle + scene.diagonal * to_light,
+                            .target = scene.middle,
+                            .up = -across(to_light)[1],
+                            .ortho_height = width},
+                           nodes, nodes),
+                      {},
+                      {}};
     SplatFrame frame;
     prepare_frame(frame, scene, light.view, classification, nodes, nullptr);
     find_interval_ends(frame);

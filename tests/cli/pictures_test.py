@@ -471,7 +471,7 @@ class Legends(Pictures):
         self.assertEqual(len(set(pictures)), 4)
 
     def test_what_cannot_be_drawn_over_is_refused(self):
-        for options, naming in [(["--edges", "--method", "tets"], "--edges"), (["--unit", "K"], "--legend"),
+        for options, naming in [(["--unit", "K"], "--legend"),
                                 (["--legend", "--size", "30x400"], "--size")]:
             done = self.render("-o", "a.png", *options)
             self.assertEqual((done.code, naming in done.err), (2, True), done.err)

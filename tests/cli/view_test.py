@@ -51,7 +51,7 @@ class WithoutWindow(InSession):
             self.run_ok(*shlex.split(said["render"])[1:], "--quiet")
             self.assertEqual(self.bytes_of("view.png"), self.bytes_of("picture.png"), said["render"])
         for words in (["ball.ply", "--method", "tets"], [BALL, "--method", "grid"], ["ball.ply", "--per-edge", "2"],
-                      ["ball.ply", "--field", "T"], [BALL, "--edges", "--method", "tets"]):
+                      ["ball.ply", "--field", "T"], ["ball.ply", "--edges"]):
             done = subvol("view", *words, *SIZE, "--screenshot", "x.png", folder=self.folder)
             self.assertEqual(done.code, 2, done.err)
 
@@ -68,7 +68,10 @@ class WithoutWindow(InSession):
                 [{"look": "volume"}, {"tf": "plasma"}, {"range": [-0.5, 1]}, {"opacity": [[-0.3, 0], [0.123456789, 0.3], [1, 0.9]]},
                  {"legend": True}, {"size": [160, 90]}],
                 [{"ortho": True}, {"view": "+x"}, {"axes": True}, {"edges": True}, {"look": "isosurface"}],
-                [{"edges": True}, {"method": "tets"}],  # which has no depths to hide lines by
+                [{"edges": True}, {"method": "tets"}],
+                [{"edges": True}, {"look": "volume"}, {"orbit": [20, 10]}],
+                [{"flow": {"streamlines": "grad(density)", "seeds": "line:-.4,0,0,.4,.1,0", "seed-count": 4}}, {"opacity": [[-1, .1], [1, .1]]}],
+                [{"flow": {"glyphs": "grad(density)", "glyph-count": 5}}, {"look": "volume"}, {"edges": True}],
                 [{"range": [0.2, 0.9]}, {"log": True}, {"bands": 5}, {"below": [1, 0, 0]}, {"above": [0, 0, 1]}, {"size": [160, 90]}, {"legend": True}],
                 [{"range": [0.1, 1]}, {"log": True}, {"symlog": 0.1}, {"range": "field"}, {"bands": 9}, {"bands": None}],
                 [{"method": "dense"}, {"look": "xray"}, {"opacity_unit": 0.4}, {"size": [48, 27]}],
@@ -78,6 +81,23 @@ class WithoutWindow(InSession):
             self.assertEqual(words[0], "subvol")
             self.run_ok(*words[1:], "--quiet")
             self.assertEqual(self.bytes_of("view.png"), self.bytes_of("picture.png"), command)
+
+    def test_streamlines_are_those_of_render(self):
+        options = ["--streamlines", "grad(density)", "--seeds", "disk:0,0,0,0,0,1,.5", "--seed-count", 5, "--tube-radius", ".02"]
+        said = self.view({"orbit": [30, 10]}, {"save_state": "state.json"}, options=options)
+        for word in map(str, options[:-1]):
+            self.assertIn(word, shlex.split(said["render"]))
+        self.run_ok(*shlex.split(said["render"])[1:], "--quiet")
+        self.assertEqual(self.bytes_of("view.png"), self.bytes_of("picture.png"), said["render"])
+        self.run_ok("view", BALL, *SMALL, "--state", "state.json", "--screenshot", "again.png", "--quiet")
+        self.assertEqual(self.bytes_of("view.png"), self.bytes_of("again.png"))
+        self.view({"orbit": [30, 10]}, {"flow": {}}, options=options)
+        self.assertNotEqual(self.bytes_of("view.png"), self.bytes_of("again.png"), "they are seen")
+        for words, action in (("has no effect without streamlines", {"seeds": "at:0,0,0"}), ("did you mean", {"streamline": "x"}),
+                              ("no field", {"streamlines": "U"}), ("out of range", {"streamlines": "grad(density)", "seed-count": 0})):
+            done = subvol("view", BALL, *SMALL, "--script", self.script({"flow": action}), "--screenshot", "a.png", folder=self.folder)
+            self.assertEqual(done.code, 2, action)
+            self.assertIn(words, done.err)
 
     def test_a_saved_state_is_where_another_session_begins(self):
         self.view({"orbit": [70, 20]}, {"look": "volume"}, {"save_state": "state.json"})

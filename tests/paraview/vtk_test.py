@@ -82,6 +82,23 @@ class Mapper(unittest.TestCase):
     def test_the_picture_is_that_of_the_library(self):
         self.assert_same(self.scene.pixels(), self.picture())
 
+    def test_our_opengl_has_a_thread_of_its_own(self):
+        mapper, first = self.scene.mapper, self.scene.pixels()
+        cpu = [device for device in subvol.gl_devices() if device["hardware"]] == []
+        self.assertEqual(mapper.GetBackend(), "cpu" if cpu else "gl", "software OpenGL is slower than the CPU")
+        mapper.SetRenderer("cpu")
+        by_cpu = self.scene.pixels()
+        mapper.SetRenderer("gl")
+        for _ in range(2):
+            by_gl = self.scene.pixels()
+            self.assertEqual(mapper.GetBackend(), "gl")
+            self.assert_same(by_gl, by_cpu)  # 140 dB before it is put into 8 bits
+            self.scene.renderer.GetActiveCamera().Azimuth(10)
+            mapper.SetRenderer("cpu")
+            by_cpu = self.scene.pixels()
+            mapper.SetRenderer("gl")
+        self.assertEqual(first.shape, by_gl.shape)
+
     def test_clipping_planes(self):
         planes, plane = vtkPlaneCollection(), vtkPlane()
         plane.SetOrigin(.1, 0, 0)

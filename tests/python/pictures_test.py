@@ -279,7 +279,7 @@ def test_a_transparent_png_keeps_its_alpha(tmp_path):
 
 
 def test_opacities_of_parts_are_of_solids(ball):
-    for wrong, words in (({"look": "volume"}, "surfaces of a solid"), ({"opacity": "0%:.2"}, "surfaces of a solid"), ({"streamlines": "grad(density)"}, "without streamlines"),
+    for wrong, words in (({"look": "volume"}, "surfaces of a solid"), ({"opacity": "0%:.2"}, "surfaces of a solid"), ({"streamlines": "grad(density)"}, "streamlines: goes through a whole body"),
                          ({"scheme": "tetoct"}, "hexahedra")):
         with pytest.raises(subvol.InvalidInput, match=words):
             subvol.render(ball, size=(8, 8), part_opacity="half:0,0,0,1,0,0=.3", **wrong)

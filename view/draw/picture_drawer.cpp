@@ -14,6 +14,7 @@
 #include "subvol/detail/stopwatch.h"
 #include "subvol/kernel_hierarchy.h"
 #include "subvol/rbf_volume.h"
+#include "subvol/shell_scene.h"
 #include "surface_preview.h"
 
 namespace subvol::detail {
@@ -110,10 +111,28 @@ struct PictureDrawer::State {
     std::shared_ptr<const ViewBody> body{};
     std::optional<PictureMaker> maker{};
     std::unique_ptr<FewKernels> few{};  // of the kernels, for coarse pictures
+    std::optional<ShellScene> flow{};   // streamlines and arrows of the body
+
+    /// Streamlines and arrows in the colours and the cut of a picture; null: there are none.
+    const ShellScene* flow_of(const ViewState& shown, const PictureStyle& style, const Optics& optics, Progress* progress) {
+        if (!body->flow) return nullptr;
+        Facts facts;
+        if (!flow) {
+            Flow traced = *body->flow;
+            traced.limit.progress = progress;
+            ColoredSurface drawn = flow_surface(body->mesh, traced, facts);
+            flow = ShellScene{std::move(drawn), maker->skin(progress, facts).surface, {}, optics, 1, {}, true, true};
+        }
+        flow->optics = optics;
+        flow->samples = style.sample_count();
+        flow->clip = shown.clip;
+        return &*flow;
+    }
 
     void take(const std::shared_ptr<const ViewBody>& next, const PictureStyle& style) {
         if (body != next) {
             few.reset();  // it refers to the kernels
+            flow.reset();
             if (maker) maker->set_body(picture_body(*next));
             body = next;
         }
@@ -180,12 +199,23 @@ DrawnPicture PictureDrawer::draw(const ViewState& state, const std::shared_ptr<c
     DrawnPicture picture;
     picture.scale = scale;
     picture.state = state;
-    if (scale > 1 && state_->maker->paints_boundary() && state.clip.slices.empty()) {
+    const ShellScene* const flow = state_->flow_of(state, style, optics, progress);
+    const View of_volume = flow != nullptr ? ended_at(*flow, view) : view;
+    if (scale > 1 && flow == nullptr && state_->maker->paints_boundary() && state.clip.slices.empty()) {
         state_->draw_preview(view, optics, picture, progress);
     } else {
-        state_->draw(view, optics, picture, progress);
+        state_->draw(of_volume, optics, picture, progress);
+        if (flow != nullptr) flow->draw_into(picture.image, picture.depth, view);
     }
-    if (scale == 1) draw_overlays(picture, view, *body, optics);
+    if (scale > 1) return picture;
+    const bool edges = state.edges && body->mesh.cells.size() > 0;
+    const bool within = edges && (state.look.look != Look::Solid || !state.look.opacity.empty() || picture.depth.empty());
+    if (within) {
+        Facts facts;
+        draw_edges_within(picture, of_volume, *body, state_->maker->boundary(optics, progress, facts),
+                          [&](const View& ended) { return state_->maker->draw(ended, optics, progress).image; });
+    }
+    draw_overlays(picture, view, *body, optics, edges && !within);
     return picture;
 }
 

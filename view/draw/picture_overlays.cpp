@@ -6,6 +6,7 @@
 
 #include "seen_view.h"
 #include "subvol/error.h"
+#include "subvol/lines_in_volume.h"
 #include "subvol/overlay.h"
 
 namespace subvol::detail {
@@ -55,13 +56,20 @@ int legend_columns(const ViewState& state, const ViewBody& body, const Optics& o
     return columns;
 }
 
-void draw_overlays(DrawnPicture& picture, const View& view, const ViewBody& body, const Optics& optics) {
+void draw_edges_within(DrawnPicture& picture, const View& view, const ViewBody& body, const Surface& boundary,
+                       const std::function<Image(const View&)>& draw_ended) {
+    const ViewState& state = picture.state;
+    const LineOptions style = edge_style(view, ink_on(background_of(state)));
+    const SortedLines lines = sort_lines(edge_samples(view, body.mesh, style, state.clip), boundary, view, state.clip);
+    std::vector<Image> ended;
+    for (const LineLayer& layer : lines.within) ended.push_back(draw_ended(ended_at(layer, view)));
+    draw_lines(picture.image, lines, ended, style.color);
+}
+
+void draw_overlays(DrawnPicture& picture, const View& view, const ViewBody& body, const Optics& optics, bool edges) {
     const ViewState& state = picture.state;
     const Vec3 ink = ink_on(background_of(state));
-    if (state.edges && !picture.depth.empty()) {
-        const double width = std::max(1.0, std::min(view.width(), view.height()) / 512.0);
-        draw_edges(picture.image, picture.depth, view, body.mesh, {.width_px = width, .color = ink, .alpha = 0.6}, state.clip);
-    }
+    if (edges) draw_edges(picture.image, picture.depth, view, body.mesh, edge_style(view, ink), state.clip);
     if (state.axes) draw_axes(picture.image, view, ink);
     if (state.legend) {
         widen(picture, state.width);

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
+
 #include "subvol/legend.h"
 #include "subvol/optics.h"
 #include "subvol/picture_drawer.h"
+#include "subvol/surface.h"
 
 namespace subvol::detail {
 
@@ -16,7 +19,16 @@ namespace subvol::detail {
 /// The columns at the right of the picture that the legend takes; 0 without one.
 [[nodiscard]] int legend_columns(const ViewState& state, const ViewBody& body, const Optics& optics);
 
+/// Draws the edges in the depth of a body that is transparent or whose picture has no depths.
+///
+/// boundary:   of the body
+/// draw_ended: its picture where rays end
+void draw_edges_within(DrawnPicture& picture, const View& view, const ViewBody& body, const Surface& boundary,
+                       const std::function<Image(const View&)>& draw_ended);
+
 /// Draws axes, edges and the legend over a full picture, which the legend makes wider.
-void draw_overlays(DrawnPicture& picture, const View& view, const ViewBody& body, const Optics& optics);
+///
+/// edges: those on an opaque body, by the depths of the picture
+void draw_overlays(DrawnPicture& picture, const View& view, const ViewBody& body, const Optics& optics, bool edges);
 
 }  // namespace subvol::detail

@@ -7,6 +7,18 @@
 
 namespace subvol {
 
+std::vector<std::pair<std::string, std::string>> ViewFlow::words() const {
+    std::vector<std::pair<std::string, std::string>> words;
+    FlowChoices given = chosen, plain;
+    const std::vector<Option> usual = options_of(plain);
+    for (std::size_t k = 0; const Option& option : options_of(given)) {
+        if (const std::string text = option.text(); text != usual[k++].text()) words.emplace_back(option.name, text);
+        if (option.name != "streamlines") continue;
+        for (const std::string& places : seeds) words.emplace_back("seeds", places);
+    }
+    return words;
+}
+
 ViewBody view_body(HexMesh mesh, const std::optional<std::string>& field) {
     SelectedField selected = select_field(mesh, field);
     mesh.attributes.assign(1, std::move(selected.scalar));

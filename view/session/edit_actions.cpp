@@ -209,6 +209,7 @@ void ViewSession::State::replace(HexMesh next) {
     auto changed = std::make_shared<ViewBody>(view_body(std::move(next), field));
     changed->shape = shape;
     changed->moved = grabbed;
+    changed->flow = body->flow;
     body = std::move(changed);
     take_values_of_body();
     edited = true;

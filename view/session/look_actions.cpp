@@ -146,6 +146,36 @@ void legend(Session& session, const Json& value) {
     edit_state(session, [&](ViewState& next) { next.legend = flag(value); });
 }
 
+/// Streamlines and arrows, by the options of the command; no options: none are drawn.
+void flow(Session& session, const Json& value) {
+    ViewFlow next;
+    const std::vector<Option> options = options_of(next.chosen);
+    if (!value.is_object()) refuse(value, R"(an object with options of streamlines, as {"streamlines": "U"})");
+    for (const auto& [key, given] : value.items()) {
+        if (key == "seeds") {
+            for (const Json& places : given.is_array() ? given : Json::array({given})) next.seeds.push_back(word(places));
+            continue;
+        }
+        const auto option = std::ranges::find(options, key, &Option::name);
+        if (option == options.end()) {
+            std::vector<std::string> known{"seeds"};
+            for (const Option& one : options) known.push_back(one.name);
+            throw Error(ErrorCode::InvalidInput, "the key " + in_quotes(key) + " is not known" + did_you_mean(key, known));
+        }
+        option->read(given.is_string() ? word(given) : given.dump(), key);
+    }
+    if (next.chosen.streamlines.empty() && !next.seeds.empty())
+        throw Error(ErrorCode::InvalidInput, "has no effect without streamlines", "seeds");
+    std::swap(session.state.flow, next);
+    try {
+        session.choose_body();
+    } catch (...) {
+        std::swap(session.state.flow, next);
+        throw;
+    }
+    session.show();
+}
+
 void compare(Session& session, const Json& name) {
     session.state.compare = name.is_null() ? std::nullopt : std::optional(method_of(name, session));
     session.show_reference();

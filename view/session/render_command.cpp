@@ -90,6 +90,7 @@ std::string render_command(const ViewState& state, const ViewBody& body, const V
     const Method method = state.method;
     if (state.edges && reads(method, kind_of(body), "edges")) words.emplace_back("--edges");
     if (state.legend) words.emplace_back("--legend");
+    for (const auto& [name, value] : state.flow.words()) add(("--" + name).c_str(), value);
     words.insert(words.end(), read_words.begin(), read_words.end());
     const std::vector<std::string> more = words_of_method(source.more_words, method, kind_of(body));
     words.insert(words.end(), more.begin(), more.end());

@@ -129,10 +129,27 @@ ViewSession::State::State(ViewSource from, HexMesh read, const ViewState& start,
     show();
 }
 
+namespace {
+
+/// The vectors of streamlines and arrows, and where streamlines start.
+std::shared_ptr<const Flow> flow_of(const ViewSource& source, const HexMesh& mesh, const ViewFlow& wanted,
+                                    const SchemeOptions& scheme) {
+    if (!wanted.chosen.any()) return nullptr;
+    if (!source.seeds || source.points.volume || source.tets)
+        throw Error(ErrorCode::InvalidInput, "needs a mesh of hexahedra in memory", "flow");
+    Flow flow = flow_in(mesh, wanted.chosen, OptionNames::Keywords);
+    flow.limit = {.scheme = scheme};
+    if (!flow.stream_vectors.empty()) flow.seeds = source.seeds(wanted, mesh, flow.limit);
+    return std::make_shared<const Flow>(std::move(flow));
+}
+
+}  // namespace
+
 void ViewSession::State::choose_body() {
     const auto field = state.field.empty() ? std::nullopt : std::optional(state.field);
-    std::shared_ptr<const ViewBody> chosen = std::make_shared<const ViewBody>(
-        source.points.volume ? view_body(*mesh, source.points, field) : view_body(*mesh, field));
+    ViewBody shown = source.points.volume ? view_body(*mesh, source.points, field) : view_body(*mesh, field);
+    shown.flow = flow_of(source, *mesh, state.flow, settings.kernels.sample.scheme);
+    std::shared_ptr<const ViewBody> chosen = std::make_shared<const ViewBody>(std::move(shown));
     decltype(tet_levels) levels;
     if (source.tets) {
         chosen = tet_body(source, chosen->mesh, chosen->field(), state.method);

@@ -52,6 +52,13 @@ Json json_of(const ViewState& state) {
     json["axes"] = state.axes;
     json["edges"] = state.edges;
     json["legend"] = state.legend;
+    json["flow"] = Json::object();
+    for (const auto& [name, value] : state.flow.words()) {
+        if (name == "seeds")
+            json["flow"][name].push_back(value);
+        else
+            json["flow"][name] = value;
+    }
     json["clip"] = Json::array();
     for (const CutPlane& plane : state.clip.planes) json["clip"].push_back(numbers(plane));
     json["clip_box"] = state.clip.box ? numbers(*state.clip.box) : Json(nullptr);

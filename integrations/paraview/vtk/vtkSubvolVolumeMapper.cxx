@@ -27,10 +27,18 @@
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <condition_variable>
+#include <deque>
+#include <exception>
+#include <functional>
+#include <future>
 #include <limits>
+#include <mutex>
 #include <numbers>
 #include <string>
+#include <thread>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "grids.h"
@@ -260,6 +268,63 @@ std::vector<float> texels_of(const Image& image, int left, int bottom, int width
     return texels;
 }
 
+/// A thread that runs one function after the other; whoever asks waits, and gets its error.
+class Thread {
+public:
+    Thread() : thread_([this] { work(); }) {}
+    ~Thread() {
+        give(nullptr);
+        thread_.join();
+    }
+    Thread(const Thread&) = delete;
+    Thread& operator=(const Thread&) = delete;
+
+    void run(const std::function<void()>& task) {
+        std::exception_ptr wrong;
+        std::promise<void> done;
+        const std::function<void()> guarded = [&] {
+            try {
+                task();
+            } catch (...) {
+                wrong = std::current_exception();
+            }
+            done.set_value();
+        };
+        give(&guarded);
+        done.get_future().wait();
+        if (wrong) std::rethrow_exception(wrong);
+    }
+
+private:
+    /// task: null: the last one
+    void give(const std::function<void()>* task) {
+        {
+            const std::scoped_lock lock(mutex_);
+            tasks_.push_back(task);
+        }
+        given_.notify_one();
+    }
+
+    void work() {
+        for (;;) {
+            const std::function<void()>* task = nullptr;
+            {
+                std::unique_lock lock(mutex_);
+                given_.wait(lock, [this] { return !tasks_.empty(); });
+                task = tasks_.front();
+                tasks_.pop_front();
+            }
+            if (task == nullptr) return;
+            (*task)();
+        }
+    }
+
+    std::mutex mutex_;
+    std::condition_variable given_;
+    std::deque<const std::function<void()>*> tasks_;
+    std::thread thread_;  // the last member: it uses the others
+};
+
 }  // namespace
 
 /// What is kept between pictures. Each part has the key that it was made for.
@@ -278,7 +343,13 @@ struct vtkSubvolVolumeMapper::State {
     ReadResult read;
     vtkMTimeType maker_made = 0;  // the mapper's options at that time
     Vec3 maker_light{0.0};        // to the key light, where surfaces are lit
-    std::unique_ptr<PictureMaker> maker;
+    std::string renderer = "auto", backend;
+    Thread thread;                        // of our OpenGL; others draw there too
+    std::unique_ptr<PictureMaker> maker;  // made, used and destroyed there
+
+    ~State() {
+        thread.run([this] { maker.reset(); });
+    }
 
     struct PictureKey {
         vtkMTimeType mapper = 0, property = 0, colors = 0, opacities = 0, planes = 0;
@@ -308,7 +379,8 @@ struct vtkSubvolVolumeMapper::State {
             OptionNames::Keywords);
         MethodOptions made = settings.chosen();
         made.style.look.look = Look::Volume;
-        if (made.splat.method == SplatMethod::Auto) made.splat.method = SplatMethod::Cpu;  // VTK's context is current here
+        if (renderer != "auto" && made.style.method == Method::Splat)
+            made.splat.method = named<SplatMethod>(renderer, "Renderer");
         return made;
     }
 
@@ -365,7 +437,9 @@ vtkSubvolVolumeMapper::~vtkSubvolVolumeMapper() = default;
 
 void vtkSubvolVolumeMapper::PrintSelf(ostream& os, vtkIndent indent) {
     Superclass::PrintSelf(os, indent);
-    os << indent << "Method: " << Internals->method << '\n' << indent << "Reduction: " << Reduction << '\n';
+    os << indent << "Method: " << Internals->method << '\n'
+       << indent << "Renderer: " << Internals->renderer << '\n'
+       << indent << "Reduction: " << Reduction << '\n';
     for (const auto& [name, text] : Internals->all_options()) os << indent << name << ": " << text << '\n';
 }
 
@@ -375,6 +449,18 @@ void vtkSubvolVolumeMapper::SetMethod(const char* name) {
     Internals->method = method;
     Modified();
     Internals->changed = GetMTime();
+}
+
+void vtkSubvolVolumeMapper::SetRenderer(const char* name) {
+    const std::string renderer = name != nullptr ? name : "auto";
+    if (renderer == Internals->renderer) return;
+    Internals->renderer = renderer;
+    Modified();
+    Internals->changed = GetMTime();
+}
+
+const char* vtkSubvolVolumeMapper::GetBackend() {
+    return Internals->backend.c_str();
 }
 
 void vtkSubvolVolumeMapper::SetOption(const char* name, const char* text) {
@@ -446,20 +532,25 @@ void vtkSubvolVolumeMapper::Render(vtkRenderer* renderer, vtkVolume* volume) {
             return;
         }
         state.picture_key = {};
-        state.prepare(mesh_key, state.changed, light);
         PictureStyle style = state.method_options().style;
         for (int i = 0; ClippingPlanes != nullptr && i < ClippingPlanes->GetNumberOfItems(); ++i) {
             vtkPlane& plane = *ClippingPlanes->GetItem(i);  // its normal points to what is left
             style.clip.planes.push_back(
                 {placement.in_mesh(vec(plane.GetOrigin())), -placement.direction_in_mesh(vec(plane.GetNormal()))});
         }
-        state.maker->set_style(style);
         View view(eye, tile.whole_width, tile.whole_height);
         if (!key.depths.empty()) view.end_rays(key.depths);
         if (reduction > 1)
             view = view.resized((tile.width + reduction - 1) / reduction, (tile.height + reduction - 1) / reduction);
         const Optics optics(function_of(property), property.GetScalarOpacityUnitDistance() / placement.scale);
-        const Picture picture = state.maker->draw(view, optics);
+        Picture picture;
+        state.thread.run([&] {
+            state.prepare(mesh_key, state.changed, light);
+            state.maker->set_style(style);
+            picture = state.maker->draw(view, optics);
+        });
+        const FactValue* const backend = picture.facts.find("backend");
+        state.backend = backend != nullptr ? std::get<std::string>(backend->value) : "cpu";
         const int width = reduction > 1 ? view.width() : tile.width, height = reduction > 1 ? view.height() : tile.height;
         std::vector<float> texels =
             texels_of(picture.image, reduction > 1 ? 0 : tile.x, reduction > 1 ? 0 : tile.y, width, height);

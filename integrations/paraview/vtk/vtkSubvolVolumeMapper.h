@@ -23,6 +23,11 @@ public:
 
     /// The method of the picture, as of `subvol render --method`: splat, tets, dense.
     void SetMethod(const char* name);
+    /// What draws splats: auto (a GPU if there is one, else the CPU), cpu, gl. Our OpenGL has a thread of its own, as its
+    /// context cannot be current beside VTK's.
+    void SetRenderer(const char* name);
+    /// What drew the last picture: "cpu" or "gl"; empty before the first one.
+    const char* GetBackend();
     /// Any other option of pictures by its name in Python, such as "scheme" to "cc" or "samples" to "2"; nothing or an empty
     /// text: its default.
     void SetOption(const char* name, const char* text);

@@ -7,6 +7,7 @@
 #include "subvol/draw_shells.h"
 #include "subvol/flow_surface.h"
 #include "subvol/gl_device.h"
+#include "subvol/lines_in_volume.h"
 #include "subvol/method.h"
 #include "subvol/picture_maker.h"
 #include "subvol/pixel_rows.h"

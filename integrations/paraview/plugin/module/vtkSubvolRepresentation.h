@@ -24,6 +24,7 @@ public:
 
     // The mapper has them.
     void SetMethod(const char* name) { Mapper->SetMethod(name); }
+    void SetRenderer(const char* name) { Mapper->SetRenderer(name); }
     void SetScheme(const char* name) { Mapper->SetScheme(name); }
     void SetShade(bool shade) { Mapper->SetShade(shade); }
     void SetOptions(const char* text) { Mapper->SetOptions(text); }

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "subvol/camera.h"
 #include "subvol/clip.h"
@@ -41,6 +43,9 @@ struct LineOptions {
     Vec3 color{0.0};
     double alpha = 1;
 };
+
+/// The width and strength of the edges of cells in a picture.
+[[nodiscard]] LineOptions edge_style(const View& view, const Vec3& ink);
 
 void draw_line(Image& image, const Vec2& from, const Vec2& to, const LineOptions& options = {});
 
@@ -88,6 +93,27 @@ void draw_edges(Image& image, std::span<const float> depth, const View& view, co
 /// Draws the edges of shells and the lines of beams in the same way.
 void draw_edges(Image& image, std::span<const float> depth, const View& view, const Shells& shells,
                 const LineOptions& options = {}, const Clip& clip = {});
+
+/// What a line covers of a pixel.
+///
+/// pixel:     its number, rows from the top
+/// faces_eye: whether the side of the hull or of a cut on which the line lies is turned to the eye
+/// depth:     the eye depth of the line there
+/// slack:     how far the limit may be from the line, along the ray
+/// cover:     0..1, with the alpha of the line
+struct LineSample {
+    std::uint32_t pixel = 0;
+    bool faces_eye = true;
+    float depth = 0, slack = 0, cover = 0;
+};
+
+/// The pixels of the edges that `draw_edges` draws, for `sort_lines`.
+///
+/// throws: Error(InvalidInput) as `build_topology`
+[[nodiscard]] std::vector<LineSample> edge_samples(const View& view, const HexMesh& mesh, const LineOptions& options = {},
+                                                   const Clip& clip = {});
+[[nodiscard]] std::vector<LineSample> edge_samples(const View& view, const Shells& shells, const LineOptions& options = {},
+                                                   const Clip& clip = {});
 
 /// Draws the directions of the axes x, y, z in the lower left corner, red, green and blue, with their names.
 ///

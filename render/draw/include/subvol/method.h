@@ -5,6 +5,7 @@
 #include <string>
 #include <string_view>
 
+#include "subvol/flow_surface.h"
 #include "subvol/names.h"
 #include "subvol/option.h"
 
@@ -87,6 +88,11 @@ struct OptionUse {
 /// given:   called with the `name` of each option
 /// throws:  Error(InvalidInput) that names the option and the method or the body
 void check_options(Methods methods, BodyKind body, const GivenOptions& given, OptionNames names = OptionNames::Flags);
+
+/// throws: Error(InvalidInput) where streamlines and arrows cannot be drawn
+///
+/// whole: all of the body is drawn, as one: neither patches alone nor parts with opacities of their own
+void check_flow(const FlowChoices& flow, Method method, BodyKind body, bool whole, OptionNames names);
 
 /// Refuses every option that was given and that only volumes read: shells and patches alone are drawn.
 ///

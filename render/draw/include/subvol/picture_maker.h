@@ -192,6 +192,8 @@ public:
     [[nodiscard]] bool paints_boundary() const;
     /// The values on the boundary, made by the first call.
     [[nodiscard]] const BoundaryValues& skin(Progress* progress, Facts& facts);
+    /// The boundary of a mesh: that of its kernels where these are drawn, else that of `skin`.
+    [[nodiscard]] const Surface& boundary(const Optics& optics, Progress* progress, Facts& facts);
     /// The kernels of a mesh or of points, made by the first call.
     [[nodiscard]] const RbfVolume& kernels(const Optics& optics, Progress* progress, Facts& facts);
 

@@ -23,22 +23,25 @@ struct ColoredSurface {
 
 /// samples: those of the picture: n × n places in each pixel
 /// clip:    that of the picture, without its slices
-/// whole:   the clip cuts the volume, but not the triangles, and each ray of the volume has ended where it meets them
-///          (`View::end_rays` with the depths at all places)
+/// whole:   the clip cuts the volume, but not the triangles
+/// ended:   each ray of the volume has ended where it meets the triangles (`ended_at`), so that they lie in its depth
 struct ShellOptions {
     Shading shading{};
     int samples = 1;
     Clip clip{};
     bool whole = false;
+    bool ended = false;
 };
 
 /// The eye depths at which rays through the middles of pixels meet triangles, rows from the top; infinity where they do not.
-[[nodiscard]] std::vector<float> depths_of(const Surface& surface, const View& view);
+///
+/// clip: what it takes away is not met
+[[nodiscard]] std::vector<float> depths_of(const Surface& surface, const View& view, const Clip& clip = {});
 
 /// Draws triangles, lit on either side, into the finished picture of a volume: before it or behind it. Opaque ones that lie
-/// within the volume, or between parts of it, are drawn behind it, as far as that is transparent; where the volume is opaque
-/// from its boundary on, that is exact. Translucent ones are drawn one over the other, in any number, before the volume; what
-/// lies behind its boundary is not seen.
+/// within the volume, or between parts of it, are drawn behind it, as far as that is transparent. That is exact where the
+/// volume is opaque from its boundary on, and where its rays have ended at the triangles. Translucent ones are drawn one over
+/// the other, in any number, before the volume; what lies behind its boundary is not seen.
 ///
 /// depth:    of the picture as of `SplatResult`, which becomes that of opaque triangles where they are seen first; empty: none
 /// boundary: of the volume, closed, outward; empty: there is no volume

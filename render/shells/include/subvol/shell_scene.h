@@ -21,7 +21,7 @@ struct ShellScene {
     Optics optics;
     int samples = 1;
     Clip clip{};
-    bool whole = false;  // as of ShellOptions
+    bool whole = false, ended = false;  // as of ShellOptions
 
     /// Draws into a finished picture, as `subvol::draw_shells`.
     void draw_into(Image& image, std::span<float> depth, const View& view) const;
@@ -43,6 +43,11 @@ struct ShellScene {
 /// mesh: of the volume that may hide them, on the limit
 [[nodiscard]] ShellScene make_opaque_scene(const HexMesh& mesh, ColoredSurface drawn, RefineOptions refine,
                                            std::optional<int> most, const Optics& optics, int samples, const Clip& clip);
+
+/// The boundary of a volume on the limit, as its pictures have it; empty without cells.
+///
+/// most: no more levels than these, if given
+[[nodiscard]] Surface boundary_of(const HexMesh& mesh, RefineOptions refine, std::optional<int> most);
 
 /// The view with rays that end at the triangles of a scene, so that a volume is drawn up to these: each of the scene's samples.
 [[nodiscard]] View ended_at(const ShellScene& scene, View view);

@@ -7,10 +7,12 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "subvol/camera.h"
 #include "subvol/clip.h"
+#include "subvol/flow_surface.h"
 #include "subvol/hex_mesh.h"
 #include "subvol/method.h"
 #include "subvol/picture_look.h"
@@ -20,6 +22,17 @@
 
 namespace subvol {
 
+/// Streamlines and arrows of a picture, as users choose them.
+///
+/// seeds: where streamlines start, as for `ViewSource::seeds`; none: middles of cells
+struct ViewFlow {
+    FlowChoices chosen{};
+    std::vector<std::string> seeds{};
+
+    /// The options that are not as by default, and their values, as users write them.
+    [[nodiscard]] std::vector<std::pair<std::string, std::string>> words() const;
+};
+
 /// What is shown, as a plain value: the same state gives the same picture.
 ///
 /// width, height: of the picture in pixels, with its legend
@@ -28,6 +41,7 @@ namespace subvol {
 /// method:        one of `kViewMethods`
 /// background:    in linear light; none: that of the look
 /// axes, edges, legend: what is drawn over the picture
+/// flow:          streamlines and arrows in the body
 /// clip:          how the volume is cut open
 /// compare:       the method of a second picture, which is shown right of `slider` (0 to 1 of the width); none: no other
 /// difference:    shows the difference of the two instead
@@ -40,6 +54,7 @@ struct ViewState {
     LookOptions look{};
     std::optional<Vec3> background{};
     bool axes = false, edges = false, legend = false;
+    ViewFlow flow{};
     Clip clip{};
     std::optional<Method> compare{};
     double slider = 0.5;
@@ -68,6 +83,7 @@ struct ViewPoints {
 /// moved:   it is being moved, so that tables for its cells pay
 /// points:  shown instead of cells; without a volume: there are cells
 /// channel: of the points
+/// flow:    vectors at the points of the mesh that are drawn, with seeds; null: none
 /// tets:    the mesh is a level of a scheme of tetrahedra on its limit, in hexahedra. It is drawn as tetrahedra and octahedra,
 ///          or with one kernel at each point
 struct ViewBody {
@@ -79,6 +95,7 @@ struct ViewBody {
     ViewPoints points{};
     std::size_t channel = 0;
     bool tets = false;
+    std::shared_ptr<const Flow> flow{};
 
     [[nodiscard]] const std::string& field() const { return mesh.attributes.front().name; }
 };

@@ -29,6 +29,7 @@ struct PictureFigures {
 /// times:         one for each step; at least one
 /// write_picture: writes a picture over a background; empty: the action `screenshot` is refused
 /// measure:       compares two pictures of one size; empty: comparisons have no figures
+/// seeds:         the places in a mesh where streamlines start; empty: streamlines and arrows are refused
 /// notes:         warnings of reading the input
 /// more_words:    further words of the render command: options that no action changes
 /// read_words:    the same of options for reading the input, which a mesh that was saved here does not need
@@ -43,6 +44,7 @@ struct ViewSource {
     std::vector<double> times{0.0};
     std::function<void(const std::filesystem::path& path, const Image& image, const Vec3& background)> write_picture{};
     std::function<PictureFigures(const Image& test, const Image& reference)> measure{};
+    std::function<std::vector<Vec3>(const ViewFlow& flow, const HexMesh& mesh, const LimitOptions& limit)> seeds{};
     std::vector<std::string> notes{};
     std::vector<std::string> more_words{}, read_words{};
     ViewPoints points{};
