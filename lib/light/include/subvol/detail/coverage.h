@@ -30,8 +30,8 @@ inline void put_under(Image& image, int x, int y, const Vec3& rgb, double alpha)
 /// holes.
 void fill(Image& image, std::span<const std::vector<Vec2>> polygons, const Vec3& rgb);
 
-/// Calls take(x, y, cover, t) for the pixels of a picture in a line with round ends: cover is the part of the pixel in it, about, and t in
-/// 0..1 the nearest place on the line.
+/// Calls take(x, y, cover, t) for the pixels of a picture in a line with round ends: cover is the part of the pixel in it,
+/// about, and t in 0..1 the nearest place on the line.
 void for_each_pixel_of_line(int width, int height, const Vec2& from, const Vec2& to, double width_px,
                             const std::function<void(int, int, double, double)>& take);
 
