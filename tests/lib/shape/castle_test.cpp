@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "castle.h"
+#include "layers.h"
 
 #include <gtest/gtest.h>
 
