@@ -139,7 +139,7 @@ public:
                "  subvol points big.vtu -o part2.ply --part 2/4        a share, for join\n"
                "  subvol points big.vtu -o big.svk                     with levels of detail\n"
                "  subvol points fine.vtu -o fine.svw --wavelet-tolerance 1e-3   compressed\n"
-               "  subvol points run.foam -o run.svw --step all --max-error 1e-3   all steps, compressed\n"
+               "  subvol points run.foam -o run.svw --step all --max-error 1e-3\n"
                "\n"
                "The boundary of NAME.vtp, of NAME.vdb and of a .ply with --splats is in NAME.boundary.vtp.") {
         app().add_option("FILE", input_, text(input_help(), "; or a .vdb grid of floats"))->required();

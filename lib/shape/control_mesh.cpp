@@ -141,23 +141,26 @@ ControlMesh control_mesh_of(const Surface& surface, const ControlMeshOptions& gi
             "the surface has no size that can be worked with: a cell would have the side " + number_text(report.side_world),
             "surface", "1e-60 to 1e60");
     }
-    HexMesh mesh = with_layer(cubes_inside(surface, options, report.side_world, report.added));
+    const HexMesh cubes = cubes_inside(surface, options, report.side_world, report.added);
+    HexMesh mesh = with_layer(cubes);
     report.parts = parts_of(mesh);
     report.shape.before = shape_error(mesh, surface, options.scheme);
     std::vector<Vec3> start = mesh.points;
-    const SharpEdges sharp = options.sharp_angle_deg < kStraight
-                                 ? sharp_edges(surface, options.sharp_angle_deg, report.side_world)
-                                 : SharpEdges{};
+    const SharpEdges sharp =
+        options.sharp_angle_deg < kStraight ? sharp_edges(surface, options.sharp_angle_deg, report.side_world) : SharpEdges{};
     SharpPaths paths;
     const auto rounds_of = [&](Scheme kind, int first, int end) {
         SchemeOptions scheme = options.scheme;
         scheme.kind = kind;
         ShapeFitter fitter(build_topology(mesh), surface, scheme);
         fitter.follow(sharp, paths);
+        // With layers there are more cells than cubes in the same volume: larger ones would press the boundary outwards.
+        const double side =
+            report.side_world * std::cbrt(static_cast<double>(cubes.cells.size()) / static_cast<double>(mesh.cells.size()));
         for (int round = first; round < end; ++round) {
             report_progress(options.progress, "shape", static_cast<double>(round) / options.rounds);
             constexpr double kMore = 1.5;
-            mesh.points = fitter.relaxed(mesh.points, report.side_world, std::pow(kMore, round));
+            mesh.points = fitter.relaxed(mesh.points, side, std::pow(kMore, round));
         }
         report.shape.rounds += end - first;
         return fitter.sharp_error(mesh.points);

@@ -17,8 +17,9 @@ namespace subvol::detail {
 /// The boundary has to be a surface. Attributes are dropped.
 [[nodiscard]] HexMesh with_layer(const HexMesh& mesh);
 
-/// The mesh, in which every cell has one side at the boundary at most, with one more layer of cells: under those at the boundary, and
-/// on both sides of each crease. So a crease may turn at each of its points: no side at the boundary has two edges of it.
+/// The mesh, in which every cell has one side at the boundary at most, with one more layer of cells: under those at the
+/// boundary, and on both sides of each crease. So a crease may turn at each of its points: no side at the boundary has two
+/// edges of it.
 ///
 ///     ┌───┬───┐      ┌───┬───┐
 ///     │   │   │      ├──┐│┌──┤   Seen from outside, with a crease in the middle.

@@ -3,12 +3,12 @@
 
 #include <vector>
 
+#include "sharp_pulls.h"
 #include "subvol/cell.h"
 #include "subvol/detail/parallel_sums.h"
 #include "subvol/fit_shape.h"
 #include "subvol/refine.h"
 #include "subvol/topology.h"
-#include "sharp_pulls.h"
 #include "surface_distances.h"
 #include "surface_matrix.h"
 

@@ -237,7 +237,7 @@ SharpEdges sharp_edges(const Surface& surface, double angle_deg, double side) {
     }
 }
 
-CurveTree::CurveTree(const SharpCurve& curve) {
+CurveTree::CurveTree(const SharpCurve& curve) : closed_(curve.closed()) {
     segments_.points = curve.points;
     for (Index k = 1; k < curve.points.size(); ++k) segments_.triangles.push_back({k - 1, k, k});
     tree_.emplace(segments_);
@@ -246,7 +246,8 @@ CurveTree::CurveTree(const SharpCurve& curve) {
 CurvePlace CurveTree::nearest(const Vec3& x) const {
     const SurfacePlace place = tree_->nearest(x);
     const auto& segment = segments_.triangles[place.triangle];
-    return {place.point, glm::normalize(segments_.points[segment[1]] - segments_.points[segment[0]])};
+    const bool end = !closed_ && (place.point == segments_.points.front() || place.point == segments_.points.back());
+    return {place.point, glm::normalize(segments_.points[segment[1]] - segments_.points[segment[0]]), end};
 }
 
 }  // namespace subvol::detail

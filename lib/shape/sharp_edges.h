@@ -37,9 +37,10 @@ struct SharpEdges {
 /// side: of a cell
 [[nodiscard]] SharpEdges sharp_edges(const Surface& surface, double angle_deg, double side);
 
-/// The place of a curve that is nearest to a point, and the curve's direction there.
+/// The place of a curve that is nearest to a point, and the curve's direction there. end: it is one of the curve's ends
 struct CurvePlace {
     Vec3 point, along;
+    bool end;
 };
 
 class CurveTree {
@@ -53,6 +54,7 @@ public:
 
 private:
     Surface segments_;  // triangles with a corner twice
+    bool closed_;
     std::optional<SurfaceTree> tree_;
 };
 

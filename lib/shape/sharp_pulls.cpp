@@ -34,8 +34,7 @@ std::vector<Pull> SharpPulls::pulls(const std::vector<Vec3>& boundary, double we
         const CurvePlace place = curves_[at.curve].nearest(x);
         const Vec3 off = x - place.point;
         for (const Vec3& direction : across(place.along)) add(at.row, direction, off);
-        constexpr double kBeyond = 0.5;  // of the distance along the curve, which is 0 but beyond its ends
-        if (std::abs(glm::dot(place.along, off)) > kBeyond * glm::length(off)) add(at.row, place.along, off);
+        if (place.end) add(at.row, place.along, off);
     }
     for (const auto& [row, corner] : corners_) {
         for (int axis = 0; axis < 3; ++axis) {

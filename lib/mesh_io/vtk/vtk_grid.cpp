@@ -47,7 +47,9 @@ void check_arrays(const VtkUnstructuredGrid& grid) {
 
 void take_cells(const VtkUnstructuredGrid& grid, VtkCellSorter& sorter) {
     const auto points = static_cast<std::int64_t>(grid.points.size());
-    const VtkFaces faces{.stream = grid.faces, .ends = grid.face_ends};
+    VtkFaces faces;
+    faces.stream = grid.faces;
+    faces.ends = grid.face_ends;
     std::vector<Index> corners;
     std::int64_t begin = 0;
     for (std::size_t c = 0; c < grid.types.size(); begin = grid.ends[c++]) {
