@@ -18,7 +18,8 @@
 namespace subvol {
 namespace {
 
-constexpr const char* kKinds = "box:x0,y0,z0,x1,y1,z1, sphere:x,y,z,r, half:px,py,pz,nx,ny,nz, where:EXPRESSION, set:NAME, fold:VERDICT";
+constexpr const char* kKinds =
+    "box:x0,y0,z0,x1,y1,z1, sphere:x,y,z,r, half:px,py,pz,nx,ny,nz, where:EXPRESSION, set:NAME, fold:VERDICT";
 
 std::vector<double> numbers_of(const std::string& text, std::string_view list, std::size_t count) {
     std::vector<double> numbers;
