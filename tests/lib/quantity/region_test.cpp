@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "subvol/certificate.h"
 #include "subvol/region.h"
+#include "subvol/certificate.h"
 
 #include <gtest/gtest.h>
 

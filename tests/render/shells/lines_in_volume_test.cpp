@@ -144,8 +144,7 @@ TEST(ShellsInVolume, AreSeenThroughWhatIsBeforeThem) {
             plate.surface.triangles = {{0, 1, 2}, {0, 2, 3}};
             plate.values.assign(4, 1.0);
             const Optics light{TransferFunction{.color = {{0, kWhite}, {2, kWhite}}, .opacity = {{0, 1}, {2, 1}}}, 1.0};
-            const ShellScene scene =
-                make_opaque_scene(mesh, plate, {.scheme = {.kind = Scheme::Linear}}, 0, light, 1, Clip{});
+            const ShellScene scene = make_opaque_scene(mesh, plate, {.scheme = {.kind = Scheme::Linear}}, 0, light, 1, Clip{});
             Image alone(kSize, kSize), image = maker.draw(ended_at(scene, view()), black(.6)).image;
             draw_shells(alone, {}, plate, {}, view(), light);
             scene.draw_into(image, {}, view());
