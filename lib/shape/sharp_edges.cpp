@@ -144,11 +144,11 @@ private:
     }
 
     [[nodiscard]] bool corner(Index p) const {
-        const auto here = at_point(p);
-        if (here.size() != 2) return true;
+        const auto ends = at_point(p);
+        if (ends.size() != 2) return true;
         std::array<Vec3, 2> away;
         for (std::size_t k = 0; k < 2; ++k) {
-            const auto& [a, b] = edges_[here[k].second];
+            const auto& [a, b] = edges_[ends[k].second];
             away[k] = glm::normalize(surface_.points[a == p ? b : a] - surface_.points[p]);
         }
         constexpr double kTurn = -0.64;  // the cosine of 130°: a turn by 50°

@@ -98,16 +98,16 @@ private:
         while (!next.empty()) {
             const Index p = next.top().second;
             next.pop();
-            Reached& here = reached[p];
-            if (here.done) continue;
-            here.done = true;
+            Reached& point = reached[p];
+            if (point.done) continue;
+            point.done = true;
             if (p != from && ends(p)) {
                 to = p;
                 break;
             }
             for (const auto& [start, q] : at(p)) {
                 if ((taken_[q] != 0 && !ends(q)) || closed_.contains(in_order({p, q}))) continue;
-                const double cost = here.cost + cost_of(p, q);
+                const double cost = point.cost + cost_of(p, q);
                 if (std::isinf(cost)) continue;
                 const auto [found, is_new] = reached.try_emplace(q, Reached{cost, p, false});
                 if (!is_new && (found->second.done || found->second.cost <= cost)) continue;
@@ -232,8 +232,8 @@ private:
             if (c == kNone || edges_at[c] != 1) continue;
             const Index curve = *curves_at[c].begin();
             const std::vector<Index> path = graph_.path_to(c, [&](Index p) {
-                const auto here = curves_at.find(p);
-                return here != curves_at.end() && (edges_at[p] == 1 || !here->second.contains(curve));
+                const auto known = curves_at.find(p);
+                return known != curves_at.end() && (edges_at[p] == 1 || !known->second.contains(curve));
             });
             if (path.empty()) dropped.insert(curve);
             for (std::size_t i = 1; i < path.size(); ++i) {
