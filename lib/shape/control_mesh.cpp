@@ -127,8 +127,9 @@ ControlMesh control_mesh_of(const Surface& surface, const ControlMeshOptions& gi
     check_options(options);
     check_options(options.scheme);
     if (options.scheme.crease_angle_deg) {
-        throw Error(ErrorCode::InvalidInput, "has no effect: the boundary of the mesh becomes smooth",
-                    option_name("crease-angle", options.names), "creases of the mesh when it is used");
+        throw Error(ErrorCode::InvalidInput, "has no effect: sharp edges of the surface become creases",
+                    option_name("crease-angle", options.names),
+                    option_name("sharp-angle", options.names) + " for other angles");
     }
     validate(surface);
     const Vec3 size = box_of(surface).size();
