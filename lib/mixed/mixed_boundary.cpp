@@ -20,6 +20,7 @@
 #include <string>
 
 #include "mixed_shapes.h"
+#include "subvol/detail/disjoint_sets.h"
 #include "subvol/detail/number_text.h"
 #include "subvol/detail/parallel_each.h"
 #include "subvol/error.h"
@@ -130,18 +131,12 @@ std::vector<std::uint8_t> count_fans(std::size_t points, const std::vector<std::
         }
     }
     tbb::parallel_sort(corners.begin(), corners.end());
-    std::vector<Index> root(corners.size());
-    for (Index i = 0; i < root.size(); ++i) root[i] = i;
-    // Halving the paths on the way keeps the trees flat.
-    const auto find = [&](Index i) {
-        while (root[i] != i) i = root[i] = root[root[i]];
-        return i;
-    };
+    DisjointSets fans(corners.size());
     const auto join = [&](Index point, Index f0, Index f1) {
         const auto place = [&](Index f) {
             return static_cast<Index>(std::lower_bound(corners.begin(), corners.end(), Corner{point, f}) - corners.begin());
         };
-        root[find(place(f1))] = find(place(f0));
+        fans.join(place(f0), place(f1));
     };
     for (std::size_t e = 1; e < edges.size(); ++e) {
         if (edges[e].ends != edges[e - 1].ends) continue;
@@ -150,8 +145,8 @@ std::vector<std::uint8_t> count_fans(std::size_t points, const std::vector<std::
     std::vector<std::uint8_t> count(points);
     for (std::size_t i = 0; i < corners.size(); ++i) {
         auto& n = count[corners[i].point];
-        // Each fan has one corner that is its own root.
-        if (find(static_cast<Index>(i)) == i && n < 255) ++n;
+        // Each fan has one corner that is its least.
+        if (fans.least(static_cast<Index>(i)) == i && n < 255) ++n;
     }
     return count;
 }

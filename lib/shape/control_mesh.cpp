@@ -10,6 +10,7 @@
 #include "shape_fitter.h"
 #include "sharp_paths.h"
 #include "subvol/cell.h"
+#include "subvol/detail/disjoint_sets.h"
 #include "subvol/detail/number_text.h"
 #include "subvol/detail/parallel_each.h"
 #include "subvol/error.h"
@@ -62,17 +63,12 @@ HexMesh cubes_inside(const Surface& surface, const ControlMeshOptions& options, 
 }
 
 std::size_t parts_of(const HexMesh& mesh) {
-    std::vector<Index> root(mesh.points.size());
-    for (Index p = 0; p < root.size(); ++p) root[p] = p;
-    const auto find = [&](Index p) {
-        while (root[p] != p) p = root[p] = root[root[p]];
-        return p;
-    };
+    DisjointSets joined(mesh.points.size());
     for (const auto& cell : mesh.cells) {
-        for (const Index p : cell) root[find(p)] = find(cell[0]);
+        for (const Index p : cell) joined.join(cell[0], p);
     }
     std::size_t parts = 0;
-    for (Index p = 0; p < root.size(); ++p) parts += root[p] == p ? 1 : 0;
+    for (Index p = 0; p < mesh.points.size(); ++p) parts += joined.least(p) == p ? 1 : 0;
     return parts;
 }
 

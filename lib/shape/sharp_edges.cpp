@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "subvol/detail/disjoint_sets.h"
 #include "subvol/detail/parallel_each.h"
 #include "subvol/detail/point_welder.h"
 
@@ -160,6 +161,44 @@ private:
     std::vector<std::pair<Index, std::size_t>> ends_;  // the edges at each point
 };
 
+/// A flag for each curve: whether it ends freely after a few sides, or is one of a net that is short, or whose curves are.
+std::vector<std::uint8_t> noise_among(const SharpEdges& found, double side) {
+    constexpr double kSpur = 3, kRing = 6, kMean = 1.5;  // sides
+    std::vector<std::size_t> ends(found.corners.size(), 0);
+    for (const SharpCurve& curve : found.curves) {
+        for (const Index c : curve.corners) {
+            if (c != kNone) ++ends[c];
+        }
+    }
+    // The length of all curves that are joined.
+    DisjointSets nets(found.curves.size());
+    std::vector<Index> first_at(found.corners.size(), kNone);
+    for (Index k = 0; k < found.curves.size(); ++k) {
+        for (const Index c : found.curves[k].corners) {
+            if (c == kNone) continue;
+            if (first_at[c] == kNone) first_at[c] = k;
+            nets.join(first_at[c], k);
+        }
+    }
+    std::vector<double> lengths(found.curves.size(), 0);
+    std::vector<std::size_t> curves(found.curves.size(), 0);
+    for (Index k = 0; k < found.curves.size(); ++k) {
+        lengths[nets.least(k)] += found.curves[k].length();
+        ++curves[nets.least(k)];
+    }
+    std::vector<std::uint8_t> noise(found.curves.size(), 0);
+    for (Index k = 0; k < noise.size(); ++k) {
+        const SharpCurve& curve = found.curves[k];
+        const bool free = !curve.closed() && (ends[curve.corners[0]] == 1 || ends[curve.corners[1]] == 1);
+        const Index net = nets.least(k);
+        noise[k] = (free && curve.length() < kSpur * side) || lengths[net] < kRing * side ||
+                           lengths[net] < kMean * side * static_cast<double>(curves[net])
+                       ? 1
+                       : 0;
+    }
+    return noise;
+}
+
 }  // namespace
 
 double SharpCurve::length() const {
@@ -188,46 +227,10 @@ SharpEdges sharp_edges(const Surface& surface, double angle_deg, double side) {
     for (std::size_t e = 0; e < all.size(); ++e) {
         if (bent[e] != 0) edges.push_back(all[e].ends);
     }
-    constexpr double kSpur = 3, kRing = 6, kMean = 1.5;  // sides
     for (;;) {
         std::vector<std::size_t> chain;
         SharpEdges found = Chains(surface, edges).traced(chain);
-        std::vector<std::size_t> ends(found.corners.size(), 0);
-        for (const SharpCurve& curve : found.curves) {
-            for (const Index c : curve.corners) {
-                if (c != kNone) ++ends[c];
-            }
-        }
-        // The length of all curves that are joined.
-        std::vector<std::size_t> parent(found.curves.size()), first_at(found.corners.size(), parent.size());
-        const auto root = [&](std::size_t k) {
-            while (parent[k] != k) k = parent[k] = parent[parent[k]];
-            return k;
-        };
-        for (std::size_t k = 0; k < parent.size(); ++k) {
-            parent[k] = k;
-            for (const Index c : found.curves[k].corners) {
-                if (c == kNone) continue;
-                if (first_at[c] == parent.size()) first_at[c] = k;
-                parent[root(k)] = root(first_at[c]);
-            }
-        }
-        std::vector<double> joined(parent.size(), 0);
-        std::vector<std::size_t> curves(parent.size(), 0);
-        for (std::size_t k = 0; k < parent.size(); ++k) {
-            joined[root(k)] += found.curves[k].length();
-            ++curves[root(k)];
-        }
-        std::vector<std::uint8_t> noise(found.curves.size(), 0);
-        for (std::size_t k = 0; k < noise.size(); ++k) {
-            const SharpCurve& curve = found.curves[k];
-            const bool free = !curve.closed() && (ends[curve.corners[0]] == 1 || ends[curve.corners[1]] == 1);
-            const std::size_t whole = root(k);
-            noise[k] = (free && curve.length() < kSpur * side) || joined[whole] < kRing * side ||
-                               joined[whole] < kMean * side * static_cast<double>(curves[whole])
-                           ? 1
-                           : 0;
-        }
+        const std::vector<std::uint8_t> noise = noise_among(found, side);
         if (std::ranges::count(noise, 1) == 0) return found;
         std::vector<std::array<Index, 2>> kept;
         for (std::size_t e = 0; e < edges.size(); ++e) {

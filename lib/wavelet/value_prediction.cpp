@@ -15,6 +15,7 @@
 #include <numeric>
 
 #include "subvol/cell.h"
+#include "subvol/detail/disjoint_sets.h"
 #include "subvol/detail/parallel_each.h"
 
 namespace subvol::detail {
@@ -56,20 +57,14 @@ private:
 
 /// For each edge the least edge of its sheet.
 std::vector<Index> sheets_of(const Topology& topology) {
-    std::vector<Index> parent(topology.edges.size());
-    std::iota(parent.begin(), parent.end(), Index{0});
-    const auto root = [&](Index e) {
-        while (parent[e] != e) e = parent[e] = parent[parent[e]];
-        return e;
-    };
+    DisjointSets sheets(topology.edges.size());
     for (const auto& edges : topology.cell_edges) {
-        for (std::size_t k = 0; k < edges.size(); ++k) {
-            const Index a = root(edges[k / 4 * 4]), b = root(edges[k]);  // four edges are parallel in `kCellEdges`
-            parent[std::max(a, b)] = std::min(a, b);
-        }
+        for (std::size_t k = 0; k < edges.size(); ++k)
+            sheets.join(edges[k / 4 * 4], edges[k]);  // four of `kCellEdges` are parallel
     }
-    for (Index e = 0; e < parent.size(); ++e) parent[e] = root(e);
-    return parent;
+    std::vector<Index> least(topology.edges.size());
+    for (Index e = 0; e < least.size(); ++e) least[e] = sheets.least(e);
+    return least;
 }
 
 bool share_a_cell(const Topology& topology, Index a, Index b) {
