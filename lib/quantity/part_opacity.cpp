@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <string_view>
 
+#include "region_cells.h"
 #include "subvol/error.h"
 #include "subvol/option.h"
 #include "subvol/topology.h"
@@ -45,12 +46,14 @@ PartOpacity parse_part_opacity(const std::string& text) {
 TranslucentParts translucent_parts(const HexMesh& mesh, std::span<const PartOpacity> parts, const MeshSets& sets) {
     std::vector<std::size_t> numbers(mesh.cells.size(), kRest);
     const std::size_t hidden = parts.size() + 1;
+    detail::RegionCells in_regions(mesh, sets);
     for (std::size_t k = 0; k < parts.size(); ++k) {
         if (parts[k].region.kind() == Region::Kind::Set && sets.sets.empty()) {
             throw Error(ErrorCode::InvalidInput, "there is no set \"" + parts[k].region.quantity() + "\"", {},
                         "the mesh has no sets of cells and no blocks; a region such as half:0,0,0,1,0,0=.3 or where:T>500=.3");
         }
-        const auto cells = cells_in(mesh, std::span(&parts[k].region, 1), sets);
+        const auto cells = in_regions.in(parts[k].region);
+        detail::refuse_none(cells);
         const std::size_t number = parts[k].opacity >= 1 ? kRest : parts[k].opacity <= 0 ? hidden : k + 1;
         for (std::size_t c = 0; c < cells.size(); ++c) {
             if (cells[c]) numbers[c] = number;

@@ -9,7 +9,7 @@
 #include <tuple>
 
 #include "mesh_subset.h"
-#include "subvol/certificate.h"
+#include "region_cells.h"
 #include "subvol/detail/parallel_each.h"
 #include "subvol/error.h"
 #include "subvol/option.h"
@@ -115,59 +115,63 @@ double depth(std::span<const Region> regions, const Vec3& place) {
     return least;
 }
 
-namespace {
+namespace detail {
 
-/// A flag for each cell: whether it is in one of several sets, whose names have commas between, unless one is called so.
-std::vector<std::uint8_t> cells_of_sets(const HexMesh& mesh, const std::string& names, const MeshSets& sets) {
-    std::vector<std::uint8_t> inside(mesh.cells.size(), 0);
+void refuse_none(std::span<const std::uint8_t> cells) {
+    if (std::ranges::count(cells, 1) == 0) throw Error(ErrorCode::InvalidInput, "no cell lies in the region");
+}
+
+RegionCells::RegionCells(const HexMesh& mesh, const MeshSets& sets) : mesh_(mesh), sets_(sets) {
+}
+
+std::vector<std::uint8_t> RegionCells::in(const Region& region) {
+    std::vector<std::uint8_t> inside(mesh_.cells.size(), 0);
+    switch (region.kind()) {
+        case Region::Kind::Set:
+            add_sets(region.quantity(), inside);
+            break;
+        case Region::Kind::Fold: {
+            const std::vector<FoldVerdict> wanted = verdicts_of(region.quantity());
+            if (verdicts_.empty()) verdicts_ = check_folds(mesh_).verdicts;
+            for (std::size_t c = 0; c < inside.size(); ++c) inside[c] = std::ranges::count(wanted, verdicts_[c]) > 0 ? 1 : 0;
+            break;
+        }
+        case Region::Kind::Where: {
+            const Attribute values = select_field(mesh_, region.quantity()).scalar;
+            parallel_each(inside.size(), [&](std::size_t c) {
+                inside[c] = std::ranges::count_if(mesh_.cells[c], [&](Index p) { return values.values[p] != 0; }) >= 4;
+            });
+            break;
+        }
+        default:
+            parallel_each(inside.size(), [&](std::size_t c) {
+                Vec3 sum(0.0);
+                for (const Index p : mesh_.cells[c]) sum += mesh_.points[p];
+                inside[c] = region.depth(sum / 8.0) >= 0;
+            });
+    }
+    return inside;
+}
+
+void RegionCells::add_sets(const std::string& names, std::vector<std::uint8_t>& inside) const {
     const auto add = [&](const CellSet& set) {
         for (const Index c : set.cells) inside[c] = 1;
     };
-    const auto whole = std::ranges::find(sets.sets, names, &CellSet::name);
-    if (whole != sets.sets.end()) {
-        add(*whole);
-        return inside;
-    }
-    each_name(names, [&](const std::string& name) { add(find_set(sets, name)); });
-    return inside;
+    const auto whole = std::ranges::find(sets_.sets, names, &CellSet::name);
+    if (whole != sets_.sets.end()) return add(*whole);
+    each_name(names, [&](const std::string& name) { add(find_set(sets_, name)); });
 }
 
-/// Those with one of several verdicts.
-std::vector<std::uint8_t> cells_of_verdicts(const HexMesh& mesh, const std::string& names) {
-    const std::vector<FoldVerdict> wanted = verdicts_of(names);
-    const FoldCheck check = check_folds(mesh);
-    std::vector<std::uint8_t> inside(mesh.cells.size());
-    for (std::size_t c = 0; c < inside.size(); ++c) inside[c] = std::ranges::count(wanted, check.verdicts[c]) > 0 ? 1 : 0;
-    return inside;
-}
-
-}  // namespace
+}  // namespace detail
 
 std::vector<std::uint8_t> cells_in(const HexMesh& mesh, std::span<const Region> regions, const MeshSets& sets) {
     std::vector<std::uint8_t> inside(mesh.cells.size(), 1);
+    detail::RegionCells cells(mesh, sets);
     for (const Region& region : regions) {
-        if (region.kind() == Region::Kind::Set || region.kind() == Region::Kind::Fold) {
-            const std::vector<std::uint8_t> named = region.kind() == Region::Kind::Set
-                                                        ? cells_of_sets(mesh, region.quantity(), sets)
-                                                        : cells_of_verdicts(mesh, region.quantity());
-            for (std::size_t c = 0; c < inside.size(); ++c) inside[c] = inside[c] && named[c];
-            continue;
-        }
-        const bool where = region.kind() == Region::Kind::Where;
-        const Attribute values = where ? select_field(mesh, region.quantity()).scalar : Attribute{};
-        detail::parallel_each(mesh.cells.size(), [&](std::size_t c) {
-            if (!inside[c]) return;
-            const auto& cell = mesh.cells[c];
-            if (where) {
-                inside[c] = std::ranges::count_if(cell, [&](Index p) { return values.values[p] != 0; }) >= 4;
-            } else {
-                Vec3 sum(0.0);
-                for (const Index p : cell) sum += mesh.points[p];
-                inside[c] = region.depth(sum / 8.0) >= 0;
-            }
-        });
+        const std::vector<std::uint8_t> of_region = cells.in(region);
+        for (std::size_t c = 0; c < inside.size(); ++c) inside[c] = inside[c] && of_region[c];
     }
-    if (std::ranges::count(inside, 1) == 0) throw Error(ErrorCode::InvalidInput, "no cell lies in the region");
+    detail::refuse_none(inside);
     return inside;
 }
 
