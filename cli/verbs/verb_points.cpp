@@ -95,29 +95,7 @@ Facts write_series_reported(const std::string& path, const MeshSteps& steps, con
     Facts facts;
     const SeriesFileReport written =
         facts.timed(options.progress, "series", [&] { return write_series_file(path, steps, options); });
-    facts["steps"] = written.steps;
-    facts["key_steps"] = written.key_steps;
-    facts["meshes"] = written.meshes;
-    facts["points"] = written.points;
-    facts["cells"] = written.cells;
-    facts["bytes"] = written.bytes;
-    facts["mesh_bytes"] = written.mesh_bytes;
-    double most = 0;
-    std::vector<Facts> arrays;
-    for (const SeriesArrayReport& array : written.arrays) {
-        if (!array.name.empty()) most = std::max(most, array.max);
-        Facts& kept = arrays.emplace_back();
-        kept["name"] = array.name;
-        kept["channels"] = array.channels;
-        kept["steps"] = array.steps;
-        kept["bytes"] = array.bytes;
-        kept["max"] = array.max;
-        kept["exact"] = array.exact;
-    }
-    facts["max"] = most;
-    facts["point_max"] = written.arrays.front().max;
-    facts["arrays"] = arrays;
-    facts["inverted_cells"] = written.inverted_cells;
+    facts.merge(facts_of(written));
     facts["output"] = path;
     if (written.inverted_cells > written.inverted_cells_before) {
         facts.warn(text(count_text(written.inverted_cells - written.inverted_cells_before),
@@ -174,24 +152,21 @@ public:
                                     "the same for the points, in parts of the mesh's longest side (default: a tenth of "
                                     "--wavelet-tolerance, and less where cells would be inverted)")
                               .only_with("wavelet-tolerance"));
-        add_option(app(),
-                   Option("max-error", max_error_)
-                       .between(1e-12, 1)
-                       .help("T",
-                             "write the mesh with all its fields (.svw), compressed, instead of kernels: each value is off by "
-                             "at most T, in parts of the field's range in all steps; with --step all a series")
-                       .not_with("wavelet-tolerance"));
-        add_option(app(),
-                   Option("max-point-error", max_point_error_)
-                       .between(1e-12, 1)
-                       .help("T",
-                             "the same for the coordinates of points, in parts of the mesh's longest side (default: a tenth of "
-                             "--max-error, and less where cells would be inverted)")
-                       .only_with("max-error"));
-        add_option(app(), Option("key-steps", key_steps_)
-                              .between(1, 1000)
-                              .help("K", "every K steps one that does not depend on others: no more are decoded to read one")
-                              .only_with("max-error"));
+        std::vector<Option> compressed = options_of(series_);
+        for (Option& option : compressed) {
+            if (option.name != "max-error") {
+                option.only_with("max-error");
+                continue;
+            }
+            option.value = &max_error_;  // without it there are kernels
+            option
+                .help("T",
+                      "write the mesh with all its fields (.svw), compressed, instead of kernels: each value is off by at most "
+                      "T, "
+                      "in parts of the field's range in all steps; with --step all a series")
+                .not_with("wavelet-tolerance");
+        }
+        add_options(app(), compressed);
         refine_.add_to(app(), "sample the refined mesh of this level instead of the limit");
         share_.add_to(app(), "a range of the points in their order, of bricks, or of the steps");
         set_essentials({"--output", "--field", "--per-edge", "--spacing", "--tolerance", "--footprint", "--threshold",
@@ -295,10 +270,9 @@ private:
         if (kind == InputKind::Bricks || kind == InputKind::Grid || ranks() != nullptr) {
             throw Error(ErrorCode::InvalidInput, "a compressed mesh needs one mesh in memory", input_, "a mesh file");
         }
-        const SeriesFileOptions options{.tolerance = *max_error_,
-                                        .point_tolerance = max_point_error_,
-                                        .key_steps = key_steps_,
-                                        .progress = report.progress()};
+        SeriesFileOptions options = series_;
+        options.tolerance = *max_error_;
+        options.progress = report.progress();
         report["input"] = input_;
         const auto read = [&](const CommonOptions& one) {
             HexMesh mesh = report.unpack(load_mesh(input_, one, nullptr));
@@ -444,8 +418,8 @@ private:
     std::string output_;
     PointsWriteOptions written_;
     bool clamp_ = false, error_ = false;
-    std::optional<double> merge_error_, wavelet_tolerance_, wavelet_point_tolerance_, max_error_, max_point_error_;
-    int key_steps_ = SeriesFileOptions{}.key_steps;
+    std::optional<double> merge_error_, wavelet_tolerance_, wavelet_point_tolerance_, max_error_;
+    SeriesFileOptions series_;
     std::string transfer_function_;
     ShareArgument share_;
     SampleArguments sample_;

@@ -21,8 +21,7 @@ namespace subvol::detail {
 // steps one after the other; the index. Numbers are as in wavelet_format.h.
 //
 //   mesh    compressed: levels; points and cells, creases, sharp faces, as in a file of wavelets; refined so often they are
-//   those
-//             of the steps
+//             those of the steps
 //   step    for each array a byte, 1 if the step has it; then for each channel of these
 //             a byte: the prediction and, times 4, what of earlier steps it is added to (Spatial, Temporal)
 //             a byte: how many bytes each residual has; 0: all are 0

@@ -1,20 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// Each value is predicted from values as they are read again, and what it differs from its prediction is rounded to whole
-// steps: the error is that of this rounding, whatever the prediction. Both sides compute in whole numbers, 2⁸ to a step, so
-// that every machine reads the same. Which prediction is best differs from field to field and from step to step: all are tried,
-// and the one is taken whose residuals are compressed best.
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <optional>
 
 #include "output_file.h"
-#include "series_format.h"
-#include "subvol/detail/parallel_each.h"
+#include "series_channels.h"
+#include "series_survey.h"
 #include "subvol/error.h"
 #include "subvol/hierarchy.h"
-#include "subvol/mesh_report.h"
+#include "subvol/mesh_motion.h"
 #include "subvol/series_file.h"
 #include "vtu_bytes.h"
 #include "wavelet_bytes.h"
@@ -24,74 +20,6 @@ namespace subvol {
 using namespace detail;
 
 namespace {
-
-constexpr double kLeastTolerance = 1e-12;
-
-void check_error(double tolerance, const std::string& what) {
-    if (tolerance >= kLeastTolerance && tolerance <= 1) return;
-    throw Error(ErrorCode::InvalidInput, "the " + what + " is " + std::to_string(tolerance), "series", "1e-12 to 1");
-}
-
-/// The finite values of a channel in all steps.
-struct ChannelRange {
-    double min = std::numeric_limits<double>::infinity(), max = -min;
-
-    void add(double x) {
-        if (!std::isfinite(x)) return;
-        min = std::min(min, x);
-        max = std::max(max, x);
-    }
-    [[nodiscard]] double size() const { return max > min ? max - min : 0; }
-};
-
-struct ArrayRange {
-    std::string name;
-    std::vector<ChannelRange> channels;
-
-    /// The longest side of the box of the values.
-    [[nodiscard]] double scale() const {
-        double most = 0;
-        for (const ChannelRange& channel : channels) most = std::max(most, channel.size());
-        return most;
-    }
-};
-
-/// A step that rounds by `most` at most, or a little less so that the ends of the range are whole numbers of steps; 0 is one
-/// where the values have either sign.
-Quantization quantization(const ChannelRange& range, double most) {
-    if (!(range.max > range.min)) {
-        const double only = range.max < range.min ? 0 : range.min;
-        return {only, 0, only, only};
-    }
-    const bool around_zero = range.min < 0 && range.max > 0;
-    const double length = around_zero ? std::max(range.max, -range.min) : range.size();
-    // A residual is rounded by half a step at most, and a target by half of 2⁻⁸ of one.
-    const double steps = std::max(1.0, std::ceil(length / (2 * most) * (1 + 1e-9 + std::ldexp(1.0, -kFractionBits))));
-    return {around_zero ? 0 : range.min, length / steps, range.min, range.max};
-}
-
-/// `values` are those of all channels, point-major.
-std::vector<double> rounded_values(std::span<const double> values, std::span<const Quantization> channels) {
-    std::vector<double> rounded(values.begin(), values.end());
-    parallel_each(rounded.size(), [&](std::size_t i) {
-        const Quantization& q = channels[i % channels.size()];
-        if (std::isfinite(rounded[i]) && q.step > 0)
-            rounded[i] = q.value(std::llround((rounded[i] - q.origin) / q.step) * (std::int64_t{1} << kFractionBits));
-    });
-    return rounded;
-}
-
-std::size_t inverted_cells_at(const HexMesh& mesh, std::span<const double> places) {
-    HexMesh moved;
-    moved.cells = mesh.cells;
-    moved.points.reserve(mesh.points.size());
-    for (std::size_t i = 0; i < places.size(); i += 3) moved.points.emplace_back(places[i], places[i + 1], places[i + 2]);
-    return measure_cells(moved).inverted_cells;
-}
-
-bool same_cells(const HexMesh& a, const HexMesh& b) {
-    return a.points.size() == b.points.size() && a.cells == b.cells && a.creases == b.creases && a.sharp_faces == b.sharp_faces;
-}
 
 /// A mesh whose refinement has the same cells, numbered alike.
 struct CoarseCells {
@@ -112,220 +40,6 @@ std::optional<CoarseCells> coarse_cells(const HexMesh& cells) {
     } catch (const Error&) {  // it refines none
     }
     return std::nullopt;
-}
-
-/// What the first look at all steps finds: ranges, and how exact points have to be.
-class SeriesSurvey {
-public:
-    SeriesSurvey(const MeshSteps& steps, const SeriesFileOptions& options) : options_(options) {
-        ranges_.push_back({"", std::vector<ChannelRange>(3)});
-        for (std::size_t k = 0; k < steps.times.size(); ++k) {
-            report_progress(options.progress, "ranges of fields", k, steps.times.size());
-            look_at(steps.read(k));
-        }
-    }
-
-    /// quantizations, the points first
-    [[nodiscard]] std::vector<SeriesArray> arrays() const {
-        std::vector<SeriesArray> arrays;
-        for (const ArrayRange& range : ranges_) {
-            const double most = arrays.empty() ? point_error_ : options_.tolerance * range.scale();
-            SeriesArray& array = arrays.emplace_back(SeriesArray{range.name, {}});
-            for (const ChannelRange& channel : range.channels) array.channels.push_back(quantization(channel, most));
-        }
-        return arrays;
-    }
-    /// The most error of an array's values, in world units or those of the field.
-    [[nodiscard]] double most_error(std::size_t array) const {
-        return array == 0 ? point_error_ : options_.tolerance * ranges_[array].scale();
-    }
-    /// What errors of an array are told in parts of.
-    [[nodiscard]] double unit(std::size_t array) const {
-        const double scale = array == 0 ? length_ : ranges_[array].scale();
-        return scale > 0 ? scale : 1;
-    }
-
-private:
-    void look_at(const HexMesh& mesh) {
-        if (mesh.points.size() > 8 * mesh.cells.size()) {
-            throw Error(ErrorCode::InvalidInput,
-                        std::to_string(mesh.points.size()) + " points are more than the corners of the cells", "series",
-                        "without_unused_points leaves out those that no cell uses");
-        }
-        for (const Vec3& p : mesh.points) {
-            for (int k = 0; k < 3; ++k) ranges_[0].channels[static_cast<std::size_t>(k)].add(p[k]);
-        }
-        for (const Attribute& attribute : mesh.attributes) {
-            const auto channels = static_cast<std::size_t>(attribute.channels);
-            ArrayRange& range = range_of_array(attribute.name, channels);
-            for (std::size_t i = 0; i < attribute.values.size(); ++i) range.channels[i % channels].add(attribute.values[i]);
-        }
-        if (length_ == 0) {
-            length_ = ranges_[0].scale();
-            point_error_ = options_.point_tolerance.value_or(std::max(options_.tolerance / 10, kLeastTolerance)) * length_;
-        }
-        if (!options_.point_tolerance) keep_cells_sound(mesh);
-    }
-
-    ArrayRange& range_of_array(const std::string& name, std::size_t channels) {
-        const auto found = std::find_if(ranges_.begin() + 1, ranges_.end(), [&](const ArrayRange& range) {
-            return range.name == name && range.channels.size() == channels;
-        });
-        if (found != ranges_.end()) return *found;
-        ranges_.push_back({name, std::vector<ChannelRange>(channels)});
-        return ranges_.back();
-    }
-
-    void keep_cells_sound(const HexMesh& mesh) {
-        constexpr int kMostThirds = 8;
-        const std::vector<double> places = coordinates(mesh.points);
-        const std::size_t before = inverted_cells_at(mesh, places);
-        for (int attempt = 0; attempt < kMostThirds; ++attempt) {
-            std::vector<Quantization> channels;
-            for (const ChannelRange& channel : ranges_[0].channels) channels.push_back(quantization(channel, point_error_));
-            if (inverted_cells_at(mesh, rounded_values(places, channels)) <= before) return;
-            if (point_error_ / 3 < kLeastTolerance * length_) return;
-            point_error_ /= 3;
-        }
-    }
-
-    const SeriesFileOptions& options_;
-    std::vector<ArrayRange> ranges_;
-    double length_ = 0, point_error_ = 0;
-};
-
-/// A channel in parts of steps; 0 where a value is not finite or too large.
-std::vector<std::int64_t> targets_of(std::span<const double> values, std::size_t channel, std::size_t channels,
-                                     const Quantization& q) {
-    std::vector<std::int64_t> targets(values.size() / channels, 0);
-    if (q.step == 0) return targets;
-    for (std::size_t p = 0; p < targets.size(); ++p) {
-        const double part = std::ldexp((values[p * channels + channel] - q.origin) / q.step, kFractionBits);
-        if (std::abs(part) <= static_cast<double>(kMostQuantized / 2)) targets[p] = std::llround(part);
-    }
-    return targets;
-}
-
-/// What is kept of a channel.
-///
-/// exact: the points whose values are kept as they are, and these
-struct KeptValues {
-    std::vector<std::size_t> exact_points;
-    std::vector<double> exact_values;
-    double max_error = 0;
-};
-
-KeptValues kept_values(std::span<const double> values, std::size_t channel, std::size_t channels, const Quantization& q,
-                       std::span<const std::int64_t> numbers, double most) {
-    KeptValues kept;
-    for (std::size_t p = 0; p < numbers.size(); ++p) {
-        const double x = values[p * channels + channel], error = std::abs(q.value(numbers[p]) - x);
-        if (error <= most) {
-            kept.max_error = std::max(kept.max_error, error);
-            continue;
-        }
-        kept.exact_points.push_back(p);
-        kept.exact_values.push_back(x);
-    }
-    return kept;
-}
-
-/// The predictions of a mesh.
-struct Predictions {
-    explicit Predictions(const HexMesh& mesh) {
-        HexMesh cells_alone;  // neither creases nor sharp faces matter
-        cells_alone.points.resize(mesh.points.size());
-        cells_alone.cells = mesh.cells;
-        const Topology topology = build_topology(cells_alone);
-        by_number = predict_by_number(mesh.points.size());
-        in_cells = predict_in_cells(topology);
-        between_sheets = predict_between_sheets(topology);
-    }
-    ValuePrediction by_number, in_cells, between_sheets;
-
-    [[nodiscard]] const ValuePrediction* of(Spatial spatial) const {
-        return spatial == Spatial::None       ? nullptr
-               : spatial == Spatial::ByNumber ? &by_number
-               : spatial == Spatial::InCells  ? &in_cells
-                                              : &between_sheets;
-    }
-};
-
-/// Residuals as planes of bytes, and the numbers that they give.
-struct Residuals {
-    std::size_t bytes_each = 0;
-    std::string planes;
-    std::vector<std::int64_t> numbers;
-};
-
-/// base: what earlier steps predict
-Residuals residuals_of(const std::vector<std::int64_t>& targets, const std::vector<std::int64_t>& base,
-                       const ValuePrediction* prediction) {
-    constexpr std::int64_t kHalf = std::int64_t{1} << (kFractionBits - 1);
-    Residuals made;
-    std::vector<std::int64_t>& changes = made.numbers;
-    changes.resize(targets.size());
-    std::vector<std::uint64_t> rest(targets.size());
-    std::uint64_t all = 0;
-    for (std::size_t i = 0; i < targets.size(); ++i) {
-        const std::size_t p = prediction == nullptr ? i : prediction->order[i];
-        const std::int64_t predicted = prediction == nullptr ? 0 : prediction->predict(i, changes);
-        const std::int64_t residual = (targets[p] - base[p] - predicted + kHalf) >> kFractionBits;
-        changes[p] = predicted + residual * (std::int64_t{1} << kFractionBits);
-        rest[i] = folded(residual);
-        all |= rest[i];
-    }
-    for (std::size_t p = 0; p < changes.size(); ++p) changes[p] += base[p];
-    made.bytes_each = (static_cast<std::size_t>(std::bit_width(all)) + 7) / 8;
-    made.planes.resize(made.bytes_each * rest.size());
-    for (std::size_t plane = 0; plane < made.bytes_each; ++plane) {
-        char* out = made.planes.data() + plane * rest.size();
-        for (std::size_t i = 0; i < rest.size(); ++i) out[i] = static_cast<char>(rest[i] >> 8 * plane & 255);
-    }
-    return made;
-}
-
-struct Mode {
-    Spatial spatial = Spatial::None;
-    Temporal temporal = Temporal::None;
-};
-
-/// What is tried, given how many steps before are known.
-std::vector<Mode> modes(std::size_t steps_before) {
-    std::vector<Mode> tried;
-    if (steps_before > 0) tried.push_back({Spatial::None, Temporal::Same});
-    for (const Spatial spatial : {Spatial::ByNumber, Spatial::InCells, Spatial::BetweenSheets}) {
-        tried.push_back({spatial, Temporal::None});
-        if (steps_before > 0) tried.push_back({spatial, Temporal::Same});
-        if (steps_before > 1) tried.push_back({spatial, Temporal::Linear});
-    }
-    if (steps_before > 1) tried.push_back({Spatial::None, Temporal::Linear});
-    return tried;
-}
-
-struct CodedChannel {
-    Mode mode;
-    Residuals residuals;
-    std::uint64_t bytes = 0;
-};
-
-/// before: the numbers in the steps before, the latest first; empty ones are not known
-CodedChannel coded(const std::vector<std::int64_t>& targets, const std::array<const std::vector<std::int64_t>*, 2>& before,
-                   const Predictions& predictions) {
-    static const std::vector<std::int64_t> kNothing;
-    const std::vector<std::int64_t>&last = before[0] ? *before[0] : kNothing, &two_before = before[1] ? *before[1] : kNothing;
-    CodedChannel best;
-    best.bytes = std::numeric_limits<std::uint64_t>::max();
-    std::vector<std::int64_t> base(targets.size());
-    for (const Mode mode : modes(last.empty() ? 0 : two_before.empty() ? 1 : 2)) {
-        for (std::size_t p = 0; p < base.size(); ++p) base[p] = earlier(mode.temporal, last, two_before, p);
-        Residuals residuals = residuals_of(targets, base, predictions.of(mode.spatial));
-        const std::uint64_t bytes = residuals.planes.empty() ? 0 : compressed_numbers(residuals.planes, Effort::Least).size();
-        if (bytes >= best.bytes) continue;
-        best = {mode, std::move(residuals), bytes};
-        if (bytes == 0) break;
-    }
-    return best;
 }
 
 class SeriesWriter {
@@ -557,12 +271,7 @@ private:
 
 SeriesFileReport write_series_file(const std::filesystem::path& path, const MeshSteps& steps,
                                    const SeriesFileOptions& options) {
-    check_error(options.tolerance, "most error");
-    check_error(options.point_tolerance.value_or(1), "most error of points");
-    if (options.key_steps < 1 || options.key_steps > 1000) {
-        throw Error(ErrorCode::InvalidInput, "the number of steps to a key step is " + std::to_string(options.key_steps),
-                    "series", "1 to 1000");
-    }
+    check_options(options);
     if (steps.times.empty()) throw Error(ErrorCode::InvalidInput, "there is no step", "series", "at least one");
     for (std::size_t k = 0; k < steps.times.size(); ++k) {
         if (std::isfinite(steps.times[k]) && (k == 0 || steps.times[k - 1] < steps.times[k])) continue;
@@ -590,6 +299,34 @@ std::vector<Option> options_of(SeriesFileOptions& options) {
         Option("key-steps", options.key_steps)
             .between(1, 1000)
             .help("K", "every K steps one that does not depend on others: no more are decoded to read one")};
+}
+
+Facts facts_of(const SeriesFileReport& report) {
+    Facts facts;
+    facts["steps"] = report.steps;
+    facts["key_steps"] = report.key_steps;
+    facts["meshes"] = report.meshes;
+    facts["points"] = report.points;
+    facts["cells"] = report.cells;
+    facts["bytes"] = report.bytes;
+    facts["mesh_bytes"] = report.mesh_bytes;
+    double most = 0;
+    std::vector<Facts> arrays;
+    for (const SeriesArrayReport& array : report.arrays) {
+        if (!array.name.empty()) most = std::max(most, array.max);
+        Facts& kept = arrays.emplace_back();
+        kept["name"] = array.name;
+        kept["channels"] = array.channels;
+        kept["steps"] = array.steps;
+        kept["bytes"] = array.bytes;
+        kept["max"] = array.max;
+        kept["exact"] = array.exact;
+    }
+    facts["max"] = most;
+    facts["point_max"] = report.arrays.front().max;
+    facts["arrays"] = arrays;
+    facts["inverted_cells"] = report.inverted_cells;
+    return facts;
 }
 
 }  // namespace subvol

@@ -234,37 +234,18 @@ py::dict write_wavelets(const std::string& path, const HexMesh& mesh, double tol
 }
 
 /// read: a call that returns the mesh of a step
-py::dict write_series(const std::string& path, const std::vector<double>& times, const py::function& read, double max_error,
-                      const std::optional<double>& max_point_error, int key_steps, const py::object& progress) {
+py::dict write_series(const std::string& path, const std::vector<double>& times, const py::function& read,
+                      const py::object& progress, const py::kwargs& keywords) {
+    SeriesFileOptions options;
+    set_options(options_of(options), keywords);
     const MeshSteps steps{times, [&](std::size_t step) {
                               const py::gil_scoped_acquire gil;
                               return read(step).cast<HexMesh>();
                           }};
-    const SeriesFileReport report = result_of(progress, [&](Progress* listener) {
-        return write_series_file(
-            path, steps,
-            {.tolerance = max_error, .point_tolerance = max_point_error, .key_steps = key_steps, .progress = listener});
-    });
-    py::dict figures, arrays;
-    for (const SeriesArrayReport& array : report.arrays) {
-        py::dict kept;
-        kept["channels"] = array.channels;
-        kept["steps"] = array.steps;
-        kept["bytes"] = array.bytes;
-        kept["max"] = array.max;
-        kept["exact"] = array.exact;
-        arrays[py::str(array.name)] = kept;
-    }
-    figures["steps"] = report.steps;
-    figures["key_steps"] = report.key_steps;
-    figures["meshes"] = report.meshes;
-    figures["points"] = report.points;
-    figures["cells"] = report.cells;
-    figures["bytes"] = report.bytes;
-    figures["mesh_bytes"] = report.mesh_bytes;
-    figures["inverted_cells"] = report.inverted_cells;
-    figures["arrays"] = arrays;
-    return figures;
+    return dict_of(facts_of(result_of(progress, [&](Progress* listener) {
+        options.progress = listener;
+        return write_series_file(path, steps, options);
+    })));
 }
 
 constexpr const char* kSets = "_sets";
@@ -354,8 +335,9 @@ void bind_mesh(py::module_& module) {
         py::arg("path"), py::arg("mesh"));
     module.def("write_wavelets", &write_wavelets, py::arg("path"), py::arg("mesh"), py::arg("tolerance"),
                py::arg("point_tolerance"), py::arg("scheme"), py::arg("levels"), py::arg("progress"));
-    module.def("write_series", &write_series, py::arg("path"), py::arg("times"), py::arg("read"), py::arg("max_error"),
-               py::arg("max_point_error"), py::arg("key_steps"), py::arg("progress"));
+    module.def("write_series", &write_series, py::arg("path"), py::arg("times"), py::arg("read"), py::arg("progress"));
+    SeriesFileOptions series;
+    describe(module, "write_series", options_of(series));
     module.def(
         "quantity",
         [](const HexMesh& mesh, const std::string& source) {

@@ -11,7 +11,7 @@ from ._errors import Cancelled, Error, FileError, InvalidInput, MissingCapabilit
 from ._exchange import from_meshio, from_pyvista, to_meshio, to_pyvista, to_vtk
 from ._fields import LimitSamples, as_field, evaluate
 from ._measure import FoldCheck, PointsError, ProbeSamples, Slice, StreamlineSet, SurfaceMesh, read_surface
-from ._mesh import Series, model, models, only, open_series, quantity, warp, write_mesh, write_series, write_wavelets
+from ._mesh import Series, model, models, only, open_series, quantity, warp, write_mesh, write_wavelets
 from ._page import Page
 from ._pictures import FieldComparison, ImageComparison, compare, compare_fields, compare_images, read_image, write_image
 from ._points import kernels, read_points
@@ -601,6 +601,25 @@ def write_points(
     ascii:       .ply: write text instead of binary numbers
     splats:      .ply: also for viewers of Gaussian splats; the boundary is then in a file beside it
     up:          with splats: the axis that these viewers show at the top: x, y or z [x, y, z; with splats]
+    """
+
+def write_series(
+    series: Series | Sequence[HexMesh] | HexMesh, path: Path, *, times: Optional[Sequence[float]] = None,
+    max_error: float = 0.001, max_point_error: Optional[float] = None, key_steps: int = 10, progress: Progress = None
+) -> dict[str, Any]:
+    """Writes the steps of a series, or one mesh, in few bytes (`.svw`); `open_series` and `read_mesh` read them. Points and cells keep
+    their order; what changes from step to step is stored.
+
+    times: of a list of meshes; without them their numbers, from 0
+
+    max_error:   the most error of each value, in parts of the field's range in all steps [more than 0, at most 1]
+    max_point_error: the same for the coordinates of points, in parts of the mesh's longest side (default: a tenth of
+                 max_error, and less where cells would be inverted) [more than 0, at most 1]
+    key_steps:   every K steps one that does not depend on others: no more are decoded to read one [1 to 1000]
+
+    Returns figures: steps, key_steps, meshes (how often the cells are stored), points, cells, bytes, mesh_bytes, max (the largest error of all
+    fields), point_max, inverted_cells, and arrays, a list: name ("" are the points), channels, steps, bytes (about), max, exact (values that are
+    kept as they are). Each step is read twice. Raises InvalidInput if an option is out of range; FileError if the file cannot be written.
     """
 
 def write_vdb(

@@ -157,21 +157,19 @@ def open_series(path: Path | Sequence[Path], times: Optional[Sequence[float]] = 
     return Series([(file, None) for file in path], given)
 
 
-def write_series(series: Series | Sequence[HexMesh] | HexMesh, path: Path, max_error: float = 1e-3, *,
-                 max_point_error: Optional[float] = None, key_steps: int = 10, times: Optional[Sequence[float]] = None,
-                 progress: Progress = None) -> dict[str, Any]:
+@described
+def write_series(series: Series | Sequence[HexMesh] | HexMesh, path: Path, *, times: Optional[Sequence[float]] = None,
+                 progress: Progress = None, **options: Any) -> dict[str, Any]:
     """Writes the steps of a series, or one mesh, in few bytes (`.svw`); `open_series` and `read_mesh` read them. Points and cells keep
     their order; what changes from step to step is stored.
 
-    max_error:       the most error of each value, in parts of its field's range in all steps; [1e-12, 1]
-    max_point_error: the same for the coordinates of points, in parts of the mesh's longest side; None: a tenth of `max_error`, and less
-                     where cells would be inverted
-    key_steps:       every so many steps one does not depend on others: no more are decoded to read one
-    times:           of a list of meshes; without them their numbers, from 0
+    times: of a list of meshes; without them their numbers, from 0
 
-    Returns figures: steps, key_steps, meshes (how often the cells are stored), points, cells, bytes, mesh_bytes, inverted_cells, and arrays:
-    by name ("" are the points) channels, steps, bytes (about), max, exact (values that are kept as they are).
-    Each step is read twice. Raises InvalidInput if an option is out of range; FileError if the file cannot be written.
+    {keywords}
+
+    Returns figures: steps, key_steps, meshes (how often the cells are stored), points, cells, bytes, mesh_bytes, max (the largest error of all
+    fields), point_max, inverted_cells, and arrays, a list: name ("" are the points), channels, steps, bytes (about), max, exact (values that are
+    kept as they are). Each step is read twice. Raises InvalidInput if an option is out of range; FileError if the file cannot be written.
     """
     if isinstance(series, Series):
         if times is not None:
@@ -185,4 +183,4 @@ def write_series(series: Series | Sequence[HexMesh] | HexMesh, path: Path, max_e
             raise InvalidInput(f"times: there are {len(given)} for {len(series)} meshes", "times", "one for each mesh")
     steps = series
     with listening(progress) as listener:
-        return _core.write_series(path_bytes(path), given, lambda k: steps[k], max_error, max_point_error, key_steps, listener)
+        return _core.write_series(path_bytes(path), given, lambda k: steps[k], listener, **options)

@@ -271,10 +271,10 @@ TEST_F(SeriesFile, Mistakes) {
         EXPECT_FALSE(std::filesystem::exists(path("a.svw")));
     };
     for (const double wrong : {0.0, -1.0, 2.0, std::nan("")}) {
-        refused(steps_of(1), {.tolerance = wrong}, "most error");
-        refused(steps_of(1), {.point_tolerance = wrong}, "points");
+        refused(steps_of(1), {.tolerance = wrong}, "max_error");
+        refused(steps_of(1), {.point_tolerance = wrong}, "max_point_error");
     }
-    refused(steps_of(1), {.key_steps = 0}, "key step");
+    refused(steps_of(1), {.key_steps = 0}, "key_steps");
     refused(steps_of(0), {}, "no step");
     refused({{1, 1}, ball_at}, {}, "ascend");
     HexMesh loose = test::make_box(2, 2, 2);

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "subvol/facts.h"
 #include "subvol/hex_mesh.h"
 #include "subvol/option.h"
 #include "subvol/progress.h"
@@ -71,6 +72,9 @@ struct SeriesFileReport {
     std::size_t inverted_cells_before = 0;
     std::size_t inverted_cells = 0;
 };
+
+/// The report under its members' names, with max, the largest error of all fields, and point_max; "arrays" is a list.
+[[nodiscard]] Facts facts_of(const SeriesFileReport& report);
 
 /// Writes meshes of any hexahedra as a `.svw` file of steps: cells once, and each value as a whole number of steps of its
 /// quantization, less what its neighbours or the step before predict, compressed. No value is farther from what it was than

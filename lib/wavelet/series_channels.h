@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "series_format.h"
+#include "subvol/hex_mesh.h"
+
+namespace subvol::detail {
+
+/// The predictions of a mesh.
+struct Predictions {
+    explicit Predictions(const HexMesh& mesh);
+
+    [[nodiscard]] const ValuePrediction* find(Spatial spatial) const;
+
+    ValuePrediction by_number, in_cells, between_sheets;
+};
+
+/// Residuals as planes of bytes, and the numbers that they give.
+struct Residuals {
+    std::size_t bytes_each = 0;
+    std::string planes;
+    std::vector<std::int64_t> numbers;
+};
+
+struct Mode {
+    Spatial spatial = Spatial::None;
+    Temporal temporal = Temporal::None;
+};
+
+struct CodedChannel {
+    Mode mode;
+    Residuals residuals;
+    std::uint64_t bytes = 0;
+};
+
+/// A channel in parts of steps; 0 where a value is not finite or too large.
+[[nodiscard]] std::vector<std::int64_t> targets_of(std::span<const double> values, std::size_t channel, std::size_t channels,
+                                                   const Quantization& q);
+
+/// Codes a channel by the mode that takes fewest bytes.
+///
+/// before: the numbers in the steps before, the latest first; null: not known
+[[nodiscard]] CodedChannel coded(const std::vector<std::int64_t>& targets,
+                                 const std::array<const std::vector<std::int64_t>*, 2>& before, const Predictions& predictions);
+
+/// What is kept of a channel.
+///
+/// exact: the points whose values are kept as they are, and these
+struct KeptValues {
+    std::vector<std::size_t> exact_points;
+    std::vector<double> exact_values;
+    double max_error = 0;
+};
+
+/// most: the error within which a value need not be kept as it is
+[[nodiscard]] KeptValues kept_values(std::span<const double> values, std::size_t channel, std::size_t channels,
+                                     const Quantization& q, std::span<const std::int64_t> numbers, double most);
+
+}  // namespace subvol::detail
