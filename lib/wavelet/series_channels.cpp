@@ -10,7 +10,6 @@
 #include <limits>
 #include <utility>
 
-#include "subvol/topology.h"
 #include "wavelet_bytes.h"
 
 namespace subvol::detail {
@@ -48,7 +47,7 @@ Residuals residuals_of(const std::vector<std::int64_t>& targets, const std::vect
 std::vector<Mode> modes(std::size_t steps_before) {
     std::vector<Mode> tried;
     if (steps_before > 0) tried.push_back({Spatial::None, Temporal::Same});
-    for (const Spatial spatial : {Spatial::ByNumber, Spatial::InCells, Spatial::BetweenSheets}) {
+    for (const Spatial spatial : kSpatials) {
         tried.push_back({spatial, Temporal::None});
         if (steps_before > 0) tried.push_back({spatial, Temporal::Same});
         if (steps_before > 1) tried.push_back({spatial, Temporal::Linear});
@@ -63,23 +62,30 @@ Predictions::Predictions(const HexMesh& mesh) {
     HexMesh cells_alone;  // neither creases nor sharp faces matter
     cells_alone.points.resize(mesh.points.size());
     cells_alone.cells = mesh.cells;
-    const Topology topology = build_topology(cells_alone);
-    by_number = predict_by_number(mesh.points.size());
-    in_cells = predict_in_cells(topology);
-    between_sheets = predict_between_sheets(topology);
+    topology_ = build_topology(cells_alone);
+}
+
+void Predictions::make(Spatial spatial) {
+    auto& made = made_[static_cast<std::size_t>(spatial)];
+    if (made) return;
+    switch (spatial) {
+        case Spatial::ByNumber:
+            made = predict_by_number(topology_.point_count);
+            break;
+        case Spatial::InCells:
+            made = predict_in_cells(topology_);
+            break;
+        case Spatial::BetweenSheets:
+            made = predict_between_sheets(topology_);
+            break;
+        default:
+            break;
+    }
 }
 
 const ValuePrediction* Predictions::find(Spatial spatial) const {
-    switch (spatial) {
-        case Spatial::ByNumber:
-            return &by_number;
-        case Spatial::InCells:
-            return &in_cells;
-        case Spatial::BetweenSheets:
-            return &between_sheets;
-        default:
-            return nullptr;
-    }
+    const auto& made = made_[static_cast<std::size_t>(spatial)];
+    return made ? &*made : nullptr;
 }
 
 std::vector<std::int64_t> targets_of(std::span<const double> values, std::size_t channel, std::size_t channels,

@@ -3,22 +3,31 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "series_format.h"
-#include "subvol/hex_mesh.h"
+#include "subvol/topology.h"
 
 namespace subvol::detail {
 
-/// The predictions of a mesh.
-struct Predictions {
+/// What is tried.
+inline constexpr std::array kSpatials{Spatial::ByNumber, Spatial::InCells, Spatial::BetweenSheets};
+
+/// The predictions of a mesh, each made when it is needed.
+class Predictions {
+public:
     explicit Predictions(const HexMesh& mesh);
 
+    void make(Spatial spatial);
+    /// One that has been made; null for Spatial::None.
     [[nodiscard]] const ValuePrediction* find(Spatial spatial) const;
 
-    ValuePrediction by_number, in_cells, between_sheets;
+private:
+    Topology topology_;
+    std::array<std::optional<ValuePrediction>, 4> made_;
 };
 
 /// Residuals as planes of bytes, and the numbers that they give.
@@ -43,7 +52,7 @@ struct CodedChannel {
 [[nodiscard]] std::vector<std::int64_t> targets_of(std::span<const double> values, std::size_t channel, std::size_t channels,
                                                    const Quantization& q);
 
-/// Codes a channel by the mode that takes fewest bytes.
+/// Codes a channel by the mode that takes fewest bytes; all predictions have been made.
 ///
 /// before: the numbers in the steps before, the latest first; null: not known
 [[nodiscard]] CodedChannel coded(const std::vector<std::int64_t>& targets,

@@ -3,7 +3,7 @@
 
 #include <system_error>
 
-#include "series_format.h"
+#include "series_channels.h"
 #include "subvol/detail/read_file.h"
 #include "subvol/error.h"
 #include "subvol/refine.h"
@@ -127,35 +127,6 @@ SeriesIndex read_index(const SeriesBytes& bytes) {
     in.expect_end();
     return index;
 }
-
-/// The predictions of a mesh, each made when a step has it.
-class LazyPredictions {
-public:
-    explicit LazyPredictions(const HexMesh& mesh) : points_(mesh.points.size()) {
-        HexMesh cells_alone;
-        cells_alone.points.resize(mesh.points.size());
-        cells_alone.cells = mesh.cells;
-        topology_ = build_topology(cells_alone);
-    }
-
-    void make(Spatial spatial) {
-        auto& made = made_[static_cast<std::size_t>(spatial)];
-        if (spatial == Spatial::None || made) return;
-        made = spatial == Spatial::ByNumber  ? predict_by_number(points_)
-               : spatial == Spatial::InCells ? predict_in_cells(topology_)
-                                             : predict_between_sheets(topology_);
-    }
-    /// Null for Spatial::None.
-    [[nodiscard]] const ValuePrediction* made(Spatial spatial) const {
-        const auto& made = made_[static_cast<std::size_t>(spatial)];
-        return made ? &*made : nullptr;
-    }
-
-private:
-    std::size_t points_;
-    Topology topology_;
-    std::array<std::optional<ValuePrediction>, 4> made_;
-};
 
 /// The values of an array in a step: as whole numbers, and those that are kept as they are.
 struct StepChannel {
@@ -318,7 +289,7 @@ private:
                         const std::vector<std::string>& blocks) {
         static const std::vector<std::int64_t> kNothing;
         const auto &last = known[0] ? *known[0] : kNothing, &two_before = known[1] ? *known[1] : kNothing;
-        const ValuePrediction* prediction = predictions_.made(channel.spatial);
+        const ValuePrediction* prediction = predictions_.find(channel.spatial);
         std::vector<std::int64_t>& numbers = channel.numbers;
         numbers.resize(points());
         const char* planes = channel.bytes_each == 0 ? nullptr : blocks[channel.block].data() + channel.place_in_block;
@@ -362,7 +333,7 @@ private:
     const SeriesBytes& bytes_;
     const SeriesIndex& index_;
     HexMesh mesh_;
-    LazyPredictions predictions_;
+    Predictions predictions_;
     std::vector<StepArray> last_, two_before_;
 };
 

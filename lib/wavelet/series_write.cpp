@@ -94,6 +94,7 @@ private:
 
     void put_mesh_block(const HexMesh& mesh) {
         predictions_.emplace(mesh);
+        for (const Spatial spatial : kSpatials) predictions_->make(spatial);
         cells_ = {};
         cells_.points.resize(mesh.points.size());
         cells_.cells = mesh.cells;
