@@ -82,7 +82,9 @@ void print_table(const Json& json) {
             continue;
         }
         const bool bytes = (key.ends_with("bytes") || key.starts_with("bytes_")) && value.is_number();
-        const std::string name = key.ends_with("_bytes") ? key.substr(0, key.size() - 6) + "_memory" : key;
+        const bool in_file = key == "file_bytes" || key == "mesh_bytes";
+        const std::string name =
+            key.ends_with("_bytes") ? key.substr(0, key.size() - 6) + (in_file ? "_size" : "_memory") : key;
         lines.emplace_back(detail::printable(name), key == "seconds" && value.is_object() ? stages(value)
                                                     : bytes                               ? bytes_text(value.get<double>())
                                                                                           : for_people(value));
