@@ -13,7 +13,7 @@
 
 namespace subvol::detail {
 
-/// Of what an error may be the least part.
+/// The least error that may be asked for, in parts of a range.
 inline constexpr double kLeastTolerance = 1e-12;
 
 /// The finite values of a channel in all steps.

@@ -253,7 +253,7 @@ private:
         file_.overwrite(kSeriesMagic.size(), head);
     }
 
-    /// Of an array: the numbers of its channels in the step before, and in the one before that.
+    /// The numbers of an array's channels in the step before, and in the one before that.
     using History = std::vector<std::vector<std::vector<std::int64_t>>>;
 
     const MeshSteps& steps_;
