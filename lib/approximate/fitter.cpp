@@ -1,0 +1,361 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "fitter.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "limit_matrix.h"
+#include "subvol/cell.h"
+#include "subvol/detail/parallel_sums.h"
+#include "subvol/detail/refined_memory.h"
+#include "subvol/error.h"
+#include "subvol/mesh_report.h"
+#include "subvol/probe.h"
+#include "subvol/topology.h"
+
+// Least squares, min |A x − b|² + Σ w_ij (x_i − x_j)², with the limit's matrix A and differences along edges, which have a
+// weight where smoothing is asked for or a sample hardly decides a value. The search is that of conjugate gradients for least
+// squares (CGLS), which works with the residual itself and not with that of the normal equations, so that a field that can be
+// met is met to rounding. It starts from values that continue the samples.
+
+namespace subvol::detail {
+
+namespace {
+
+using Vector = std::vector<double>;
+
+double dot(const Vector& a, const Vector& b) {
+    return parallel_sums(1, a.size(), [&](std::size_t i, Vector& sum) { sum[0] += a[i] * b[i]; })[0];
+}
+
+// a += factor·b
+void add(Vector& a, double factor, const Vector& b) {
+    parallel_each(a.size(), [&](std::size_t i) { a[i] += factor * b[i]; });
+}
+
+/// How well the samples decide a control value: the sum of the squares of its trilinear weights in them.
+Vector support_of(const Topology& topology, const std::vector<LimitQuery>& places) {
+    return parallel_sums(topology.point_count, places.size(), [&](std::size_t k, Vector& sums) {
+        const auto& cell = topology.cells[places[k].cell];
+        const Vec3& at = places[k].uvw;
+        for (std::size_t c = 0; c < 8; ++c) {
+            double weight = 1;
+            for (std::size_t a = 0; a < 3; ++a) {
+                const double t = at[static_cast<int>(a)];
+                weight *= kCornerParameters[c][a] != 0 ? t : 1 - t;
+            }
+            sums[cell[c]] += weight * weight;
+        }
+    });
+}
+
+/// Differences along edges and their weights: everywhere with the smoothing that was asked for, and where samples hardly decide
+/// a value with so much that it follows its neighbours.
+struct Smoothing {
+    std::vector<std::array<Index, 2>> edges;
+    Vector weights;
+
+    Smoothing(const Topology& topology, const std::vector<LimitQuery>& places, double asked) {
+        constexpr double kPoor = 0.05, kPull = 0.01;  // parts of the usual support: the corner of a box has an eighth of it
+        const Vector support = support_of(topology, places);
+        Vector sorted = support;
+        std::erase(sorted, 0.0);
+        const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
+        std::ranges::nth_element(sorted, middle);
+        for (const auto& edge : topology.edges) {
+            const bool poor = std::min(support[edge[0]], support[edge[1]]) < kPoor * *middle;
+            const double weight = (asked + (poor ? kPull : 0)) * *middle;
+            if (weight == 0) continue;
+            edges.push_back(edge);
+            weights.push_back(std::sqrt(weight));
+        }
+    }
+};
+
+/// A over the weighted differences.
+class System {
+public:
+    System(const LimitMatrix& limit, const Smoothing& smoothing) : limit_(limit), smoothing_(smoothing) {}
+
+    [[nodiscard]] Vector apply(const Vector& x) const {
+        Vector values = limit_.apply(x);
+        for (std::size_t e = 0; e < smoothing_.edges.size(); ++e) {
+            const auto& [a, b] = smoothing_.edges[e];
+            values.push_back(smoothing_.weights[e] * (x[a] - x[b]));
+        }
+        return values;
+    }
+
+    [[nodiscard]] Vector transposed(const Vector& values) const {
+        Vector x = limit_.transposed(std::span(values).first(limit_.rows()));
+        for (std::size_t e = 0; e < smoothing_.edges.size(); ++e) {
+            const double value = smoothing_.weights[e] * values[limit_.rows() + e];
+            x[smoothing_.edges[e][0]] += value;
+            x[smoothing_.edges[e][1]] -= value;
+        }
+        return x;
+    }
+
+private:
+    const LimitMatrix& limit_;
+    const Smoothing& smoothing_;
+};
+
+/// Steps of CGLS until the gradient is 1e-14 of the first one, or no longer falls. returns: the number of steps
+int solve(const System& system, const Vector& wanted, Vector& x, int most, Progress* progress) {
+    Vector rest = system.apply(x);
+    parallel_each(rest.size(), [&](std::size_t i) { rest[i] = (i < wanted.size() ? wanted[i] : 0.0) - rest[i]; });
+    Vector gradient = system.transposed(rest);
+    Vector direction = gradient;
+    double size = dot(gradient, gradient);
+    const double first = size;
+    constexpr double kSmall = 1e-28;
+    int step = 0;
+    for (; step < most && size > kSmall * first; ++step) {
+        report_progress(progress, "fit", static_cast<double>(step) / most);
+        const Vector change = system.apply(direction);
+        const double length = dot(change, change);
+        if (!(length > 0)) break;
+        add(x, size / length, direction);
+        add(rest, -size / length, change);
+        gradient = system.transposed(rest);
+        const double next = dot(gradient, gradient);
+        const double ratio = next / size;
+        parallel_each(direction.size(), [&](std::size_t i) { direction[i] = gradient[i] + ratio * direction[i]; });
+        size = next;
+    }
+    return step;
+}
+
+/// Samples that lie in the volume, with their places.
+struct Located {
+    std::vector<LimitQuery> places;
+    std::vector<Index> samples;
+    std::size_t outside = 0, snapped = 0;
+};
+
+Located locate(const HexMesh& mesh, std::span<const Vec3> positions, const ApproximateOptions& options, double diagonal) {
+    ProbeOptions probing;
+    probing.limit.scheme = options.scheme;
+    probing.reach_world = options.reach * diagonal;
+    const ProbeResult found = LimitProbe(mesh, probing).at(positions, options.progress);
+    Located located;
+    for (std::size_t p = 0; p < positions.size(); ++p) {
+        if (!found.inside(p)) {
+            ++located.outside;
+            continue;
+        }
+        if (found.distances[p] > 0) ++located.snapped;
+        located.places.push_back({found.cells[p], found.parameters[p]});
+        located.samples.push_back(static_cast<Index>(p));
+    }
+    if (located.places.empty()) {
+        throw Error(ErrorCode::InvalidInput, "none of the samples lies in the limit of the mesh", "samples",
+                    "places in the box of the mesh");
+    }
+    return located;
+}
+
+/// Values that continue samples to all control points: the mean over the cells about a point, and layer by layer outwards the
+/// mean of the neighbours. unseen: the points without a sample in their cells
+class Start {
+public:
+    Start(const Topology& topology, const std::vector<LimitQuery>& places) : topology_(topology), places_(places) {
+        std::vector<std::uint8_t> seen(topology.point_count, 0);
+        for (const LimitQuery& place : places) {
+            for (const Index p : topology.cells[place.cell]) seen[p] = 1;
+        }
+        unseen_ = static_cast<std::size_t>(std::ranges::count(seen, 0));
+        for (std::size_t left = unseen_, before = 0; left > 0 && left != before;) {
+            before = left;
+            std::vector<Index> layer;
+            for (Index p = 0; p < seen.size(); ++p) {
+                if (seen[p] == 0 &&
+                    std::ranges::any_of(topology.point_edges[p], [&](Index e) { return seen[other(e, p)] == 1; })) {
+                    layer.push_back(p);
+                }
+            }
+            for (const Index p : layer) seen[p] = 2;  // so that a layer does not see itself
+            layers_.push_back(layer);
+            for (const Index p : layer) seen[p] = 1;
+            left -= layer.size();
+        }
+    }
+
+    [[nodiscard]] std::size_t unseen() const { return unseen_; }
+
+    [[nodiscard]] Vector values(const Vector& wanted) const {
+        Vector sums(topology_.point_count, 0), counts(topology_.point_count, 0);
+        double all = 0;
+        for (std::size_t k = 0; k < places_.size(); ++k) {
+            all += wanted[k] / static_cast<double>(places_.size());
+            for (const Index p : topology_.cells[places_[k].cell]) {
+                sums[p] += wanted[k];
+                counts[p] += 1;
+            }
+        }
+        for (std::size_t p = 0; p < sums.size(); ++p) sums[p] = counts[p] > 0 ? sums[p] / counts[p] : all;
+        for (const std::vector<Index>& layer : layers_) {
+            Vector means;
+            for (const Index p : layer) means.push_back(mean_of_neighbors(p, sums, counts));
+            for (std::size_t k = 0; k < layer.size(); ++k) sums[layer[k]] = means[k];
+            for (const Index p : layer) counts[p] = 1;
+        }
+        return sums;
+    }
+
+private:
+    [[nodiscard]] Index other(Index edge, Index point) const {
+        return topology_.edges[edge][0] == point ? topology_.edges[edge][1] : topology_.edges[edge][0];
+    }
+
+    [[nodiscard]] double mean_of_neighbors(Index point, const Vector& values, const Vector& counts) const {
+        double sum = 0, count = 0;
+        for (const Index e : topology_.point_edges[point]) {
+            if (counts[other(e, point)] == 0) continue;
+            sum += values[other(e, point)];
+            count += 1;
+        }
+        return sum / count;
+    }
+
+    const Topology& topology_;
+    const std::vector<LimitQuery>& places_;
+    std::size_t unseen_ = 0;
+    std::vector<std::vector<Index>> layers_;
+};
+
+std::vector<std::uint8_t> cells_at_boundary(const Topology& topology) {
+    std::vector<std::uint8_t> at_boundary(topology.cells.size());
+    parallel_each(at_boundary.size(), [&](std::size_t c) {
+        at_boundary[c] = std::ranges::any_of(topology.cell_faces[c], [&](Index f) { return topology.face_on_boundary(f); });
+    });
+    return at_boundary;
+}
+
+/// The errors of one field, from its channels.
+class ErrorSum {
+public:
+    ErrorSum(const std::vector<Vec3>& positions, const Located& located, const std::vector<std::uint8_t>& at_boundary)
+        : positions_(positions), located_(located), at_boundary_(at_boundary) {}
+
+    void add(const Vector& wanted, const Vector& found) {
+        const auto [low, high] = std::ranges::minmax(wanted);
+        error_.range = std::max(error_.range, high - low);
+        for (std::size_t k = 0; k < wanted.size(); ++k) {
+            const double error = std::abs(found[k] - wanted[k]);
+            squares_ += error * error;
+            ++count_;
+            if (at_boundary_[located_.places[k].cell] != 0) {
+                squares_of_boundary_ += error * error;
+                ++boundary_count_;
+            }
+            if (error > error_.max) {
+                error_.max = error;
+                error_.max_at = positions_[located_.samples[k]];
+            }
+        }
+    }
+
+    [[nodiscard]] FieldError result(const std::string& name) const {
+        FieldError error = error_;
+        error.name = name;
+        error.rms = std::sqrt(squares_ / static_cast<double>(std::max<std::size_t>(count_, 1)));
+        error.rms_boundary = std::sqrt(squares_of_boundary_ / static_cast<double>(std::max<std::size_t>(boundary_count_, 1)));
+        return error;
+    }
+
+private:
+    const std::vector<Vec3>& positions_;
+    const Located& located_;
+    const std::vector<std::uint8_t>& at_boundary_;
+    FieldError error_;
+    double squares_ = 0, squares_of_boundary_ = 0;
+    std::size_t count_ = 0, boundary_count_ = 0;
+};
+
+std::vector<Vec3> chosen(const std::vector<Vec3>& positions, const std::vector<Index>& samples) {
+    std::vector<Vec3> taken;
+    for (const Index s : samples) taken.push_back(positions[s]);
+    return taken;
+}
+
+HexMesh checked(HexMesh mesh, const ApproximateOptions& options) {
+    constexpr double kBytesOfFineCell = 300;  // of its stencils, and of what is computed for its points
+    check_memory(options.levels, static_cast<double>(mesh.cells.size()) * std::pow(8.0, options.levels), kBytesOfFineCell,
+                 option_name("levels", options.names));
+    mesh.attributes.clear();
+    return mesh;
+}
+
+}  // namespace
+
+struct Fitter::Parts {
+    ApproximateOptions options;
+    HexMesh mesh;
+    std::vector<Vec3> positions;
+    Topology topology;
+    double diagonal;
+    Located located;
+    LimitMatrix limit;
+    Smoothing smoothing;
+    System system;
+    Start start;
+    std::vector<std::uint8_t> at_boundary;
+
+    Parts(HexMesh given, std::vector<Vec3> at, const ApproximateOptions& asked)
+        : options(asked),
+          mesh(checked(std::move(given), options)),
+          positions(std::move(at)),
+          topology(build_topology(mesh)),
+          diagonal(bounds(mesh).diagonal()),
+          located(locate(mesh, positions, options, diagonal)),
+          limit(topology, {.scheme = options.scheme, .levels = options.levels, .progress = options.progress}, located.places),
+          smoothing(topology, located.places, options.smoothing),
+          system(limit, smoothing),
+          start(topology, located.places),
+          at_boundary(cells_at_boundary(topology)) {
+        limit.settle(mesh.points, chosen(positions, located.samples), LimitOptions{}.tolerance * diagonal);
+    }
+};
+
+Fitter::Fitter(HexMesh mesh, std::vector<Vec3> positions, const ApproximateOptions& options)
+    : parts_(std::make_unique<Parts>(std::move(mesh), std::move(positions), options)) {
+}
+
+Fitter::~Fitter() = default;
+
+bool Fitter::is_for(std::span<const Vec3> positions) const {
+    return std::ranges::equal(positions, parts_->positions);
+}
+
+Approximation Fitter::fit(std::span<const Attribute> fields) const {
+    const Parts& parts = *parts_;
+    const Located& located = parts.located;
+    Approximation made{.mesh = parts.mesh, .report = {}};
+    ApproximateReport& report = made.report;
+    report.samples = located.places.size();
+    report.outside = located.outside;
+    report.snapped = located.snapped;
+    report.unseen = parts.start.unseen();
+    for (const Attribute& field : fields) {
+        const auto channels = static_cast<std::size_t>(field.channels);
+        Attribute fitted{.name = field.name, .channels = field.channels, .values = Vector(parts.mesh.points.size() * channels)};
+        ErrorSum errors(parts.positions, located, parts.at_boundary);
+        for (std::size_t c = 0; c < channels; ++c) {
+            Vector wanted;
+            for (const Index s : located.samples) wanted.push_back(field.values[s * channels + c]);
+            Vector x = parts.start.values(wanted);
+            report.iterations =
+                std::max(report.iterations, solve(parts.system, wanted, x, parts.options.iterations, parts.options.progress));
+            errors.add(wanted, parts.limit.apply(x));
+            for (std::size_t p = 0; p < x.size(); ++p) fitted.values[p * channels + c] = x[p];
+        }
+        report.fields.push_back(errors.result(field.name));
+        made.mesh.attributes.push_back(std::move(fitted));
+    }
+    return made;
+}
+
+}  // namespace subvol::detail

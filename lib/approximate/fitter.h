@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "subvol/approximate.h"
+
+namespace subvol::detail {
+
+/// Fits fields that are sampled at the same positions onto one control mesh. What does not depend on values is found once: the
+/// places of the samples in the limit, its matrix, the weights of differences along edges, and how a start continues samples.
+class Fitter {
+public:
+    /// mesh:    with its creases; its attributes are not used
+    /// options: refine, tolerance are not used
+    /// throws:  Error(InvalidInput) if no position lies in the volume, or the memory is not enough
+    Fitter(HexMesh mesh, std::vector<Vec3> positions, const ApproximateOptions& options);
+    ~Fitter();
+    Fitter(const Fitter&) = delete;
+    Fitter& operator=(const Fitter&) = delete;
+
+    /// Whether these are the positions that it was made for.
+    [[nodiscard]] bool is_for(std::span<const Vec3> positions) const;
+
+    /// fields: with a value for each position
+    [[nodiscard]] Approximation fit(std::span<const Attribute> fields) const;
+
+private:
+    struct Parts;
+    std::unique_ptr<const Parts> parts_;
+};
+
+}  // namespace subvol::detail
