@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-#include "limit_matrix.h"
+#include "least_squares.h"
 #include "subvol/cell.h"
 #include "subvol/detail/parallel_sums.h"
 #include "subvol/detail/refined_memory.h"
@@ -14,25 +14,11 @@
 #include "subvol/probe.h"
 #include "subvol/topology.h"
 
-// Least squares, min |A x − b|² + Σ w_ij (x_i − x_j)², with the limit's matrix A and differences along edges, which have a
-// weight where smoothing is asked for or a sample hardly decides a value. The search is that of conjugate gradients for least
-// squares (CGLS), which works with the residual itself and not with that of the normal equations, so that a field that can be
-// met is met to rounding. It starts from values that continue the samples.
-
 namespace subvol::detail {
 
 namespace {
 
 using Vector = std::vector<double>;
-
-double dot(const Vector& a, const Vector& b) {
-    return parallel_sums(1, a.size(), [&](std::size_t i, Vector& sum) { sum[0] += a[i] * b[i]; })[0];
-}
-
-// a += factor·b
-void add(Vector& a, double factor, const Vector& b) {
-    parallel_each(a.size(), [&](std::size_t i) { a[i] += factor * b[i]; });
-}
 
 /// How well the samples decide a control value: the sum of the squares of its trilinear weights in them.
 Vector support_of(const Topology& topology, const std::vector<LimitQuery>& places) {
@@ -52,80 +38,22 @@ Vector support_of(const Topology& topology, const std::vector<LimitQuery>& place
 
 /// Differences along edges and their weights: everywhere with the smoothing that was asked for, and where samples hardly decide
 /// a value with so much that it follows its neighbours.
-struct Smoothing {
-    std::vector<std::array<Index, 2>> edges;
-    Vector weights;
-
-    Smoothing(const Topology& topology, const std::vector<LimitQuery>& places, double asked) {
-        constexpr double kPoor = 0.05, kPull = 0.01;  // parts of the usual support: the corner of a box has an eighth of it
-        const Vector support = support_of(topology, places);
-        Vector sorted = support;
-        std::erase(sorted, 0.0);
-        const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
-        std::ranges::nth_element(sorted, middle);
-        for (const auto& edge : topology.edges) {
-            const bool poor = std::min(support[edge[0]], support[edge[1]]) < kPoor * *middle;
-            const double weight = (asked + (poor ? kPull : 0)) * *middle;
-            if (weight == 0) continue;
-            edges.push_back(edge);
-            weights.push_back(std::sqrt(weight));
-        }
+WeightedDifferences smoothing_of(const Topology& topology, const std::vector<LimitQuery>& places, double asked) {
+    constexpr double kPoor = 0.05, kPull = 0.01;  // parts of the usual support: the corner of a box has an eighth of it
+    const Vector support = support_of(topology, places);
+    Vector sorted = support;
+    std::erase(sorted, 0.0);
+    const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
+    std::ranges::nth_element(sorted, middle);
+    WeightedDifferences smoothing;
+    for (const auto& edge : topology.edges) {
+        const bool poor = std::min(support[edge[0]], support[edge[1]]) < kPoor * *middle;
+        const double weight = (asked + (poor ? kPull : 0)) * *middle;
+        if (weight == 0) continue;
+        smoothing.edges.push_back(edge);
+        smoothing.weights.push_back(std::sqrt(weight));
     }
-};
-
-/// A over the weighted differences.
-class System {
-public:
-    System(const LimitMatrix& limit, const Smoothing& smoothing) : limit_(limit), smoothing_(smoothing) {}
-
-    [[nodiscard]] Vector apply(const Vector& x) const {
-        Vector values = limit_.apply(x);
-        for (std::size_t e = 0; e < smoothing_.edges.size(); ++e) {
-            const auto& [a, b] = smoothing_.edges[e];
-            values.push_back(smoothing_.weights[e] * (x[a] - x[b]));
-        }
-        return values;
-    }
-
-    [[nodiscard]] Vector transposed(const Vector& values) const {
-        Vector x = limit_.transposed(std::span(values).first(limit_.rows()));
-        for (std::size_t e = 0; e < smoothing_.edges.size(); ++e) {
-            const double value = smoothing_.weights[e] * values[limit_.rows() + e];
-            x[smoothing_.edges[e][0]] += value;
-            x[smoothing_.edges[e][1]] -= value;
-        }
-        return x;
-    }
-
-private:
-    const LimitMatrix& limit_;
-    const Smoothing& smoothing_;
-};
-
-/// Steps of CGLS until the gradient is 1e-14 of the first one, or no longer falls. returns: the number of steps
-int solve(const System& system, const Vector& wanted, Vector& x, int most, Progress* progress) {
-    Vector rest = system.apply(x);
-    parallel_each(rest.size(), [&](std::size_t i) { rest[i] = (i < wanted.size() ? wanted[i] : 0.0) - rest[i]; });
-    Vector gradient = system.transposed(rest);
-    Vector direction = gradient;
-    double size = dot(gradient, gradient);
-    const double first = size;
-    constexpr double kSmall = 1e-28;
-    int step = 0;
-    for (; step < most && size > kSmall * first; ++step) {
-        report_progress(progress, "fit", static_cast<double>(step) / most);
-        const Vector change = system.apply(direction);
-        const double length = dot(change, change);
-        if (!(length > 0)) break;
-        add(x, size / length, direction);
-        add(rest, -size / length, change);
-        gradient = system.transposed(rest);
-        const double next = dot(gradient, gradient);
-        const double ratio = next / size;
-        parallel_each(direction.size(), [&](std::size_t i) { direction[i] = gradient[i] + ratio * direction[i]; });
-        size = next;
-    }
-    return step;
+    return smoothing;
 }
 
 /// Samples that lie in the volume, with their places.
@@ -299,8 +227,8 @@ struct Fitter::Parts {
     double diagonal;
     Located located;
     LimitMatrix limit;
-    Smoothing smoothing;
-    System system;
+    WeightedDifferences smoothing;
+    LeastSquares system;
     Start start;
     std::vector<std::uint8_t> at_boundary;
 
@@ -312,7 +240,7 @@ struct Fitter::Parts {
           diagonal(bounds(mesh).diagonal()),
           located(locate(mesh, positions, options, diagonal)),
           limit(topology, {.scheme = options.scheme, .levels = options.levels, .progress = options.progress}, located.places),
-          smoothing(topology, located.places, options.smoothing),
+          smoothing(smoothing_of(topology, located.places, options.smoothing)),
           system(limit, smoothing),
           start(topology, located.places),
           at_boundary(cells_at_boundary(topology)) {
@@ -348,7 +276,7 @@ Approximation Fitter::fit(std::span<const Attribute> fields) const {
             for (const Index s : located.samples) wanted.push_back(field.values[s * channels + c]);
             Vector x = parts.start.values(wanted);
             report.iterations =
-                std::max(report.iterations, solve(parts.system, wanted, x, parts.options.iterations, parts.options.progress));
+                std::max(report.iterations, parts.system.solve(wanted, x, parts.options.iterations, parts.options.progress));
             errors.add(wanted, parts.limit.apply(x));
             for (std::size_t p = 0; p < x.size(); ++p) fitted.values[p * channels + c] = x[p];
         }
