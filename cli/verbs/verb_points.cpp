@@ -140,18 +140,18 @@ public:
                        .help("ERROR",
                              "merge neighbouring kernels as long as the values at their centres change by at most ERROR, "
                              "in the field's unit: few kernels where the field is smooth"));
-        add_option(app(), Option("wavelet-tolerance", wavelet_tolerance_)
-                              .between(1e-15, 1)
-                              .help("T",
-                                    "write control values and wavelet details (.svw) instead of kernels, with a root mean "
-                                    "square error of at most T, in parts of the field's range: for refined meshes and "
-                                    "structured grids"));
-        add_option(app(), Option("wavelet-point-tolerance", wavelet_point_tolerance_)
-                              .between(1e-15, 1)
-                              .help("T",
-                                    "the same for the points, in parts of the mesh's longest side (default: a tenth of "
-                                    "--wavelet-tolerance, and less where cells would be inverted)")
-                              .only_with("wavelet-tolerance"));
+        for (Option& option : options_of(wavelets_)) {
+            if (option.name == "levels") continue;  // --levels, which kernels have, too
+            if (option.name == "wavelet-tolerance") {
+                option.value = &wavelet_tolerance_;  // without it there are kernels
+                option.help("T",
+                            "write control values and wavelet details (.svw) instead of kernels, with a root mean square error "
+                            "of at most T, in parts of the field's range: for refined meshes and structured grids");
+            } else {
+                option.only_with("wavelet-tolerance");
+            }
+            add_option(app(), option);
+        }
         std::vector<Option> compressed = options_of(series_);
         for (Option& option : compressed) {
             if (option.name != "max-error") {
@@ -243,15 +243,11 @@ private:
                         "a mesh file and one of its steps");
         }
         const RefineOptions refine = refine_.options(1, report.progress());
-        if (app().count("--levels") > 0 && (refine.levels < 1 || refine.levels > 10)) {
-            throw Error(ErrorCode::InvalidInput, "the number of levels is " + std::to_string(refine.levels), "--levels",
-                        "1 to 10");
-        }
-        WaveletFileOptions options{.scheme = refine.scheme,
-                                   .tolerance = *wavelet_tolerance_,
-                                   .point_tolerance = wavelet_point_tolerance_,
-                                   .progress = report.progress()};
-        if (app().count("--levels") > 0) options.levels = refine.levels;
+        WaveletFileOptions options = wavelets_;
+        options.scheme = refine.scheme;
+        options.tolerance = *wavelet_tolerance_;
+        options.progress = report.progress();
+        if (app().count("--levels") > 0) options_of(options).back().set(refine.levels, "--levels");
         report["input"] = input_;
         HexMesh mesh = report.unpack(load_mesh(input_, common(), report.progress()));
         mesh = report.unpack(with_selected_field(std::move(mesh), common()));
@@ -418,7 +414,8 @@ private:
     std::string output_;
     PointsWriteOptions written_;
     bool clamp_ = false, error_ = false;
-    std::optional<double> merge_error_, wavelet_tolerance_, wavelet_point_tolerance_, max_error_;
+    std::optional<double> merge_error_, wavelet_tolerance_, max_error_;
+    WaveletFileOptions wavelets_;
     SeriesFileOptions series_;
     std::string transfer_function_;
     ShareArgument share_;

@@ -20,13 +20,6 @@ using namespace detail;
 
 namespace {
 
-void check_part(double tolerance, const std::string& what) {
-    if (!(tolerance > 0 && tolerance <= 1)) {
-        throw Error(ErrorCode::InvalidInput, "the " + what + " is " + std::to_string(tolerance), "wavelets",
-                    "greater than 0, at most 1");
-    }
-}
-
 void put_cells(const MeshHierarchy& hierarchy, Bytes& out) {
     const bool all = std::find(hierarchy.cells.begin(), hierarchy.cells.end(), kNone) == hierarchy.cells.end();
     out.number(all ? 0 : 1);
@@ -75,6 +68,9 @@ double range_of(std::span<const double> values, std::size_t channels, std::span<
     }
     return most;
 }
+
+/// The least error that may be asked for, in parts of a range.
+constexpr double kLeastRms = 1e-15;
 
 /// How often the tolerance of points is divided by 3 to keep cells from being inverted.
 constexpr int kMostAttempts = 8;
@@ -196,8 +192,7 @@ private:
 
 WaveletFileReport write_wavelet_file(const std::filesystem::path& path, const HexMesh& mesh,
                                      const WaveletFileOptions& options) {
-    check_part(options.tolerance, "tolerance");
-    check_part(options.point_tolerance.value_or(options.tolerance), "tolerance of points");
+    check_options(options);
     report_progress(options.progress, "find the coarser mesh", 0);
     FileWriter writer(mesh, options);
     writer.put_head();
@@ -208,14 +203,16 @@ WaveletFileReport write_wavelet_file(const std::filesystem::path& path, const He
 
 std::vector<Option> options_of(WaveletFileOptions& options) {
     return {
-        Option("tolerance", options.tolerance)
-            .between(1e-15, 1)
-            .help("T", "a root mean square error of at most T, in parts of the field's range"),
-        Option("point-tolerance", options.point_tolerance)
-            .between(1e-15, 1)
+        Option("wavelet-tolerance", options.tolerance)
+            .between(kLeastRms, 1)
+            .help("T", "the most root mean square error of each field, in parts of its range")
+            .called("tolerance"),
+        Option("wavelet-point-tolerance", options.point_tolerance)
+            .between(kLeastRms, 1)
             .help("T",
-                  "the same for the points, in parts of the mesh's longest side (default: a tenth of the tolerance, and less "
-                  "where cells would be inverted)"),
+                  "the same for the points, in parts of the mesh's longest side (default: a tenth of the tolerance of fields, "
+                  "and less where cells would be inverted)")
+            .called("point_tolerance"),
         Option("levels", options.levels).between(1, 10).help("L", "the most levels of wavelets")};
 }
 

@@ -129,7 +129,8 @@ VtkGridArray vtk_array_of(const py::handle& given) {
 }
 
 py::tuple from_vtk(const py::object& points, const py::object& types, const py::object& ends, const py::object& connectivity,
-                   const py::object& faces, const py::object& face_ends, const py::list& arrays, const py::kwargs& given) {
+                   const py::object& faces, const py::object& face_ends, const py::list& arrays, const py::object& sharp,
+                   const py::kwargs& given) {
     ReadOptions options;
     set_options(options_of_grids(options), given);
     const auto whole = [](const py::object& list, const char* what) {
@@ -145,6 +146,7 @@ py::tuple from_vtk(const py::object& points, const py::object& types, const py::
     grid.faces = whole(faces, "faces");
     grid.face_ends = whole(face_ends, "face offsets");
     for (const py::handle& array : arrays) grid.arrays.push_back(vtk_array_of(array));
+    grid.sharp = whole(sharp, "creases and sharp faces");
     ReadResult result = [&] {
         const py::gil_scoped_release without_gil;
         return mesh_of_vtk(std::move(grid), options);
@@ -204,16 +206,19 @@ SurfaceArrays boundary_of(const HexMesh& mesh) {
     return {owned(std::move(surface.points)), owned(std::move(corners), {triangles, 3})};
 }
 
-py::dict write_wavelets(const std::string& path, const HexMesh& mesh, double tolerance,
-                        const std::optional<double>& point_tolerance, const std::string& scheme, int levels,
-                        const py::object& progress) {
+/// The scheme without angles of creases: they are those of the mesh.
+std::vector<Option> keywords_of(WaveletFileOptions& options) {
+    std::vector<Option> all = scheme_and(options.scheme, options_of(options));
+    std::erase_if(all, [](const Option& option) { return option.name == "crease-angle"; });
+    return all;
+}
+
+py::dict write_wavelets(const std::string& path, const HexMesh& mesh, const py::object& progress, const py::kwargs& keywords) {
+    WaveletFileOptions options;
+    set_options(keywords_of(options), keywords);
     const WaveletFileReport report = result_of(progress, [&](Progress* listener) {
-        return write_wavelet_file(path, mesh,
-                                  {.scheme = refine_options(scheme, 0, SchemeOptions{}.tension, {}).scheme,
-                                   .tolerance = tolerance,
-                                   .point_tolerance = point_tolerance,
-                                   .levels = levels,
-                                   .progress = listener});
+        options.progress = listener;
+        return write_wavelet_file(path, mesh, options);
     });
     py::dict figures, arrays;
     for (const WaveletArrayReport& array : report.arrays) {
@@ -317,7 +322,16 @@ void bind_mesh(py::module_& module) {
     ReadOptions reading;
     describe(module, "read_mesh", options_of(reading));
     module.def("from_vtk", &from_vtk, py::arg("points"), py::arg("types"), py::arg("ends"), py::arg("connectivity"),
-               py::arg("faces"), py::arg("face_ends"), py::arg("arrays"));
+               py::arg("faces"), py::arg("face_ends"), py::arg("arrays"), py::arg("sharp"));
+    module.attr("vtk_sharp_array") = vtk_sharp_array();
+    module.def(
+        "vtk_sharp_numbers",
+        [](const HexMesh& mesh) {
+            std::vector<std::int64_t> numbers = vtk_sharp_numbers(mesh);
+            const py::ssize_t count = length(numbers.size());
+            return owned(std::move(numbers), {count});
+        },
+        py::arg("mesh"));
     describe(module, "from_vtk", options_of_grids(reading));
     module.def(
         "series_times",
@@ -333,8 +347,9 @@ void bind_mesh(py::module_& module) {
             return write_mesh(path, mesh);
         },
         py::arg("path"), py::arg("mesh"));
-    module.def("write_wavelets", &write_wavelets, py::arg("path"), py::arg("mesh"), py::arg("tolerance"),
-               py::arg("point_tolerance"), py::arg("scheme"), py::arg("levels"), py::arg("progress"));
+    module.def("write_wavelets", &write_wavelets, py::arg("path"), py::arg("mesh"), py::arg("progress"));
+    WaveletFileOptions wavelets;
+    describe(module, "write_wavelets", keywords_of(wavelets));
     module.def("write_series", &write_series, py::arg("path"), py::arg("times"), py::arg("read"), py::arg("progress"));
     SeriesFileOptions series;
     describe(module, "write_series", options_of(series));

@@ -11,7 +11,7 @@ from ._errors import Cancelled, Error, FileError, InvalidInput, MissingCapabilit
 from ._exchange import from_meshio, from_pyvista, to_meshio, to_pyvista, to_vtk
 from ._fields import LimitSamples, as_field, evaluate
 from ._measure import FoldCheck, PointsError, ProbeSamples, Slice, StreamlineSet, SurfaceMesh, read_surface
-from ._mesh import Series, model, models, only, open_series, quantity, warp, write_mesh, write_wavelets
+from ._mesh import Series, model, models, only, open_series, quantity, warp, write_mesh
 from ._page import Page
 from ._pictures import FieldComparison, ImageComparison, compare, compare_fields, compare_images, read_image, write_image
 from ._points import kernels, read_points
@@ -144,7 +144,7 @@ def from_vtk(
     cell_values: str = 'auto'
 ) -> HexMesh:
     """The mesh of a `vtkUnstructuredGrid`, as `read_mesh` makes it of a file with this grid: tetrahedra, prisms, pyramids and polyhedra
-    are split, curved cells followed, ghost cells dropped, values at cells moved to the points.
+    are split, curved cells followed, ghost cells dropped, values at cells moved to the points, creases and sharp faces tagged.
 
     other_cells: what to do with tetrahedra, prisms and pyramids: split (all cells, into hexahedra), ignore, refuse [split,
                  ignore, refuse]
@@ -648,6 +648,24 @@ def write_vdb(
     half_width:  the band's reach to either side, in voxels [1 to 1000; with sdf]
 
     Returns the grids' reports: name, kind, active_voxels, voxel_size, min, max, bytes. The file appears whole or not at all.
+    """
+
+def write_wavelets(
+    mesh: HexMesh, path: Path, tolerance: float = 0.001, *, scheme: str = 'mcq', tension: float = 0.0625,
+    point_tolerance: Optional[float] = None, levels: int = 6, progress: Progress = None
+) -> dict[str, Any]:
+    """Writes a mesh that is the refinement of a coarser one as control values and rounded details (`.svw`); `read_mesh` reads it.
+
+    scheme:      mcq (smooth, through the control points), cc (Catmull-Clark), bsxw (Bajaj-Schaefer-Warren-Xu), linear [mcq,
+                 cc, bsxw, linear]
+    tension:     of mcq: 0 is linear; 1/16 reproduces cubics [0 to 0.125; with scheme='mcq']
+    tolerance:   the most root mean square error of each field, in parts of its range [more than 0, at most 1]
+    point_tolerance: the same for the points, in parts of the mesh's longest side (default: a tenth of the tolerance of
+                 fields, and less where cells would be inverted) [more than 0, at most 1]
+    levels:      the most levels of wavelets [1 to 10]
+
+    Returns figures: levels, coarse_cells, cells, bytes, inverted_cells, and arrays: by name ("" are the points) coefficients, kept, rms, max.
+    Raises InvalidInput if the mesh has no coarser one; FileError if the file cannot be written.
     """
 
 __all__ = [

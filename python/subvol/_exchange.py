@@ -75,7 +75,7 @@ def to_pyvista(mesh: HexMesh) -> Any:
 @described
 def from_vtk(grid: Any, **options: Any) -> HexMesh:
     """The mesh of a `vtkUnstructuredGrid`, as `read_mesh` makes it of a file with this grid: tetrahedra, prisms, pyramids and polyhedra
-    are split, curved cells followed, ghost cells dropped, values at cells moved to the points.
+    are split, curved cells followed, ghost cells dropped, values at cells moved to the points, creases and sharp faces tagged.
 
     {keywords}
 
@@ -92,8 +92,10 @@ def from_vtk(grid: Any, **options: Any) -> HexMesh:
     for data, at_cells in ((grid.GetPointData(), False), (grid.GetCellData(), True)):
         given = [(data.GetArrayName(k), data.GetArray(k)) for k in range(data.GetNumberOfArrays())]
         arrays += [(name or "unnamed", at_cells, support.vtk_to_numpy(values)) for name, values in given if values is not None]
+    sharp = grid.GetFieldData().GetArray(_core.vtk_sharp_array)
     mesh, said = _core.from_vtk(support.vtk_to_numpy(grid.GetPoints().GetData()), types, support.vtk_to_numpy(cells.GetOffsetsArray())[1:],
-                                support.vtk_to_numpy(cells.GetConnectivityArray()), faces, face_ends, arrays, **options)
+                                support.vtk_to_numpy(cells.GetConnectivityArray()), faces, face_ends, arrays,
+                                [] if sharp is None else support.vtk_to_numpy(sharp), **options)
     for text in said:
         warn(text)
     return mesh
@@ -115,7 +117,7 @@ def _faces_of(grid: Any, types: Any) -> tuple[list[int], list[int]]:
 
 
 def to_vtk(mesh: HexMesh) -> Any:
-    """A `vtkUnstructuredGrid` with all fields. Its points and fields are this mesh's memory: nothing may write to them."""
+    """A `vtkUnstructuredGrid` with all fields, and creases and sharp faces as `.vtu` files have them. Its points and fields are this mesh's memory: nothing may write to them."""
     support = importlib.import_module("vtkmodules.util.numpy_support")
     model = importlib.import_module("vtkmodules.vtkCommonDataModel")
     points = importlib.import_module("vtkmodules.vtkCommonCore").vtkPoints()
@@ -131,4 +133,9 @@ def to_vtk(mesh: HexMesh) -> Any:
         array = support.numpy_to_vtk(values)
         array.SetName(name)
         grid.GetPointData().AddArray(array)
+    numbers = _core.vtk_sharp_numbers(mesh)
+    if len(numbers):
+        sharp = support.numpy_to_vtk(numbers, deep=True)
+        sharp.SetName(_core.vtk_sharp_array)
+        grid.GetFieldData().AddArray(sharp)
     return grid

@@ -45,21 +45,18 @@ def write_mesh(mesh: HexMesh, path: Path) -> None:
         warn(text)
 
 
-def write_wavelets(mesh: HexMesh, path: Path, tolerance: float = 1e-3, *, point_tolerance: Optional[float] = None,
-                   scheme: str = "mcq", levels: int = 6, progress: Progress = None) -> dict[str, Any]:
+@described
+def write_wavelets(mesh: HexMesh, path: Path, tolerance: float = 1e-3, *, progress: Progress = None,
+                   **options: Any) -> dict[str, Any]:
     """Writes a mesh that is the refinement of a coarser one as control values and rounded details (`.svw`); `read_mesh` reads it.
 
-    tolerance:       most root mean square error of each field, in parts of its range; (0, 1]
-    point_tolerance: the same of the points, in parts of the mesh's longest side; None: a tenth of `tolerance`, and less where cells
-                     would be inverted
-    scheme:          whose wavelets
-    levels:          the most levels, 1 to 10
+    {keywords}
 
     Returns figures: levels, coarse_cells, cells, bytes, inverted_cells, and arrays: by name ("" are the points) coefficients, kept, rms, max.
     Raises InvalidInput if the mesh has no coarser one; FileError if the file cannot be written.
     """
     with listening(progress) as listener:
-        return _core.write_wavelets(path_bytes(path), mesh, tolerance, point_tolerance, scheme, levels, listener)
+        return _core.write_wavelets(path_bytes(path), mesh, listener, tolerance=tolerance, **options)
 
 
 def model(name: str, resolution: int = 0) -> HexMesh:

@@ -15,7 +15,7 @@
 namespace subvol {
 
 /// tolerance:       most root mean square error of each field, in parts of its range (of vectors: of the box of their values);
-///                  (0,1]
+///                  [1e-15,1]
 /// point_tolerance: most root mean square distance of the points from where they were, in parts of the mesh's longest side; if
 ///                  not given a tenth of `tolerance`, and less where cells would be inverted
 /// levels:          the most levels of wavelets, 1 to 10
@@ -27,6 +27,7 @@ struct WaveletFileOptions {
     Progress* progress = nullptr;
 };
 
+/// wavelet-tolerance and wavelet-point-tolerance, which Python calls tolerance and point_tolerance, and levels
 [[nodiscard]] std::vector<Option> options_of(WaveletFileOptions& options);
 
 /// What was kept of an array. name: empty for the points; rms and max: in the parts that the tolerance is in
