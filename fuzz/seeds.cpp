@@ -15,6 +15,7 @@
 #include "subvol/refine.h"
 #include "subvol/sample.h"
 #include "subvol/wavelet_file.h"
+#include "svw_parts.h"
 #include "vtu_bytes.h"
 #include "wavelet_format.h"
 
@@ -201,6 +202,16 @@ void add_wavelets(Seeds& seeds, const HexMesh& mesh) {
     }
 }
 
+/// Each part as it is in a good file.
+void add_steps(Seeds& seeds) {
+    SeriesParts parts = fuzz::good_steps();
+    const std::string index = parts.index_of_packed();
+    for (const char letter : fuzz::kSeriesParts) {
+        const std::string* const part = fuzz::part_of(parts, letter);
+        seeds.add("svw", letter + (letter == 'i' ? index : *part));
+    }
+}
+
 void add_plot3d(Seeds& seeds, const HexMesh& mesh) {
     seeds.add("plot3d", "2 2 2\n" + point_lines(mesh));
     seeds.add("plot3d", "2\n2 2 2 2 2 2\n" + point_lines(mesh) + point_lines(mesh) + "1 1 1 1 0 1 1 1\n1 1 1 1 1 1 1 1\n");
@@ -232,6 +243,7 @@ void add_meshes(Seeds& seeds, const HexMesh& mesh) {
     add_binary_meshes(seeds, mesh);
     add_plot3d(seeds, mesh);
     add_wavelets(seeds, mesh);
+    add_steps(seeds);
     add_vtkhdf(seeds);
     add_cgns(seeds);
     add_decks(seeds);

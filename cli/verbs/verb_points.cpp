@@ -270,13 +270,17 @@ private:
         options.tolerance = *max_error_;
         options.progress = report.progress();
         report["input"] = input_;
+        MeshSets sets;
         const auto read = [&](const CommonOptions& one) {
-            HexMesh mesh = report.unpack(load_mesh(input_, one, nullptr));
+            ReadResult found = report.unpack(read_input(input_, one, nullptr, ShellsAlone::Refuse));
+            sets = std::move(found.sets);
+            HexMesh mesh = report.unpack(mesh_of(std::move(found), one, nullptr));
             return one.field || one.density ? report.unpack(with_selected_field(std::move(mesh), one)) : mesh;
         };
         if (!asks_for_steps(common())) {
             const HexMesh mesh = read(common());
-            report.merge(write_series_reported(output_, {{mesh.time.value_or(0)}, [&](std::size_t) { return mesh; }}, options));
+            report.merge(write_series_reported(
+                output_, {{mesh.time.value_or(0)}, [&](std::size_t) { return mesh; }, [&] { return sets; }}, options));
             return 0;
         }
         const MeshSeries series = open_series(input_);
@@ -286,7 +290,8 @@ private:
         report.merge(
             write_series_reported(output_,
                                   {{first, first + range.count()},
-                                   [&](std::size_t k) { return read(of_step(all, range.first + static_cast<int>(k))); }},
+                                   [&](std::size_t k) { return read(of_step(all, range.first + static_cast<int>(k))); },
+                                   [&] { return sets; }},
                                   options));
         return 0;
     }

@@ -51,7 +51,9 @@ ReadResult read_wavelets(const std::filesystem::path& path, const ReadOptions& o
     ReadResult result;
     if (has_steps(path)) {
         const std::size_t step = chosen_step(options, series_file_times(path).size(), path.string(), result.warnings);
-        result.mesh = read_series_file(path, step);
+        auto [mesh, sets] = read_series_file(path, step);
+        result.mesh = std::move(mesh);
+        result.sets = std::move(sets);
     } else {
         std::ignore = chosen_step(options, 1, path.string(), result.warnings);
         result.mesh = read_wavelet_mesh(read_text(path), path.string());

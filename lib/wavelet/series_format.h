@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "subvol/hex_mesh.h"
+#include "subvol/mesh_sets.h"
 #include "value_prediction.h"
 
 namespace subvol::detail {
@@ -22,6 +23,8 @@ namespace subvol::detail {
 //
 //   mesh    compressed: levels; points and cells, creases, sharp faces, as in a file of wavelets; refined so often they are
 //             those of the steps
+//             patches: how many; for each its name, how many sides; for each the difference of 6 · cell + side from the one
+//             before sets of cells: how many; for each its name, how many cells; for each the difference from the one before
 //   step    for each array a byte, 1 if the step has it; then for each channel of these
 //             a byte: the prediction and, times 4, what of earlier steps it is added to (Spatial, Temporal)
 //             a byte: how many bytes each residual has; 0: all are 0
@@ -107,9 +110,15 @@ inline constexpr int kMostLevels = 6;
 /// throws: Error(InvalidInput) if the file is not right
 [[nodiscard]] std::vector<double> series_file_times(const std::filesystem::path& path);
 
-/// The mesh of a step, from 0; nothing: the last one.
+/// What is read of a step.
+struct SeriesMeshAndSets {
+    HexMesh mesh;
+    MeshSets sets;
+};
+
+/// A step, from 0.
 ///
 /// throws: Error(InvalidInput) if the file is not right, or has no such step
-[[nodiscard]] HexMesh read_series_file(const std::filesystem::path& path, std::size_t step);
+[[nodiscard]] SeriesMeshAndSets read_series_file(const std::filesystem::path& path, std::size_t step);
 
 }  // namespace subvol::detail

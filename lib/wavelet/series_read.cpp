@@ -337,19 +337,55 @@ private:
     std::vector<StepArray> last_, two_before_;
 };
 
-HexMesh read_cells_of(const SeriesBytes& bytes, const SeriesMesh& stored) {
+/// Numbers that are written as differences, each below a limit.
+std::vector<std::uint64_t> read_differences(Contents& in, const char* what, std::uint64_t limit) {
+    std::vector<std::uint64_t> numbers(in.count(what, 1));
+    std::int64_t number = 0;
+    for (std::uint64_t& n : numbers) {
+        const std::int64_t change = in.signed_number();
+        const auto most = static_cast<std::int64_t>(limit);
+        if (change < -most || change > most || number + change < 0 || number + change >= most) {
+            in.fail(std::string("the file names ") + what + " that do not exist");
+        }
+        number += change;
+        n = static_cast<std::uint64_t>(number);
+    }
+    return numbers;
+}
+
+MeshSets read_sets(Contents& in, std::size_t cells) {
+    MeshSets sets;
+    const std::size_t patches = in.count("patches", 2);
+    for (std::size_t k = 0; k < patches; ++k) {
+        Patch& patch = sets.patches.emplace_back(Patch{in.text(), {}});
+        for (const std::uint64_t n : read_differences(in, "sides of cells", 6 * cells)) {
+            patch.sides.push_back({static_cast<Index>(n / 6), static_cast<std::uint8_t>(n % 6)});
+        }
+    }
+    const std::size_t count = in.count("sets", 2);
+    for (std::size_t k = 0; k < count; ++k) {
+        CellSet& set = sets.sets.emplace_back(CellSet{in.text(), {}});
+        for (const std::uint64_t n : read_differences(in, "cells", cells)) set.cells.push_back(static_cast<Index>(n));
+    }
+    return sets;
+}
+
+SeriesMeshAndSets read_cells_of(const SeriesBytes& bytes, const SeriesMesh& stored) {
     const std::string contents = bytes.unpacked(bytes.range(stored.place, "a mesh"), stored.unpacked);
     Contents in(contents, bytes.file());
     const std::uint64_t levels = in.number();
     if (levels > kMostLevels) in.fail("the number of levels is " + std::to_string(levels), "0 to 6");
     HexMesh mesh = read_cells(in, 0);
-    in.expect_end();
-    if (levels == 0) return mesh;
-    if (mesh.cells.size() > kMostRefinedCells >> 3 * levels) {
-        in.fail(std::to_string(levels) + " levels of " + std::to_string(mesh.cells.size()) + " cells are too many",
-                "at most 4194304 cells that are refined");
+    if (levels > 0) {
+        if (mesh.cells.size() > kMostRefinedCells >> 3 * levels) {
+            in.fail(std::to_string(levels) + " levels of " + std::to_string(mesh.cells.size()) + " cells are too many",
+                    "at most 4194304 cells that are refined");
+        }
+        mesh = refined_cells(mesh, static_cast<int>(levels));
     }
-    return refined_cells(mesh, static_cast<int>(levels));
+    MeshSets sets = read_sets(in, mesh.cells.size());
+    in.expect_end();
+    return {std::move(mesh), std::move(sets)};
 }
 
 }  // namespace
@@ -370,19 +406,20 @@ std::vector<double> series_file_times(const std::filesystem::path& path) {
     return times;
 }
 
-HexMesh read_series_file(const std::filesystem::path& path, std::size_t step) {
+SeriesMeshAndSets read_series_file(const std::filesystem::path& path, std::size_t step) {
     const SeriesBytes bytes(path);
     const SeriesIndex index = read_index(bytes);
     if (step >= index.steps.size()) bytes.fail("there is no step " + std::to_string(step));
     std::size_t key = step;
     while (!index.steps[key].key) --key;
     try {
-        StepDecoder decoder(bytes, index, read_cells_of(bytes, index.meshes[index.steps[step].mesh]));
+        SeriesMeshAndSets cells = read_cells_of(bytes, index.meshes[index.steps[step].mesh]);
+        StepDecoder decoder(bytes, index, std::move(cells.mesh));
         for (std::size_t k = key; k <= step; ++k) decoder.decode(k);
         HexMesh mesh = decoder.take();
         if (index.steps.size() > 1) mesh.time = index.steps[step].time;
         validate(mesh);
-        return mesh;
+        return {std::move(mesh), std::move(cells.sets)};
     } catch (const Error& error) {
         if (error.where() == bytes.file()) throw;
         throw Error(error.code(), error.message(), bytes.file(), error.allowed());

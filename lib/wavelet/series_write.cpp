@@ -42,6 +42,33 @@ std::optional<CoarseCells> coarse_cells(const HexMesh& cells) {
     return std::nullopt;
 }
 
+/// Ascending numbers, and others, as differences.
+template <class Items, class NumberOf>
+void put_differences(const Items& items, const NumberOf& number_of, Bytes& out) {
+    out.number(items.size());
+    std::int64_t before = 0;
+    for (const auto& item : items) {
+        const auto number = static_cast<std::int64_t>(number_of(item));
+        out.number(folded(number - before));
+        before = number;
+    }
+}
+
+void put_sets(const MeshSets& sets, Bytes& out) {
+    out.number(sets.patches.size());
+    for (const Patch& patch : sets.patches) {
+        out.text(patch.name);
+        put_differences(
+            patch.sides, [](const CellSide& side) { return 6 * std::uint64_t{side.cell} + side.side; }, out);
+    }
+    out.number(sets.sets.size());
+    for (const CellSet& set : sets.sets) {
+        out.text(set.name);
+        put_differences(
+            set.cells, [](Index cell) { return cell; }, out);
+    }
+}
+
 class SeriesWriter {
 public:
     SeriesWriter(const std::filesystem::path& path, const MeshSteps& steps, const SeriesFileOptions& options)
@@ -104,6 +131,7 @@ private:
         const std::optional<CoarseCells> coarse = coarse_cells(cells_);
         out.number(coarse ? static_cast<std::uint64_t>(coarse->levels) : 0);
         put_mesh(coarse ? coarse->mesh : cells_, out);
+        put_sets(steps_.sets ? steps_.sets() : MeshSets{}, out);
         const std::string packed = compressed_numbers(out.all());
         index_.meshes.push_back({{file_.position(), packed.size()}, out.all().size()});
         report_.mesh_bytes += packed.size();

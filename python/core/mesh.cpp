@@ -243,10 +243,15 @@ py::dict write_series(const std::string& path, const std::vector<double>& times,
                       const py::object& progress, const py::kwargs& keywords) {
     SeriesFileOptions options;
     set_options(options_of(options), keywords);
-    const MeshSteps steps{times, [&](std::size_t step) {
+    MeshSets sets;
+    const MeshSteps steps{times,
+                          [&](std::size_t step) {
                               const py::gil_scoped_acquire gil;
-                              return read(step).cast<HexMesh>();
-                          }};
+                              const py::object mesh = read(step);
+                              sets = sets_of(mesh);
+                              return mesh.cast<HexMesh>();
+                          },
+                          [&] { return sets; }};
     return dict_of(facts_of(result_of(progress, [&](Progress* listener) {
         options.progress = listener;
         return write_series_file(path, steps, options);

@@ -14,6 +14,7 @@ from command import subvol
 
 TOP = Path(__file__).resolve().parents[2]
 KEPT = Path(__file__).resolve().parent / "stable"
+STEPS = KEPT / "series-1.svw"  # of the first format of series, which is newer than 0.2; `--write-series` makes it, once
 COMPONENTS = ("lib", "vdb", "render", "compare", "view")
 
 # A command for each kind of figures; in one folder, one after the other.
@@ -106,6 +107,23 @@ def keys():
                 yield f"{command.split()[0]}: {path}"
 
 
+def write_steps(path):
+    """A series of three steps in a file that later versions read: the refined twisted block as the set "core", with x + y z + t."""
+    with tempfile.TemporaryDirectory() as folder:
+        sets = []
+        for step, time in enumerate((0, .5, 2)):
+            mesh = f"twist{step}.vtu"
+            done = subvol("subdivide", "model:twist:3", "--density", f"x+y*z+{time}", "-o", mesh, folder=folder)
+            assert done.code == 0, done.err
+            Path(folder, f"step{step}.vtm").write_text(
+                '<VTKFile type="vtkMultiBlockDataSet"><vtkMultiBlockDataSet>'
+                f'<DataSet index="0" name="core" file="{mesh}"/></vtkMultiBlockDataSet></VTKFile>')
+            sets.append(f'<DataSet timestep="{time}" file="step{step}.vtm"/>')
+        Path(folder, "steps.pvd").write_text(f'<VTKFile type="Collection"><Collection>{"".join(sets)}</Collection></VTKFile>')
+        done = subvol("points", "steps.pvd", "-o", path, "--step", "all", "--max-error", "1e-4", "--key-steps", "2", folder=folder)
+        assert done.code == 0, done.err
+
+
 LISTS = {"headers.txt": declarations, "options.txt": options, "json.txt": keys}
 
 
@@ -155,6 +173,27 @@ class FilesOfEarlierVersions(unittest.TestCase):
                     self.assertEqual(done.code, 0, done.err)
                     self.assertAlmostEqual(done.json()["values"][0]["value"], .1 + .2 * .3, delta=.03)
 
+    def test_series(self):
+        done = subvol("info", STEPS, "--json")
+        self.assertEqual(done.code, 0, done.err)
+        self.assertEqual(done.json()["cells"], 216)
+        self.assertEqual([(found["name"], found["cells"]) for found in done.json()["sets"]], [("core", 216)])
+        for step, time in enumerate((0, .5, 2)):
+            done = subvol("probe", STEPS, "--step", step, "--at", ".1,.2,.3", "--json")
+            self.assertEqual(done.code, 0, done.err)
+            # The limit interpolates x + y z to .03 in so few cells; the file is nearer than that to its own first step.
+            self.assertAlmostEqual(done.json()["values"][0]["value"], .1 + .2 * .3 + time, delta=.03)
+        with tempfile.TemporaryDirectory() as folder:  # the present version writes what that one did, within the error of both
+            write_steps(Path(folder) / "now.svw")
+            for step in range(3):
+                values = []
+                for path in (STEPS, Path(folder) / "now.svw"):
+                    done = subvol("info", path, "--step", step, "--json")
+                    self.assertEqual(done.code, 0, done.err)
+                    field = done.json()["fields"][0]
+                    values.append((field["min"], field["max"]))
+                self.assertLess(max(abs(a - b) for a, b in zip(*values)), 2e-4 * 5)
+
     def test_states_of_the_window(self):
         for version in sorted(path.name for path in KEPT.iterdir() if path.is_dir()):
             with self.subTest(version=version), tempfile.TemporaryDirectory() as folder:
@@ -166,7 +205,9 @@ class FilesOfEarlierVersions(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    if "--write" in sys.argv:
+    if "--write-series" in sys.argv:
+        write_steps(STEPS)
+    elif "--write" in sys.argv:
         KEPT.mkdir(exist_ok=True)
         for name, lines in LISTS.items():
             (KEPT / name).write_text("".join(f"{line}\n" for line in sorted(set(lines()))))

@@ -12,6 +12,7 @@ from subvol_vtk.SubvolVtk import vtkSubvolLimitLine, vtkSubvolLimitProbe, vtkSub
     vtkSubvolVolumeMapper, vtkSubvolWriter
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkMultiBlockDataSet, vtkPiecewiseFunction, vtkPlane, vtkPlaneCollection
+from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
 from vtkmodules.vtkRenderingCore import vtkColorTransferFunction, vtkRenderer, vtkRenderWindow, vtkVolume, vtkVolumeProperty, vtkWindowToImageFilter
 
 SIZE = (200, 160)
@@ -174,6 +175,25 @@ class Mapper(unittest.TestCase):
         probe.Update()
         self.assertEqual(probe.GetOutput().GetPointData().GetArray("vtkValidPointMask").GetRange(), (1, 1))
         self.assertEqual(probe.GetOutput().GetNumberOfCells(), len(self.mesh.cells))
+
+    def test_creases_and_sharp_faces_of_files_shape_the_limit(self):
+        block = subvol.model("twist", 3)
+        sharp = block.with_creases(30)
+        self.assertGreater(len(sharp.creases), 0)
+        path = os.path.join(FOLDER, "sharp.vtu")
+        subvol.write_mesh(sharp, path)
+        by_vtk, by_us = vtkXMLUnstructuredGridReader(), vtkSubvolReader()
+        for reader in (by_vtk, by_us):
+            reader.SetFileName(path)
+            surface = vtkSubvolLimitSurface()
+            surface.SetInputConnection(reader.GetOutputPort())
+            surface.SetBoundary(True)
+            surface.Update()
+            points = vtk_to_numpy(surface.GetOutput().GetPoints().GetData())
+            self.assertTrue(np.allclose(points, subvol.surface(sharp, boundary=True).points))
+            round_ones = subvol.surface(block, boundary=True).points
+            self.assertFalse(len(points) == len(round_ones) and np.allclose(points, round_ones))
+            self.assertTrue(np.array_equal(subvol.from_vtk(reader.GetOutput()).creases, sharp.creases))
 
 
 if __name__ == "__main__":

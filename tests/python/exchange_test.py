@@ -75,6 +75,23 @@ def test_vtk_there_and_back(ball):
     assert grid.GetCell(0).GetNumberOfPoints() == 8 and np.isfinite(grid.GetBounds()).all()
 
 
+def test_vtk_grids_keep_creases_and_sharp_faces(tmp_path, ball):
+    pytest.importorskip("vtkmodules", reason="Debian's python3-vtk9 is not installed")
+    sharp = ball.with_creases(20)
+    assert len(sharp.creases) > 0
+    again = subvol.from_vtk(subvol.to_vtk(sharp))
+    assert np.array_equal(again.creases, sharp.creases) and len(subvol.from_vtk(subvol.to_vtk(ball)).creases) == 0
+    subvol.write_mesh(sharp, tmp_path / "sharp.vtu")
+    reader = pytest.importorskip("vtkmodules.vtkIOXML").vtkXMLUnstructuredGridReader()
+    reader.SetFileName(str(tmp_path / "sharp.vtu"))
+    reader.Update()
+    assert np.array_equal(subvol.from_vtk(reader.GetOutput()).creases, sharp.creases)
+    grid = subvol.to_vtk(subvol.HexMesh(ball.points, ball.cells[:5]))  # another mesh, as filters make one and keep the array
+    grid.SetFieldData(reader.GetOutput().GetFieldData())
+    with pytest.warns(subvol.SubvolWarning, match="another mesh"):
+        assert len(subvol.from_vtk(grid).creases) == 0
+
+
 def test_a_vtk_grid_of_other_cells_is_that_of_its_file(tmp_path):
     vtk = pytest.importorskip("vtkmodules.vtkCommonDataModel", reason="Debian's python3-vtk9 is not installed")
     core, files = pytest.importorskip("vtkmodules.vtkCommonCore"), pytest.importorskip("vtkmodules.vtkIOXML")

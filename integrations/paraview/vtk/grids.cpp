@@ -10,6 +10,7 @@
 #include <vtkCompositeDataSet.h>
 #include <vtkDataSet.h>
 #include <vtkDoubleArray.h>
+#include <vtkFieldData.h>
 #include <vtkFloatArray.h>
 #include <vtkIdTypeArray.h>
 #include <vtkInformation.h>
@@ -18,7 +19,9 @@
 #include <vtkPoints.h>
 #include <vtkPolyData.h>
 #include <vtkSmartPointer.h>
+#include <vtkTypeInt64Array.h>
 #include <vtkUnstructuredGrid.h>
+#include <vtkVariant.h>
 
 #include <algorithm>
 #include <cmath>
@@ -32,9 +35,19 @@ namespace subvol {
 
 namespace {
 
-/// Points and cells, and what marks ghosts.
+/// Creases and sharp faces, as our files and `set_grid` have them. A hash among the numbers is exact only as a whole number.
+std::vector<std::int64_t> sharp_of(vtkDataSet& grid) {
+    std::vector<std::int64_t> numbers;
+    if (vtkDataArray* const array = grid.GetFieldData()->GetArray(vtk_sharp_array())) {
+        for (vtkIdType i = 0; i < array->GetNumberOfValues(); ++i) numbers.push_back(array->GetVariantValue(i).ToTypeInt64());
+    }
+    return numbers;
+}
+
+/// Points and cells, with creases and sharp faces.
 VtkUnstructuredGrid cells_of(vtkDataSet& grid) {
     VtkUnstructuredGrid made;
+    made.sharp = sharp_of(grid);
     made.points.resize(static_cast<std::size_t>(grid.GetNumberOfPoints()));
     for (std::size_t p = 0; p < made.points.size(); ++p) {
         double x[3];
@@ -199,6 +212,12 @@ void set_grid(vtkUnstructuredGrid& grid, const HexMesh& mesh) {
     grid.SetCells(VTK_HEXAHEDRON, cells);
     for (const Attribute& field : mesh.attributes)
         add_array(*grid.GetPointData(), field.name, static_cast<int>(field.channels), field.values);
+    const std::vector<std::int64_t> numbers = vtk_sharp_numbers(mesh);
+    if (numbers.empty()) return;
+    vtkNew<vtkTypeInt64Array> sharp;
+    sharp->SetName(vtk_sharp_array());
+    for (const std::int64_t number : numbers) sharp->InsertNextValue(number);
+    grid.GetFieldData()->AddArray(sharp);
 }
 
 void add_probed(vtkDataSetAttributes& to, const ProbeResult& probed, bool gradients) {

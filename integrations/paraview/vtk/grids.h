@@ -50,7 +50,7 @@ struct ShownArray {
 /// The mesh of a data set with all of its arrays of numbers; of blocks with those that all have.
 [[nodiscard]] ReadResult mesh_of_data(vtkDataObject& data);
 
-/// Fills a grid with a mesh.
+/// Fills a grid with a mesh, its creases and sharp faces as a field array, which `mesh_of_data` takes again.
 void set_grid(vtkUnstructuredGrid& grid, const HexMesh& mesh);
 
 /// Appends a field. components: of each of its tuples

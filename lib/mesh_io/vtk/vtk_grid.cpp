@@ -9,6 +9,7 @@
 #include "assemble.h"
 #include "join_pieces.h"
 #include "mesh_file.h"
+#include "sharp_groups.h"
 #include "subvol/detail/printable.h"
 #include "subvol/error.h"
 #include "text_scanner.h"
@@ -86,6 +87,7 @@ MeshFile contents_of(VtkUnstructuredGrid grid, bool alone, const TextScanner& no
     take_cells(grid, sorter);
     for (VtkGridArray& array : grid.arrays)
         found.arrays.push_back({std::move(array.name), array.components, array.at_cells, std::move(array.values)});
+    if (alone && !grid.sharp.empty()) take_sharp_numbers(grid.sharp, found);
     sorter.report(alone ? std::optional(kGridName) : std::nullopt);
     return found;
 }
@@ -97,6 +99,14 @@ TextScanner no_text() {
 }
 
 }  // namespace
+
+const char* vtk_sharp_array() {
+    return kSharpArray;
+}
+
+std::vector<std::int64_t> vtk_sharp_numbers(const HexMesh& mesh) {
+    return mesh.creases.empty() && mesh.sharp_faces.empty() ? std::vector<std::int64_t>{} : sharp_numbers(mesh);
+}
 
 ReadResult mesh_of_vtk(VtkUnstructuredGrid grid, const ReadOptions& options) {
     const TextScanner nowhere = no_text();

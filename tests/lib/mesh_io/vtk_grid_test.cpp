@@ -87,6 +87,32 @@ VtkUnstructuredGrid one_cell(double x, const std::string& field) {
     return grid;
 }
 
+TEST_F(VtkGridInMemory, HasTheCreasesAndSharpFacesOfItsFile) {
+    HexMesh mesh = mesh_of_vtk(std::vector<VtkUnstructuredGrid>{one_cell(0, "a"), one_cell(1, "b")}).mesh;
+    EXPECT_TRUE(vtk_sharp_numbers(mesh).empty());
+    mesh.creases = {{mesh.cells[0][0], mesh.cells[0][3]}};
+    mesh.sharp_faces = {{mesh.cells[0][1], mesh.cells[0][2], mesh.cells[0][6], mesh.cells[0][5]}};
+    VtkUnstructuredGrid grid;
+    grid.points = mesh.points;
+    grid.types = {12, 12};
+    grid.ends = {8, 16};
+    for (const auto& cell : mesh.cells) grid.connectivity.insert(grid.connectivity.end(), cell.begin(), cell.end());
+    grid.sharp = vtk_sharp_numbers(mesh);
+    write_mesh(path("sharp.vtu"), mesh);
+    const ReadResult in_memory = mesh_of_vtk(grid), read = read_mesh(path("sharp.vtu"));
+    EXPECT_EQ(in_memory.mesh.creases.size(), 1u);
+    EXPECT_EQ(in_memory.mesh.sharp_faces.size(), 1u);
+    EXPECT_EQ(in_memory.mesh.creases, read.mesh.creases);
+    EXPECT_EQ(in_memory.mesh.sharp_faces, read.mesh.sharp_faces);
+    EXPECT_TRUE(in_memory.warnings.empty());
+    VtkUnstructuredGrid kept = one_cell(0, "a");  // programs that change a mesh keep the array
+    kept.sharp = grid.sharp;
+    const ReadResult ignored = mesh_of_vtk(kept);
+    EXPECT_TRUE(ignored.mesh.creases.empty());
+    ASSERT_EQ(ignored.warnings.size(), 1u);
+    EXPECT_THAT(ignored.warnings[0], testing::HasSubstr("another mesh"));
+}
+
 TEST_F(VtkGridInMemory, BlocksAreTheMeshOfAListOfTheirFiles) {
     const std::vector<VtkUnstructuredGrid> blocks{one_cell(0, "a"), {}, one_cell(1, "b")};
     write("a.vtu", vtu_of(blocks[0]));

@@ -13,6 +13,7 @@
 #include "lib/expect_error.h"
 #include "lib/temp_folder.h"
 #include "lib/test_meshes.h"
+#include "lib/wavelet/series_parts.h"
 #include "series_format.h"
 #include "subvol/error.h"
 #include "subvol/mesh_io.h"
@@ -312,6 +313,101 @@ TEST_F(SeriesFile, DamagedFilesAreRefused) {
         bad[at] = static_cast<char>(random());
         attempt(bad);
     }
+}
+
+TEST_F(SeriesFile, TagsPatchesAndSetsAreKept) {
+    HexMesh box = test::make_box(4, 4, 4);
+    box.sharp_faces = {{box.cells[0][1], box.cells[0][2], box.cells[0][6], box.cells[0][5]}};
+    box.creases = {{box.cells[1][0], box.cells[1][1]}};
+    HexMesh part = box;
+    part.cells.resize(40);
+    part.sharp_faces.clear();
+    part.creases.clear();
+    const MeshSets of_box{{{"inlet", {{0, 4}, {63, 1}, {7, 5}}}, {"empty", {}}}, {{"core", {1, 2, 60}}}},
+        of_part{{}, {{"rest", {39}}}};
+    std::size_t last = 0;
+    const MeshSteps steps{{0, 1, 2},
+                          [&](std::size_t k) {
+                              last = k;
+                              return k < 2 ? box : part;
+                          },
+                          [&] { return last < 2 ? of_box : of_part; }};
+    write_series_file(path("a.svw"), steps, {});
+    for (const std::size_t k : {0u, 1u, 2u}) {
+        const ReadResult read = read_mesh(path("a.svw"), {.step = k});
+        const MeshSets& sets = k < 2 ? of_box : of_part;
+        ASSERT_EQ(read.sets.patches.size(), sets.patches.size());
+        for (std::size_t p = 0; p < sets.patches.size(); ++p) {
+            EXPECT_EQ(read.sets.patches[p].name, sets.patches[p].name);
+            EXPECT_EQ(read.sets.patches[p].sides, sets.patches[p].sides);
+        }
+        ASSERT_EQ(read.sets.sets.size(), 1u);
+        EXPECT_EQ(read.sets.sets[0].name, sets.sets[0].name);
+        EXPECT_EQ(read.sets.sets[0].cells, sets.sets[0].cells);
+        EXPECT_EQ(read.mesh.creases, k < 2 ? box.creases : part.creases);
+        EXPECT_EQ(read.mesh.sharp_faces, k < 2 ? box.sharp_faces : part.sharp_faces);
+    }
+}
+
+/// The same for what checksums do not find: parts that are damaged before they are compressed.
+TEST_F(SeriesFile, DamagedPartsAreRefused) {
+    HexMesh control = make_model("ball", 2);
+    control.attributes.front().bounds = {{-5, 5}};
+    control.points.emplace_back(1, 1, 1);  // no cell uses it
+    control.attributes.front().values.push_back(0);
+    const auto step = [&](std::size_t k) {
+        HexMesh mesh = control;
+        for (Vec3& p : mesh.points) p *= 1 + static_cast<double>(k) / 10;
+        for (double& x : mesh.attributes.front().values) x = std::sin(x + static_cast<double>(k));
+        mesh.attributes.front().values.back() = std::numeric_limits<double>::quiet_NaN();  // kept as it is
+        return mesh;
+    };
+    MeshSteps steps = steps_of(3, step);
+    steps.sets = [] { return MeshSets{{{"inlet", {{0, 1}, {3, 5}}}}, {{"core", {1, 2, 4}}}}; };
+    write_series_file(path("a.svw"), steps, {.tolerance = 1e-2});
+    const auto good = test::SeriesParts::of(test::read_bytes(path("a.svw")), control.points.size());
+    ASSERT_EQ(good.packed(), test::read_bytes(path("a.svw")));
+    std::size_t refused = 0, valid = 0;
+    const auto attempt = [&](const test::SeriesParts& parts) {
+        std::ofstream(path("b.svw"), std::ios::binary) << parts.packed();
+        for (const std::size_t k : {0u, 2u}) {
+            try {
+                validate(read_mesh(path("b.svw"), {.step = k}).mesh);
+                ++valid;
+            } catch (const Error& error) {
+                EXPECT_EQ(error.code(), ErrorCode::InvalidInput) << error.what();
+                EXPECT_NE(std::string(error.what()).find("b.svw"), std::string::npos) << error.what();
+                ++refused;
+            }
+        }
+    };
+    attempt(good);
+    ASSERT_EQ(valid, 2u);
+    std::mt19937 random(19);
+    const auto damage = [&](std::string& text) {
+        const std::size_t at = random() % text.size();
+        switch (random() % 4) {
+            case 0:
+                return void(text.erase(at, 1 + random() % 3));
+            case 1:
+                return void(text.insert(at, 1, static_cast<char>(random())));
+            case 2:
+                return void(text.replace(at, 1, "\xff\xff\xff\xff\xff\xff\xff\x7f"));  // a large number
+            default:
+                text[at] = static_cast<char>(random());
+        }
+    };
+    const char* rounds = std::getenv("SUBVOL_MUTATIONS");
+    for (int round = 0; round < (rounds ? std::atoi(rounds) : 150); ++round) {
+        test::SeriesParts bad = good;
+        const std::array<std::string*, 5> parts{&bad.index_text.emplace(good.index_of_packed()), &bad.meshes[0],
+                                                &bad.steps[0].head, &bad.steps[0].block, &bad.steps[2].head};
+        const std::size_t which = static_cast<std::size_t>(round) % parts.size();
+        damage(*parts[which]);
+        if (which != 0) bad.index_text.reset();
+        attempt(bad);
+    }
+    EXPECT_GT(refused, 0u);
 }
 
 }  // namespace series_file_test

@@ -10,6 +10,7 @@
 
 #include "subvol/facts.h"
 #include "subvol/hex_mesh.h"
+#include "subvol/mesh_sets.h"
 #include "subvol/option.h"
 #include "subvol/progress.h"
 
@@ -20,9 +21,11 @@ namespace subvol {
 ///
 /// times: one for each step, ascending
 /// read:  the mesh of a step, from 0
+/// sets:  patches and sets of cells of the mesh that was read last; they stay as long as its cells. Empty: there are none
 struct MeshSteps {
     std::vector<double> times;
     std::function<HexMesh(std::size_t step)> read;
+    std::function<MeshSets()> sets{};
 };
 
 /// tolerance:       most error of each value of a field, in parts of the field's range in all steps (of vectors: of the longest
@@ -78,8 +81,8 @@ struct SeriesFileReport {
 
 /// Writes meshes of any hexahedra as a `.svw` file of steps: cells once, and each value as a whole number of steps of its
 /// quantization, less what its neighbours or the step before predict, compressed. No value is farther from what it was than
-/// the tolerance; values that are not finite are kept. `read_mesh` and `open_series` read it. Points and cells keep their
-/// order.
+/// the tolerance; values that are not finite are kept, and so are creases, sharp faces, patches and sets of cells. `read_mesh`
+/// and `open_series` read it. Points and cells keep their order.
 ///
 /// throws: Error(InvalidInput) if there is no step, an option is out of range, times do not ascend, or a mesh has more points
 ///         than corners of cells; Error(Io); what `steps.read` throws
