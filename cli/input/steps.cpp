@@ -50,7 +50,7 @@ std::optional<std::size_t> one_step(const std::string& input, const CommonOption
     if (!options.step) return std::nullopt;
     if (asks_for_steps(options)) {
         throw Error(ErrorCode::InvalidInput, "only one step can be read here, not " + *options.step, "--step",
-                    "a number or last; vdb, points and render write a file a step");
+                    "a number or last; vdb, points, approximate and render write a file a step");
     }
     if (*options.step == "last") return open_series(input).size() - 1;
     const auto step = step_number(*options.step);

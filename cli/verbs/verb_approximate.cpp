@@ -1,15 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <CLI/CLI.hpp>
+#include <functional>
+#include <optional>
 
 #include "grid_input.h"
 #include "input.h"
 #include "mesh_figures.h"
+#include "mesh_frames.h"
+#include "numbers.h"
 #include "options.h"
 #include "outputs.h"
 #include "places_input.h"
 #include "quantities.h"
 #include "refine_arguments.h"
+#include "steps.h"
 #include "subvol/approximate.h"
+#include "subvol/approximator.h"
 #include "subvol/error.h"
 #include "subvol/fit_shape.h"
 #include "subvol/mesh_io.h"
@@ -31,11 +37,15 @@ public:
                "  subvol approximate fine.vtu --onto coarse.vtu -o fitted.vtu\n"
                "  subvol approximate smoke.vdb --onto model:twist:12 -o smoke.vtu --refine 2 --tolerance .01\n"
                "  subvol approximate measured.csv --onto part.vtu -o fitted.vtu --smoothing 1e-3\n"
+               "  subvol approximate run.pvd --onto coarse.vtu -o 'fitted_####.vtu' --step all\n"
+               "  subvol approximate 'smoke_####.vdb' --onto coarse.vtu -o 'fitted_####.vtu' --frames 1-48\n"
                "  subvol approximate scan.stl --shape --onto block.vtu -o fitted.vtu\n"
                "\n"
                "Least squares through the limit: a field that is a limit of the control mesh is found again.\n"
                "JSON: samples, outside, snapped, unseen, iterations, refined, fields {name: rms, rms_boundary, max, max_at, "
-               "range}, points, cells; with --shape also shape {before, after: rms, max, missed_rms, missed_max and their "
+               "range}, points, cells; of several steps or frames these are in the list frames, with frame, time and output, "
+               "beside "
+               "placements; with --shape also shape {before, after: rms, max, missed_rms, missed_max and their "
                "places; "
                "rounds, moved_world, folds, mended}.") {
         app()
@@ -49,6 +59,11 @@ public:
             .add_option("-o,--output", output_, "the control mesh with the fitted fields (.vtu, .vtkhdf)")
             ->type_name("FILE")
             ->required();
+        app()
+            .add_option("--frames", frames_,
+                        "a sequence of files: A-B, or N for 1-N. In DATA and --output a row of # is replaced by the number")
+            ->type_name("A-B")
+            ->transform(frame_range());
         scheme_.add_scheme_to(app());
         add_options(app(), options_of(options_));
         CLI::Option* shape =
@@ -71,11 +86,16 @@ public:
         HexMesh onto = report.unpack(load_mesh(onto_, CommonOptions{}, report.progress()));
         report["input"] = input_;
         report["onto"] = onto_;
+        const std::optional<Sequence> sequence = steps_or_frames(report);
+        if (sequence) {
+            fit_all(*sequence, std::move(onto), options, report);
+            return 0;
+        }
         Approximation made;
         if (is_surface()) {
             made.mesh = shaped(std::move(onto), read_surface_data(report), report);
         } else {
-            const HexMesh samples = read_data(onto, options, report);
+            const HexMesh samples = read_data(input_, common(), onto, options, report);
             if (shape_) onto = shaped(std::move(onto), boundary_surface(samples), report);
             made = report.timed("fit", [&] { return approximate(onto, samples, options); });
         }
@@ -87,6 +107,90 @@ public:
     }
 
 private:
+    /// Data of several times.
+    ///
+    /// times: of steps, from step 0; empty: of frames
+    /// input, options: of the data of a number
+    struct Sequence {
+        const char* name;
+        FrameRange range;
+        std::vector<double> times;
+        std::function<std::string(int)> input;
+        std::function<CommonOptions(int)> options;
+    };
+
+    [[nodiscard]] std::optional<Sequence> steps_or_frames(Report& report) const {
+        const bool of_files = !frames_.empty() || has_number(input_);
+        if (!of_files && (!asks_for_steps(common()) || !may_have_steps(input_) || is_surface())) return std::nullopt;
+        if (shape_) {
+            throw Error(ErrorCode::InvalidInput, "moves control points, and all steps have the same", "--shape",
+                        "one step with it, whose control mesh then serves the series");
+        }
+        if (of_files) {
+            if (frames_.empty()) throw Error(ErrorCode::InvalidInput, "is needed for a sequence", "--frames", "1-10");
+            if (!has_number(input_)) {
+                throw Error(ErrorCode::InvalidInput, "has no # for the number of the frame", input_, "data_####.csv");
+            }
+            if (asks_for_steps(common())) {
+                throw Error(ErrorCode::InvalidInput, "files of a sequence have one step each here", "--step", "--frames A-B");
+            }
+        }
+        if (!has_number(output_)) {
+            throw Error(ErrorCode::InvalidInput, text("has no # for the number of the ", of_files ? "frame" : "step"), output_,
+                        "fitted_####.vtu");
+        }
+        if (of_files) {
+            const FrameRange range = parse_frames(frames_);
+            check_frames(input_, range);
+            return Sequence{
+                "frame", range, {}, [this](int frame) { return with_number(input_, frame); }, [this](int) { return common(); }};
+        }
+        const MeshSeries series = open_series(input_);
+        const FrameRange range = chosen_steps(series, common());
+        const CommonOptions all = report.unpack(for_steps(input_, common(), range, report.progress()));
+        return Sequence{"step", range, series.times, [this](int) { return input_; },
+                        [all](int step) { return of_step(all, step); }};
+    }
+
+    void fit_all(const Sequence& sequence, HexMesh onto, const ApproximateOptions& options, Report& report) {
+        Approximator approximator(onto, options);
+        report["frames"] = Json::array();
+        const FrameRange& range = sequence.range;
+        for (int number = range.first; number <= range.last; ++number) {
+            const std::string name = text(sequence.name, " ", number), path = with_number(output_, number);
+            const auto index = static_cast<std::size_t>(number - range.first);
+            report.begin_part(name, index, static_cast<std::size_t>(range.count()));
+            const std::string input = sequence.input(number);
+            const HexMesh samples = read_data(input, sequence.options(number), onto, options, report);
+            const Approximation made = report.timed("fit", [&] {
+                try {
+                    return approximator.fit(samples);
+                } catch (const Error& error) {
+                    if (error.where() != "samples") throw;
+                    throw Error(error.code(), error.message(), sequence.times.empty() ? input : text(input, ", ", name),
+                                error.allowed());
+                }
+            });
+            for (const std::string& warning : report.timed("write", [&] { return write_mesh(path, made.mesh, {}); })) {
+                report.warn(warning);
+            }
+            Json entry{{"frame", number}};
+            if (!sequence.times.empty()) entry["time"] = sequence.times[static_cast<std::size_t>(number)];
+            entry.update(json_of(facts_of(made.report)));
+            entry["output"] = path;
+            report["frames"].push_back(std::move(entry));
+            say_fields(made.report, name + ", ", report);
+        }
+        report["placements"] = approximator.placements();
+        report["points"] = onto.points.size();
+        report["cells"] = onto.cells.size();
+        report["output"] = output_;
+        report.say(text("control     ", counted(onto.points.size(), "point"), "; the samples' places were found ",
+                        counted(approximator.placements(), "time"), " for ",
+                        counted(static_cast<std::size_t>(range.count()), sequence.name)));
+        report.all_said();
+    }
+
     /// A .ply file has kernels, unless its shape is asked for.
     [[nodiscard]] bool is_surface() const { return is_surface_file(input_) && (shape_ || extension_of(input_) != ".ply"); }
 
@@ -116,35 +220,38 @@ private:
         return std::move(made.mesh);
     }
 
-    [[nodiscard]] HexMesh read_data(const HexMesh& onto, const ApproximateOptions& options, Report& report) {
-        const std::string extension = extension_of(input_);
-        if (shape_ && (extension == ".csv" || extension == ".txt" || is_vdb_file(input_))) {
+    [[nodiscard]] HexMesh read_data(const std::string& input, const CommonOptions& reading, const HexMesh& onto,
+                                    const ApproximateOptions& options, Report& report) {
+        const std::string extension = extension_of(input);
+        if (shape_ && (extension == ".csv" || extension == ".txt" || is_vdb_file(input))) {
             throw Error(ErrorCode::InvalidInput, "has no shape", "--shape",
                         "a mesh or a surface; of a grid subvol mesh makes one");
         }
         if (extension == ".csv" || extension == ".txt") {
             refuse_mesh_options(app(), "needs a mesh; this is a table");
             refuse_options(app(), {"--field"}, "needs a mesh or a grid; of a table all columns are taken");
-            return report.timed("read", [&] { return read_samples(input_); });
+            return report.timed("read", [&] { return read_samples(input); });
         }
-        if (is_vdb_file(input_)) return read_grid(onto, options, report);
-        if (const InputKind kind = kind_of(input_); kind == InputKind::Points || kind == InputKind::Bricks) {
-            throw Error(ErrorCode::InvalidInput, kind == InputKind::Points ? "has kernels" : "is a folder of bricks", input_,
+        if (is_vdb_file(input)) return read_grid(input, reading, onto, options, report);
+        if (const InputKind kind = kind_of(input); kind == InputKind::Points || kind == InputKind::Bricks) {
+            throw Error(ErrorCode::InvalidInput, kind == InputKind::Points ? "has kernels" : "is a folder of bricks", input,
                         "a mesh, a .vdb grid of floats, or a table (.csv, .txt)");
         }
-        return with_written_field(report.unpack(load_mesh(input_, common(), report.progress())), common());
+        return with_written_field(report.unpack(load_mesh(input, reading, report.progress())), reading);
     }
 
-    [[nodiscard]] HexMesh read_grid(const HexMesh& onto, const ApproximateOptions& options, Report& report) {
+    [[nodiscard]] HexMesh read_grid(const std::string& input, const CommonOptions& reading, const HexMesh& onto,
+                                    const ApproximateOptions& options, Report& report) {
         refuse_mesh_options(app(), "needs a mesh; this is a grid of voxels");
-        const VdbGrid grid = report.unpack(load_grid(input_, common(), report.progress()));
+        const VdbGrid grid = report.unpack(load_grid(input, reading, report.progress()));
         HexMesh samples;
         Attribute field{.name = grid.report().name, .channels = 1, .values = {}};
         std::size_t active = 0;
         LimitOptions limit;
         limit.scheme = options.scheme;
         limit.progress = report.progress();
-        for (const Vec3& place : report.timed("sample", [&] { return places_in_cells(onto, kPlacesPerEdge, limit); })) {
+        if (places_.empty()) places_ = report.timed("sample", [&] { return places_in_cells(onto, kPlacesPerEdge, limit); });
+        for (const Vec3& place : places_) {
             const auto value = grid.value(place);
             active += value ? 1 : 0;
             samples.points.push_back(place);
@@ -152,7 +259,7 @@ private:
         }
         samples.attributes.push_back(std::move(field));
         if (active == 0) {
-            throw Error(ErrorCode::InvalidInput, "no active voxel lies in the control mesh", input_, "a grid that overlaps it");
+            throw Error(ErrorCode::InvalidInput, "no active voxel lies in the control mesh", input, "a grid that overlaps it");
         }
         return samples;
     }
@@ -174,15 +281,21 @@ private:
             text("control     ", counted(made.mesh.points.size(), "point"),
                  found.refined > 0 ? text(", refined ", counted(static_cast<std::size_t>(found.refined), "time")) : "",
                  found.unseen > 0 ? text("; ", found.unseen, " without a sample near them continue what is around them") : ""));
-        for (const FieldError& error : found.fields) {
-            report.say(text(error.name, ": error ", error.rms, " RMS, at the boundary ", error.rms_boundary, ", at most ",
-                            error.max, " at ", error.max_at.x, ", ", error.max_at.y, ", ", error.max_at.z,
-                            "; the data's range is ", error.range));
-        }
+        say_fields(found, "", report);
         report.all_said();
     }
 
-    std::string input_, onto_, output_;
+    /// before: the names
+    static void say_fields(const ApproximateReport& found, const std::string& before, Report& report) {
+        for (const FieldError& error : found.fields) {
+            report.say(text(before, error.name, ": error ", error.rms, " RMS, at the boundary ", error.rms_boundary,
+                            ", at most ", error.max, " at ", error.max_at.x, ", ", error.max_at.y, ", ", error.max_at.z,
+                            "; the data's range is ", error.range));
+        }
+    }
+
+    std::string input_, onto_, output_, frames_;
+    std::vector<Vec3> places_;  // where grids are sampled
     RefineArguments scheme_;
     ApproximateOptions options_;
     FitShapeOptions shaping_;

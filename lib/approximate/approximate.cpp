@@ -54,14 +54,8 @@ Facts facts_of(const ApproximateReport& report) {
 
 Approximation approximate(const HexMesh& onto, const HexMesh& samples, const ApproximateOptions& given) {
     ApproximateOptions options = given;
-    check_options(options);
-    check_options(options.scheme);
-    if (samples.attributes.empty()) throw Error(ErrorCode::InvalidInput, "there is no field to approximate", "samples");
-    HexMesh mesh = onto;
-    mesh.attributes.clear();
-    validate(mesh);
-    if (options.scheme.crease_angle_deg) tag_creases(mesh, *options.scheme.crease_angle_deg);
-    options.scheme.crease_angle_deg.reset();
+    HexMesh mesh = detail::prepared(onto, options);
+    detail::check_samples(samples);
     for (int refined = 0;; ++refined) {
         Approximation result = detail::Fitter(mesh, samples.points, options).fit(samples.attributes);
         result.report.refined = refined;

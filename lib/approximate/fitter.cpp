@@ -213,11 +213,39 @@ HexMesh checked(HexMesh mesh, const ApproximateOptions& options) {
     constexpr double kBytesOfFineCell = 300;  // of its stencils, and of what is computed for its points
     check_memory(options.levels, static_cast<double>(mesh.cells.size()) * std::pow(8.0, options.levels), kBytesOfFineCell,
                  option_name("levels", options.names));
-    mesh.attributes.clear();
     return mesh;
 }
 
 }  // namespace
+
+HexMesh prepared(HexMesh onto, ApproximateOptions& options) {
+    check_options(options);
+    check_options(options.scheme);
+    onto.attributes.clear();
+    validate(onto);
+    if (options.scheme.crease_angle_deg) tag_creases(onto, *options.scheme.crease_angle_deg);
+    options.scheme.crease_angle_deg.reset();
+    return onto;
+}
+
+void check_samples(const HexMesh& samples) {
+    if (samples.attributes.empty()) throw Error(ErrorCode::InvalidInput, "there is no field to approximate", "samples");
+    for (const Attribute& field : samples.attributes) {
+        const std::size_t count = samples.points.size() * static_cast<std::size_t>(field.channels);
+        if (field.values.size() != count) {
+            throw Error(
+                ErrorCode::InvalidInput,
+                "\"" + field.name + "\" has " + std::to_string(field.values.size()) + " values, not " + std::to_string(count),
+                "samples");
+        }
+        const auto bad = std::ranges::find_if(field.values, [](double value) { return !std::isfinite(value); });
+        if (bad != field.values.end()) {
+            const auto row = static_cast<std::size_t>(bad - field.values.begin()) / static_cast<std::size_t>(field.channels);
+            throw Error(ErrorCode::InvalidInput, "\"" + field.name + "\" has no finite value at sample " + std::to_string(row),
+                        "samples");
+        }
+    }
+}
 
 struct Fitter::Parts {
     ApproximateOptions options;

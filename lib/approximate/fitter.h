@@ -9,13 +9,20 @@
 
 namespace subvol::detail {
 
+/// The control mesh with the creases that the options ask for, which no longer do, and without attributes.
+///
+/// throws: Error(InvalidInput) if an option is out of range, or as `validate`
+[[nodiscard]] HexMesh prepared(HexMesh onto, ApproximateOptions& options);
+
+/// throws: Error(InvalidInput) if there is no field, if one has not a value for each point, or a value is not finite
+void check_samples(const HexMesh& samples);
+
 /// Fits fields that are sampled at the same positions onto one control mesh. What does not depend on values is found once: the
 /// places of the samples in the limit, its matrix, the weights of differences along edges, and how a start continues samples.
 class Fitter {
 public:
-    /// mesh:    with its creases; its attributes are not used
-    /// options: refine, tolerance are not used
-    /// throws:  Error(InvalidInput) if no position lies in the volume, or the memory is not enough
+    /// mesh, options: as `prepared` made them; refine and tolerance are not used
+    /// throws: Error(InvalidInput) if no position lies in the volume, or the memory is not enough
     Fitter(HexMesh mesh, std::vector<Vec3> positions, const ApproximateOptions& options);
     ~Fitter();
     Fitter(const Fitter&) = delete;

@@ -40,6 +40,61 @@ class Approximate(InFolder):
         self.assertEqual((coarse["refined"], finer["refined"], finer["cells"]), (0, 1, 64))
         self.assertLess(finer["fields"]["density"]["rms"], .5 * coarse["fields"]["density"]["rms"])
 
+    def test_the_steps_of_a_series(self):
+        for number in range(3):
+            self.run_ok("subdivide", "model:twist:3", "--density", f"sin(4*x+{number})*cos(3*z)", "-o", f"step_{number}.vtu", "--levels", "2")
+        files = "".join(f'<DataSet timestep="{number / 4}" file="step_{number}.vtu"/>' for number in range(3))
+        (self.folder / "run.pvd").write_text(f'<VTKFile type="Collection"><Collection>{files}</Collection></VTKFile>')
+        found = self.fit("run.pvd", "--onto", "model:twist:2", "-o", "fitted_##.vtu", "--step", "all")
+        self.assertEqual(found["placements"], 1)  # the points stay
+        self.assertEqual([(step["frame"], step["time"], step["output"]) for step in found["frames"]],
+                         [(0, 0, "fitted_00.vtu"), (1, .25, "fitted_01.vtu"), (2, .5, "fitted_02.vtu")])
+        frames = self.fit("step_#.vtu", "--onto", "model:twist:2", "-o", "frame_#.vtu", "--frames", "0-2")
+        self.assertEqual(frames["placements"], 1)
+        for number, step in enumerate(found["frames"]):
+            one = self.fit("run.pvd", "--onto", "model:twist:2", "-o", "one.vtu", "--step", str(number))
+            self.assertEqual((step["fields"], step["samples"], step["iterations"]), (one["fields"], one["samples"], one["iterations"]))
+            self.assertEqual(frames["frames"][number]["fields"], one["fields"])
+            alone = (self.folder / "one.vtu").read_bytes()
+            self.assertEqual((self.folder / f"fitted_0{number}.vtu").read_bytes(), alone)
+            self.assertEqual((self.folder / f"frame_{number}.vtu").read_bytes(), alone)
+        self.fit("run.pvd", "--onto", "model:twist:2", "-o", "later_##.vtu", "--step", "1-2")
+        self.assertEqual((self.folder / "later_02.vtu").read_bytes(), (self.folder / "fitted_02.vtu").read_bytes())
+        self.assertNotIn("later_00.vtu", self.files())
+
+    def test_samples_that_are_measured_again(self):
+        (self.folder / "box.vtk").write_text(box_of_cells(2))
+        places = [(x / 5, y / 5, z / 5) for x in range(6) for y in range(6) for z in range(6)]
+        for number, shift in ((1, 0), (2, 0), (3, .01)):
+            rows = [f"{x + shift},{y},{z},{x * number - z}" for x, y, z in places]
+            (self.folder / f"m_{number}.csv").write_text("\n".join(["x,y,z,T", *rows, ""]))
+        found = self.fit("m_#.csv", "--onto", "box.vtk", "-o", "fitted_#.vtu", "--frames", "3")
+        self.assertEqual(found["placements"], 2)  # the sensors of the third were moved
+        at = self.run_ok("probe", "fitted_2.vtu", "--at", ".5,.25,.75", "--field", "T", "--json").json()
+        self.assertAlmostEqual(at["values"][0]["value"], .25, 4)
+
+    def test_says_what_is_wrong_with_a_series(self):
+        self.run_ok("subdivide", "model:twist:2", "--density", FIELD, "-o", "a_0.vtu", "--levels", "1")
+        self.run_ok("model", "twist", "-o", "a_1.vtu", "--resolution", "3")
+        (self.folder / "run.pvd").write_text('<VTKFile type="Collection"><Collection><DataSet timestep="0" file="a_0.vtu"/>'
+                                             '<DataSet timestep="1" file="a_1.vtu"/></Collection></VTKFile>')
+        (self.folder / "m_1.csv").write_text("x,y,z,T\n0,0,0,1\n")
+        (self.folder / "m_2.csv").write_text("x,y,z,T\n90,0,0,1\n")
+        to = ("-o", "fitted_#.vtu")
+        for words, part in ((["run.pvd", "--step", "all", "-o", "fitted.vtu"], "fitted.vtu: has no # for the number of the step"),
+                            (["run.pvd", "--step", "all", "--refine", "1", *to], "--refine: all steps have the same control mesh"),
+                            (["run.pvd", "--step", "all", "--shape", *to], "--shape: moves control points, and all steps have the same"),
+                            (["run.pvd", "--step", "1-7", *to], "there is no step 7"),
+                            (["run.pvd", "--step", "all", "--frames", "2", *to], "run.pvd: has no # for the number of the frame"),
+                            (["m_#.csv", *to], "--frames: is needed for a sequence"),
+                            (["m_#.csv", "--frames", "3", *to], "1 of 3 frames are missing: m_3.csv"),
+                            (["m_#.csv", "--frames", "2", "-o", "f.vtu"], "f.vtu: has no # for the number of the frame"),
+                            (["m_#.csv", "--frames", "2", "--step", "all", *to], "--step"),
+                            (["m_#.csv", "--frames", "2", *to], "m_2.csv: none of the samples lies in the limit")):
+            done = subvol("approximate", *words, "--onto", "model:ball:2", folder=self.folder)
+            self.assertEqual(done.code, 2, done.err)
+            self.assertIn(part, done.err)
+
     def test_says_what_is_wrong(self):
         (self.folder / "holes.csv").write_text("x,y,z,T\n0,0,0,1\n0,0,1,\n")
         (self.folder / "T.csv").write_text("x,y,z,T\n0,0,0,1\n")

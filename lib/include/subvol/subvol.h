@@ -4,6 +4,7 @@
 /// All of subvol::lib: meshes, schemes, limits, kernels, points, transfer functions, cameras.
 
 #include "subvol/approximate.h"
+#include "subvol/approximator.h"
 #include "subvol/basis_function.h"
 #include "subvol/boundary_values.h"
 #include "subvol/brick_points.h"

@@ -10,6 +10,7 @@
 #include "lib/temp_folder.h"
 #include "lib/test_meshes.h"
 #include "subvol/approximate.h"
+#include "subvol/approximator.h"
 #include "subvol/model.h"
 
 namespace subvol {
@@ -187,6 +188,80 @@ TEST(Approximate, AnyNumberOfThreads) {
         return approximate(control, data.samples).mesh.attributes[0].values;
     };
     EXPECT_EQ(fitted(1), fitted(4));
+}
+
+/// Steps of a wave at the same points, as samples.
+std::vector<HexMesh> steps_of(const HexMesh& mesh, int count) {
+    std::vector<HexMesh> steps(static_cast<std::size_t>(count), refine(mesh, {.levels = 2}));
+    for (int k = 0; k < count; ++k) {
+        HexMesh& step = steps[static_cast<std::size_t>(k)];
+        step.attributes = {{.name = "wave", .channels = 1, .values = {}}};
+        for (const Vec3& x : step.points) step.attributes[0].values.push_back(std::sin(5 * x.x + k) * std::cos(3 * x.z - k));
+    }
+    return steps;
+}
+
+TEST(Approximator, GivesTheBitsOfEachStepAloneAndFindsPlacesOnce) {
+    const HexMesh control = make_model("ball", 2);
+    const std::vector<HexMesh> steps = steps_of(control, 3);
+    Approximator approximator(control);
+    for (const std::size_t k : {2U, 0U, 1U, 0U}) {  // in any order
+        const Approximation made = approximator.fit(steps[k]), alone = approximate(control, steps[k]);
+        EXPECT_EQ(made.mesh.attributes[0].values, alone.mesh.attributes[0].values);
+        EXPECT_EQ(made.report.fields[0].rms, alone.report.fields[0].rms);
+        EXPECT_EQ(made.report.iterations, alone.report.iterations);
+        EXPECT_GT(made.report.fields[0].max, 1e-6);  // no step is a limit: it is a fit
+    }
+    EXPECT_EQ(approximator.placements(), 1U);
+}
+
+TEST(Approximator, FindsPlacesAnewWhereSamplesMoveOrAreOthers) {
+    const HexMesh control = make_box(3, 3, 3);
+    const HexMesh still = steps_of(control, 1)[0];
+    HexMesh moved = still, fewer = still;
+    for (Vec3& x : moved.points) x.x += 0.3;  // some samples leave the box
+    fewer.points.resize(fewer.points.size() / 2);
+    fewer.attributes[0].values.resize(fewer.points.size());
+    Approximator approximator(control);
+    std::size_t placements = 0;
+    for (const HexMesh& step : {still, moved, moved, fewer, still}) {
+        const Approximation made = approximator.fit(step), alone = approximate(control, step);
+        EXPECT_EQ(made.mesh.attributes[0].values, alone.mesh.attributes[0].values);
+        EXPECT_EQ(made.report.outside, alone.report.outside);
+        placements = approximator.placements();
+    }
+    EXPECT_EQ(placements, 4U);
+}
+
+TEST(Approximator, StepsMayHaveDifferentFields) {
+    const HexMesh control = make_box(2, 2, 2);
+    std::vector<HexMesh> steps = steps_of(control, 2);
+    steps[1].attributes[0].name = "other";
+    Approximator approximator(control, {.smoothing = 0.01});
+    EXPECT_EQ(approximator.fit(steps[0]).mesh.attributes[0].name, "wave");
+    const Approximation second = approximator.fit(steps[1]);
+    ASSERT_EQ(second.mesh.attributes.size(), 1U);  // nothing of the first step is left
+    EXPECT_EQ(second.mesh.attributes[0].name, "other");
+}
+
+TEST(Approximator, SaysWhatIsWrongAndGoesOn) {
+    const HexMesh control = make_box(2, 2, 2);
+    const HexMesh step = steps_of(control, 1)[0];
+    EXPECT_THAT(error_of([&] { (void)Approximator(control, {.refine = 1}); }),
+                HasSubstr("refine: all steps have the same control mesh"));
+    EXPECT_THAT(error_of([&] { (void)Approximator(control, {.levels = 9}); }), HasSubstr("levels: 9 is out of range"));
+    Approximator approximator(control);
+    HexMesh none = step, short_one = step, gap = step, away = step;
+    none.attributes.clear();
+    short_one.attributes[0].values.pop_back();
+    gap.attributes[0].values[5] = NAN;
+    for (Vec3& x : away.points) x += 50.0;
+    EXPECT_THAT(error_of([&] { (void)approximator.fit(none); }), HasSubstr("there is no field to approximate"));
+    EXPECT_THAT(error_of([&] { (void)approximator.fit(short_one); }), HasSubstr("\"wave\" has 728 values, not 729"));
+    EXPECT_THAT(error_of([&] { (void)approximator.fit(gap); }), HasSubstr("\"wave\" has no finite value at sample 5"));
+    EXPECT_THAT(error_of([&] { (void)approximate(control, gap); }), HasSubstr("\"wave\" has no finite value at sample 5"));
+    EXPECT_THAT(error_of([&] { (void)approximator.fit(away); }), HasSubstr("none of the samples lies in the limit"));
+    EXPECT_EQ(approximator.fit(step).mesh.attributes[0].values, approximate(control, step).mesh.attributes[0].values);
 }
 
 TEST(Approximate, SaysWhatIsWrong) {
