@@ -164,7 +164,7 @@ private:
             const HexMesh samples = read_data(input, sequence.options(number), onto, options, report);
             const Approximation made = report.timed("fit", [&] {
                 try {
-                    return approximator.fit(samples);
+                    return approximator.fit(samples, report.progress());
                 } catch (const Error& error) {
                     if (error.where() != "samples") throw;
                     throw Error(error.code(), error.message(), sequence.times.empty() ? input : text(input, ", ", name),

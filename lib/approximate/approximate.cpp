@@ -57,7 +57,7 @@ Approximation approximate(const HexMesh& onto, const HexMesh& samples, const App
     HexMesh mesh = detail::prepared(onto, options);
     detail::check_samples(samples);
     for (int refined = 0;; ++refined) {
-        Approximation result = detail::Fitter(mesh, samples.points, options).fit(samples.attributes);
+        Approximation result = detail::Fitter(mesh, samples.points, options).fit(samples.attributes, options.progress);
         result.report.refined = refined;
         const bool met = std::ranges::all_of(
             result.report.fields, [&](const FieldError& error) { return error.max <= options.tolerance * error.range; });

@@ -29,14 +29,16 @@ Approximator::~Approximator() = default;
 Approximator::Approximator(Approximator&&) noexcept = default;
 Approximator& Approximator::operator=(Approximator&&) noexcept = default;
 
-Approximation Approximator::fit(const HexMesh& samples) {
+Approximation Approximator::fit(const HexMesh& samples, Progress* progress) {
+    ApproximateOptions options = state_->options;
+    if (progress != nullptr) options.progress = progress;
     detail::check_samples(samples);
     if (!state_->fitter || !state_->fitter->is_for(samples.points)) {
         state_->fitter.reset();  // before the next one takes memory
-        state_->fitter.emplace(state_->mesh, samples.points, state_->options);
+        state_->fitter.emplace(state_->mesh, samples.points, options);
         ++state_->placements;
     }
-    return state_->fitter->fit(samples.attributes);
+    return state_->fitter->fit(samples.attributes, options.progress);
 }
 
 std::size_t Approximator::placements() const {

@@ -286,7 +286,7 @@ bool Fitter::is_for(std::span<const Vec3> positions) const {
     return std::ranges::equal(positions, parts_->positions);
 }
 
-Approximation Fitter::fit(std::span<const Attribute> fields) const {
+Approximation Fitter::fit(std::span<const Attribute> fields, Progress* progress) const {
     const Parts& parts = *parts_;
     const Located& located = parts.located;
     Approximation made{.mesh = parts.mesh, .report = {}};
@@ -303,8 +303,7 @@ Approximation Fitter::fit(std::span<const Attribute> fields) const {
             Vector wanted;
             for (const Index s : located.samples) wanted.push_back(field.values[s * channels + c]);
             Vector x = parts.start.values(wanted);
-            report.iterations =
-                std::max(report.iterations, parts.system.solve(wanted, x, parts.options.iterations, parts.options.progress));
+            report.iterations = std::max(report.iterations, parts.system.solve(wanted, x, parts.options.iterations, progress));
             errors.add(wanted, parts.limit.apply(x));
             for (std::size_t p = 0; p < x.size(); ++p) fitted.values[p * channels + c] = x[p];
         }

@@ -32,7 +32,7 @@ public:
     [[nodiscard]] bool is_for(std::span<const Vec3> positions) const;
 
     /// fields: with a value for each position
-    [[nodiscard]] Approximation fit(std::span<const Attribute> fields) const;
+    [[nodiscard]] Approximation fit(std::span<const Attribute> fields, Progress* progress) const;
 
 private:
     struct Parts;

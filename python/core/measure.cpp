@@ -5,6 +5,7 @@
 
 #include "bind.h"
 #include "subvol/approximate.h"
+#include "subvol/approximator.h"
 #include "subvol/control_mesh.h"
 #include "subvol/fit_shape.h"
 #include "subvol/flow_surface.h"
@@ -73,6 +74,10 @@ std::vector<Option> keywords_of(SliceOptions& options) {
 
 std::vector<Option> keywords_of(SurfaceOptions& options) {
     return scheme_and(options.scheme, options_of(options));
+}
+
+std::vector<Option> series_keywords_of(ApproximateOptions& options) {
+    return scheme_and(options.scheme, options_of_series(options));
 }
 
 template <class Options>
@@ -394,20 +399,39 @@ py::tuple mend_folds_of(const HexMesh& mesh, const py::object& progress, const p
     return py::make_tuple(std::move(mended.mesh), dict_of(std::move(mended.check)), dict_of(facts_of(mended.report)));
 }
 
-py::tuple approximate_of(const HexMesh& onto, const py::object& points, const py::dict& given, const py::object& progress,
-                         const py::kwargs& keywords) {
-    ApproximateOptions options;
-    set_options(keywords_of(options), keywords);
+HexMesh samples_of(const py::object& points, const py::dict& given) {
     HexMesh samples;
     samples.points = vectors(points, "samples");
     for (const auto& [name, values] : given) {
         samples.attributes.push_back(attribute_of(py::str(name), values, samples.points.size()));
     }
+    return samples;
+}
+
+py::tuple approximate_of(const HexMesh& onto, const py::object& points, const py::dict& given, const py::object& progress,
+                         const py::kwargs& keywords) {
+    ApproximateOptions options;
+    set_options(keywords_of(options), keywords);
+    const HexMesh samples = samples_of(points, given);
     Approximation made = result_of(progress, [&](Progress* listener) {
         options.progress = listener;
         return approximate(onto, samples, options);
     });
     return py::make_tuple(std::move(made.mesh), dict_of(facts_of(made.report)));
+}
+
+Approximator approximator(const HexMesh& onto, const py::kwargs& keywords) {
+    ApproximateOptions options;
+    set_options(series_keywords_of(options), keywords);
+    return Approximator(onto, options);
+}
+
+py::tuple fit_step(Approximator& self, const py::object& points, const py::dict& given, const py::object& progress) {
+    const HexMesh samples = samples_of(points, given);
+    Approximation made = result_of(progress, [&](Progress* listener) { return self.fit(samples, listener); });
+    py::dict report = dict_of(facts_of(made.report));
+    report["placements"] = self.placements();
+    return py::make_tuple(std::move(made.mesh), report);
 }
 
 Surface surface_of(const py::object& points, const py::object& triangles) {
@@ -469,6 +493,11 @@ py::tuple read_triangles(const std::string& path) {
 void bind_measure(py::module_& module) {
     module.def("approximate", &approximate_of, py::arg("onto"), py::arg("points"), py::arg("fields"), py::arg("progress"));
     describe_call<ApproximateOptions>(module, "approximate");
+    py::class_<Approximator>(module, "Approximator")
+        .def(py::init(&approximator), py::arg("onto"))
+        .def("fit", &fit_step, py::arg("points"), py::arg("fields"), py::arg("progress"));
+    ApproximateOptions of_series;
+    describe(module, "approximate_series", series_keywords_of(of_series));
     module.def("fit_shape", &fit_shape_of, py::arg("mesh"), py::arg("points"), py::arg("triangles"), py::arg("progress"));
     describe_call<FitShapeOptions>(module, "fit_shape");
     module.def("control_mesh", &control_mesh, py::arg("points"), py::arg("triangles"), py::arg("progress"));

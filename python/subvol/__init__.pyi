@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 # Made by: python3 -c 'from subvol import _options; _options.print_stubs()'
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any, Optional, Union
 
 import numpy.typing as npt
@@ -45,6 +45,27 @@ def approximate(
     iterations:  the most steps of the search [1 to 100000]
     refine:      refine the control mesh up to N times while the samples are not met within tolerance [0 to 6]
     tolerance:   an error that is good enough, as a part of the range [0 to 1; with refine]
+    """
+
+def approximate_series(
+    onto: HexMesh, steps: Iterable[Union[HexMesh, tuple[float, HexMesh]]], *, scheme: str = 'mcq',
+    tension: float = 0.0625, crease_angle: Optional[float] = None, levels: int = 2, reach: float = 0.01,
+    smoothing: float = 0.0, iterations: int = 200, progress: Progress = None
+) -> Iterator[tuple[HexMesh, dict[str, Any]]]:
+    """Fits the steps of a series one after the other, as `approximate` does: for each the control mesh with its fields, and the report.
+
+    onto: the control mesh of all steps; steps: meshes whose points and fields are the data, as of `open_series`, each taken when its turn
+    comes. While their points stay the same, their places in the limit are found once; `placements` of a report says how often they
+    were so far. The pairs of a time and a mesh that `open_series` gives are taken as they are.
+
+    scheme:      mcq (smooth, through the control points), cc (Catmull-Clark), bsxw (Bajaj-Schaefer-Warren-Xu), linear [mcq,
+                 cc, bsxw, linear]
+    tension:     of mcq: 0 is linear; 1/16 reproduces cubics [0 to 0.125; with scheme='mcq']
+    crease_angle: keep boundary edges sharp that bend by more than this, in degrees (tetoct, boxspline: 60) [0 to 180]
+    levels:      how finely the limit is interpolated where the samples are: between its points on level L [1 to 4]
+    reach:       samples outside count at the nearest place up to R times the box's diagonal away [0 to 1]
+    smoothing:   the weight of the differences along edges: for samples with noise [0 to 1e+06]
+    iterations:  the most steps of the search [1 to 100000]
     """
 
 def check_folds(
@@ -671,7 +692,7 @@ def write_wavelets(
 __all__ = [
     "Camera", "Cancelled", "Error", "Field", "FieldComparison", "FileError", "FoldCheck", "Grid", "HexMesh", "Image", "ImageComparison",
     "InvalidInput", "LimitSamples", "MissingCapability", "Page", "PointsError", "ProbeSamples", "RbfVolume", "Refinement", "Series",
-    "Slice", "StreamlineSet", "Study", "StudyCase", "StudyResults", "SubvolWarning", "SurfaceMesh", "TransferFunction", "approximate", "as_field", "check_folds", "compare",
+    "Slice", "StreamlineSet", "Study", "StudyCase", "StudyResults", "SubvolWarning", "SurfaceMesh", "TransferFunction", "approximate", "approximate_series", "as_field", "check_folds", "compare",
     "compare_fields", "compare_images", "control_mesh", "evaluate", "evaluate_limit", "fit", "fit_shape", "from_meshio", "from_pyvista", "from_vtk", "gl_devices", "kernels",
     "measure", "mend_folds", "model", "models", "only", "open_series", "page", "points_error", "probe", "quantity", "rasterize", "read_image", "read_mesh", "read_points", "read_surface",
     "read_vdb", "reduce", "render", "run_study", "sample", "sample_grid", "set_threads", "slice", "streamlines", "studies", "study", "subdivide",

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Optional, Union
 
@@ -122,6 +122,29 @@ def approximate(onto: HexMesh, samples: Union[HexMesh, npt.ArrayLike], fields: O
         if isinstance(samples, HexMesh):
             return _core.approximate(onto, samples.points, samples.fields if fields is None else fields, listener, **options)
         return _core.approximate(onto, samples, fields or {}, listener, **options)
+
+
+@described
+def approximate_series(onto: HexMesh, steps: Iterable[Union[HexMesh, tuple[float, HexMesh]]], *, progress: Progress = None,
+                       **options: Any) -> Iterator[tuple[HexMesh, dict[str, Any]]]:
+    """Fits the steps of a series one after the other, as `approximate` does: for each the control mesh with its fields, and the report.
+
+    onto: the control mesh of all steps; steps: meshes whose points and fields are the data, as of `open_series`, each taken when its turn
+    comes. While their points stay the same, their places in the limit are found once; `placements` of a report says how often they
+    were so far. The pairs of a time and a mesh that `open_series` gives are taken as they are.
+
+    {keywords}
+    """
+    approximator = _core.Approximator(onto, **options)
+
+    def fitted() -> Iterator[tuple[HexMesh, dict[str, Any]]]:
+        for step in steps:
+            mesh = step[1] if isinstance(step, tuple) else step
+            with listening(progress) as listener:
+                made = approximator.fit(mesh.points, mesh.fields, listener)
+            yield made
+
+    return fitted()
 
 
 def read_surface(path: Path) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.int64]]:

@@ -47,7 +47,7 @@ def stubs() -> str:
 
     package = pathlib.Path(__file__).with_name("__init__.py").read_text()
     imports = re.findall(r"^from \.(\w*) import (.+)$", package, re.M)
-    text = ["# SPDX-License-Identifier: Apache-2.0", "# Made by: python3 -c 'from subvol import _options; _options.print_stubs()'", "from collections.abc import Mapping, Sequence",
+    text = ["# SPDX-License-Identifier: Apache-2.0", "# Made by: python3 -c 'from subvol import _options; _options.print_stubs()'", "from collections.abc import Iterable, Iterator, Mapping, Sequence",
             "from typing import Any, Optional, Union", "", "import numpy.typing as npt", ""]
     for module, names in imports:
         kept = [name for name in names.split(", ") if name not in described_calls]

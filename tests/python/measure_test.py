@@ -202,6 +202,30 @@ def test_a_field_is_approximated():
         subvol.approximate(control, subvol.HexMesh(fine.points, fine.cells))
 
 
+def test_the_steps_of_a_series_are_approximated(tmp_path):
+    control, files = subvol.model("twist", 2), []
+    for k in range(3):
+        fine = subvol.subdivide(subvol.model("twist", 2), levels=2)
+        x = fine.points + (.05 if k == 2 else 0)  # the last step has moved
+        files.append(tmp_path / f"step{k}.vtu")
+        subvol.write_mesh(subvol.HexMesh(x, fine.cells, {"T": np.sin(4 * x[:, 0] + k)}), files[-1])
+    series = subvol.open_series(files)
+    made = list(subvol.approximate_series(control, series, smoothing=.001))
+    assert [report["placements"] for _, report in made] == [1, 1, 2]
+    for k, (mesh, report) in enumerate(made):
+        alone, its_report = subvol.approximate(control, series[k], smoothing=.001)
+        assert np.array_equal(mesh.fields["T"], alone.fields["T"])
+        assert report["fields"] == its_report["fields"]
+    meshes = subvol.approximate_series(control, (series[k] for k in range(3)), smoothing=.001)
+    assert np.array_equal(next(meshes)[0].fields["T"], made[0][0].fields["T"])
+    with pytest.raises(TypeError, match="refine"):  # all steps have the same control mesh
+        subvol.approximate_series(control, series, refine=1)
+    with pytest.raises(subvol.InvalidInput, match="levels: 9 is out of range"):
+        subvol.approximate_series(control, series, levels=9)  # before any step is read
+    with pytest.raises(subvol.InvalidInput, match="there is no field to approximate"):
+        next(subvol.approximate_series(control, [subvol.HexMesh(fine.points, fine.cells)]))
+
+
 def test_streamlines_are_arrays_of_points_and_times(ball, tmp_path):
     mesh = subvol.HexMesh(ball.points, ball.cells, {"U": np.tile([0.0, 0.0, 2.0], (len(ball.points), 1)), "T": ball.points[:, 2]})
     with pytest.warns(subvol.SubvolWarning, match="1 of 3 seeds"):

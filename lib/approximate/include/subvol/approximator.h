@@ -23,10 +23,11 @@ public:
 
     /// The fit of a step, whichever steps were fitted before.
     ///
-    /// samples: as of `approximate`; steps may have different fields
-    /// throws:  Error(InvalidInput) as `approximate`
-    /// cost:    of a step whose samples are where those of the step before were: the search alone
-    [[nodiscard]] Approximation fit(const HexMesh& samples);
+    /// samples:  as of `approximate`; steps may have different fields
+    /// progress: instead of that of the options
+    /// throws:   Error(InvalidInput) as `approximate`
+    /// cost:     of a step whose samples are where those of the step before were: the search alone
+    [[nodiscard]] Approximation fit(const HexMesh& samples, Progress* progress = nullptr);
 
     /// How often the places of samples were found.
     [[nodiscard]] std::size_t placements() const;
