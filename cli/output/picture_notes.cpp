@@ -2,8 +2,11 @@
 #include "picture_notes.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
+#include <vector>
 
+#include "subvol/detail/coverage.h"
 #include "subvol/detail/number_text.h"
 #include "subvol/error.h"
 #include "subvol/overlay.h"
@@ -39,7 +42,44 @@ bool is_hidden(const Picture& picture, double z, const Vec2& place) {
     return z > (1 + kOnSurface) * double{seen};
 }
 
+/// Puts a rim of a colour around all that a picture shows.
+void add_rim(Image& image, double width_px, const Vec3& color) {
+    const int reach = static_cast<int>(std::ceil(width_px));
+    std::vector<float> cover(image.rgba.size() / 4, 0);
+    for (int y = 0; y < image.height; ++y) {
+        for (int x = 0; x < image.width; ++x) {
+            const float alpha = image.pixel(x, y)[3];
+            if (alpha == 0) continue;
+            for (int v = std::max(0, y - reach); v <= std::min(image.height - 1, y + reach); ++v) {
+                for (int u = std::max(0, x - reach); u <= std::min(image.width - 1, x + reach); ++u) {
+                    const double part = std::clamp(width_px + 0.5 - std::hypot(u - x, v - y), 0.0, 1.0);
+                    float& most = cover[static_cast<std::size_t>(v) * static_cast<std::size_t>(image.width) +
+                                        static_cast<std::size_t>(u)];
+                    most = std::max(most, alpha * static_cast<float>(part));
+                }
+            }
+        }
+    }
+    for (int y = 0; y < image.height; ++y) {
+        for (int x = 0; x < image.width; ++x) {
+            const auto at = static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) + static_cast<std::size_t>(x);
+            detail::put_under(image, x, y, color, cover[at]);
+        }
+    }
+}
+
 }  // namespace
+
+void PictureNotes::draw(Image& image, const std::function<void(Image&)>& notes) const {
+    if (!rim) return notes(image);
+    Image layer(image.width, image.height);
+    notes(layer);
+    add_rim(layer, std::clamp(image.height / 300.0, 1.2, 8.0), paper);
+    for (std::size_t i = 0; i < image.rgba.size(); i += 4) {
+        const float behind = 1 - layer.rgba[i + 3];
+        for (std::size_t c = 0; c < 4; ++c) image.rgba[i + c] = layer.rgba[i + c] + behind * image.rgba[i + c];
+    }
+}
 
 View PictureNotes::view_of_volume(const View& view) const {
     const View ended = flow ? ended_at(*flow, view) : view;
@@ -80,27 +120,34 @@ void PictureNotes::draw_over(Picture& picture, const View& view, const DrawnLine
         const double size = std::clamp(picture.image.height / 34.0, 9.0, 100.0);
         draw_mark(picture.image, place, mark.text, size, ink, paper, is_hidden(picture, at.z, place));
     }
-    if (axes) draw_axes(picture.image, view, ink);
-    if (scale_at) draw_scale_bar(picture.image, view, *scale_at, ink);
+    if (!axes && !scale_at) return;
+    draw(picture.image, [&](Image& image) {
+        if (axes) draw_axes(image, view, ink);
+        if (scale_at) draw_scale_bar(image, view, *scale_at, ink);
+    });
 }
 
 void PictureNotes::name_view(Picture& picture, const std::string& name) const {
     const double letter = std::clamp(picture.image.height / 24.0, 9.0, 70.0);
-    draw_text(picture.image, {0.7 * letter, 1.4 * letter}, name, {.size_px = letter, .color = ink});
+    draw(picture.image, [&](Image& image) {
+        draw_text(image, {0.7 * letter, 1.4 * letter}, name, {.size_px = letter, .color = ink});
+    });
 }
 
 void PictureNotes::add_legend(Picture& picture) const {
     const double letter = std::clamp(picture.image.height / 30.0, 9.0, 140.0);
-    for (std::size_t line = 0; line < caption.size(); ++line) {
-        draw_text(picture.image, {0.9 * letter, (1.5 + 1.4 * static_cast<double>(line)) * letter}, caption[line],
-                  {.size_px = letter, .color = ink});
-    }
+    draw(picture.image, [&](Image& image) {
+        for (std::size_t line = 0; line < caption.size(); ++line) {
+            draw_text(image, {0.9 * letter, (1.5 + 1.4 * static_cast<double>(line)) * letter}, caption[line],
+                      {.size_px = letter, .color = ink});
+        }
+    });
     if (!legend) return;
     const bool right = legend_style.side == LegendSide::Right;
     picture = extended(picture, picture.image.width + (right ? legend_px : 0), picture.image.height + (right ? 0 : legend_px));
     LegendStyle style = legend_style;
     style.ink = ink;
-    draw_legend(picture.image, function, *legend, style, legend_height);
+    draw(picture.image, [&](Image& image) { draw_legend(image, function, *legend, style, legend_height); });
 }
 
 PictureNotes make_notes(PictureArguments& arguments, const ShownColors& colors, const HexMesh* mesh) {
@@ -110,6 +157,7 @@ PictureNotes make_notes(PictureArguments& arguments, const ShownColors& colors, 
     const bool light = 0.2126 * behind.x + 0.7152 * behind.y + 0.0722 * behind.z > 0.18;
     notes.ink = Vec3(light ? kDarkInk : kLightInk);
     notes.paper = Vec3(light ? 1.0 : 0.0);
+    notes.rim = arguments.transparent();
     if (arguments.edges) {
         if (mesh == nullptr) throw Error(ErrorCode::InvalidInput, "needs a mesh; this input has no cells", "--edges");
         notes.edges = mesh;

@@ -51,6 +51,7 @@ struct PictureNotes {
     std::shared_ptr<const ShellScene> shells{};
     std::shared_ptr<const ShellScene> flow{};  // streamlines and arrows
     Vec3 ink{0.0}, paper{1.0};
+    bool rim = false;                    // of paper around all notes, as nobody knows the page behind them
     std::vector<std::string> caption{};  // lines in the upper left corner
     TransferFunction function{};
     std::optional<LegendOptions> legend{};
@@ -70,6 +71,10 @@ struct PictureNotes {
     void name_view(Picture& picture, const std::string& name) const;
     /// Draws the caption. Makes room at the right or below for the legend, and draws it.
     void add_legend(Picture& picture) const;
+
+private:
+    /// Draws notes, with their rim if they have one.
+    void draw(Image& image, const std::function<void(Image&)>& notes) const;
 };
 
 /// The notes that the arguments ask for. The legend's width is taken off the views that `arguments.make_views` makes from then

@@ -356,6 +356,15 @@ class Looks(Pictures):
             done = self.render("-o", name, "--background", "none")
             self.assertEqual((done.code, "alpha" in done.err), (2, True), done.err)
 
+    def test_letters_without_a_background_are_legible_on_any_page(self):
+        for look in "solid", "volume":
+            self.assertEqual(self.render("-o", "a.png", "--background", "none", "--look", look, "--legend", size="240x160").code, 0)
+            _, width, rows = self.pixels("a.png")
+            title = [row[4 * (width - 50):] for row in rows[:22]]  # above the bar there are letters only
+            for page in 0, 255:
+                seen = [row[4 * x] * row[4 * x + 3] / 255 + page * (1 - row[4 * x + 3] / 255) for row in title for x in range(50)]
+                self.assertGreater(max(seen) - min(seen), 100, (look, page))  # white on white is 18
+
     def test_other_formats(self):
         for name, head in ("a.jpg", b"\xff\xd8\xff"), ("a.webp", b"RIFF"):
             done = self.render("-o", name)
