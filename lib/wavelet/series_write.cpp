@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <optional>
 
 #include "output_file.h"
@@ -69,10 +70,62 @@ void put_sets(const MeshSets& sets, Bytes& out) {
     }
 }
 
+/// Steps that are read for the survey and again for writing: what fits into a fixed memory is kept in between, since making
+/// values at points of means of cells takes far longer than the rest.
+class StepsReadTwice {
+public:
+    explicit StepsReadTwice(const MeshSteps& steps) : steps_(steps) {}
+
+    [[nodiscard]] MeshSteps steps() {
+        return {steps_.times, [this](std::size_t k) { return read(k); }, [this] { return sets_; }};
+    }
+
+private:
+    struct Kept {
+        HexMesh mesh;
+        MeshSets sets;
+    };
+    static constexpr std::size_t kMostBytes = std::size_t{256} << 20;
+
+    static std::size_t bytes_of(const HexMesh& mesh, const MeshSets& sets) {
+        std::size_t bytes = mesh.points.size() * sizeof(Vec3) + mesh.cells.size() * sizeof(mesh.cells[0]) +
+                            mesh.creases.size() * sizeof(mesh.creases[0]) +
+                            mesh.sharp_faces.size() * sizeof(mesh.sharp_faces[0]);
+        for (const Attribute& attribute : mesh.attributes) bytes += attribute.values.size() * sizeof(double);
+        for (const Patch& patch : sets.patches) bytes += patch.sides.size() * sizeof(CellSide);
+        for (const CellSet& set : sets.sets) bytes += set.cells.size() * sizeof(Index);
+        return bytes;
+    }
+
+    HexMesh read(std::size_t k) {
+        if (const auto found = kept_.find(k); found != kept_.end()) {
+            Kept step = std::move(found->second);
+            kept_.erase(found);
+            sets_ = std::move(step.sets);
+            return std::move(step.mesh);
+        }
+        HexMesh mesh = steps_.read(k);
+        sets_ = steps_.sets ? steps_.sets() : MeshSets{};
+        const bool first = k == read_;  // the second time nothing is kept
+        if (!first) return mesh;
+        ++read_;
+        const std::size_t bytes = bytes_of(mesh, sets_);
+        if (bytes > kMostBytes - bytes_) return mesh;
+        bytes_ += bytes;
+        kept_.emplace(k, Kept{mesh, sets_});
+        return mesh;
+    }
+
+    const MeshSteps& steps_;
+    std::map<std::size_t, Kept> kept_;
+    MeshSets sets_;
+    std::size_t bytes_ = 0, read_ = 0;
+};
+
 class SeriesWriter {
 public:
-    SeriesWriter(const std::filesystem::path& path, const MeshSteps& steps, const SeriesFileOptions& options)
-        : steps_(steps), options_(options), survey_(steps, options), file_(path) {
+    SeriesWriter(const std::filesystem::path& path, MeshSteps steps, const SeriesFileOptions& options)
+        : steps_(std::move(steps)), options_(options), survey_(steps_, options), file_(path) {
         index_.arrays = survey_.arrays();
         for (const SeriesArray& array : index_.arrays) {
             SeriesArrayReport& kept = report_.arrays.emplace_back();
@@ -284,7 +337,7 @@ private:
     /// The numbers of an array's channels in the step before, and in the one before that.
     using History = std::vector<std::vector<std::vector<std::int64_t>>>;
 
-    const MeshSteps& steps_;
+    MeshSteps steps_;
     const SeriesFileOptions& options_;
     SeriesSurvey survey_;
     OutputFile file_;
@@ -307,7 +360,8 @@ SeriesFileReport write_series_file(const std::filesystem::path& path, const Mesh
         throw Error(ErrorCode::InvalidInput, "the time of step " + std::to_string(k) + " is " + std::to_string(steps.times[k]),
                     "series", "finite times that ascend");
     }
-    return SeriesWriter(path, steps, options).write();
+    StepsReadTwice reader(steps);
+    return SeriesWriter(path, reader.steps(), options).write();
 }
 
 SeriesFileReport write_series_file(const std::filesystem::path& path, const HexMesh& mesh, const SeriesFileOptions& options) {

@@ -166,7 +166,7 @@ def write_series(series: Series | Sequence[HexMesh] | HexMesh, path: Path, *, ti
 
     Returns figures: steps, key_steps, meshes (how often the cells are stored), points, cells, bytes, mesh_bytes, max (the largest error of all
     fields), point_max, inverted_cells, and arrays, a list: name ("" are the points), channels, steps, bytes (about), max, exact (values that are
-    kept as they are). Each step is read twice. Raises InvalidInput if an option is out of range; FileError if the file cannot be written.
+    kept as they are). Steps are read twice, those that fit into 256 MB once. Raises InvalidInput if an option is out of range; FileError if the file cannot be written.
     """
     if isinstance(series, Series):
         if times is not None:

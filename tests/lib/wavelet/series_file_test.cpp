@@ -315,6 +315,16 @@ TEST_F(SeriesFile, DamagedFilesAreRefused) {
     }
 }
 
+TEST_F(SeriesFile, StepsThatFitIntoMemoryAreReadOnce) {
+    std::size_t reads = 0;
+    const auto read = [&](std::size_t k) {
+        ++reads;
+        return ball_at(k);
+    };
+    write_series_file(path("a.svw"), steps_of(4, read), {});
+    EXPECT_EQ(reads, 4u);
+}
+
 TEST_F(SeriesFile, TagsPatchesAndSetsAreKept) {
     HexMesh box = test::make_box(4, 4, 4);
     box.sharp_faces = {{box.cells[0][1], box.cells[0][2], box.cells[0][6], box.cells[0][5]}};

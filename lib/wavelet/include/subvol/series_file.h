@@ -17,7 +17,7 @@
 namespace subvol {
 
 /// The meshes of a series, each read when it is asked for. `write_series_file` reads each twice, in order: once for the ranges
-/// of fields, once for the values.
+/// of fields, once for the values; those that fit into 256 MB, from the first on, once.
 ///
 /// times: one for each step, ascending
 /// read:  the mesh of a step, from 0
@@ -86,7 +86,7 @@ struct SeriesFileReport {
 ///
 /// throws: Error(InvalidInput) if there is no step, an option is out of range, times do not ascend, or a mesh has more points
 ///         than corners of cells; Error(Io); what `steps.read` throws
-/// cost:   one step is in memory, and the whole numbers of three; the same bits for any number of threads
+/// cost:   one step is in memory, others up to 256 MB, and the whole numbers of three; the same bits for any number of threads
 SeriesFileReport write_series_file(const std::filesystem::path& path, const MeshSteps& steps,
                                    const SeriesFileOptions& options = {});
 
