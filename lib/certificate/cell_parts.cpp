@@ -1,40 +1,49 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cell_parts.h"
 
-#include <Eigen/Sparse>
 #include <algorithm>
 #include <map>
 #include <mutex>
 #include <numeric>
 
+#include "subvol/stencil_table.h"
+
 namespace subvol::detail {
 
 namespace {
 
-using SparseRows = Eigen::SparseMatrix<double, Eigen::RowMajor>;
-using Rows = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;
-
-// The rules of a type, without their zeros.
-const std::array<SparseRows, 8>& rules_of(const BoxType& type) {
+// The rules of a type.
+const std::array<CsrMatrix, 8>& rules_of(const BoxType& type) {
     static std::mutex mutex;
-    static std::map<BoxType, std::array<SparseRows, 8>> all;
+    static std::map<BoxType, std::array<CsrMatrix, 8>> all;
     const std::scoped_lock lock(mutex);
     const auto found = all.find(type);
     if (found != all.end()) return found->second;
     const BoxRules rules = box_rules(type);
-    std::array<SparseRows, 8> sparse;
-    for (std::size_t s = 0; s < 8; ++s) sparse[s] = rules.children[s].sparseView();
+    std::array<CsrMatrix, 8> sparse;
+    for (std::size_t s = 0; s < 8; ++s) {
+        for (Eigen::Index row = 0; row < rules.children[s].rows(); ++row) {
+            for (Eigen::Index column = 0; column < rules.children[s].cols(); ++column) {
+                if (rules.children[s](row, column) == 0) continue;
+                sparse[s].columns.push_back(static_cast<Index>(column));
+                sparse[s].weights.push_back(rules.children[s](row, column));
+            }
+            sparse[s].offsets.push_back(sparse[s].columns.size());
+        }
+    }
     return all.emplace(type, std::move(sparse)).first->second;
 }
 
-Eigen::Map<const Rows> rows_of(const std::vector<Vec3>& vectors) {
-    return {&vectors.front().x, static_cast<Eigen::Index>(vectors.size()), 3};
-}
-
-std::vector<Vec3> vectors_of(const Rows& rows) {
-    std::vector<Vec3> vectors(static_cast<std::size_t>(rows.rows()));
-    Eigen::Map<Rows>(&vectors.front().x, rows.rows(), 3) = rows;
-    return vectors;
+std::vector<Vec3> product_of(const CsrMatrix& matrix, const std::vector<Vec3>& values) {
+    std::vector<Vec3> sums(matrix.offsets.size() - 1);
+    for (std::size_t row = 0; row < sums.size(); ++row) {
+        Vec3 sum(0.0);
+        for (std::size_t k = matrix.offsets[row]; k < matrix.offsets[row + 1]; ++k) {
+            sum += matrix.weights[k] * values[matrix.columns[k]];
+        }
+        sums[row] = sum;
+    }
+    return sums;
 }
 
 bool is_in_order(const BoxType& type) {
@@ -130,30 +139,57 @@ void GridPart::put_in_order() {
     }
 }
 
-PartDerivatives GridPart::derivatives() const {
-    PartDerivatives part;
+// Calls visit(c, type, differences, back) for each axis c of the part, with the type in which that axis comes first, its
+// differences, and how axes of the form are those of the part: axis k of the part is back[k] of the form.
+template <class Visit>
+void GridPart::each_axis(const Visit& visit) const {
     const std::array<std::size_t, 3> size{type_[0].points(), type_[1].points(), type_[2].points()};
     for (std::size_t c = 0; c < 3; ++c) {
+        // Axis k of the form is axes[k] of the part: 0 1 2, 1 0 2 or 2 0 1; back it is 0 1 2, 1 0 2 or 1 2 0.
         const std::array<std::size_t, 3> axes = c == 0   ? std::array<std::size_t, 3>{0, 1, 2}
                                                 : c == 1 ? std::array<std::size_t, 3>{1, 0, 2}
                                                          : std::array<std::size_t, 3>{2, 0, 1};
-        const BoxType type{type_[axes[0]], type_[axes[1]], type_[axes[2]]};
-        const DerivativeForm& form = derivative_form(type);
+        const std::array<std::size_t, 3> back = c == 2 ? std::array<std::size_t, 3>{1, 2, 0} : axes;
         const std::vector<Vec3> points = reordered(points_, size, axes);
         const std::size_t across = size[axes[1]] * size[axes[2]];
         std::vector<Vec3> differences(points.size() - across);
-        for (std::size_t d = 0; d < differences.size(); ++d) {
-            differences[d] = points[d + across] - points[d];
-            part.size = glm::max(part.size, glm::abs(differences[d]));
-        }
-        const auto d = rows_of(differences);
-        // Axis k of the form is axes[k] of the part: 0 1 2, 1 0 2 or 2 0 1; back it is 0 1 2, 1 0 2 or 1 2 0.
-        const std::array<std::size_t, 3> back = c == 2 ? std::array<std::size_t, 3>{1, 2, 0} : axes;
-        part.columns[c] = {{2, 2, 2}, reordered(vectors_of(form.bernstein * d), {3, 3, 3}, back)};
-        const auto corners = reordered(vectors_of(form.corners * d), {2, 2, 2}, back);
-        for (std::size_t k = 0; k < 8; ++k) part.corners[k][static_cast<int>(c)] = corners[k];
-        part.rest[c] = {*derivative_bound(type), vectors_of(d - form.kept * (form.weights * d))};
+        for (std::size_t d = 0; d < differences.size(); ++d) differences[d] = points[d + across] - points[d];
+        visit(c, BoxType{type_[axes[0]], type_[axes[1]], type_[axes[2]]}, differences, back);
     }
+}
+
+namespace {
+
+// Puts the derivatives along axis c at the corners.
+void put_corners(PartCorners& part, std::size_t c, const std::vector<Vec3>& values, const std::vector<Vec3>& differences,
+                 const std::array<std::size_t, 3>& back) {
+    for (const Vec3& d : differences) part.size = glm::max(part.size, glm::abs(d));
+    const auto corners = reordered(values, {2, 2, 2}, back);
+    for (std::size_t k = 0; k < 8; ++k) part.corners[k][static_cast<int>(c)] = corners[k];
+}
+
+}  // namespace
+
+PartDerivatives GridPart::derivatives() const {
+    PartDerivatives part;
+    each_axis([&](std::size_t c, const BoxType& type, const std::vector<Vec3>& differences, const auto& back) {
+        const DerivativeForm& form = derivative_form(type);
+        const std::vector<Vec3> all = form.all_rows.times(differences);
+        const auto bernstein = all.begin() + form.bernstein.rows(), weights = bernstein + form.weights.rows();
+        part.columns[c] = {{2, 2, 2}, reordered(std::vector<Vec3>(all.begin(), bernstein), {3, 3, 3}, back)};
+        put_corners(part.at, c, {weights, all.end()}, differences, back);
+        std::vector<Vec3> rest = form.kept_rows.times(std::vector<Vec3>(bernstein, weights));
+        for (std::size_t d = 0; d < rest.size(); ++d) rest[d] = differences[d] - rest[d];
+        part.rest[c] = {*derivative_bound(type), std::move(rest)};
+    });
+    return part;
+}
+
+PartCorners GridPart::corners() const {
+    PartCorners part;
+    each_axis([&](std::size_t c, const BoxType& type, const std::vector<Vec3>& differences, const auto& back) {
+        put_corners(part, c, derivative_form(type).corner_rows.times(differences), differences, back);
+    });
     return part;
 }
 
@@ -161,7 +197,7 @@ std::vector<GridPart> GridPart::children() const {
     const auto& rules = rules_of(type_);
     std::vector<GridPart> parts;
     for (std::size_t s = 0; s < 8; ++s) {
-        parts.emplace_back(child_type(type_, s), vectors_of(rules[s] * rows_of(points_)), frame_.child(s));
+        parts.emplace_back(child_type(type_, s), product_of(rules[s], points_), frame_.child(s));
     }
     return parts;
 }
@@ -216,8 +252,11 @@ PolynomialPart PolynomialPart::tricubic(std::span<const Vec3, 64> points, const 
 }
 
 PartDerivatives PolynomialPart::derivatives() const {
-    PartDerivatives part;
-    part.columns = columns_;
+    return {columns_, {}, corners()};
+}
+
+PartCorners PolynomialPart::corners() const {
+    PartCorners part;
     for (std::size_t c = 0; c < 3; ++c) {
         for (const Vec3& value : columns_[c].values) {
             part.size = glm::max(part.size, glm::abs(value));

@@ -34,10 +34,13 @@ public:
 
     [[nodiscard]] const PartFrame& frame() const { return frame_; }
     [[nodiscard]] PartDerivatives derivatives() const;
+    [[nodiscard]] PartCorners corners() const;
     [[nodiscard]] std::vector<GridPart> children() const;
 
 private:
     void put_in_order();
+    template <class Visit>
+    void each_axis(const Visit& visit) const;
 
     BoxType type_;
     std::vector<Vec3> points_;
@@ -59,6 +62,7 @@ public:
 
     [[nodiscard]] const PartFrame& frame() const { return frame_; }
     [[nodiscard]] PartDerivatives derivatives() const;
+    [[nodiscard]] PartCorners corners() const;
     [[nodiscard]] std::vector<PolynomialPart> children() const;
 
 private:

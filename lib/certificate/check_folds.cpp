@@ -5,7 +5,7 @@
 #include <numeric>
 #include <optional>
 
-#include "cell_parts.h"
+#include "fold_checker.h"
 #include "regular_grid.h"
 #include "subvol/cell.h"
 #include "subvol/certificate.h"
@@ -26,12 +26,28 @@
 
 namespace subvol {
 
-using namespace detail;
+namespace detail {
 
 namespace {
 
+double volume_of(const PartFrame& frame) {
+    return frame.size * frame.size * frame.size;
+}
+
+double largest_coordinate(const HexMesh& mesh) {
+    double largest = 0;
+    for (const Vec3& x : mesh.points) largest = std::max({largest, std::abs(x.x), std::abs(x.y), std::abs(x.z)});
+    return largest;
+}
+
+FoldPlace place_of(const PartFrame& frame, const PartDecision& decision) {
+    return {0, frame.corner(decision.corner), {}, decision.determinant / volume_of(frame)};
+}
+
+}  // namespace
+
 /// What became of a part of a cell. open: its volume that is left, in cells
-struct PartResult {
+struct FoldChecker::PartResult {
     std::optional<FoldPlace> fold;
     double open = 0;
     std::size_t tests = 0;
@@ -39,25 +55,39 @@ struct PartResult {
 };
 
 /// limits of the search in a part. error: of the points' coordinates
-struct Limits {
+struct FoldChecker::Limits {
     int levels;
     std::size_t tests;
     double error;
+    FoldEffort effort;
 };
-
-double volume_of(const PartFrame& frame) {
-    return frame.size * frame.size * frame.size;
-}
 
 // Level by level, so that large folds are found before small parts are proved.
 template <class Part>
-PartResult decide_part(Part part, const Limits& limits) {
+FoldChecker::PartResult FoldChecker::decide_part(Part part, const Limits& limits) {
     PartResult result;
+    const double whole = volume_of(part.frame());
+    const auto find_fold = [&](const Part& at) {
+        const PartDecision decision = witness(at.corners(), limits.error);
+        if (decision.verdict == PartVerdict::Folded) result.fold = place_of(at.frame(), decision);
+        return result.fold.has_value();
+    };
+    if (limits.effort == FoldEffort::Witness) {
+        result.open = whole;
+        if (!find_fold(part) && limits.levels > 0) std::ranges::any_of(part.children(), find_fold);
+        return result;
+    }
+    const bool in_haste = limits.effort == FoldEffort::Verdict;
     std::vector<Part> open;
     open.push_back(std::move(part));
     for (int level = 0; !open.empty(); ++level) {
         std::vector<Part> next;
-        for (const Part& at : open) {
+        for (std::size_t k = 0; k < open.size(); ++k) {
+            const Part& at = open[k];
+            if (in_haste && result.tests + (open.size() - k) + next.size() > limits.tests) {
+                result.open = whole;
+                return result;
+            }
             if (result.tests == limits.tests) {
                 result.open += volume_of(at.frame());
                 continue;
@@ -66,13 +96,13 @@ PartResult decide_part(Part part, const Limits& limits) {
             result.deepest = level;
             const PartDecision decision = decide(at.derivatives(), limits.error);
             if (decision.verdict == PartVerdict::Folded) {
-                result.fold =
-                    FoldPlace{0, at.frame().corner(decision.corner), {}, decision.determinant / volume_of(at.frame())};
+                result.fold = place_of(at.frame(), decision);
                 return result;
             }
             if (decision.verdict == PartVerdict::Proved) continue;
             if (level == limits.levels) {
                 result.open += volume_of(at.frame());
+                if (in_haste) return result;
             } else {
                 std::ranges::move(at.children(), std::back_inserter(next));
             }
@@ -83,7 +113,7 @@ PartResult decide_part(Part part, const Limits& limits) {
 }
 
 /// The cells of a level whose surroundings are grids.
-class Grids {
+class FoldChecker::Grids {
 public:
     Grids(const HexMesh& mesh, Scheme scheme) : mesh_(mesh), scheme_(scheme) {
         if (scheme_ == Scheme::Linear) return;
@@ -161,20 +191,8 @@ private:
     std::vector<std::uint8_t> is_grid_;
 };
 
-/// A descendant of a control cell that is not decided: its number in its level.
-struct OpenCell {
-    Index cell, control;
-    PartFrame frame;
-};
-
-double largest_coordinate(const HexMesh& mesh) {
-    double largest = 0;
-    for (const Vec3& x : mesh.points) largest = std::max({largest, std::abs(x.x), std::abs(x.y), std::abs(x.z)});
-    return largest;
-}
-
 // The cells of `open`, in their order, and then those of two layers around them.
-std::vector<Index> with_neighbors(const HexMesh& mesh, const std::vector<OpenCell>& open) {
+std::vector<Index> FoldChecker::with_neighbors(const HexMesh& mesh, const std::vector<OpenCell>& open) {
     std::vector<Index> cells;
     std::vector<std::uint8_t> taken(mesh.cells.size(), 0), met(mesh.points.size(), 0);
     const auto take = [&](Index c) {
@@ -194,153 +212,161 @@ std::vector<Index> with_neighbors(const HexMesh& mesh, const std::vector<OpenCel
     return cells;
 }
 
-class FoldChecker {
-public:
-    FoldChecker(const HexMesh& mesh, const FoldOptions& options) : mesh_(mesh), options_(options) {
-        mesh_.attributes.clear();
-        scheme_ = options.scheme;
-        if (scheme_.crease_angle_deg) tag_creases(mesh_, *scheme_.crease_angle_deg);
-        scheme_.crease_angle_deg.reset();
-        if (scheme_.kind == Scheme::Mcq && scheme_.tension == 0) scheme_.kind = Scheme::Linear;
-        cells_.resize(mesh_.cells.size());
+FoldChecker::FoldChecker(const HexMesh& mesh, const FoldOptions& options) : mesh_(mesh), options_(options) {
+    check_options(options);
+    check_options(options.scheme);
+    validate(mesh_);
+    if (options.scheme.kind == Scheme::Mcq && options.scheme.tension != 1.0 / 16 && options.scheme.tension != 0) {
+        throw Error(ErrorCode::InvalidInput, "folds of mcq cannot be excluded with this tension",
+                    option_name("tension", options.names), "1/16, or 0");
     }
+    mesh_.attributes.clear();
+    scheme_ = options.scheme;
+    if (scheme_.crease_angle_deg) tag_creases(mesh_, *scheme_.crease_angle_deg);
+    scheme_.crease_angle_deg.reset();
+    if (scheme_.kind == Scheme::Mcq && scheme_.tension == 0) scheme_.kind = Scheme::Linear;
+    cells_.resize(mesh_.cells.size());
+}
 
-    FoldCheck run() {
-        std::vector<OpenCell> irregular;
-        {
-            const Grids grids(mesh_, scheme_.kind);
-            const Limits limits{options_.levels, static_cast<std::size_t>(options_.tests), 0};
-            constexpr std::size_t kRun = std::size_t{1} << 13;
-            std::vector<std::optional<PartResult>> results;
-            for (std::size_t begin = 0; begin < cells_.size(); begin += kRun) {
-                report_progress(options_.progress, "check", begin, cells_.size());
-                results.assign(std::min(kRun, cells_.size() - begin), {});
-                tbb::parallel_for(std::size_t{0}, results.size(),
-                                  [&](std::size_t k) { results[k] = grids.decide(static_cast<Index>(begin + k), {}, limits); });
-                for (std::size_t k = 0; k < results.size(); ++k) {
-                    const auto cell = static_cast<Index>(begin + k);
-                    if (results[k]) {
-                        add(cell, *results[k]);
-                    } else {
-                        irregular.push_back({cell, cell, {}});
-                    }
+void FoldChecker::check(std::span<const Index> cells, FoldEffort effort) {
+    for (const Index cell : cells) cells_[cell] = {};
+    std::vector<OpenCell> irregular;
+    {
+        const Grids grids(mesh_, scheme_.kind);
+        const Limits limits{options_.levels, static_cast<std::size_t>(options_.tests), 0, effort};
+        constexpr std::size_t kRun = std::size_t{1} << 13;
+        std::vector<std::optional<PartResult>> results;
+        for (std::size_t begin = 0; begin < cells.size(); begin += kRun) {
+            if (effort == FoldEffort::Whole) report_progress(options_.progress, "check", begin, cells.size());
+            results.assign(std::min(kRun, cells.size() - begin), {});
+            tbb::parallel_for(std::size_t{0}, results.size(),
+                              [&](std::size_t k) { results[k] = grids.decide(cells[begin + k], {}, limits); });
+            for (std::size_t k = 0; k < results.size(); ++k) {
+                const Index cell = cells[begin + k];
+                if (results[k]) {
+                    add(cell, *results[k]);
+                } else {
+                    irregular.push_back({cell, cell, {}});
                 }
             }
         }
-        constexpr std::size_t kTogether = std::size_t{1} << 12;
-        for (std::size_t begin = 0; begin < irregular.size(); begin += kTogether) {
-            report_progress(options_.progress, "refine", begin, irregular.size());
-            const auto first = irregular.begin() + static_cast<std::ptrdiff_t>(begin);
-            descend(mesh_, {first, first + static_cast<std::ptrdiff_t>(std::min(kTogether, irregular.size() - begin))}, 0);
-        }
-        return found();
     }
+    descend_together(irregular, effort == FoldEffort::Verdict ? FoldEffort::Witness : effort);
+    if (effort != FoldEffort::Verdict) return;
+    // What remains is decided after all where no descendant is irregular.
+    std::erase_if(irregular, [&](const OpenCell& at) { return cells_[at.control].fold || cells_[at.control].irregular > 0; });
+    for (const OpenCell& at : irregular) cells_[at.control] = {};
+    descend_together(irregular, effort);
+}
 
-private:
-    /// irregular: the volume that touches irregular edges and is not decided
-    struct CellState {
-        std::optional<FoldPlace> fold;
-        double open = 0, irregular = 0;
+void FoldChecker::descend_together(const std::vector<OpenCell>& irregular, FoldEffort effort) {
+    constexpr std::size_t kTogether = std::size_t{1} << 12;
+    for (std::size_t begin = 0; begin < irregular.size(); begin += kTogether) {
+        if (effort == FoldEffort::Whole) report_progress(options_.progress, "refine", begin, irregular.size());
+        const auto first = irregular.begin() + static_cast<std::ptrdiff_t>(begin);
+        descend(mesh_, {first, first + static_cast<std::ptrdiff_t>(std::min(kTogether, irregular.size() - begin))}, 0, effort);
+    }
+}
+
+void FoldChecker::add(Index control, const PartResult& result, int level) {
+    CellState& cell = cells_[control];
+    cell.open += result.open;
+    cell.tests += result.tests;
+    cell.deepest = std::max(cell.deepest, level + result.deepest);
+    if (result.fold && !cell.fold) {
+        cell.fold = result.fold;
+        cell.fold->cell = control;
+    }
+}
+
+// open: cells of a level, all of which are descendants of cells at irregular edges
+void FoldChecker::descend(const HexMesh& mesh, const std::vector<OpenCell>& open, int level, FoldEffort effort) {
+    if (level == options_.irregular_levels || open.empty()) {
+        for (const OpenCell& at : open) cells_[at.control].irregular += volume_of(at.frame);
+        return;
+    }
+    const HexMesh fine = refine_cells(mesh, with_neighbors(mesh, open), {.scheme = scheme_, .levels = 1});
+    // Each level sums up to some tens of products of coordinates.
+    constexpr double kOfLevel = 256 * std::numeric_limits<double>::epsilon();
+    const Limits limits{std::max(0, options_.levels - level - 1), static_cast<std::size_t>(std::max(1, options_.tests / 8)),
+                        kOfLevel * (level + 1) * largest_coordinate(fine), effort};
+    const Grids grids(fine, scheme_.kind);
+    std::vector<std::optional<PartResult>> results(8 * open.size());
+    const auto child_of = [&](std::size_t n) {
+        const auto& [u, v, w] = kCornerParameters[n % 8];
+        const OpenCell& parent = open[n / 8];
+        return OpenCell{static_cast<Index>(n), parent.control, parent.frame.child(static_cast<std::size_t>(4 * u + 2 * v + w))};
     };
-
-    void add(Index control, const PartResult& result, int level = 0) {
-        CellState& cell = cells_[control];
-        cell.open += result.open;
-        report_.tests += result.tests;
-        report_.deepest = std::max(report_.deepest, level + result.deepest);
-        if (result.fold && !cell.fold) {
-            cell.fold = result.fold;
-            cell.fold->cell = control;
+    tbb::parallel_for(std::size_t{0}, results.size(), [&](std::size_t n) {
+        const OpenCell child = child_of(n);
+        results[n] = grids.decide(child.cell, child.frame, limits);
+    });
+    std::vector<OpenCell> next;
+    for (std::size_t n = 0; n < results.size(); ++n) {
+        const OpenCell child = child_of(n);
+        if (results[n]) {
+            add(child.control, *results[n], level + 1);
+        } else {
+            next.push_back(child);
         }
     }
+    std::erase_if(next, [&](const OpenCell& at) { return cells_[at.control].fold.has_value(); });
+    descend(fine, next, level + 1, effort);
+}
 
-    // open: cells of a level, all of which are descendants of cells at irregular edges
-    void descend(const HexMesh& mesh, const std::vector<OpenCell>& open, int level) {
-        if (level == options_.irregular_levels || open.empty()) {
-            for (const OpenCell& at : open) cells_[at.control].irregular += volume_of(at.frame);
-            return;
+FoldVerdict FoldChecker::verdict(Index number) const {
+    const CellState& cell = cells_[number];
+    return cell.fold            ? FoldVerdict::Folded
+           : cell.irregular > 0 ? FoldVerdict::Irregular
+           : cell.open > 0      ? FoldVerdict::Open
+                                : FoldVerdict::Proved;
+}
+
+FoldCheck FoldChecker::found() const {
+    FoldCheck check;
+    check.verdicts.reserve(cells_.size());
+    check.open.reserve(cells_.size());
+    FoldReport& report = check.report;
+    for (Index c = 0; c < cells_.size(); ++c) {
+        const CellState& cell = cells_[c];
+        check.verdicts.push_back(verdict(c));
+        check.open.push_back(cell.fold ? 0 : cell.open + cell.irregular);
+        report.tests += cell.tests;
+        report.deepest = std::max(report.deepest, cell.deepest);
+        switch (check.verdicts.back()) {
+            case FoldVerdict::Folded:
+                ++report.folded;
+                check.places.push_back(*cell.fold);
+                break;
+            case FoldVerdict::Irregular:
+                ++report.irregular;
+                break;
+            case FoldVerdict::Open:
+                ++report.open;
+                break;
+            case FoldVerdict::Proved:
+                ++report.proved;
+                break;
         }
-        const HexMesh fine = refine_cells(mesh, with_neighbors(mesh, open), {.scheme = scheme_, .levels = 1});
-        // Each level sums up to some tens of products of coordinates.
-        constexpr double kOfLevel = 256 * std::numeric_limits<double>::epsilon();
-        const Limits limits{std::max(0, options_.levels - level - 1), static_cast<std::size_t>(std::max(1, options_.tests / 8)),
-                            kOfLevel * (level + 1) * largest_coordinate(fine)};
-        const Grids grids(fine, scheme_.kind);
-        std::vector<std::optional<PartResult>> results(8 * open.size());
-        const auto child_of = [&](std::size_t n) {
-            const auto& [u, v, w] = kCornerParameters[n % 8];
-            const OpenCell& parent = open[n / 8];
-            return OpenCell{static_cast<Index>(n), parent.control,
-                            parent.frame.child(static_cast<std::size_t>(4 * u + 2 * v + w))};
-        };
-        tbb::parallel_for(std::size_t{0}, results.size(), [&](std::size_t n) {
-            const OpenCell child = child_of(n);
-            results[n] = grids.decide(child.cell, child.frame, limits);
-        });
-        std::vector<OpenCell> next;
-        for (std::size_t n = 0; n < results.size(); ++n) {
-            const OpenCell child = child_of(n);
-            if (results[n]) {
-                add(child.control, *results[n], level + 1);
-            } else {
-                next.push_back(child);
-            }
-        }
-        std::erase_if(next, [&](const OpenCell& at) { return cells_[at.control].fold.has_value(); });
-        descend(fine, next, level + 1);
+        if (cell.fold) continue;
+        report.open_volume += cell.open;
+        report.irregular_volume += cell.irregular;
     }
+    place(check.places);
+    return check;
+}
 
-    FoldCheck found() {
-        FoldCheck check;
-        check.verdicts.reserve(cells_.size());
-        check.open.reserve(cells_.size());
-        for (const CellState& cell : cells_) {
-            const FoldVerdict verdict = cell.fold            ? FoldVerdict::Folded
-                                        : cell.irregular > 0 ? FoldVerdict::Irregular
-                                        : cell.open > 0      ? FoldVerdict::Open
-                                                             : FoldVerdict::Proved;
-            check.verdicts.push_back(verdict);
-            check.open.push_back(cell.fold ? 0 : cell.open + cell.irregular);
-            switch (verdict) {
-                case FoldVerdict::Folded:
-                    ++report_.folded;
-                    check.places.push_back(*cell.fold);
-                    break;
-                case FoldVerdict::Irregular:
-                    ++report_.irregular;
-                    break;
-                case FoldVerdict::Open:
-                    ++report_.open;
-                    break;
-                case FoldVerdict::Proved:
-                    ++report_.proved;
-                    break;
-            }
-            if (cell.fold) continue;
-            report_.open_volume += cell.open;
-            report_.irregular_volume += cell.irregular;
-        }
-        place(check.places);
-        check.report = std::move(report_);
-        return check;
-    }
+void FoldChecker::place(std::vector<FoldPlace>& places) const {
+    std::vector<LimitQuery> queries;
+    for (const FoldPlace& at : places) queries.push_back({at.cell, at.uvw});
+    if (queries.empty()) return;
+    const LimitSamples samples = evaluate_limit(mesh_, queries, {.scheme = scheme_, .progress = options_.progress});
+    for (std::size_t k = 0; k < places.size(); ++k) places[k].position = samples.positions[k];
+}
 
-    void place(std::vector<FoldPlace>& places) const {
-        std::vector<LimitQuery> queries;
-        for (const FoldPlace& at : places) queries.push_back({at.cell, at.uvw});
-        if (queries.empty()) return;
-        const LimitSamples samples = evaluate_limit(mesh_, queries, {.scheme = scheme_, .progress = options_.progress});
-        for (std::size_t k = 0; k < places.size(); ++k) places[k].position = samples.positions[k];
-    }
+}  // namespace detail
 
-    HexMesh mesh_;
-    const FoldOptions& options_;
-    SchemeOptions scheme_;
-    std::vector<CellState> cells_;
-    FoldReport report_;
-};
-
-}  // namespace
+using namespace detail;
 
 std::vector<Option> options_of(FoldOptions& options) {
     return {Option("levels", options.levels)
@@ -366,14 +392,11 @@ Facts facts_of(const FoldReport& report) {
 }
 
 FoldCheck check_folds(const HexMesh& mesh, const FoldOptions& options) {
-    check_options(options);
-    check_options(options.scheme);
-    validate(mesh);
-    if (options.scheme.kind == Scheme::Mcq && options.scheme.tension != 1.0 / 16 && options.scheme.tension != 0) {
-        throw Error(ErrorCode::InvalidInput, "folds of mcq cannot be excluded with this tension",
-                    option_name("tension", options.names), "1/16, or 0");
-    }
-    return FoldChecker(mesh, options).run();
+    FoldChecker checker(mesh, options);
+    std::vector<Index> cells(mesh.cells.size());
+    std::iota(cells.begin(), cells.end(), Index{0});
+    checker.check(cells, FoldEffort::Whole);
+    return checker.found();
 }
 
 }  // namespace subvol

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "box_rules.h"
+#include "dense_rows.h"
 
 namespace subvol::detail {
 
@@ -40,10 +41,12 @@ namespace subvol::detail {
 ///            times the coefficients of the derivatives without an error
 /// kept:      V, in integers
 /// weights:   W: of the differences that are near d in the least squares sense, their coefficients
+/// all_rows:  of B, W and `corners` below each other, for products with vectors; kept_rows, corner_rows: of V and `corners`
 struct DerivativeForm {
     BoxType type;
     std::array<Eigen::MatrixXd, 8> steps;
     Eigen::MatrixXd corners, bernstein, three_bernstein, kept, weights;
+    DenseRows all_rows, kept_rows, corner_rows;
 
     [[nodiscard]] Eigen::Index differences() const { return corners.cols(); }
 };

@@ -28,19 +28,6 @@ double permanent(const Mat3& m) {
     return m[0][0] * minor(1, 2) + m[0][1] * minor(0, 2) + m[0][2] * minor(0, 1);
 }
 
-PartDecision witness(const PartDerivatives& part, double error) {
-    PartDecision decision;
-    for (std::size_t k = 0; k < 8; ++k) {
-        const Mat3& j = part.corners[k];
-        const double det = glm::determinant(j), a = glm::length(j[0]), b = glm::length(j[1]), c = glm::length(j[2]);
-        const double each = kOfPoints * error + kRounding * std::max({part.size.x, part.size.y, part.size.z});  // of a column
-        const double margin = each * (a * b + b * c + c * a) + each * each * (a + b + c) + each * each * each;
-        if (!(det < -2 * margin) || (decision.verdict == PartVerdict::Folded && det >= decision.determinant)) continue;
-        decision = {PartVerdict::Folded, k, det};
-    }
-    return decision;
-}
-
 // Σ_c |Y_ac − δ_ac| + R_ac over all coefficients, the largest of all rows a. Columns of one degree are taken coefficient by
 // coefficient.
 double norm_of(const BernsteinColumns& y, const Mat3& rest) {
@@ -74,8 +61,21 @@ bool has_positive_determinant(const BernsteinColumns& y, const Mat3& rest) {
 
 }  // namespace
 
+PartDecision witness(const PartCorners& part, double error) {
+    PartDecision decision;
+    for (std::size_t k = 0; k < 8; ++k) {
+        const Mat3& j = part.corners[k];
+        const double det = glm::determinant(j), a = glm::length(j[0]), b = glm::length(j[1]), c = glm::length(j[2]);
+        const double each = kOfPoints * error + kRounding * std::max({part.size.x, part.size.y, part.size.z});  // of a column
+        const double margin = each * (a * b + b * c + c * a) + each * each * (a + b + c) + each * each * each;
+        if (!(det < -2 * margin) || (decision.verdict == PartVerdict::Folded && det >= decision.determinant)) continue;
+        decision = {PartVerdict::Folded, k, det};
+    }
+    return decision;
+}
+
 PartDecision decide(const PartDerivatives& part, double error) {
-    const PartDecision folded = witness(part, error);
+    const PartDecision folded = witness(part.at, error);
     if (folded.verdict == PartVerdict::Folded) return folded;
     Mat3 center;
     for (int c = 0; c < 3; ++c) center[c] = value_at(part.columns[static_cast<std::size_t>(c)], Vec3(0.5));
@@ -85,7 +85,7 @@ PartDecision decide(const PartDerivatives& part, double error) {
     if (!(condition < kMostCondition)) return {};
     const Vec3 of_points(2 * kOfPoints * error + std::numeric_limits<double>::min());
     Vec3 slack(kRounding);
-    for (int k = 0; k < 3; ++k) slack += glm::abs(inverse[k]) * (kRounding * part.size[k] + of_points[k]);
+    for (int k = 0; k < 3; ++k) slack += glm::abs(inverse[k]) * (kRounding * part.at.size[k] + of_points[k]);
     BernsteinColumns y = part.columns;
     Mat3 rest(0.0);
     for (int c = 0; c < 3; ++c) {

@@ -9,14 +9,21 @@
 
 namespace subvol::detail {
 
+/// J at the corners of a part.
+///
+/// corners: 4u + 2v + w
+/// size:    the largest differences of neighbouring points, component by component, of which the columns are sums
+struct PartCorners {
+    std::array<Mat3, 8> corners;
+    Vec3 size{0.0};
+};
+
 /// What is known of the Jacobian J of a part.
 ///
 /// columns: polynomials near the columns of J
 /// rest:    of each axis the bound and the vectors that it bounds: J's column is within kappa × (the differences) of the
 /// polynomial,
 ///          component by component in any coordinates; empty if it is the polynomial
-/// corners: J at the corners 4u + 2v + w
-/// size:    the largest differences of neighbouring points, component by component, of which the columns are sums
 struct PartDerivatives {
     struct Rest {
         double kappa = 0;
@@ -24,8 +31,7 @@ struct PartDerivatives {
     };
     BernsteinColumns columns;
     std::array<Rest, 3> rest;
-    std::array<Mat3, 8> corners;
-    Vec3 size{0.0};
+    PartCorners at;
 };
 
 enum class PartVerdict { Proved, Folded, Undecided };
@@ -45,5 +51,8 @@ struct PartDecision {
 ///
 /// error: of a point's coordinates
 [[nodiscard]] PartDecision decide(const PartDerivatives& part, double error);
+
+/// Looks for a fold at the corners alone: never `Proved`. error: as for `decide`
+[[nodiscard]] PartDecision witness(const PartCorners& part, double error);
 
 }  // namespace subvol::detail

@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
+#include "fold_checker.h"
 #include "mesh_subset.h"
 #include "movable_patch.h"
 #include "subvol/cell.h"
@@ -71,18 +73,20 @@ bool is_bad(FoldVerdict verdict) {
 
 class Mender {
 public:
-    Mender(HexMesh mesh, const MendOptions& options) : mesh_(std::move(mesh)), options_(options), start_(mesh_.points) {}
+    Mender(HexMesh mesh, const MendOptions& options)
+        : mesh_(std::move(mesh)), options_(options), start_(mesh_.points), checker_(mesh_, options.folds) {}
 
     Mended run() {
-        FoldCheck check = check_folds(mesh_, options_.folds);
+        stale_.assign(mesh_.cells.size(), 1);
+        std::vector<std::uint8_t> bad(mesh_.cells.size(), 0);
+        const bool any_bad = check_all(bad) > 0;
+        FoldCheck check = checker_.found();
         MendReport report;
         report.before = check.report;
-        std::vector<std::uint8_t> bad(mesh_.cells.size(), 0);
-        for (std::size_t c = 0; c < bad.size(); ++c) bad[c] = is_bad(check.verdicts[c]) ? 1 : 0;
-        if (std::ranges::find(bad, std::uint8_t{1}) != bad.end()) {
+        if (any_bad) {
             freedom_ = freedom_of(mesh_, options_.boundary_edges);
             work(bad, report);
-            check = check_folds(mesh_, options_.folds);
+            check = checker_.found();
         }
         for (std::size_t c = 0; c < bad.size(); ++c) {
             if (is_bad(check.verdicts[c])) report.left.push_back({static_cast<Index>(c), reason(mesh_.cells[c])});
@@ -100,21 +104,61 @@ public:
 
 private:
     // Ends early where three rounds in a row left as many bad cells as before. bad: of each cell how often it was bad
-    void work(std::vector<std::uint8_t> bad, MendReport& report) {
-        std::size_t fewest = bad.size();
+    void work(std::vector<std::uint8_t>& bad, MendReport& report) {
+        std::size_t fewest = bad.size() + 1, left = 0;
+        std::vector<Vec3> best;
         constexpr int kPatience = 3;
         int in_vain = 0;
-        for (int round = 0; round < options_.rounds; ++round) {
+        for (int round = 0; round < options_.rounds && in_vain < kPatience; ++round) {
             ++report.rounds;
-            const std::size_t left = move_around(bad, round);
+            left = move_around(bad, round);
+            if (left == 0) left = check_all(bad);  // which finds more folds near irregular edges
             if (left == 0) return;
             in_vain = left < fewest ? 0 : in_vain + 1;
-            fewest = std::min(fewest, left);
-            if (in_vain == kPatience) return;
+            if (left > fewest) continue;
+            fewest = left;
+            best = mesh_.points;
         }
+        if (left > fewest) move(best);
+        check_all(bad);
     }
 
-    // Moves the points near bad cells. returns how many are bad then, which are counted in `bad`
+    // Checks the cells near points that move.
+    void move(const std::vector<Vec3>& points) {
+        std::vector<std::uint8_t> near(mesh_.cells.size(), 0);
+        for (std::size_t c = 0; c < near.size(); ++c) {
+            near[c] = std::ranges::any_of(mesh_.cells[c], [&](Index p) { return points[p] != mesh_.points[p]; }) ? 1 : 0;
+        }
+        grow(mesh_, near, kWindow);
+        std::vector<Index> cells;
+        for (Index c = 0; c < near.size(); ++c) {
+            if (near[c] != 0) cells.push_back(c);
+        }
+        mesh_.points = points;
+        checker_.move(points);
+        checker_.check(cells, FoldEffort::Verdict);
+        for (const Index c : cells) stale_[c] = checker_.verdict(c) == FoldVerdict::Proved ? 0 : 1;
+    }
+
+    // Finds out all about the cells near points that have moved. returns how many are bad, which are counted in `bad`
+    std::size_t check_all(std::vector<std::uint8_t>& bad) {
+        std::vector<Index> cells;
+        std::vector<std::uint8_t> counted;
+        for (Index c = 0; c < stale_.size(); ++c) {
+            if (std::exchange(stale_[c], std::uint8_t{0}) == 0) continue;
+            cells.push_back(c);
+            counted.push_back(bad[c] != 0 && is_bad(checker_.verdict(c)) ? 1 : 0);
+        }
+        checker_.check(cells, FoldEffort::Whole);
+        for (std::size_t k = 0; k < cells.size(); ++k) {
+            if (counted[k] == 0 && is_bad(checker_.verdict(cells[k]))) ++bad[cells[k]];
+        }
+        const auto is_left = [&](Index c) { return is_bad(checker_.verdict(c)); };
+        return static_cast<std::size_t>(std::ranges::count_if(cells, is_left));
+    }
+
+    // Moves the points near bad cells, and looks whether the cells there are sound, which costs far less than the whole check.
+    // returns how many are bad then, which are counted in `bad`
     std::size_t move_around(std::vector<std::uint8_t>& bad, int round) {
         std::vector<std::uint8_t> cells = bad;
         grow(mesh_, cells, 1 + round / 3);  // more of them where the nearest are not enough
@@ -138,23 +182,25 @@ private:
         }
         constexpr double kShare = 0.1, kMoreEachTime = 1.5, kMost = 0.4;
         std::vector<PatchCell> patch_cells;
+        std::vector<Index> near;
         for (const Index c : patch.cells) {
             const CellRole role = bad[c] != 0 ? CellRole::Bad : cells[c] != 0 ? CellRole::Kept : CellRole::Around;
             patch_cells.push_back({role, std::min(kMost, kShare * std::pow(kMoreEachTime, std::max(0, bad[c] - 1)))});
+            if (role != CellRole::Around) near.push_back(c);
         }
         const int levels = round == 0 || options_.folds.scheme.kind == Scheme::Linear ? 1 : 2;
         MovablePatch movable(patch.mesh, options_.folds.scheme, levels, std::move(start), std::move(freedom), patch_cells);
         patch.mesh.points = movable.move(
             [&](double part) { report_progress(options_.folds.progress, "mend", (round + part) / options_.rounds); });
-        for (std::size_t p = 0; p < patch.points.size(); ++p) {
-            if (moves[patch.points[p]] != 0) mesh_.points[patch.points[p]] = patch.mesh.points[p];
+        std::vector<Vec3> points = mesh_.points;
+        for (std::size_t k = 0; k < patch.points.size(); ++k) {
+            if (moves[patch.points[k]] != 0) points[patch.points[k]] = patch.mesh.points[k];
         }
-
-        const FoldCheck check = check_folds(patch.mesh, options_.folds);
+        move(points);
         std::size_t left = 0;
-        for (std::size_t c = 0; c < patch.cells.size(); ++c) {
-            if (patch_cells[c].role == CellRole::Around || !is_bad(check.verdicts[c])) continue;
-            ++bad[patch.cells[c]];
+        for (const Index c : near) {
+            if (!is_bad(checker_.verdict(c))) continue;
+            ++bad[c];
             ++left;
         }
         return left;
@@ -175,6 +221,8 @@ private:
     const MendOptions& options_;
     std::vector<Vec3> start_;
     std::vector<Freedom> freedom_;
+    FoldChecker checker_;
+    std::vector<std::uint8_t> stale_;  // of which more can be known than the last check found
 };
 
 }  // namespace

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <utility>
 
+#include "csr_products.h"
 #include "subvol/cell.h"
 #include "subvol/topology.h"
-#include "transposed_table.h"
 
 namespace subvol::detail {
 
@@ -40,6 +40,7 @@ MovablePatch::MovablePatch(const HexMesh& patch, const SchemeOptions& scheme, in
       points_(patch.points),
       start_(std::move(start)),
       freedom_(std::move(freedom)) {
+    for (const StencilTable& table : tables_.levels) rows_.push_back(table.csr());
     make_corners(patch, cells);
 }
 
@@ -89,16 +90,6 @@ std::vector<Vec3> MovablePatch::fine(const std::vector<Vec3>& points) const {
     return fine;
 }
 
-std::vector<Vec3> MovablePatch::transposed(const std::vector<Vec3>& fine) const {
-    const double* first = &fine.front().x;
-    std::vector<double> level(first, first + 3 * fine.size());
-    for (auto table = tables_.levels.rbegin(); table != tables_.levels.rend(); ++table)
-        level = apply_transpose(*table, level, 3);
-    std::vector<Vec3> sums(points_.size());
-    for (std::size_t p = 0; p < sums.size(); ++p) sums[p] = {level[3 * p], level[3 * p + 1], level[3 * p + 2]};
-    return sums;
-}
-
 std::vector<MovablePatch::Active> MovablePatch::lacking(const std::vector<Vec3>& points) const {
     const std::vector<Vec3> x = fine(points);
     std::vector<Active> lacks;
@@ -128,36 +119,73 @@ double MovablePatch::cost(const std::vector<Vec3>& points, const std::vector<Act
     return sum;
 }
 
-// Aᵀ y, A being the change of the determinants with the points in their edges.
-std::vector<Vec3> MovablePatch::pulled(const std::vector<Active>& lacks, const std::vector<double>& by) const {
-    std::vector<Vec3> forces(tables_.points(), Vec3(0.0));
-    for (std::size_t k = 0; k < lacks.size(); ++k) {
-        const Corner& corner = corners_[lacks[k].corner];
-        for (std::size_t i = 0; i < 4; ++i) forces[corner.points[i]] += by[k] * lacks[k].gradient[i];
+// Few points are active, so their rows are multiplied out: that is cheaper than to refine the patch in each step.
+MovablePatch::ActiveMatrix MovablePatch::matrix_of(const std::vector<Active>& lacks) const {
+    ActiveMatrix made;
+    std::vector<Index> active, rows(tables_.points(), kNone);
+    for (const Active& at : lacks) {
+        auto& corner = made.corners.emplace_back();
+        for (std::size_t i = 0; i < 4; ++i) {
+            const Index p = corners_[at.corner].points[i];
+            if (rows[p] == kNone) {
+                rows[p] = static_cast<Index>(active.size());
+                active.push_back(p);
+            }
+            corner[i] = rows[p];
+        }
     }
-    std::vector<Vec3> sums = transposed(forces);
-    for (std::size_t p = 0; p < sums.size(); ++p) sums[p] *= freedom_[p].reach == 0 ? 0.0 : freedom_[p].edge;
-    return sums;
+    std::vector<double> sums(points_.size(), 0);
+    const auto add = [&](const auto& self, std::size_t level, Index point, double weight, std::vector<Index>& touched) -> void {
+        if (level == 0) {
+            if (freedom_[point].reach == 0) return;
+            if (sums[point] == 0) touched.push_back(point);
+            sums[point] += weight * freedom_[point].edge;
+            return;
+        }
+        const CsrMatrix& table = rows_[level - 1];
+        for (std::size_t k = table.offsets[point]; k < table.offsets[point + 1]; ++k) {
+            self(self, level - 1, table.columns[k], weight * table.weights[k], touched);
+        }
+    };
+    std::vector<Index> touched;
+    for (const Index p : active) {
+        touched.clear();
+        add(add, rows_.size(), p, 1, touched);
+        std::ranges::sort(touched);
+        for (const Index c : touched) {
+            const double weight = std::exchange(sums[c], 0);
+            if (weight == 0) continue;
+            made.matrix.columns.push_back(c);
+            made.matrix.weights.push_back(weight);
+        }
+        made.matrix.offsets.push_back(made.matrix.columns.size());
+    }
+    made.transpose = transpose_of(made.matrix, points_.size());
+    return made;
 }
 
-// The Gauss-Newton step, by conjugate gradients, in edges.
+// The Gauss-Newton step, by conjugate gradients, in edges. A is the change of the determinants with the points in their edges.
 std::vector<Vec3> MovablePatch::step(const std::vector<Vec3>& points, const std::vector<Active>& lacks, double weight) const {
-    std::vector<double> pull(lacks.size());
-    for (std::size_t k = 0; k < lacks.size(); ++k) pull[k] = weight * lacks[k].lack;
-    std::vector<Vec3> rest = pulled(lacks, pull);
+    const ActiveMatrix active = matrix_of(lacks);
+    const auto pulled = [&](const auto& by) {  // Aᵀ y
+        std::vector<Vec3> forces(active.matrix.offsets.size() - 1, Vec3(0.0));
+        for (std::size_t k = 0; k < lacks.size(); ++k) {
+            const double pull = weight * by(k);
+            for (std::size_t i = 0; i < 4; ++i) forces[active.corners[k][i]] += pull * lacks[k].gradient[i];
+        }
+        return product_with(active.transpose, forces);
+    };
+    std::vector<Vec3> rest = pulled([&](std::size_t k) { return lacks[k].lack; });
     for (std::size_t p = 0; p < points.size(); ++p) {
         if (freedom_[p].reach > 0) rest[p] -= freedom_[p].weight * ((points[p] - start_[p]) / freedom_[p].edge);
     }
     const auto applied = [&](const std::vector<Vec3>& to) {
-        std::vector<Vec3> world = to;
-        for (std::size_t p = 0; p < to.size(); ++p) world[p] *= freedom_[p].reach == 0 ? 0.0 : freedom_[p].edge;
-        const std::vector<Vec3> moved = fine(world);
-        std::vector<double> changes(lacks.size(), 0);
-        for (std::size_t k = 0; k < lacks.size(); ++k) {
-            const Corner& corner = corners_[lacks[k].corner];
-            for (std::size_t i = 0; i < 4; ++i) changes[k] += weight * dot(lacks[k].gradient[i], moved[corner.points[i]]);
-        }
-        std::vector<Vec3> sums = pulled(lacks, changes);
+        const std::vector<Vec3> moved = product_with(active.matrix, to);
+        std::vector<Vec3> sums = pulled([&](std::size_t k) {
+            double change = 0;
+            for (std::size_t i = 0; i < 4; ++i) change += dot(lacks[k].gradient[i], moved[active.corners[k][i]]);
+            return change;
+        });
         for (std::size_t p = 0; p < to.size(); ++p) sums[p] += freedom_[p].weight * to[p];
         return sums;
     };

@@ -58,16 +58,24 @@ private:
         std::array<Vec3, 4> gradient;
     };
 
+    /// The change of the points of active corners with the points that move, in edges.
+    ///
+    /// corners: the rows of each corner's points
+    struct ActiveMatrix {
+        CsrMatrix matrix, transpose;
+        std::vector<std::array<Index, 4>> corners;
+    };
+
     [[nodiscard]] std::vector<Vec3> fine(const std::vector<Vec3>& points) const;
-    [[nodiscard]] std::vector<Vec3> transposed(const std::vector<Vec3>& fine) const;
     [[nodiscard]] std::vector<Active> lacking(const std::vector<Vec3>& points) const;
     [[nodiscard]] double cost(const std::vector<Vec3>& points, const std::vector<Active>& lacks, double weight) const;
     [[nodiscard]] std::vector<Vec3> step(const std::vector<Vec3>& points, const std::vector<Active>& lacks,
                                          double weight) const;
-    [[nodiscard]] std::vector<Vec3> pulled(const std::vector<Active>& lacks, const std::vector<double>& by) const;
+    [[nodiscard]] ActiveMatrix matrix_of(const std::vector<Active>& lacks) const;
     void make_corners(const HexMesh& patch, const std::vector<PatchCell>& cells);
 
     RefinementTables tables_;
+    std::vector<CsrMatrix> rows_;  // of the tables
     std::vector<Vec3> points_, start_;
     std::vector<Freedom> freedom_;
     std::vector<Corner> corners_;

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "cell_parts.h"
+#include "subvol/certificate.h"
+
+namespace subvol::detail {
+
+/// How much is done for a cell.
+///
+/// Whole:   all that the options allow
+/// Verdict: the same until it is clear that the cell will stay undecided, whose open volume is then too large; cells that touch
+///          irregular edges only as far as Witness
+/// Witness: looks for folds at the corners of its children, and proves nothing
+enum class FoldEffort : std::uint8_t { Whole, Verdict, Witness };
+
+/// The checks of a mesh whose points move.
+class FoldChecker {
+public:
+    /// options: referred to
+    /// throws:  as `check_folds`
+    FoldChecker(const HexMesh& mesh, const FoldOptions& options);
+
+    /// As many new points.
+    void move(const std::vector<Vec3>& points) { mesh_.points = points; }
+
+    /// Checks some cells anew, ascending.
+    void check(std::span<const Index> cells, FoldEffort effort);
+
+    /// What the last check of a cell found.
+    [[nodiscard]] FoldVerdict verdict(Index cell) const;
+
+    /// What is known of all cells.
+    [[nodiscard]] FoldCheck found() const;
+
+private:
+    /// irregular: the volume that touches irregular edges and is not decided
+    struct CellState {
+        std::optional<FoldPlace> fold;
+        double open = 0, irregular = 0;
+        std::size_t tests = 0;
+        int deepest = 0;
+    };
+    /// A descendant of a control cell that is not decided: its number in its level.
+    struct OpenCell {
+        Index cell, control;
+        PartFrame frame;
+    };
+    struct PartResult;
+    struct Limits;
+    class Grids;
+    template <class Part>
+    [[nodiscard]] static PartResult decide_part(Part part, const Limits& limits);
+    [[nodiscard]] static std::vector<Index> with_neighbors(const HexMesh& mesh, const std::vector<OpenCell>& open);
+
+    void add(Index control, const PartResult& result, int level = 0);
+    void descend_together(const std::vector<OpenCell>& irregular, FoldEffort effort);
+    void descend(const HexMesh& mesh, const std::vector<OpenCell>& open, int level, FoldEffort effort);
+    void place(std::vector<FoldPlace>& places) const;
+
+    HexMesh mesh_;
+    const FoldOptions& options_;
+    SchemeOptions scheme_;
+    std::vector<CellState> cells_;
+};
+
+}  // namespace subvol::detail

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "subvol/stencil_table.h"
+#include "subvol/vec.h"
+
+namespace subvol::detail {
+
+[[nodiscard]] CsrMatrix transpose_of(const CsrMatrix& matrix, std::size_t columns);
+
+/// A vector for each row. cost: parallel; bitwise the same for any number of threads
+[[nodiscard]] std::vector<Vec3> product_with(const CsrMatrix& matrix, std::span<const Vec3> values);
+
+}  // namespace subvol::detail
