@@ -6,8 +6,8 @@
 #include <optional>
 
 #include "fitter.h"
+#include "refine_where.h"
 #include "subvol/error.h"
-#include "subvol/refine.h"
 #include "subvol/topology.h"
 
 namespace subvol {
@@ -57,12 +57,12 @@ Approximation approximate(const HexMesh& onto, const HexMesh& samples, const App
     HexMesh mesh = detail::prepared(onto, options);
     detail::check_samples(samples);
     for (int refined = 0;; ++refined) {
-        Approximation result = detail::Fitter(mesh, samples.points, options).fit(samples.attributes, options.progress);
+        const detail::Fitter fitter(mesh, samples.points, options);
+        Approximation result = fitter.fit(samples.attributes, options.progress);
         result.report.refined = refined;
-        const bool met = std::ranges::all_of(
-            result.report.fields, [&](const FieldError& error) { return error.max <= options.tolerance * error.range; });
-        if (met || refined == options.refine) return result;
-        mesh = refine(mesh, {.scheme = options.scheme, .levels = 1, .progress = options.progress});
+        const std::vector<std::uint8_t> beyond = fitter.cells_beyond(options.tolerance, samples.attributes, result);
+        if (refined == options.refine || std::ranges::count(beyond, 1) == 0) return result;
+        mesh = detail::refine_where(result.mesh, beyond, {.scheme = options.scheme, .progress = options.progress});
     }
 }
 

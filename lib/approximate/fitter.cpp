@@ -313,4 +313,24 @@ Approximation Fitter::fit(std::span<const Attribute> fields, Progress* progress)
     return made;
 }
 
+std::vector<std::uint8_t> Fitter::cells_beyond(double tolerance, std::span<const Attribute> fields,
+                                               const Approximation& fit) const {
+    const Located& located = parts_->located;
+    std::vector<std::uint8_t> beyond(parts_->mesh.cells.size(), 0);
+    for (std::size_t f = 0; f < fields.size(); ++f) {
+        const double enough = tolerance * fit.report.fields[f].range;
+        const auto channels = static_cast<std::size_t>(fields[f].channels);
+        for (std::size_t c = 0; c < channels; ++c) {
+            Vector x(parts_->mesh.points.size());
+            for (std::size_t p = 0; p < x.size(); ++p) x[p] = fit.mesh.attributes[f].values[p * channels + c];
+            const Vector found = parts_->limit.apply(x);
+            for (std::size_t k = 0; k < found.size(); ++k) {
+                const double wanted = fields[f].values[located.samples[k] * channels + c];
+                if (std::abs(found[k] - wanted) > enough) beyond[located.places[k].cell] = 1;
+            }
+        }
+    }
+    return beyond;
+}
+
 }  // namespace subvol::detail

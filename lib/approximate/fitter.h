@@ -34,6 +34,10 @@ public:
     /// fields: with a value for each position
     [[nodiscard]] Approximation fit(std::span<const Attribute> fields, Progress* progress) const;
 
+    /// A flag for each cell: whether a sample in it is farther from the limit than `tolerance`, a part of the field's range.
+    [[nodiscard]] std::vector<std::uint8_t> cells_beyond(double tolerance, std::span<const Attribute> fields,
+                                                         const Approximation& fit) const;
+
 private:
     struct Parts;
     std::unique_ptr<const Parts> parts_;

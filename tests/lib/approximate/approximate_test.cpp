@@ -151,6 +151,97 @@ TEST(Approximate, RefinesUntilTheSamplesAreMet) {
     EXPECT_LT(more.report.fields[0].rms, 0.3 * once.report.fields[0].rms);
 }
 
+/// A function of the world at the points of a fine mesh.
+template <class Function>
+HexMesh sampled(const HexMesh& mesh, int levels, const Function& function) {
+    HexMesh samples = refine(mesh, {.levels = levels});
+    samples.attributes = {{.name = "f", .channels = 1, .values = {}}};
+    for (const Vec3& x : samples.points) samples.attributes[0].values.push_back(function(x));
+    return samples;
+}
+
+TEST(Approximate, SplitsSheetsAcrossAFrontAlone) {
+    const HexMesh box = make_box(6, 5, 4);
+    const HexMesh samples = sampled(box, 2, [](const Vec3& x) { return std::tanh(4 * (x.x - 3)); });
+    const Approximation made = approximate(box, samples, {.refine = 2, .tolerance = 0.03});
+    EXPECT_LE(made.report.fields[0].max, 0.03 * made.report.fields[0].range);
+    EXPECT_EQ(made.mesh.cells.size() % 20, 0U);  // 5 × 4 columns of cells as before, with more cells in each
+    EXPECT_GT(made.mesh.cells.size(), box.cells.size());
+    EXPECT_LT(made.mesh.cells.size(), 4 * box.cells.size());
+    std::vector<double> sizes;  // along x, of the cells of a column: they change step by step
+    for (const auto& cell : made.mesh.cells) {
+        const Vec3 lower = made.mesh.points[cell[0]];
+        if (lower.y < 0.5 && lower.z < 0.5) sizes.push_back(made.mesh.points[cell[1]].x - lower.x);
+    }
+    for (std::size_t k = 1; k < sizes.size(); ++k) {
+        EXPECT_LT(sizes[k] / sizes[k - 1], 1.8);
+        EXPECT_GT(sizes[k] / sizes[k - 1], 1 / 1.8);
+    }
+    const Box before = bounds(box), after = bounds(made.mesh);
+    EXPECT_NEAR(glm::distance(before.lower, after.lower) + glm::distance(before.upper, after.upper), 0, 1e-12);
+}
+
+TEST(Approximate, KeepsTheShapeWhereItRefines) {
+    HexMesh arc = make_box(6, 3, 3);
+    for (Vec3& x : arc.points) x = {(7 - x.y) * std::cos(x.x / 4), (7 - x.y) * std::sin(x.x / 4), x.z};
+    const HexMesh samples = sampled(arc, 2, [](const Vec3& x) { return std::tanh(6 * (std::atan2(x.y, x.x) - 0.7)); });
+    for (const Scheme scheme : {Scheme::Mcq, Scheme::CatmullClark}) {
+        const SchemeOptions with{.kind = scheme};
+        const auto limit = [&](const HexMesh& mesh) { return on_limit(refine(mesh, {.scheme = with, .levels = 3}), scheme); };
+        const auto volume = [](const HexMesh& mesh) {
+            double sum = 0;
+            for (const auto& cell : mesh.cells) {
+                std::array<Vec3, 8> corners;
+                for (std::size_t c = 0; c < 8; ++c) corners[c] = mesh.points[cell[c]];
+                sum += cell_volume(corners);
+            }
+            return sum;
+        };
+        const Approximation made = approximate(arc, samples, {.scheme = with, .reach = 0.1, .refine = 1, .tolerance = 0.02});
+        EXPECT_GT(made.mesh.cells.size(), arc.cells.size());
+        EXPECT_LT(made.mesh.cells.size(), 2 * arc.cells.size());
+        const HexMesh before = limit(arc), after = limit(made.mesh);
+        EXPECT_NEAR(volume(after), volume(before), 2e-3 * volume(before)) << name_of(scheme);
+        const Box a = bounds(before), b = bounds(after);
+        EXPECT_LT(glm::distance(a.lower, b.lower) + glm::distance(a.upper, b.upper), 0.01 * a.diagonal()) << name_of(scheme);
+    }
+}
+
+TEST(Approximate, SharpFacesAndCreasesFollowTheSplits) {
+    HexMesh box = make_box(6, 3, 3);
+    const Topology topology = build_topology(box);
+    for (Index f = 0; f < topology.faces.size(); ++f) {
+        const auto& face = topology.faces[f];
+        if (std::ranges::all_of(face, [&](Index p) { return box.points[p].x == 2; })) box.sharp_faces.push_back(face);
+    }
+    for (Index e = 0; e < topology.edges.size(); ++e) {
+        const auto& [a, b] = topology.edges[e];
+        if (topology.edge_on_boundary[e] != 0 && box.points[a].z == 3 && box.points[b].z == 3 && box.points[a].y == 1 &&
+            box.points[b].y == 1) {
+            box.creases.push_back({a, b});
+        }
+    }
+    ASSERT_EQ(box.sharp_faces.size(), 9U);
+    ASSERT_EQ(box.creases.size(), 6U);
+    const HexMesh samples = sampled(box, 2, [](const Vec3& x) { return std::tanh(6 * (x.x - 3) + 6 * (x.y - 1.5)); });
+    const Approximation made = approximate(box, samples, {.refine = 1, .tolerance = 0.01});
+    // Each layer of cells between two values of x, y and z; a crease goes along x, the sharp faces along y and z.
+    const auto layers = [&](int axis) {
+        std::size_t count = 0;
+        for (const auto& [a, b] : build_topology(made.mesh).edges) {
+            const Vec3 &p = made.mesh.points[a], &q = made.mesh.points[b];
+            const int other = (axis + 1) % 3, third = (axis + 2) % 3;
+            count += p[other] == 0 && q[other] == 0 && p[third] == 0 && q[third] == 0;
+        }
+        return count;
+    };
+    EXPECT_GT(layers(0), 6U);
+    EXPECT_GT(layers(1), 3U);
+    EXPECT_EQ(made.mesh.cells.size(), layers(0) * layers(1) * layers(2));
+    EXPECT_EQ(made.mesh.creases.size(), layers(0));
+    EXPECT_EQ(made.mesh.sharp_faces.size(), layers(1) * layers(2));
+}
+
 TEST(Approximate, SmoothingMakesNeighborsAlike) {
     const HexMesh box = make_box(4, 4, 4);
     const Scattered data = scattered(box, 2000, 8);
@@ -185,7 +276,10 @@ TEST(Approximate, AnyNumberOfThreads) {
     const Scattered data = scattered(control, 800, 2);
     const auto fitted = [&](std::size_t threads) {
         const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
-        return approximate(control, data.samples).mesh.attributes[0].values;
+        const Approximation made = approximate(control, data.samples, {.refine = 1, .tolerance = 0.2});
+        std::vector<double> all = made.mesh.attributes[0].values;
+        for (const Vec3& x : made.mesh.points) all.insert(all.end(), {x.x, x.y, x.z});
+        return all;
     };
     EXPECT_EQ(fitted(1), fitted(4));
 }

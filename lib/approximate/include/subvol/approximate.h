@@ -19,7 +19,8 @@ namespace subvol {
 /// smoothing:  the weight of the differences along edges, in the usual weight of the samples about a control point; with 0 only
 ///             control values that samples hardly decide have it
 /// iterations: the most steps of the search, for each channel
-/// refine:     the control mesh is refined up to so often while the samples are not met within `tolerance`
+/// refine:     the control mesh is refined up to so often where the samples are not met within `tolerance`: whole sheets of
+///             its cells are split, across the directions in which the fields bend there
 /// tolerance:  the largest error that is good enough, as a part of the range of the samples
 /// names:      how errors call the options
 struct ApproximateOptions {

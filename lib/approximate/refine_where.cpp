@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "refine_where.h"
+
+#include <algorithm>
+
+#include "least_squares.h"
+#include "sheets.h"
+#include "subvol/cell.h"
+#include "subvol/topology.h"
+
+namespace subvol::detail {
+
+namespace {
+
+std::vector<double> coordinates(const std::vector<Vec3>& points, int axis) {
+    std::vector<double> values;
+    for (const Vec3& point : points) values.push_back(point[axis]);
+    return values;
+}
+
+}  // namespace
+
+HexMesh refine_where(const HexMesh& given, std::span<const std::uint8_t> cells, const RefineOptions& options) {
+    const HexMesh mesh = without_unused_points(given);
+    RefineOptions once = options;
+    once.levels = 1;
+    const Topology before = build_topology(mesh);
+    const std::vector<std::uint8_t> edges = edges_to_split(mesh, before, cells);
+    if (std::ranges::count(edges, 0) == 0) {
+        HexMesh bare = mesh;
+        bare.attributes.clear();
+        return refine(bare, once);
+    }
+    SplitMesh split = split_sheets(mesh, before, edges, options);
+    const Topology after = build_topology(split.mesh);
+    const std::vector<LimitQuery> wanted_places = graded_places(split, after);
+    std::vector<LimitQuery> corners(after.point_count);
+    for (Index c = 0; c < after.cells.size(); ++c) {
+        for (std::size_t k = 0; k < 8; ++k) {
+            const auto& at = kCornerParameters[k];
+            corners[after.cells[c][k]] = {c, Vec3(at[0], at[1], at[2])};
+        }
+    }
+    RefineOptions fine = once;
+    fine.levels = 2;  // of the old limit, between whose points its places lie
+    const LimitMatrix old_limit(before, fine, wanted_places), new_limit(after, once, corners);
+    const WeightedDifferences none;
+    const LeastSquares fit(new_limit, none);
+    for (int axis = 0; axis < 3; ++axis) {
+        const std::vector<double> wanted = old_limit.apply(coordinates(mesh.points, axis));
+        std::vector<double> x = wanted;
+        constexpr int kSteps = 200;  // none with a scheme that interpolates
+        (void)fit.solve(wanted, x, kSteps, options.progress);
+        for (std::size_t p = 0; p < x.size(); ++p) split.mesh.points[p][axis] = x[p];
+    }
+    return std::move(split.mesh);
+}
+
+}  // namespace subvol::detail
