@@ -5,19 +5,26 @@
 #include <filesystem>
 #include <map>
 
+#include "input.h"
 #include "study_input.h"
 #include "study_work.h"
+#include "subvol/approximate.h"
 #include "subvol/cell.h"
 #include "subvol/detail/atomic_file.h"
 #include "subvol/error.h"
 #include "subvol/field_metrics.h"
 #include "subvol/field_places.h"
+#include "subvol/hierarchy.h"
 #include "subvol/limit.h"
+#include "subvol/limit_field.h"
 #include "subvol/mesh_field.h"
+#include "subvol/mesh_io.h"
 #include "subvol/points_field.h"
+#include "subvol/points_io.h"
 #include "subvol/reduce.h"
 #include "subvol/sample.h"
 #include "subvol/vdb_grid.h"
+#include "subvol/wavelet_file.h"
 #include "vdb_functions.h"
 
 namespace subvol::cli {
@@ -64,14 +71,23 @@ FieldSamples places_of(const StudyCase& item, const HexMesh& mesh) {
     return places;
 }
 
+/// Puts the error at the places, in the field's unit and in parts of the range of the mesh's values.
+void put_errors(double rmse, double max, std::size_t uncovered, const HexMesh& mesh, CaseResult& result) {
+    result.metrics["rmse"] = rmse;
+    result.metrics["max"] = max;
+    result.metrics["uncovered"] = static_cast<double>(uncovered);
+    const Range range = field_range(mesh);
+    if (range.max <= range.min) return;
+    result.metrics["rmse_of_range"] = rmse / (range.max - range.min);
+    result.metrics["max_of_range"] = max / (range.max - range.min);
+}
+
 CaseResult field_case(const StudyCase& item, const HexMesh& mesh) {
     CaseResult result;
     RbfVolume volume = sample_rbf_points(mesh, study_sampling(item, mesh)).volume;
     if (item.flag("every_second")) volume = every_second(std::move(volume), coarse_points(item));
     const ErrorAtSamples error = error_at_samples(volume, places_of(item, mesh));
-    result.metrics["rmse"] = error.rmse;
-    result.metrics["max"] = error.max_abs;
-    result.metrics["uncovered"] = static_cast<double>(error.uncovered);
+    put_errors(error.rmse, error.max_abs, error.uncovered, mesh, result);
     result.metrics["kernels"] = static_cast<double>(volume.size());
     result.metrics["spacing"] = item.flag("every_second") ? 2 : 1 / item.number("per_edge");  // in cells
     return result;
@@ -102,17 +118,87 @@ CaseResult volume_case(const StudyCase& item, const HexMesh& mesh) {
     return result;
 }
 
+double bytes_of(const detail::TemporaryFile& file) {
+    return static_cast<double>(std::filesystem::file_size(file.path()));
+}
+
 CaseResult voxels_case(const StudyCase& item, const HexMesh& mesh) {
     CaseResult result;
     const VdbGrid grid = study_grid(item, mesh, result);
     const FieldDifference errors =
         compare_field({.value = [&](const Vec3& x) { return grid.value(x); }}, places_of(item, mesh));
-    result.metrics["rmse"] = errors.l2;
-    result.metrics["max"] = errors.linf;
-    result.metrics["uncovered"] = static_cast<double>(errors.uncovered);
+    put_errors(errors.l2, errors.linf, errors.uncovered, mesh, result);
     const detail::TemporaryFile file("grid.vdb");
     vdb().write_vdb(file.path(), std::span(&grid, 1), VdbCompression::Blosc);
-    result.metrics["file_bytes"] = static_cast<double>(std::filesystem::file_size(file.path()));
+    result.metrics["file_bytes"] = bytes_of(file);
+    return result;
+}
+
+/// The error of the limit of another mesh's first field.
+void put_limit_errors(const StudyCase& item, const HexMesh& mesh, const HexMesh& other, CaseResult& result) {
+    constexpr double kPart = 1e-4;  // of the diagonal and of the range: the floor of the errors
+    const LimitField limit(other, other.attributes.front().name, {},
+                           LimitCellsOptions{.position_world = kPart * bounds(mesh).diagonal(), .value_of_range = kPart});
+    const FieldDifference errors = compare_field(view_of(limit), places_of(item, mesh));
+    put_errors(errors.l2, errors.linf, errors.uncovered, mesh, result);
+}
+
+/// A control mesh with its values: its control points, the bytes of its file, the error of its limit.
+CaseResult control_mesh_case(const StudyCase& item, const HexMesh& mesh, const HexMesh& control) {
+    CaseResult result;
+    put_limit_errors(item, mesh, control, result);
+    result.metrics["kernels"] = static_cast<double>(control.points.size());
+    const detail::TemporaryFile file("mesh.vtu");
+    write_mesh(file.path(), control);
+    result.metrics["file_bytes"] = bytes_of(file);
+    return result;
+}
+
+CaseResult mesh_case(const StudyCase& item, const HexMesh& mesh) {
+    return control_mesh_case(item, mesh, mesh);
+}
+
+HexMesh coarser_mesh(const StudyCase& item, const HexMesh& mesh) {
+    if (item.has("onto")) return without_unused_points(read_mesh(item.text("onto")).mesh);
+    const int levels = item.whole("coarser");
+    MeshHierarchy hierarchy = find_hierarchy(mesh, {.levels = levels});
+    if (hierarchy.levels == levels) return std::move(hierarchy.coarse);
+    throw Error(ErrorCode::InvalidInput, "the mesh cannot be made so much coarser", "coarser",
+                "at most " + std::to_string(hierarchy.levels));
+}
+
+CaseResult approximate_case(const StudyCase& item, const HexMesh& mesh) {
+    ApproximateOptions options;
+    set_options(item, options_of(options));
+    return control_mesh_case(item, mesh, approximate(coarser_mesh(item, mesh), mesh, options).mesh);
+}
+
+CaseResult wavelets_case(const StudyCase& item, const HexMesh& mesh) {
+    CaseResult result;
+    WaveletFileOptions options;
+    set_options(item, options_of(options));
+    const detail::TemporaryFile file("mesh.svw");
+    const WaveletFileReport report = write_wavelet_file(file.path(), mesh, options);
+    put_limit_errors(item, mesh, read_mesh(file.path()).mesh, result);
+    result.metrics["kernels"] = static_cast<double>(report.arrays.back().kept);
+    result.metrics["file_bytes"] = bytes_of(file);
+    return result;
+}
+
+CaseResult reduce_case(const StudyCase& item, const HexMesh& mesh) {
+    CaseResult result;
+    ReduceOptions options;
+    set_options(item, options_of(options));
+    const Range range = field_range(mesh);
+    options.rmse = item.number("target") * (range.max - range.min);
+    RbfVolume volume = reduce_rbf(mesh, mesh.attributes.front().name, options).volume;
+    const ErrorAtSamples error = error_at_samples(volume, places_of(item, mesh));
+    put_errors(error.rmse, error.max_abs, error.uncovered, mesh, result);
+    result.metrics["kernels"] = static_cast<double>(volume.size());
+    volume.boundary = {};  // not counted
+    const detail::TemporaryFile file("kernels.ply");
+    write_points(file.path(), volume);
+    result.metrics["file_bytes"] = bytes_of(file);
     return result;
 }
 
@@ -166,7 +252,9 @@ CaseResult counts_case(const StudyCase& item, const HexMesh& mesh) {
 using FieldCase = CaseResult (*)(const StudyCase&, const HexMesh&);
 
 const std::map<std::string, FieldCase> kFieldCases{
-    {"field", field_case}, {"volume", volume_case}, {"voxels", voxels_case}, {"values", values_case}, {"counts", counts_case}};
+    {"field", field_case},       {"volume", volume_case}, {"voxels", voxels_case}, {"approximate", approximate_case},
+    {"wavelets", wavelets_case}, {"reduce", reduce_case}, {"mesh", mesh_case},     {"values", values_case},
+    {"counts", counts_case}};
 
 }  // namespace
 

@@ -14,11 +14,13 @@ namespace {
 
 constexpr std::string_view kPictures = "pictures", kFloor = "floor_", kParameter = "parameter.";
 constexpr std::string_view kKernels = "splat sheets footprints";
+constexpr std::string_view kMeshes = "pictures field volume voxels approximate wavelets reduce mesh values counts";
+constexpr std::string_view kAtPlaces = "field voxels approximate wavelets reduce mesh";
 
 // Methods that draw come first; a key may have several rows.
 constexpr std::array kMeasures{
-    StudyMeasure{"points", "pictures field volume voxels values counts", "control points", "control points of the mesh"},
-    StudyMeasure{"cells", "pictures field volume voxels values counts", "cells", "cells of the mesh"},
+    StudyMeasure{"points", kMeshes, "control points", "control points of the mesh"},
+    StudyMeasure{"cells", kMeshes, "cells", "cells of the mesh"},
     StudyMeasure{"primitives", kPictures, "primitives", "what is drawn: kernels, tetrahedra, micro-cells or voxels"},
     StudyMeasure{"kernels", kKernels, "kernels", "kernels that are drawn"},
     StudyMeasure{"sampled", kKernels, "kernels", "kernels before invisible ones were dropped"},
@@ -35,11 +37,18 @@ constexpr std::array kMeasures{
     StudyMeasure{"grid_bytes", "grid voxels", "memory of the grid, bytes", "bytes of the grid in memory"},
     StudyMeasure{"voxel_size", "grid voxels", "voxel size", "size of a voxel in the world"},
     StudyMeasure{"file_bytes", "voxels", "file size, bytes", "bytes of the .vdb file"},
-    StudyMeasure{"rmse", "field voxels", "RMSE of the field", "root mean square difference from the limit at the places"},
-    StudyMeasure{"max", "field voxels", "largest error of the field", "largest difference from the limit at the places"},
-    StudyMeasure{"uncovered", "field volume voxels", "places without a value",
+    StudyMeasure{"file_bytes", "approximate mesh", "file size, bytes", "bytes of the control mesh as a .vtu file (zlib)"},
+    StudyMeasure{"file_bytes", "wavelets", "file size, bytes", "bytes of the .svw file"},
+    StudyMeasure{"file_bytes", "reduce", "file size, bytes", "bytes of the kernels as a .ply file, without the boundary"},
+    StudyMeasure{"rmse", kAtPlaces, "RMSE of the field", "root mean square difference from the limit at the places"},
+    StudyMeasure{"max", kAtPlaces, "largest error of the field", "largest difference from the limit at the places"},
+    StudyMeasure{"rmse_of_range", kAtPlaces, "RMSE, parts of the range", "rmse / range of the mesh's values"},
+    StudyMeasure{"max_of_range", kAtPlaces, "largest error, parts of the range", "max / range of the mesh's values"},
+    StudyMeasure{"uncovered", "field volume voxels approximate wavelets reduce mesh", "places without a value",
                  "places without a value, which the errors leave out"},
-    StudyMeasure{"kernels", "field volume counts", "kernels", "kernels"},
+    StudyMeasure{"kernels", "field volume reduce counts", "kernels", "kernels"},
+    StudyMeasure{"kernels", "approximate mesh", "kernels", "control points of the mesh that has the values"},
+    StudyMeasure{"kernels", "wavelets", "kernels", "control values and details of the field that are not 0"},
     StudyMeasure{"spacing", "field", "spacing, cells", "distance of kernels in cells"},
     StudyMeasure{"l1", "volume", "L1 error of the field", "mean absolute difference of the fields"},
     StudyMeasure{"l2", "volume", "L2 error of the field", "root mean square difference of the fields"},

@@ -3,11 +3,14 @@
 #include <utility>
 
 #include "study_keys.h"
+#include "subvol/approximate.h"
 #include "subvol/detail/near_name.h"
 #include "subvol/detail/printable.h"
 #include "subvol/fit_kernel.h"
+#include "subvol/reduce.h"
 #include "subvol/refine.h"
 #include "subvol/sample.h"
+#include "subvol/wavelet_file.h"
 
 namespace subvol {
 
@@ -142,6 +145,11 @@ const std::vector<StudyMethod>& own_methods() {
                 {"field", Fields, kernels + places + Keys{flag("every_second")}},
                 {"volume", Fields, kernels + volume},
                 {"voxels", Fields, Keys{resolution, half} + places},
+                {"approximate", Fields,
+                 Keys{whole("coarser", 1, 10), Key{"onto"}, described<ApproximateOptions>("smoothing")} + places},
+                {"wavelets", Fields, Keys{described<WaveletFileOptions>("tolerance", 1e-3)} + places},
+                {"reduce", Fields, Keys{number("target", 0, 1, 1e-2), described<ReduceOptions>("move")} + places},
+                {"mesh", Fields, places},
                 {"values", Fields, {choice("rule", {"paper", "cubic", "samples"}), kernel("paper_bc")}},
                 {"counts", Fields, {described<SampleOptions>("per_edge", 1.0)}},
                 {"errors", Kernels, {kernel("gaussian")}},

@@ -113,6 +113,7 @@ private:
                 values["study"] = study.name;
                 if (method.needs_view()) values.insert(common.begin(), common.end());
                 if (method.name == "file") add_file(values, in(path, "file"));
+                if (method.name == "approximate") add_onto(values, path);
                 check_exact(method, values, path);
                 study.cases.push_back(named_case(std::move(values), swept));
             }
@@ -137,6 +138,18 @@ private:
                 "of `render` has it in its header");
         }
         if (as_text(values["file.camera.content"]).empty()) values["file.camera"] = in_header;
+    }
+
+    /// The control mesh of a file.
+    void add_onto(StudyValues& values, const std::string& path) const {
+        const bool named = values.contains("onto");
+        if (named == values.contains("coarser")) refuse(path, "the control mesh is given by either 'coarser' or 'onto'");
+        if (!named) return;
+        const fs::path file = as_text(values.at("onto"));
+        const std::string whole = (file.is_absolute() ? file : file_.parent_path() / file).lexically_normal().string();
+        values["onto"] = whole;
+        values["onto.content"] = content_of(whole, in(path, "onto"));
+        if (as_text(values["onto.content"]).empty()) refuse(in(path, "onto"), "'" + printable(whole) + "' cannot be read");
     }
 
     /// Closed forms are those of generated models, with the field that they come with.

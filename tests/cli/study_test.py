@@ -253,6 +253,61 @@ class Study(StudyFolder):
         # Second order inside; first order at the boundary, where voxels have neighbours on one side only.
         self.assertLess(float(fine["rmse"]), float(coarse["rmse"]) / 1.5)
 
+    def test_bytes_and_kernels_against_the_error_of_one_field(self):
+        places = {"places": 2000}
+        methods = [{"method": "mesh"} | places, {"method": "approximate", "coarser": [1, 2]} | places, {"method": "wavelets", "tolerance": [1e-4, 1e-2]} | places,
+                   {"method": "reduce", "target": [0.01, 0.05]} | places, {"method": "voxels", "resolution": [40, 20]} | places]
+        columns = ["kernels", "voxels", "file_bytes", "rmse_of_range", "max_of_range"]
+        self.write(SMALL | FIELDS | {"methods": methods, "inputs": [{"model": "ball", "resolution": 2, "refine": 2, "density": "2 + sin(3*x)*cos(2*y)"}],
+                                     "tables": [{"rows": ["label", "coarser", "tolerance", "target", "resolution"], "columns": columns}]})
+        (table,) = self.run_ok("study", "s.json", "-o", "out", "--json").json()["tables"]
+        self.assertEqual(len(table["rows"]), 9)
+        by = {}
+        for row in csv.DictReader((self.folder / "out/small/results.csv").read_text().splitlines()):
+            by.setdefault(row["method"], []).append({key: float(row[key]) for key in [*columns, "rmse", "max", "uncovered", "points"] if row[key]})
+        (mesh,) = by["mesh"]
+        self.assertEqual(mesh["kernels"], mesh["points"])
+        self.assertLess(mesh["max_of_range"], 1e-3)  # of its own limit: as far as figures are known
+        for method, rows in by.items():
+            for row in rows:
+                self.assertLessEqual(row["rmse"], row["max"], method)
+                self.assertAlmostEqual(row["rmse"] / row["rmse_of_range"], row["max"] / row["max_of_range"], delta=1e-6)
+            if method != "voxels":
+                self.assertEqual([row["uncovered"] for row in rows if row["uncovered"] > 20], [], method)  # a few of the boundary
+            for fine, coarse in zip(rows, rows[1:]):
+                self.assertLess(coarse["file_bytes"], fine["file_bytes"], method)
+                self.assertLess(fine["rmse_of_range"], coarse["rmse_of_range"], method)
+        self.assertLess(mesh["rmse_of_range"], by["approximate"][0]["rmse_of_range"])
+        self.assertLess(by["approximate"][0]["file_bytes"], mesh["file_bytes"] / 3)  # an eighth of the points
+        self.assertLess(by["wavelets"][0]["rmse_of_range"], 2e-4)
+
+    def test_a_limit_of_a_coarser_mesh_is_found_again(self):
+        methods = [{"method": "approximate", "label": "coarser", "coarser": 2, "places": 2000}, {"method": "approximate", "label": "onto", "onto": "coarse.vtu", "places": 2000}]
+        self.run_ok("subdivide", "model:ball:2", "-o", "coarse.vtu", "--levels", 0)
+        self.write(SMALL | FIELDS | {"methods": methods, "tables": [{"rows": "label", "columns": "rmse"}], "inputs": [{"model": "ball", "resolution": 2, "refine": 2}]})
+        self.run_ok("study", "s.json", "-o", "out")
+        for row in csv.DictReader((self.folder / "out/small/results.csv").read_text().splitlines()):
+            self.assertLess(float(row["rmse_of_range"]), 1e-4)  # as far as figures are known
+            self.assertLess(float(row["max_of_range"]), 1e-3)
+            self.assertLess(20 * float(row["kernels"]), float(row["points"]))
+
+    def test_a_control_mesh_that_cannot_be_is_said(self):
+        for method, says in (
+            ({"method": "approximate"}, "methods[0]: the control mesh is given by either 'coarser' or 'onto'"),
+            ({"method": "approximate", "coarser": 1, "onto": "s.json"}, "methods[0]: the control mesh is given by either"),
+            ({"method": "approximate", "coarser": 0}, "methods[0].coarser: 0 is out of range"),
+            ({"method": "approximate", "onto": "no.vtu"}, "methods[0].onto: 'no.vtu' cannot be read"),
+            ({"method": "wavelets", "tolerance": 0}, "methods[0].tolerance: "),
+            ({"method": "reduce", "target": 0}, "methods[0].target: 0 is out of range"),
+        ):
+            done = subvol("study", self.write(SMALL | FIELDS | {"methods": [method]}), "-o", "out", folder=self.folder)
+            self.assertEqual((done.code, done.err.count("\n")), (2, 1), done.err)
+            self.assertIn(says, done.err)
+        self.write(SMALL | FIELDS | {"methods": [{"method": "approximate", "coarser": 4}], "tables": [{"rows": "label", "columns": "rmse"}], "inputs": [{"model": "ball", "resolution": 2, "refine": 1}]})
+        done = subvol("study", "s.json", "-o", "out", folder=self.folder)
+        self.assertEqual(done.code, 1)  # the case fails, as only the mesh itself says how coarse it can be
+        self.assertIn("cannot be made so much coarser", done.err)
+
 
 class StudyAgain(StudyFolder):
     """Other numbers of jobs, and runs that were killed."""
