@@ -42,17 +42,17 @@ void add_mesh_options(CLI::App& app, CommonOptions& options) {
 
 void add_common_options(CLI::App& app, CommonOptions& options, Reads reads) {
     const std::string group = "Common options";
-    const std::string of_meshes = reads == Reads::Meshes ? "Reading meshes" : "";
-    auto* field = app.add_option(
-        "--field", options.field,
-        "the field to use, or a quantity such as U.x, mises(S) or grad(T) (default: a physical scalar, else the first "
-        "scalar, stress or vector, else density 1)");
-    field->group(of_meshes)->type_name("EXPR");
-    app.add_option("--density", options.density, "an expression in x, y, z to use as the field, e.g. \"sin(3*x)+z\"")
-        ->group(of_meshes)
-        ->type_name("EXPR")
-        ->excludes(field);
     if (reads == Reads::Meshes) {
+        const std::string of_meshes = "Reading meshes";
+        auto* field = app.add_option(
+            "--field", options.field,
+            "the field to use, or a quantity such as U.x, mises(S) or grad(T) (default: a physical scalar, else the first "
+            "scalar, stress or vector, else density 1)");
+        field->group(of_meshes)->type_name("EXPR");
+        app.add_option("--density", options.density, "an expression in x, y, z to use as the field, e.g. \"sin(3*x)+z\"")
+            ->group(of_meshes)
+            ->type_name("EXPR")
+            ->excludes(field);
         app.add_option(
                "--warp", options.warp,
                "move the points by this vector field, times a factor; auto: the longest becomes a tenth of the box's diagonal")

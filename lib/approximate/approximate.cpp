@@ -25,7 +25,7 @@ std::vector<Option> options_of(ApproximateOptions& options) {
             Option("iterations", options.iterations).between(1, 100000).help("N", "the most steps of the search"),
             Option("refine", options.refine)
                 .between(0, 6)
-                .help("N", "refine the control mesh up to N times while the samples are not met within --tolerance"),
+                .help("N", "refine the control mesh up to N times, where the samples are not met within --tolerance"),
             Option("tolerance", options.tolerance)
                 .between(0, 1)
                 .only_with("refine")
