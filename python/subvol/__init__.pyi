@@ -43,7 +43,7 @@ def approximate(
     reach:       samples outside count at the nearest place up to R times the box's diagonal away [0 to 1]
     smoothing:   the weight of the differences along edges: for samples with noise [0 to 1e+06]
     iterations:  the most steps of the search [1 to 100000]
-    refine:      refine the control mesh up to N times while the samples are not met within tolerance [0 to 6]
+    refine:      refine the control mesh up to N times, where the samples are not met within tolerance [0 to 6]
     tolerance:   an error that is good enough, as a part of the range [0 to 1; with refine]
     """
 

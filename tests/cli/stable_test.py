@@ -19,7 +19,7 @@ COMPONENTS = ("lib", "vdb", "render", "compare", "view")
 
 # A command for each kind of figures; in one folder, one after the other.
 COMMANDS = [
-    "model twist --resolution 3 --density x+y*z -o twist.vtu", "info twist.vtu", "subdivide twist.vtu -o fine.vtu",
+    "model twist --resolution 3 -o twist.vtu", "info twist.vtu", "subdivide twist.vtu -o fine.vtu",
     "points twist.vtu -o twist.svk", "info twist.svk", "points fine.vtu -o fine.svw --wavelet-tolerance 1e-3",
     "points twist.vtu -o steps.svw --max-error 1e-3",
     "vdb twist.vtu -o twist.vdb --resolution 16", "info twist.vdb", "render twist.vtu -o a.exr --size 16x16 --backend cpu",

@@ -18,6 +18,7 @@ SLIPS = [
     (["render", "model:ball", "-o", "a.png", "--heatmap", "b.png"], "render has no such option; it is one of compare"),
     (["render", "model:ball", "-size", "8", "-o", "a.png"], "did you mean --size?"),
     (["fit", "--weld"], "--weld: fit has no such option; it is one of info"),
+    (["model", "ball", "--density", "x"], "--density: model has no such option; it is one of info"),
     (["render", "model:ball", "-o", "a.png", "--method", "tetz"], "'tetz' is unknown: did you mean tets?"),
     (["render", "model:ball", "-o", "a.png", "--tf", "virids"], "did you mean viridis?"),
     (["render", "model:ball", "-o", "a.png", "--look", "sold"], "did you mean solid?"),
