@@ -253,24 +253,28 @@ SplitMesh split_sheets(const HexMesh& mesh, const Topology& topology, std::span<
 std::vector<LimitQuery> graded_places(const SplitMesh& split, const Topology& topology) {
     const Grading grading(split, topology);
     std::vector<LimitQuery> places(topology.point_count, LimitQuery{kNone, Vec3(0.0)});
+    std::vector<std::uint8_t> settled(topology.point_count, 0);
     for (Index c = 0; c < topology.cells.size(); ++c) {
         const CellPart& part = split.parts[c];
         for (std::size_t corner = 0; corner < 8; ++corner) {
-            LimitQuery& place = places[topology.cells[c][corner]];
-            if (place.cell != kNone) continue;
+            const Index point = topology.cells[c][corner];
+            if (settled[point] != 0) continue;
             // The cell into which the point moves along all three edges: at a point that stays, the first one.
-            Vec3 at(0.0);
-            bool inwards = true;
+            Vec3 ways(0.0);
             for (std::size_t e = 0; e < kCellEdges.size(); ++e) {
-                const auto& ends = kCellEdges[e];
-                if (ends[0] != corner && ends[1] != corner) continue;
-                const double way = grading.way_along(topology.cell_edges[c][e], topology.cells[c][corner]);
-                inwards = inwards && way >= 0;
                 const auto a = static_cast<int>(e / 4);
-                const double in_part = std::min(way / part.size[a], 0.9);
-                at[a] = ends[0] == corner ? in_part : 1 - in_part;
+                if (kCellEdges[e][0] == corner || kCellEdges[e][1] == corner)
+                    ways[a] = grading.way_along(topology.cell_edges[c][e], point) / part.size[a];
             }
-            if (inwards) place = {part.parent, part.lower + part.size * at};
+            const bool inwards = std::min({ways.x, ways.y, ways.z}) >= 0;
+            if (places[point].cell != kNone && !inwards) continue;
+            settled[point] = inwards ? 1 : 0;
+            const auto& at = kCornerParameters[corner];
+            const Vec3 lower(at[0], at[1], at[2]);
+            constexpr double kMost = 0.9;
+            const Vec3 in_part =
+                inwards ? glm::mix(glm::min(ways, Vec3(kMost)), 1.0 - glm::min(ways, Vec3(kMost)), lower) : lower;
+            places[point] = {part.parent, part.lower + part.size * in_part};
         }
     }
     return places;
