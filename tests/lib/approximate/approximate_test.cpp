@@ -9,6 +9,7 @@
 
 #include "lib/temp_folder.h"
 #include "lib/test_meshes.h"
+#include "lib/volume_of.h"
 #include "subvol/approximate.h"
 #include "subvol/approximator.h"
 #include "subvol/model.h"
@@ -188,20 +189,12 @@ TEST(Approximate, KeepsTheShapeWhereItRefines) {
     for (const Scheme scheme : {Scheme::Mcq, Scheme::CatmullClark}) {
         const SchemeOptions with{.kind = scheme};
         const auto limit = [&](const HexMesh& mesh) { return on_limit(refine(mesh, {.scheme = with, .levels = 3}), scheme); };
-        const auto volume = [](const HexMesh& mesh) {
-            double sum = 0;
-            for (const auto& cell : mesh.cells) {
-                std::array<Vec3, 8> corners;
-                for (std::size_t c = 0; c < 8; ++c) corners[c] = mesh.points[cell[c]];
-                sum += cell_volume(corners);
-            }
-            return sum;
-        };
         const Approximation made = approximate(arc, samples, {.scheme = with, .reach = 0.1, .refine = 1, .tolerance = 0.02});
         EXPECT_GT(made.mesh.cells.size(), arc.cells.size());
         EXPECT_LT(made.mesh.cells.size(), 2 * arc.cells.size());
         const HexMesh before = limit(arc), after = limit(made.mesh);
-        EXPECT_NEAR(volume(after), volume(before), 2e-3 * volume(before)) << name_of(scheme);
+        const double volume = test::volume_of(before);
+        EXPECT_NEAR(test::volume_of(after), volume, 2e-3 * volume) << name_of(scheme);
         const Box a = bounds(before), b = bounds(after);
         EXPECT_LT(glm::distance(a.lower, b.lower) + glm::distance(a.upper, b.upper), 0.01 * a.diagonal()) << name_of(scheme);
     }

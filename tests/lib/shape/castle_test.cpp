@@ -6,6 +6,7 @@
 
 #include <random>
 
+#include "lib/volume_of.h"
 #include "shape_fitter.h"
 #include "subvol/mesh_report.h"
 #include "subvol/topology.h"
@@ -94,18 +95,7 @@ TEST(WithLayer, LeavesCellsOneSideAtTheBoundaryAndKeepsThemSound) {
     }
     EXPECT_EQ(mesh.cells.size(), cubes.cells.size() + sides);
     EXPECT_GT(measure_cells(mesh).min_scaled_jacobian, 0.2);
-    double volume = 0, before = 0;
-    const auto sum = [](const HexMesh& of) {
-        double all = 0;
-        for (const auto& cell : of.cells) {
-            std::array<Vec3, 8> x;
-            for (std::size_t k = 0; k < 8; ++k) x[k] = of.points[cell[k]];
-            all += cell_volume(x);
-        }
-        return all;
-    };
-    volume = sum(mesh);
-    before = sum(cubes);
+    const double volume = test::volume_of(mesh), before = test::volume_of(cubes);
     EXPECT_NEAR(volume, before, 1e-9);  // the boundary stays where it is
 }
 
