@@ -155,7 +155,7 @@ TEST(CheckFolds, ThreadsDoNotMatter) {
     const HexMesh box = rough_box(0.35, 2), ball = make_model("ball", 3);
     for (const HexMesh* mesh : {&box, &ball}) {
         std::vector<FoldCheck> checks;
-        for (const std::size_t threads : {1, 5}) {
+        for (const std::size_t threads : {std::size_t{1}, std::size_t{5}}) {
             const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
             checks.push_back(check_folds(*mesh, {.levels = 3}));
         }
