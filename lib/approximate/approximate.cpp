@@ -60,8 +60,9 @@ Approximation approximate(const HexMesh& onto, const HexMesh& samples, const App
         const detail::Fitter fitter(mesh, samples.points, options);
         Approximation result = fitter.fit(samples.attributes, options.progress);
         result.report.refined = refined;
+        if (refined == options.refine) return result;
         const std::vector<std::uint8_t> beyond = fitter.cells_beyond(options.tolerance, samples.attributes, result);
-        if (refined == options.refine || std::ranges::count(beyond, 1) == 0) return result;
+        if (std::ranges::count(beyond, 1) == 0) return result;
         mesh = detail::refine_where(result.mesh, beyond, {.scheme = options.scheme, .progress = options.progress});
     }
 }
