@@ -270,6 +270,27 @@ WithFacts<HexMesh> load_mesh(const std::string& input, const CommonOptions& opti
     return {std::move(mesh), std::move(facts)};
 }
 
+namespace {
+
+std::string sets_left_out(const MeshSets& sets) {
+    std::vector<std::string> patches, cells, parts;
+    for (const Patch& patch : sets.patches) patches.push_back(patch.name);
+    for (const CellSet& set : sets.sets) cells.push_back(set.name);
+    if (!patches.empty()) parts.push_back(text(counted(patches.size(), "patch", "patches"), " (", join(patches), ")"));
+    if (!cells.empty()) parts.push_back(text(counted(cells.size(), "set of cells", "sets of cells"), " (", join(cells), ")"));
+    return parts.empty() ? "" : text(join(parts), " not written: the mesh files written here hold neither");
+}
+
+}  // namespace
+
+WithFacts<HexMesh> load_mesh_to_write(const std::string& input, const CommonOptions& options, Progress* progress,
+                                      Shells* shells) {
+    auto [read, facts] = read_input(input, options, progress);
+    facts.warn(sets_left_out(read.sets));
+    HexMesh mesh = facts.unpack(mesh_of(std::move(read), options, shells));
+    return {std::move(mesh), std::move(facts)};
+}
+
 WithFacts<HexMesh> mesh_of(ReadResult read, const CommonOptions& options, Shells* shells) {
     Facts facts;
     if (read.mesh.attributes.empty() && !read.unread.empty() && !options.density && !read.mesh.cells.empty()) {

@@ -51,7 +51,8 @@ public:
         if (mend_) check_output(output_, {".vtu", ".vtkhdf"});
         report["input"] = input_;
         report.if_long("fewer --irregular-levels");
-        HexMesh mesh = report.unpack(load_mesh(input_, common(), report.progress()));
+        HexMesh mesh = report.unpack(mend_ ? load_mesh_to_write(input_, common(), report.progress())
+                                           : load_mesh(input_, common(), report.progress()));
         if (mend_) return mend(std::move(mesh), options, report);
         const FoldCheck found = report.timed("check", [&] { return check_folds(mesh, options); });
         put(found, mesh.cells.size(), report);

@@ -46,7 +46,7 @@ public:
         Shells shells;
         report["input"] = input_;
         const HexMesh mesh =
-            with_written_field(report.unpack(load_mesh(input_, common(), report.progress(), &shells)), common());
+            with_written_field(report.unpack(load_mesh_to_write(input_, common(), report.progress(), &shells)), common());
         if (common().field && !shells.empty()) {
             HexMesh of_shells;
             of_shells.points = shells.points;
@@ -75,7 +75,8 @@ private:
         check_output(output_, {".vtu"});
         report.if_long("fewer --levels");
         report["input"] = input_;
-        const HexMesh mesh = with_written_field(report.unpack(load_mesh(input_, common(), report.progress())), common());
+        const HexMesh mesh =
+            with_written_field(report.unpack(load_mesh_to_write(input_, common(), report.progress())), common());
         const Vertices vertices = on_limit_ ? Vertices::OnTheLimit : Vertices::OfTheLevel;
         const MixedMesh fine = report.unpack(tets.refined(mesh, 1, vertices, report.progress()));
         report.timed("write", [&] { write_mixed_mesh(output_, fine); });

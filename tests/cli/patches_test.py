@@ -206,6 +206,16 @@ class Patches(InFolder):
         self.assertAlmostEqual(flows["right"], -flows["left"], 9)
         self.assertAlmostEqual(found["flux_sum"], 0, 9)
 
+    def test_mesh_files_that_cannot_hold_them(self):
+        write_foam(self.folder / "case")
+        lost = "3 patches (left, right, walls), 1 set of cells (middle) not written"
+        for words in (["subdivide", "case", "-o", "a.vtu"], ["check", "case", "--mend", "-o", "a.vtu"],
+                      ["approximate", "case", "--onto", "case", "-o", "a.vtu"]):
+            with self.subTest(words):
+                warnings = self.run_ok(*words, "--json").json()["warnings"]
+                self.assertEqual(len([w for w in warnings if lost in w]), 1, warnings)
+        self.assertNotIn("not written", str(self.run_ok("check", "case", "--json").json()["warnings"]))
+
     def test_openfoam_that_is_wrong(self):
         for number, entry in enumerate(("left { nFaces 99; startFace 2; }", "left { nFaces 1; startFace -2; }", "left { nFaces",
                                         "left { nFaces 9999999999999999999; startFace 1; }", "left { nFaces 1 { ( }")):
