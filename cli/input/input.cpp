@@ -278,7 +278,7 @@ std::string sets_left_out(const MeshSets& sets) {
     for (const CellSet& set : sets.sets) cells.push_back(set.name);
     if (!patches.empty()) parts.push_back(text(counted(patches.size(), "patch", "patches"), " (", join(patches), ")"));
     if (!cells.empty()) parts.push_back(text(counted(cells.size(), "set of cells", "sets of cells"), " (", join(cells), ")"));
-    return parts.empty() ? "" : text(join(parts), " not written: the mesh files written here hold neither");
+    return parts.empty() ? "" : text(join(parts), " not written: mesh files made here have neither patches nor sets");
 }
 
 }  // namespace

@@ -27,6 +27,11 @@ bool has_number(const std::string& pattern) {
     return pattern.find('#') != std::string::npos;
 }
 
+void check_numbered(const std::string& pattern, const char* of, const std::string& example) {
+    if (has_number(pattern)) return;
+    throw Error(ErrorCode::InvalidInput, std::string("has no # for the number of the ") + of, pattern, example);
+}
+
 std::string with_number(const std::string& pattern, int number) {
     const std::size_t last = pattern.find_last_of('#');
     if (last == std::string::npos) return pattern;

@@ -19,6 +19,9 @@ namespace subvol::cli {
 /// Whether a file's name has a place for the number of a frame: one or more #.
 [[nodiscard]] bool has_number(const std::string& pattern);
 
+/// Refuses a file's name without it. of: what has the number, "frame" or "step"; example: such a name
+void check_numbered(const std::string& pattern, const char* of, const std::string& example);
+
 /// Checks before any work is done that all files of a sequence are there.
 ///
 /// throws: Error(Io) that names those that are missing

@@ -123,9 +123,4 @@ std::optional<BetweenSteps> between_steps(const std::string& input, const Common
     return BetweenSteps{*before, *after, (*options.read.time - from) / (to - from)};
 }
 
-void check_numbered(const std::string& output) {
-    if (has_number(output)) return;
-    throw Error(ErrorCode::InvalidInput, "has no # for the number of the step", output, "out_####.vdb");
-}
-
 }  // namespace subvol::cli

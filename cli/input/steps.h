@@ -48,7 +48,4 @@ struct BetweenSteps {
 };
 [[nodiscard]] std::optional<BetweenSteps> between_steps(const std::string& input, const CommonOptions& options);
 
-/// Refuses an output whose name has no place for the number of a step.
-void check_numbered(const std::string& output);
-
 }  // namespace subvol::cli

@@ -44,9 +44,7 @@ public:
                "Least squares through the limit: a field that is a limit of the control mesh is found again.\n"
                "JSON: samples, outside, snapped, unseen, iterations, refined, fields {name: rms, rms_boundary, max, max_at, "
                "range}, points, cells; of several steps or frames these are in the list frames, with frame, time and output, "
-               "beside "
-               "placements; with --shape also shape {before, after: rms, max, missed_rms, missed_max and their "
-               "places; "
+               "beside placements; with --shape also shape {before, after: rms, max, missed_rms, missed_max and their places; "
                "rounds, moved_world, folds, mended}.") {
         app()
             .add_option(
@@ -84,9 +82,9 @@ public:
             throw Error(ErrorCode::InvalidInput, "is a folder of bricks", onto_, "a mesh in one piece");
         }
         HexMesh onto = report.unpack(load_mesh_to_write(onto_, CommonOptions{}, report.progress()));
+        const std::optional<Sequence> sequence = steps_or_frames(report);
         report["input"] = input_;
         report["onto"] = onto_;
-        const std::optional<Sequence> sequence = steps_or_frames(report);
         if (sequence) {
             fit_all(*sequence, std::move(onto), options, report);
             return 0;
@@ -128,17 +126,12 @@ private:
         }
         if (of_files) {
             if (frames_.empty()) throw Error(ErrorCode::InvalidInput, "is needed for a sequence", "--frames", "1-10");
-            if (!has_number(input_)) {
-                throw Error(ErrorCode::InvalidInput, "has no # for the number of the frame", input_, "data_####.csv");
-            }
+            check_numbered(input_, "frame", "data_####.csv");
             if (asks_for_steps(common())) {
                 throw Error(ErrorCode::InvalidInput, "files of a sequence have one step each here", "--step", "--frames A-B");
             }
         }
-        if (!has_number(output_)) {
-            throw Error(ErrorCode::InvalidInput, text("has no # for the number of the ", of_files ? "frame" : "step"), output_,
-                        "fitted_####.vtu");
-        }
+        check_numbered(output_, of_files ? "frame" : "step", "fitted_####.vtu");
         if (of_files) {
             const FrameRange range = parse_frames(frames_);
             check_frames(input_, range);

@@ -7,6 +7,7 @@
 #include "grid_fields.h"
 #include "grid_input.h"
 #include "input.h"
+#include "mesh_frames.h"
 #include "numbers.h"
 #include "options.h"
 #include "outputs.h"
@@ -334,7 +335,7 @@ private:
     }
 
     void write_steps(const Share& share, Report& report) {
-        check_numbered(output_);
+        check_numbered(output_, "step", "points_####.ply");
         const MeshSeries series = open_series(input_);
         const FrameRange steps = chosen_steps(series, common()), range = frames_of(share, steps);
         const CommonOptions all = report.unpack(for_steps(input_, common(), steps, report.progress()));

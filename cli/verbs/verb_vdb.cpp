@@ -25,6 +25,9 @@
 namespace subvol::cli {
 namespace {
 
+/// A name of an output with the number of a frame or step.
+constexpr const char* kNumbered = "out_####.vdb";
+
 class VdbVerb : public Verb {
 public:
     explicit VdbVerb(CLI::App& program)
@@ -249,7 +252,7 @@ private:
         if (app().count("--fps") > 0) {
             throw Error(ErrorCode::InvalidInput, "the velocity of steps follows from their times", "--fps");
         }
-        check_numbered(output_.path);
+        check_numbered(output_.path, "step", kNumbered);
         const MeshSeries series = open_series(input_);
         const FrameRange range = chosen_steps(series, common());
         const CommonOptions all = report.unpack(for_steps(input_, common(), range, report.progress()));
@@ -287,13 +290,12 @@ private:
 
     void check_frame_names() const {
         if (asked_.frames.empty()) throw Error(ErrorCode::InvalidInput, "is needed for a sequence", "--frames", "1-10");
-        if (!has_number(output_.path)) {
-            throw Error(ErrorCode::InvalidInput, "has no # for the number of the frame", output_.path, "out_####.vdb");
-        }
-        if (asked_.to.empty() != has_number(input_)) {
-            throw Error(ErrorCode::InvalidInput,
-                        asked_.to.empty() ? "has no # for the number of the frame" : "has a # for a number, but --to is given",
-                        input_, "in_####.vtu, or one mesh and --to another");
+        check_numbered(output_.path, "frame", kNumbered);
+        const std::string one_or_two = "in_####.vtu, or one mesh and --to another";
+        if (asked_.to.empty()) {
+            check_numbered(input_, "frame", one_or_two);
+        } else if (has_number(input_)) {
+            throw Error(ErrorCode::InvalidInput, "has a # for a number, but --to is given", input_, one_or_two);
         }
     }
 

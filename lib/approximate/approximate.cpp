@@ -63,7 +63,8 @@ Approximation approximate(const HexMesh& onto, const HexMesh& samples, const App
         if (refined == options.refine) return result;
         const std::vector<std::uint8_t> beyond = fitter.cells_beyond(options.tolerance, samples.attributes, result);
         if (std::ranges::count(beyond, 1) == 0) return result;
-        mesh = detail::refine_where(result.mesh, beyond, {.scheme = options.scheme, .progress = options.progress});
+        mesh = detail::refine_where(result.mesh, beyond,
+                                    {.scheme = options.scheme, .levels = options.levels, .progress = options.progress});
     }
 }
 

@@ -31,7 +31,7 @@ HexMesh refine_where(const HexMesh& given, std::span<const std::uint8_t> cells, 
         bare.attributes.clear();
         return refine(bare, once);
     }
-    SplitMesh split = split_sheets(mesh, before, edges, options);
+    SplitMesh split = split_sheets(mesh, before, edges);
     const Topology after = build_topology(split.mesh);
     const std::vector<LimitQuery> wanted_places = graded_places(split, after);
     std::vector<LimitQuery> corners(after.point_count);
@@ -41,9 +41,7 @@ HexMesh refine_where(const HexMesh& given, std::span<const std::uint8_t> cells, 
             corners[after.cells[c][k]] = {c, Vec3(at[0], at[1], at[2])};
         }
     }
-    RefineOptions fine = once;
-    fine.levels = 2;  // of the old limit, between whose points its places lie
-    const LimitMatrix old_limit(before, fine, wanted_places), new_limit(after, once, corners);
+    const LimitMatrix old_limit(before, options, wanted_places), new_limit(after, once, corners);
     const WeightedDifferences none;
     const LeastSquares fit(new_limit, none);
     for (int axis = 0; axis < 3; ++axis) {

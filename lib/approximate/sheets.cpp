@@ -13,78 +13,83 @@ namespace subvol::detail {
 
 namespace {
 
-/// The points of one refinement that the split mesh has, and their numbers there.
-///
-/// Numbers of one refinement: the points of the mesh, then one for each edge, face and cell, these by `cell_ordinal`.
+/// The points of the split mesh: those of the mesh, then one for each edge, face and cell that is split along all its
+/// directions.
 class SplitPoints {
 public:
-    SplitPoints(const Topology& topology, std::span<const std::uint8_t> split) : topology_(topology), split_(split) {
-        const std::size_t faces = topology.point_count + topology.edges.size(), cells = faces + topology.faces.size();
-        numbers_.assign(cells + topology.cells.size(), kNone);
-        for (Index p = 0; p < topology.point_count; ++p) add(p);
-        for (Index e = 0; e < topology.edges.size(); ++e) {
-            if (split[e] != 0) add(topology.point_count + e);
+    SplitPoints(const Topology& topology, std::span<const std::uint8_t> split)
+        : topology_(topology),
+          split_(split),
+          count_(topology.point_count),
+          edges_(topology.edges.size(), kNone),
+          faces_(topology.faces.size(), kNone),
+          cells_(topology.cells.size(), kNone) {
+        for (Index e = 0; e < edges_.size(); ++e) {
+            if (split[e] != 0) edges_[e] = static_cast<Index>(count_++);
         }
-        for (Index f = 0; f < topology.faces.size(); ++f) {
-            if (is_split(f, 0) && is_split(f, 1)) add(faces + f);
+        for (Index f = 0; f < faces_.size(); ++f) {
+            if (is_split(f, 0) && is_split(f, 1)) faces_[f] = static_cast<Index>(count_++);
         }
-        for (Index c = 0; c < topology.cells.size(); ++c) {
-            const auto ways = ways_of(c);
-            if (ways[0] && ways[1] && ways[2]) add(cells + topology.cell_ordinal[c]);
+        for (Index c = 0; c < cells_.size(); ++c) {
+            if (steps_of(c) == std::array{1, 1, 1}) cells_[c] = static_cast<Index>(count_++);
         }
     }
 
-    [[nodiscard]] Index number(std::size_t refined) const { return numbers_[refined]; }
-    [[nodiscard]] Index middle(Index edge) const { return numbers_[topology_.point_count + edge]; }
-    [[nodiscard]] Index face(Index face) const { return numbers_[topology_.point_count + topology_.edges.size() + face]; }
-    [[nodiscard]] const std::vector<std::size_t>& taken() const { return taken_; }
+    [[nodiscard]] std::size_t count() const { return count_; }
+    [[nodiscard]] Index middle(Index edge) const { return edges_[edge]; }
+    [[nodiscard]] Index face(Index face) const { return faces_[face]; }
 
     /// Whether edges k and k + 2 of a face are split.
     [[nodiscard]] bool is_split(Index face, std::size_t k) const { return split_[topology_.face_edges[face][k]] != 0; }
 
-    /// Whether a cell is split along u, v and w.
-    [[nodiscard]] std::array<bool, 3> ways_of(Index cell) const {
+    /// The size of the parts of a cell along u, v and w, in halves of the cell.
+    [[nodiscard]] std::array<int, 3> steps_of(Index cell) const {
         const auto& edges = topology_.cell_edges[cell];
-        return {split_[edges[0]] != 0, split_[edges[4]] != 0, split_[edges[8]] != 0};
+        return {split_[edges[0]] != 0 ? 1 : 2, split_[edges[4]] != 0 ? 1 : 2, split_[edges[8]] != 0 ? 1 : 2};
+    }
+
+    /// The point of a cell at so many halves of it along u, v and w.
+    [[nodiscard]] Index at(Index cell, const std::array<int, 3>& halves) const {
+        const auto middles = std::ranges::count(halves, 1);
+        if (middles == 3) return cells_[cell];
+        if (middles == 2) {
+            const std::size_t a = halves[0] != 1 ? 0 : halves[1] != 1 ? 1 : 2;
+            return faces_[topology_.cell_faces[cell][2 * a + (halves[a] == 2 ? 1 : 0)]];
+        }
+        const auto is_at = [&](std::size_t corner) {
+            for (std::size_t a = 0; a < 3; ++a) {
+                if (halves[a] != 1 && halves[a] != 2 * kCornerParameters[corner][a]) return false;
+            }
+            return true;
+        };
+        if (middles == 0) {
+            std::size_t corner = 0;
+            while (!is_at(corner)) ++corner;
+            return topology_.cells[cell][corner];
+        }
+        std::size_t edge = 0;
+        while (!is_at(kCellEdges[edge][0]) || !is_at(kCellEdges[edge][1])) ++edge;
+        return edges_[topology_.cell_edges[cell][edge]];
     }
 
 private:
-    void add(std::size_t refined) {
-        numbers_[refined] = static_cast<Index>(taken_.size());
-        taken_.push_back(refined);
-    }
-
     const Topology& topology_;
     std::span<const std::uint8_t> split_;
-    std::vector<Index> numbers_;
-    std::vector<std::size_t> taken_;
+    std::size_t count_;
+    std::vector<Index> edges_, faces_, cells_;
 };
 
-/// The new cells, from the children that one refinement has.
-void add_cells(SplitMesh& made, const SplitPoints& points, const std::vector<std::array<Index, 8>>& children, Index cell) {
-    const std::array<bool, 3> ways = points.ways_of(cell);
-    Vec3 size(1.0);
-    for (int a = 0; a < 3; ++a) size[a] = ways[static_cast<std::size_t>(a)] ? 0.5 : 1.0;
-    // A corner of a part, in halves of the cell, is a corner of the child that has the nearest corner of the cell.
-    const auto point = [&](const Vec3& at) {
-        std::size_t child = 0, corner = 0;
-        for (std::size_t a = 0; a < 3; ++a) {
-            const double t = at[static_cast<int>(a)];
-            child |= (t == 1.0 ? 1u : 0u) << a;
-            corner |= (t > 0.0 ? 1u : 0u) << a;
-        }
-        return points.number(children[8 * cell + kCornerOctants[child]][kCornerOctants[corner]]);
-    };
-    for (double w = 0; w < 1; w += size.z) {
-        for (double v = 0; v < 1; v += size.y) {
-            for (double u = 0; u < 1; u += size.x) {
-                const CellPart part{cell, {u, v, w}, size};
+void add_cells(SplitMesh& made, const SplitPoints& points, Index cell) {
+    const std::array<int, 3> size = points.steps_of(cell);
+    for (int w = 0; w < 2; w += size[2]) {
+        for (int v = 0; v < 2; v += size[1]) {
+            for (int u = 0; u < 2; u += size[0]) {
                 auto& corners = made.mesh.cells.emplace_back();
                 for (std::size_t c = 0; c < 8; ++c) {
-                    const auto& corner = kCornerParameters[c];
-                    corners[c] = point(part.lower + part.size * Vec3(corner[0], corner[1], corner[2]));
+                    const auto& at = kCornerParameters[c];
+                    corners[c] = points.at(cell, {u + at[0] * size[0], v + at[1] * size[1], w + at[2] * size[2]});
                 }
-                made.parts.push_back(part);
+                made.parts.push_back({cell, Vec3(u, v, w) / 2.0, Vec3(size[0], size[1], size[2]) / 2.0});
             }
         }
     }
@@ -230,22 +235,13 @@ std::vector<std::uint8_t> edges_to_split(const HexMesh& mesh, const Topology& to
     return split;
 }
 
-SplitMesh split_sheets(const HexMesh& mesh, const Topology& topology, std::span<const std::uint8_t> edges,
-                       const RefineOptions& options) {
-    RefineOptions once = options;
-    once.levels = 1;
-    const RefinementTables tables = refinement_tables(topology, once);
-    const std::vector<double> refined =
-        tables.apply(std::span<const double>(&mesh.points.front().x, 3 * mesh.points.size()), 3);
+SplitMesh split_sheets(const HexMesh& mesh, const Topology& topology, std::span<const std::uint8_t> edges) {
     const SplitPoints points(topology, edges);
     SplitMesh made;
     made.mesh.time = mesh.time;
-    for (const std::size_t p : points.taken()) {
-        // The points of the mesh itself are moved only by a refinement of all that is around them.
-        made.mesh.points.push_back(p < mesh.points.size() ? mesh.points[p]
-                                                          : Vec3(refined[3 * p], refined[3 * p + 1], refined[3 * p + 2]));
-    }
-    for (Index c = 0; c < topology.cells.size(); ++c) add_cells(made, points, tables.cells, c);
+    made.mesh.points = mesh.points;
+    made.mesh.points.resize(points.count());
+    for (Index c = 0; c < topology.cells.size(); ++c) add_cells(made, points, c);
     add_tags(made.mesh, mesh, topology, points);
     return made;
 }

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "subvol/limit.h"
-#include "subvol/refine.h"
 #include "subvol/topology.h"
 
 namespace subvol::detail {
@@ -41,12 +40,10 @@ struct SplitMesh {
 [[nodiscard]] std::vector<std::uint8_t> edges_to_split(const HexMesh& mesh, const Topology& topology,
                                                        std::span<const std::uint8_t> cells);
 
-/// Splits sheets in their middles. New points lie where one refinement puts them; the mesh's own stay, with their numbers.
+/// Splits sheets. The points of the mesh keep their numbers; where the new ones lie, `graded_places` says.
 ///
-/// mesh:   its attributes are not used; topology: its own
-/// throws: Error(InvalidInput) as `refine`
-[[nodiscard]] SplitMesh split_sheets(const HexMesh& mesh, const Topology& topology, std::span<const std::uint8_t> edges,
-                                     const RefineOptions& options);
+/// mesh: its attributes are not used; topology: its own
+[[nodiscard]] SplitMesh split_sheets(const HexMesh& mesh, const Topology& topology, std::span<const std::uint8_t> edges);
 
 /// Where the points of a split mesh should lie in the mesh that was split, so that cells grow from split sheets to others step
 /// by step: at a jump of sizes interpolation is of second order alone.

@@ -23,8 +23,11 @@ namespace subvol::detail {
 //
 //   mesh    compressed: levels; points and cells, creases, sharp faces, as in a file of wavelets; refined so often they are
 //             those of the steps
-//             patches: how many; for each its name, how many sides; for each the difference of 6 · cell + side from the one
-//             before sets of cells: how many; for each its name, how many cells; for each the difference from the one before
+//
+//             patches: how many; for each its name and its sides: how many, and 6 · cell + side less that of the one before
+//
+//             sets of cells: how many; for each its name and its cells: how many, and each less the one before
+//
 //   step    for each array a byte, 1 if the step has it; then for each channel of these
 //             a byte: the prediction and, times 4, what of earlier steps it is added to (Spatial, Temporal)
 //             a byte: how many bytes each residual has; 0: all are 0
