@@ -81,8 +81,8 @@ public:
         if (kind_of(onto_) == InputKind::Bricks) {
             throw Error(ErrorCode::InvalidInput, "is a folder of bricks", onto_, "a mesh in one piece");
         }
-        HexMesh onto = report.unpack(load_mesh_to_write(onto_, CommonOptions{}, report.progress()));
         const std::optional<Sequence> sequence = steps_or_frames(report);
+        HexMesh onto = report.unpack(load_mesh_to_write(onto_, CommonOptions{}, report.progress()));
         report["input"] = input_;
         report["onto"] = onto_;
         if (sequence) {
