@@ -6,7 +6,7 @@
 #include <mutex>
 #include <numeric>
 
-#include "subvol/stencil_table.h"
+#include "csr_products.h"
 
 namespace subvol::detail {
 
@@ -34,15 +34,10 @@ const std::array<CsrMatrix, 8>& rules_of(const BoxType& type) {
     return all.emplace(type, std::move(sparse)).first->second;
 }
 
+// A part is too small to share its rows.
 std::vector<Vec3> product_of(const CsrMatrix& matrix, const std::vector<Vec3>& values) {
     std::vector<Vec3> sums(matrix.offsets.size() - 1);
-    for (std::size_t row = 0; row < sums.size(); ++row) {
-        Vec3 sum(0.0);
-        for (std::size_t k = matrix.offsets[row]; k < matrix.offsets[row + 1]; ++k) {
-            sum += matrix.weights[k] * values[matrix.columns[k]];
-        }
-        sums[row] = sum;
-    }
+    for (std::size_t row = 0; row < sums.size(); ++row) sums[row] = row_times(matrix, row, values);
     return sums;
 }
 

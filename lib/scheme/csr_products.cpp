@@ -24,12 +24,8 @@ CsrMatrix transpose_of(const CsrMatrix& matrix, std::size_t columns) {
 }
 
 std::vector<Vec3> product_with(const CsrMatrix& matrix, std::span<const Vec3> values) {
-    std::vector<Vec3> sums(matrix.offsets.size() - 1, Vec3(0.0));
-    parallel_each(sums.size(), [&](std::size_t row) {
-        for (std::size_t k = matrix.offsets[row]; k < matrix.offsets[row + 1]; ++k) {
-            sums[row] += matrix.weights[k] * values[matrix.columns[k]];
-        }
-    });
+    std::vector<Vec3> sums(matrix.offsets.size() - 1);
+    parallel_each(sums.size(), [&](std::size_t row) { sums[row] = row_times(matrix, row, values); });
     return sums;
 }
 
