@@ -8,7 +8,6 @@
 #include "least_squares.h"
 #include "subvol/cell.h"
 #include "subvol/detail/parallel_sums.h"
-#include "subvol/detail/refined_memory.h"
 #include "subvol/error.h"
 #include "subvol/mesh_report.h"
 #include "subvol/probe.h"
@@ -38,9 +37,8 @@ Vector support_of(const Topology& topology, const std::vector<LimitQuery>& place
 
 /// Differences along edges and their weights: everywhere with the smoothing that was asked for, and where samples hardly decide
 /// a value with so much that it follows its neighbours.
-WeightedDifferences smoothing_of(const Topology& topology, const std::vector<LimitQuery>& places, double asked) {
+WeightedDifferences smoothing_of(const Topology& topology, const Vector& support, double asked) {
     constexpr double kPoor = 0.05, kPull = 0.01;  // parts of the usual support: the corner of a box has an eighth of it
-    const Vector support = support_of(topology, places);
     Vector sorted = support;
     std::erase(sorted, 0.0);
     const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
@@ -209,13 +207,6 @@ std::vector<Vec3> chosen(const std::vector<Vec3>& positions, const std::vector<I
     return taken;
 }
 
-HexMesh checked(HexMesh mesh, const ApproximateOptions& options) {
-    constexpr double kBytesOfFineCell = 300;  // of its stencils, and of what is computed for its points
-    check_memory(options.levels, static_cast<double>(mesh.cells.size()) * std::pow(8.0, options.levels), kBytesOfFineCell,
-                 option_name("levels", options.names));
-    return mesh;
-}
-
 }  // namespace
 
 HexMesh prepared(HexMesh onto, ApproximateOptions& options) {
@@ -255,6 +246,7 @@ struct Fitter::Parts {
     double diagonal;
     Located located;
     LimitMatrix limit;
+    Vector support;
     WeightedDifferences smoothing;
     LeastSquares system;
     Start start;
@@ -262,18 +254,19 @@ struct Fitter::Parts {
 
     Parts(HexMesh given, std::vector<Vec3> at, const ApproximateOptions& asked)
         : options(asked),
-          mesh(checked(std::move(given), options)),
+          mesh(std::move(given)),
           positions(std::move(at)),
           topology(build_topology(mesh)),
           diagonal(bounds(mesh).diagonal()),
           located(locate(mesh, positions, options, diagonal)),
-          limit(topology, {.scheme = options.scheme, .levels = options.levels, .progress = options.progress}, located.places),
-          smoothing(smoothing_of(topology, located.places, options.smoothing)),
-          system(limit, smoothing),
+          limit(mesh, {.scheme = options.scheme, .levels = options.levels, .progress = options.progress}, located.places,
+                {chosen(positions, located.samples), LimitOptions{}.tolerance * diagonal},
+                option_name("levels", options.names)),
+          support(support_of(topology, located.places)),
+          smoothing(smoothing_of(topology, support, options.smoothing)),
+          system(limit, smoothing, support),
           start(topology, located.places),
-          at_boundary(cells_at_boundary(topology)) {
-        limit.settle(mesh.points, chosen(positions, located.samples), LimitOptions{}.tolerance * diagonal);
-    }
+          at_boundary(cells_at_boundary(topology)) {}
 };
 
 Fitter::Fitter(HexMesh mesh, std::vector<Vec3> positions, const ApproximateOptions& options)

@@ -41,9 +41,9 @@ HexMesh refine_where(const HexMesh& given, std::span<const std::uint8_t> cells, 
             corners[after.cells[c][k]] = {c, Vec3(at[0], at[1], at[2])};
         }
     }
-    const LimitMatrix old_limit(before, options, wanted_places), new_limit(after, once, corners);
+    const LimitMatrix old_limit(mesh, options, wanted_places), new_limit(split.mesh, once, corners);
     const WeightedDifferences none;
-    const LeastSquares fit(new_limit, none);
+    const LeastSquares fit(new_limit, none, std::vector<double>(after.point_count, 1));
     for (int axis = 0; axis < 3; ++axis) {
         const std::vector<double> wanted = old_limit.apply(coordinates(mesh.points, axis));
         std::vector<double> x = wanted;

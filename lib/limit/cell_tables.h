@@ -79,6 +79,12 @@ public:
     void load(const HexMesh& mesh, std::span<const Member> cells, const WeightTable& table);
     void apply(const WeightTable& table);
 
+    /// What row `row` of one cell is of the points.
+    [[nodiscard]] Vec3 position(std::size_t lane, std::size_t row) const {
+        const double* const x = &out_[row * kTableLanes + lane];
+        return {x[0], x[rows_ * kTableLanes], x[2 * rows_ * kTableLanes]};
+    }
+
     /// The rows of one cell as its grid. turn: from the axes of the rows to those of the cell
     void store(std::size_t lane, std::size_t side, std::uint8_t turn, CellGrid& grid) const;
 
