@@ -39,7 +39,9 @@ Vec3 along_walk(const Vec3& uvw, std::uint8_t turn) {
 }
 
 WeightTable transposed_of(const WeightTable& table) {
-    WeightTable result{.points = table.rows(), .used = {}, .offsets = std::vector<std::uint32_t>(table.points + 1, 0),
+    WeightTable result{.points = table.rows(),
+                       .used = {},
+                       .offsets = std::vector<std::uint32_t>(table.points + 1, 0),
                        .columns = std::vector<std::uint16_t>(table.columns.size()),
                        .weights = std::vector<double>(table.weights.size())};
     for (const std::uint16_t column : table.columns) ++result.offsets[column + 1u];
@@ -75,9 +77,10 @@ struct ClassRows::Finding {
           layers(std::min(options.levels + (interpolates(options.scheme.kind) ? 0 : 1), 2)),
           regular(regular_neighborhood(layers)),
           regular_key(key_of(regular)),
-          tables(options.scheme, interpolates(options.scheme.kind)
-                                     ? std::function<HexMesh(HexMesh)>()
-                                     : [kind = options.scheme.kind](HexMesh m) { return on_limit(std::move(m), kind); }) {}
+          tables(
+              options.scheme, interpolates(options.scheme.kind)
+                                  ? std::function<HexMesh(HexMesh)>()
+                                  : [kind = options.scheme.kind](HexMesh m) { return on_limit(std::move(m), kind); }) {}
 
     [[nodiscard]] std::shared_ptr<const WeightTable> table(const Member& member, std::size_t levels) {
         Neighborhood found;

@@ -49,7 +49,8 @@ private:
         Index table, first, count;
     };
 
-    /// Which rows of its class's table a cell needs: bits 0 to 7 for the octants with places, bit 8 for nodes of level L itself.
+    /// Which rows of its class's table a cell needs: bits 0 to 7 for the octants with places, bit 8 for nodes of level L
+    /// itself.
     using Need = std::uint16_t;
 
     struct Scratch;

@@ -54,6 +54,12 @@ WeightedDifferences smoothing_of(const Topology& topology, const Vector& support
     return smoothing;
 }
 
+std::vector<Vec3> chosen(std::span<const Vec3> positions, std::span<const Index> samples) {
+    std::vector<Vec3> taken;
+    for (const Index s : samples) taken.push_back(positions[s]);
+    return taken;
+}
+
 /// Samples that lie in the volume, with their places.
 struct Located {
     std::vector<LimitQuery> places;
@@ -61,11 +67,25 @@ struct Located {
     std::size_t outside = 0, snapped = 0;
 };
 
-Located locate(const HexMesh& mesh, std::span<const Vec3> positions, const ApproximateOptions& options, double diagonal) {
+/// Samples inside are found first: only the others need candidates as far away as the reach, which may be many cells.
+ProbeResult probed(const HexMesh& mesh, std::span<const Vec3> positions, const ApproximateOptions& options, double diagonal) {
     ProbeOptions probing;
     probing.limit.scheme = options.scheme;
+    ProbeResult found = LimitProbe(mesh, probing).at(positions, options.progress);
+    const auto outside = numbers_where<std::vector<Index>>(positions.size(), [&](std::size_t p) { return !found.inside(p); });
     probing.reach_world = options.reach * diagonal;
-    const ProbeResult found = LimitProbe(mesh, probing).at(positions, options.progress);
+    if (outside.empty() || probing.reach_world == 0) return found;
+    const ProbeResult near = LimitProbe(mesh, probing).at(chosen(positions, outside), options.progress);
+    for (std::size_t k = 0; k < outside.size(); ++k) {
+        found.cells[outside[k]] = near.cells[k];
+        found.parameters[outside[k]] = near.parameters[k];
+        found.distances[outside[k]] = near.distances[k];
+    }
+    return found;
+}
+
+Located locate(const HexMesh& mesh, std::span<const Vec3> positions, const ApproximateOptions& options, double diagonal) {
+    const ProbeResult found = probed(mesh, positions, options, diagonal);
     Located located;
     for (std::size_t p = 0; p < positions.size(); ++p) {
         if (!found.inside(p)) {
@@ -200,12 +220,6 @@ private:
     double squares_ = 0, squares_of_boundary_ = 0;
     std::size_t count_ = 0, boundary_count_ = 0;
 };
-
-std::vector<Vec3> chosen(const std::vector<Vec3>& positions, const std::vector<Index>& samples) {
-    std::vector<Vec3> taken;
-    for (const Index s : samples) taken.push_back(positions[s]);
-    return taken;
-}
 
 }  // namespace
 

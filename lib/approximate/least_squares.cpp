@@ -64,7 +64,7 @@ int LeastSquares::solve(const Vector& wanted, Vector& x, int most, Progress* pro
     double size = find_gradient(), squares = dot(rest, rest);
     Vector direction = scaled;
     const double first = size;
-    constexpr double kSmall = 1e-28, kEnough = 1e-12;
+    constexpr double kSmall = 1e-28, kEnough = 1e-10;
     std::array<double, 10> falls;  // of the squares, in the last steps
     falls.fill(squares);
     int step = 0;

@@ -12,13 +12,13 @@ namespace subvol::detail {
 // Least squares, min |A x − b|² + Σ w_ij (x_i − x_j)², with the limit's matrix A and differences along edges, which have a
 // weight where smoothing is asked for or a sample hardly decides a value. The search is that of conjugate gradients for least
 // squares (CGLS), which works with the residual itself and not with that of the normal equations, so that a field that can be
-// met is met to rounding. Each value is scaled by how much the samples and the differences decide it, since steps are many where
-// some values have a hundred times as many samples near them as others.
+// met is met to rounding. Each value is scaled by how much the samples and the differences decide it, since steps are many
+// where some values have a hundred times as many samples near them as others.
 //
-// When to stop: a step takes |A x − b|² down by a known amount, and what later steps would still take away is known with a
-// delay: |A (x − x*)|² at a step is the sum of what all steps after it take away [strakos2002]. The search ends when the last ten
-// steps together took less than 1e-12 of |A x − b|². So at the samples the fit is nearer to the best one than a millionth of its
-// error. A field that can be met has no error, and the search goes on until rounding.
+// When to stop: it is known how much each step takes off the sum of squares, and |A (x − x*)|², which is still missing at a
+// step, is the sum of what all steps after it take off [strakos2002]. The search ends when the last ten steps took off less
+// than 1e-10 of the sum: at the samples the fit is then nearer to the best one than a hundred-thousandth of its error. A field
+// that can be met has no error, and the search goes on until rounding.
 
 /// weights: the roots of w_ij
 struct WeightedDifferences {

@@ -13,7 +13,8 @@
 
 namespace subvol::detail {
 
-/// Places that are nearer than `near_world` to a point of the finest level are moved onto it, where the limit's matrix is exact.
+/// Places that are nearer than `near_world` to a point of the finest level are moved onto it, where the limit's matrix is
+/// exact.
 ///
 /// positions: of the places, in the world; none: nothing is moved
 struct Settling {

@@ -47,6 +47,22 @@ TEST(Approximate, FindsALimitAgain) {
     }
 }
 
+// In these meshes many cells have neighbourhoods that are alike, and share tables; others have not.
+TEST(Approximate, FindsALimitAgainWhereCellsShareTables) {
+    for (const HexMesh& bare : {make_model("twist", 9), make_model("ball", 4)}) {
+        const HexMesh control = with_noise(bare, 3);
+        for (const int levels : {1, 2}) {  // of the samples: at some points of the tables' rows, and at all
+            const Approximation made = approximate(control, refine(control, {.levels = levels}));
+            EXPECT_LT(difference(made.mesh.attributes[0].values, control.attributes[0].values), 1e-10);
+        }
+    }
+    const HexMesh control = with_noise(make_model("ball", 4), 4);
+    const HexMesh fine =
+        on_limit(refine(control, {.scheme = {.kind = Scheme::CatmullClark}, .levels = 2}), Scheme::CatmullClark);
+    const Approximation made = approximate(control, fine, {.scheme = {.kind = Scheme::CatmullClark}, .iterations = 400});
+    EXPECT_LT(difference(made.mesh.attributes[0].values, control.attributes[0].values), 1e-8);
+}
+
 TEST(Approximate, FindsALimitOfASchemeThatDoesNotInterpolate) {
     const HexMesh control = with_noise(make_model("ball", 2), 4);
     for (const Scheme scheme : {Scheme::CatmullClark, Scheme::Bsxw, Scheme::Linear}) {
@@ -103,6 +119,40 @@ TEST(Approximate, IsAsGoodAsDenseLeastSquares) {
         EXPECT_LT((data.matrix * x - data.values).norm(), 1.01 * least);
         const double rms = least / std::sqrt(static_cast<double>(data.samples.points.size()));
         EXPECT_NEAR(made.report.fields[0].rms, rms, 0.02 * rms);
+    }
+}
+
+/// How far values of the limit are from a field of the samples, root mean square.
+double rms(const LimitSamples& limit, const HexMesh& samples) {
+    double sum = 0;
+    for (std::size_t k = 0; k < samples.points.size(); ++k) {
+        sum += std::pow(limit.attributes[0].values[k] - samples.attributes[0].values[k], 2);
+    }
+    return std::sqrt(sum / static_cast<double>(samples.points.size()));
+}
+
+TEST(Approximate, TheLimitIsAsFarFromTheSamplesAsIsSaid) {
+    for (const HexMesh& bare : {make_model("twist", 9), make_model("ball", 4)}) {
+        std::mt19937 dice(9);
+        std::uniform_real_distribution<double> part(0, 1);
+        for (const std::size_t per_cell : {1U, 6U}) {
+            std::vector<LimitQuery> places;
+            for (std::size_t k = 0; k < per_cell * bare.cells.size(); ++k) {
+                places.push_back({static_cast<Index>(k / per_cell), {part(dice), part(dice), part(dice)}});
+            }
+            HexMesh samples;
+            samples.points = evaluate_limit(bare, places).positions;
+            samples.attributes = {{.name = "T", .channels = 1, .values = {}}};
+            for (const Vec3& x : samples.points) {
+                samples.attributes[0].values.push_back(std::sin(9 * x.x) * x.y + 0.3 * part(dice));
+            }
+            for (const int levels : {1, 2, 3}) {
+                const Approximation made = approximate(bare, samples, {.levels = levels, .smoothing = 0.01});
+                const double found = rms(evaluate_limit(made.mesh, places), samples);
+                // Between points of the level the limit is interpolated, which is of second order here.
+                EXPECT_NEAR(made.report.fields[0].rms, found, 0.15 * found * std::pow(0.25, levels - 1));
+            }
+        }
     }
 }
 
@@ -275,6 +325,13 @@ TEST(Approximate, AnyNumberOfThreads) {
         return all;
     };
     EXPECT_EQ(fitted(1), fitted(4));
+    const HexMesh many = make_model("twist", 8);  // with cells that share tables
+    const Scattered of_many = scattered(make_model("twist", 2), 900, 3);
+    const auto fitted_many = [&](std::size_t threads) {
+        const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+        return approximate(many, of_many.samples).mesh.attributes[0].values;
+    };
+    EXPECT_EQ(fitted_many(1), fitted_many(4));
 }
 
 /// Steps of a wave at the same points, as samples.
