@@ -24,6 +24,7 @@ public:
         : Verb(program, "mesh", "Make a control mesh whose limit fills a closed surface, or a part of a grid.",
                "  subvol mesh part.stl -o part.vtu\n"
                "  subvol mesh statue.obj -o statue.vtu --cells 48\n"
+               "  subvol mesh statue.obj -o statue.vtu --cells 16 --refine 1 --tolerance .15\n"
                "  subvol mesh smoke.vdb -o smoke.vtu --iso .01\n"
                "\n"
                "Sharp edges become creases. The exit code is 1 if the limit folds.\n"
@@ -31,7 +32,8 @@ public:
                "missed_rms, "
                "missed_max, missed_at: of the surface from the boundary}, rounds, moved_world, folds (as of check), mended, "
                "sharp {curves, missed: chains of sharp edges, and those without creases; length_world, missed_length_world, "
-               "creases, rms, max: of the creases from the chains}, parts, added, side_world, min_scaled_jacobian.") {
+               "creases, rms, max: of the creases from the chains}, parts, added, refined, divided, side_world, "
+               "min_scaled_jacobian.") {
         app().add_option("FILE", input_, "a closed surface (.stl, .obj, .ply), or a .vdb grid of floats")->required();
         app().add_option("-o,--output", output_, "the control mesh (.vtu, .vtkhdf)")->type_name("FILE")->required();
         app()
@@ -40,7 +42,8 @@ public:
             ->type_name("V");
         scheme_.add_scheme_to(app());
         add_options(app(), options_of(options_));
-        set_essentials({"--cells", "--sharp-angle", "--iso", "--scheme", "--keep-folds", "--output", "--json"});
+        set_essentials(
+            {"--cells", "--refine", "--tolerance", "--sharp-angle", "--iso", "--scheme", "--keep-folds", "--output", "--json"});
     }
 
     int run(Report& report) override {
@@ -84,7 +87,8 @@ private:
         report["output"] = output_;
         const ShapeError& error = found.shape.after;
         const auto sides = [&](double world) { return text(world / found.side_world); };
-        report.say(text("mesh          ", counted(made.mesh.cells.size(), "cell"), " of ", found.side_world, " with ",
+        report.say(text("mesh          ", counted(made.mesh.cells.size(), "cell"), " of ", found.side_world,
+                        found.divided > 0 ? text(" and ", counted(found.divided, "such cube"), " divided") : "", " with ",
                         counted(made.mesh.points.size(), "point"),
                         found.parts > 1 ? text(", in ", found.parts, " parts that are not joined") : ""));
         report.say(text("boundary      ", error.rms, " RMS from the surface (", sides(error.rms), " cells), at most ",
@@ -99,11 +103,11 @@ private:
         report.say(text("folds         ", fold_text(found.shape.folds, made.mesh.cells.size())));
         if (error.missed_max > found.side_world) {
             report.warn(text("a part of the surface is ", sides(error.missed_max),
-                             " cells away from the mesh: more --cells reach into thinner parts"));
+                             " cells away from the mesh: more --cells or --refine reach into thinner parts"));
         }
         if (found.sharp.missed > 0) {
             report.warn(text("sharp edges of the length ", found.sharp.missed_length_world, " of ", found.sharp.length_world,
-                             " become round, as no edges of the mesh can follow them: more --cells may"));
+                             " become round, as no edges of the mesh can follow them: more --cells or --refine may"));
         }
         report.all_said();
     }

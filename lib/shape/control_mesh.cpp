@@ -6,6 +6,7 @@
 #include <iterator>
 
 #include "castle.h"
+#include "cube_grid.h"
 #include "layers.h"
 #include "shape_fitter.h"
 #include "sharp_paths.h"
@@ -15,6 +16,7 @@
 #include "subvol/detail/parallel_each.h"
 #include "subvol/error.h"
 #include "subvol/mesh_report.h"
+#include "surface_tree.h"
 
 namespace subvol {
 
@@ -32,34 +34,116 @@ Box box_of(const Surface& surface) {
     return box;
 }
 
-/// Cubes inside the surface. added: gets how many more were needed
-HexMesh cubes_inside(const Surface& surface, const ControlMeshOptions& options, double side, std::size_t& added) {
-    const Box box = box_of(surface);
-    const Vec3 counts = box.size() / side + 3.0;
-    constexpr double kEmpty = 64;  // cubes of the grid for each of the mesh
-    if (counts.x * counts.y * counts.z > kEmpty * static_cast<double>(options.max_cells)) {
-        throw Error(ErrorCode::InvalidInput, "the grid would have too many cubes", option_name("cells", options.names),
-                    "fewer cells");
+/// Cells inside a surface: cubes of a grid, some of them divided.
+class CellsInside {
+public:
+    CellsInside(const Surface& surface, const ControlMeshOptions& options, double side)
+        : options_(options), grid_(grid_about(surface, options, side)), cubes_(grid_), tree_(surface), inside_(grid_.size()) {
+        parallel_each(grid_.size(), [&](std::size_t c) { inside_[c] = likeness(grid_.center(c)) > kHalf ? 1 : 0; });
+        if (std::ranges::count(inside_, 1) == 0) {
+            throw Error(ErrorCode::InvalidInput, "no cell has its middle inside the surface", "surface",
+                        "a closed surface, and more cells if it is thin");
+        }
     }
-    CubeGrid grid(box, side);
-    const SurfaceTree tree(surface);
-    std::vector<float> likeness(grid.size());
-    parallel_each(grid.size(),
-                  [&](std::size_t c) { likeness[c] = static_cast<float>(std::abs(tree.winding(grid.center(c)))); });
-    grid.choose(std::move(likeness));
-    const auto count = [&] { return static_cast<std::size_t>(std::ranges::count(grid.chosen(), 1)); };
-    const std::size_t before = count();
-    if (before == 0) {
-        throw Error(ErrorCode::InvalidInput, "no cell has its middle inside the surface", "surface",
-                    "a closed surface, and more cells if it is thin");
+
+    void divide_at(const std::vector<Vec3>& places) { cubes_.divide_at(places, options_.refine); }
+    [[nodiscard]] std::size_t divided() const { return cubes_.count(); }
+
+    /// The cells whose middles are inside. added: gets how many more were needed for their boundary to be a surface
+    [[nodiscard]] SizedMesh cells(std::size_t& added) const {
+        constexpr std::size_t kParts = 27;
+        check_count(cubes_.count() * kParts);
+        SizedMesh all = cubes_.cells(near());
+        std::vector<float> likenesses(all.sides.size());
+        std::vector<std::uint8_t> chosen(all.sides.size());
+        parallel_each(chosen.size(), [&](std::size_t c) {
+            likenesses[c] = likeness(middle_of(all.mesh, static_cast<Index>(c)));
+            chosen[c] = likenesses[c] > kHalf ? 1 : 0;
+        });
+        added = make_manifold(all.mesh, likenesses, chosen);
+        SizedMesh made;
+        for (std::size_t c = 0; c < chosen.size(); ++c) {
+            if (chosen[c] == 0) continue;
+            made.mesh.cells.push_back(all.mesh.cells[c]);
+            made.sides.push_back(all.sides[c]);
+        }
+        check_count(made.sides.size());
+        made.mesh.points = std::move(all.mesh.points);
+        made.mesh = without_unused_points(std::move(made.mesh));
+        return made;
     }
-    grid.make_manifold();
-    added = count() - before;
-    if (before + added > options.max_cells) {
-        throw Error(ErrorCode::InvalidInput, "there would be " + std::to_string(before + added) + " cells",
-                    option_name("cells", options.names), "fewer cells, or more with --max-cells");
+
+private:
+    static constexpr float kHalf = 0.5F;
+
+    static CubeGrid grid_about(const Surface& surface, const ControlMeshOptions& options, double side) {
+        const Box box = box_of(surface);
+        const Vec3 counts = box.size() / side + 3.0;
+        constexpr double kEmpty = 64;  // cubes of the grid for each of the mesh
+        if (counts.x * counts.y * counts.z > kEmpty * static_cast<double>(options.max_cells)) {
+            throw Error(ErrorCode::InvalidInput, "the grid would have too many cubes", option_name("cells", options.names),
+                        "fewer cells");
+        }
+        return {box, side};
     }
-    return grid.cells();
+
+    [[nodiscard]] float likeness(const Vec3& place) const { return static_cast<float>(std::abs(tree_.winding(place))); }
+
+    void check_count(std::size_t cells) const {
+        if (cells <= options_.max_cells) return;
+        throw Error(ErrorCode::InvalidInput, "there would be " + std::to_string(cells) + " cells",
+                    option_name("cells", options_.names), "fewer cells, or more with --max-cells");
+    }
+
+    /// Cubes inside and divided ones, and those that may be needed around them.
+    [[nodiscard]] std::vector<std::uint8_t> near() const {
+        std::vector<std::uint8_t> chosen(grid_.size(), 0);
+        for (std::size_t cube = 0; cube < chosen.size(); ++cube) {
+            const bool divided = cubes_.divided(cube);
+            if (!divided && inside_[cube] == 0) continue;
+            for (const std::size_t next : grid_.around(cube, divided ? 1 : 2)) chosen[next] = 1;
+        }
+        return chosen;
+    }
+
+    const ControlMeshOptions& options_;
+    CubeGrid grid_;
+    DividedCubes cubes_;
+    SurfaceTree tree_;
+    std::vector<std::uint8_t> inside_;
+};
+
+/// The sides of a mesh's cells, given those of the cells that they lie in, so that the volume remains. They change step by
+/// step.
+std::vector<double> sides_of(const LayeredMesh& mesh, const std::vector<double>& sides) {
+    const auto volume = [](const std::vector<double>& of) {
+        double sum = 0;
+        for (const double side : of) sum += side * side * side;
+        return sum;
+    };
+    std::vector<double> made;
+    for (const Index parent : mesh.from) made.push_back(sides[parent]);
+    if (std::ranges::min(sides) < std::ranges::max(sides)) {
+        const Topology topology = build_topology(mesh.mesh);
+        constexpr int kTimes = 3;
+        for (int k = 0; k < kTimes; ++k) {
+            const std::vector<double> before = made;
+            for (Index c = 0; c < made.size(); ++c) {
+                double sum = std::log(before[c]), count = 1;
+                for (const Index f : topology.cell_faces[c]) {
+                    if (topology.face_on_hull(f)) continue;
+                    const auto [a, b] = topology.face_cells[f];
+                    sum += std::log(before[a == c ? b : a]);
+                    ++count;
+                }
+                made[c] = std::exp(sum / count);
+            }
+        }
+    }
+    // With layers there are more cells in the same volume: larger ones would press the boundary outwards.
+    const double less = std::cbrt(volume(sides) / volume(made));
+    for (double& side : made) side *= less;
+    return made;
 }
 
 std::size_t parts_of(const HexMesh& mesh) {
@@ -85,6 +169,78 @@ SharpEdgeReport report_of(const SharpEdges& sharp, const SharpPaths& paths, cons
     return report;
 }
 
+/// Draws the boundary of cells to a surface.
+class SurfaceFiller {
+public:
+    SurfaceFiller(const Surface& surface, const SharpEdges& sharp, const ControlMeshOptions& options, ControlMeshReport& report)
+        : surface_(surface), sharp_(sharp), options_(options), report_(report) {}
+
+    void fill(const SizedMesh& inside) {
+        LayeredMesh layered = with_layer_at_hull(inside.mesh);
+        sides_ = sides_of(layered, inside.sides);
+        mesh_ = std::move(layered.mesh);
+        start_ = mesh_.points;
+        paths_ = {};
+        report_.shape.before = shape_error(mesh_, surface_, options_.scheme);
+        report_.shape.rounds = 0;
+        // The first rounds have control cells, as the limit of cubes is none of the surface's.
+        const int half = options_.rounds / 2;
+        draw(Scheme::Linear, 0, half);
+        if (!sharp_.curves.empty()) paths_ = sharp_paths(mesh_, sharp_, report_.side_world);
+        if (!paths_.creases.empty()) {
+            std::vector<std::array<Index, 2>> along = paths_.creases;
+            along.insert(along.end(), paths_.cuts.begin(), paths_.cuts.end());
+            layered = with_layer_along(mesh_, along);
+            sides_ = sides_of(layered, sides_);
+            mesh_ = std::move(layered.mesh);
+            mesh_.creases = paths_.creases;
+            start_ = mesh_.points;
+            draw(Scheme::Linear, half / 2, half);
+        }
+        draw(options_.scheme.kind, half, options_.rounds);
+    }
+
+    /// Places of the boundary and the surface with a distance beyond `far`, and those of sharp edges that are missed.
+    [[nodiscard]] std::vector<Vec3> places_beyond(double far) const {
+        SchemeOptions scheme = options_.scheme;
+        std::vector<Vec3> places = ShapeFitter(build_topology(mesh_), surface_, scheme).places_beyond(mesh_.points, far);
+        for (const Index k : paths_.missed) {
+            const SharpCurve& curve = sharp_.curves[k];
+            const double steps = std::ceil(2 * curve.length() / report_.side_world);
+            for (double step = 0; step <= steps; ++step) places.push_back(curve.at(step / steps));
+        }
+        return places;
+    }
+
+    [[nodiscard]] const HexMesh& mesh() const { return mesh_; }
+    /// Where the points were as cubes with layers.
+    [[nodiscard]] const std::vector<Vec3>& start() const { return start_; }
+
+private:
+    void draw(Scheme kind, int first, int end) {
+        SchemeOptions scheme = options_.scheme;
+        scheme.kind = kind;
+        ShapeFitter fitter(build_topology(mesh_), surface_, scheme);
+        fitter.follow(sharp_, paths_);
+        for (int round = first; round < end; ++round) {
+            report_progress(options_.progress, "shape", static_cast<double>(round) / options_.rounds);
+            constexpr double kMore = 1.5;
+            mesh_.points = fitter.relaxed(mesh_.points, sides_, std::pow(kMore, round));
+        }
+        report_.shape.rounds += end - first;
+        report_.sharp = report_of(sharp_, paths_, fitter.sharp_error(mesh_.points));
+    }
+
+    const Surface& surface_;
+    const SharpEdges& sharp_;
+    const ControlMeshOptions& options_;
+    ControlMeshReport& report_;
+    HexMesh mesh_;
+    std::vector<double> sides_;
+    std::vector<Vec3> start_;
+    SharpPaths paths_;
+};
+
 }  // namespace
 
 std::vector<Option> options_of(ControlMeshOptions& options) {
@@ -94,6 +250,13 @@ std::vector<Option> options_of(ControlMeshOptions& options) {
         Option("rounds", options.rounds)
             .between(1, 100)
             .help("N", "how often the points are drawn to the nearest places of the surface"),
+        Option("refine", options.refine)
+            .between(0, 3)
+            .help("N", "divide cells into 27 up to N times, where the boundary is not met within --tolerance"),
+        Option("tolerance", options.tolerance)
+            .between(0, 10)
+            .only_with("refine")
+            .help("T", "a distance that is near enough, as a part of a cell's side"),
         Option("sharp-angle", options.sharp_angle_deg)
             .between(1, kStraight)
             .help("DEG", "edges of the surface that are bent by more become creases of the mesh (180: none)")};
@@ -105,6 +268,8 @@ Facts facts_of(const ControlMeshReport& report) {
     Facts facts = facts_of(report.shape);
     facts["parts"] = report.parts;
     facts["added"] = report.added;
+    facts["refined"] = report.refined;
+    facts["divided"] = report.divided;
     facts["side_world"] = report.side_world;
     Facts& sharp = facts.group("sharp");
     sharp["curves"] = report.sharp.curves;
@@ -138,51 +303,27 @@ ControlMesh control_mesh_of(const Surface& surface, const ControlMeshOptions& gi
             "the surface has no size that can be worked with: a cell would have the side " + number_text(report.side_world),
             "surface", "1e-60 to 1e60");
     }
-    const HexMesh cubes = cubes_inside(surface, options, report.side_world, report.added);
-    HexMesh mesh = with_layer(cubes);
-    report.parts = parts_of(mesh);
-    report.shape.before = shape_error(mesh, surface, options.scheme);
-    std::vector<Vec3> start = mesh.points;
     const SharpEdges sharp =
         options.sharp_angle_deg < kStraight ? sharp_edges(surface, options.sharp_angle_deg, report.side_world) : SharpEdges{};
-    SharpPaths paths;
-    const auto rounds_of = [&](Scheme kind, int first, int end) {
-        SchemeOptions scheme = options.scheme;
-        scheme.kind = kind;
-        ShapeFitter fitter(build_topology(mesh), surface, scheme);
-        fitter.follow(sharp, paths);
-        // With layers there are more cells than cubes in the same volume: larger ones would press the boundary outwards.
-        const double side =
-            report.side_world * std::cbrt(static_cast<double>(cubes.cells.size()) / static_cast<double>(mesh.cells.size()));
-        for (int round = first; round < end; ++round) {
-            report_progress(options.progress, "shape", static_cast<double>(round) / options.rounds);
-            constexpr double kMore = 1.5;
-            mesh.points = fitter.relaxed(mesh.points, side, std::pow(kMore, round));
-        }
-        report.shape.rounds += end - first;
-        return fitter.sharp_error(mesh.points);
-    };
-    // The first rounds have control cells, as the limit of cubes is none of the surface's.
-    const int half = options.rounds / 2;
-    rounds_of(Scheme::Linear, 0, half);
-    if (!sharp.curves.empty()) paths = sharp_paths(mesh, sharp, report.side_world);
-    if (!paths.creases.empty()) {
-        std::vector<std::array<Index, 2>> along = paths.creases;
-        along.insert(along.end(), paths.cuts.begin(), paths.cuts.end());
-        mesh = with_layer_along(mesh, along);
-        mesh.creases = paths.creases;
-        start = mesh.points;
-        rounds_of(Scheme::Linear, half / 2, half);
+    CellsInside inside(surface, options, report.side_world);
+    SurfaceFiller filler(surface, sharp, options, report);
+    for (;;) {
+        filler.fill(inside.cells(report.added));
+        if (report.refined == options.refine) break;
+        inside.divide_at(filler.places_beyond(options.tolerance * report.side_world));
+        if (inside.divided() == report.divided) break;
+        report.divided = inside.divided();
+        ++report.refined;
     }
-    const auto sharp_error = rounds_of(options.scheme.kind, half, options.rounds);
-    report.sharp = report_of(sharp, paths, sharp_error);
+    HexMesh mesh = filler.mesh();
+    report.parts = parts_of(mesh);
     FitShapeOptions ending;
     ending.scheme = options.scheme;
     ending.folds = options.folds;
     ending.progress = options.progress;
     mesh = finished(std::move(mesh), surface, ending, report.shape);
-    for (std::size_t p = 0; p < start.size(); ++p) {
-        report.shape.moved_world = std::max(report.shape.moved_world, glm::distance(start[p], mesh.points[p]));
+    for (std::size_t p = 0; p < mesh.points.size(); ++p) {
+        report.shape.moved_world = std::max(report.shape.moved_world, glm::distance(filler.start()[p], mesh.points[p]));
     }
     report.min_scaled_jacobian = measure_cells(mesh).min_scaled_jacobian;
     return {std::move(mesh), std::move(report)};

@@ -10,34 +10,29 @@ namespace subvol::detail {
 
 namespace {
 
-/// The cells at the boundary, each with its corners as they will be: of the cells about a point those that cuts or other cells
-/// part have points of their own.
-class OuterCells {
+/// The cells of parts with their corners as they will be: of the cells about a point those that a layer parts from others have
+/// points of their own.
+class PartedCells {
 public:
-    OuterCells(const Topology& topology, std::span<const std::array<Index, 2>> cuts) : topology_(topology) {
-        outer_.resize(topology.cells.size());
-        for (Index c = 0; c < outer_.size(); ++c) {
-            outer_[c] = std::ranges::any_of(topology.cell_faces[c], [&](Index f) { return topology.face_on_hull(f); }) ? 1 : 0;
-        }
+    PartedCells(const Topology& topology, const Layers& layers) : topology_(topology), layers_(layers) {
         parting_.assign(topology.faces.size(), 0);
         for (Index f = 0; f < parting_.size(); ++f) {
-            if (topology.face_on_hull(f)) continue;
             const auto [a, b] = topology.face_cells[f];
-            parting_[f] = outer_[a] != outer_[b] ? 1 : 0;
+            const bool parts = b == kNone ? layers.at_hull : layers.parts[a] != layers.parts[b];
+            parting_[f] = parts ? 1 : 0;
         }
-        for (const auto& [a, b] : cuts) {
+        for (const auto& [a, b] : layers.cuts) {
             for (const Index f : topology.edge_faces[*topology.find_edge(a, b)]) {
                 if (!topology.face_on_hull(f)) parting_[f] = 1;
             }
         }
     }
 
-    [[nodiscard]] bool outer(Index cell) const { return outer_[cell] != 0; }
-    /// Whether there are new cells on both or one of the sides of a face.
+    /// Whether there is a layer on both or one of the sides of a face.
     [[nodiscard]] bool parting(Index face) const { return parting_[face] != 0; }
+    [[nodiscard]] bool stays(Index cell) const { return layers_.parts[cell] == kNone; }
 
-    /// Gives outer cells points of their own at parting faces: appended to `points`, a part of the way to the middles of their
-    /// cells.
+    /// Gives cells points of their own at parting faces: appended to `points`, a part of the way to the middles of their cells.
     void part(std::vector<std::array<Index, 8>>& cells, std::vector<Vec3>& points) const {
         std::vector<std::vector<std::pair<Index, std::uint8_t>>> at(topology_.point_count);
         std::vector<std::uint8_t> parted(topology_.point_count, 0);
@@ -45,8 +40,8 @@ public:
             if (parting_[f] == 0) continue;
             for (const Index p : topology_.faces[f]) parted[p] = 1;
         }
-        for (Index c = 0; c < outer_.size(); ++c) {
-            if (outer_[c] == 0) continue;
+        for (Index c = 0; c < topology_.cells.size(); ++c) {
+            if (stays(c)) continue;
             for (std::uint8_t k = 0; k < 8; ++k) {
                 const Index p = topology_.cells[c][k];
                 if (parted[p] != 0) at[p].emplace_back(c, k);
@@ -67,8 +62,7 @@ public:
                         sector.push_back(other);
                     }
                 }
-                constexpr double kInwards = 0.3;
-                const Vec3 place = points[p] + kInwards * (middle / static_cast<double>(sector.size()) - points[p]);
+                const Vec3 place = points[p] + layers_.inwards * (middle / static_cast<double>(sector.size()) - points[p]);
                 for (const std::size_t i : sector) cells[at[p][i].first][at[p][i].second] = static_cast<Index>(points.size());
                 points.push_back(place);
             }
@@ -76,7 +70,7 @@ public:
     }
 
 private:
-    /// Whether two outer cells share a face that does not part them.
+    /// Whether two cells of parts share a face that does not part them.
     [[nodiscard]] bool joined(Index a, Index b) const {
         return std::ranges::any_of(topology_.cell_faces[a], [&](Index f) {
             if (topology_.face_on_hull(f) || parting_[f] != 0) return false;
@@ -85,67 +79,49 @@ private:
     }
 
     const Topology& topology_;
-    std::vector<std::uint8_t> outer_, parting_;
+    const Layers& layers_;
+    std::vector<std::uint8_t> parting_;
 };
 
 }  // namespace
 
-HexMesh with_layer(const HexMesh& mesh) {
+LayeredMesh with_layers(const HexMesh& mesh, const Layers& layers) {
     const Topology topology = build_topology(mesh);
-    std::vector<Vec3> middles(mesh.points.size(), Vec3(0.0));
-    std::vector<double> counts(mesh.points.size(), 0);
-    for (const auto& cell : mesh.cells) {
-        Vec3 middle(0.0);
-        for (const Index p : cell) middle += mesh.points[p] / 8.0;
-        for (const Index p : cell) {
-            middles[p] += middle;
-            counts[p] += 1;
-        }
-    }
-    HexMesh made;
-    made.points = mesh.points;
-    made.cells = mesh.cells;
-    std::vector<Index> outer(mesh.points.size(), kNone);
-    constexpr double kInwards = 0.5;
-    for (Index p = 0; p < mesh.points.size(); ++p) {
-        if (topology.point_on_boundary[p] == 0) continue;
-        outer[p] = static_cast<Index>(made.points.size());
-        made.points.push_back(mesh.points[p]);
-        made.points[p] += kInwards * (middles[p] / counts[p] - mesh.points[p]);
-    }
+    const PartedCells parted(topology, layers);
+    LayeredMesh made;
+    made.mesh.points = mesh.points;
+    made.mesh.cells = mesh.cells;
+    parted.part(made.mesh.cells, made.mesh.points);
+    for (Index c = 0; c < mesh.cells.size(); ++c) made.from.push_back(c);
     for (Index c = 0; c < mesh.cells.size(); ++c) {
+        if (parted.stays(c)) continue;
         for (std::size_t side = 0; side < 6; ++side) {
-            if (!topology.face_on_hull(topology.cell_faces[c][side])) continue;
-            auto& cell = made.cells.emplace_back();
+            if (!parted.parting(topology.cell_faces[c][side])) continue;
+            std::array<Index, 8> between;
             for (std::size_t k = 0; k < 4; ++k) {
-                cell[k] = mesh.cells[c][kCellFaces[side][k]];
-                cell[4 + k] = outer[cell[k]];
+                between[k] = made.mesh.cells[c][kCellFaces[side][k]];
+                between[4 + k] = mesh.cells[c][kCellFaces[side][k]];
             }
+            made.mesh.cells.push_back(between);
+            made.from.push_back(c);
         }
     }
     return made;
 }
 
-HexMesh with_layer_along(const HexMesh& mesh, std::span<const std::array<Index, 2>> along) {
+LayeredMesh with_layer_at_hull(const HexMesh& mesh) {
+    constexpr double kInwards = 0.5;
+    return with_layers(mesh, {.parts = std::vector<Index>(mesh.cells.size(), 0), .at_hull = true, .inwards = kInwards});
+}
+
+LayeredMesh with_layer_along(const HexMesh& mesh, std::span<const std::array<Index, 2>> along) {
     const Topology topology = build_topology(mesh);
-    const OuterCells sides(topology, along);
-    HexMesh made;
-    made.points = mesh.points;
-    made.cells = mesh.cells;
-    sides.part(made.cells, made.points);
-    for (Index c = 0; c < mesh.cells.size(); ++c) {
-        if (!sides.outer(c)) continue;
-        for (std::size_t side = 0; side < 6; ++side) {
-            if (!sides.parting(topology.cell_faces[c][side])) continue;
-            std::array<Index, 8> between;
-            for (std::size_t k = 0; k < 4; ++k) {
-                between[k] = made.cells[c][kCellFaces[side][k]];
-                between[4 + k] = mesh.cells[c][kCellFaces[side][k]];
-            }
-            made.cells.push_back(between);
-        }
+    std::vector<Index> parts(mesh.cells.size(), kNone);
+    for (Index c = 0; c < parts.size(); ++c) {
+        if (std::ranges::any_of(topology.cell_faces[c], [&](Index f) { return topology.face_on_hull(f); })) parts[c] = 0;
     }
-    return made;
+    constexpr double kInwards = 0.3;
+    return with_layers(mesh, {.parts = parts, .cuts = along, .inwards = kInwards});
 }
 
 }  // namespace subvol::detail

@@ -3,31 +3,42 @@
 
 #include <array>
 #include <span>
+#include <vector>
 
 #include "subvol/hex_mesh.h"
 
 namespace subvol::detail {
 
-/// The mesh with a layer of cells on its boundary, so that each cell has one side there at most.
-///
-///     ┌───┬───┐      ┌───┬───┐   The points of the old boundary move inwards, by a part of the way to the middles of their
-///     │   │   │      ├┐ ┌┴┐ ┌┤   cells, and new ones take their places.
-///     └───┴───┘      └┴─┴─┴─┴┘
-///
-/// The boundary has to be a surface. Attributes are dropped.
-[[nodiscard]] HexMesh with_layer(const HexMesh& mesh);
+/// A mesh with layers of cells that another one has not, and in which cell of that one each of its cells lies.
+struct LayeredMesh {
+    HexMesh mesh;
+    std::vector<Index> from;
+};
 
-/// The mesh, in which every cell has one side at the boundary at most, with one more layer of cells: under those at the
-/// boundary, and on both sides of each crease. So a crease may turn at each of its points: no side at the boundary has two
-/// edges of it.
+/// Where layers lie: inside of each part of a mesh along the faces that part it from other cells.
 ///
-///     ┌───┬───┐      ┌───┬───┐
-///     │   │   │      ├──┐│┌──┤   Seen from outside, with a crease in the middle.
-///     ├───┼───┤      │  ││├──┤
-///     │   │   │      ├──┘│└──┤
-///     └───┴───┘      └───┴───┘
+/// parts:   a number for each cell; cells of kNone stay as they are
+/// at_hull: also along the hull
+/// cuts:    also along the faces between cells at these edges
+/// inwards: how far the cells of a part move away for a layer: a part of the way to the middles of the cells
+struct Layers {
+    std::span<const Index> parts;
+    bool at_hull = false;
+    std::span<const std::array<Index, 2>> cuts{};
+    double inwards;
+};
+
+/// The mesh with layers. Its cells and points keep their numbers, and the new ones follow; points keep their places, too, at
+/// the outer side of a layer.
+[[nodiscard]] LayeredMesh with_layers(const HexMesh& mesh, const Layers& layers);
+
+/// A layer inside of the whole hull.
+[[nodiscard]] LayeredMesh with_layer_at_hull(const HexMesh& mesh);
+
+/// A layer under the cells at the boundary, and on both sides of given edges of the boundary, so that paths of them may turn at
+/// every point.
 ///
-/// along: edges of the boundary, the smaller point first; they stay where they are. Each point has none or at least two of them
-[[nodiscard]] HexMesh with_layer_along(const HexMesh& mesh, std::span<const std::array<Index, 2>> along);
+/// along: edges of the boundary, two points each
+[[nodiscard]] LayeredMesh with_layer_along(const HexMesh& mesh, std::span<const std::array<Index, 2>> along);
 
 }  // namespace subvol::detail

@@ -50,13 +50,20 @@ Mat3 edges_at(const std::array<Index, 8>& cell, std::size_t corner, const Vec3* 
 /// What is minimised, as a function of the ways of the control points from their start, in sides.
 class ShapeEnergy : public ceres::FirstOrderFunction {
 public:
-    ShapeEnergy(const ShapeFitter& fitter, const std::vector<Vec3>& control, double side, double weight)
-        : fitter_(fitter), pulls_(fitter.pulls(control)), side_(side), weight_(weight), start_(control) {
-        const std::vector<Vec3> children = fine(control);
-        for (const auto& cell : fitter_.children_.cells) {
-            for (std::size_t k = 0; k < 8; ++k) least_ = std::min(least_, glm::determinant(edges_at(cell, k, children.data())));
+    ShapeEnergy(const ShapeFitter& fitter, const std::vector<Vec3>& control, const std::vector<double>& sides, double weight)
+        : fitter_(fitter), pulls_(fitter.pulls(control)), side_(std::ranges::max(sides)), weight_(weight), start_(control) {
+        const std::size_t children_of_cell = fitter_.children_.levels.empty() ? 1 : 8;
+        for (std::size_t c = 0; c < fitter_.children_.cells.size(); ++c) {
+            scales_.push_back(parts() * side_ / sides[c / children_of_cell]);
         }
-        least_ *= std::pow(parts() / side, 3);
+        const std::vector<Vec3> children = fine(control);
+        for (std::size_t c = 0; c < scales_.size(); ++c) {
+            for (std::size_t k = 0; k < 8; ++k) {
+                const Mat3 edges = edges_at(fitter_.children_.cells[c], k, children.data());
+                least_ = std::min(least_, glm::determinant(edges) * std::pow(scales_[c] / side_, 3));
+            }
+        }
+        weigh_by_size(sides);
         constexpr double kPart = 0.04, kTiny = 1e-6;
         const double below = std::min(least_, 0.0);
         epsilon_ = std::sqrt(kTiny + kPart * below * below);
@@ -78,12 +85,12 @@ public:
             parallel_sums(3 * children.size() + 1, fitter_.children_.cells.size(), [&](std::size_t c, std::vector<double>& to) {
                 const auto& cell = fitter_.children_.cells[c];
                 for (std::size_t k = 0; k < 8; ++k) {
-                    const Distortion at = distortion_of(parts() * edges_at(cell, k, children.data()), epsilon_);
+                    const Distortion at = distortion_of(scales_[c] * edges_at(cell, k, children.data()), epsilon_);
                     to.back() += at.value / corners;
                     for (std::size_t e = 0; e < 3; ++e) {
                         const Index end = cell[kCornerNeighbors[k][e]];
                         for (int axis = 0; axis < 3; ++axis) {
-                            const double slope = parts() * at.gradient[static_cast<int>(e)][axis] / corners;
+                            const double slope = scales_[c] * at.gradient[static_cast<int>(e)][axis] / corners;
                             to[3 * end + static_cast<std::size_t>(axis)] += slope;
                             to[3 * cell[k] + static_cast<std::size_t>(axis)] -= slope;
                         }
@@ -124,6 +131,21 @@ private:
     /// How many children a cell has along an edge.
     [[nodiscard]] double parts() const { return fitter_.children_.levels.empty() ? 1 : 2; }
 
+    /// Distances count by the sides of the cells where they are.
+    void weigh_by_size(const std::vector<double>& sides) {
+        std::vector<Vec3> sums(start_.size(), Vec3(0.0));  // of sides, and their number
+        for (std::size_t c = 0; c < sides.size(); ++c) {
+            for (const Index p : fitter_.cells_[c]) sums[p] += Vec3(sides[c], 1, 0);
+        }
+        for (Vec3& sum : sums) sum = Vec3(sum.x / std::max(sum.y, 1.0));
+        const std::vector<Vec3> at = fitter_.matrix_.apply(sums);
+        const double least = std::ranges::min(sides);
+        for (Pull& pull : pulls_) {
+            const double here = std::clamp(pull.sum_of(at).x, least, side_);
+            pull.weight *= side_ * side_ / (here * here);
+        }
+    }
+
     [[nodiscard]] std::vector<Vec3> fine(const std::vector<Vec3>& points) const {
         std::vector<Vec3> children(fitter_.children_.points());
         fitter_.children_.apply(std::span<const double>(&points.front().x, 3 * points.size()), 3,
@@ -133,14 +155,16 @@ private:
 
     const ShapeFitter& fitter_;
     std::vector<Pull> pulls_;
-    double side_, weight_;
+    double side_, weight_;        // the greatest side; ways are in it
+    std::vector<double> scales_;  // from sides to those of each child
     std::vector<Vec3> start_;
     double least_ = 1, epsilon_ = 0;
 };
 
-std::vector<Vec3> ShapeFitter::relaxed(const std::vector<Vec3>& control, double side, double weight) const {
+std::vector<Vec3> ShapeFitter::relaxed(const std::vector<Vec3>& control, const std::vector<double>& sides,
+                                       double weight) const {
     std::vector<Vec3> ways(control.size(), Vec3(0.0));
-    const ceres::GradientProblem problem(new ShapeEnergy(*this, control, side, weight));
+    const ceres::GradientProblem problem(new ShapeEnergy(*this, control, sides, weight));
     ceres::GradientProblemSolver::Options options;
     constexpr int kSteps = 30;
     options.max_num_iterations = kSteps;
@@ -149,6 +173,7 @@ std::vector<Vec3> ShapeFitter::relaxed(const std::vector<Vec3>& control, double 
     ceres::GradientProblemSolver::Summary summary;
     ceres::Solve(options, problem, &ways.front().x, &summary);
     std::vector<Vec3> points = control;
+    const double side = std::ranges::max(sides);
     for (std::size_t p = 0; p < points.size(); ++p) points[p] += side * ways[p];
     return points;
 }

@@ -39,15 +39,21 @@ public:
 
     [[nodiscard]] ShapeError error(const std::vector<Vec3>& control) const;
 
+    /// The places of the boundary and the surface whose distances are above `far`.
+    [[nodiscard]] std::vector<Vec3> places_beyond(const std::vector<Vec3>& control, double far) const {
+        return distances_.places_beyond({matrix_.apply(control), matrix_.triangles()}, far);
+    }
+
     /// The points with less distorted cells and the boundary nearer to the surface, by quasi-Newton steps. Cells that are
     /// turned inside out are turned back where they can be.
     ///
     /// The distortion is that of the children of cells; of the linear scheme that of the cells.
     ///
-    /// side:   of a cell that is not distorted at all
+    /// sides:  of each cell, if it were not distorted at all
     /// weight: of the squares of distances in sides, about each control point of the boundary, beside the distortion of a
     /// corner source: [garanzha2021]
-    [[nodiscard]] std::vector<Vec3> relaxed(const std::vector<Vec3>& control, double side, double weight) const;
+    [[nodiscard]] std::vector<Vec3> relaxed(const std::vector<Vec3>& control, const std::vector<double>& sides,
+                                            double weight) const;
 
 private:
     friend class ShapeEnergy;

@@ -39,10 +39,38 @@ std::vector<Vec3> places_on(const Surface& surface, std::size_t count) {
     return places;
 }
 
+std::array<Index, 2> in_order(Index a, Index b) {
+    return {std::min(a, b), std::max(a, b)};
+}
+
+/// The edges of only one triangle, in ascending order.
+std::vector<std::array<Index, 2>> open_edges_of(const Surface& surface) {
+    std::vector<std::array<Index, 2>> all, open;
+    for (const auto& t : surface.triangles) {
+        for (std::size_t k = 0; k < 3; ++k) all.push_back(in_order(t[k], t[(k + 1) % 3]));
+    }
+    std::ranges::sort(all);
+    for (std::size_t k = 0; k < all.size(); ++k) {
+        const bool before = k > 0 && all[k - 1] == all[k], after = k + 1 < all.size() && all[k + 1] == all[k];
+        if (!before && !after) open.push_back(all[k]);
+    }
+    return open;
+}
+
 }  // namespace
 
 SurfaceDistances::SurfaceDistances(const Surface& surface, std::size_t places)
-    : tree_(surface), places_(places_on(surface, places)) {
+    : surface_(surface), open_edges_(open_edges_of(surface)), tree_(surface), places_(places_on(surface, places)) {
+}
+
+bool SurfaceDistances::at_hole(const SurfacePlace& place) const {
+    const auto& corners = surface_.triangles[place.triangle];
+    for (int k = 0; k < 3; ++k) {
+        if (place.weights[k] > 0) continue;
+        const auto i = static_cast<std::size_t>(k);
+        if (std::ranges::binary_search(open_edges_, in_order(corners[(i + 1) % 3], corners[(i + 2) % 3]))) return true;
+    }
+    return false;
 }
 
 std::vector<Pull> SurfaceDistances::pulls(const Surface& boundary, double weight) const {
@@ -58,7 +86,7 @@ std::vector<Pull> SurfaceDistances::pulls(const Surface& boundary, double weight
     parallel_each(first, [&](std::size_t p) {
         const SurfacePlace near = tree_.nearest(boundary.points[p]);
         const auto point = static_cast<Index>(p);
-        made[p] = {{point, point, point}, {1, 0, 0}, near.toward, near.distance, weight_at(near.distance)};
+        made[p] = {{point, point, point}, {1, 0, 0}, near.toward, near.distance, at_hole(near) ? 0 : weight_at(near.distance)};
     });
     parallel_each(places_.size(), [&](std::size_t k) {
         const SurfacePlace near = boundary_tree.nearest(places_[k]);
@@ -72,8 +100,11 @@ ShapeError SurfaceDistances::error(const Surface& boundary) const {
     const std::vector<Pull> found = pulls(boundary, 1);
     const std::size_t first = boundary.points.size();
     ShapeError error;
+    std::size_t counted = 0;
     for (std::size_t k = 0; k < found.size(); ++k) {
         const bool missed = k >= first;
+        if (!missed && found[k].weight == 0) continue;
+        counted += missed ? 0 : 1;
         const double distance = found[k].distance;
         (missed ? error.missed_rms : error.rms) += distance * distance;
         double& most = missed ? error.missed_max : error.max;
@@ -81,9 +112,20 @@ ShapeError SurfaceDistances::error(const Surface& boundary) const {
         most = distance;
         (missed ? error.missed_at : error.max_at) = missed ? places_[k - first] : boundary.points[k];
     }
-    error.rms = std::sqrt(error.rms / static_cast<double>(first));
+    error.rms = std::sqrt(error.rms / static_cast<double>(std::max<std::size_t>(counted, 1)));
     error.missed_rms = std::sqrt(error.missed_rms / static_cast<double>(places_.size()));
     return error;
+}
+
+std::vector<Vec3> SurfaceDistances::places_beyond(const Surface& boundary, double far) const {
+    const std::vector<Pull> found = pulls(boundary, 1);
+    const std::size_t first = boundary.points.size();
+    std::vector<Vec3> places;
+    for (std::size_t k = 0; k < found.size(); ++k) {
+        if (found[k].distance > far && found[k].weight > 0)
+            places.push_back(k < first ? boundary.points[k] : places_[k - first]);
+    }
+    return places;
 }
 
 }  // namespace subvol::detail

@@ -31,12 +31,22 @@ public:
     SurfaceDistances(const Surface& surface, std::size_t places);
 
     /// The distances from all points of a boundary, then those from all places. The weights sum to `weight`, but for distances
-    /// longer than a side of the boundary, which may be to the wrong place.
+    /// longer than a side of the boundary, which may be to the wrong place. Points over a hole of the surface, to whose edge
+    /// they are nearest, have the weight 0.
     [[nodiscard]] std::vector<Pull> pulls(const Surface& boundary, double weight) const;
 
+    /// Points over holes do not count.
     [[nodiscard]] ShapeError error(const Surface& boundary) const;
 
+    /// The points and places whose distances are above `far`, but for points over holes.
+    [[nodiscard]] std::vector<Vec3> places_beyond(const Surface& boundary, double far) const;
+
 private:
+    /// Whether a place lies on an edge of only one triangle.
+    [[nodiscard]] bool at_hole(const SurfacePlace& place) const;
+
+    const Surface& surface_;
+    std::vector<std::array<Index, 2>> open_edges_;  // the smaller point first, in ascending order
     SurfaceTree tree_;
     std::vector<Vec3> places_;
 };

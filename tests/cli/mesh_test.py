@@ -26,6 +26,28 @@ class Mesh(InFolder):
         ball = self.run_ok("probe", "model:ball:4", "--density", "1", "--stats", "--json").json()["stats"]["whole"]["volume"]
         self.assertLess(abs(filled / ball - 1), .02)
 
+    def test_cells_are_divided_where_the_surface_asks_for_it(self):
+        # a ball with a thin horn, of which large cells see nothing
+        self.run_ok("surface", "model:ball:4", "--boundary", "-o", "ball.obj", "--tolerance", "1e-2", "--quiet")
+        lines = (self.folder / "ball.obj").read_text().splitlines()
+        points = [[float(x) for x in line.split()[1:4]] for line in lines if line.startswith("v ")]
+        top = max(p[2] for p in points)
+        for p in points:
+            if p[2] > 0 and (p[0] ** 2 + p[1] ** 2) ** .5 < .22 * top:
+                p[2] += top * (1 - (p[0] ** 2 + p[1] ** 2) / (.22 * top) ** 2)
+        (self.folder / "horn.obj").write_text("\n".join([f"v {x!r} {y!r} {z!r}" for x, y, z in points] + [line for line in lines if line.startswith("f ")]) + "\n")
+        whole = self.make("horn.obj", "-o", "whole.vtu", "--cells", "6", "--sharp-angle", "180")
+        divided = self.make("horn.obj", "-o", "divided.vtu", "--cells", "6", "--sharp-angle", "180", "--refine", "1")
+        self.assertEqual((whole["refined"], whole["divided"], divided["refined"]), (0, 0, 1))
+        self.assertGreater(divided["divided"], 0)
+        self.assertLess(divided["after"]["missed_max"], .6 * whole["after"]["missed_max"])
+        self.assertEqual(divided["folds"]["cells"]["folded"], 0)
+        self.assertEqual(divided["side_world"], whole["side_world"])
+        # where nothing is beyond the tolerance, it is the same mesh
+        same = self.make("horn.obj", "-o", "same.vtu", "--cells", "6", "--sharp-angle", "180", "--refine", "1", "--tolerance", "10")
+        self.assertEqual(same["cells"], whole["cells"])
+        self.assertEqual((self.folder / "same.vtu").read_bytes(), (self.folder / "whole.vtu").read_bytes())
+
     def test_a_part_of_a_grid_is_filled(self):
         # density is 1 − |x|² or so inside the ball: where it is above a value is a smaller ball
         self.run_ok("vdb", "model:ball:4", "--density", "2-x*x-y*y-z*z", "-o", "fog.vdb", "--resolution", "40", "--sdf", "--quiet")
@@ -56,6 +78,8 @@ class Mesh(InFolder):
                             (["bad.obj"], "bad.obj, line 2: a face has the corner 2"), (["model:ball"], "is not a surface"),
                             (["ball.stl", "--iso", "1"], "--iso: needs a grid"), (["ball.stl", "--field", "T"], "--field: needs a grid"),
                             (["ball.stl", "--cells", "1"], "--cells"), (["ball.stl", "--max-cells", "10"], "--cells: "),
+                            (["ball.stl", "--tolerance", ".1"], "--tolerance"), (["ball.stl", "--refine", "4"], "--refine"), (["ball.stl", "--refine", "1", "--tolerance", "-1"], "--tolerance"),
+                            (["ball.stl", "--cells", "8", "--refine", "1", "--tolerance", "0", "--max-cells", "1000"], "--cells: there would be "),
                             (["ball.stl", "--keep-folds", "--boundary-move", ".5"], "--boundary-move"),
                             (["fog.vdb", "--iso", "77"], "has the value 77 nowhere"), (["fog.vdb", "--field", "T"], "T")):
             done = subvol("mesh", *words, "-o", "made.vtu", folder=self.folder)

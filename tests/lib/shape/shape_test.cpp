@@ -179,7 +179,7 @@ TEST(SharpPaths, PathsMeetInCornersAlone) {
 
     // Each point of a path has one more edge on either side; each cell has at most one side at the boundary, and that at most
     // one edge of the paths, but at corners.
-    const HexMesh layered = detail::with_layer_along(mesh, paths.creases);
+    const HexMesh layered = detail::with_layer_along(mesh, paths.creases).mesh;
     const Topology topology = build_topology(layered);
     const std::set<std::array<Index, 2>> creases(paths.creases.begin(), paths.creases.end());
     for (const auto& [point, count] : edges) {
@@ -249,7 +249,7 @@ TEST(ShapeFitter, TurnsACellBackThatWasTurnedInsideOut) {
     mesh.points[inner] += Vec3(1.6, 1.6, 1.6);
     ASSERT_LT(measure_cells(mesh).min_scaled_jacobian, 0);
     const detail::ShapeFitter fitter(build_topology(mesh), sides, {.kind = Scheme::Linear});
-    for (int k = 0; k < 3; ++k) mesh.points = fitter.relaxed(mesh.points, 1, 10);
+    for (int k = 0; k < 3; ++k) mesh.points = fitter.relaxed(mesh.points, std::vector<double>(mesh.cells.size(), 1), 10);
     EXPECT_GT(measure_cells(mesh).min_scaled_jacobian, 0.5);
 }
 

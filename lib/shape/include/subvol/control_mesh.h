@@ -8,6 +8,8 @@ namespace subvol {
 /// cells:     along the longest side of the surface's box
 /// max_cells: that may be made
 /// rounds:    how often the nearest places are looked for, each time with half as much weight again for distances
+/// refine:    how often cubes may be divided into 27, where the boundary or a sharp edge is not met within `tolerance`
+/// tolerance: a distance that is near enough, as a part of the side of a cube that is not divided
 /// sharp_angle_deg: edges of the surface that are bent by more become creases of the mesh; 180: none
 /// scheme, folds, names, progress: as in `FitShapeOptions`; the scheme without an angle of creases
 struct ControlMeshOptions {
@@ -15,6 +17,8 @@ struct ControlMeshOptions {
     int cells = 24;
     std::size_t max_cells = 2'000'000;
     int rounds = 15;
+    int refine = 0;
+    double tolerance = 0.25;
     double sharp_angle_deg = 40;
     ShapeFolds folds{};
     OptionNames names = OptionNames::Keywords;
@@ -38,12 +42,15 @@ struct SharpEdgeReport {
 /// shape:      how far the limit's boundary is from the surface; before: as cubes with a layer around them
 /// parts:      of the mesh, that are not joined
 /// added:      cubes that were needed to make the boundary of the cubes a surface
-/// side_world: of a cube
+/// refined, divided: how often cubes were divided, and how many in all
+/// side_world: of a cube that is not divided
 /// min_scaled_jacobian: of the control cells: 1 for cubes, negative if one is turned inside out at a corner
 struct ControlMeshReport {
     FitShapeReport shape;
     SharpEdgeReport sharp;
     std::size_t parts = 0, added = 0;
+    int refined = 0;
+    std::size_t divided = 0;
     double side_world = 0;
     double min_scaled_jacobian = 0;
 };
@@ -60,9 +67,9 @@ struct ControlMesh {
 ///
 /// Cubes of a grid whose middles lie inside become cells, with a layer of cells around them, so that none has two sides at the
 /// boundary. Then the distortion of the cells' children is made as small as it can be, while the boundary of the limit is drawn
-/// to the surface, more and more; and points are moved where the limit folds still (`mend_folds`). Chains of sharp edges become
-/// creases, with a layer of cells on both sides. Where that cannot be, as in chains nearer to each other than a cell, edges
-/// become round, by a part of a cell.
+/// to the surface, more and more; and points are moved where the limit folds still (`mend_folds`). Where the boundary is still
+/// too far away, cubes are divided and all is done again. Chains of sharp edges become creases, with a layer of cells on both
+/// sides. Where that cannot be, as in chains nearer to each other than a cell, edges become round, by a part of a cell.
 ///
 /// surface: closed; small holes are closed where most of the surface winds about a place. Either side may be outside
 /// throws:  Error(InvalidInput) if the surface is not valid, if no cube has its middle inside, or if an option is out of range;

@@ -40,7 +40,8 @@ struct FitShapeOptions {
 
 /// Distances between the boundary of a limit and a surface, in the world.
 ///
-/// rms, max:       from places of the boundary to the surface, and max_at: the place that is farthest
+/// rms, max:       from places of the boundary to the surface, and max_at: the place that is farthest; but not from places over
+///                 a hole, to whose edge they are nearest
 /// missed_rms, missed_max, missed_at: from places of the surface to the boundary: large where the mesh does not reach
 struct ShapeError {
     double rms = 0, max = 0, missed_rms = 0, missed_max = 0;
