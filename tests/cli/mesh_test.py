@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """`subvol mesh` and `approximate --shape`: surfaces and grids become control meshes."""
 
+import math
 import unittest
 
 from command import InFolder, subvol
@@ -27,24 +28,26 @@ class Mesh(InFolder):
         self.assertLess(abs(filled / ball - 1), .02)
 
     def test_cells_are_divided_where_the_surface_asks_for_it(self):
-        # a ball with a thin horn, of which large cells see nothing
-        self.run_ok("surface", "model:ball:4", "--boundary", "-o", "ball.obj", "--tolerance", "1e-2", "--quiet")
-        lines = (self.folder / "ball.obj").read_text().splitlines()
-        points = [[float(x) for x in line.split()[1:4]] for line in lines if line.startswith("v ")]
-        top = max(p[2] for p in points)
-        for p in points:
-            if p[2] > 0 and (p[0] ** 2 + p[1] ** 2) ** .5 < .22 * top:
-                p[2] += top * (1 - (p[0] ** 2 + p[1] ** 2) / (.22 * top) ** 2)
-        (self.folder / "horn.obj").write_text("\n".join([f"v {x!r} {y!r} {z!r}" for x, y, z in points] + [line for line in lines if line.startswith("f ")]) + "\n")
-        whole = self.make("horn.obj", "-o", "whole.vtu", "--cells", "6", "--sharp-angle", "180")
-        divided = self.make("horn.obj", "-o", "divided.vtu", "--cells", "6", "--sharp-angle", "180", "--refine", "1")
+        # a ball with ripples on one side, too short for large cells
+        self.run_ok("surface", "model:ball:4", "--boundary", "-o", "ball.obj", "--tolerance", "1e-3", "--quiet")
+        with open(self.folder / "rippled.obj", "w") as file:
+            for line in (self.folder / "ball.obj").read_text().splitlines():
+                if line.startswith("v "):
+                    x, y, z = (float(word) for word in line.split()[1:4])
+                    longer = 1 + .15 * max(x, 0) * math.sin(14 * z)
+                    line = f"v {longer * x!r} {longer * y!r} {longer * z!r}"
+                file.write(line + "\n")
+        whole = self.make("rippled.obj", "-o", "whole.vtu", "--cells", "6", "--sharp-angle", "180")
+        divided = self.make("rippled.obj", "-o", "divided.vtu", "--cells", "6", "--sharp-angle", "180", "--refine", "1", "--tolerance", ".15")
         self.assertEqual((whole["refined"], whole["divided"], divided["refined"]), (0, 0, 1))
-        self.assertGreater(divided["divided"], 0)
+        self.assertLess(divided["after"]["rms"], .6 * whole["after"]["rms"])
         self.assertLess(divided["after"]["missed_max"], .6 * whole["after"]["missed_max"])
+        finer = self.make("rippled.obj", "-o", "finer.vtu", "--cells", "18", "--sharp-angle", "180")
+        self.assertLess(divided["cells"], .6 * finer["cells"])
         self.assertEqual(divided["folds"]["cells"]["folded"], 0)
         self.assertEqual(divided["side_world"], whole["side_world"])
         # where nothing is beyond the tolerance, it is the same mesh
-        same = self.make("horn.obj", "-o", "same.vtu", "--cells", "6", "--sharp-angle", "180", "--refine", "1", "--tolerance", "10")
+        same = self.make("rippled.obj", "-o", "same.vtu", "--cells", "6", "--sharp-angle", "180", "--refine", "1", "--tolerance", "10")
         self.assertEqual(same["cells"], whole["cells"])
         self.assertEqual((self.folder / "same.vtu").read_bytes(), (self.folder / "whole.vtu").read_bytes())
 
