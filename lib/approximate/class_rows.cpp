@@ -38,6 +38,19 @@ Vec3 along_walk(const Vec3& uvw, std::uint8_t turn) {
     return at;
 }
 
+constexpr std::size_t kFew = 256;  // cells that need the same rows: fewer do not pay for a table of these alone
+
+// Where few samples lie in a cell, all rows of a table cost more than the rows of the samples.
+void drop_small_classes(std::vector<Member>& members) {
+    std::vector<ClassKey> keys(members.size());
+    std::ranges::transform(members, keys.begin(), &Member::key);
+    tbb::parallel_sort(keys.begin(), keys.end());
+    std::erase_if(members, [&](const Member& member) {
+        const auto [first, last] = std::equal_range(keys.begin(), keys.end(), member.key);
+        return static_cast<std::size_t>(last - first) < kFew;
+    });
+}
+
 WeightTable transposed_of(const WeightTable& table) {
     WeightTable result{.points = table.rows(),
                        .used = {},
@@ -105,6 +118,7 @@ ClassRows::ClassRows(const HexMesh& mesh, const RefineOptions& options, std::spa
     cells_ = classify(finding.level, wanted, options.levels, finding.layers, finding.regular_key, 0);
     auto& members = cells_.members;
     std::erase_if(members, [](const Member& member) { return member.key == kNoClass; });
+    if (places.size() <= kFormedPlaces * wanted.size()) drop_small_classes(members);
     std::vector<std::uint8_t> turns(mesh.cells.size(), kIdentityTurn);
     for (const Member& member : members) {
         rest_[member.cell] = 0;
@@ -221,7 +235,6 @@ ClassRows::Table ClassRows::table_of(const WeightTable& whole, Need need) const 
 }
 
 void ClassRows::choose_tables(Finding& finding) {
-    constexpr std::size_t kFew = 256;  // cells that need the same rows: fewer do not pay for a table
     struct Choice {
         ClassKey key;
         Need need;
@@ -258,6 +271,12 @@ void ClassRows::choose_tables(Finding& finding) {
         }
     }
     std::ranges::transform(choices, cells_.members.begin(), &Choice::member);
+    // Table by table in one part of the mesh after the other, so that neither tables nor values are fetched from afar each
+    // time.
+    constexpr Index kPart = Index{1} << 15;
+    std::ranges::sort(chunks_, {}, [&](const Chunk& chunk) {
+        return std::tuple(cells_.members[chunk.first].cell / kPart, chunk.table, chunk.first);
+    });
 }
 
 void ClassRows::load(const Chunk& chunk, std::span<const double> control, Scratch& scratch) const {

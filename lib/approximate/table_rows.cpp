@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "table_rows.h"
 
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
 
 #include "mesh_subset.h"
 #include "piece_tree.h"
+#include "row_access.h"
 #include "subvol/cell.h"
 #include "subvol/detail/limit_of_part.h"
 #include "subvol/detail/parallel_each.h"
@@ -21,6 +25,63 @@ namespace {
 // The number of the corner with these parameters.
 std::size_t corner_number(bool u, bool v, bool w) {
     return kCornerOctants[(u ? 1u : 0u) + (v ? 2u : 0u) + (w ? 4u : 0u)];
+}
+
+// Sums of terms of one row after the other.
+struct RowSums {
+    std::vector<double> sums;
+    std::vector<std::uint8_t> is_term;
+    std::vector<Index> terms;
+
+    void add(Index column, double weight) {
+        if (is_term[column] == 0) terms.push_back(column);
+        is_term[column] = 1;
+        sums[column] += weight;
+    }
+
+    // Appends the row and forgets it.
+    void finish(CsrMatrix& matrix) {
+        std::ranges::sort(terms);
+        for (const Index column : terms) {
+            if (sums[column] != 0) {
+                matrix.columns.push_back(column);
+                matrix.weights.push_back(sums[column]);
+            }
+            sums[column] = 0;
+            is_term[column] = 0;
+        }
+        terms.clear();
+        matrix.offsets.push_back(matrix.columns.size());
+    }
+};
+
+// A matrix of some rows: each_term(row, visit) visits their terms.
+template <class EachTerm>
+CsrMatrix matrix_of(std::size_t rows, std::size_t columns, const EachTerm& each_term) {
+    constexpr std::size_t kRun = 512;
+    std::vector<CsrMatrix> runs((rows + kRun - 1) / kRun);
+    tbb::enumerable_thread_specific<RowSums> all_sums([&] {
+        return RowSums{std::vector<double>(columns), std::vector<std::uint8_t>(columns), {}};
+    });
+    tbb::parallel_for(std::size_t{0}, runs.size(), [&](std::size_t r) {
+        RowSums& sums = all_sums.local();
+        for (std::size_t row = r * kRun; row < std::min(rows, (r + 1) * kRun); ++row) {
+            each_term(row, [&](Index column, double weight) { sums.add(column, weight); });
+            sums.finish(runs[r]);
+        }
+    });
+    CsrMatrix matrix;
+    std::size_t terms = 0;
+    for (const CsrMatrix& run : runs) terms += run.columns.size();
+    matrix.columns.reserve(terms);
+    matrix.weights.reserve(terms);
+    for (CsrMatrix& run : runs) {
+        for (std::size_t k = 1; k < run.offsets.size(); ++k) matrix.offsets.push_back(matrix.columns.size() + run.offsets[k]);
+        matrix.columns.insert(matrix.columns.end(), run.columns.begin(), run.columns.end());
+        matrix.weights.insert(matrix.weights.end(), run.weights.begin(), run.weights.end());
+        run = {};
+    }
+    return matrix;
 }
 
 }  // namespace
@@ -60,6 +121,7 @@ TableRows::TableRows(const HexMesh& mesh, const RefineOptions& options, std::spa
         }
     });
     if (!settling.positions.empty()) settle(part.mesh.points, settling);
+    if (places_.size() <= kFormedPlaces * part.cells.size()) form();
 }
 
 // Node (i,j,k) of 3×3×3 is a corner of the child whose corner of the cell is nearest.
@@ -100,10 +162,38 @@ void TableRows::settle(std::span<const Vec3> control, const Settling& settling) 
     });
 }
 
+// From the finest level to the control points, row by row.
+void TableRows::form() {
+    formed_ = matrix_of(places_.size(), tables_.back().rows(), [&](std::size_t k, const auto& add) {
+        each_term(places_[k], [&](Index point, double weight) {
+            if (weight != 0) add(point, weight);
+        });
+    });
+    for (; !tables_.empty(); tables_.pop_back()) {
+        const RowAccess table(tables_.back());
+        formed_ = matrix_of(places_.size(), tables_.back().columns(), [&](std::size_t k, const auto& add) {
+            for (std::size_t i = formed_.offsets[k]; i < formed_.offsets[k + 1]; ++i) {
+                table.terms(formed_.columns[i], [&](Index point, double weight) { add(point, formed_.weights[i] * weight); });
+            }
+        });
+    }
+    cells_ = {};
+}
+
 void TableRows::apply(std::span<const double> control, std::span<double> values) const {
     if (places_.empty()) return;
     std::vector<double> level(points_.size());
     parallel_each(level.size(), [&](std::size_t p) { level[p] = control[points_[p]]; });
+    if (tables_.empty()) {
+        parallel_each(places_.size(), [&](std::size_t k) {
+            double sum = 0;
+            for (std::size_t i = formed_.offsets[k]; i < formed_.offsets[k + 1]; ++i) {
+                sum += formed_.weights[i] * level[formed_.columns[i]];
+            }
+            values[places_[k].row] = sum;
+        });
+        return;
+    }
     const std::vector<double> points = finest(std::move(level), 1);
     parallel_each(places_.size(), [&](std::size_t k) {
         double sum = 0;
@@ -114,11 +204,17 @@ void TableRows::apply(std::span<const double> control, std::span<double> values)
 
 void TableRows::add_transposed(std::span<const double> values, std::vector<double>& sums) const {
     if (places_.empty()) return;
-    std::vector<double> level =
-        parallel_sums(tables_.back().rows(), places_.size(), [&](std::size_t k, std::vector<double>& run) {
-            const double value = values[places_[k].row];
-            each_term(places_[k], [&](Index point, double weight) { run[point] += weight * value; });
-        });
+    const std::size_t columns = tables_.empty() ? points_.size() : tables_.back().rows();
+    std::vector<double> level = parallel_sums(columns, places_.size(), [&](std::size_t k, std::vector<double>& run) {
+        const double value = values[places_[k].row];
+        if (tables_.empty()) {
+            for (std::size_t i = formed_.offsets[k]; i < formed_.offsets[k + 1]; ++i) {
+                run[formed_.columns[i]] += formed_.weights[i] * value;
+            }
+            return;
+        }
+        each_term(places_[k], [&](Index point, double weight) { run[point] += weight * value; });
+    });
     for (auto table = tables_.rbegin(); table != tables_.rend(); ++table) level = apply_transpose(*table, level, 1);
     parallel_each(level.size(), [&](std::size_t p) { sums[points_[p]] += level[p]; });
 }

@@ -31,7 +31,11 @@ struct Settling {
 //     •   •   •   is interpolated by quadratics, so that T is exact at the points themselves.
 //     •───•───•
 
-/// The rows of places in some cells of a mesh, by the stencils of these cells and those around them.
+/// Of so many places a cell the rows are formed.
+inline constexpr std::size_t kFormedPlaces = 8;
+
+/// The rows of places in some cells of a mesh, by the stencils of these cells and those around them. Where places are few,
+/// their rows are formed after all: about 170 terms each, which take no more memory than the stencils, and a fifth of the time.
 class TableRows {
 public:
     TableRows() = default;
@@ -57,6 +61,7 @@ private:
     [[nodiscard]] Index node(const Place& place, std::size_t i, std::size_t j, std::size_t k) const;
     [[nodiscard]] std::vector<double> finest(std::vector<double> level, std::size_t channels) const;
     void settle(std::span<const Vec3> control, const Settling& settling);
+    void form();
     template <class Visit>
     void each_term(const Place& place, const Visit& visit) const;
 
@@ -64,6 +69,7 @@ private:
     std::vector<StencilTable> tables_;
     std::vector<std::array<Index, 8>> cells_;  // of level L
     std::vector<Place> places_;
+    CsrMatrix formed_;  // over points_, a row for each place; then there are no stencils
 };
 
 }  // namespace subvol::detail

@@ -5,12 +5,14 @@
 
 #include <cassert>
 
+#include "row_access.h"
 #include "stencil_block.h"
 #include "subvol/error.h"
 
 namespace subvol {
 
 using detail::kBlockRows;
+using detail::RowAccess;
 
 namespace {
 
@@ -26,46 +28,6 @@ std::size_t term_count(const StencilTable::Block& block, std::uint16_t pattern) 
     }
     return count;
 }
-
-/// Calls visit(point, weight) for the terms of a row whose points start at `point`; returns where the next row's start.
-template <class Visit>
-const Index* for_each_term(const StencilTable::Block& block, std::uint16_t pattern, const Index* point, const Visit& visit) {
-    for (std::size_t r = block.pattern_offsets[pattern]; r < block.pattern_offsets[pattern + 1u]; ++r) {
-        for (std::uint32_t i = 0; i < block.runs[r].count; ++i) visit(*point++, block.runs[r].weight);
-    }
-    return point;
-}
-
-/// Rows of a table in any order.
-class RowAccess {
-public:
-    explicit RowAccess(const StencilTable& table) : table_(table), starts_(table.blocks().size()) {
-        each_block(table.blocks(), [&](std::size_t b) {
-            const auto& block = table.blocks()[b];
-            std::size_t start = 0;
-            for (const std::uint16_t pattern : block.row_patterns) {
-                starts_[b].push_back(start);
-                start += term_count(block, pattern);
-            }
-        });
-        for (const auto& block : table.blocks()) first_rows_.push_back(block.first_row);
-    }
-
-    template <class Visit>
-    void terms(std::size_t row, const Visit& visit) const {
-        if (row < table_.kept()) return visit(static_cast<Index>(row), 1.0);
-        const auto after = std::upper_bound(first_rows_.begin(), first_rows_.end(), row);
-        const auto b = static_cast<std::size_t>(after - first_rows_.begin()) - 1;
-        const auto& block = table_.blocks()[b];
-        const std::size_t i = row - block.first_row;
-        for_each_term(block, block.row_patterns[i], block.points.data() + starts_[b][i], visit);
-    }
-
-private:
-    const StencilTable& table_;
-    std::vector<std::vector<std::size_t>> starts_;
-    std::vector<std::size_t> first_rows_;
-};
 
 template <class T>
 void apply_table(const StencilTable& table, std::span<const T> in, std::size_t channels, std::span<T> out) {
@@ -89,6 +51,18 @@ void apply_table(const StencilTable& table, std::span<const T> in, std::size_t c
 }
 
 }  // namespace
+
+detail::RowAccess::RowAccess(const StencilTable& table) : table_(table), starts_(table.blocks().size()) {
+    each_block(table.blocks(), [&](std::size_t b) {
+        const auto& block = table.blocks()[b];
+        std::size_t start = 0;
+        for (const std::uint16_t pattern : block.row_patterns) {
+            starts_[b].push_back(start);
+            start += term_count(block, pattern);
+        }
+    });
+    for (const auto& block : table.blocks()) first_rows_.push_back(block.first_row);
+}
 
 StencilTable::StencilTable(std::size_t columns, std::size_t kept, std::vector<Block> blocks)
     : rows_(kept), columns_(columns), kept_(kept), blocks_(std::move(blocks)) {
