@@ -47,7 +47,7 @@ class StudyFolder(InFolder):
 class Study(StudyFolder):
     def test_lists_what_there_is(self):
         names = [study["name"] for study in self.run_ok("study", "--list", "--json").json()["studies"]]
-        for name in ("table1", "table2", "figure4", "figure7", "kernels", "spacing", "order", "cost", "vdb"):
+        for name in ("table1", "table2", "figure4", "figure7", "kernels", "spacing", "order", "cost", "vdb", "bytes"):
             self.assertIn(name, names)
             self.assertEqual(json.loads(self.run_ok("study", "--print", name).out)["name"], name)
 
