@@ -57,7 +57,9 @@ Approximation approximate(const HexMesh& onto, const HexMesh& samples, const App
     HexMesh mesh = detail::prepared(onto, options);
     detail::check_samples(samples);
     for (int refined = 0;; ++refined) {
-        const detail::Fitter fitter(mesh, samples.points, options);
+        std::optional<detail::SampleFinder> finder(std::in_place, mesh, options);
+        const detail::Fitter fitter(mesh, samples.points, options, *finder);
+        finder.reset();  // its memory is for the search
         Approximation result = fitter.fit(samples.attributes, options.progress);
         result.report.refined = refined;
         if (refined == options.refine) return result;

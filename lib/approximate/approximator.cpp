@@ -11,10 +11,12 @@ namespace subvol {
 struct Approximator::State {
     ApproximateOptions options;
     HexMesh mesh;
+    detail::SampleFinder finder;
     std::optional<detail::Fitter> fitter{};
     std::size_t placements = 0;
 
-    State(HexMesh onto, const ApproximateOptions& given) : options(given), mesh(detail::prepared(std::move(onto), options)) {}
+    State(HexMesh onto, const ApproximateOptions& given)
+        : options(given), mesh(detail::prepared(std::move(onto), options)), finder(mesh, options) {}
 };
 
 Approximator::Approximator(HexMesh onto, const ApproximateOptions& options) {
@@ -35,7 +37,7 @@ Approximation Approximator::fit(const HexMesh& samples, Progress* progress) {
     detail::check_samples(samples);
     if (!state_->fitter || !state_->fitter->is_for(samples.points)) {
         state_->fitter.reset();  // before the next one takes memory
-        state_->fitter.emplace(state_->mesh, samples.points, options);
+        state_->fitter.emplace(state_->mesh, samples.points, options, state_->finder);
         ++state_->placements;
     }
     return state_->fitter->fit(samples.attributes, options.progress);

@@ -67,25 +67,7 @@ struct Located {
     std::size_t outside = 0, snapped = 0;
 };
 
-/// Samples inside are found first: only the others need candidates as far away as the reach, which may be many cells.
-ProbeResult probed(const HexMesh& mesh, std::span<const Vec3> positions, const ApproximateOptions& options, double diagonal) {
-    ProbeOptions probing;
-    probing.limit.scheme = options.scheme;
-    ProbeResult found = LimitProbe(mesh, probing).at(positions, options.progress);
-    const auto outside = numbers_where<std::vector<Index>>(positions.size(), [&](std::size_t p) { return !found.inside(p); });
-    probing.reach_world = options.reach * diagonal;
-    if (outside.empty() || probing.reach_world == 0) return found;
-    const ProbeResult near = LimitProbe(mesh, probing).at(chosen(positions, outside), options.progress);
-    for (std::size_t k = 0; k < outside.size(); ++k) {
-        found.cells[outside[k]] = near.cells[k];
-        found.parameters[outside[k]] = near.parameters[k];
-        found.distances[outside[k]] = near.distances[k];
-    }
-    return found;
-}
-
-Located locate(const HexMesh& mesh, std::span<const Vec3> positions, const ApproximateOptions& options, double diagonal) {
-    const ProbeResult found = probed(mesh, positions, options, diagonal);
+Located locate(const ProbeResult& found, std::span<const Vec3> positions) {
     Located located;
     for (std::size_t p = 0; p < positions.size(); ++p) {
         if (!found.inside(p)) {
@@ -252,6 +234,26 @@ void check_samples(const HexMesh& samples) {
     }
 }
 
+SampleFinder::SampleFinder(const HexMesh& mesh, const ApproximateOptions& options) : mesh_(mesh) {
+    options_.limit.scheme = options.scheme;
+    options_.reach_world = options.reach * bounds(mesh).diagonal();
+}
+
+ProbeResult SampleFinder::at(std::span<const Vec3> positions, Progress* progress) {
+    if (!inside_) inside_.emplace(mesh_, ProbeOptions{.limit = options_.limit});
+    ProbeResult found = inside_->at(positions, progress);
+    const auto outside = numbers_where<std::vector<Index>>(positions.size(), [&](std::size_t p) { return !found.inside(p); });
+    if (outside.empty() || options_.reach_world == 0) return found;
+    if (!near_) near_.emplace(mesh_, options_);
+    const ProbeResult near = near_->at(chosen(positions, outside), progress);
+    for (std::size_t k = 0; k < outside.size(); ++k) {
+        found.cells[outside[k]] = near.cells[k];
+        found.parameters[outside[k]] = near.parameters[k];
+        found.distances[outside[k]] = near.distances[k];
+    }
+    return found;
+}
+
 struct Fitter::Parts {
     ApproximateOptions options;
     HexMesh mesh;
@@ -266,13 +268,13 @@ struct Fitter::Parts {
     Start start;
     std::vector<std::uint8_t> at_boundary;
 
-    Parts(HexMesh given, std::vector<Vec3> at, const ApproximateOptions& asked)
+    Parts(HexMesh given, std::vector<Vec3> at, const ApproximateOptions& asked, SampleFinder& finder)
         : options(asked),
           mesh(std::move(given)),
           positions(std::move(at)),
           topology(build_topology(mesh)),
           diagonal(bounds(mesh).diagonal()),
-          located(locate(mesh, positions, options, diagonal)),
+          located(locate(finder.at(positions, options.progress), positions)),
           limit(mesh, {.scheme = options.scheme, .levels = options.levels, .progress = options.progress}, located.places,
                 {chosen(positions, located.samples), LimitOptions{}.tolerance * diagonal},
                 option_name("levels", options.names)),
@@ -283,8 +285,8 @@ struct Fitter::Parts {
           at_boundary(cells_at_boundary(topology)) {}
 };
 
-Fitter::Fitter(HexMesh mesh, std::vector<Vec3> positions, const ApproximateOptions& options)
-    : parts_(std::make_unique<Parts>(std::move(mesh), std::move(positions), options)) {
+Fitter::Fitter(HexMesh mesh, std::vector<Vec3> positions, const ApproximateOptions& options, SampleFinder& finder)
+    : parts_(std::make_unique<Parts>(std::move(mesh), std::move(positions), options, finder)) {
 }
 
 Fitter::~Fitter() = default;

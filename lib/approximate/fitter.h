@@ -2,10 +2,12 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "subvol/approximate.h"
+#include "subvol/probe.h"
 
 namespace subvol::detail {
 
@@ -17,13 +19,29 @@ namespace subvol::detail {
 /// throws: Error(InvalidInput) if there is no field, if one has not a value for each point, or a value is not finite
 void check_samples(const HexMesh& samples);
 
+/// Finds samples in the limit of one mesh. What it knows of the limit is kept between calls, and changes no result.
+class SampleFinder {
+public:
+    /// The mesh is kept by reference.
+    SampleFinder(const HexMesh& mesh, const ApproximateOptions& options);
+
+    /// Samples inside are found first: only the others need candidates as far away as the reach, which may be many cells.
+    [[nodiscard]] ProbeResult at(std::span<const Vec3> positions, Progress* progress);
+
+private:
+    const HexMesh& mesh_;
+    ProbeOptions options_;
+    std::optional<LimitProbe> inside_, near_;
+};
+
 /// Fits fields that are sampled at the same positions onto one control mesh. What does not depend on values is found once: the
 /// places of the samples in the limit, its matrix, the weights of differences along edges, and how a start continues samples.
 class Fitter {
 public:
     /// mesh, options: as `prepared` made them; refine and tolerance are not used
+    /// finder:        of the same mesh
     /// throws: Error(InvalidInput) if no position lies in the volume, or the memory is not enough
-    Fitter(HexMesh mesh, std::vector<Vec3> positions, const ApproximateOptions& options);
+    Fitter(HexMesh mesh, std::vector<Vec3> positions, const ApproximateOptions& options, SampleFinder& finder);
     ~Fitter();
     Fitter(const Fitter&) = delete;
     Fitter& operator=(const Fitter&) = delete;

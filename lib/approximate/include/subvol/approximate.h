@@ -77,7 +77,7 @@ struct Approximation {
 ///          out of range
 /// cost:    time and memory grow with the samples and the cells that have any: 10⁵ control points and 8·10⁵ samples take some
 ///          15 CPU seconds and 0.8 GB, where most cells have neighbourhoods that are alike. Others take about 20 kB each with
-///          `levels` of 2, 8 times as much with each more. Parallel, the same bits for any number of threads
+///          `levels` of 2, eight times as much with each level more. Parallel, the same bits for any number of threads
 [[nodiscard]] Approximation approximate(const HexMesh& onto, const HexMesh& samples, const ApproximateOptions& options = {});
 
 /// Places of the limit in each cell, per_edge³ of them at the middles of equal parts: where a function of the world can be

@@ -11,7 +11,7 @@ namespace subvol {
 
 /// Fits the steps of a series onto one control mesh, as `approximate` fits each of them, to the bit. The limit's matrix and the
 /// places of the samples in it are found once for all steps whose samples are at the same points, and once more whenever these
-/// have moved or are others.
+/// have moved or are others; the pieces of the limit in which places are looked for are kept in any case.
 class Approximator {
 public:
     /// onto:   the control mesh; its attributes are not used
