@@ -37,9 +37,9 @@ public:
         const auto found = sets_.find(path);
         if (found == sets_.end()) return std::nullopt;
         const bool real = std::ranges::any_of(found->second.values, [](double value) { return value != std::floor(value); });
-        const auto type = real || path.ends_with("Points") || path.find("Data/") != std::string::npos
-                              ? detail::NumberType::Float64
-                              : detail::NumberType::Int64;
+        const bool at_places = path.find("PointData/") != std::string::npos || path.find("CellData/") != std::string::npos;
+        const auto type =
+            real || path.ends_with("Points") || at_places ? detail::NumberType::Float64 : detail::NumberType::Int64;
         return detail::Hdf5Dataset{type, found->second.lengths, 8 * found->second.values.size()};
     }
     [[nodiscard]] std::optional<std::string> values(const std::string& path, const detail::Hdf5Dataset& dataset,

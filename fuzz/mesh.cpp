@@ -15,6 +15,7 @@ int read(std::string_view text, const ReadOptions& options) {
     return run([&] {
         const ReadResult result = SUBVOL_FUZZ_READER(text, "file", options);
         validate(result.mesh);
+        validate(result.sets, result.mesh);
         static_cast<void>(inspect(result.mesh));
     });
 }

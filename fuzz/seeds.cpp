@@ -14,6 +14,7 @@
 #include "subvol/points_io.h"
 #include "subvol/refine.h"
 #include "subvol/sample.h"
+#include "subvol/vtk_grid.h"
 #include "subvol/wavelet_file.h"
 #include "svw_parts.h"
 #include "vtu_bytes.h"
@@ -82,6 +83,7 @@ void add_vtkhdf(Seeds& seeds) {
         "NumberOfPoints 1 : 8\nNumberOfCells 1 : 1\nNumberOfConnectivityIds 1 : 8\nOffsets 2 : 0 8\nTypes 1 : 12\n"
         "Points 8 3 : 0 0 0 1 0 0 1 1 0 0 1 0 0 0 1 1 0 1 1 1 1 0 1 1\nConnectivity 8 : 0 1 2 3 4 5 6 7\n";
     seeds.add("vtkhdf", mesh + "PointData/T 8 : 1 2 3 4 5 6 7 8\nCellData/c 1 2 : 1 2\n");
+    seeds.add("vtkhdf", mesh + "FieldData/patch:p 7 : 8 1 5 0 3 7 4\nCellData/set:s 1 : 1\n");
     seeds.add("vtkhdf", mesh +
                             "PointData/T 16 : 1 2 3 4 5 6 7 8 9\nSteps/Values 2 : 0 1\nSteps/PartOffsets 2 : 0 0\n"
                             "Steps/NumberOfParts 2 : 1 1\nSteps/PointDataOffsets/T 2 : 0 8\nSteps/CellOffsets 2 1 : 0 0\n");
@@ -250,6 +252,8 @@ void add_meshes(Seeds& seeds, const HexMesh& mesh) {
     add_cases(seeds);
     add_results(seeds, mesh);
     add_exodus(seeds, mesh);
+    const std::vector<std::int64_t> patch = vtk_field_arrays(mesh, {{{"p", {{0, 0}}}}, {}}).at(0).numbers;
+    const std::vector<std::uint8_t> in_set{1};
     for (const std::string format : {"ascii", "binary", "appended"}) {
         for (const std::string compressor : {"", "vtkZLibDataCompressor", "vtkLZMADataCompressor", "vtkLZ4DataCompressor"}) {
             VtuText vtu{.format = format, .compressor = compressor};
@@ -258,6 +262,9 @@ void add_meshes(Seeds& seeds, const HexMesh& mesh) {
                                        vtu.array("Int16", "Name=\"c\"", std::vector<std::int16_t>{1}) + "</CellData>";
             const std::string piece = vtu.piece(mesh, fields);
             seeds.add("vtu", vtu.file(piece + piece));
+            seeds.add("vtu",
+                      vtu.file("<FieldData>" + vtu.array("Int64", "Name=\"patch:p\"", patch) + "</FieldData>" +
+                               vtu.piece(mesh, "<CellData>" + vtu.array("UInt8", "Name=\"set:s\"", in_set) + "</CellData>")));
             const std::string block = "<Piece Extent=\"0 1 0 1 0 1\">" + fields + "<Points>" +
                                       vtu.array("Float64", "NumberOfComponents=\"3\"", coordinates_as<double>(mesh)) +
                                       "</Points></Piece>";

@@ -13,6 +13,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         static_cast<void>(detail::vtkhdf_times(file));
         const ReadResult result = detail::read_vtkhdf(file, {});
         validate(result.mesh);
+        validate(result.sets, result.mesh);
         static_cast<void>(inspect(result.mesh));
     });
 }

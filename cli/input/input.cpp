@@ -270,23 +270,10 @@ WithFacts<HexMesh> load_mesh(const std::string& input, const CommonOptions& opti
     return {std::move(mesh), std::move(facts)};
 }
 
-namespace {
-
-std::string sets_left_out(const MeshSets& sets) {
-    std::vector<std::string> patches, cells, parts;
-    for (const Patch& patch : sets.patches) patches.push_back(patch.name);
-    for (const CellSet& set : sets.sets) cells.push_back(set.name);
-    if (!patches.empty()) parts.push_back(text(counted(patches.size(), "patch", "patches"), " (", join(patches), ")"));
-    if (!cells.empty()) parts.push_back(text(counted(cells.size(), "set of cells", "sets of cells"), " (", join(cells), ")"));
-    return parts.empty() ? "" : text(join(parts), " not written: mesh files made here have neither patches nor sets");
-}
-
-}  // namespace
-
-WithFacts<HexMesh> load_mesh_to_write(const std::string& input, const CommonOptions& options, Progress* progress,
-                                      Shells* shells) {
+WithFacts<HexMesh> load_mesh(const std::string& input, const CommonOptions& options, Progress* progress, MeshSets& sets,
+                             Shells* shells) {
     auto [read, facts] = read_input(input, options, progress);
-    facts.warn(sets_left_out(read.sets));
+    sets = std::move(read.sets);
     HexMesh mesh = facts.unpack(mesh_of(std::move(read), options, shells));
     return {std::move(mesh), std::move(facts)};
 }

@@ -61,9 +61,9 @@ struct Reshaped {
 [[nodiscard]] WithFacts<HexMesh> load_mesh(const std::string& input, const CommonOptions& options, Progress* progress,
                                            Shells* shells = nullptr, ShellsAlone alone = ShellsAlone::Refuse);
 
-/// `load_mesh` for what becomes a mesh file again, which has no patches and sets of cells: a warning names those that are lost.
-[[nodiscard]] WithFacts<HexMesh> load_mesh_to_write(const std::string& input, const CommonOptions& options, Progress* progress,
-                                                    Shells* shells = nullptr);
+/// `load_mesh` with the patches and sets of cells, for what becomes a mesh file again.
+[[nodiscard]] WithFacts<HexMesh> load_mesh(const std::string& input, const CommonOptions& options, Progress* progress,
+                                           MeshSets& sets, Shells* shells = nullptr);
 
 /// What `load_mesh` makes of a file that was read.
 [[nodiscard]] WithFacts<HexMesh> mesh_of(ReadResult read, const CommonOptions& options, Shells* shells);

@@ -7,6 +7,7 @@
 #include "input.h"
 #include "mesh_figures.h"
 #include "mesh_frames.h"
+#include "mesh_output.h"
 #include "numbers.h"
 #include "options.h"
 #include "outputs.h"
@@ -82,11 +83,12 @@ public:
             throw Error(ErrorCode::InvalidInput, "is a folder of bricks", onto_, "a mesh in one piece");
         }
         const std::optional<Sequence> sequence = steps_or_frames(report);
-        HexMesh onto = report.unpack(load_mesh_to_write(onto_, CommonOptions{}, report.progress()));
+        MeshSets sets;
+        HexMesh onto = report.unpack(load_mesh(onto_, CommonOptions{}, report.progress(), sets));
         report["input"] = input_;
         report["onto"] = onto_;
         if (sequence) {
-            fit_all(*sequence, std::move(onto), options, report);
+            fit_all(*sequence, std::move(onto), sets, options, report);
             return 0;
         }
         Approximation made;
@@ -97,9 +99,8 @@ public:
             if (shape_) onto = shaped(std::move(onto), boundary_surface(samples), report);
             made = report.timed("fit", [&] { return approximate(onto, samples, options); });
         }
-        for (const std::string& warning : report.timed("write", [&] { return write_mesh(output_, made.mesh, {}); })) {
-            report.warn(warning);
-        }
+        if (!made.parts.empty()) sets = sets_of_parts(std::move(sets), made.parts);
+        report.merge(write_reported(output_, made.mesh, {}, sets, report.progress()));
         put(made, report);
         return 0;
     }
@@ -145,7 +146,8 @@ private:
                         [all](int step) { return of_step(all, step); }};
     }
 
-    void fit_all(const Sequence& sequence, HexMesh onto, const ApproximateOptions& options, Report& report) {
+    void fit_all(const Sequence& sequence, HexMesh onto, const MeshSets& sets, const ApproximateOptions& options,
+                 Report& report) {
         Approximator approximator(onto, options);
         report["frames"] = Json::array();
         const FrameRange& range = sequence.range;
@@ -164,9 +166,7 @@ private:
                                 error.allowed());
                 }
             });
-            for (const std::string& warning : report.timed("write", [&] { return write_mesh(path, made.mesh, {}); })) {
-                report.warn(warning);
-            }
+            report.merge(write_reported(path, made.mesh, {}, sets, report.progress()));
             Json entry{{"frame", number}};
             if (!sequence.times.empty()) entry["time"] = sequence.times[static_cast<std::size_t>(number)];
             entry.update(json_of(facts_of(made.report)));

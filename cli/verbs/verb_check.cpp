@@ -4,12 +4,12 @@
 
 #include "input.h"
 #include "mesh_figures.h"
+#include "mesh_output.h"
 #include "options.h"
 #include "outputs.h"
 #include "quantities.h"
 #include "refine_arguments.h"
 #include "subvol/mend_folds.h"
-#include "subvol/mesh_io.h"
 #include "text.h"
 #include "verb.h"
 
@@ -51,22 +51,20 @@ public:
         if (mend_) check_output(output_, {".vtu", ".vtkhdf"});
         report["input"] = input_;
         report.if_long("fewer --irregular-levels");
-        HexMesh mesh = report.unpack(mend_ ? load_mesh_to_write(input_, common(), report.progress())
-                                           : load_mesh(input_, common(), report.progress()));
-        if (mend_) return mend(std::move(mesh), options, report);
+        MeshSets sets;
+        HexMesh mesh = report.unpack(load_mesh(input_, common(), report.progress(), sets));
+        if (mend_) return mend(std::move(mesh), sets, options, report);
         const FoldCheck found = report.timed("check", [&] { return check_folds(mesh, options); });
         put(found, mesh.cells.size(), report);
         return found.report.folded > 0 ? 1 : 0;
     }
 
 private:
-    int mend(HexMesh mesh, const FoldOptions& folds, Report& report) {
+    int mend(HexMesh mesh, const MeshSets& sets, const FoldOptions& folds, Report& report) {
         MendOptions options = mending_;
         options.folds = folds;
         const Mended mended = report.timed("mend", [&] { return mend_folds(std::move(mesh), options); });
-        for (const std::string& warning : report.timed("write", [&] { return write_mesh(output_, mended.mesh, {}); })) {
-            report.warn(warning);
-        }
+        report.merge(write_reported(output_, mended.mesh, {}, sets, report.progress()));
         const MendReport& done = mended.report;
         Facts found;
         found["mend"] = facts_of(done);

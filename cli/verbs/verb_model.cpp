@@ -3,10 +3,10 @@
 #include <iomanip>
 
 #include "input.h"
+#include "mesh_output.h"
 #include "options.h"
 #include "outputs.h"
 #include "subvol/error.h"
-#include "subvol/mesh_io.h"
 #include "subvol/model.h"
 #include "text.h"
 #include "verb.h"
@@ -49,8 +49,7 @@ private:
         if (output_.empty()) throw Error(ErrorCode::InvalidInput, "needs a file to write", "model", "-o FILE");
         check_output(output_, {".vtu", ".vtkhdf", ".mesh"});
         const HexMesh mesh = report.timed("generate", [&] { return make_model(name_, resolution_); });
-        for (const std::string& warning : report.timed("write", [&] { return write_mesh(output_, mesh); }))
-            report.warn(warning);
+        report.merge(write_reported(output_, mesh, report.progress()));
         report["output"] = output_;
         report["points"] = mesh.points.size();
         report["cells"] = mesh.cells.size();

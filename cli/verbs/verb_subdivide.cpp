@@ -3,12 +3,12 @@
 
 #include "grid_fields.h"
 #include "input.h"
+#include "mesh_output.h"
 #include "outputs.h"
 #include "refine_arguments.h"
 #include "subvol/error.h"
 #include "subvol/field_range.h"
 #include "subvol/limit_shells.h"
-#include "subvol/mesh_io.h"
 #include "subvol/mesh_report.h"
 #include "subvol/mixed_file.h"
 #include "tet_refinement.h"
@@ -45,8 +45,9 @@ public:
         report.if_long("fewer --levels");
         Shells shells;
         report["input"] = input_;
+        MeshSets sets;
         const HexMesh mesh =
-            with_written_field(report.unpack(load_mesh_to_write(input_, common(), report.progress(), &shells)), common());
+            with_written_field(report.unpack(load_mesh(input_, common(), report.progress(), sets, &shells)), common());
         if (common().field && !shells.empty()) {
             HexMesh of_shells;
             of_shells.points = shells.points;
@@ -60,8 +61,8 @@ public:
             shells = {};
         }
         shells = report.timed("sheets", [&] { return refined(mesh, shells, options, report); });
-        for (const std::string& warning : report.timed("write", [&] { return write_mesh(output_, fine, shells); }))
-            report.warn(warning);
+        report.merge(
+            write_reported(output_, fine, shells, sets_of_children(std::move(sets), options.levels), report.progress()));
         put_shape(mesh, fine, report);
         report["output"] = output_;
         report["points"] = fine.points.size();
@@ -75,8 +76,9 @@ private:
         check_output(output_, {".vtu"});
         report.if_long("fewer --levels");
         report["input"] = input_;
-        const HexMesh mesh =
-            with_written_field(report.unpack(load_mesh_to_write(input_, common(), report.progress())), common());
+        MeshSets sets;
+        const HexMesh mesh = with_written_field(report.unpack(load_mesh(input_, common(), report.progress(), sets)), common());
+        if (!sets.empty()) report.warn(list_of(sets) + " not written: refined tetrahedra do not have them");
         const Vertices vertices = on_limit_ ? Vertices::OnTheLimit : Vertices::OfTheLevel;
         const MixedMesh fine = report.unpack(tets.refined(mesh, 1, vertices, report.progress()));
         report.timed("write", [&] { write_mixed_mesh(output_, fine); });

@@ -56,17 +56,27 @@ Approximation approximate(const HexMesh& onto, const HexMesh& samples, const App
     ApproximateOptions options = given;
     HexMesh mesh = detail::prepared(onto, options);
     detail::check_samples(samples);
+    std::vector<PartOfCell> parts;
     for (int refined = 0;; ++refined) {
         std::optional<detail::SampleFinder> finder(std::in_place, mesh, options);
         const detail::Fitter fitter(mesh, samples.points, options, *finder);
         finder.reset();  // its memory is for the search
         Approximation result = fitter.fit(samples.attributes, options.progress);
         result.report.refined = refined;
+        result.parts = parts;
         if (refined == options.refine) return result;
         const std::vector<std::uint8_t> beyond = fitter.cells_beyond(options.tolerance, samples.attributes, result);
         if (std::ranges::count(beyond, 1) == 0) return result;
-        mesh = detail::refine_where(result.mesh, beyond,
-                                    {.scheme = options.scheme, .levels = options.levels, .progress = options.progress});
+        detail::SplitMesh split = detail::refine_where(
+            result.mesh, beyond, {.scheme = options.scheme, .levels = options.levels, .progress = options.progress});
+        mesh = std::move(split.mesh);
+        if (!parts.empty()) {
+            for (PartOfCell& part : split.parts) {
+                const PartOfCell& before = parts[part.parent];
+                part = {before.parent, before.lower + before.size * part.lower, before.size * part.size};
+            }
+        }
+        parts = std::move(split.parts);
     }
 }
 

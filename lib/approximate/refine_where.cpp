@@ -4,7 +4,6 @@
 #include <algorithm>
 
 #include "least_squares.h"
-#include "sheets.h"
 #include "subvol/cell.h"
 #include "subvol/topology.h"
 
@@ -20,7 +19,7 @@ std::vector<double> coordinates(const std::vector<Vec3>& points, int axis) {
 
 }  // namespace
 
-HexMesh refine_where(const HexMesh& given, std::span<const std::uint8_t> cells, const RefineOptions& options) {
+SplitMesh refine_where(const HexMesh& given, std::span<const std::uint8_t> cells, const RefineOptions& options) {
     const HexMesh mesh = without_unused_points(given);
     RefineOptions once = options;
     once.levels = 1;
@@ -29,7 +28,11 @@ HexMesh refine_where(const HexMesh& given, std::span<const std::uint8_t> cells, 
     if (std::ranges::count(edges, 0) == 0) {
         HexMesh bare = mesh;
         bare.attributes.clear();
-        return refine(bare, once);
+        SplitMesh halved{refine(bare, once), {}};
+        for (Index c = 0; c < mesh.cells.size(); ++c) {
+            for (const auto& at : kCornerParameters) halved.parts.push_back({c, Vec3(at[0], at[1], at[2]) / 2.0, Vec3(0.5)});
+        }
+        return halved;
     }
     SplitMesh split = split_sheets(mesh, before, edges);
     const Topology after = build_topology(split.mesh);
@@ -51,7 +54,7 @@ HexMesh refine_where(const HexMesh& given, std::span<const std::uint8_t> cells, 
         (void)fit.solve(wanted, x, kSteps, options.progress);
         for (std::size_t p = 0; p < x.size(); ++p) split.mesh.points[p][axis] = x[p];
     }
-    return std::move(split.mesh);
+    return split;
 }
 
 }  // namespace subvol::detail

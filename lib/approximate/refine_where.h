@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <span>
 
+#include "sheets.h"
 #include "subvol/refine.h"
 
 namespace subvol::detail {
@@ -13,6 +14,6 @@ namespace subvol::detail {
 ///
 /// mesh:    with the fields that decide across which directions; cells: a flag for each, whether it asks
 /// options: new corners lie on the limit as it is interpolated between its points on level `levels`
-[[nodiscard]] HexMesh refine_where(const HexMesh& mesh, std::span<const std::uint8_t> cells, const RefineOptions& options);
+[[nodiscard]] SplitMesh refine_where(const HexMesh& mesh, std::span<const std::uint8_t> cells, const RefineOptions& options);
 
 }  // namespace subvol::detail

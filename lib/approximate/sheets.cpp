@@ -251,7 +251,7 @@ std::vector<LimitQuery> graded_places(const SplitMesh& split, const Topology& to
     std::vector<LimitQuery> places(topology.point_count, LimitQuery{kNone, Vec3(0.0)});
     std::vector<std::uint8_t> settled(topology.point_count, 0);
     for (Index c = 0; c < topology.cells.size(); ++c) {
-        const CellPart& part = split.parts[c];
+        const PartOfCell& part = split.parts[c];
         for (std::size_t corner = 0; corner < 8; ++corner) {
             const Index point = topology.cells[c][corner];
             if (settled[point] != 0) continue;

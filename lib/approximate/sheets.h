@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "subvol/limit.h"
+#include "subvol/mesh_sets.h"
 #include "subvol/topology.h"
 
 namespace subvol::detail {
@@ -18,16 +19,10 @@ namespace subvol::detail {
 //     │   │ s │   │        │   │ │ │   │
 //     •───•───•───•        •───•─•─•───•
 
-/// Where a new cell lies: in the cell `parent`, between lower and lower + size of its parameters.
-struct CellPart {
-    Index parent;
-    Vec3 lower, size;
-};
-
 /// parts: of each cell of the mesh
 struct SplitMesh {
     HexMesh mesh;
-    std::vector<CellPart> parts;
+    std::vector<PartOfCell> parts;
 };
 
 /// A flag for each edge: whether its sheet is to be split, which is the same for all edges of a sheet.

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "subvol/cell.h"
+#include "subvol/detail/printable.h"
 #include "subvol/error.h"
 
 namespace subvol {
@@ -21,7 +22,41 @@ const Named& find(const std::vector<Named>& all, std::string_view name, const st
                 known.empty() ? "the mesh has no " + kinds : "the mesh has: " + known);
 }
 
+template <class Named>
+std::string listed(const std::vector<Named>& all, std::string_view one, std::string_view many) {
+    if (all.empty()) return {};
+    constexpr std::size_t kNamed = 6;
+    std::string list = std::to_string(all.size()) + " " + std::string(all.size() == 1 ? one : many) + " (";
+    for (std::size_t k = 0; k < std::min(kNamed, all.size()); ++k)
+        list += (k == 0 ? "" : ", ") + detail::printable(all[k].name);
+    return list + (all.size() > kNamed ? ", …)" : ")");
+}
+
 }  // namespace
+
+void validate(const MeshSets& sets, const HexMesh& mesh) {
+    const auto check = [&](const std::string& kind, const std::string& name, const std::string& entity, std::size_t number,
+                           std::size_t count) {
+        if (number < count) return;
+        throw Error(ErrorCode::InvalidInput, kind + " \"" + name + "\" has " + entity + " " + std::to_string(number), {},
+                    "less than " + std::to_string(count));
+    };
+    for (const Patch& patch : sets.patches) {
+        for (const CellSide& side : patch.sides) {
+            check("patch", patch.name, "a side of cell", side.cell, mesh.cells.size());
+            check("patch", patch.name, "side", side.side, kCellFaces.size());
+        }
+    }
+    for (const CellSet& set : sets.sets) {
+        for (const Index cell : set.cells) check("set", set.name, "cell", cell, mesh.cells.size());
+    }
+}
+
+std::string list_of(const MeshSets& sets) {
+    const std::string patches = listed(sets.patches, "patch", "patches");
+    const std::string cells = listed(sets.sets, "set of cells", "sets of cells");
+    return patches + (patches.empty() || cells.empty() ? "" : " and ") + cells;
+}
 
 const Patch& find_patch(const MeshSets& sets, std::string_view name) {
     return find(sets.patches, name, "patch", "patches");
@@ -86,6 +121,51 @@ MeshSets sets_of_cells(MeshSets sets, std::span<const std::uint8_t> kept) {
     for (CellSet& set : sets.sets) {
         std::erase_if(set.cells, [&](Index c) { return numbers[c] == kNone; });
         for (Index& c : set.cells) c = numbers[c];
+    }
+    return sets;
+}
+
+MeshSets sets_of_children(MeshSets sets, int levels) {
+    for (; levels > 0; --levels) {
+        for (Patch& patch : sets.patches) {
+            std::vector<CellSide> sides;
+            for (const auto& [cell, side] : patch.sides) {
+                for (const std::size_t k : kCellFaces[side]) sides.push_back({static_cast<Index>(8 * cell + k), side});
+            }
+            patch.sides = std::move(sides);
+        }
+        for (CellSet& set : sets.sets) {
+            std::vector<Index> cells;
+            for (const Index cell : set.cells) {
+                for (Index k = 0; k < 8; ++k) cells.push_back(8 * cell + k);
+            }
+            set.cells = std::move(cells);
+        }
+    }
+    return sets;
+}
+
+MeshSets sets_of_parts(MeshSets sets, std::span<const PartOfCell> parts) {
+    Index parents = 0;
+    for (const PartOfCell& part : parts) parents = std::max(parents, part.parent + 1);
+    std::vector<std::vector<Index>> children(parents);
+    for (std::size_t c = 0; c < parts.size(); ++c) children[parts[c].parent].push_back(static_cast<Index>(c));
+    for (Patch& patch : sets.patches) {
+        std::vector<CellSide> sides;
+        for (const auto& [cell, side] : patch.sides) {
+            const int axis = side / 2;
+            for (const Index child : children[cell]) {
+                const double lower = parts[child].lower[axis], upper = lower + parts[child].size[axis];
+                if (side % 2 == 0 ? lower == 0 : upper == 1) sides.push_back({child, side});
+            }
+        }
+        patch.sides = std::move(sides);
+    }
+    for (CellSet& set : sets.sets) {
+        std::vector<Index> cells;
+        for (const Index cell : set.cells) cells.insert(cells.end(), children[cell].begin(), children[cell].end());
+        std::ranges::sort(cells);
+        set.cells = std::move(cells);
     }
     return sets;
 }

@@ -2,11 +2,9 @@
 #include "sharp_groups.h"
 
 #include <algorithm>
-#include <bit>
 #include <map>
 #include <optional>
 
-#include "subvol/detail/byte_hash.h"
 #include "subvol/error.h"
 #include "subvol/topology.h"
 
@@ -90,14 +88,6 @@ std::optional<std::vector<std::array<Index, 4>>> quads_of(const std::array<Index
     return std::nullopt;
 }
 
-/// What a mesh is known by: the numbers of its points and cells, and a hash of the corners.
-std::vector<std::int64_t> mark_of(std::size_t points, std::span<const std::array<Index, 8>> cells) {
-    ByteHash hash;
-    for (const auto& cell : cells) hash.add({reinterpret_cast<const char*>(cell.data()), sizeof(cell)});
-    return {static_cast<std::int64_t>(points), static_cast<std::int64_t>(cells.size()),
-            std::bit_cast<std::int64_t>(hash.value())};
-}
-
 }  // namespace
 
 bool SharpGroups::takes(const std::string& name, const std::string& number) {
@@ -152,39 +142,6 @@ std::string sharp_counts(const HexMesh& mesh) {
     const std::string creases = mesh.creases.empty() ? "" : counted(mesh.creases.size(), "crease", "creases");
     const std::string faces = mesh.sharp_faces.empty() ? "" : counted(mesh.sharp_faces.size(), "sharp face", "sharp faces");
     return creases + (creases.empty() || faces.empty() ? "" : " and ") + faces;
-}
-
-std::vector<std::int64_t> sharp_numbers(const HexMesh& mesh) {
-    std::vector<std::int64_t> numbers = mark_of(mesh.points.size(), mesh.cells);
-    numbers.push_back(static_cast<std::int64_t>(mesh.creases.size()));
-    for (const auto& crease : mesh.creases) numbers.insert(numbers.end(), crease.begin(), crease.end());
-    for (const auto& face : mesh.sharp_faces) numbers.insert(numbers.end(), face.begin(), face.end());
-    return numbers;
-}
-
-void take_sharp_numbers(std::span<const std::int64_t> numbers, MeshFile& found) {
-    const std::vector<std::int64_t> mark = mark_of(found.points.size(), found.hexes.corners);
-    const std::size_t head = mark.size() + 1;
-    const auto ignore = [&](const std::string& why) {
-        found.warnings.push_back("array " + in_quotes(kSharpArray) + " of creases and sharp faces ignored: " + why);
-    };
-    if (numbers.size() < head || !std::ranges::equal(numbers.first(mark.size()), mark)) return ignore("it is of another mesh");
-    const std::size_t rest = numbers.size() - head;
-    const std::int64_t creases = numbers[mark.size()];
-    if (creases < 0 || static_cast<std::size_t>(creases) > rest / 2 ||
-        (rest - 2 * static_cast<std::size_t>(creases)) % 4 != 0) {
-        return ignore("it has the wrong length");
-    }
-    const auto points = numbers.subspan(head);
-    if (std::ranges::any_of(points, [&](std::int64_t p) { return p < 0 || p >= numbers[0]; })) {
-        return ignore("it names a point that does not exist");
-    }
-    const auto point = [&](std::size_t k) { return static_cast<Index>(points[k]); };
-    const std::size_t faces_at = 2 * static_cast<std::size_t>(creases);
-    for (std::size_t k = 0; k < faces_at; k += 2) found.sharp.edges.push_back({point(k), point(k + 1)});
-    for (std::size_t k = faces_at; k < rest; k += 4) {
-        found.sharp.faces.push_back({point(k), point(k + 1), point(k + 2), point(k + 3)});
-    }
 }
 
 }  // namespace subvol::detail

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstdint>
 #include <set>
 #include <span>
 #include <string>
@@ -44,17 +43,5 @@ void add_sharp_tags(HexMesh& mesh, FileTags&& tags, const IndexRows* sources, st
 
 /// "2 creases and 1 sharp face"; for warnings of writers
 [[nodiscard]] std::string sharp_counts(const HexMesh& mesh);
-
-/// The array of VTK's files that has the creases and sharp faces of a mesh, as one list of numbers: how many points and
-/// hexahedra the mesh has, a hash of their corners, how many creases, two points for each, and four for each sharp face.
-inline constexpr const char* kSharpArray = "SubvolSharp";
-
-[[nodiscard]] std::vector<std::int64_t> sharp_numbers(const HexMesh& mesh);
-
-/// Tags the file's mesh as such a list says. A warning if the mesh is another one, as programs that change a mesh keep the
-/// list.
-///
-/// found: with all its points and cells
-void take_sharp_numbers(std::span<const std::int64_t> numbers, MeshFile& found);
 
 }  // namespace subvol::detail

@@ -9,12 +9,22 @@
 
 #include "mesh_file.h"
 #include "solver_formats.h"
+#include "subvol/hex_mesh.h"
+#include "subvol/mesh_sets.h"
 #include "subvol/read_options.h"
+#include "subvol/shells.h"
 
 namespace subvol::detail {
 
 class Hdf5File;
 struct Collection;
+
+/// What a writer gets, valid. shells: none for other formats than `.vtu`
+struct WrittenMesh {
+    const HexMesh& mesh;
+    const Shells& shells;
+    const MeshSets& sets;
+};
 
 /// A format of mesh files.
 ///
@@ -34,7 +44,7 @@ struct MeshFormat {
     std::array<std::string_view, 4> extensions;
     std::string_view name;
     ReadResult (*read)(const std::filesystem::path& path, const ReadOptions& options);
-    std::vector<std::string> (*write)(const std::filesystem::path& path, const HexMesh& mesh) = nullptr;
+    std::vector<std::string> (*write)(const std::filesystem::path& path, const WrittenMesh& written) = nullptr;
     std::vector<double> (*times)(const std::filesystem::path& path) = nullptr;
     MeshFile (*piece)(std::string_view text, std::string_view file, const ReadOptions& options) = nullptr;
     std::size_t (*parts)(const std::filesystem::path& path) = nullptr;
@@ -114,15 +124,13 @@ struct Plot3dFlow {
 [[nodiscard]] std::vector<double> pvd_times(const std::filesystem::path& path);
 [[nodiscard]] std::vector<double> series_list_times(const std::filesystem::path& path);
 
-/// Writes MEDIT ASCII, version 2.
-std::vector<std::string> write_medit(const std::filesystem::path& path, const HexMesh& mesh);
+/// Writes MEDIT ASCII, version 2. A warning names the patches and sets.
+std::vector<std::string> write_medit(const std::filesystem::path& path, const WrittenMesh& written);
 
-/// Writes VTK XML, UnstructuredGrid, compressed.
-std::vector<std::string> write_vtu(const std::filesystem::path& path, const HexMesh& mesh);
+/// Writes VTK XML, UnstructuredGrid, compressed, with shells and beams after the cells.
+std::vector<std::string> write_vtu(const std::filesystem::path& path, const WrittenMesh& written);
+
 /// Writes VTKHDF 1.0, compressed.
-std::vector<std::string> write_vtkhdf(const std::filesystem::path& path, const HexMesh& mesh);
-
-/// Writes VTK XML with valid shells and beams after the cells.
-std::vector<std::string> write_vtu(const std::filesystem::path& path, const HexMesh& mesh, const Shells& shells);
+std::vector<std::string> write_vtkhdf(const std::filesystem::path& path, const WrittenMesh& written);
 
 }  // namespace subvol::detail

@@ -383,24 +383,20 @@ ReadResult read_mesh(const std::filesystem::path& path, const ReadOptions& optio
     return result;
 }
 
-std::vector<std::string> write_mesh(const std::filesystem::path& path, const HexMesh& mesh) {
+std::vector<std::string> write_mesh(const std::filesystem::path& path, const HexMesh& mesh, const Shells& shells,
+                                    const MeshSets& sets) {
     const auto writes = [&](const MeshFormat& format) {
         return format.write && std::ranges::find(format.extensions, path.extension().string()) != format.extensions.end();
     };
     const auto format = std::ranges::find_if(kFormats, writes);
     if (path.extension().empty() || format == kFormats.end()) refuse_format(path, "written", list_formats(true));
-    validate(mesh);
-    return format->write(path, mesh);
-}
-
-std::vector<std::string> write_mesh(const std::filesystem::path& path, const HexMesh& mesh, const Shells& shells) {
-    if (shells.empty()) return write_mesh(path, mesh);
-    if (path.extension() != ".vtu") {
+    if (!shells.empty() && path.extension() != ".vtu") {
         throw Error(ErrorCode::InvalidInput, "shells and beams cannot be written to such files", path.string(), ".vtu");
     }
     validate(mesh);
-    validate(shells, mesh);
-    return write_vtu(path, mesh, shells);
+    if (!shells.empty()) validate(shells, mesh);
+    validate(sets, mesh);
+    return format->write(path, {mesh, shells, sets});
 }
 
 bool is_mesh_file(const std::filesystem::path& path) {

@@ -98,6 +98,11 @@ std::size_t VtuArrays::size(const pugi::xml_node& array) const {
     return size;
 }
 
+bool VtuArrays::has_integers(const pugi::xml_node& array) const {
+    const auto type = kVtkTypes.find(array.attribute("type").as_string());
+    return type != kVtkTypes.end() && is_integer(type->second);
+}
+
 void VtuArrays::each_real(const pugi::xml_node& array, const std::function<void(std::span<const double>)>& take) const {
     const NumberType type = type_of(array);
     if (format_of(array) == "ascii") {

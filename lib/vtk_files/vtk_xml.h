@@ -61,6 +61,9 @@ public:
     /// The number of values of an array; the caller compares it with the expected number before it reads them.
     [[nodiscard]] std::size_t size(const pugi::xml_node& array) const;
 
+    /// Whether the values have an integer type.
+    [[nodiscard]] bool has_integers(const pugi::xml_node& array) const;
+
     /// Calls take(values) for consecutive parts of an array, so that the whole array need not be in memory.
     void each_real(const pugi::xml_node& array, const std::function<void(std::span<const double>)>& take) const;
     void each_integer(const pugi::xml_node& array, const std::function<void(std::span<const std::int64_t>)>& take) const;

@@ -34,10 +34,10 @@ void VtkHdfWriter::grid(std::span<const Vec3> points, std::span<const std::int64
     out_.put("/VTKHDF/Types", std::span<const std::uint8_t>(types));
 }
 
-std::string VtkHdfWriter::unique_name(std::string name) {
+std::string VtkHdfWriter::unique_name(std::string name, std::set<std::string>& taken) {
     std::ranges::replace(name, '/', '_');
     if (name.empty() || name == ".") name = "field";
-    while (!names_.insert(name).second) name += '_';
+    while (!taken.insert(name).second) name += '_';
     return name;
 }
 

@@ -26,19 +26,30 @@ public:
     /// returns: its name in the file: '/' becomes '_', since HDF5 has folders, and names are unique
     template <class T>
     std::string array(const std::string& name, std::span<const T> values, std::size_t components) {
-        std::string unique = unique_name(name);
+        std::string unique = unique_name(name, at_points_);
         out_.put("/VTKHDF/PointData/" + unique, values, components > 1 ? components : 0);
         return unique;
     }
-    /// An array of one component that belongs to the whole mesh.
-    void field(const std::string& name, std::span<const std::int64_t> values) { out_.put("/VTKHDF/FieldData/" + name, values); }
+    /// An array of one component at the cells. returns: as `array`
+    std::string cell_array(const std::string& name, std::span<const std::uint8_t> values) {
+        std::string unique = unique_name(name, at_cells_);
+        out_.put("/VTKHDF/CellData/" + unique, values);
+        return unique;
+    }
+    /// An array of one component that belongs to the whole mesh. returns: as `array`
+    std::string field(const std::string& name, std::span<const std::int64_t> values) {
+        std::string unique = unique_name(name, of_mesh_);
+        out_.put("/VTKHDF/FieldData/" + unique, values);
+        return unique;
+    }
     void commit() { out_.commit(); }
 
 private:
-    std::string unique_name(std::string name);
+    /// taken: the names in the same group
+    static std::string unique_name(std::string name, std::set<std::string>& taken);
 
     Hdf5Output out_;
-    std::set<std::string> names_;
+    std::set<std::string> at_points_, at_cells_, of_mesh_;
 };
 
 }  // namespace subvol::detail

@@ -129,7 +129,7 @@ VtkGridArray vtk_array_of(const py::handle& given) {
 }
 
 py::tuple from_vtk(const py::object& points, const py::object& types, const py::object& ends, const py::object& connectivity,
-                   const py::object& faces, const py::object& face_ends, const py::list& arrays, const py::object& sharp,
+                   const py::object& faces, const py::object& face_ends, const py::list& arrays, const py::list& field_arrays,
                    const py::kwargs& given) {
     ReadOptions options;
     set_options(options_of_grids(options), given);
@@ -146,7 +146,10 @@ py::tuple from_vtk(const py::object& points, const py::object& types, const py::
     grid.faces = whole(faces, "faces");
     grid.face_ends = whole(face_ends, "face offsets");
     for (const py::handle& array : arrays) grid.arrays.push_back(vtk_array_of(array));
-    grid.sharp = whole(sharp, "creases and sharp faces");
+    for (const py::handle& given_array : field_arrays) {
+        const auto [name, numbers] = given_array.cast<std::tuple<std::string, py::object>>();
+        grid.field_arrays.push_back({name, whole(numbers, name.c_str())});
+    }
     ReadResult result = [&] {
         const py::gil_scoped_release without_gil;
         return mesh_of_vtk(std::move(grid), options);
@@ -327,14 +330,30 @@ void bind_mesh(py::module_& module) {
     ReadOptions reading;
     describe(module, "read_mesh", options_of(reading));
     module.def("from_vtk", &from_vtk, py::arg("points"), py::arg("types"), py::arg("ends"), py::arg("connectivity"),
-               py::arg("faces"), py::arg("face_ends"), py::arg("arrays"), py::arg("sharp"));
-    module.attr("vtk_sharp_array") = vtk_sharp_array();
+               py::arg("faces"), py::arg("face_ends"), py::arg("arrays"), py::arg("field_arrays"));
+    module.def("is_vtk_field_array", &is_vtk_field_array, py::arg("name"));
     module.def(
-        "vtk_sharp_numbers",
-        [](const HexMesh& mesh) {
-            std::vector<std::int64_t> numbers = vtk_sharp_numbers(mesh);
-            const py::ssize_t count = length(numbers.size());
-            return owned(std::move(numbers), {count});
+        "vtk_field_arrays",
+        [](const py::object& mesh) {
+            py::dict arrays;
+            for (VtkFieldArray& array : vtk_field_arrays(mesh.cast<const HexMesh&>(), sets_of(mesh))) {
+                const py::ssize_t count = length(array.numbers.size());
+                arrays[py::str(array.name)] = owned(std::move(array.numbers), {count});
+            }
+            return arrays;
+        },
+        py::arg("mesh"));
+    module.def(
+        "vtk_set_arrays",
+        [](const py::object& mesh) {
+            py::dict arrays;
+            const std::size_t cells = mesh.cast<const HexMesh&>().cells.size();
+            for (const CellSet& set : sets_of(mesh).sets) {
+                std::vector<std::uint8_t> in_set(cells, 0);
+                for (const Index c : set.cells) in_set[c] = 1;
+                arrays[py::str(vtk_set_array(set))] = owned(std::move(in_set), {length(cells)});
+            }
+            return arrays;
         },
         py::arg("mesh"));
     describe(module, "from_vtk", options_of_grids(reading));
@@ -347,9 +366,11 @@ void bind_mesh(py::module_& module) {
         py::arg("path"));
     module.def(
         "write_mesh",
-        [](const std::string& path, const HexMesh& mesh) {
+        [](const std::string& path, const py::object& self) {
+            const auto& mesh = self.cast<const HexMesh&>();
+            const MeshSets& sets = sets_of(self);
             const py::gil_scoped_release without_gil;
-            return write_mesh(path, mesh);
+            return write_mesh(path, mesh, {}, sets);
         },
         py::arg("path"), py::arg("mesh"));
     module.def("write_wavelets", &write_wavelets, py::arg("path"), py::arg("mesh"), py::arg("progress"));

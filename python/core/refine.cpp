@@ -24,20 +24,22 @@ std::vector<Option> options_of(GivenLevel& given) {
     return all;
 }
 
-HexMesh subdivide(const HexMesh& mesh, bool to_limit, const py::object& progress, const py::kwargs& keywords) {
+py::object subdivide(const py::object& self, bool to_limit, const py::object& progress, const py::kwargs& keywords) {
+    const auto& mesh = self.cast<const HexMesh&>();
     GivenLevel given;
     set_options(options_of(given), keywords);
     const int levels = given.levels.levels;
     if (const auto tets = given.scheme.tets()) {
-        return result_of(progress, [&](Progress* listener) {
+        return py::cast(result_of(progress, [&](Progress* listener) {
             return in_hexahedra(refined_tets(mesh, *tets, levels, given.scheme.rules.crease_angle_deg, to_limit, listener));
-        });
+        }));
     }
     RefineOptions options{.scheme = given.scheme.hexes(), .levels = levels};
-    return result_of(progress, [&](Progress* listener) {
+    HexMesh fine = result_of(progress, [&](Progress* listener) {
         options.progress = listener;
         return moved(refine(mesh, options), to_limit, options.scheme.kind);
     });
+    return with_sets(std::move(fine), sets_of_children(sets_of(self), levels));
 }
 
 /// A refinement that is computed once. Arrays have a row for each point of the mesh that it was made from, unused ones too.

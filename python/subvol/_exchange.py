@@ -75,7 +75,8 @@ def to_pyvista(mesh: HexMesh) -> Any:
 @described
 def from_vtk(grid: Any, **options: Any) -> HexMesh:
     """The mesh of a `vtkUnstructuredGrid`, as `read_mesh` makes it of a file with this grid: tetrahedra, prisms, pyramids and polyhedra
-    are split, curved cells followed, ghost cells dropped, values at cells moved to the points, creases and sharp faces tagged.
+    are split, curved cells followed, ghost cells dropped, values at cells moved to the points, creases and sharp faces tagged, patches
+    and sets of cells found.
 
     {keywords}
 
@@ -92,10 +93,15 @@ def from_vtk(grid: Any, **options: Any) -> HexMesh:
     for data, at_cells in ((grid.GetPointData(), False), (grid.GetCellData(), True)):
         given = [(data.GetArrayName(k), data.GetArray(k)) for k in range(data.GetNumberOfArrays())]
         arrays += [(name or "unnamed", at_cells, support.vtk_to_numpy(values)) for name, values in given if values is not None]
-    sharp = grid.GetFieldData().GetArray(_core.vtk_sharp_array)
+    data = grid.GetFieldData()
+    known = [data.GetArray(k) for k in range(data.GetNumberOfArrays()) if _core.is_vtk_field_array(data.GetArrayName(k) or "")]
+    field_arrays = [(values.GetName(), support.vtk_to_numpy(values)) for values in known if values is not None]
+    if others := [name for name, numbers in field_arrays if numbers.dtype.kind not in "iu"]:
+        warn(f"arrays of field data that are no whole numbers were left out: {', '.join(others)}")
+        field_arrays = [(name, numbers) for name, numbers in field_arrays if name not in others]
     mesh, said = _core.from_vtk(support.vtk_to_numpy(grid.GetPoints().GetData()), types, support.vtk_to_numpy(cells.GetOffsetsArray())[1:],
                                 support.vtk_to_numpy(cells.GetConnectivityArray()), faces, face_ends, arrays,
-                                [] if sharp is None else support.vtk_to_numpy(sharp), **options)
+                                field_arrays, **options)
     for text in said:
         warn(text)
     return mesh
@@ -117,7 +123,10 @@ def _faces_of(grid: Any, types: Any) -> tuple[list[int], list[int]]:
 
 
 def to_vtk(mesh: HexMesh) -> Any:
-    """A `vtkUnstructuredGrid` with all fields, and creases and sharp faces as `.vtu` files have them. Its points and fields are this mesh's memory: nothing may write to them."""
+    """A `vtkUnstructuredGrid` with all fields, and creases, sharp faces, patches and sets of cells as `.vtu` files have them (docs/formats.md).
+
+    Its points and fields are this mesh's memory: nothing may write to them.
+    """
     support = importlib.import_module("vtkmodules.util.numpy_support")
     model = importlib.import_module("vtkmodules.vtkCommonDataModel")
     points = importlib.import_module("vtkmodules.vtkCommonCore").vtkPoints()
@@ -133,9 +142,9 @@ def to_vtk(mesh: HexMesh) -> Any:
         array = support.numpy_to_vtk(values)
         array.SetName(name)
         grid.GetPointData().AddArray(array)
-    numbers = _core.vtk_sharp_numbers(mesh)
-    if len(numbers):
-        sharp = support.numpy_to_vtk(numbers, deep=True)
-        sharp.SetName(_core.vtk_sharp_array)
-        grid.GetFieldData().AddArray(sharp)
+    for data, arrays in ((grid.GetFieldData(), _core.vtk_field_arrays(mesh)), (grid.GetCellData(), _core.vtk_set_arrays(mesh))):
+        for name, numbers in arrays.items():
+            array = support.numpy_to_vtk(numbers, deep=True)
+            array.SetName(name)
+            data.AddArray(array)
     return grid

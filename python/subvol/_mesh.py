@@ -22,7 +22,7 @@ def read_mesh(path: Path, **options: Any) -> HexMesh:
     read but meshio does (MED, Nastran, SU2, FLAC3D and others) are read by meshio, without their sets and steps.
 
     The names of the file are in `mesh.patches`, by name (n,2): a cell and its side, u=0, u=1, v=0, v=1, w=0 or w=1, and in
-    `mesh.sets`, by name (n,): cells. `warp` and `only` keep them.
+    `mesh.sets`, by name (n,): cells. `warp`, `only`, `subdivide` and `write_mesh` keep them.
 
     {keywords}
 
@@ -37,7 +37,7 @@ def read_mesh(path: Path, **options: Any) -> HexMesh:
 
 
 def write_mesh(mesh: HexMesh, path: Path) -> None:
-    """Writes `.vtu` or `.vtkhdf` (with all fields) or `.mesh` (geometry only). The file appears whole under its name or not at all.
+    """Writes `.vtu` or `.vtkhdf` (with all fields, patches and sets) or `.mesh` (geometry only). The file appears whole under its name or not at all.
 
     Raises InvalidInput for another extension, FileError if the file cannot be written.
     """

@@ -206,15 +206,64 @@ class Patches(InFolder):
         self.assertAlmostEqual(flows["right"], -flows["left"], 9)
         self.assertAlmostEqual(found["flux_sum"], 0, 9)
 
+    def test_mesh_files_keep_them(self):
+        write_foam(self.folder / "case")
+        (self.folder / "a.inp").write_text(INP)
+        for name, kinds in (("case", (3, 1)), ("a.inp", (4, 2))):
+            given = self.patches(name)
+            self.assertEqual(tuple(map(len, given)), kinds)
+            for end in ".vtu", ".vtkhdf":
+                for words in (["check", name, "--mend"], ["approximate", "case", "--onto", name],
+                              ["subdivide", name, "--levels", "0"], ["subdivide", name], ["subdivide", name, "--levels", "2"]):
+                    with self.subTest(words + [end]):
+                        done = self.run_ok(*words, "-o", "b" + end, "--json").json()
+                        self.assertNotIn("not written", str(done.get("warnings")))
+                        levels = 0 if words[0] != "subdivide" else int(words[3]) if len(words) > 3 else 1
+                        faces, cells = self.patches("b" + end)
+                        self.assertEqual(faces, {patch: 4 ** levels * count for patch, count in given[0].items()})
+                        self.assertEqual(cells, {part: 8 ** levels * count for part, count in given[1].items()})
+                        self.assertAlmostEqual(self.centre_x("b" + end, "left"), 0, 9)
+                        self.assertAlmostEqual(self.centre_x("b" + end, "right"), 3, 9)
+
+    def test_refined_control_meshes_keep_them(self):
+        """Sheets of cells are split where a field bends: patches and sets are where they were."""
+        (self.folder / "a.inp").write_text(INP)
+        rows = [(x / 8, y / 8, z / 8, math.exp(-(x / 8) ** 2)) for x in range(25) for y in range(9) for z in range(9)]
+        (self.folder / "bent.csv").write_text("x,y,z,T\n" + "".join(f"{x},{y},{z},{t}\n" for x, y, z, t in rows))
+        done = self.run_ok("approximate", "bent.csv", "--onto", "a.inp", "-o", "b.vtu", "--refine", "2", "--tolerance", "1e-3",
+                           "--json").json()
+        self.assertEqual(done["refined"], 2)
+        self.assertNotEqual(done["cells"], 3 * 64)  # split along x more often than across it
+        linear = ("--scheme", "linear", "--density", "x", "--json")
+        # The sizes of cells change step by step, so the ends of the middle cell, where "free" and "ends" end, move a little.
+        for patch, delta in ("left", 1e-9), ("right", 1e-9), ("tips", 1e-9), ("free", .2):
+            before, after = (self.run_ok("probe", file, "--patch", patch, *linear).json()["patches"][0] for file in ("a.inp", "b.vtu"))
+            self.assertAlmostEqual(before["area"], after["area"], delta=delta)
+            self.assertAlmostEqual(before["fields"][0]["mean"], after["fields"][0]["mean"], delta=delta)
+        for part, volume, delta in ("ends", 2, .05), ("all", 3, 1e-9):
+            found = self.run_ok("probe", "b.vtu", "--stats", "--only", f"set:{part}", *linear).json()["stats"]["whole"]
+            self.assertAlmostEqual(found["volume"], volume, delta=delta)
+
     def test_mesh_files_that_cannot_hold_them(self):
         write_foam(self.folder / "case")
-        lost = "3 patches (left, right, walls), 1 set of cells (middle) not written"
-        for words in (["subdivide", "case", "-o", "a.vtu"], ["check", "case", "--mend", "-o", "a.vtu"],
-                      ["approximate", "case", "--onto", "case", "-o", "a.vtu"]):
+        lost = "3 patches (left, right, walls) and 1 set of cells (middle) not written"
+        for words in ["-o", "a.mesh"], ["-o", "a.vtu", "--scheme", "tetoct"]:
             with self.subTest(words):
-                warnings = self.run_ok(*words, "--json").json()["warnings"]
+                warnings = self.run_ok("subdivide", "case", *words, "--json").json()["warnings"]
                 self.assertEqual(len([w for w in warnings if lost in w]), 1, warnings)
-        self.assertNotIn("not written", str(self.run_ok("check", "case", "--json").json()["warnings"]))
+
+    def test_files_whose_cells_were_changed(self):
+        """Patches name points and are ignored; sets are arrays at the cells, which programs take along."""
+        (self.folder / "a.inp").write_text(INP)
+        self.run_ok("subdivide", "a.inp", "--levels", "0", "-o", "a.vtu")
+        self.run_ok("subdivide", "a.inp", "--only", "box:-1,-1,-1,2,2,2", "--levels", "0", "-o", "less.vtu")
+        text, less = ((self.folder / name).read_text() for name in ("a.vtu", "less.vtu"))
+        fields = text[text.index("<FieldData>"):text.index("</FieldData>")]
+        rest = less[less.index("</FieldData>"):]
+        (self.folder / "less.vtu").write_text(less[:less.index("<FieldData>")] + fields + rest)
+        self.assertEqual(self.patches("less.vtu"), ({}, {"all": 2, "ends": 1}))
+        self.assertIn("4 patches left out (\"left\", \"right\", \"tips\", \"free\"): it is of another mesh",
+                      self.run_ok("info", "less.vtu").err)
 
     def test_openfoam_that_is_wrong(self):
         for number, entry in enumerate(("left { nFaces 99; startFace 2; }", "left { nFaces 1; startFace -2; }", "left { nFaces",

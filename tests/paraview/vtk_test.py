@@ -8,8 +8,8 @@ import unittest
 import numpy as np
 import subvol
 import vtkmodules.vtkRenderingOpenGL2  # noqa: F401 (what draws)
-from subvol_vtk.SubvolVtk import vtkSubvolLimitLine, vtkSubvolLimitProbe, vtkSubvolLimitSurface, vtkSubvolReader, vtkSubvolVdbWriter, \
-    vtkSubvolVolumeMapper, vtkSubvolWriter
+from subvol_vtk.SubvolVtk import vtkSubvolLimitLine, vtkSubvolLimitProbe, vtkSubvolLimitSurface, vtkSubvolReader, vtkSubvolSubdivide, \
+    vtkSubvolVdbWriter, vtkSubvolVolumeMapper, vtkSubvolWriter
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkMultiBlockDataSet, vtkPiecewiseFunction, vtkPlane, vtkPlaneCollection
 from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
@@ -194,6 +194,20 @@ class Mapper(unittest.TestCase):
             round_ones = subvol.surface(block, boundary=True).points
             self.assertFalse(len(points) == len(round_ones) and np.allclose(points, round_ones))
             self.assertTrue(np.array_equal(subvol.from_vtk(reader.GetOutput()).creases, sharp.creases))
+
+    def test_patches_and_sets_go_through_filters(self):
+        path = os.path.join(FOLDER, "named.inp")
+        with open(path, "w") as file:
+            file.write("*NODE\n1,0,0,0\n2,1,0,0\n3,1,1,0\n4,0,1,0\n5,0,0,1\n6,1,0,1\n7,1,1,1\n8,0,1,1\n"
+                       "*ELEMENT, TYPE=C3D8, ELSET=cube\n1,1,2,3,4,5,6,7,8\n*SURFACE, NAME=top\n1, S2\n")
+        reader, subdivide = vtkSubvolReader(), vtkSubvolSubdivide()
+        reader.SetFileName(path)
+        subdivide.SetInputConnection(reader.GetOutputPort())
+        subdivide.SetLevels(1)
+        subdivide.Update()
+        fine = subvol.from_vtk(subdivide.GetOutput())
+        self.assertEqual({name: len(sides) for name, sides in fine.patches.items()}, {"top": 4})
+        self.assertEqual({name: len(cells) for name, cells in fine.sets.items()}, {"cube": 8})
 
 
 if __name__ == "__main__":

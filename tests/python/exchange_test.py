@@ -92,6 +92,55 @@ def test_vtk_grids_keep_creases_and_sharp_faces(tmp_path, ball):
         assert len(subvol.from_vtk(grid).creases) == 0
 
 
+def test_vtk_grids_keep_patches_and_sets(tmp_path, ball):
+    vtk = pytest.importorskip("vtkmodules.vtkCommonDataModel", reason="Debian's python3-vtk9 is not installed")
+    files, support = pytest.importorskip("vtkmodules.vtkIOXML"), pytest.importorskip("vtkmodules.util.numpy_support")
+    grid = subvol.to_vtk(ball)
+    inside = np.zeros(len(ball.cells), np.uint8)
+    inside[[3, 5]] = 1
+    array = support.numpy_to_vtk(inside, deep=True)
+    array.SetName("set:two")
+    grid.GetCellData().AddArray(array)
+    mesh = subvol.from_vtk(grid)
+    assert {name: list(cells) for name, cells in mesh.sets.items()} == {"two": [3, 5]} and list(mesh.fields) == ["density"]
+    (tmp_path / "a.inp").write_text("""*NODE
+1,0,0,0
+2,1,0,0
+3,1,1,0
+4,0,1,0
+5,0,0,1
+6,1,0,1
+7,1,1,1
+8,0,1,1
+*ELEMENT, TYPE=C3D8, ELSET=cube
+1,1,2,3,4,5,6,7,8
+*SURFACE, NAME=top
+1, S2
+""")
+    cube = subvol.read_mesh(tmp_path / "a.inp")
+    subvol.write_mesh(cube, tmp_path / "a.vtu")
+    reader = files.vtkXMLUnstructuredGridReader()
+    reader.SetFileName(str(tmp_path / "a.vtu"))
+    reader.Update()
+    assert reader.GetOutput().GetCellData().GetArray("set:cube").GetTuple1(0) == 1
+    for again in subvol.from_vtk(subvol.to_vtk(cube)), subvol.read_mesh(tmp_path / "a.vtu"), subvol.from_vtk(reader.GetOutput()):
+        assert {name: sides.tolist() for name, sides in again.patches.items()} == {"top": [[0, 5]]}
+        assert {name: list(cells) for name, cells in again.sets.items()} == {"cube": [0]}
+    fine = subvol.subdivide(cube, 1)
+    assert fine.patches["top"].tolist() == [[4, 5], [5, 5], [6, 5], [7, 5]] and list(fine.sets["cube"]) == list(range(8))
+    assert np.allclose(fine.points[fine.cells[4:, 4:]][..., 2], 1)
+    odd = subvol.to_vtk(ball)
+    for name, values in (("patch:a", np.array([1.5])), ("patch:b", np.array([1, 2, 3, 4]))):
+        array = support.numpy_to_vtk(values, deep=True)
+        array.SetName(name)
+        odd.GetFieldData().AddArray(array)
+    with pytest.warns(subvol.SubvolWarning) as said:
+        assert not subvol.from_vtk(odd).patches
+    assert sorted(str(warning.message) for warning in said) == ["arrays of field data that are no whole numbers were left out: patch:a",
+                                                                "patch \"b\" left out: it is of another mesh"]
+    assert isinstance(grid, vtk.vtkUnstructuredGrid)
+
+
 def test_a_vtk_grid_of_other_cells_is_that_of_its_file(tmp_path):
     vtk = pytest.importorskip("vtkmodules.vtkCommonDataModel", reason="Debian's python3-vtk9 is not installed")
     core, files = pytest.importorskip("vtkmodules.vtkCommonCore"), pytest.importorskip("vtkmodules.vtkIOXML")

@@ -20,6 +20,7 @@
 #include <vtkPolyData.h>
 #include <vtkSmartPointer.h>
 #include <vtkTypeInt64Array.h>
+#include <vtkUnsignedCharArray.h>
 #include <vtkUnstructuredGrid.h>
 #include <vtkVariant.h>
 
@@ -35,19 +36,24 @@ namespace subvol {
 
 namespace {
 
-/// Creases and sharp faces, as our files and `set_grid` have them. A hash among the numbers is exact only as a whole number.
-std::vector<std::int64_t> sharp_of(vtkDataSet& grid) {
-    std::vector<std::int64_t> numbers;
-    if (vtkDataArray* const array = grid.GetFieldData()->GetArray(vtk_sharp_array())) {
+/// Creases, sharp faces and patches, as our files and `set_grid` have them. A hash among the numbers is exact only as a whole
+/// number.
+std::vector<VtkFieldArray> field_arrays_of(vtkDataSet& grid) {
+    std::vector<VtkFieldArray> arrays;
+    vtkFieldData& data = *grid.GetFieldData();
+    for (int a = 0; a < data.GetNumberOfArrays(); ++a) {
+        vtkDataArray* const array = data.GetArray(a);
+        if (array == nullptr || array->GetName() == nullptr || !is_vtk_field_array(array->GetName())) continue;
+        std::vector<std::int64_t>& numbers = arrays.emplace_back(VtkFieldArray{array->GetName(), {}}).numbers;
         for (vtkIdType i = 0; i < array->GetNumberOfValues(); ++i) numbers.push_back(array->GetVariantValue(i).ToTypeInt64());
     }
-    return numbers;
+    return arrays;
 }
 
-/// Points and cells, with creases and sharp faces.
+/// Points and cells, with creases, sharp faces and patches.
 VtkUnstructuredGrid cells_of(vtkDataSet& grid) {
     VtkUnstructuredGrid made;
-    made.sharp = sharp_of(grid);
+    made.field_arrays = field_arrays_of(grid);
     made.points.resize(static_cast<std::size_t>(grid.GetNumberOfPoints()));
     for (std::size_t p = 0; p < made.points.size(); ++p) {
         double x[3];
@@ -196,7 +202,7 @@ void add_array(vtkDataSetAttributes& to, const std::string& name, int components
     to.AddArray(array);
 }
 
-void set_grid(vtkUnstructuredGrid& grid, const HexMesh& mesh) {
+void set_grid(vtkUnstructuredGrid& grid, const HexMesh& mesh, const MeshSets& sets) {
     vtkNew<vtkPoints> points;
     points->SetDataTypeToDouble();
     points->SetNumberOfPoints(static_cast<vtkIdType>(mesh.points.size()));
@@ -212,12 +218,20 @@ void set_grid(vtkUnstructuredGrid& grid, const HexMesh& mesh) {
     grid.SetCells(VTK_HEXAHEDRON, cells);
     for (const Attribute& field : mesh.attributes)
         add_array(*grid.GetPointData(), field.name, static_cast<int>(field.channels), field.values);
-    const std::vector<std::int64_t> numbers = vtk_sharp_numbers(mesh);
-    if (numbers.empty()) return;
-    vtkNew<vtkTypeInt64Array> sharp;
-    sharp->SetName(vtk_sharp_array());
-    for (const std::int64_t number : numbers) sharp->InsertNextValue(number);
-    grid.GetFieldData()->AddArray(sharp);
+    for (const VtkFieldArray& field : vtk_field_arrays(mesh, sets)) {
+        vtkNew<vtkTypeInt64Array> array;
+        array->SetName(field.name.c_str());
+        for (const std::int64_t number : field.numbers) array->InsertNextValue(number);
+        grid.GetFieldData()->AddArray(array);
+    }
+    for (const CellSet& set : sets.sets) {
+        vtkNew<vtkUnsignedCharArray> array;
+        array->SetName(vtk_set_array(set).c_str());
+        array->SetNumberOfValues(static_cast<vtkIdType>(mesh.cells.size()));
+        array->FillValue(0);
+        for (const Index c : set.cells) array->SetValue(static_cast<vtkIdType>(c), 1);
+        grid.GetCellData()->AddArray(array);
+    }
 }
 
 void add_probed(vtkDataSetAttributes& to, const ProbeResult& probed, bool gradients) {

@@ -50,8 +50,9 @@ struct ShownArray {
 /// The mesh of a data set with all of its arrays of numbers; of blocks with those that all have.
 [[nodiscard]] ReadResult mesh_of_data(vtkDataObject& data);
 
-/// Fills a grid with a mesh, its creases and sharp faces as a field array, which `mesh_of_data` takes again.
-void set_grid(vtkUnstructuredGrid& grid, const HexMesh& mesh);
+/// Fills a grid with a mesh. Its creases, sharp faces and patches are field arrays, its sets arrays at the cells, which
+/// `mesh_of_data` takes again.
+void set_grid(vtkUnstructuredGrid& grid, const HexMesh& mesh, const MeshSets& sets = {});
 
 /// Appends a field. components: of each of its tuples
 void add_array(vtkDataSetAttributes& to, const std::string& name, int components, std::span<const double> values);

@@ -65,7 +65,7 @@ int vtkSubvolReader::RequestData(vtkInformation*, vtkInformationVector**, vtkInf
             options.step = nearest_step(series, output.Get(Pipeline::UPDATE_TIME_STEP()));
         const ReadResult read = read_mesh(FileName, options);
         vtkUnstructuredGrid& grid = *vtkUnstructuredGrid::GetData(outputs);
-        set_grid(grid, read.mesh);
+        set_grid(grid, read.mesh, read.sets);
         if (series.size() > 1) grid.GetInformation()->Set(vtkDataObject::DATA_TIME_STEP(), series.times[read.step]);
         for (const std::string& warning : read.warnings) vtkWarningMacro(<< FileName << ": " << warning);
     } catch (const std::exception& error) {

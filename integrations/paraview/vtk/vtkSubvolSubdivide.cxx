@@ -37,9 +37,11 @@ int vtkSubvolSubdivide::RequestData(vtkInformation*, vtkInformationVector** inpu
         const SchemeOptions scheme{.kind = named<subvol::Scheme>(Scheme, "Scheme")};
         if (CheckFolds && Levels > 0)
             throw Error(ErrorCode::InvalidInput, "folds are those of level 0", "CheckFolds", "Levels 0");
-        const HexMesh mesh = mesh_of_data(*data).mesh;
+        const ReadResult read = mesh_of_data(*data);
+        const HexMesh& mesh = read.mesh;
         vtkUnstructuredGrid& fine = *vtkUnstructuredGrid::GetData(outputs);
-        set_grid(fine, Levels > 0 ? refine(mesh, {.scheme = scheme, .levels = Levels}) : mesh);
+        set_grid(fine, Levels > 0 ? refine(mesh, {.scheme = scheme, .levels = Levels}) : mesh,
+                 sets_of_children(read.sets, Levels));
         if (!CheckFolds) return 1;
         const FoldCheck check = check_folds(mesh, {.scheme = scheme});
         std::vector<double> verdicts;

@@ -261,7 +261,8 @@ ReadResult read_medit(std::string_view text, std::string_view file, const ReadOp
     return MeditReader(text, file, options).read();
 }
 
-std::vector<std::string> write_medit(const std::filesystem::path& path, const HexMesh& mesh) {
+std::vector<std::string> write_medit(const std::filesystem::path& path, const WrittenMesh& written) {
+    const HexMesh& mesh = written.mesh;
     OutputFile out(path);
     out.write("MeshVersionFormatted 2\nDimension 3\nVertices\n" + std::to_string(mesh.points.size()) + "\n");
     std::string line;
@@ -282,6 +283,7 @@ std::vector<std::string> write_medit(const std::filesystem::path& path, const He
     if (!mesh.creases.empty() || !mesh.sharp_faces.empty()) {
         warnings.push_back(sharp_counts(mesh) + " written as groups, which only --sharp 1 reads again");
     }
+    if (!written.sets.empty()) warnings.push_back(list_of(written.sets) + " not written: .mesh files of ours do not have them");
     return warnings;
 }
 

@@ -8,8 +8,8 @@
 
 #include "assemble.h"
 #include "join_pieces.h"
+#include "mesh_arrays.h"
 #include "mesh_file.h"
-#include "sharp_groups.h"
 #include "subvol/detail/printable.h"
 #include "subvol/error.h"
 #include "text_scanner.h"
@@ -87,7 +87,14 @@ MeshFile contents_of(VtkUnstructuredGrid grid, bool alone, const TextScanner& no
     take_cells(grid, sorter);
     for (VtkGridArray& array : grid.arrays)
         found.arrays.push_back({std::move(array.name), array.components, array.at_cells, std::move(array.values)});
-    if (alone && !grid.sharp.empty()) take_sharp_numbers(grid.sharp, found);
+    take_set_arrays(found);
+    if (alone) {
+        std::vector<NamedNumbers> arrays;
+        for (VtkFieldArray& array : grid.field_arrays) {
+            if (is_field_array(array.name)) arrays.push_back({std::move(array.name), std::move(array.numbers)});
+        }
+        take_field_arrays(arrays, found);
+    }
     sorter.report(alone ? std::optional(kGridName) : std::nullopt);
     return found;
 }
@@ -100,12 +107,18 @@ TextScanner no_text() {
 
 }  // namespace
 
-const char* vtk_sharp_array() {
-    return kSharpArray;
+bool is_vtk_field_array(std::string_view name) {
+    return is_field_array(name);
 }
 
-std::vector<std::int64_t> vtk_sharp_numbers(const HexMesh& mesh) {
-    return mesh.creases.empty() && mesh.sharp_faces.empty() ? std::vector<std::int64_t>{} : sharp_numbers(mesh);
+std::vector<VtkFieldArray> vtk_field_arrays(const HexMesh& mesh, const MeshSets& sets) {
+    std::vector<VtkFieldArray> arrays;
+    for (NamedNumbers& array : field_arrays(mesh, sets)) arrays.push_back({std::move(array.name), std::move(array.numbers)});
+    return arrays;
+}
+
+std::string vtk_set_array(const CellSet& set) {
+    return set_array_name(set);
 }
 
 ReadResult mesh_of_vtk(VtkUnstructuredGrid grid, const ReadOptions& options) {

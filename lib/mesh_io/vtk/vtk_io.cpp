@@ -5,6 +5,7 @@
 
 #include "assemble.h"
 #include "formats.h"
+#include "mesh_arrays.h"
 #include "mesh_file.h"
 #include "vtk_cells.h"
 #include "vtk_values.h"
@@ -152,6 +153,7 @@ public:
         } else {
             sort_cells(sorter);
         }
+        take_set_arrays(found_);
         sorter.report(file_);
         return assemble(std::move(found_), in_, file_, kVtkNames, options_);
     }

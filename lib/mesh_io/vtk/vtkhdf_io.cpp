@@ -7,8 +7,8 @@
 #include "formats.h"
 #include "hdf5_file.h"
 #include "join_pieces.h"
+#include "mesh_arrays.h"
 #include "mesh_file.h"
-#include "sharp_groups.h"
 #include "subvol/error.h"
 #include "vtk_cells.h"
 #include "vtkhdf_writer.h"
@@ -207,15 +207,31 @@ private:
         // Polyhedra are split once all arrays are there.
         read_arrays(part.points, "PointData", false, found);
         read_arrays(part.cells, "CellData", true, found);
-        if (const std::string sharp = kRoot + "/FieldData/" + kSharpArray; alone && file_.has(sharp)) {
-            take_sharp_numbers(file_.integers(sharp), found);
-        }
+        if (alone) read_field_data(found);
         sorter.report(alone ? std::optional<std::string_view>(file_.name()) : std::nullopt);
         refuse_not_finite(found, in_, kVtkNames);
     }
 
+    void read_field_data(MeshFile& found) const {
+        std::vector<NamedNumbers> taken;
+        std::vector<std::string> ignored;
+        for (const std::string& name : file_.names(kRoot + "/FieldData")) {
+            const std::string path = kRoot + "/FieldData/" + name;
+            const auto there = is_field_array(name) ? file_.find(path) : std::nullopt;
+            if (!there) continue;
+            if (!there->characters && is_integer(there->type)) {
+                taken.push_back({as_utf8(name), file_.integers(path)});
+            } else {
+                ignored.push_back(as_utf8(name));
+            }
+        }
+        take_field_arrays(taken, found);
+        ignore_field_arrays(ignored, found);
+    }
+
     // Arrays may have offsets of their own at each step.
     void read_arrays(const Range& range, const std::string& group, bool at_cells, MeshFile& found) const {
+        ByName<FileSet> sets(found.sets);
         for (const std::string& name : file_.names(kRoot + "/" + group)) {
             const std::string path = kRoot + "/" + group + "/" + name;
             if (!file_.has(path)) continue;  // texts
@@ -223,8 +239,12 @@ private:
             if (components == 0) continue;
             const std::size_t of_mesh = of_step(at_cells ? "CellOffsets" : "PointOffsets", 0);
             const std::size_t first = of_step(group + "Offsets/" + name, of_mesh) + (range.first - of_mesh);
-            found.arrays.push_back(
-                {as_utf8(name), static_cast<int>(components), at_cells, file_.reals(path, first, range.count)});
+            auto values = file_.reals(path, first, range.count);
+            if (at_cells && is_set_array(name, components)) {
+                add_to_set(sets, as_utf8(name), 0, values);
+            } else {
+                found.arrays.push_back({as_utf8(name), static_cast<int>(components), at_cells, std::move(values)});
+            }
         }
     }
 
@@ -255,7 +275,8 @@ std::vector<double> vtkhdf_times(const std::filesystem::path& path) {
     return vtkhdf_times(Hdf5File(open_hdf5(path), path.string()));
 }
 
-std::vector<std::string> write_vtkhdf(const std::filesystem::path& path, const HexMesh& mesh) {
+std::vector<std::string> write_vtkhdf(const std::filesystem::path& path, const WrittenMesh& written) {
+    const HexMesh& mesh = written.mesh;
     constexpr std::uint8_t kHexahedron = 12;
     VtkHdfWriter out(path);
     std::vector<std::int64_t> corners;
@@ -263,12 +284,24 @@ std::vector<std::string> write_vtkhdf(const std::filesystem::path& path, const H
     for (const auto& cell : mesh.cells) corners.insert(corners.end(), cell.begin(), cell.end());
     out.grid(mesh.points, corners, kHexahedron, 8);
     std::vector<std::string> warnings;
+    const auto warn = [&](const char* kind, const std::string& name, const std::string& in_file) {
+        if (name != in_file) warnings.push_back(std::string(kind) + " " + in_quotes(name) + " is called " + in_quotes(in_file));
+    };
     for (const Attribute& attribute : mesh.attributes) {
-        const std::string name =
-            out.array(attribute.name, std::span<const double>(attribute.values), static_cast<std::size_t>(attribute.channels));
-        if (name != attribute.name) warnings.push_back("field " + in_quotes(attribute.name) + " is called " + in_quotes(name));
+        warn(
+            "field", attribute.name,
+            out.array(attribute.name, std::span<const double>(attribute.values), static_cast<std::size_t>(attribute.channels)));
     }
-    if (!mesh.creases.empty() || !mesh.sharp_faces.empty()) out.field(kSharpArray, sharp_numbers(mesh));
+    std::vector<std::uint8_t> in_set;
+    for (const CellSet& set : written.sets.sets) {
+        if (set.cells.empty()) continue;
+        in_set.assign(mesh.cells.size(), 0);
+        for (const Index c : set.cells) in_set[c] = 1;
+        const std::string name = set_array_name(set);
+        warn("array", name, out.cell_array(name, in_set));
+    }
+    for (const NamedNumbers& array : field_arrays(mesh, written.sets))
+        warn("array", array.name, out.field(array.name, array.numbers));
     out.commit();
     return warnings;
 }

@@ -9,9 +9,9 @@
 
 #include "assemble.h"
 #include "formats.h"
+#include "mesh_arrays.h"
 #include "mesh_file.h"
 #include "output_file.h"
-#include "sharp_groups.h"
 #include "subvol/hex_mesh.h"
 #include "text_scanner.h"
 #include "vtk_cells.h"
@@ -174,10 +174,24 @@ private:
             found_.warnings.push_back(std::to_string(pieces_) + " pieces put together" +
                                       (options_.weld ? "" : "; points where they touch stay apart without welding"));
         drop_partial_arrays();
-        if (const pugi::xml_node sharp = grid.child("FieldData").find_child_by_attribute("DataArray", "Name", kSharpArray)) {
-            take_sharp_numbers(arrays_.integers(sharp), found_);
-        }
+        read_field_data(grid.child("FieldData"));
         sorter_.report(may_be_empty ? std::nullopt : std::optional(file_));
+    }
+
+    void read_field_data(const pugi::xml_node& element) {
+        std::vector<NamedNumbers> taken;
+        std::vector<std::string> ignored;
+        for (const auto& array : element.children("DataArray")) {
+            const std::string name = as_utf8(array.attribute("Name").as_string());
+            if (!is_field_array(name)) continue;
+            if (arrays_.has_integers(array)) {
+                taken.push_back({name, arrays_.integers(array)});
+            } else {
+                ignored.push_back(name);
+            }
+        }
+        take_field_arrays(taken, found_);
+        ignore_field_arrays(ignored, found_);
     }
 
     void read_piece(const pugi::xml_node& piece) {
@@ -334,6 +348,14 @@ private:
             }
             xml_.expect_size(array, arrays_.size(array), tuples * components,
                              std::to_string(components) + " a " + (at_cells ? "cell" : "point"));
+            if (at_cells && is_set_array(name, components)) {
+                std::size_t first = before;
+                arrays_.each_real(array, [&](std::span<const double> some) {
+                    add_to_set(sets_, name, first, some);
+                    first += some.size();
+                });
+                continue;
+            }
             std::vector<double>& values = values_of(name, at_cells, components, before);
             arrays_.each_real(array,
                               [&](std::span<const double> some) { values.insert(values.end(), some.begin(), some.end()); });
@@ -370,6 +392,7 @@ private:
     VtkXml xml_;
     const VtuArrays& arrays_;
     MeshFile found_;
+    ByName<FileSet> sets_{found_.sets};
     VtkCellSorter sorter_;
     std::size_t cells_before_ = 0, pieces_ = 0;
     // The arrays of a name: those of a piece belong to them in their order.
@@ -420,9 +443,10 @@ constexpr std::uint8_t kHexType = 12, kQuadType = 9, kLineType = 3;
 
 static_assert(sizeof(Vec3) == 3 * sizeof(double), "points are written as they lie in memory");
 
-/// What is written: a mesh, then quads and lines over its points and those that follow them.
+/// What is written: a mesh with its patches and sets, then quads and lines over its points and those that follow them.
 struct Contents {
     const HexMesh& mesh;
+    const MeshSets& sets;
     const std::vector<std::array<Index, 4>>& quads;
     const std::vector<std::array<Index, 2>>& lines;
 };
@@ -463,15 +487,23 @@ void write_piece(VtkXmlWriter& out, const Contents& contents) {
     for (const auto& attribute : mesh.attributes) {
         out.array<double>(attribute.name, static_cast<std::size_t>(attribute.channels), attribute.values);
     }
-    out.line("</PointData>\n</Piece>");
+    out.line("</PointData>\n<CellData>");
+    std::vector<std::uint8_t> in_set;
+    for (const CellSet& set : contents.sets.sets) {
+        if (set.cells.empty()) continue;
+        in_set.assign(cells, 0);
+        for (const Index c : set.cells) in_set[c] = 1;
+        out.array<std::uint8_t>(set_array_name(set), 1, in_set);
+    }
+    out.line("</CellData>\n</Piece>");
 }
 
 std::vector<std::string> write(const std::filesystem::path& path, const Contents& contents) {
     OutputFile out(path);
     VtkXmlWriter xml(out, "UnstructuredGrid");
-    if (!contents.mesh.creases.empty() || !contents.mesh.sharp_faces.empty()) {
+    if (const std::vector<NamedNumbers> arrays = field_arrays(contents.mesh, contents.sets); !arrays.empty()) {
         xml.line("<FieldData>");
-        xml.field<std::int64_t>(kSharpArray, sharp_numbers(contents.mesh));
+        for (const NamedNumbers& array : arrays) xml.field<std::int64_t>(array.name, array.numbers);
         xml.line("</FieldData>");
     }
     write_piece(xml, contents);
@@ -482,11 +514,9 @@ std::vector<std::string> write(const std::filesystem::path& path, const Contents
 
 }  // namespace
 
-std::vector<std::string> write_vtu(const std::filesystem::path& path, const HexMesh& mesh) {
-    return write(path, {mesh, {}, {}});
-}
-
-std::vector<std::string> write_vtu(const std::filesystem::path& path, const HexMesh& mesh, const Shells& shells) {
+std::vector<std::string> write_vtu(const std::filesystem::path& path, const WrittenMesh& written) {
+    const auto& [mesh, shells, sets] = written;
+    if (shells.empty()) return write(path, {mesh, sets, {}, {}});
     HexMesh with = mesh;
     std::vector<Index> number;
     for (std::size_t p = 0; p < shells.points.size(); ++p) {
@@ -508,7 +538,7 @@ std::vector<std::string> write_vtu(const std::filesystem::path& path, const HexM
     for (auto& line : lines) {
         for (Index& p : line) p = number[p];
     }
-    return write(path, {with, quads, lines});
+    return write(path, {with, sets, quads, lines});
 }
 
 }  // namespace subvol::detail

@@ -56,10 +56,13 @@ protected:
             try {
                 const ReadResult read = read_mesh(file);
                 validate(read.mesh);
+                validate(read.sets, read.mesh);
                 if (!read.shells.empty()) validate(read.shells, read.mesh);
                 for (const std::string& warning : read.warnings) expect_printable(warning);
                 for (const FieldInfo& field : read.fields) expect_printable(field.name);
                 for (const Attribute& attribute : read.mesh.attributes) expect_printable(attribute.name);
+                for (const Patch& patch : read.sets.patches) expect_printable(patch.name);
+                for (const CellSet& set : read.sets.sets) expect_printable(set.name);
             } catch (const Error& error) {
                 expect_printable(error.what());
                 ++refused;

@@ -4,6 +4,7 @@
 #include "lib/test_meshes.h"
 #include "mesh_damage.h"
 #include "mesh_texts.h"
+#include "subvol/vtk_grid.h"
 #include "vtu_texts.h"
 
 namespace subvol::test {
@@ -85,6 +86,23 @@ TEST_F(MeshFuzz, VtuOfEveryEncoding) {
             expect_sound_or_refused(".vtu", vtu.file(piece + piece), seed++);
         }
     }
+}
+
+TEST_F(MeshFuzz, PatchesAndSetsOfVtu) {
+    const HexMesh mesh = make_box(2, 1, 1);
+    const auto file = path("good.vtu");
+    std::ignore = write_mesh(file, mesh, {}, {{{"p", {{0, 0}, {0, 2}}}, {"q", {{1, 1}}}}, {{"s", {1}}}});
+    std::string text = read_bytes(file);
+    expect_sound_or_refused(".vtu", text, 45);
+    VtuText vtu;  // as text, so that damage changes single numbers
+    const std::string begin =
+        "<FieldData>" + vtu.array("Int64", "Name=\"patch:p\"", vtk_field_arrays(mesh, {{{"p", {{0, 0}}}}, {}})[0].numbers) +
+        "</FieldData>";
+    const std::string data =
+        "<CellData>" + vtu.array("UInt8", "Name=\"set:s\"", std::vector<std::int64_t>{0, 1}) + "</CellData>";
+    text = vtu.file(begin + vtu.piece(mesh, data));
+    EXPECT_EQ(read_mesh(write("good.vtu", text)).sets.patches.size(), 1u);
+    expect_sound_or_refused(".vtu", text, 46);
 }
 
 TEST_F(MeshFuzz, Gmsh) {

@@ -89,7 +89,7 @@ VtkUnstructuredGrid one_cell(double x, const std::string& field) {
 
 TEST_F(VtkGridInMemory, HasTheCreasesAndSharpFacesOfItsFile) {
     HexMesh mesh = mesh_of_vtk(std::vector<VtkUnstructuredGrid>{one_cell(0, "a"), one_cell(1, "b")}).mesh;
-    EXPECT_TRUE(vtk_sharp_numbers(mesh).empty());
+    EXPECT_TRUE(vtk_field_arrays(mesh).empty());
     mesh.creases = {{mesh.cells[0][0], mesh.cells[0][3]}};
     mesh.sharp_faces = {{mesh.cells[0][1], mesh.cells[0][2], mesh.cells[0][6], mesh.cells[0][5]}};
     VtkUnstructuredGrid grid;
@@ -97,7 +97,7 @@ TEST_F(VtkGridInMemory, HasTheCreasesAndSharpFacesOfItsFile) {
     grid.types = {12, 12};
     grid.ends = {8, 16};
     for (const auto& cell : mesh.cells) grid.connectivity.insert(grid.connectivity.end(), cell.begin(), cell.end());
-    grid.sharp = vtk_sharp_numbers(mesh);
+    grid.field_arrays = vtk_field_arrays(mesh);
     write_mesh(path("sharp.vtu"), mesh);
     const ReadResult in_memory = mesh_of_vtk(grid), read = read_mesh(path("sharp.vtu"));
     EXPECT_EQ(in_memory.mesh.creases.size(), 1u);
@@ -106,7 +106,7 @@ TEST_F(VtkGridInMemory, HasTheCreasesAndSharpFacesOfItsFile) {
     EXPECT_EQ(in_memory.mesh.sharp_faces, read.mesh.sharp_faces);
     EXPECT_TRUE(in_memory.warnings.empty());
     VtkUnstructuredGrid kept = one_cell(0, "a");  // programs that change a mesh keep the array
-    kept.sharp = grid.sharp;
+    kept.field_arrays = grid.field_arrays;
     const ReadResult ignored = mesh_of_vtk(kept);
     EXPECT_TRUE(ignored.mesh.creases.empty());
     ASSERT_EQ(ignored.warnings.size(), 1u);

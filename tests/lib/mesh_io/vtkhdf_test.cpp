@@ -229,6 +229,43 @@ TEST_F(VtkHdf, WhatIsWrittenIsReadToTheBit) {
     EXPECT_EQ(detail::read_regular(path("a.vtkhdf")), first);
 }
 
+TEST_F(VtkHdf, PatchesAndSetsAreReadAsTheyWereWritten) {
+    const HexMesh mesh = make_box(3, 1, 1);
+    const MeshSets sets{{{"in", {{0, 0}}}, {"a/b", {{2, 1}, {2, 3}}}}, {{"ends", {0, 2}}, {"a/b", {1}}}};
+    EXPECT_THAT(write_mesh(path("a.vtkhdf"), mesh, {}, sets),
+                ElementsAre("array \"set:a/b\" is called \"set:a_b\"", "array \"patch:a/b\" is called \"patch:a_b\""));
+    const ReadResult read = read_mesh(path("a.vtkhdf"));
+    EXPECT_TRUE(read.warnings.empty() && read.fields.empty());
+    EXPECT_EQ(find_patch(read.sets, "in").sides, sets.patches[0].sides);
+    EXPECT_EQ(find_patch(read.sets, "a_b").sides, sets.patches[1].sides);
+    EXPECT_EQ(find_set(read.sets, "ends").cells, sets.sets[0].cells);
+    EXPECT_EQ(find_set(read.sets, "a_b").cells, sets.sets[1].cells);
+    EXPECT_THAT(error_of([&] { write_mesh(path("b.vtkhdf"), mesh, {}, {{{"p", {{3, 0}}}}, {}}); }), HasSubstr("cell 3"));
+}
+
+// An array of a patch that is not what it should be is left out, with a sentence; the mesh is read.
+TEST_F(VtkHdf, FieldDataThatIsWrongIsIgnored) {
+    const auto said = [&](const auto& numbers) {
+        {
+            Hdf5Writer file(path("a.vtkhdf"));
+            start(file, {row(2)});
+            file.put("/VTKHDF/FieldData/patch:p", numbers);
+            file.put("/VTKHDF/FieldData/TimeValue", std::vector<double>{1.5});
+            file.put("/VTKHDF/CellData/set:second", std::vector<double>{0, 1});
+        }
+        const ReadResult read = read_mesh(path("a.vtkhdf"));
+        EXPECT_EQ(read.mesh.cells.size(), 2u);
+        EXPECT_TRUE(read.sets.patches.empty());
+        EXPECT_EQ(find_set(read.sets, "second").cells, std::vector<Index>{1});
+        EXPECT_EQ(read.warnings.size(), 1u);
+        return read.warnings.at(0);
+    };
+    EXPECT_EQ(said(std::vector<double>{1, 2}), "array \"patch:p\" left out: its numbers are not integers");
+    EXPECT_EQ(said(Numbers{1, 2}), "patch \"p\" left out: it is of another mesh");
+    EXPECT_EQ(said(Numbers{12, 2, 0, 0, 1, 2, 3}), "patch \"p\" left out: it is of another mesh");
+    EXPECT_EQ(said(Numbers{}), "patch \"p\" left out: it is of another mesh");
+}
+
 TEST_F(VtkHdf, SurfacesAreGridsOfTriangles) {
     LimitSurface surface;
     surface.surface = {.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, .triangles = {{0, 1, 2}}};

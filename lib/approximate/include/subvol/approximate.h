@@ -8,6 +8,7 @@
 #include "subvol/facts.h"
 #include "subvol/hex_mesh.h"
 #include "subvol/limit.h"
+#include "subvol/mesh_sets.h"
 #include "subvol/option.h"
 #include "subvol/progress.h"
 #include "subvol/scheme.h"
@@ -61,10 +62,12 @@ struct ApproximateReport {
 /// The report under its members' names; "fields" is a group with a group for each field.
 [[nodiscard]] Facts facts_of(const ApproximateReport& report);
 
-/// mesh: the control mesh with the fitted fields as its attributes
+/// mesh:  the control mesh with the fitted fields as its attributes
+/// parts: where each of its cells lies in the cells of `onto`; empty if the mesh was not refined
 struct Approximation {
     HexMesh mesh;
     ApproximateReport report;
+    std::vector<PartOfCell> parts = {};
 };
 
 /// Fits control values so that the limit is as near to samples as it can be: in the least squares sense, by conjugate gradients

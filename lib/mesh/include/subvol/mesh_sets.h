@@ -10,6 +10,7 @@
 
 #include "subvol/hex_mesh.h"
 #include "subvol/index.h"
+#include "subvol/vec.h"
 
 namespace subvol {
 
@@ -41,6 +42,12 @@ struct MeshSets {
     [[nodiscard]] bool empty() const { return patches.empty() && sets.empty(); }
 };
 
+/// Checks that all sides and cells exist. throws: Error(InvalidInput)
+void validate(const MeshSets& sets, const HexMesh& mesh);
+
+/// "2 patches (in, out) and 1 set of cells (rotor)"; empty if there are none
+[[nodiscard]] std::string list_of(const MeshSets& sets);
+
 /// throws: Error(InvalidInput) if there is no patch of that name; lists those that exist
 [[nodiscard]] const Patch& find_patch(const MeshSets& sets, std::string_view name);
 
@@ -60,6 +67,23 @@ struct MeshSets {
 ///
 /// kept: a flag for each cell
 [[nodiscard]] MeshSets sets_of_cells(MeshSets sets, std::span<const std::uint8_t> kept);
+
+/// The patches and sets of a mesh that is refined so often, as `refine` numbers its cells: the sides of children that lie on a
+/// side of a patch, all children of a set's cells.
+[[nodiscard]] MeshSets sets_of_children(MeshSets sets, int levels);
+
+/// Where a cell lies that a cell was split into: in the cell `parent`, between lower and lower + size of its parameters, in
+/// halves, quarters and so on.
+struct PartOfCell {
+    Index parent;
+    Vec3 lower, size;
+};
+
+/// The patches and sets of a mesh whose cells were split: the sides of parts that lie on a side of a patch, all parts of a
+/// set's cells.
+///
+/// parts: one for each new cell, whose orientation is that of its parent
+[[nodiscard]] MeshSets sets_of_parts(MeshSets sets, std::span<const PartOfCell> parts);
 
 /// The place on a side: s and t in [0,1], along the first and the last edge of the side's corners in `kCellFaces`.
 [[nodiscard]] std::array<double, 3> place_on_side(std::uint8_t side, double s, double t);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "subvol/hex_mesh.h"
+#include "subvol/mesh_sets.h"
 #include "subvol/read_options.h"
 #include "subvol/shells.h"
 
@@ -45,19 +46,17 @@ namespace subvol {
 ///         Error(MissingCapability) for a file of HDF5 if the library is built without HDF5
 [[nodiscard]] ReadResult read_mesh(const std::filesystem::path& path, const ReadOptions& options = {});
 
-/// Writes a mesh: MEDIT `.mesh` (geometry only), or VTK XML `.vtu` or VTKHDF `.vtkhdf` (compressed, with all attributes). The
-/// file is written under a temporary name and then renamed, so that it is never incomplete.
+/// Writes a mesh: MEDIT `.mesh` (geometry only), or VTK XML `.vtu` or VTKHDF `.vtkhdf` (compressed, with all attributes,
+/// patches and sets of cells). The file is written under a temporary name and then renamed, so that it is never incomplete.
 ///
-/// returns: warnings, for example about attributes that the format cannot hold
-/// throws:  Error(InvalidInput) for an unknown extension, Error(Io) if the file cannot be written, Error(MissingCapability) for
-///          `.vtkhdf` if the library is built without HDF5
-std::vector<std::string> write_mesh(const std::filesystem::path& path, const HexMesh& mesh);
-
-/// The same with shells and beams, as quads and lines after the cells; their points that are none of the mesh come after its
-/// points. `.vtu` only.
-///
-/// throws: also Error(InvalidInput) as `validate`, or for another extension if there are shells or beams
-std::vector<std::string> write_mesh(const std::filesystem::path& path, const HexMesh& mesh, const Shells& shells);
+/// shells:  become quads and lines after the cells; their points that the mesh does not have come after its points. `.vtu` only
+/// sets:    those without sides or cells are not written
+/// returns: warnings, for example about attributes or patches that the format cannot hold
+/// throws:  Error(InvalidInput) as `validate`, for an unknown extension, or for another extension than `.vtu` if there are
+///          shells; Error(Io) if the file cannot be written; Error(MissingCapability) for `.vtkhdf` if the library is built
+///          without HDF5
+std::vector<std::string> write_mesh(const std::filesystem::path& path, const HexMesh& mesh, const Shells& shells = {},
+                                    const MeshSets& sets = {});
 
 /// Whether `read_mesh` reads a file: by its first bytes and its extension.
 [[nodiscard]] bool is_mesh_file(const std::filesystem::path& path);
