@@ -165,7 +165,8 @@ def from_vtk(
     cell_values: str = 'auto'
 ) -> HexMesh:
     """The mesh of a `vtkUnstructuredGrid`, as `read_mesh` makes it of a file with this grid: tetrahedra, prisms, pyramids and polyhedra
-    are split, curved cells followed, ghost cells dropped, values at cells moved to the points, creases and sharp faces tagged.
+    are split, curved cells followed, ghost cells dropped, values at cells moved to the points, creases and sharp faces tagged, patches
+    and sets of cells found.
 
     other_cells: what to do with tetrahedra, prisms and pyramids: split (all cells, into hexahedra), ignore, refuse [split,
                  ignore, refuse]
@@ -331,7 +332,7 @@ def read_mesh(
     read but meshio does (MED, Nastran, SU2, FLAC3D and others) are read by meshio, without their sets and steps.
 
     The names of the file are in `mesh.patches`, by name (n,2): a cell and its side, u=0, u=1, v=0, v=1, w=0 or w=1, and in
-    `mesh.sets`, by name (n,): cells. `warp` and `only` keep them.
+    `mesh.sets`, by name (n,): cells. `warp`, `only`, `subdivide` and `write_mesh` keep them.
 
     other_cells: what to do with tetrahedra, prisms and pyramids: split (all cells, into hexahedra), ignore, refuse [split,
                  ignore, refuse]
