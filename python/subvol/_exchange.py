@@ -142,9 +142,9 @@ def to_vtk(mesh: HexMesh) -> Any:
         array = support.numpy_to_vtk(values)
         array.SetName(name)
         grid.GetPointData().AddArray(array)
-    for data, arrays in ((grid.GetFieldData(), _core.vtk_field_arrays(mesh)), (grid.GetCellData(), _core.vtk_set_arrays(mesh))):
-        for name, numbers in arrays.items():
-            array = support.numpy_to_vtk(numbers, deep=True)
-            array.SetName(name)
-            data.AddArray(array)
+    named: dict[str, Any] = {**_core.vtk_field_arrays(mesh), **_core.vtk_set_arrays(mesh)}
+    for name, numbers in named.items():
+        array = support.numpy_to_vtk(numbers, deep=True)
+        array.SetName(name)
+        (grid.GetFieldData() if _core.is_vtk_field_array(name) else grid.GetCellData()).AddArray(array)
     return grid
