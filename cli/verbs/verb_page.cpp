@@ -193,7 +193,7 @@ private:
         options.camera = views.front().camera();
         if (no_reference_) return;
         SplatOptions splat{.samples = solid ? 2 : 1, .progress = report.progress()};
-        if (solid) splat.shading = Shading{};
+        if (solid) splat.shading = shading_for(optics.function());
         Image image = report.timed("reference", [&] {
             Splatter splatter(step.volume, splat);
             if (solid) splatter.set_boundary_colors(step.boundary.surface, step.boundary.values.front());

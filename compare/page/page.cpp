@@ -243,6 +243,7 @@ PageJson camera_json(const Camera& camera) {
 
 PageJson light_json(const Shading& shading) {
     return {{"material", {shading.ambient, shading.diffuse, shading.specular, shading.shininess}},
+            {"head", shading.head},
             {"key", json_of(glm::normalize(shading.key))}};
 }
 
@@ -260,7 +261,7 @@ PageJson head_json(std::span<const PageStep> steps, const PageOptions& options) 
                   {"camera", camera_json(options.camera)},
                   {"opacityUnit", unit},
                   {"bounds", {json_of(box.lower), json_of(box.upper)}},
-                  {"light", light_json(Shading{})},
+                  {"light", {{"colors", light_json(Shading{})}, {"plain", light_json(plain_shading())}}},
                   {"presets", presets()}};
     for (const PageField& field : options.fields) {
         PageJson entry = json_of(field.function);

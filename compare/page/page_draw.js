@@ -70,6 +70,7 @@ class Painter {
     const scale = kCells / (table.max - table.min);
     this.table = { prefix: put('prefix'), mean: put('mean'), bend: put('bend'), colors: put('colors'),
       toCells: [range * scale, (min - table.min) * scale] };
+    this.light = this.data.head.light[isPlain(transfer) ? 'plain' : 'colors'];
   }
 
   tables() {
@@ -94,7 +95,7 @@ class Painter {
   // The camera, for shaders.
   uniforms(view, depths, clip) {
     return { right: view.right, up: view.up, forward: view.forward, eye: view.eye, half_size: view.half, perspective: view.perspective,
-      size: [view.width, view.height], clip: clip || [0, 0, 0, 1], ...this.data.head.light,
+      size: [view.width, view.height], clip: clip || [0, 0, 0, 1], ...this.light,
       near_far: view.perspective ? [Math.max(1e-3, 0.9 * depths.front), 0] : [depths.front - 0.01, depths.back + 0.01] };
   }
 

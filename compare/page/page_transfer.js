@@ -58,6 +58,11 @@ function tipsOf(color) {
   return { below: tip(color[0], color[1]), above: tip(color.at(-1), color.at(-2)) };
 }
 
+// Whether all values have one colour.
+function isPlain(transfer) {
+  return transfer.color.every((knot) => [1, 2, 3].every((c) => knot[c] === transfer.color[0][c]));
+}
+
 // Prefix integrals of extinction and emission, as in lib/light: rows for what is below and above the cells at the ends. Within a
 // cell the integral from its lower end to the part s is s · (mean − (1 − s) · bend). unit: of the opacities
 function makeTable(transfer, unit) {

@@ -4,7 +4,18 @@
 #include <algorithm>
 #include <cmath>
 
-namespace subvol::detail {
+namespace subvol {
+
+Shading plain_shading() {
+    return {.ambient = 0.08, .diffuse = 1.02, .head = 0.25};
+}
+
+Shading shading_for(const TransferFunction& map) {
+    const auto is_first = [&](const TransferFunction::ColorKnot& knot) { return knot.rgb == map.color.front().rgb; };
+    return !map.color.empty() && std::ranges::all_of(map.color, is_first) ? plain_shading() : Shading{};
+}
+
+namespace detail {
 
 namespace {
 
@@ -28,8 +39,11 @@ SurfaceLight surface_light(const Shading& shading, const Vec3& normal, const Vec
     const double head = std::max(0.0, glm::dot(normal, to_eye)), side = from_key * std::max(0.0, glm::dot(normal, to_key));
     const double halfway = std::max(0.0, glm::dot(normal, glm::normalize(to_key + to_eye)));
     const double gloss = power(head, shading.shininess) + from_key * power(halfway, shading.shininess);
-    return {static_cast<float>(open * (shading.ambient + shading.diffuse * 0.5 * (head + side))),
+    const double directed = shading.head * head + (1 - shading.head) * side;
+    return {static_cast<float>(open * (shading.ambient + shading.diffuse * directed)),
             static_cast<float>(open * (shading.specular * 0.5 * gloss))};
 }
 
-}  // namespace subvol::detail
+}  // namespace detail
+
+}  // namespace subvol

@@ -68,8 +68,9 @@ struct PictureMaker::State {
     std::optional<Surface> piece_boundary{};
     std::optional<BrickTets> piece_tets{};
 
-    /// A splatter for each way of drawing: method, samples, light, and the kernels that it was made for.
-    using SplatterKey = std::tuple<Method, int, bool, const RbfVolume*>;
+    /// A splatter for each way of drawing: method, samples, the part of the light at the eye (-1: not lit), and the kernels
+    /// that it was made for.
+    using SplatterKey = std::tuple<Method, int, double, const RbfVolume*>;
     struct KeptSplatter {
         SplatterKey key;
         Splatter splatter;
@@ -267,14 +268,14 @@ struct PictureMaker::State {
         return count > 1 ? std::vector<std::size_t>{0, count - 1} : std::vector<std::size_t>{0};
     }
 
-    [[nodiscard]] SplatOptions splat_options() const {
+    [[nodiscard]] SplatOptions splat_options(const Optics& optics) const {
         SplatOptions splat = options.splat;
         splat.method = splat_method(method(), options.splat.method);
         splat.samples = options.style.sample_count();
         splat.clip = options.style.clip;
         splat.progress = nullptr;
         if (options.image_tolerance) splat.image_tolerance = *options.image_tolerance;
-        if (is_lit(options.style.look.look)) splat.shading = Shading{};
+        if (is_lit(options.style.look.look)) splat.shading = shading_for(optics.function());
         const std::vector<std::size_t> shown = shown_channels();
         splat.channel = shown.front();
         splat.color_channel.reset();
@@ -287,9 +288,9 @@ struct PictureMaker::State {
         return team == nullptr && draws_kernels(method()) && !options.seconds && levels->all() != nullptr;
     }
 
-    KeptSplatter& splatter(const RbfVolume& kernels, std::size_t version) {
-        const SplatOptions splat = splat_options();
-        const SplatterKey key{method(), splat.samples, splat.shading.has_value(), &kernels};
+    KeptSplatter& splatter(const RbfVolume& kernels, std::size_t version, const Optics& optics) {
+        const SplatOptions splat = splat_options(optics);
+        const SplatterKey key{method(), splat.samples, splat.shading ? splat.shading->head : -1, &kernels};
         for (KeptSplatter& kept : splatters) {
             if (kept.key == key) return kept;
         }
@@ -303,10 +304,10 @@ struct PictureMaker::State {
         const BoundaryValues& colors = paints_splats() ? *skin : none;
         SplatResult drawn;
         if (team != nullptr) {
-            drawn = team->splat(shown, splat_options(), colors, view, optics, progress, picture.facts);
+            drawn = team->splat(shown, splat_options(optics), colors, view, optics, progress, picture.facts);
         } else {
             const bool in_memory = stand_in == nullptr && draws_all_kernels();
-            KeptSplatter& kept = splatter(in_memory ? *levels->all() : shown, in_memory ? 0 : levels->version());
+            KeptSplatter& kept = splatter(in_memory ? *levels->all() : shown, in_memory ? 0 : levels->version(), optics);
             if (stand_in == nullptr && kept.version != levels->version()) {
                 kept.splatter.set_kernels(shown);
                 kept.version = levels->version();
@@ -326,9 +327,11 @@ struct PictureMaker::State {
     }
 
     Picture draw_splats_in_time(const View& view, const Optics& optics, Progress* progress) const {
-        ProgressiveResult drawn = render_progressively(
-            *mesh(), view, optics,
-            {.seconds = *options.seconds, .sample = options.kernels.sample, .splat = splat_options(), .progress = progress});
+        ProgressiveResult drawn = render_progressively(*mesh(), view, optics,
+                                                       {.seconds = *options.seconds,
+                                                        .sample = options.kernels.sample,
+                                                        .splat = splat_options(optics),
+                                                        .progress = progress});
         Picture picture{std::move(drawn.splat.image), std::move(drawn.splat.depth)};
         detail::add_facts(drawn.splat.report, method(), picture.facts);
         picture.facts["points"] = drawn.splat.report.points;
@@ -340,8 +343,10 @@ struct PictureMaker::State {
 
     Picture draw_piece_splats(const View& view, const Optics& optics, Progress* progress) const {
         Picture picture;
-        BrickSplatOptions pieces{
-            .sample = options.kernels.sample, .splat = splat_options(), .memory_bytes = options.memory_bytes, .scratch = {}};
+        BrickSplatOptions pieces{.sample = options.kernels.sample,
+                                 .splat = splat_options(optics),
+                                 .memory_bytes = options.memory_bytes,
+                                 .scratch = {}};
         pieces.sample.progress = pieces.splat.progress = progress;
         if (team != nullptr) pieces.rows = team->rows(view.height());
         SplatResult drawn = picture.facts.timed(progress, "draw", [&] {
@@ -436,8 +441,9 @@ struct PictureMaker::State {
         ColoredSurface colored{skin->surface, skin->values.back()};
         for (const double value : skin->values.front())
             colored.opacities.push_back(static_cast<float>(alpha_at(optics.function(), value)));
-        draw_shells(picture.image, picture.depth, colored, {}, view, optics,
-                    {.samples = options.style.sample_count(), .clip = options.style.clip});
+        draw_shells(
+            picture.image, picture.depth, colored, {}, view, optics,
+            {.shading = shading_for(optics.function()), .samples = options.style.sample_count(), .clip = options.style.clip});
         return picture;
     }
 
@@ -468,9 +474,10 @@ struct PictureMaker::State {
         const Clip& clip = options.style.clip;
         if (is_translucent()) return;
         if (lights_boundary()) {
-            light_boundary(picture.image, skin->surface, view, Shading{}, samples, clip);
+            light_boundary(picture.image, skin->surface, view, shading_for(optics.function()), samples, clip);
         } else if (is_in_pieces() && paints_finished() && !skin->values.empty()) {
-            color_boundary(picture.image, skin->surface, skin->values.back(), view, optics, Shading{}, samples, clip);
+            color_boundary(picture.image, skin->surface, skin->values.back(), view, optics, shading_for(optics.function()),
+                           samples, clip);
         }
     }
 };
@@ -496,7 +503,7 @@ void PictureMaker::set_style(const PictureStyle& style) {
 
 Facts PictureMaker::prepare(const Optics& optics, Progress* progress, bool splatter) {
     Facts facts = state_->prepare(optics, progress);
-    if (splatter && state_->levels && state_->draws_all_kernels()) (void)state_->splatter(*state_->levels->all(), 0);
+    if (splatter && state_->levels && state_->draws_all_kernels()) (void)state_->splatter(*state_->levels->all(), 0, optics);
     return facts;
 }
 

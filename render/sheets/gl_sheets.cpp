@@ -117,7 +117,8 @@ void set_frame(const SplatFrame& frame, const GlProgram& kernels, const GlProgra
     u.set("material", std::array{static_cast<float>(s.ambient), static_cast<float>(s.diffuse), static_cast<float>(s.specular),
                                  static_cast<float>(s.shininess)});
     const Vec3 key = glm::normalize(s.key);
-    u.set("key", std::array{static_cast<float>(key.x), static_cast<float>(key.y), static_cast<float>(key.z), 0.0f});
+    u.set("key", std::array{static_cast<float>(key.x), static_cast<float>(key.y), static_cast<float>(key.z),
+                            static_cast<float>(s.head)});
 }
 
 template <class T>

@@ -31,7 +31,7 @@ Surface boundary_of(const HexMesh& mesh, RefineOptions refine, std::optional<int
 
 void ShellScene::draw_into(Image& image, std::span<float> depth, const View& view) const {
     draw_shells(image, depth, drawn, boundary, view, optics,
-                {.samples = samples, .clip = clip, .whole = whole, .ended = ended});
+                {.shading = shading_for(optics.function()), .samples = samples, .clip = clip, .whole = whole, .ended = ended});
 }
 
 ShellScene make_shell_scene(const HexMesh& mesh, const Shells& shells, RefineOptions refine, std::optional<int> most,

@@ -76,6 +76,8 @@ void check_shading(const Shading& shading, const RbfChannel& channel, bool bound
             throw Error(ErrorCode::InvalidInput, "a part of the shading is " + number_text(part), {}, "0 or more");
         }
     }
+    if (!(shading.head >= 0 && shading.head <= 1))
+        throw Error(ErrorCode::InvalidInput, "the light at the eye is the part " + number_text(shading.head), {}, "0 to 1");
     const bool flat = std::all_of(channel.gradients.begin(), channel.gradients.end(),
                                   [](const auto& g) { return g[0] == 0 && g[1] == 0 && g[2] == 0; });
     const bool constant =

@@ -31,7 +31,8 @@ SurfaceLight light_on(const Shading& shading, const Vec3& gradient, const Vec3& 
     const double head = std::abs(glm::dot(normal, to_eye)), side = std::abs(glm::dot(normal, key));
     const double halfway = std::abs(glm::dot(normal, glm::normalize(key + to_eye)));
     const double gloss = std::pow(head, shading.shininess) + std::pow(halfway, shading.shininess);
-    const double lit = shading.ambient + shading.diffuse * 0.5 * (head + side), surface = square / (square + least * least);
+    const double lit = shading.ambient + shading.diffuse * (shading.head * head + (1 - shading.head) * side);
+    const double surface = square / (square + least * least);
     return {static_cast<float>(1 + surface * (lit - 1)), static_cast<float>(surface * shading.specular * 0.5 * gloss)};
 }
 

@@ -92,8 +92,10 @@ HWY_ATTR inline Light light(const Shading& shading, const Vector& gradient, cons
     const auto gloss = [&](Floats cosine) HWY_ATTR {
         return hn::Exp(d, hn::Mul(set(shading.shininess), hn::Log(d, hn::Max(cosine, hn::Set(d, 1e-3f)))));
     };
-    const auto half = hn::Set(d, 0.5f);
-    const auto lit = hn::MulAdd(set(shading.diffuse), hn::Mul(half, hn::MulAdd(side, arrives.key, head)), set(shading.ambient));
+    const auto half = hn::Set(d, 0.5f), from_eye = set(shading.head);
+    const auto from_key = hn::Mul(hn::Sub(hn::Set(d, 1.0f), from_eye), side);
+    const auto directed = hn::MulAdd(from_key, arrives.key, hn::Mul(from_eye, head));
+    const auto lit = hn::MulAdd(set(shading.diffuse), directed, set(shading.ambient));
     const auto shine = hn::Mul(set(shading.specular),
                                hn::Mul(half, hn::MulAdd(gloss(hn::Abs(dot(normal, halfway))), arrives.key, gloss(head))));
     // Where the value hardly changes there is no surface to light.

@@ -32,7 +32,7 @@ std::array<double, 2> cells_of(double min, double max, bool normalized) {
 void set_light(GlSplatFrame& frame, const Shading& shading) {
     const Vec3 key = glm::normalize(shading.key);
     const auto to_float = [](double v) { return static_cast<float>(v); };
-    frame.key = {to_float(key.x), to_float(key.y), to_float(key.z), 0};
+    frame.key = {to_float(key.x), to_float(key.y), to_float(key.z), to_float(shading.head)};
     frame.material = {to_float(shading.ambient), to_float(shading.diffuse), to_float(shading.specular),
                       to_float(shading.shininess)};
 }

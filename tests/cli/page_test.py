@@ -187,7 +187,8 @@ class InTheBrowser(unittest.TestCase):
     def test_same_picture_as_render(self):
         # Rounding of kernels, and for transparent bodies the values where rays cross the boundary.
         for name, look in (("solid", ["--look", "solid"]), ("volume", ["--look", "volume", "--tf", "coolwarm"]),
-                           ("ortho", ["--look", "volume", "--ortho", "--view", "-y"])):
+                           ("ortho", ["--look", "volume", "--ortho", "--view", "-y"]),
+                           ("one colour", ["--look", "solid", "--tf", "constant"])):
             with self.subTest(look=name):
                 self.command("page", "model:nozzle", "-o", "a.html", *look)
                 self.command("render", "model:nozzle", "-o", "a.exr", "--size", "192", *look)

@@ -13,7 +13,7 @@ Preview surface_preview(const BoundaryValues& boundary, const View& view, const 
     const Surface& surface = boundary.surface;
     const std::vector<double>& values = boundary.values.back();
     TriangleRaster hits(surface, view, clip);
-    const Shading shading;
+    const Shading shading = shading_for(optics.function());
     std::vector<std::array<float, 4>> colors(surface.triangles.size());
     parallel_each(colors.size(), [&](std::size_t t) {
         const auto& [i, j, k] = surface.triangles[t];

@@ -9,7 +9,8 @@ vec2 light_on(vec3 gradient) {
     vec3 to_eye = unit_vector(vec3(perspective ? -ray : vec2(0.0), -1.0));
     vec3 halfway = unit_vector(key.xyz + to_eye), normal = unit_vector(gradient);
     float head = abs(dot(normal, to_eye)), side = abs(dot(normal, key.xyz));
-    float lit = fma(material.y, 0.5 * (head + side), material.x);
+    precise float directed = key.w * head + (1.0 - key.w) * side;
+    float lit = fma(material.y, directed, material.x);
     float shine = material.z * (0.5 * (gloss(head) + gloss(abs(dot(normal, halfway)))));
     // Where the value hardly changes there is no surface to light.
     float square = dot(gradient, gradient), surface = square / (square + least_gradient * least_gradient);

@@ -5,7 +5,7 @@ layout(std140, binding = 0) uniform Frame {
     dvec4 right, up, forward;  // rotation to eye space; the last components: x, y of the middle there
     dvec4 cells;               // value · x + y is in cells of the table; z, w for the second channel
     vec4 unit;                 // of the table's prefixes
-    vec4 key;                  // towards the key light, of unit length
+    vec4 key;                  // towards the key light, of unit length; the part of the light at the eye
     vec4 material;             // ambient, diffuse, specular, shininess
     ivec2 size, tiles;
     int sheets, batches, first_batch, end_batch;  // the batches of this pass

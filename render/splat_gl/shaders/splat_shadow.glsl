@@ -28,7 +28,7 @@ vec2 shadowed_light_on(vec3 gradient, vec2 arrives) {
     vec3 to_eye = unit_vector(vec3(perspective ? -ray : vec2(0.0), -1.0));
     vec3 halfway = unit_vector(key.xyz + to_eye), normal = unit_vector(gradient);
     float head = abs(dot(normal, to_eye)), side = arrives.x * abs(dot(normal, key.xyz));
-    float lit = material.y * 0.5 * (head + side) + material.x;
+    float lit = material.y * (key.w * head + (1.0 - key.w) * side) + material.x;
     float shine = material.z * 0.5 * (gloss(head) + arrives.x * gloss(abs(dot(normal, halfway))));
     float square = dot(gradient, gradient), surface = square / (square + least_gradient * least_gradient);
     return vec2(mix(unlit(arrives), arrives.y * lit, surface), arrives.y * surface * shine);

@@ -25,14 +25,16 @@ std::vector<Vec3> facing_normals() {
 }
 
 TEST(Shading, NoSurfaceGetsMoreLightThanThereIsAndNoneGleams) {
-    float most = 0;
-    for (const Vec3& normal : facing_normals()) {
-        const auto light = detail::surface_light({}, normal, {0, 0, -1});
-        most = std::max(most, light.diffuse);
-        EXPECT_EQ(light.specular, 0);
+    for (const Shading& shading : {Shading{}, plain_shading()}) {
+        float most = 0;
+        for (const Vec3& normal : facing_normals()) {
+            const auto light = detail::surface_light(shading, normal, {0, 0, -1});
+            most = std::max(most, light.diffuse);
+            EXPECT_EQ(light.specular, 0);
+        }
+        EXPECT_LE(most, 1);
+        EXPECT_GT(most, 0.98F) << "white is white";
     }
-    EXPECT_LE(most, 1);
-    EXPECT_GT(most, 0.98F) << "white is white";
 }
 
 TEST(Shading, WhiteStaysWhiteInFourViews) {
@@ -45,6 +47,29 @@ TEST(Shading, WhiteStaysWhiteInFourViews) {
         EXPECT_GT(light, 0.5F) << "its sides are not black";
         EXPECT_LT(light, 0.8F) << "and are told from its top";
     }
+}
+
+TEST(Shading, TheLightFromTheEyeAndFromTheKeyAddUpToTheDiffuseLight) {
+    for (const double head : {0.0, 0.25, 1.0}) {
+        const Shading shading{.ambient = 0.1, .diffuse = 0.9, .head = head, .key = {1, 0, 0}};
+        EXPECT_NEAR(detail::surface_light(shading, {0, 0, -1}, {0, 0, -1}).diffuse, 0.1 + 0.9 * head, 1e-6);
+        EXPECT_NEAR(detail::surface_light(shading, {1, 0, 0}, {0, 0, -1}).diffuse, 0.1 + 0.9 * (1 - head), 1e-6);
+        EXPECT_NEAR(detail::surface_light(shading, {0, 0, 1}, {0, 0, -1}).diffuse, 0.1, 1e-6);
+    }
+}
+
+TEST(Shading, OnlyColoursThatCarryNoValueGetTheLightThatShowsTheShapeBest) {
+    const TransferFunction grey{.color = {{0, {.5, .6, .7}}, {1, {.5, .6, .7}}}, .opacity = {{0, 1}}};
+    TransferFunction colored = grey;
+    colored.color[1].rgb.z = 0.71;
+    const Vec3 lit = glm::normalize(Vec3(0, 1, -1)), shaded = glm::normalize(Vec3(1, -1, -1)), to_eye(0, 0, -1);
+    const auto contrast = [&](const TransferFunction& map) {
+        const Shading shading = shading_for(map);
+        return detail::surface_light(shading, lit, to_eye).diffuse / detail::surface_light(shading, shaded, to_eye).diffuse;
+    };
+    EXPECT_GT(contrast(grey), 3);
+    EXPECT_EQ(contrast(colored),
+              detail::surface_light({}, lit, to_eye).diffuse / detail::surface_light({}, shaded, to_eye).diffuse);
 }
 
 TEST(Shading, GlossIsThereForThoseWhoAskForIt) {

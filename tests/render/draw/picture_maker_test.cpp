@@ -3,10 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <set>
 
 #include "lib/expect_error.h"
 #include "lib/temp_folder.h"
+#include "lib/test_meshes.h"
 #include "subvol/boundary_shading.h"
 #include "subvol/error.h"
 #include "subvol/limit.h"
@@ -117,6 +119,41 @@ TEST(PictureMaker, ASolidByTetrahedraIsTheirPictureWithTheLightOfTheBoundary) {
     EXPECT_EQ(picture.image.rgba, expected.rgba);
     ASSERT_NE(picture.facts.find("tets"), nullptr);
     EXPECT_EQ(std::get<std::uint64_t>(picture.facts.find("tets")->value), ball().cells.size() * 8 * 6);
+}
+
+// The faces of a cube in one colour: linear light of the brightest face for that of the darkest one.
+double contrast_of_cube(Method method, bool clipped) {
+    HexMesh cube = test::make_box(2, 2, 2);
+    cube.attributes.push_back({.name = "density", .values = std::vector<double>(cube.points.size(), 1.0)});
+    const Box box = bounds(cube);
+    MethodOptions options = solid_by(method);
+    if (clipped) options.style.clip.planes.push_back({.point = {1, 1, 1.9}, .normal = {0, 0, 1}});
+    const Optics optics = picture_optics({.look = Look::Solid}, box, {1, 1}, {1, 1});
+    const Image image = PictureMaker({.mesh = cube}, options).draw({fit_camera(box, {-1, 1, -1.3}), 60, 60}, optics).image;
+    std::vector<float> greens;
+    for (std::size_t pixel = 0; pixel < image.rgba.size(); pixel += 4) {
+        if (image.rgba[pixel + 3] > 0.999F) greens.push_back(image.rgba[pixel + 1]);
+    }
+    std::ranges::sort(greens);
+    return double{greens[greens.size() * 19 / 20]} / double{greens[greens.size() / 20]};
+}
+
+TEST(PictureMaker, FacesOfABodyInOneColourDifferByEveryMethod) {
+    for (const Method method : {Method::Splat, Method::Tets, Method::Dense}) {
+        EXPECT_GT(contrast_of_cube(method, false), 2) << name_of(method);
+        EXPECT_GT(contrast_of_cube(method, true), 2) << name_of(method);
+    }
+}
+
+TEST(PictureMaker, LightFollowsWhenTheColoursBecomeOne) {
+    const View view = view_of(bounds(ball()));
+    const Optics colored = optics_of(Look::Solid);
+    const Optics plain = picture_optics({.look = Look::Solid}, bounds(ball()), {1, 1}, {1, 1});
+    const auto fresh = [&](const Optics& optics) {
+        return PictureMaker({.mesh = ball()}, solid_by(Method::Splat)).draw(view, optics).image.rgba;
+    };
+    PictureMaker kept({.mesh = ball()}, solid_by(Method::Splat));
+    for (const Optics& optics : {colored, plain, colored}) EXPECT_EQ(kept.draw(view, optics).image.rgba, fresh(optics));
 }
 
 TEST(PictureMaker, StylesAndBodiesChangeBetweenPictures) {

@@ -119,7 +119,7 @@ TEST_F(Sheets, DrawLightTheSecondColorAndPlainSumsAsTheCpuDoes) {
     const auto volume = sampled_ball(Correction::Second), full = sampled_ball(Correction::Full);
     expect_as_cpu("light", volume, view(), optics(true), {.shading = Shading{}});
     expect_as_cpu("second color", volume, view(), optics(false), {.color_channel = 1});
-    expect_as_cpu("all at once", full, view(), optics(false), {.color_channel = 1, .shading = Shading{}});
+    expect_as_cpu("all at once", full, view(), optics(false), {.color_channel = 1, .shading = plain_shading()});
     expect_as_cpu("plain sums", volume, view(), optics(false), {.normalized = false});
 }
 

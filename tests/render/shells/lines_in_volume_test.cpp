@@ -146,7 +146,7 @@ TEST(ShellsInVolume, AreSeenThroughWhatIsBeforeThem) {
             const Optics light{TransferFunction{.color = {{0, kWhite}, {2, kWhite}}, .opacity = {{0, 1}, {2, 1}}}, 1.0};
             const ShellScene scene = make_opaque_scene(mesh, plate, {.scheme = {.kind = Scheme::Linear}}, 0, light, 1, Clip{});
             Image alone(kSize, kSize), image = maker.draw(ended_at(scene, view()), black(.6)).image;
-            draw_shells(alone, {}, plate, {}, view(), light);
+            draw_shells(alone, {}, plate, {}, view(), light, {.shading = shading_for(light.function())});
             scene.draw_into(image, {}, view());
             const double before = std::clamp(1 - x, 0.0, kSide);
             EXPECT_NEAR(red(image, 16), std::pow(.4, before) * double{red(alone, 16)}, 4e-3) << x;

@@ -191,7 +191,7 @@ private:
         const double range = optics_.knots().back() - optics_.knots().front();
         const double change = glm::length(gradient) * diagonal_ / (0.25 * range);
         const double surface = change * change / (1 + change * change);
-        s.diffuse = 1 + surface * (shading.ambient + shading.diffuse * 0.5 * (head + side) - 1);
+        s.diffuse = 1 + surface * (shading.ambient + shading.diffuse * (shading.head * head + (1 - shading.head) * side) - 1);
         s.specular =
             surface * shading.specular * 0.5 * (std::pow(head, shading.shininess) + std::pow(halfway, shading.shininess));
     }
@@ -217,7 +217,7 @@ private:
         const Vec3 to_eye = -glm::normalize(ray.direction);
         const double head = std::max(0.0, glm::dot(normal, to_eye)), side = std::max(0.0, glm::dot(normal, to_key));
         const double halfway = std::max(0.0, glm::dot(normal, glm::normalize(to_key + to_eye)));
-        const double diffuse = shading.ambient + shading.diffuse * 0.5 * (head + side);
+        const double diffuse = shading.ambient + shading.diffuse * (shading.head * head + (1 - shading.head) * side);
         const double specular =
             shading.specular * 0.5 * (std::pow(head, shading.shininess) + std::pow(halfway, shading.shininess));
         const double opacity = 1 - std::exp(-optics_.extinction(s.value) * pixel_at(interval.depths[0]));

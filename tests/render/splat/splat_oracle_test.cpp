@@ -156,7 +156,7 @@ TEST(SplatOracle, AgreesWithoutABoundary) {
     for (const Kernel& kernel : {Kernel(CompactKernel{}), Kernel(GaussianKernel{})}) {
         for (const Camera& camera : {perspective_camera(), orthographic_camera()}) {
             for (const bool sharp : {false, true}) {
-                const SplatOptions options{.sheets = 40, .shading = Shading{}};
+                const SplatOptions options{.sheets = 40, .shading = plain_shading()};
                 expect_same(ball_without_boundary(kernel), {.sharp = sharp, .camera = camera}, options,
                             sharp ? kSharp : 3 * kSmooth);  // the end of the volume is a quotient of differences of weights
             }

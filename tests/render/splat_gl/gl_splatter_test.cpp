@@ -154,7 +154,7 @@ TEST_F(GlSplats, ASecondChannelLooksAsOnTheCpu) {
 
 TEST_F(GlSplats, ShadingLooksAsOnTheCpu) {
     expect_like_cpu(sampled(Correction::Full), {.shading = Shading{}});
-    expect_like_cpu(sampled(Correction::Second), {.shading = Shading{}});
+    expect_like_cpu(sampled(Correction::Second), {.shading = plain_shading()});
 }
 
 TEST_F(GlSplats, WithoutABoundaryItLooksAsOnTheCpu) {

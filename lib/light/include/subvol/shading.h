@@ -3,6 +3,7 @@
 
 #include <array>
 
+#include "subvol/transfer_function.h"
 #include "subvol/vec.h"
 
 namespace subvol {
@@ -10,23 +11,32 @@ namespace subvol {
 /// Light on surfaces, the same for every renderer, the window and the page: a light at the eye, which fills in, and a key light
 /// that turns with the camera, so that no view is darker than another one. Colours carry values, so by default nothing gleams
 /// (specular is 0), and no direction of a surface gets more light than there is: white is white where a surface faces halfway
-/// between the two lights, .9 of it where it faces the eye, and nothing is cut off.
+/// between the two lights, .9 of it where it faces the eye, and nothing is cut off. Where all values have one colour, light
+/// alone shows the shape: `shading_for` then gives less light from all around, and more of it to the key light.
 ///
 /// Inside the volume surfaces are those of equal value, lit on either side; where the value hardly changes there is no surface,
 /// and colours are not changed. Where the volume is opaque already at its boundary, that is the surface: it is lit by its own
 /// normals, which are smooth except at creases. With the eye inside such a solid one sees the material at the eye, in the
 /// colour of its value there and without light, for there is no surface before it; every method draws that.
 ///
-/// ambient, diffuse, specular: parts of the light, ≥ 0: from all around; by the cosines to the eye and to the key light, half
-///                             each; and the gloss of Blinn and Phong, added in white
+/// ambient, diffuse, specular: parts of the light, ≥ 0: from all around; by the cosines to the eye and to the key light; and
+///                             the gloss of Blinn and Phong, half of it from each, added in white
+/// head:                       the part of the diffuse light that is at the eye, 0 to 1; the rest is the key light's
 /// key:                        towards the key light, in eye space (right, up, away from the eye)
 struct Shading {
     double ambient = 0.3;
     double diffuse = 0.8;
+    double head = 0.5;
     double specular = 0;
     double shininess = 32;
     Vec3 key{-0.5, 0.7, -0.5};
 };
+
+/// The light on surfaces of one colour: .08 of it comes from all around, and three quarters of the rest are the key light's.
+[[nodiscard]] Shading plain_shading();
+
+/// The light of a lit picture in the colours of a map: `plain_shading` if the map has a single colour, else `Shading{}`.
+[[nodiscard]] Shading shading_for(const TransferFunction& map);
 
 namespace detail {
 
