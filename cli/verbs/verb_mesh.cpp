@@ -4,12 +4,12 @@
 
 #include "grid_input.h"
 #include "mesh_figures.h"
+#include "mesh_output.h"
 #include "options.h"
 #include "outputs.h"
 #include "refine_arguments.h"
 #include "subvol/control_mesh.h"
 #include "subvol/error.h"
-#include "subvol/mesh_io.h"
 #include "subvol/read_surface.h"
 #include "text.h"
 #include "vdb_functions.h"
@@ -57,9 +57,7 @@ public:
         const Surface surface = read(report);
         report["triangles"] = surface.triangles.size();
         const ControlMesh made = report.timed("shape", [&] { return control_mesh_of(surface, options); });
-        for (const std::string& warning : report.timed("write", [&] { return write_mesh(output_, made.mesh, {}); })) {
-            report.warn(warning);
-        }
+        report.merge(write_reported(output_, made.mesh, report.progress()));
         put(made, report);
         return made.report.shape.folds.folded > 0 ? 1 : 0;
     }

@@ -91,8 +91,11 @@ private:
 
     void check_count(std::size_t cells) const {
         if (cells <= options_.max_cells) return;
-        throw Error(ErrorCode::InvalidInput, "there would be " + std::to_string(cells) + " cells",
-                    option_name("cells", options_.names), "fewer cells, or more with --max-cells");
+        throw Error(
+            ErrorCode::InvalidInput,
+            "there would be " + std::to_string(cells) + (cubes_.count() > 0 ? " cells with divided cubes" : " cells"),
+            option_name("cells", options_.names),
+            std::string("fewer cells, ") + (cubes_.count() > 0 ? "a larger tolerance, " : "") + "or more with --max-cells");
     }
 
     /// Cubes inside and divided ones, and those that may be needed around them.

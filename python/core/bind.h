@@ -85,6 +85,8 @@ template <class T>
 
 /// The patches and sets of a mesh that was read; none for others. Meshes are given to C++ without them.
 [[nodiscard]] const MeshSets& sets_of(const py::object& mesh);
+/// The same of a mesh that came from Python.
+[[nodiscard]] const MeshSets& sets_of(const HexMesh& mesh);
 /// A mesh as an object of Python, with its patches and sets.
 [[nodiscard]] py::object with_sets(HexMesh mesh, MeshSets sets);
 

@@ -270,6 +270,10 @@ const MeshSets& sets_of(const py::object& mesh) {
     return py::hasattr(mesh, kSets) ? mesh.attr(kSets).cast<const MeshSets&>() : none;
 }
 
+const MeshSets& sets_of(const HexMesh& mesh) {
+    return sets_of(py::cast(&mesh, py::return_value_policy::reference));
+}
+
 py::object with_sets(HexMesh mesh, MeshSets sets) {
     py::object object = py::cast(std::move(mesh));
     if (!sets.empty()) object.attr(kSets) = py::cast(std::move(sets));
@@ -334,9 +338,9 @@ void bind_mesh(py::module_& module) {
     module.def("is_vtk_field_array", &is_vtk_field_array, py::arg("name"));
     module.def(
         "vtk_field_arrays",
-        [](const py::object& mesh) {
+        [](const HexMesh& mesh) {
             py::dict arrays;
-            for (VtkFieldArray& array : vtk_field_arrays(mesh.cast<const HexMesh&>(), sets_of(mesh))) {
+            for (VtkFieldArray& array : vtk_field_arrays(mesh, sets_of(mesh))) {
                 const py::ssize_t count = length(array.numbers.size());
                 arrays[py::str(array.name)] = owned(std::move(array.numbers), {count});
             }
@@ -345,9 +349,9 @@ void bind_mesh(py::module_& module) {
         py::arg("mesh"));
     module.def(
         "vtk_set_arrays",
-        [](const py::object& mesh) {
+        [](const HexMesh& mesh) {
             py::dict arrays;
-            const std::size_t cells = mesh.cast<const HexMesh&>().cells.size();
+            const std::size_t cells = mesh.cells.size();
             for (const CellSet& set : sets_of(mesh).sets) {
                 std::vector<std::uint8_t> in_set(cells, 0);
                 for (const Index c : set.cells) in_set[c] = 1;
@@ -366,9 +370,8 @@ void bind_mesh(py::module_& module) {
         py::arg("path"));
     module.def(
         "write_mesh",
-        [](const std::string& path, const py::object& self) {
-            const auto& mesh = self.cast<const HexMesh&>();
-            const MeshSets& sets = sets_of(self);
+        [](const std::string& path, const HexMesh& mesh) {
+            const MeshSets& sets = sets_of(mesh);
             const py::gil_scoped_release without_gil;
             return write_mesh(path, mesh, {}, sets);
         },

@@ -24,8 +24,7 @@ std::vector<Option> options_of(GivenLevel& given) {
     return all;
 }
 
-py::object subdivide(const py::object& self, bool to_limit, const py::object& progress, const py::kwargs& keywords) {
-    const auto& mesh = self.cast<const HexMesh&>();
+py::object subdivide(const HexMesh& mesh, bool to_limit, const py::object& progress, const py::kwargs& keywords) {
     GivenLevel given;
     set_options(options_of(given), keywords);
     const int levels = given.levels.levels;
@@ -39,7 +38,7 @@ py::object subdivide(const py::object& self, bool to_limit, const py::object& pr
         options.progress = listener;
         return moved(refine(mesh, options), to_limit, options.scheme.kind);
     });
-    return with_sets(std::move(fine), sets_of_children(sets_of(self), levels));
+    return with_sets(std::move(fine), sets_of_children(sets_of(mesh), levels));
 }
 
 /// A refinement that is computed once. Arrays have a row for each point of the mesh that it was made from, unused ones too.

@@ -294,9 +294,8 @@ void bind_render(py::module_& module) {
         py::arg("mesh"), py::arg("source"), py::arg("texts"));
     module.def(
         "choose_patches",
-        [](const py::object& mesh, const std::vector<std::string>& names) {
-            const auto& hexes = mesh.cast<const HexMesh&>();
-            return patch_shells(hexes, chosen_patches(hexes, sets_of(mesh), names));
+        [](const HexMesh& mesh, const std::vector<std::string>& names) {
+            return patch_shells(mesh, chosen_patches(mesh, sets_of(mesh), names));
         },
         py::arg("mesh"), py::arg("names"));
     module.def(

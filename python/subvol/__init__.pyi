@@ -85,8 +85,9 @@ def check_folds(
 
 def control_mesh(
     points: npt.ArrayLike, triangles: npt.ArrayLike, *, scheme: str = 'mcq', tension: float = 0.0625,
-    crease_angle: Optional[float] = None, cells: int = 24, max_cells: int = 2000000, rounds: int = 15,
-    sharp_angle: float = 40.0, keep_folds: bool = False, boundary_move: float = 0.2, progress: Progress = None
+    crease_angle: Optional[float] = None, cells: int = 24, max_cells: int = 2000000, rounds: int = 15, refine: int = 0,
+    tolerance: float = 0.25, sharp_angle: float = 40.0, keep_folds: bool = False, boundary_move: float = 0.2,
+    progress: Progress = None
 ) -> tuple[HexMesh, dict[str, Any]]:
     """A mesh of hexahedra whose limit fills a closed surface of triangles.
 
@@ -100,6 +101,8 @@ def control_mesh(
     cells:       cells along the longest side of the surface's box [2 to 1000]
     max_cells:   the most cells that may be made [1 to 1000000000]
     rounds:      how often the points are drawn to the nearest places of the surface [1 to 100]
+    refine:      divide cells into 27 up to N times, where the boundary is not met within tolerance [0 to 3]
+    tolerance:   a distance that is near enough, as a part of a cell's side [0 to 10; with refine]
     sharp_angle: edges of the surface that are bent by more become creases of the mesh (180: none) [1 to 180]
     keep_folds:  leave the points where they are if the limit folds
     boundary_move: points of the boundary may move by this part of their shortest edge where the limit folds [0 to 10; not
