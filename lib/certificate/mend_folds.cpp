@@ -158,9 +158,14 @@ private:
         return static_cast<std::size_t>(std::ranges::count_if(cells, is_left));
     }
 
+    struct Batches {
+        std::vector<Index> of_points;
+        Index count;
+    };
+
     // Parts of the chosen cells that share no point do not depend on each other, and are moved in batches, so that memory does
     // not grow with their number. returns the batch of each point of a chosen cell, and how many there are
-    [[nodiscard]] std::pair<std::vector<Index>, Index> batches_of(const std::vector<std::uint8_t>& cells) const {
+    [[nodiscard]] Batches batches_of(const std::vector<std::uint8_t>& cells) const {
         DisjointSets parts(mesh_.points.size());
         std::vector<std::size_t> counts(mesh_.points.size(), 0);
         for (std::size_t c = 0; c < cells.size(); ++c) {
@@ -169,23 +174,22 @@ private:
         }
         for (std::size_t c = 0; c < cells.size(); ++c) counts[parts.least(mesh_.cells[c][0])] += cells[c];
         constexpr std::size_t kEnough = 10'000;  // cells of a batch
-        std::vector<Index> batches(mesh_.points.size(), kNone);
-        Index last = 0;
+        Batches batches{std::vector<Index>(mesh_.points.size(), kNone), 1};
         std::size_t in_last = 0;
-        for (Index p = 0; p < batches.size(); ++p) {
+        for (Index p = 0; p < batches.of_points.size(); ++p) {
             const Index least = parts.least(p);
             if (counts[least] == 0) continue;
             if (least == p) {
                 if (in_last >= kEnough) {
-                    ++last;
+                    ++batches.count;
                     in_last = 0;
                 }
                 in_last += counts[p];
-                batches[p] = last;
+                batches.of_points[p] = batches.count - 1;
             }
-            batches[p] = batches[least];
+            batches.of_points[p] = batches.of_points[least];
         }
-        return {std::move(batches), last + 1};
+        return batches;
     }
 
     // Moves some points of the bad and kept cells. to: gets where they are then; done: the part of the round
@@ -229,16 +233,16 @@ private:
             for (const Index p : mesh_.cells[c]) moves[p] = 1;
         }
         grow(mesh_, cells, kWindow);
-        const auto [batch_of_point, batches] = batches_of(cells);
+        const Batches batches = batches_of(cells);
         std::vector<Vec3> points = mesh_.points;
-        for (Index batch = 0; batch < batches; ++batch) {
+        for (Index batch = 0; batch < batches.count; ++batch) {
             std::vector<CellRole> roles(cells.size(), CellRole::Around);
             for (std::size_t c = 0; c < cells.size(); ++c) {
-                if (cells[c] == 0 || batch_of_point[mesh_.cells[c][0]] != batch) continue;
+                if (cells[c] == 0 || batches.of_points[mesh_.cells[c][0]] != batch) continue;
                 roles[c] = bad[c] != 0 ? CellRole::Bad : CellRole::Kept;
             }
-            const auto moves_now = [&](Index p) { return moves[p] != 0 && batch_of_point[p] == batch; };
-            move_patch(roles, moves_now, bad, points, round, (batch + 0.5) / batches);
+            const auto moves_now = [&](Index p) { return moves[p] != 0 && batches.of_points[p] == batch; };
+            move_patch(roles, moves_now, bad, points, round, (batch + 0.5) / batches.count);
         }
         std::vector<Index> near;
         for (Index c = 0; c < cells.size(); ++c) {
