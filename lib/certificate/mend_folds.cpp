@@ -10,7 +10,6 @@
 #include "mesh_subset.h"
 #include "movable_patch.h"
 #include "subvol/cell.h"
-#include "subvol/detail/disjoint_sets.h"
 #include "subvol/error.h"
 #include "subvol/topology.h"
 
@@ -158,70 +157,6 @@ private:
         return static_cast<std::size_t>(std::ranges::count_if(cells, is_left));
     }
 
-    struct Batches {
-        std::vector<Index> of_points;
-        Index count;
-    };
-
-    // Parts of the chosen cells that share no point do not depend on each other, and are moved in batches, so that memory does
-    // not grow with their number. returns the batch of each point of a chosen cell, and how many there are
-    [[nodiscard]] Batches batches_of(const std::vector<std::uint8_t>& cells) const {
-        DisjointSets parts(mesh_.points.size());
-        std::vector<std::size_t> counts(mesh_.points.size(), 0);
-        for (std::size_t c = 0; c < cells.size(); ++c) {
-            if (cells[c] == 0) continue;
-            for (const Index p : mesh_.cells[c]) parts.join(mesh_.cells[c][0], p);
-        }
-        for (std::size_t c = 0; c < cells.size(); ++c) counts[parts.least(mesh_.cells[c][0])] += cells[c];
-        constexpr std::size_t kEnough = 10'000;  // cells of a batch
-        Batches batches{std::vector<Index>(mesh_.points.size(), kNone), 1};
-        std::size_t in_last = 0;
-        for (Index p = 0; p < batches.of_points.size(); ++p) {
-            const Index least = parts.least(p);
-            if (counts[least] == 0) continue;
-            if (least == p) {
-                if (in_last >= kEnough) {
-                    ++batches.count;
-                    in_last = 0;
-                }
-                in_last += counts[p];
-                batches.of_points[p] = batches.count - 1;
-            }
-            batches.of_points[p] = batches.of_points[least];
-        }
-        return batches;
-    }
-
-    // Moves some points of the bad and kept cells. to: gets where they are then; done: the part of the round
-    template <class Moves>
-    void move_patch(const std::vector<CellRole>& roles, const Moves& moves, const std::vector<std::uint8_t>& bad,
-                    std::vector<Vec3>& to, int round, double done) {
-        std::vector<std::uint8_t> whole(roles.size());
-        for (std::size_t c = 0; c < roles.size(); ++c) whole[c] = roles[c] != CellRole::Around ? 1 : 0;
-        grow(mesh_, whole, kWindow);
-        MeshSubset patch = subset(mesh_, whole);
-        patch.mesh.attributes.clear();
-        std::vector<Freedom> freedom;
-        std::vector<Vec3> start;
-        for (const Index p : patch.points) {
-            freedom.push_back(freedom_[p]);
-            start.push_back(start_[p]);
-            if (!moves(p)) freedom.back().reach = 0;
-        }
-        constexpr double kShare = 0.1, kMoreEachTime = 1.5, kMost = 0.4;
-        std::vector<PatchCell> cells;
-        for (const Index c : patch.cells) {
-            cells.push_back({roles[c], std::min(kMost, kShare * std::pow(kMoreEachTime, std::max(0, bad[c] - 1)))});
-        }
-        const int levels = round == 0 || options_.folds.scheme.kind == Scheme::Linear ? 1 : 2;
-        MovablePatch movable(patch.mesh, options_.folds.scheme, levels, std::move(start), std::move(freedom), cells);
-        const std::vector<Vec3> moved =
-            movable.move([&](double) { report_progress(options_.folds.progress, "mend", (round + done) / options_.rounds); });
-        for (std::size_t k = 0; k < patch.points.size(); ++k) {
-            if (moves(patch.points[k])) to[patch.points[k]] = moved[k];
-        }
-    }
-
     // Moves the points near bad cells, and looks whether the cells there are sound, which costs far less than the whole check.
     // returns how many are bad then, which are counted in `bad`
     std::size_t move_around(std::vector<std::uint8_t>& bad, int round) {
@@ -233,20 +168,33 @@ private:
             for (const Index p : mesh_.cells[c]) moves[p] = 1;
         }
         grow(mesh_, cells, kWindow);
-        const Batches batches = batches_of(cells);
-        std::vector<Vec3> points = mesh_.points;
-        for (Index batch = 0; batch < batches.count; ++batch) {
-            std::vector<CellRole> roles(cells.size(), CellRole::Around);
-            for (std::size_t c = 0; c < cells.size(); ++c) {
-                if (cells[c] == 0 || batches.of_points[mesh_.cells[c][0]] != batch) continue;
-                roles[c] = bad[c] != 0 ? CellRole::Bad : CellRole::Kept;
-            }
-            const auto moves_now = [&](Index p) { return moves[p] != 0 && batches.of_points[p] == batch; };
-            move_patch(roles, moves_now, bad, points, round, (batch + 0.5) / batches.count);
+        std::vector<std::uint8_t> whole = cells;
+        grow(mesh_, whole, kWindow);
+        MeshSubset patch = subset(mesh_, whole);
+        patch.mesh.attributes.clear();
+
+        std::vector<Freedom> freedom;
+        std::vector<Vec3> start;
+        for (const Index p : patch.points) {
+            freedom.push_back(freedom_[p]);
+            start.push_back(start_[p]);
+            if (moves[p] == 0) freedom.back().reach = 0;
         }
+        constexpr double kShare = 0.1, kMoreEachTime = 1.5, kMost = 0.4;
+        std::vector<PatchCell> patch_cells;
         std::vector<Index> near;
-        for (Index c = 0; c < cells.size(); ++c) {
-            if (cells[c] != 0) near.push_back(c);
+        for (const Index c : patch.cells) {
+            const CellRole role = bad[c] != 0 ? CellRole::Bad : cells[c] != 0 ? CellRole::Kept : CellRole::Around;
+            patch_cells.push_back({role, std::min(kMost, kShare * std::pow(kMoreEachTime, std::max(0, bad[c] - 1)))});
+            if (role != CellRole::Around) near.push_back(c);
+        }
+        const int levels = round == 0 || options_.folds.scheme.kind == Scheme::Linear ? 1 : 2;
+        MovablePatch movable(patch.mesh, options_.folds.scheme, levels, std::move(start), std::move(freedom), patch_cells);
+        patch.mesh.points = movable.move(
+            [&](double part) { report_progress(options_.folds.progress, "mend", (round + part) / options_.rounds); });
+        std::vector<Vec3> points = mesh_.points;
+        for (std::size_t k = 0; k < patch.points.size(); ++k) {
+            if (moves[patch.points[k]] != 0) points[patch.points[k]] = patch.mesh.points[k];
         }
         move(points);
         std::size_t left = 0;
