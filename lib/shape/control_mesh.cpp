@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <optional>
 
 #include "castle.h"
 #include "cube_grid.h"
@@ -205,8 +206,7 @@ public:
 
     /// Places of the boundary and the surface with a distance beyond `far`, and those of sharp edges that are missed.
     [[nodiscard]] std::vector<Vec3> places_beyond(double far) const {
-        SchemeOptions scheme = options_.scheme;
-        std::vector<Vec3> places = ShapeFitter(build_topology(mesh_), surface_, scheme).places_beyond(mesh_.points, far);
+        std::vector<Vec3> places = fitter_->places_beyond(mesh_.points, far);
         for (const Index k : paths_.missed) {
             const SharpCurve& curve = sharp_.curves[k];
             const double steps = std::ceil(2 * curve.length() / report_.side_world);
@@ -223,15 +223,16 @@ private:
     void draw(Scheme kind, int first, int end) {
         SchemeOptions scheme = options_.scheme;
         scheme.kind = kind;
-        ShapeFitter fitter(build_topology(mesh_), surface_, scheme);
-        fitter.follow(sharp_, paths_);
+        fitter_.emplace(build_topology(mesh_), surface_, scheme);
+        fitter_->follow(sharp_, paths_);
         for (int round = first; round < end; ++round) {
-            report_progress(options_.progress, "shape", static_cast<double>(round) / options_.rounds);
+            const double part = static_cast<double>(round) / options_.rounds;
+            report_progress(options_.progress, "shape", (report_.refined + part) / (options_.refine + 1));
             constexpr double kMore = 1.5;
-            mesh_.points = fitter.relaxed(mesh_.points, sides_, std::pow(kMore, round));
+            mesh_.points = fitter_->relaxed(mesh_.points, sides_, std::pow(kMore, round));
         }
         report_.shape.rounds += end - first;
-        report_.sharp = report_of(sharp_, paths_, fitter.sharp_error(mesh_.points));
+        report_.sharp = report_of(sharp_, paths_, fitter_->sharp_error(mesh_.points));
     }
 
     const Surface& surface_;
@@ -242,6 +243,7 @@ private:
     std::vector<double> sides_;
     std::vector<Vec3> start_;
     SharpPaths paths_;
+    std::optional<ShapeFitter> fitter_;  // of the last rounds
 };
 
 }  // namespace

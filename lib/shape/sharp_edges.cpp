@@ -7,7 +7,7 @@
 
 #include "subvol/detail/disjoint_sets.h"
 #include "subvol/detail/parallel_each.h"
-#include "subvol/detail/point_welder.h"
+#include "surface_sides.h"
 
 namespace subvol::detail {
 
@@ -19,30 +19,12 @@ struct BentEdge {
     std::array<Index, 2> triangles;
 };
 
-/// The edges that exactly two triangles share. same_place: how far apart points are that are the same
+/// The edges that exactly two triangles share. same_place: as of `sides_of`
 std::vector<BentEdge> edges_of_two(const Surface& surface, double same_place) {
-    PointWelder welder(surface.points, same_place);
-    std::vector<Index> first(surface.points.size());
-    for (Index p = 0; p < first.size(); ++p) first[p] = welder.join(p);
-    struct Side {
-        std::array<Index, 2> ends;
-        Index triangle;
-    };
-    std::vector<Side> sides;
-    sides.reserve(3 * surface.triangles.size());
-    for (Index t = 0; t < surface.triangles.size(); ++t) {
-        const auto& corners = surface.triangles[t];
-        for (std::size_t k = 0; k < 3; ++k) {
-            const Index a = first[corners[k]], b = first[corners[(k + 1) % 3]];
-            if (a != b) sides.push_back({{std::min(a, b), std::max(a, b)}, t});
-        }
-    }
-    std::ranges::sort(sides, {}, [](const Side& s) { return std::pair(s.ends, s.triangle); });
     std::vector<BentEdge> edges;
-    for (std::size_t k = 0, end = 0; k < sides.size(); k = end) {
-        while (end < sides.size() && sides[end].ends == sides[k].ends) ++end;
-        if (end - k == 2) edges.push_back({sides[k].ends, {sides[k].triangle, sides[k + 1].triangle}});
-    }
+    each_edge(sides_of(surface, same_place), [&](std::span<const TriangleSide> sides) {
+        if (sides.size() == 2) edges.push_back({sides[0].ends, {sides[0].triangle, sides[1].triangle}});
+    });
     return edges;
 }
 

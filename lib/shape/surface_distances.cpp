@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "subvol/detail/parallel_each.h"
+#include "surface_sides.h"
 
 namespace subvol::detail {
 
@@ -39,36 +40,30 @@ std::vector<Vec3> places_on(const Surface& surface, std::size_t count) {
     return places;
 }
 
-std::array<Index, 2> in_order(Index a, Index b) {
-    return {std::min(a, b), std::max(a, b)};
-}
-
-/// The edges of only one triangle, in ascending order.
-std::vector<std::array<Index, 2>> open_edges_of(const Surface& surface) {
-    std::vector<std::array<Index, 2>> all, open;
+/// A flag for each side of each triangle: whether the edge is that of no other one.
+std::vector<std::array<std::uint8_t, 3>> open_sides_of(const Surface& surface) {
+    Box box;
     for (const auto& t : surface.triangles) {
-        for (std::size_t k = 0; k < 3; ++k) all.push_back(in_order(t[k], t[(k + 1) % 3]));
+        for (const Index p : t) box.add(surface.points[p]);
     }
-    std::ranges::sort(all);
-    for (std::size_t k = 0; k < all.size(); ++k) {
-        const bool before = k > 0 && all[k - 1] == all[k], after = k + 1 < all.size() && all[k + 1] == all[k];
-        if (!before && !after) open.push_back(all[k]);
-    }
+    std::vector<std::array<std::uint8_t, 3>> open(surface.triangles.size(), {0, 0, 0});
+    constexpr double kSame = 1e-7;  // of the box
+    each_edge(sides_of(surface, kSame * box.diagonal()), [&](std::span<const TriangleSide> sides) {
+        if (sides.size() == 1) open[sides[0].triangle][sides[0].side] = 1;
+    });
     return open;
 }
 
 }  // namespace
 
 SurfaceDistances::SurfaceDistances(const Surface& surface, std::size_t places)
-    : surface_(surface), open_edges_(open_edges_of(surface)), tree_(surface), places_(places_on(surface, places)) {
+    : open_sides_(open_sides_of(surface)), tree_(surface), places_(places_on(surface, places)) {
 }
 
 bool SurfaceDistances::at_hole(const SurfacePlace& place) const {
-    const auto& corners = surface_.triangles[place.triangle];
+    const auto& open = open_sides_[place.triangle];
     for (int k = 0; k < 3; ++k) {
-        if (place.weights[k] > 0) continue;
-        const auto i = static_cast<std::size_t>(k);
-        if (std::ranges::binary_search(open_edges_, in_order(corners[(i + 1) % 3], corners[(i + 2) % 3]))) return true;
+        if (!(place.weights[k] > 0) && open[static_cast<std::size_t>(k + 1) % 3] != 0) return true;
     }
     return false;
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <vector>
 
 #include "subvol/fit_shape.h"
@@ -45,8 +46,7 @@ private:
     /// Whether a place lies on an edge of only one triangle.
     [[nodiscard]] bool at_hole(const SurfacePlace& place) const;
 
-    const Surface& surface_;
-    std::vector<std::array<Index, 2>> open_edges_;  // the smaller point first, in ascending order
+    std::vector<std::array<std::uint8_t, 3>> open_sides_;  // of each triangle
     SurfaceTree tree_;
     std::vector<Vec3> places_;
 };

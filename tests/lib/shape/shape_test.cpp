@@ -95,6 +95,30 @@ TEST(ControlMesh, DoesNotDependOnTheSideThatIsOutsideNorOnThreads) {
     EXPECT_EQ(control_mesh_of(ball, options).mesh.points, made.points);
 }
 
+TEST(ControlMesh, IsTheSameOfTrianglesThatShareNoPoints) {
+    const Surface box = boundary_surface(test::make_box(2, 2, 2));
+    Surface soup;
+    for (const auto& t : box.triangles) {
+        const auto first = static_cast<Index>(soup.points.size());
+        for (const Index p : t) soup.points.push_back(box.points[p]);
+        soup.triangles.push_back({first, first + 1, first + 2});
+    }
+    const ControlMeshOptions options{.cells = 5, .rounds = 6};
+    EXPECT_EQ(control_mesh_of(soup, options).mesh.points, control_mesh_of(box, options).mesh.points);
+}
+
+TEST(ControlMesh, SpansAHoleFreely) {
+    Surface ball = test::sphere(16);
+    std::erase_if(ball.triangles,
+                  [&](const auto& t) { return std::ranges::all_of(t, [&](Index p) { return ball.points[p].z > 0.9; }); });
+    const ControlMesh made = control_mesh_of(ball, {.cells = 10});
+    EXPECT_LT(made.report.shape.after.rms, 0.1 * made.report.side_world);
+    EXPECT_EQ(made.report.shape.folds.folded, 0U);
+    double highest = 0;
+    for (const Vec3& x : made.mesh.points) highest = std::max(highest, x.z);
+    EXPECT_GT(highest, 0.8);
+}
+
 TEST(ControlMesh, IsTheSameFarFromTheOrigin) {
     Surface ball = test::sphere(10);
     const ControlMeshOptions options{.cells = 5};
