@@ -178,6 +178,13 @@ std::vector<Region> regions_of(const CommonOptions& options) {
     });
 }
 
+CommonOptions with_whole_cells(CommonOptions options, std::vector<Region>& space) {
+    space = space_and_cells(regions_of(options)).space;
+    std::erase_if(options.only,
+                  [&](const std::string& text) { return std::ranges::find(space, text, &Region::text) != space.end(); });
+    return options;
+}
+
 std::string input_help() {
     return "a mesh (" + join(readable_mesh_extensions()) + "), or model:NAME or model:NAME:RESOLUTION";
 }

@@ -36,6 +36,10 @@ enum class InputKind { Picture, Mesh, Bricks, Points, Grid };
 /// The regions of --only but for blocks, which are read alone.
 [[nodiscard]] std::vector<Region> regions_of(const CommonOptions& options);
 
+/// The options with those of --only that choose whole cells, blocks among them, for reading. The parts of space go to `space`:
+/// where something is measured they are cut out of the limit.
+[[nodiscard]] CommonOptions with_whole_cells(CommonOptions options, std::vector<Region>& space);
+
 /// Whether a file of shells and beams without cells is an error.
 enum class ShellsAlone { Refuse, Take };
 

@@ -128,6 +128,11 @@ void write_plot(const ProbeResult& found, const std::vector<Vec3>& places, const
                                                  .lines = {line}}));
 }
 
+/// How far beyond the least and largest value the limit may go.
+std::string within(double extreme_error) {
+    return "  within " + detail::number_text(extreme_error, 2);
+}
+
 Json as_json(const PartMeasure& part) {
     Json one;
     if (!part.name.empty()) one["name"] = part.name;
@@ -162,7 +167,7 @@ void say(const PartMeasure& part, const std::string& name, Report& report) {
                    number_text(x.z, 4);
         };
         lines.emplace_back(field.name, "mean " + number_text(field.mean) + "  integral " + number_text(field.integral));
-        lines.emplace_back("", "min " + at(field.min) + "  max " + at(field.max));
+        lines.emplace_back("", "min " + at(field.min) + "  max " + at(field.max) + within(field.extreme_error));
     }
     report.answer(aligned(lines));
 }
@@ -240,7 +245,8 @@ Json json_of(const std::vector<PatchMeasure>& found) {
                                      {"integral", field.integral},
                                      {"mean", field.mean},
                                      {"min", field.min},
-                                     {"max", field.max}});
+                                     {"max", field.max},
+                                     {"extreme_error", field.extreme_error}});
         }
         patches.push_back(std::move(one));
     }
@@ -256,7 +262,7 @@ void show_patches(const std::vector<PatchMeasure>& found, Report& report) {
                     {"area", number_text(patch.area) + "  within " + number_text(patch.error, 2) + " of it"}};
         for (const PatchField& field : patch.fields) {
             lines.emplace_back(field.name, "mean " + number_text(field.mean) + "  min " + number_text(field.min) + "  max " +
-                                               number_text(field.max));
+                                               number_text(field.max) + within(field.extreme_error));
         }
         if (patch.flux) {
             lines.emplace_back("flow out", number_text(*patch.flux));

@@ -97,7 +97,7 @@ public:
                "the one that --field names, integral, mean, min, max, their places, extreme_error, and a histogram. With "
                "--step all or A-B: steps, each with step, time and values, stats or patches. patches: name, faces, area, "
                "error, normal (its integral), flux and throughput (of --flux, outward and without sign), fields with "
-               "integral, mean, min, max; flux_sum of several.") {
+               "integral, mean, min, max, extreme_error; flux_sum of several.") {
         app().add_option("FILE", input_, input_help())->required();
         app()
             .add_option("--at", at_, "a place in world units (repeatable)")
@@ -143,18 +143,14 @@ public:
         }
         const LimitOptions limit{.scheme = scheme_.options(0, report.progress()).scheme, .progress = report.progress()};
         report["input"] = input_;
-        regions_ = regions_of(common());
-        const bool cells_only = std::erase_if(regions_, [](const Region& r) { return r.chooses_cells(); }) > 0;
-        CommonOptions reading = common();  // parts of space are cut exactly
-        std::erase_if(reading.only, [](const std::string& r) {
-            return !r.starts_with("block:") && !r.starts_with("where:") && !r.starts_with("set:");
-        });
+        CommonOptions reading = with_whole_cells(common(), regions_);
         if (!patches_.empty() && (tets.asked() || !regions_.empty())) {
             throw Error(ErrorCode::InvalidInput, "patches are those of the limit of hexahedra, of whole cells", "--patch",
-                        "--only set:, block: or where:, and no scheme of tetrahedra");
+                        "--only block:, set:, fold: or where:, and no scheme of tetrahedra");
         }
         if (!flux_.empty()) reading.at_rest.push_back(flux_);
-        if (cells_only && stats_) report.note("whole cells are measured where a quantity or a set decides");
+        if (regions_.size() < regions_of(common()).size() && stats_)
+            report.note("whole cells are measured where a quantity, a set or a verdict decides");
         if (asks_for_steps(common())) {
             probe_steps(reading, places, limit, report);
         } else {
@@ -162,7 +158,8 @@ public:
             report["cells"] = body.source().cells();
             if (tets.asked()) {
                 if (!regions_.empty()) {
-                    throw Error(ErrorCode::InvalidInput, "is cut from the limit of hexahedra", "--only", "where:EXPR");
+                    throw Error(ErrorCode::InvalidInput, "is cut from the limit of hexahedra",
+                                "--only " + regions_.front().text(), "block:, set:, fold: or where:, which choose whole cells");
                 }
                 probe_tets(tets, body.mesh_for(tets), places, report);
                 if (stats_ && body.blocks.size() > 1) report.warn("tetoct and boxspline measure the whole, not its blocks");
@@ -314,7 +311,7 @@ private:
     std::string input_, line_, points_, output_, flux_;
     std::vector<std::string> at_, patches_;
     std::vector<double> flux_vectors_;  // at the points
-    std::vector<Region> regions_;       // of --only, but for cells
+    std::vector<Region> regions_;       // of --only: the parts of space
     std::size_t count_ = 200;
     MeasureOptions measured_;
     bool stats_ = false;

@@ -23,13 +23,15 @@ constexpr std::size_t kBoxesOfSide = 512;                    // at most: around 
 constexpr std::size_t kLeastBoxes = 2048, kCellsOfBox = 16;  // so many are halved at most; a box takes some 100 µs
 constexpr double kLeastWidth = 1.0 / 64;                     // of a box that is halved
 
-/// One of the best places on its way. step: in parameters, how far the extreme may be
+/// One of the best places on its way. step: in parameters, how far the extreme may be along each axis
 struct Climb {
     std::size_t part, channel;
     bool high;
     Index cell;
-    double step;
+    Vec3 step;
     LimitExtreme best{};
+
+    [[nodiscard]] double largest_step() const { return std::max({step.x, step.y, step.z}); }
 };
 
 double value_of(const LimitSamples& samples, std::size_t query, std::size_t channel) {
@@ -71,9 +73,9 @@ void climb(const LimitEvaluator& limit, std::vector<LimitQuery> queries, std::ve
     for (int round = 0; round < kRounds; ++round) {
         report_progress(progress, "extremes", static_cast<double>(round) / kRounds);
         queries.clear();
-        std::stable_partition(climbs.begin(), climbs.end(), [&](const Climb& one) { return one.step > kNear; });
+        std::stable_partition(climbs.begin(), climbs.end(), [&](const Climb& one) { return one.largest_step() > kNear; });
         for (const Climb& one : climbs) {
-            if (one.step <= kNear) break;
+            if (one.largest_step() <= kNear) break;
             for (std::size_t n = 0; n < 27; ++n) {
                 const Vec3 offset = one.step * (Vec3(n % 3, n / 3 % 3, n / 9) - Vec3(1.0));
                 queries.push_back({number(one.cell), glm::clamp(one.best.uvw + offset, Vec3(0.0), Vec3(1.0))});
@@ -123,11 +125,11 @@ void ExtremeSearch::know(std::size_t part, std::size_t channel, double value) {
 void ExtremeSearch::know_constant(std::size_t part, std::size_t channel, double value, Index cell) {
     for (const bool high : {false, true}) {
         Side& side = sides_[side_of(part, channel, high)];
-        if (side.starts.empty()) side.add({value, side.sign * value, cell, Vec3(0.0), Vec3(0.0), 0});
+        if (side.starts.empty()) side.add({value, side.sign * value, cell, Vec3(0.0), Vec3(0.0), Vec3(0.0)});
     }
 }
 
-void ExtremeSearch::look(std::size_t part, Index cell, std::size_t number, double step,
+void ExtremeSearch::look(std::size_t part, Index cell, std::size_t number, const Vec3& step,
                          std::span<const GridMeasure::Extreme> found) {
     for (const GridMeasure::Extreme& one : found) {
         const std::size_t side = side_of(part, one.channel, one.sign > 0);
@@ -163,6 +165,16 @@ void ExtremeSearch::end_level(std::size_t room, std::vector<std::uint8_t>& marke
 void ExtremeSearch::end_cells(std::span<const Index> cells) {
     keep_open();
     for (const Candidate& one : candidates_) boxes_.push_back({one, cells[one.number]});
+    candidates_.clear();
+    kept_ = 0;
+}
+
+void ExtremeSearch::end_sides(std::span<const CellSide> sides) {
+    keep_open();
+    for (const Candidate& one : candidates_) {
+        const auto [lower, width] = box_of_side(sides[one.number].side);
+        boxes_.push_back({one, sides[one.number].cell, lower, width});
+    }
     candidates_.clear();
     kept_ = 0;
 }
@@ -261,8 +273,7 @@ std::size_t ExtremeSearch::halve_boxes(const Surroundings& around, std::span<con
     std::array<double, kBoxNodes> grid;
     while (true) {
         std::erase_if(boxes_, [&](const CellBox& box) {
-            const bool ends = !is_open(box) || std::min({box.width.x, box.width.y, box.width.z}) < kLeastWidth ||
-                              halved[box.side] >= kBoxesOfSide;
+            const bool ends = !is_open(box) || box.narrowest() < kLeastWidth || halved[box.side] >= kBoxesOfSide;
             if (ends) leave(box);
             return ends;
         });
@@ -303,7 +314,11 @@ void ExtremeSearch::halve(const CellBox& box, std::span<const double, 125> grid)
     const OctantBounds octants = octant_bounds(grid);
     const double bound = std::max(grid[best], std::ranges::max(octants.bounds)),
                  widest = std::max({box.width.x, box.width.y, box.width.z});
-    side.add({side.sign * grid[best], bound, box.cell, box.node(best), box.node(best), widest / 8});
+    Vec3 step(widest / 8);
+    for (int axis = 0; axis < 3; ++axis) {
+        if (box.width[axis] == 0) step[axis] = 0;
+    }
+    side.add({side.sign * grid[best], bound, box.cell, box.node(best), box.node(best), step});
     std::size_t whole = 0;  // the bits of the axes that stay
     for (std::size_t axis = 0; axis < 3; ++axis) {
         if (octants.bends[axis] < kWorth * std::ranges::max(octants.bends)) whole |= std::size_t{1} << axis;
@@ -333,7 +348,8 @@ void ExtremeSearch::climb_sides(const Surroundings& around, Progress* progress, 
         const std::size_t channel = channel_of(s);
         for (const Start& start : sides_[s].starts) {
             if (&start != &sides_[s].starts.front() && start.bound < sides_[s].best) continue;  // leads to nothing better
-            climbs.push_back({s / 2 / scales_.size(), channel, s % 2 == 1, start.cell, scales_[channel] > 0 ? start.step : 0});
+            climbs.push_back(
+                {s / 2 / scales_.size(), channel, s % 2 == 1, start.cell, scales_[channel] > 0 ? start.step : Vec3(0.0)});
             queries.push_back({around.number(start.cell), start.uvw});
             queries.push_back({around.number(start.cell), start.peak});
         }
@@ -352,6 +368,12 @@ void ExtremeSearch::climb_sides(const Surroundings& around, Progress* progress, 
             field.extreme_error = std::max(field.extreme_error, sides_[s].open - known);
         });
     }
+}
+
+SideBox box_of_side(std::uint8_t side) {
+    const auto a = place_on_side(side, 0, 0), b = place_on_side(side, 1, 1);
+    const Vec3 first(a[0], a[1], a[2]), last(b[0], b[1], b[2]);
+    return {glm::min(first, last), glm::abs(last - first)};
 }
 
 }  // namespace subvol::detail

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <span>
@@ -9,6 +10,7 @@
 #include "grid_measure.h"
 #include "subvol/detail/limit_of_part.h"
 #include "subvol/measure.h"
+#include "subvol/mesh_sets.h"
 
 namespace subvol::detail {
 
@@ -41,10 +43,10 @@ public:
 
     /// Looks at the nodes of a cell.
     ///
-    /// number: of the cell among those of the level
-    /// step:   in parameters, how far an extreme may be from the node that is nearest to it
+    /// number: of the cell among those of the level, or of the side among those of a patch
+    /// step:   in parameters, how far an extreme may be from the node that is nearest to it; 0 along what is not searched
     /// found:  the extremes of those channels in which the cell may go beyond what is known
-    void look(std::size_t part, Index cell, std::size_t number, double step, std::span<const GridMeasure::Extreme> found);
+    void look(std::size_t part, Index cell, std::size_t number, const Vec3& step, std::span<const GridMeasure::Extreme> found);
 
     /// Ends a level: marks the cells that are to be refined, the most promising first.
     ///
@@ -56,6 +58,9 @@ public:
     ///
     /// cells: of the level
     void end_cells(std::span<const Index> cells);
+
+    /// The same of sides of cells, after `look` with steps along these: only they are searched.
+    void end_sides(std::span<const CellSide> sides);
 
     /// Puts the extremes into the whole and, if there are any, its parts.
     ///
@@ -69,8 +74,7 @@ private:
     struct Start {
         double value, bound;
         Index cell;
-        Vec3 uvw, peak;
-        double step;
+        Vec3 uvw, peak, step;
     };
     /// sign: 1 for the largest values, −1 for the least
     /// best: sign × the best value that the limit is known to have; open: the same of what it may have in cells that were left
@@ -103,13 +107,20 @@ private:
     void keep_open();
     void leave_out_copies();
 
-    /// A part of a cell in which the limit may have an extreme. lower, width: in parameters of the cell
+    /// A part of a cell in which the limit may have an extreme. lower, width: in parameters of the cell; without width along an
+    /// axis it is a part of a side
     struct CellBox : Candidate {
         Index cell = 0;
         Vec3 lower{0.0}, width{1.0};
 
         [[nodiscard]] auto place() const {
             return std::array{static_cast<double>(cell), lower.x, lower.y, lower.z, width.x, width.y, width.z};
+        }
+        /// The least width of those that are not 0.
+        [[nodiscard]] double narrowest() const {
+            double least = HUGE_VAL;
+            for (int axis = 0; axis < 3; ++axis) least = width[axis] > 0 ? std::min(least, width[axis]) : least;
+            return least;
         }
         /// A node of 5³.
         [[nodiscard]] Vec3 node(std::size_t n) const { return lower + width / 4.0 * Vec3(n % 5, n / 5 % 5, n / 25); }
@@ -135,5 +146,11 @@ private:
     std::vector<CellBox> boxes_;
     std::size_t kept_ = 0;
 };
+
+/// A side of a cell as a box in its parameters, without width along one axis.
+struct SideBox {
+    Vec3 lower, width;
+};
+[[nodiscard]] SideBox box_of_side(std::uint8_t side);
 
 }  // namespace subvol::detail

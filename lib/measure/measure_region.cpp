@@ -1,19 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 // The limit is taken as triquadratic pieces. Pieces that lie in the region are integrated by Gauss points. Those that its faces
-// cut are halved along u, v and w again and again where they are cut:
+// may cut shrink to a box around what lies in it, which is halved some times along its long axes:
 //
 //     ┌─────┬─────┐      in:   Gauss points
-//     │ in  │ in╱ │      cut:  halved, down to a depth; there the part of the cube on the inner side of the plane
-//     │     │ ╱cut│            d + g·u = 0 through the depths at its corners counts, at the cube's centre
-//     ├─────┼╱──┬─┤      out:  nothing
+//     │ in  │ in╱ │      cut:  the box around the rest is halved; in the last ones there are Gauss points on lines from face
+//     │     │ ╱cut│            to face (CutPiece)
+//     ├─────┼╱──┬─┤      out:  nothing, as the Bézier coefficients prove
 //     │     ╱cut├─┤
 //     └────╱┴───┴─┘
 //
-// Where several faces cut a cube, the product of the parts behind each counts.
+// However small or thin the region is, its box is as small. Where few lines meet it, as with a needle across a cell, boxes are
+// halved further; a box in which nothing was found in the end, and which may not be empty, counts for the error.
 //
-// The sums of the depth before are made on the way; what they differ by is the error, and the depth grows until that is small
-// enough. The error falls with the square of the cubes' size.
+// Sums with one halving less show how exact they are; the number of halvings grows until that is enough. Extremes are
+// searched for in the same pieces by branch and bound (`find_extreme`).
 #include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
 #include <tbb/parallel_reduce.h>
 
 #include <algorithm>
@@ -22,48 +24,22 @@
 #include <limits>
 #include <numeric>
 
+#include "cut_piece.h"
 #include "piece_tree.h"
+#include "region_extremes.h"
 #include "subvol/error.h"
 #include "subvol/measure.h"
 
 namespace subvol {
 namespace {
 
+using detail::CutPiece;
+using detail::PieceBox;
+using detail::PieceNode;
 using detail::QuadraticWeights;
 
-constexpr int kFirstDepth = 3, kMostDepth = 6;  // of control cells
-constexpr std::size_t kGrain = 64;              // pieces: fixed, so that sums do not depend on the number of threads
-
-/// The part of the cube [−½, ½]³ where d + g·u > 0. Of the n axes along which g is not about 0, with a_k = |g_k| and
-/// t = d + Σ a_k / 2, it is Σ_S (−1)^|S| max(0, t − Σ_S a_k)ⁿ / (n! Π a_k) over all sets S of them.
-double part_inside(double d, const Vec3& g) {
-    constexpr double kLeast = 1e-4;
-    const double largest = std::max({std::abs(g.x), std::abs(g.y), std::abs(g.z)});
-    if (largest == 0) return d > 0 ? 1 : 0;
-    std::array<double, 3> a{};
-    std::size_t n = 0;
-    double whole = 0, divisor = 1;
-    for (int k = 0; k < 3; ++k) {
-        if (std::abs(g[k]) <= kLeast * largest) continue;
-        a[n++] = std::abs(g[k]);
-        whole += std::abs(g[k]);
-        divisor *= std::abs(g[k]) * static_cast<double>(n);
-    }
-    const double t = d + whole / 2;
-    if (t <= 0) return 0;
-    if (t >= whole) return 1;
-    double sum = 0;
-    for (std::size_t set = 0; set < std::size_t{1} << n; ++set) {
-        double left = t, sign = 1;
-        for (std::size_t k = 0; k < n; ++k) {
-            if ((set >> k & 1) == 0) continue;
-            left -= a[k];
-            sign = -sign;
-        }
-        if (left > 0) sum += sign * std::pow(left, static_cast<double>(n));
-    }
-    return std::clamp(sum / divisor, 0.0, 1.0);
-}
+constexpr int kMostHalvings = 5;
+constexpr std::size_t kGrain = 64;  // pieces: fixed, so that sums do not depend on the number of threads
 
 /// The place, the volume element and the values at a place of a piece.
 struct PieceSample {
@@ -73,24 +49,24 @@ struct PieceSample {
 };
 
 /// Sums and extremes of the parts, the whole first. Sums are the volume, then the integrals without the channels' origins.
+///
+/// missed: the volume of boxes in which nothing was found, although they may not be empty
 struct RegionSums {
-    std::vector<std::vector<double>> fine, coarse;
+    std::vector<std::vector<double>> sums;
     std::vector<std::vector<LimitExtreme>> least, most;
     std::vector<std::vector<double>> histograms;
+    double missed = 0;
 
     RegionSums(std::size_t parts, std::size_t channels, std::size_t bins)
-        : fine(parts, std::vector<double>(channels + 1, 0)),
-          coarse(fine),
+        : sums(parts, std::vector<double>(channels + 1, 0)),
           least(parts, std::vector<LimitExtreme>(channels, {.value = std::numeric_limits<double>::infinity()})),
           most(parts, std::vector<LimitExtreme>(channels, {.value = -std::numeric_limits<double>::infinity()})),
           histograms(channels, std::vector<double>(bins, 0)) {}
 
     void add(const RegionSums& other) {
-        for (std::size_t part = 0; part < fine.size(); ++part) {
-            for (std::size_t k = 0; k < fine[part].size(); ++k) {
-                fine[part][k] += other.fine[part][k];
-                coarse[part][k] += other.coarse[part][k];
-            }
+        missed += other.missed;
+        for (std::size_t part = 0; part < sums.size(); ++part) {
+            for (std::size_t k = 0; k < sums[part].size(); ++k) sums[part][k] += other.sums[part][k];
             for (std::size_t c = 0; c < least[part].size(); ++c) {
                 if (other.least[part][c].value < least[part][c].value) least[part][c] = other.least[part][c];
                 if (other.most[part][c].value > most[part][c].value) most[part][c] = other.most[part][c];
@@ -102,32 +78,37 @@ struct RegionSums {
     }
 };
 
-/// Works on one piece after the other, at one depth.
+/// Works on one piece after the other.
 ///
-/// bounds: of the values of each channel
-/// range:  of the histograms, for each channel; empty: there are none
+/// halvings: of the box around what lies in the region
+/// bounds:   of the values of each channel
+/// range:    of the histograms, for each channel; empty: there are none
+/// met:      a flag for each piece, set if it has a part in the region
 class PieceCutter {
 public:
-    PieceCutter(const LimitPieces& pieces, std::span<const Region> regions, std::span<const Index> groups, int depth,
-                std::span<const std::array<double, 2>> bounds, std::span<const std::array<double, 2>> range, RegionSums& sums)
-        : pieces_(pieces), regions_(regions), groups_(groups), depth_(depth), bounds_(bounds), range_(range), sums_(sums) {
+    PieceCutter(const LimitPieces& pieces, std::span<const Region> regions, std::span<const Index> groups, int halvings,
+                std::span<const std::array<double, 2>> bounds, std::span<const std::array<double, 2>> range,
+                std::span<std::uint8_t> met, RegionSums& sums)
+        : pieces_(pieces),
+          cutter_(regions),
+          groups_(groups),
+          halvings_(halvings),
+          bounds_(bounds),
+          range_(range),
+          met_(met),
+          sums_(sums) {
         sample_.values.resize(pieces.value_origins.size());
     }
 
     void cut(std::size_t piece) {
+        constexpr std::size_t kRoom = 4096;
         piece_ = piece;
-        double furthest = 0;
-        const Vec3 center = pieces_.position(piece, kMiddle);
-        for (std::size_t n = 0; n < LimitPieces::kNodes; ++n) {
-            furthest = std::max(furthest, glm::distance(center, pieces_.position(piece, n)));
-        }
-        constexpr double kBulge = 1.5;  // a piece may lie beyond its nodes
-        halve(Vec3(0.0), 1, pieces_.levels[piece_], kBulge * furthest);
+        cutter_.take(pieces_, piece);
+        room_ = kRoom;
+        halve({}, 0);
     }
 
 private:
-    static constexpr std::size_t kMiddle = 13;
-
     /// Evaluates the piece at a place in it.
     void evaluate(const Vec3& at) {
         const QuadraticWeights u(at.x), v(at.y), w(at.z);
@@ -157,20 +138,6 @@ private:
         sample_.element = glm::determinant(jacobian);
     }
 
-    [[nodiscard]] Vec3 place_at(const Vec3& at) const {
-        const QuadraticWeights u(at.x), v(at.y), w(at.z);
-        Vec3 place(0.0);
-        for (std::size_t n = 0, k = 0; k < 3; ++k) {
-            for (std::size_t j = 0; j < 3; ++j) {
-                for (std::size_t i = 0; i < 3; ++i, ++n) {
-                    const float* node = pieces_.node(piece_, n);
-                    place += u.values[i] * v.values[j] * w.values[k] * Vec3(node[0], node[1], node[2]);
-                }
-            }
-        }
-        return pieces_.origins[piece_] + place;
-    }
-
     [[nodiscard]] Vec3 in_cell(const Vec3& at) const {
         const auto& lowest = pieces_.lowest[piece_];
         const double side = std::ldexp(1, -pieces_.levels[piece_]);
@@ -183,20 +150,18 @@ private:
         if (!groups_.empty()) act(1 + static_cast<std::size_t>(groups_[pieces_.cells[piece_]]));
     }
 
-    /// The sample with the volume that it stands for. coarse: also in the sums of the depth before; inside: the place itself
-    void add_sample(const Vec3& at, double volume, bool fine, bool coarse, bool inside) {
+    void add(const PieceNode& node) {
+        evaluate(node.at);
+        const double volume = sample_.element * node.weight;
         each_part([&](std::size_t part) {
-            const auto add = [&](std::vector<double>& sums) {
-                sums[0] += volume;
-                for (std::size_t c = 0; c < sample_.values.size(); ++c) sums[1 + c] += volume * sample_.values[c];
-            };
-            if (fine) add(sums_.fine[part]);
-            if (coarse) add(sums_.coarse[part]);
+            std::vector<double>& sums = sums_.sums[part];
+            sums[0] += volume;
+            for (std::size_t c = 0; c < sample_.values.size(); ++c) sums[1 + c] += volume * sample_.values[c];
         });
-        if (fine && volume != 0) note_value(at, volume, inside);
+        note_values(node.at, volume);
     }
 
-    void note_value(const Vec3& at, double volume, bool inside) {
+    void note_values(const Vec3& at, double volume) {
         for (std::size_t c = 0; c < sample_.values.size(); ++c) {
             const double value = pieces_.value_origins[c] + sample_.values[c];
             if (!range_.empty()) {
@@ -206,103 +171,83 @@ private:
                 const auto last = static_cast<double>(bins.size() - 1);
                 bins[static_cast<std::size_t>(std::clamp(place, 0.0, last))] += volume;
             }
-            if (!inside) continue;
             each_part([&](std::size_t part) {
-                const LimitExtreme here{value, sample_.place, pieces_.cells[piece_], in_cell(at)};
-                if (value < sums_.least[part][c].value) sums_.least[part][c] = here;
-                if (value > sums_.most[part][c].value) sums_.most[part][c] = here;
+                LimitExtreme &least = sums_.least[part][c], &most = sums_.most[part][c];
+                if (value < least.value) least = {value, sample_.place, pieces_.cells[piece_], in_cell(at)};
+                if (value > most.value) most = {value, sample_.place, pieces_.cells[piece_], in_cell(at)};
             });
         }
     }
 
-    /// A cube of the piece that lies in the region, by points³ Gauss points, and its corners for the extremes.
-    void add_inside(const Vec3& lower, double side, int points, bool coarse) {
-        static const std::array<double, 2> two{0.5 - std::sqrt(1.0 / 12), 0.5 + std::sqrt(1.0 / 12)};
-        static const std::array<double, 3> three{0.5 - std::sqrt(3.0 / 20), 0.5, 0.5 + std::sqrt(3.0 / 20)};
+    /// A box that lies in the region, by 3³ Gauss points.
+    void add_inside(const PieceBox& box) {
+        static const std::array<double, 3> places{0.5 - std::sqrt(3.0 / 20), 0.5, 0.5 + std::sqrt(3.0 / 20)};
         constexpr std::array<double, 3> weights{5.0 / 18, 8.0 / 18, 5.0 / 18};
-        const auto at = [&](int k) {
-            return points == 2 ? two[static_cast<std::size_t>(k)] : three[static_cast<std::size_t>(k)];
-        };
-        const auto weight = [&](int k) { return points == 2 ? 0.5 : weights[static_cast<std::size_t>(k)]; };
-        for (int k = 0; k < points; ++k) {
-            for (int j = 0; j < points; ++j) {
-                for (int i = 0; i < points; ++i) {
-                    const Vec3 place = lower + side * Vec3(at(i), at(j), at(k));
-                    evaluate(place);
-                    add_sample(place, sample_.element * side * side * side * weight(i) * weight(j) * weight(k), true, coarse,
-                               true);
+        const double volume = box.volume();
+        for (std::size_t k = 0; k < 3; ++k) {
+            for (std::size_t j = 0; j < 3; ++j) {
+                for (std::size_t i = 0; i < 3; ++i) {
+                    add({box.at(Vec3(places[i], places[j], places[k])), volume * weights[i] * weights[j] * weights[k]});
                 }
             }
         }
-        for (int corner = 0; corner < 8; ++corner) {
-            const Vec3 place = lower + side * Vec3(corner & 1, corner >> 1 & 1, corner >> 2 & 1);
-            evaluate(place);
-            note_value(place, 0, true);
-        }
+        met_[piece_] = 1;
     }
 
-    /// A cube of the piece that may be cut. reach: no place of the cube is farther from its centre (world)
-    void halve(const Vec3& lower, double side, int level, double reach) {
-        const Vec3 middle = lower + Vec3(side / 2);
-        const double inside = depth(regions_, place_at(middle));
-        if (inside < -reach) return;
-        const int end = std::max(depth_, pieces_.levels[piece_] + 1);
-        if (inside > reach) return add_inside(lower, side, side == 1 ? 3 : 2, level < end);
-        const bool last = level == end;
-        if (last || level + 1 == end) {
-            const CutCube cube = cut_cube(lower, side);
-            evaluate(middle + side * cube.centroid);
-            add_sample(middle, sample_.element * side * side * side * cube.part, last, !last, inside >= 0);
-        }
-        if (last) return;
-        constexpr double kShrinks = 0.6;  // a half's reach, where the piece is bent
-        for (int k = 0; k < 8; ++k) {
-            halve(lower + side / 2 * Vec3(k & 1, k >> 1 & 1, k >> 2 & 1), side / 2, level + 1, kShrinks * reach);
-        }
-    }
-
-    /// part:     of a cube, that lies behind all faces
-    /// centroid: about that of the part, from the cube's centre in parts of its side
-    struct CutCube {
-        double part = 1;
-        Vec3 centroid{0.0};
-    };
-
-    /// Each face is taken as a plane. The parts behind several are multiplied, which is exact for planes along the cube.
-    [[nodiscard]] CutCube cut_cube(const Vec3& lower, double side) const {
-        const Vec3 center = place_at(lower + Vec3(side / 2));
-        std::array<Vec3, 8> corners{};
-        for (int k = 0; k < 8; ++k) {
-            corners[static_cast<std::size_t>(k)] = place_at(lower + side * Vec3(k & 1, k >> 1 & 1, k >> 2 & 1));
-        }
-        CutCube cut;
-        for (const Region& region : regions_) {
-            for (std::size_t face = 0; face < region.faces(); ++face) {
-                Vec3 slope(0.0);
-                double mean = 0;
-                for (int k = 0; k < 8; ++k) {
-                    const double at_corner = region.depth(corners[static_cast<std::size_t>(k)], face);
-                    slope += at_corner / 4 * Vec3(k & 1 ? 1 : -1, k & 2 ? 1 : -1, k & 4 ? 1 : -1);
-                    mean += at_corner / 8;
-                }
-                const double part = part_inside((mean + 2 * region.depth(center, face)) / 3, slope);
-                const double largest = std::max({std::abs(slope.x), std::abs(slope.y), std::abs(slope.z)});
-                cut.part *= part;
-                if (largest > 0) cut.centroid += (1 - part) / 2 / largest * slope;
+    /// A box that may be cut, after some halvings.
+    void halve(PieceBox box, int halvings) {
+        constexpr double kFewLines = 0.1;
+        const CutPiece::Place place = cutter_.narrow(box);
+        if (place == CutPiece::Place::Outside) return;
+        if (place == CutPiece::Place::Inside) return add_inside(box);
+        if (halvings >= halvings_) {
+            nodes_.clear();
+            const double met = cutter_.add_nodes(box, nodes_);
+            if (met >= kFewLines || room_ == 0) {
+                for (const PieceNode& node : nodes_) add(node);
+                if (met > 0) met_[piece_] = 1;
+                if (met > 0) return;
+                evaluate(box.at(Vec3(0.5)));
+                sums_.missed += std::abs(sample_.element) * box.volume();
+                return;
             }
+            --room_;
         }
-        cut.centroid = glm::clamp(cut.centroid, Vec3(-0.5), Vec3(0.5));
-        return cut;
+        constexpr double kLong = 0.3;  // of the longest
+        Vec3 lengths;
+        for (int axis = 0; axis < 3; ++axis) {
+            Vec3 from(0.5), to(0.5);
+            from[axis] = 0;
+            to[axis] = 1;
+            lengths[axis] = glm::distance(cutter_.place_at(box.at(from)), cutter_.place_at(box.at(to)));
+        }
+        const double longest = std::max({lengths.x, lengths.y, lengths.z});
+        const Vec3 middle = box.at(Vec3(0.5));
+        for (int k = 0; k < 8; ++k) {
+            PieceBox part = box;
+            bool is_one = true;
+            for (int axis = 0; axis < 3; ++axis) {
+                const bool upper = (k >> axis & 1) != 0;
+                if (lengths[axis] < kLong * longest) {
+                    is_one = is_one && !upper;
+                } else {
+                    (upper ? part.lower : part.upper)[axis] = middle[axis];
+                }
+            }
+            if (is_one) halve(part, halvings + 1);
+        }
     }
 
     const LimitPieces& pieces_;
-    std::span<const Region> regions_;
+    CutPiece cutter_;
     std::span<const Index> groups_;
-    int depth_;
+    int halvings_;
     std::span<const std::array<double, 2>> bounds_, range_;
+    std::span<std::uint8_t> met_;
     RegionSums& sums_;
-    std::size_t piece_ = 0;
+    std::size_t piece_ = 0, room_ = 0;  // room: for halvings where few lines meet the region
     PieceSample sample_;
+    std::vector<PieceNode> nodes_;
 };
 
 /// The volume and the means of a part.
@@ -315,33 +260,43 @@ std::vector<double> means_of(std::vector<double> sums) {
 class RegionMeasurer {
 public:
     RegionMeasurer(const HexMesh& mesh, std::span<const Region> regions, const MeasureOptions& options)
-        : mesh_(mesh), regions_(regions), options_(options), pieces_(pieces(1, 3)), coarse_(pieces(8, 2)) {
+        : mesh_(mesh),
+          regions_(regions),
+          options_(options),
+          limit_(within(1, 3)),
+          pieces_(*limit_.pieces),
+          coarse_(within(8, 2)),
+          met_(pieces_.cells.size(), 0) {
         for (const Attribute& field : mesh.attributes) {
             const auto [min, max] = std::ranges::minmax(field.values);
             constexpr double kInfinity = std::numeric_limits<double>::infinity();
             for (std::size_t c = 0; c < static_cast<std::size_t>(field.channels); ++c) {
+                const double origin = pieces_.value_origins[ranges_.size()];
                 ranges_.push_back(max - min);
+                largest_.push_back(std::max(std::abs(max - origin), std::abs(min - origin)));
                 bounds_.push_back(field.bounds.empty() ? std::array<double, 2>{-kInfinity, kInfinity} : field.bounds[c]);
             }
         }
     }
 
-    [[nodiscard]] LimitMeasure measure() const {
-        int depth = kFirstDepth;
-        RegionSums sums = sums_at(*pieces_, depth, {});
-        while (depth < kMostDepth && depth_error(sums, 0) > options_.tolerance) sums = sums_at(*pieces_, ++depth, {});
-        if (!(sums.fine[0][0] > 0)) throw Error(ErrorCode::InvalidInput, "no part of the volume lies in the region");
-        const RegionSums rough = sums_at(*coarse_, kFirstDepth, {}), same = sums_at(*pieces_, kFirstDepth, {});
-        std::vector<std::array<double, 2>> range;
-        for (std::size_t c = 0; c < ranges_.size(); ++c) range.push_back({sums.least[0][c].value, sums.most[0][c].value});
-        sums.histograms = sums_at(*pieces_, depth, range).histograms;
+    [[nodiscard]] LimitMeasure measure() {
+        int halvings = 1;
+        RegionSums before = sums_at(pieces_, 0, {}), sums = sums_at(pieces_, 1, {});
+        const RegionSums same = sums, rough = sums_at(*coarse_.pieces, 1, {});
+        while (halvings < kMostHalvings && halving_error(sums, before, 0) / 3 > options_.tolerance) {
+            before = std::exchange(sums, sums_at(pieces_, ++halvings, {}));
+        }
+        if (!(sums.sums[0][0] > 0)) {
+            throw Error(ErrorCode::InvalidInput, sums.missed > 0 ? "too little of the volume lies in the region to be found"
+                                                                 : "no part of the volume lies in the region");
+        }
         LimitMeasure result;
-        result.pieces = pieces_->cells.size();
-        for (std::size_t part = 0; part < sums.fine.size(); ++part) {
+        result.pieces = pieces_.cells.size();
+        for (std::size_t part = 0; part < sums.sums.size(); ++part) {
             constexpr double kLeft =
                 0.5;  // of what coarser pieces change: each level of pieces leaves an eighth of it, or less
-            const double of_pieces = kLeft * difference(same.fine[part], rough.fine[part]);
-            PartMeasure measured = part_of(sums, part, depth_error(sums, part) + of_pieces);
+            const double of_pieces = kLeft * difference(same.sums[part], rough.sums[part]);
+            PartMeasure measured = part_of(sums, part, halving_error(sums, before, part) + of_pieces);
             if (part == 0) {
                 result.whole = std::move(measured);
             } else {
@@ -349,26 +304,31 @@ public:
                 result.parts.push_back(std::move(measured));
             }
         }
+        find_extremes(sums, result);
+        std::vector<std::array<double, 2>> range;
+        for (const FieldMeasure& field : result.whole.fields) range.push_back({field.min.value, field.max.value});
+        sums = sums_at(pieces_, halvings, range);
+        for (std::size_t c = 0; c < range.size(); ++c) result.whole.fields[c].histogram = std::move(sums.histograms[c]);
         return result;
     }
 
 private:
-    [[nodiscard]] std::shared_ptr<const LimitPieces> pieces(double coarser, int levels) const {
+    [[nodiscard]] LimitCells within(double coarser, int levels) const {
         const RefineOptions refinement{.scheme = options_.scheme, .progress = options_.progress};
         const double tolerance = coarser * options_.tolerance;
         return detail::pieces_within(
-                   mesh_, refinement,
-                   {.position_world = tolerance * bounds(mesh_).diagonal(), .value_of_range = tolerance, .max_levels = levels})
-            .pieces;
+            mesh_, refinement,
+            {.position_world = tolerance * bounds(mesh_).diagonal(), .value_of_range = tolerance, .max_levels = levels});
     }
 
-    [[nodiscard]] RegionSums sums_at(const LimitPieces& pieces, int depth, std::span<const std::array<double, 2>> range) const {
-        report_progress(options_.progress, "region", static_cast<double>(depth - kFirstDepth) / kMostDepth);
+    [[nodiscard]] RegionSums sums_at(const LimitPieces& pieces, int halvings, std::span<const std::array<double, 2>> range) {
+        report_progress(options_.progress, "region", static_cast<double>(halvings) / kMostHalvings);
         const RegionSums none(options_.names.size() + 1, ranges_.size(), static_cast<std::size_t>(options_.bins));
-        return tbb::parallel_deterministic_reduce(
+        std::vector<std::uint8_t> met(pieces.cells.size(), 0);
+        RegionSums all = tbb::parallel_deterministic_reduce(
             tbb::blocked_range<std::size_t>(0, pieces.cells.size(), kGrain), none,
             [&](const auto& some, RegionSums sums) {
-                PieceCutter cutter(pieces, regions_, options_.groups, depth, bounds_, range, sums);
+                PieceCutter cutter(pieces, regions_, options_.groups, halvings, bounds_, range, met, sums);
                 for (std::size_t piece = some.begin(); piece < some.end(); ++piece) cutter.cut(piece);
                 return sums;
             },
@@ -376,6 +336,8 @@ private:
                 a.add(b);
                 return a;
             });
+        if (&pieces == &pieces_) met_ = std::move(met);
+        return all;
     }
 
     /// What volumes and means differ by, as parts of them and of the ranges.
@@ -384,47 +346,91 @@ private:
         const std::vector<double> x = means_of(a), y = means_of(b);
         double largest = std::abs(x[0] - y[0]) / x[0];
         for (std::size_t c = 0; c < ranges_.size(); ++c) {
-            if (ranges_[c] > 0) largest = std::max(largest, std::abs(x[1 + c] - y[1 + c]) / ranges_[c]);
+            if (ranges_[c] > rounding(c)) largest = std::max(largest, std::abs(x[1 + c] - y[1 + c]) / ranges_[c]);
         }
         return largest;
     }
 
-    /// What is left at a depth: a third of what the last one changed.
-    [[nodiscard]] double depth_error(const RegionSums& sums, std::size_t part) const {
-        return difference(sums.fine[part], sums.coarse[part]) / 3;
+    /// What the last halving has changed, and what was missed.
+    [[nodiscard]] double halving_error(const RegionSums& sums, const RegionSums& before, std::size_t part) const {
+        const double volume = sums.sums[part][0];
+        return difference(sums.sums[part], before.sums[part]) + (volume > 0 ? sums.missed / volume : 0);
+    }
+
+    /// Of the values of a channel, which pieces keep as floats.
+    [[nodiscard]] double rounding(std::size_t channel) const {
+        return static_cast<double>(std::numeric_limits<float>::epsilon()) * largest_[channel];
     }
 
     [[nodiscard]] PartMeasure part_of(const RegionSums& sums, std::size_t part, double error) const {
-        std::vector<double> best = sums.fine[part];  // the error falls by a quarter a depth
-        for (std::size_t k = 0; k < best.size(); ++k) best[k] += (sums.fine[part][k] - sums.coarse[part][k]) / 3;
-        best = means_of(std::move(best));
+        const std::vector<double> means = means_of(sums.sums[part]);
         PartMeasure result;
-        result.volume = best[0];
+        result.volume = means[0];
         result.error = error;
         result.cells = cells_of(part);
         std::size_t channel = 0;
         for (const Attribute& field : mesh_.attributes) {
             for (int k = 0; k < field.channels; ++k, ++channel) {
-                const double mean = pieces_->value_origins[channel] + best[1 + channel];
+                const double mean = pieces_.value_origins[channel] + means[1 + channel];
                 const std::string suffix = field.channels > 1 ? "." + std::to_string(k) : "";
-                result.fields.push_back({.name = field.name + suffix,
-                                         .integral = mean * best[0],
-                                         .mean = mean,
-                                         .min = sums.least[part][channel],
-                                         .max = sums.most[part][channel],
-                                         .extreme_error = std::ldexp(ranges_[channel], -kMostDepth),
-                                         .histogram = part == 0 ? sums.histograms[channel] : std::vector<double>()});
+                FieldMeasure& one = result.fields.emplace_back();
+                one.name = field.name + suffix;
+                one.integral = mean * means[0];
+                one.mean = mean;
             }
         }
         return result;
     }
 
+    /// sums: with the extremes of the places that were summed
+    void find_extremes(const RegionSums& sums, LimitMeasure& result) const {
+        report_progress(options_.progress, "extremes", 0);
+        std::vector<detail::RegionExtreme> all;
+        for (std::size_t part = 0; part < sums.sums.size(); ++part) {
+            for (std::size_t c = 0; c < ranges_.size(); ++c) {
+                for (const bool high : {false, true}) {
+                    detail::RegionExtreme& one = all.emplace_back();
+                    if (part > 0) one.part = static_cast<Index>(part - 1);
+                    one.channel = c;
+                    one.sign = high ? 1 : -1;
+                    one.limit = high ? bounds_[c][1] : -bounds_[c][0];
+                    one.best = high ? sums.most[part][c] : sums.least[part][c];
+                }
+            }
+        }
+        tbb::parallel_for(std::size_t{0}, all.size(), [&](std::size_t i) {
+            const std::size_t part = i / 2 / ranges_.size(), c = all[i].channel;
+            if (!(sums.sums[part][0] > 0)) return;
+            const double in_region = sums.most[part][c].value - sums.least[part][c].value;
+            detail::find_extreme(pieces_, regions_, options_.groups,
+                                 std::max(options_.tolerance * in_region, of_pieces(c, 0) / 4), all[i]);
+        });
+        for (std::size_t i = 0; i < all.size(); ++i) {
+            const std::size_t part = i / 2 / ranges_.size();
+            const detail::RegionExtreme& one = all[i];
+            FieldMeasure& field = (part == 0 ? result.whole : result.parts[part - 1]).fields[one.channel];
+            (one.sign > 0 ? field.max : field.min) = one.best;
+            const double gap = one.open - one.sign * one.best.value;
+            field.extreme_error = std::max(field.extreme_error, gap + of_pieces(one.channel, one.slope));
+        }
+    }
+
+    /// How far a value of the pieces may be from that of the limit at the same place in the world.
+    ///
+    /// slope: of the value (value / world)
+    [[nodiscard]] double of_pieces(std::size_t channel, double slope) const {
+        constexpr auto kRounding = static_cast<double>(std::numeric_limits<float>::epsilon());
+        const double position = limit_.position_world + kRounding * bounds(mesh_).diagonal();
+        return limit_.value_of_range * ranges_[channel] + rounding(channel) + slope * position;
+    }
+
+    /// Those with a part in the region.
     [[nodiscard]] std::size_t cells_of(std::size_t part) const {
         std::vector<std::uint8_t> seen(mesh_.cells.size(), 0);
-        for (std::size_t piece = 0; piece < pieces_->cells.size(); ++piece) {
-            const Index cell = pieces_->cells[piece];
+        for (std::size_t piece = 0; piece < pieces_.cells.size(); ++piece) {
+            const Index cell = pieces_.cells[piece];
             const bool of_part = part == 0 || static_cast<std::size_t>(options_.groups[cell]) + 1 == part;
-            if (of_part && depth(regions_, pieces_->position(piece, LimitPieces::kNodes / 2)) >= 0) seen[cell] = 1;
+            if (of_part && met_[piece] != 0) seen[cell] = 1;
         }
         return static_cast<std::size_t>(std::count(seen.begin(), seen.end(), 1));
     }
@@ -432,8 +438,11 @@ private:
     const HexMesh& mesh_;
     std::span<const Region> regions_;
     const MeasureOptions& options_;
-    std::shared_ptr<const LimitPieces> pieces_, coarse_;
-    std::vector<double> ranges_;                 // of the channels
+    const LimitCells limit_;
+    const LimitPieces& pieces_;
+    const LimitCells coarse_;
+    std::vector<std::uint8_t> met_;              // a flag for each piece
+    std::vector<double> ranges_, largest_;       // of the channels; the largest value without the origin
     std::vector<std::array<double, 2>> bounds_;  // of the channels
 };
 
@@ -441,8 +450,7 @@ private:
 
 LimitMeasure measure_limit_in(const HexMesh& mesh, std::span<const Region> regions, const MeasureOptions& options) {
     check_options(options);
-    std::vector<Region> space, cells;
-    for (const Region& region : regions) (region.chooses_cells() ? cells : space).push_back(region);
+    const auto [space, cells] = space_and_cells(regions);
     if (cells.empty()) return RegionMeasurer(mesh, space, options).measure();
     if (!options.groups.empty()) {
         throw Error(ErrorCode::InvalidInput, "chooses cells, which have no groups then", cells.front().text(),

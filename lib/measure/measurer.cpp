@@ -279,7 +279,7 @@ void Measurer::note_levels(std::span<const Index> cells, int level) {
 void Measurer::collect(Index cell, std::size_t number, double step, const CellNote& note) {
     const std::size_t p = part_of(cell);
     for (std::size_t i = 0; i < note.sums.size(); ++i) parts_[p].sums[i] += note.sums[i];
-    extremes_.look(p, cell, number, step, note.extremes);
+    extremes_.look(p, cell, number, Vec3(step), note.extremes);
 }
 
 std::vector<Index> Measurer::choose(std::span<const Index> cells, const Changes& changes, int level) {

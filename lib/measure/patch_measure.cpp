@@ -11,7 +11,11 @@
 #include <array>
 #include <cmath>
 
+#include "extreme_bounds.h"
+#include "extreme_search.h"
 #include "mesh_subset.h"
+#include "node_steps.h"
+#include "refine_steps.h"
 #include "subvol/detail/limit_of_part.h"
 #include "subvol/error.h"
 #include "subvol/progress.h"
@@ -38,7 +42,8 @@ std::vector<RuleNode> gauss_nodes(int n) {
     return nodes;
 }
 
-/// Places at which least and greatest values are looked for, corners among them.
+/// Places at which the search for least and largest values begins, corners among them.
+constexpr std::size_t kEvenNodes = 5;
 std::vector<RuleNode> even_nodes() {
     return {{0, 0}, {0.25, 0}, {0.5, 0}, {0.75, 0}, {1, 0}};
 }
@@ -59,18 +64,32 @@ class PatchLimit {
 public:
     PatchLimit(const HexMesh& mesh, std::span<const Patch> patches, const PatchOptions& options)
         : part_(near(mesh, patches, options.flux)),
-          limit_(part_.mesh, {.scheme = options.scheme, .tolerance = 1e-5}, extent(mesh, options.flux)),
+          extent_(extent(mesh, options.flux)),
+          limit_(part_.mesh, {.scheme = options.scheme, .tolerance = 1e-5}, extent_),
           has_flux_(!options.flux.empty()) {
-        for (const Attribute& attribute : mesh.attributes) {
+        for (std::size_t a = 0; a < mesh.attributes.size(); ++a) {
+            const Attribute& attribute = mesh.attributes[a];
+            const auto& [least, largest] = extent_.ranges[a];
             for (int c = 0; c < attribute.channels; ++c) {
                 const std::string suffix = attribute.channels > 1 ? "." + std::to_string(c) : "";
                 channels_.push_back(attribute.name + suffix);
+                scales_.push_back(detail::value_scale(least, largest));
+                origins_.push_back(least + (largest - least) / 2);
             }
+        }
+        for (std::size_t i = 0; i < options.flux.size(); i += 3) {
+            longest_ = std::max(longest_, glm::length(Vec3(options.flux[i], options.flux[i + 1], options.flux[i + 2])));
         }
     }
 
     [[nodiscard]] const std::vector<std::string>& channels() const { return channels_; }
+    /// Of each channel 1/range of its attribute, 0 for a constant.
+    [[nodiscard]] const std::vector<double>& scales() const { return scales_; }
+    /// A value in the range of each channel, without which its sums are taken.
+    [[nodiscard]] const std::vector<double>& origins() const { return origins_; }
     [[nodiscard]] bool has_flux() const { return has_flux_; }
+    /// The length of the longest vector whose flow is asked for.
+    [[nodiscard]] double longest() const { return longest_; }
 
     /// PatchSums over a patch by a rule in both directions of each side.
     [[nodiscard]] PatchSums sums(const Patch& patch, const std::vector<RuleNode>& rule) const {
@@ -81,7 +100,7 @@ public:
             sums.area += area;
             sums.normal += weight * normal;
             const std::size_t fields = channels_.size();
-            for (std::size_t k = 0; k < fields; ++k) sums.fields[k] += area * values[k];
+            for (std::size_t k = 0; k < fields; ++k) sums.fields[k] += area * (values[k] - origins_[k]);
             if (!has_flux_) return;
             const double flow = weight * glm::dot(normal, Vec3(values[fields], values[fields + 1], values[fields + 2]));
             sums.flux += flow;
@@ -90,14 +109,29 @@ public:
         return sums;
     }
 
-    /// Widens the ranges by the values at places of a patch.
-    void add_extremes(const Patch& patch, const std::vector<RuleNode>& rule, std::vector<PatchField>& fields) const {
-        each_place(patch, rule, [&](const Vec3&, std::span<const double> values, double) {
-            for (std::size_t k = 0; k < fields.size(); ++k) {
-                fields[k].min = std::min(fields[k].min, values[k]);
-                fields[k].max = std::max(fields[k].max, values[k]);
+    /// Least and largest values over the sides of the patches.
+    void find_extremes(std::span<const Patch> patches, const PatchOptions& options, std::vector<PatchMeasure>& all) const {
+        constexpr double kTolerance = 1e-4;  // of a range
+        detail::ExtremeSearch search(patches.size(), scales_, kTolerance);
+        for (std::size_t p = 0; p < patches.size(); ++p) look(search, p, patches[p]);
+        HexMesh mesh = part_.mesh;
+        detail::LimitExtent extent = extent_;
+        if (has_flux_) {
+            mesh.attributes.pop_back();
+            extent.ranges.pop_back();
+        }
+        std::vector<PartMeasure> found(1 + patches.size());  // the first one is the whole
+        for (PartMeasure& one : found) one.fields.resize(channels_.size());
+        search.find(detail::control_mesh(std::move(mesh), options.scheme), options.scheme, extent, options.progress, found);
+        for (std::size_t p = 0; p < patches.size(); ++p) {
+            for (std::size_t k = 0; k < channels_.size(); ++k) {
+                const FieldMeasure& from = found[p + 1].fields[k];
+                PatchField& to = all[p].fields[k];
+                to.min = from.min.value;
+                to.max = from.max.value;
+                to.extreme_error = from.extreme_error;
             }
-        });
+        }
     }
 
 private:
@@ -134,6 +168,43 @@ private:
         return part;
     }
 
+    /// Shows the sides of a patch to the search, each by 5² values.
+    void look(detail::ExtremeSearch& search, std::size_t number, const Patch& patch) const {
+        const std::vector<RuleNode> rule = even_nodes();
+        std::vector<double> places;  // the values of all channels at the places of a side
+        std::vector<CellSide> sides;
+        std::vector<detail::GridMeasure::Extreme> found;
+        const std::size_t of_place = channels_.size() + (has_flux_ ? 3 : 0);
+        each_place(patch, rule, [&](const Vec3&, std::span<const double> values, double) {
+            places.insert(places.end(), values.begin(), values.end());
+            if (places.size() < kEvenNodes * kEvenNodes * of_place) return;
+            const CellSide side{number_of(patch.sides[sides.size()].cell), patch.sides[sides.size()].side};
+            found.clear();
+            for (std::size_t k = 0; k < channels_.size(); ++k) {
+                if (scales_[k] == 0) {
+                    search.know_constant(number, k, places[k], side.cell);
+                    continue;
+                }
+                for (const double sign : {-1.0, 1.0}) {
+                    std::array<double, 125> grid;  // the same five times
+                    for (std::size_t n = 0; n < grid.size(); ++n) grid[n] = sign * places[n % 25 * of_place + k];
+                    const auto best = static_cast<std::size_t>(std::ranges::max_element(grid) - grid.begin());
+                    const double bound = std::max(grid[best], std::ranges::max(detail::octant_bounds(grid).bounds));
+                    const Vec3 at = vector_of(place_on_side(side.side, rule[best / kEvenNodes].at, rule[best % kEvenNodes].at));
+                    found.push_back({k, sign, grid[best], bound, at, at, sides.size()});
+                }
+            }
+            search.look(number, side.cell, sides.size(), detail::box_of_side(side.side).width / 4.0, found);
+            sides.push_back(side);
+            places.clear();
+        });
+        search.end_sides(sides);
+    }
+
+    [[nodiscard]] Index number_of(Index cell) const {
+        return static_cast<Index>(std::ranges::lower_bound(part_.cells, cell) - part_.cells.begin());
+    }
+
     /// Calls call(∂x/∂s × ∂x/∂t, values of all channels, weight) place by place, in the order of the sides.
     template <class Call>
     void each_place(const Patch& patch, const std::vector<RuleNode>& rule, const Call& call) const {
@@ -146,8 +217,7 @@ private:
             queries.clear();
             for (std::size_t i = begin; i < end; ++i) {
                 const auto [cell, side] = patch.sides[i];
-                const auto at = std::ranges::lower_bound(part_.cells, cell);
-                const auto number = static_cast<Index>(at - part_.cells.begin());
+                const Index number = number_of(cell);
                 for (const RuleNode& s : rule) {
                     for (const RuleNode& t : rule) queries.push_back({number, vector_of(place_on_side(side, s.at, t.at))});
                 }
@@ -170,29 +240,35 @@ private:
     }
 
     detail::MeshSubset part_;
+    detail::LimitExtent extent_;
     LimitEvaluator limit_;
     std::vector<std::string> channels_;
+    std::vector<double> scales_, origins_;
     bool has_flux_;
+    double longest_ = 0;
 };
+
+/// What the finer sums change, as parts of what the error is a part of.
+double change_of(const PatchLimit& limit, const PatchSums& sums, const PatchSums& finer) {
+    if (!(finer.area > 0)) return 0;
+    double largest = std::abs(finer.area - sums.area) / finer.area;
+    for (std::size_t k = 0; k < sums.fields.size(); ++k) {
+        const double before = sums.area > 0 ? sums.fields[k] / sums.area : 0, after = finer.fields[k] / finer.area;
+        largest = std::max(largest, limit.scales()[k] * std::abs(after - before));
+    }
+    const double flow = finer.area * limit.longest();
+    return flow > 0 ? std::max(largest, std::abs(finer.flux - sums.flux) / flow) : largest;
+}
 
 PatchMeasure measure_patch(const PatchLimit& limit, const Patch& patch, const PatchOptions& options) {
     PatchMeasure result;
     result.name = patch.name;
     result.sides = patch.sides.size();
-    for (const std::string& channel : limit.channels()) result.fields.push_back({channel, 0, 0, HUGE_VAL, -HUGE_VAL});
-    limit.add_extremes(patch, even_nodes(), result.fields);
     PatchSums sums = limit.sums(patch, gauss_nodes(1));
     for (int n = 2; n <= kMostPartsOfSide; n *= 2) {
-        const PatchSums finer = limit.sums(patch, gauss_nodes(n));
-        result.error = finer.area > 0 ? std::abs(finer.area - sums.area) / finer.area : 0;
-        for (std::size_t k = 0; k < result.fields.size(); ++k) {
-            const double range = (result.fields[k].max - result.fields[k].min) * finer.area;
-            const double change =
-                std::abs(finer.fields[k] - sums.fields[k] - (finer.area - sums.area) * finer.fields[k] / finer.area);
-            if (range > 0) result.error = std::max(result.error, change / range);
-        }
-        if (finer.throughput > 0) result.error = std::max(result.error, std::abs(finer.flux - sums.flux) / finer.throughput);
-        sums = finer;
+        PatchSums finer = limit.sums(patch, gauss_nodes(n));
+        result.error = change_of(limit, sums, finer);
+        sums = std::move(finer);
         if (result.error <= options.tolerance) break;
     }
     result.area = sums.area;
@@ -201,9 +277,9 @@ PatchMeasure measure_patch(const PatchLimit& limit, const Patch& patch, const Pa
         result.flux = sums.flux;
         result.throughput = sums.throughput;
     }
-    for (std::size_t k = 0; k < result.fields.size(); ++k) {
-        result.fields[k].integral = sums.fields[k];
-        result.fields[k].mean = sums.area > 0 ? sums.fields[k] / sums.area : 0;
+    for (std::size_t k = 0; k < limit.channels().size(); ++k) {
+        const double mean = limit.origins()[k] + (sums.area > 0 ? sums.fields[k] / sums.area : 0);
+        result.fields.push_back({.name = limit.channels()[k], .integral = mean * sums.area, .mean = mean});
     }
     return result;
 }
@@ -219,6 +295,7 @@ std::vector<PatchMeasure> measure_patches(const HexMesh& mesh, std::span<const P
         report_progress(options.progress, "patches", static_cast<double>(all.size()) / static_cast<double>(patches.size()));
         all.push_back(measure_patch(limit, patch, options));
     }
+    limit.find_extremes(patches, options, all);
     return all;
 }
 

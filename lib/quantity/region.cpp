@@ -109,6 +109,12 @@ std::vector<Region> parse_regions(std::span<const std::string> texts) {
     return {texts.begin(), texts.end()};
 }
 
+SpaceAndCells space_and_cells(std::span<const Region> regions) {
+    SpaceAndCells found;
+    for (const Region& region : regions) (region.chooses_cells() ? found.cells : found.space).push_back(region);
+    return found;
+}
+
 double depth(std::span<const Region> regions, const Vec3& place) {
     double least = std::numeric_limits<double>::infinity();
     for (const Region& region : regions) least = std::min(least, region.depth(place));

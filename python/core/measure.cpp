@@ -175,18 +175,16 @@ py::dict as_dict(PartMeasure part) {
 
 py::dict measure(const py::object& self, const std::vector<std::string>& only, const py::object& progress,
                  const py::kwargs& keywords) {
-    std::vector<Region> regions = parse_regions(only), of_cells;
-    std::ranges::copy_if(regions, std::back_inserter(of_cells), &Region::chooses_cells);
-    std::erase_if(regions, [](const Region& region) { return region.chooses_cells(); });
+    const SpaceAndCells regions = space_and_cells(parse_regions(only));
     HexMesh part;
     const auto& whole = self.cast<const HexMesh&>();
-    if (!of_cells.empty()) part = only_in(whole, of_cells, sets_of(self));
-    const HexMesh& mesh = of_cells.empty() ? whole : part;
+    if (!regions.cells.empty()) part = only_in(whole, regions.cells, sets_of(self));
+    const HexMesh& mesh = regions.cells.empty() ? whole : part;
     MeasureOptions options;
     set_options(keywords_of(options), keywords);
     LimitMeasure found = result_of(progress, [&](Progress* listener) {
         options.progress = listener;
-        return regions.empty() ? measure_limit(mesh, options) : measure_limit_in(mesh, regions, options);
+        return regions.space.empty() ? measure_limit(mesh, options) : measure_limit_in(mesh, regions.space, options);
     });
     return as_dict(std::move(found.whole));
 }
@@ -222,6 +220,7 @@ py::list measure_patches_of(const py::object& self, const std::vector<std::strin
             figures["mean"] = field.mean;
             figures["min"] = field.min;
             figures["max"] = field.max;
+            figures["extreme_error"] = field.extreme_error;
             fields[py::str(field.name)] = figures;
         }
         one["fields"] = fields;

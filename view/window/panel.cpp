@@ -258,7 +258,7 @@ void draw_input(WindowHost& host, WindowMemory& memory) {
     ImGui::SetNextItemWidth(label);
     bool again = input_line("only", "where:T>500; box:...", memory.only);
     tip(memory,
-        "a region as of --only: box:, sphere:, half:, where:, set:; several with ; between; Enter reads the file again");
+        "a region as of --only: box:, sphere:, half:, where:, set:, fold:; several with ; between; Enter reads the file again");
     ImGui::SetNextItemWidth(label);
     again |= input_line("warp", "DISPL*20", memory.warp);
     tip(memory, "a displacement as of --warp; Enter reads the file again");

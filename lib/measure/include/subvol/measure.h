@@ -88,14 +88,15 @@ struct LimitMeasure {
 
 /// The same of the part of the limit that lies in all of several parts of space, cut exactly along their faces.
 ///
-/// The limit is taken as pieces within `tolerance` (`find_limit_cells`); those that are cut are halved down to 1/128, until the
-/// volume and the means change by less than the tolerance. extreme_error is 1/128 of the range, as the extremes are looked for
-/// at points; cells of a part are those with a piece whose centre lies inside.
+/// The limit is taken as pieces within `tolerance` (`find_limit_cells`). What lies in the region is boxed in each piece that
+/// its faces cut, however small it is, and the boxes are halved until the volume and the means change by less than the
+/// tolerance. Extremes are those of what was cut. extreme_error is their distance from a bound that is proved for the pieces,
+/// and an estimate of what these leave; cells of a part are those with a part in the region.
 ///
 /// Where regions choose cells, the limit of these cells alone is measured.
 ///
 /// throws: Error(InvalidInput) as `measure_limit`, if no volume lies in the region, or for groups with a region of cells
-/// cost:   parallel; that of the pieces, and some milliseconds for each that is cut
+/// cost:   parallel; that of the pieces, and some milliseconds for each that is cut; less than a second for each extreme
 [[nodiscard]] LimitMeasure measure_limit_in(const HexMesh& mesh, std::span<const Region> regions,
                                             const MeasureOptions& options = {});
 

@@ -36,6 +36,10 @@ public:
     /// The same behind each of its faces: a box has six, others one.
     [[nodiscard]] std::size_t faces() const { return kind_ == Kind::Box ? 6 : 1; }
     [[nodiscard]] double depth(const Vec3& place, std::size_t face) const;
+    /// The centre of a sphere, or a point of the plane of a half.
+    [[nodiscard]] const Vec3& point() const { return point_; }
+    /// Of a sphere (world).
+    [[nodiscard]] double radius() const { return radius_; }
     /// The quantity of `where`; the names of `set` and `fold`, with commas between.
     [[nodiscard]] const std::string& quantity() const { return quantity_; }
 
@@ -50,6 +54,12 @@ private:
 
 /// throws: Error(InvalidInput) as the constructor
 [[nodiscard]] std::vector<Region> parse_regions(std::span<const std::string> texts);
+
+/// Regions by what they choose: parts of space, which are cut where something is measured, and whole cells.
+struct SpaceAndCells {
+    std::vector<Region> space, cells;
+};
+[[nodiscard]] SpaceAndCells space_and_cells(std::span<const Region> regions);
 
 /// How far inside all of several parts of space a place lies.
 [[nodiscard]] double depth(std::span<const Region> regions, const Vec3& place);
