@@ -194,8 +194,7 @@ void refine_eight(double tension, const GridRows& from, double* to) {
 }
 
 void refine_child(double tension, const GridRows& from, std::size_t octant, double* to) {
-    const std::array<std::size_t, 3> upper{octant & 1, octant >> 1 & 1, octant >> 2};
-    run<2, 2, 5>(tension, from.from(upper), {1 - upper[0], 1 - upper[1], 1 - upper[2]}, to);
+    run<3, 3, 6>(tension, from, {octant & 1, octant >> 1 & 1, octant >> 2}, to);
 }
 
 }  // namespace subvol::detail::HWY_NAMESPACE

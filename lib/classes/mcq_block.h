@@ -33,7 +33,7 @@ void refine_mcq_cell(double tension, const GridRows& from, double* to);
 /// The same for 2³ cells, to 9³ rows.
 void refine_mcq_cells(double tension, const GridRows& from, double* to);
 
-/// The 4×4×4 new points around one child of a cell. octant: u + 2v + 4w of the child
+/// The 6×6×6 new points around one child of a cell. octant: u + 2v + 4w of the child
 void refine_mcq_child(double tension, const GridRows& from, std::size_t octant, double* to);
 
 }  // namespace subvol::detail

@@ -13,7 +13,7 @@
 //     points of the next      0─1─2═3═4─5─6              seven points: its children are 2═3 and 3═4. Child c begins at point c,
 //                                                        so that it has two points before it, as its parent has
 //
-// and so the step repeats. Points 1 to 4 of a child, four on each axis, are the grid that its tricubic jet is evaluated from.
+// and so the step repeats. A child's jet is evaluated from the same six points on each axis.
 //
 // All arithmetic is along the axes of the walk that gave the class its numbers; `turn` maps them to those of the control cell.
 // It is applied to the place before an evaluation and to the derivatives after it, never to the points.
@@ -55,7 +55,7 @@ DescentWorker::DescentWorker(const DescentTask& task)
       values_(kMostLevels),
       jet_(4 * stride_),
       turned_(4 * stride_),
-      child_(64 * stride_) {
+      child_(6 * 6 * 6 * stride_) {
 }
 
 std::span<OpenPlace> DescentWorker::open(const CellPlaces& in) {
@@ -201,7 +201,7 @@ void DescentWorker::descend_grid(const GridRows& about, std::uint8_t turn, int l
     each_octant(places, [&](std::size_t octant, std::span<OpenPlace> inside) {
         const std::size_t in_grid = walk_octant(turn, octant);
         refine_mcq_child(tension, about, in_grid, child_.data());
-        jets_.load_block({child_.data(), 4, stride_});
+        jets_.load_block({child_.data(), 6, stride_});
         inside = evaluate(inside, turn, level + 1, true);
         if (inside.empty()) return;
         if (block.rows == nullptr) {
@@ -220,14 +220,13 @@ void DescentWorker::descend_twice(const GridRows& about, std::uint8_t turn, int 
     const GridRows first{values(level + 1, 7 * 7 * 7), 7, stride_}, second{values(level + 2, 9 * 9 * 9), 9, stride_};
     refine_mcq_cell(tension, about, values(level + 1, 0));
     refine_mcq_cells(tension, first, values(level + 2, 0));
-    constexpr std::array<std::size_t, 3> kOne{1, 1, 1};
     each_octant(places, [&](std::size_t octant, std::span<OpenPlace> inside) {
         const auto child = bits_of(walk_octant(turn, octant));
-        jets_.load_block(first.from(plus(child, kOne)));
+        jets_.load_block(first.from(child));
         inside = evaluate(inside, turn, level + 1, true);
         each_octant(inside, [&](std::size_t next, std::span<OpenPlace> deeper) {
             const auto at = plus(plus(child, child), bits_of(walk_octant(turn, next)));
-            jets_.load_block(second.from(plus(at, kOne)));
+            jets_.load_block(second.from(at));
             deeper = evaluate(deeper, turn, level + 2, true);
             if (!deeper.empty()) descend_grid(second.from(at), turn, level + 2, deeper);
         });

@@ -12,6 +12,16 @@
 //
 // and f approaches the limit as the cells become smaller, faster than a trilinear function does. A cell without a grid has its
 // eight corners only, and f is trilinear.
+//
+// The limit of MCQ has no second derivatives: they grow with the level, and they differ on both sides of a point. So the slopes
+// of the cubics in two cells that meet differ, and come together only like l·2⁻ˡ. What both cells agree on is the mean of their
+// slopes, which converges like 4⁻ˡ because the two errors cancel:
+//
+//     ──●───────●───────●───────●───────●──      p₀′ = (p₋₂ − 8 p₋₁ + 8 p₁ − p₂)/12, the mean of the cubics' slopes
+//      p₋₂     p₋₁      p₀      p₁      p₂
+//
+// a′ is therefore the derivative of the cubic with these slopes at its ends: one gradient on both sides of a vertex, an edge or
+// a face, and still exact for cubic fields. Where only four points are known, p₀′ = (p₁ − p₋₁)/2.
 #include "jets.h"
 
 #include <algorithm>
@@ -31,12 +41,40 @@ CubicWeights spline(double t) {
 }
 
 /// The polynomial through the four points; exactly one of them where t is 0 or 1.
-CubicWeights lagrange(double t) {
+std::array<double, 4> lagrange(double t) {
     const double a = t + 1, b = t, c = t - 1, d = t - 2;
-    return {
-        {-b * c * d / 6, a * c * d / 2, -a * b * d / 2, a * b * c / 6},
-        {-(c * d + b * d + b * c) / 6, (c * d + a * d + a * c) / 2, -(b * d + a * d + a * b) / 2, (b * c + a * c + a * b) / 6}};
+    return {-b * c * d / 6, a * c * d / 2, -a * b * d / 2, a * b * c / 6};
 }
+
+/// The derivative at t of the cubic with given values and slopes at 0 and 1: the weights of f(0), f′(0) and f′(1). That of f(1)
+/// is the first with the other sign.
+std::array<double, 3> hermite_slopes(double t) {
+    return {6 * t * (t - 1), (3 * t - 1) * (t - 1), t * (3 * t - 2)};
+}
+
+/// Slopes at the ends from the points on both sides of them.
+CubicWeights interpolant(double t) {
+    const auto [f, left, right] = hermite_slopes(t);
+    return {lagrange(t), {-left / 2, f - right / 2, left / 2 - f, right / 2}};
+}
+
+/// Slopes at the ends from two points on both sides of them.
+WideWeights wide_interpolant(double t) {
+    const auto [f, left, right] = hermite_slopes(t);
+    return {lagrange(t),
+            {left / 12, (right - 8 * left) / 12, f - 8 * right / 12, 8 * left / 12 - f, (8 * right - left) / 12, -right / 12}};
+}
+
+/// Weights along the three axes.
+template <class WeightsAt>
+auto weights_along(const Vec3& uvw, const WeightsAt& at) {
+    return std::array{at(uvw.x), at(uvw.y), at(uvw.z)};
+}
+
+// Levels shorten what is left by two to sixteen: what agrees after a longer way than this does so by accident.
+constexpr double kSome = 32;
+// A first comparison has nothing before it, so it must be nearer.
+constexpr double kFirstTime = 0.25;
 
 }  // namespace
 
@@ -80,11 +118,9 @@ void CellJets::load_corners(const double* points, std::span<const Index, 8> corn
 }
 
 void CellJets::evaluate(const Vec3& uvw, double scale, double* jet) const {
-    if (form_ != Form::Corners) {
-        std::array<CubicWeights, 3> weights;
-        for (int a = 0; a < 3; ++a) weights[static_cast<std::size_t>(a)] = spline_ ? spline(uvw[a]) : lagrange(uvw[a]);
-        if (form_ == Form::Block) return sum_tricubic(block_, weights, scale, jet);
-        return sum_tricubic(points_, grid_, stride_, weights, scale, jet);
+    if (form_ == Form::Block) return sum_tricubic(block_, weights_along(uvw, wide_interpolant), scale, jet);
+    if (form_ == Form::Grid) {
+        return sum_tricubic(points_, grid_, stride_, weights_along(uvw, spline_ ? spline : interpolant), scale, jet);
     }
     std::fill_n(jet, 4 * stride_, 0.0);
     for (std::size_t k = 0; k < 8; ++k) {
@@ -128,10 +164,19 @@ void CellJets::fill_missing(const GridPoints& grid, std::size_t along) {
     }
 }
 
-/// A place is done if it is exact, if enough consecutive levels agree (one agreement for a cubic; two for a trilinear value,
-/// which may agree by accident), or if this is the last level.
+/// A place is done if it is exact, if enough consecutive levels agree (see below), or if this is the last level.
+///
+/// A cubic needs one agreement, unless it may be by accident: the jets of the two levels before it must have been near each
+/// other, too, and if there were none, these two must be nearer. Trilinear values need two agreements. Their derivatives may
+/// not converge at all around extraordinary edges and vertices, so after some levels the values alone decide there.
 bool Settling::settle(OpenPlace& at, const double* jet, int level, bool regular, bool exact) {
-    at.agreed = level >= 1 && is_close(jet, at.last, level) ? static_cast<std::uint8_t>(at.agreed + 1) : std::uint8_t{0};
+    constexpr int kSlopeLevels = 7;
+    const Nearness before = at.before;
+    const bool with_slopes = regular || level < kSlopeLevels;
+    at.before = level >= 1 && at.has_last ? nearness(at, jet, with_slopes) : Nearness::Unknown;
+    const bool agrees = at.before == Nearness::Close && (!regular || before != Nearness::Far) &&
+                        (!regular || before != Nearness::Unknown || is_close(jet, at.last, kFirstTime, with_slopes));
+    at.agreed = agrees ? static_cast<std::uint8_t>(at.agreed + 1) : std::uint8_t{0};
     // At the centre of a cell whose cell point is the mean of its corners, a trilinear value does not change for one level. In
     // the corner of a body all new points of a spline are means: there it changes on no level, though it is not the limit, and
     // agreement does not count.
@@ -141,6 +186,7 @@ bool Settling::settle(OpenPlace& at, const double* jet, int level, bool regular,
     if (in_doubt) at.agreed = 0;
     if (!exact && !settled && level < options_.max_levels) {
         std::copy_n(jet, 4 * stride_, at.last);
+        at.has_last = true;
         return false;
     }
     ++(exact ? report_.exact : report_.refined);
@@ -149,15 +195,20 @@ bool Settling::settle(OpenPlace& at, const double* jet, int level, bool regular,
     return true;
 }
 
+Nearness Settling::nearness(const OpenPlace& at, const double* jet, bool with_slopes) const {
+    if (is_close(jet, at.last, 1, with_slopes)) return Nearness::Close;
+    return is_close(jet, at.last, kSome, with_slopes) ? Nearness::Some : Nearness::Far;
+}
+
 /// Whether two jets agree: values within the tolerance, derivatives within its square root, because they converge with half the
-/// order of values. Around extraordinary edges and vertices derivatives may not converge at all, so after some levels the
-/// values alone decide.
-bool Settling::is_close(const double* a, const double* b, int level) const {
-    constexpr int kSlopeLevels = 7;
-    const double slope_tolerance = level < kSlopeLevels ? std::sqrt(options_.tolerance) : HUGE_VAL;
+/// order of values; times a factor.
+bool Settling::is_close(const double* a, const double* b, double factor, bool with_slopes) const {
+    const double tolerance = factor * options_.tolerance;
     for (std::size_t c = 0; c < scales_.size(); ++c) {
-        if (!(std::abs(a[c] - b[c]) <= options_.tolerance * scales_[c])) return false;
+        if (!(std::abs(a[c] - b[c]) <= tolerance * scales_[c])) return false;
     }
+    if (!with_slopes) return true;
+    const double slope_tolerance = factor * std::sqrt(options_.tolerance);
     for (std::size_t d = 1; d < 4; ++d) {
         for (std::size_t c = 0; c < scales_.size(); ++c) {
             if (std::abs(a[d * stride_ + c] - b[d * stride_ + c]) > slope_tolerance * scales_[c]) return false;

@@ -47,7 +47,7 @@ public:
     ///
     /// points: rows of channels, kept by reference; grid: numbers of the rows, kNone beyond a flat boundary
     void load_grid(const double* points, const GridPoints& grid);
-    /// The same where the rows lie in a block, from (0, 0, 0) to (3, 3, 3).
+    /// The same for MCQ where the rows lie in a block, from (0, 0, 0) to (5, 5, 5): the cell begins at (2, 2, 2).
     void load_block(const GridRows& points);
     /// By trilinear interpolation between the cell's corners, octant by octant.
     void load_corners(const double* points, std::span<const Index, 8> corners);
@@ -69,13 +69,19 @@ private:
     std::vector<double> data_;  // a grid with missing points filled in, or the corners
 };
 
+/// How near the jets of two levels are to each other: within the tolerance, within some times as much, or not; Unknown if there
+/// was no jet to compare with.
+enum class Nearness : std::uint8_t { Unknown, Far, Some, Close };
+
 /// A query that has not converged yet.
 ///
 /// uvw:    its place in the cell that is looked at
 /// last:   its jet at the level before
 /// agreed: number of consecutive levels whose jets agreed within the tolerance
+/// before: how near the last two jets were to each other
 /// octant: of the child that it is in; at first none
 /// stays:  whether the last two cells that it was in meet at a vertex of the cell before them
+/// has_last: whether there is a level before
 /// moved:  by how much it has moved in its control cell
 struct OpenPlace {
     std::size_t query;
@@ -83,8 +89,9 @@ struct OpenPlace {
     double* last;
     Vec3 moved{0.0};
     std::uint8_t agreed = 0;
+    Nearness before = Nearness::Unknown;
     std::uint8_t octant = 8;
-    bool stays = false;
+    bool stays = false, has_last = false;
 
     /// Moves it into the child that it is in.
     void step_down();
@@ -108,7 +115,8 @@ public:
     [[nodiscard]] LimitReport& report() { return report_; }
 
 private:
-    [[nodiscard]] bool is_close(const double* a, const double* b, int level) const;
+    [[nodiscard]] bool is_close(const double* a, const double* b, double factor, bool with_slopes) const;
+    [[nodiscard]] Nearness nearness(const OpenPlace& at, const double* jet, bool with_slopes) const;
     void write(std::size_t query, const double* jet);
 
     const LimitOptions& options_;
@@ -135,7 +143,13 @@ struct CubicWeights {
 void sum_tricubic(const double* points, const GridPoints& grid, std::size_t stride, const std::array<CubicWeights, 3>& weights,
                   double scale, double* jet);
 
-/// The same over the points at (0, 0, 0) to (3, 3, 3) of a grid.
-void sum_tricubic(const GridRows& grid, const std::array<CubicWeights, 3>& weights, double scale, double* jet);
+/// Weights of six grid points at −2 … 3 for a derivative; the values take the inner four.
+struct WideWeights {
+    std::array<double, 4> value{};
+    std::array<double, 6> first{};
+};
+
+/// The same over the points at (0, 0, 0) to (5, 5, 5) of a grid.
+void sum_tricubic(const GridRows& grid, const std::array<WideWeights, 3>& weights, double scale, double* jet);
 
 }  // namespace subvol::detail

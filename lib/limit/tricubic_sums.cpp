@@ -71,17 +71,49 @@ void sum_numbered(const double* points, const GridPoints& grid, std::size_t stri
     sum(NumberedRows{points, grid.data(), stride}, stride, weights, scale, jet);
 }
 
-struct BlockRows {
-    const double* rows;
-    std::size_t along_u, along_v, along_w;
-    HWY_INLINE const double* operator()(std::size_t i, std::size_t j, std::size_t k) const {
-        return rows + i * along_u + j * along_v + k * along_w;
+/// Over 6×6×6 points: values from the inner four along each axis, a derivative from all six along its own.
+void sum_block(const GridRows& grid, const std::array<WideWeights, 3>& weights, double scale, double* HWY_RESTRICT jet) {
+    const hn::CappedTag<double, 4> d;
+    const std::size_t step = hn::Lanes(d), stride = grid.stride, along_v = grid.side * stride, along_w = grid.side * along_v;
+    const auto& [u, v, w] = weights;
+    for (std::size_t block = 0; block < stride; block += step) {
+        const double* const rows = grid.rows + block;
+        const auto value_on_line = [&](std::size_t j, std::size_t k) HWY_ATTR {
+            const double* const line = rows + stride + j * along_v + k * along_w;
+            auto h = hn::Zero(d);
+            for (std::size_t i = 0; i < 4; ++i) h = hn::MulAdd(hn::Set(d, u.value[i]), hn::LoadU(d, line + i * stride), h);
+            return h;
+        };
+        auto f = hn::Zero(d), fu = hn::Zero(d), fv = hn::Zero(d), fw = hn::Zero(d);
+        for (std::size_t k = 0; k < 6; ++k) {
+            const bool inner_plane = k >= 1 && k <= 4;
+            auto g = hn::Zero(d), gu = hn::Zero(d), gv = hn::Zero(d);  // of a plane
+            for (std::size_t j = inner_plane ? 0 : 1; j < (inner_plane ? 6U : 5U); ++j) {
+                const auto h = value_on_line(j, k);
+                gv = hn::MulAdd(hn::Set(d, v.first[j]), h, gv);
+                if (j < 1 || j > 4) continue;
+                const auto value = hn::Set(d, v.value[j - 1]);
+                g = hn::MulAdd(value, h, g);
+                if (!inner_plane) continue;
+                const double* const line = rows + j * along_v + k * along_w;
+                auto hu = hn::Zero(d);
+                for (std::size_t i = 0; i < 6; ++i)
+                    hu = hn::MulAdd(hn::Set(d, u.first[i]), hn::LoadU(d, line + i * stride), hu);
+                gu = hn::MulAdd(value, hu, gu);
+            }
+            fw = hn::MulAdd(hn::Set(d, w.first[k]), g, fw);
+            if (!inner_plane) continue;
+            const auto value = hn::Set(d, w.value[k - 1]);
+            f = hn::MulAdd(value, g, f);
+            fu = hn::MulAdd(value, gu, fu);
+            fv = hn::MulAdd(value, gv, fv);
+        }
+        const auto factor = hn::Set(d, scale);
+        hn::StoreU(f, d, jet + block);
+        hn::StoreU(hn::Mul(factor, fu), d, jet + stride + block);
+        hn::StoreU(hn::Mul(factor, fv), d, jet + 2 * stride + block);
+        hn::StoreU(hn::Mul(factor, fw), d, jet + 3 * stride + block);
     }
-};
-
-void sum_block(const GridRows& grid, const std::array<CubicWeights, 3>& weights, double scale, double* jet) {
-    const std::size_t line = grid.side * grid.stride;
-    sum(BlockRows{grid.rows, grid.stride, line, grid.side * line}, grid.stride, weights, scale, jet);
 }
 
 }  // namespace subvol::detail::HWY_NAMESPACE
@@ -98,7 +130,7 @@ void sum_tricubic(const double* points, const GridPoints& grid, std::size_t stri
     HWY_DYNAMIC_DISPATCH(sum_numbered)(points, grid, stride, weights, scale, jet);
 }
 
-void sum_tricubic(const GridRows& grid, const std::array<CubicWeights, 3>& weights, double scale, double* jet) {
+void sum_tricubic(const GridRows& grid, const std::array<WideWeights, 3>& weights, double scale, double* jet) {
     HWY_DYNAMIC_DISPATCH(sum_block)(grid, weights, scale, jet);
 }
 
