@@ -38,7 +38,9 @@ void VdbArguments::add_grids_to(CLI::App& app) {
                    "field or of GRID (repeatable)")
         ->type_name("[GRID=]LO,HI[:A,B]")
         ->allow_extra_args(false);
-    app.add_flag("--clamp", clamp, "keep values within the range of the field: interpolating schemes overshoot");
+    app.add_flag(
+        "--clamp", clamp,
+        "keep values within the range of the field at the mesh's points: interpolating schemes overshoot between them");
     app.add_option("--up", up, "the axis that is up: z, or y as in most programs for pictures (default z)")->type_name("AXIS");
     add_option(app, Option("scale", scale).positive().help("S", "multiply all coordinates by this"));
     for (const Option& option : options_of(grids)) {

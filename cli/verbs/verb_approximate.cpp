@@ -43,15 +43,17 @@ public:
                "  subvol approximate scan.stl --shape --onto block.vtu -o fitted.vtu\n"
                "\n"
                "Least squares through the limit: a field that is a limit of the control mesh is found again.\n"
-               "JSON: samples, outside, snapped, unseen, iterations, refined, fields {name: rms, rms_boundary, max, max_at, "
-               "range}, points, cells; of several steps or frames these are in the list frames, with frame, time and output, "
+               "JSON: samples, between, outside, snapped, unseen, undecided, iterations, refined, continuous, fields {name: "
+               "rms, "
+               "rms_boundary, max, max_at, range, rms_between, max_between, max_between_at, beyond}, points, cells; of several "
+               "steps or frames these are in the list frames, with frame, time and output, "
                "beside placements; with --shape also shape {before, after: rms, max, missed_rms, missed_max and their places; "
                "rounds, moved_world, folds, mended}.") {
         app()
-            .add_option(
-                "DATA", input_,
-                "a mesh, a .vdb grid of floats (0 where it is not active), a table (.csv, .txt) of x, y, z and values, or "
-                "with --shape a surface (.stl, .obj, .ply)")
+            .add_option("DATA", input_,
+                        "a mesh, a .vdb grid of floats (where it is not active 0, or the background of a level set), a table "
+                        "(.csv, .txt) of x, y, z and values, or "
+                        "with --shape a surface (.stl, .obj, .ply)")
             ->required();
         app().add_option("--onto", onto_, "the control mesh: a file or model:NAME:RESOLUTION")->type_name("MESH")->required();
         app()
@@ -190,7 +192,8 @@ private:
     [[nodiscard]] Surface read_surface_data(Report& report) {
         if (!shape_) throw Error(ErrorCode::InvalidInput, "has no fields, only a shape", input_, "--shape with it");
         refuse_mesh_options(app(), "needs a mesh; this is a surface");
-        refuse_options(app(), {"--field", "--levels", "--reach", "--smoothing", "--iterations", "--refine", "--tolerance"},
+        refuse_options(app(),
+                       {"--field", "--levels", "--reach", "--smoothing", "--iterations", "--clamp", "--refine", "--tolerance"},
                        "is about fields; a surface has none");
         return report.timed("read", [&] { return read_surface(input_); });
     }
@@ -239,19 +242,19 @@ private:
         const VdbGrid grid = report.unpack(load_grid(input, reading, report.progress()));
         HexMesh samples;
         Attribute field{.name = grid.report().name, .channels = 1, .values = {}};
-        std::size_t active = 0;
+        std::size_t covered = 0;
         LimitOptions limit;
         limit.scheme = options.scheme;
         limit.progress = report.progress();
         if (places_.empty()) places_ = report.timed("sample", [&] { return places_in_cells(onto, kPlacesPerEdge, limit); });
         for (const Vec3& place : places_) {
             const auto value = grid.value(place);
-            active += value ? 1 : 0;
+            covered += value ? 1 : 0;
             samples.points.push_back(place);
-            field.values.push_back(value.value_or(0));  // the background of fog
+            field.values.push_back(value.value_or(grid.report().outside));
         }
         samples.attributes.push_back(std::move(field));
-        if (active == 0) {
+        if (covered == 0) {
             throw Error(ErrorCode::InvalidInput, "no active voxel lies in the control mesh", input, "a grid that overlaps it");
         }
         return samples;
@@ -268,12 +271,11 @@ private:
             return;
         }
         report.say(text("samples     ", found.samples,
+                        found.between > 0 ? text(", and ", found.between, " between the points of the data") : "",
                         found.snapped > 0 ? text(", ", found.snapped, " of them moved to the boundary") : "",
                         found.outside > 0 ? text("; ", found.outside, " more lie outside and are left out") : ""));
-        report.say(
-            text("control     ", counted(made.mesh.points.size(), "point"),
-                 found.refined > 0 ? text(", refined ", counted(static_cast<std::size_t>(found.refined), "time")) : "",
-                 found.unseen > 0 ? text("; ", found.unseen, " without a sample near them continue what is around them") : ""));
+        report.say(text("control     ", counted(made.mesh.points.size(), "point"),
+                        found.refined > 0 ? text(", refined ", counted(static_cast<std::size_t>(found.refined), "time")) : ""));
         say_fields(found, "", report);
         report.all_said();
     }
@@ -284,7 +286,16 @@ private:
             report.say(text(before, error.name, ": error ", error.rms, " RMS, at the boundary ", error.rms_boundary,
                             ", at most ", error.max, " at ", error.max_at.x, ", ", error.max_at.y, ", ", error.max_at.z,
                             "; the data's range is ", error.range));
+            const Vec3& at = error.max_between_at;
+            report.say(text(before, error.name, ": between the samples ", error.rms_between, " RMS from ",
+                            found.continuous ? "the data" : "the nearest sample", ", at most ", error.max_between, " at ", at.x,
+                            ", ", at.y, ", ", at.z, "; beyond the data's range by at most ", error.beyond));
         }
+        if (found.undecided == 0) return;
+        report.warn(text(before, "samples hardly decide the values of ", counted(found.undecided, "control point"),
+                         found.unseen > 0 ? text(", ", found.unseen, " of which have none near them") : "",
+                         ": these continue the values around them, and the error there is not known; a coarser control mesh or "
+                         "more samples decide them"));
     }
 
     std::string input_, onto_, output_, frames_;

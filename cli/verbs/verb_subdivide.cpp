@@ -31,7 +31,9 @@ public:
             ->required();
         refine_.add_to(app(), "number of refinements (default 1)");
         app().add_flag("--on-limit", on_limit_, "move the refined points to the limit (those of mcq and linear lie on it)");
-        app().add_flag("--clamp", clamp_, "keep values within the ranges of the fields: interpolating schemes overshoot");
+        app().add_flag(
+            "--clamp", clamp_,
+            "keep values within the ranges of the fields at the mesh's points: interpolating schemes overshoot between them");
     }
 
     int run(Report& report) override {

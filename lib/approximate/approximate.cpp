@@ -5,6 +5,7 @@
 #include <array>
 #include <optional>
 
+#include "data_field.h"
 #include "fitter.h"
 #include "refine_where.h"
 #include "subvol/error.h"
@@ -23,6 +24,7 @@ std::vector<Option> options_of(ApproximateOptions& options) {
                 .between(0, 1e6)
                 .help("S", "the weight of the differences along edges: for samples with noise"),
             Option("iterations", options.iterations).between(1, 100000).help("N", "the most steps of the search"),
+            Option("clamp", options.clamp).help("keep control values within the range of the samples"),
             Option("refine", options.refine)
                 .between(0, 6)
                 .help("N", "refine the control mesh up to N times, where the samples are not met within --tolerance"),
@@ -35,11 +37,14 @@ std::vector<Option> options_of(ApproximateOptions& options) {
 Facts facts_of(const ApproximateReport& report) {
     Facts facts;
     facts["samples"] = report.samples;
+    facts["between"] = report.between;
     facts["outside"] = report.outside;
     facts["snapped"] = report.snapped;
     facts["unseen"] = report.unseen;
+    facts["undecided"] = report.undecided;
     facts["iterations"] = report.iterations;
     facts["refined"] = report.refined;
+    facts["continuous"] = report.continuous;
     Facts& fields = facts.group("fields");
     for (const FieldError& error : report.fields) {
         Facts& field = fields.group(error.name);
@@ -48,6 +53,10 @@ Facts facts_of(const ApproximateReport& report) {
         field["max"] = error.max;
         field["max_at"] = std::array{error.max_at.x, error.max_at.y, error.max_at.z};
         field["range"] = error.range;
+        field["rms_between"] = error.rms_between;
+        field["max_between"] = error.max_between;
+        field["max_between_at"] = std::array{error.max_between_at.x, error.max_between_at.y, error.max_between_at.z};
+        field["beyond"] = error.beyond;
     }
     return facts;
 }
@@ -56,10 +65,11 @@ Approximation approximate(const HexMesh& onto, const HexMesh& samples, const App
     ApproximateOptions options = given;
     HexMesh mesh = detail::prepared(onto, options);
     detail::check_samples(samples);
+    const detail::DataField data(samples, given);
     std::vector<PartOfCell> parts;
     for (int refined = 0;; ++refined) {
         std::optional<detail::SampleFinder> finder(std::in_place, mesh, options);
-        const detail::Fitter fitter(mesh, samples.points, options, *finder);
+        const detail::Fitter fitter(mesh, data, options, *finder);
         finder.reset();  // its memory is for the search
         Approximation result = fitter.fit(samples.attributes, options.progress);
         result.report.refined = refined;

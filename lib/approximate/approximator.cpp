@@ -3,20 +3,21 @@
 
 #include <optional>
 
+#include "data_field.h"
 #include "fitter.h"
 #include "subvol/error.h"
 
 namespace subvol {
 
 struct Approximator::State {
-    ApproximateOptions options;
+    ApproximateOptions given, options;
     HexMesh mesh;
     detail::SampleFinder finder;
     std::optional<detail::Fitter> fitter{};
     std::size_t placements = 0;
 
-    State(HexMesh onto, const ApproximateOptions& given)
-        : options(given), mesh(detail::prepared(std::move(onto), options)), finder(mesh, options) {}
+    State(HexMesh onto, const ApproximateOptions& asked)
+        : given(asked), options(asked), mesh(detail::prepared(std::move(onto), options)), finder(mesh, options) {}
 };
 
 Approximator::Approximator(HexMesh onto, const ApproximateOptions& options) {
@@ -35,9 +36,9 @@ Approximation Approximator::fit(const HexMesh& samples, Progress* progress) {
     ApproximateOptions options = state_->options;
     if (progress != nullptr) options.progress = progress;
     detail::check_samples(samples);
-    if (!state_->fitter || !state_->fitter->is_for(samples.points)) {
+    if (!state_->fitter || !state_->fitter->is_for(samples)) {
         state_->fitter.reset();  // before the next one takes memory
-        state_->fitter.emplace(state_->mesh, samples.points, options, state_->finder);
+        state_->fitter.emplace(state_->mesh, detail::DataField(samples, state_->given), options, state_->finder);
         ++state_->placements;
     }
     return state_->fitter->fit(samples.attributes, options.progress);

@@ -4,14 +4,19 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 
+#include "comparison.h"
+#include "data_field.h"
+#include "differences.h"
 #include "least_squares.h"
-#include "subvol/cell.h"
-#include "subvol/detail/parallel_sums.h"
+#include "located.h"
+#include "subvol/detail/parallel_each.h"
 #include "subvol/error.h"
 #include "subvol/mesh_report.h"
 #include "subvol/probe.h"
 #include "subvol/topology.h"
+#include "trend.h"
 
 namespace subvol::detail {
 
@@ -19,70 +24,18 @@ namespace {
 
 using Vector = std::vector<double>;
 
-/// How well the samples decide a control value: the sum of the squares of its trilinear weights in them.
-Vector support_of(const Topology& topology, const std::vector<LimitQuery>& places) {
-    return parallel_sums(topology.point_count, places.size(), [&](std::size_t k, Vector& sums) {
-        const auto& cell = topology.cells[places[k].cell];
-        const Vec3& at = places[k].uvw;
-        for (std::size_t c = 0; c < 8; ++c) {
-            double weight = 1;
-            for (std::size_t a = 0; a < 3; ++a) {
-                const double t = at[static_cast<int>(a)];
-                weight *= kCornerParameters[c][a] != 0 ? t : 1 - t;
-            }
-            sums[cell[c]] += weight * weight;
-        }
-    });
-}
-
-/// Differences along edges and their weights: everywhere with the smoothing that was asked for, and where samples hardly decide
-/// a value with so much that it follows its neighbours.
-WeightedDifferences smoothing_of(const Topology& topology, const Vector& support, double asked) {
-    constexpr double kPoor = 0.05, kPull = 0.01;  // parts of the usual support: the corner of a box has an eighth of it
-    Vector sorted = support;
-    std::erase(sorted, 0.0);
-    const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
-    std::ranges::nth_element(sorted, middle);
-    WeightedDifferences smoothing;
-    for (const auto& edge : topology.edges) {
-        const bool poor = std::min(support[edge[0]], support[edge[1]]) < kPoor * *middle;
-        const double weight = (asked + (poor ? kPull : 0)) * *middle;
-        if (weight == 0) continue;
-        smoothing.edges.push_back(edge);
-        smoothing.weights.push_back(std::sqrt(weight));
-    }
-    return smoothing;
+/// Second differences continue what is around a value as far as the samples leave it open: with these weights errors of samples
+/// are blown up seven times at most where a value alternates from point to point, and smooth fields do not feel them. First
+/// ones let slopes fade over some ten cells without a sample.
+DifferenceWeights weights_of(double usual_support, double asked) {
+    constexpr double kSecond = 1e-4, kFirst = 1e-6;
+    return {.first = (asked + kFirst) * usual_support, .second = kSecond * usual_support};
 }
 
 std::vector<Vec3> chosen(std::span<const Vec3> positions, std::span<const Index> samples) {
     std::vector<Vec3> taken;
     for (const Index s : samples) taken.push_back(positions[s]);
     return taken;
-}
-
-/// Samples that lie in the volume, with their places.
-struct Located {
-    std::vector<LimitQuery> places;
-    std::vector<Index> samples;
-    std::size_t outside = 0, snapped = 0;
-};
-
-Located locate(const ProbeResult& found, std::span<const Vec3> positions) {
-    Located located;
-    for (std::size_t p = 0; p < positions.size(); ++p) {
-        if (!found.inside(p)) {
-            ++located.outside;
-            continue;
-        }
-        if (found.distances[p] > 0) ++located.snapped;
-        located.places.push_back({found.cells[p], found.parameters[p]});
-        located.samples.push_back(static_cast<Index>(p));
-    }
-    if (located.places.empty()) {
-        throw Error(ErrorCode::InvalidInput, "none of the samples lies in the limit of the mesh", "samples",
-                    "places in the box of the mesh");
-    }
-    return located;
 }
 
 /// Values that continue samples to all control points: the mean over the cells about a point, and layer by layer outwards the
@@ -165,11 +118,11 @@ std::vector<std::uint8_t> cells_at_boundary(const Topology& topology) {
 /// The errors of one field, from its channels.
 class ErrorSum {
 public:
-    ErrorSum(const std::vector<Vec3>& positions, const Located& located, const std::vector<std::uint8_t>& at_boundary)
-        : positions_(positions), located_(located), at_boundary_(at_boundary) {}
+    ErrorSum(const Located& located, const std::vector<std::uint8_t>& at_boundary)
+        : located_(located), at_boundary_(at_boundary), errors_(located.places.size(), 0) {}
 
     void add(const Vector& wanted, const Vector& found) {
-        const auto [low, high] = std::ranges::minmax(wanted);
+        const auto [low, high] = located_.range_of(wanted);
         error_.range = std::max(error_.range, high - low);
         for (std::size_t k = 0; k < wanted.size(); ++k) {
             const double error = std::abs(found[k] - wanted[k]);
@@ -179,10 +132,25 @@ public:
                 squares_of_boundary_ += error * error;
                 ++boundary_count_;
             }
-            if (error > error_.max) {
-                error_.max = error;
-                error_.max_at = positions_[located_.samples[k]];
-            }
+            errors_[k] = std::max(errors_[k], error);
+        }
+    }
+
+    /// The samples with the largest errors, at most so many.
+    [[nodiscard]] std::vector<Index> worst(std::size_t count) const {
+        std::vector<Index> order(errors_.size());
+        std::iota(order.begin(), order.end(), Index{0});
+        count = std::min(count, order.size());
+        std::ranges::partial_sort(order, order.begin() + static_cast<std::ptrdiff_t>(count), {},
+                                  [&](Index k) { return std::pair(-errors_[k], k); });
+        order.resize(count);
+        return order;
+    }
+
+    void note_max(double error, const Vec3& at) {
+        if (error > error_.max) {
+            error_.max = error;
+            error_.max_at = at;
         }
     }
 
@@ -195,9 +163,9 @@ public:
     }
 
 private:
-    const std::vector<Vec3>& positions_;
     const Located& located_;
     const std::vector<std::uint8_t>& at_boundary_;
+    std::vector<double> errors_;  // of each sample, the largest of the channels
     FieldError error_;
     double squares_ = 0, squares_of_boundary_ = 0;
     std::size_t count_ = 0, boundary_count_ = 0;
@@ -257,42 +225,157 @@ ProbeResult SampleFinder::at(std::span<const Vec3> positions, Progress* progress
 struct Fitter::Parts {
     ApproximateOptions options;
     HexMesh mesh;
-    std::vector<Vec3> positions;
+    DataField data;
     Topology topology;
     double diagonal;
     Located located;
+    Comparison comparison;
     LimitMatrix limit;
-    Vector support;
-    WeightedDifferences smoothing;
+    std::vector<Vec3> positions;  // of the samples in the limit
+    Support support;
+    CsrMatrix differences;
     LeastSquares system;
     Start start;
     std::vector<std::uint8_t> at_boundary;
 
-    Parts(HexMesh given, std::vector<Vec3> at, const ApproximateOptions& asked, SampleFinder& finder)
+    Parts(HexMesh given, DataField of_samples, const ApproximateOptions& asked, SampleFinder& finder)
         : options(asked),
           mesh(std::move(given)),
-          positions(std::move(at)),
+          data(std::move(of_samples)),
           topology(build_topology(mesh)),
           diagonal(bounds(mesh).diagonal()),
-          located(locate(finder.at(positions, options.progress), positions)),
+          located(located_samples(mesh, topology, data, options, finder)),
+          comparison(data.has_cells() ? comparison_in_data(data, finder, options.progress)
+                                      : comparison_with_samples(mesh, topology, located, options.scheme)),
           limit(mesh, {.scheme = options.scheme, .levels = options.levels, .progress = options.progress}, located.places,
-                {chosen(positions, located.samples), LimitOptions{}.tolerance * diagonal},
-                option_name("levels", options.names)),
-          support(support_of(topology, located.places)),
-          smoothing(smoothing_of(topology, support, options.smoothing)),
-          system(limit, smoothing, support),
+                {located.positions, LimitOptions{}.tolerance * diagonal}, option_name("levels", options.names)),
+          positions(in_limit()),
+          support(topology, located.places),
+          differences(detail::differences(mesh, topology, weights_of(support.usual, options.smoothing))),
+          system(limit, differences, options.smoothing > 0 || !is_decided(), support.of_points),
           start(topology, located.places),
           at_boundary(cells_at_boundary(topology)) {}
+
+    [[nodiscard]] std::vector<Vec3> in_limit() const {
+        std::vector<Vec3> places = located.positions;
+        if (located.snapped == 0) return places;
+        for (int axis = 0; axis < 3; ++axis) {
+            Vector control;
+            for (const Vec3& x : mesh.points) control.push_back(x[axis]);
+            const Vector found = limit.apply(control);
+            for (std::size_t k = 0; k < found.size(); ++k) {
+                if (located.is_snapped[k] != 0) places[k][axis] = found[k];
+            }
+        }
+        return places;
+    }
+
+    [[nodiscard]] std::size_t undecided() const {
+        std::size_t count = 0;
+        for (std::size_t p = 0; p < topology.point_count; ++p)
+            count += !topology.point_edges[p].empty() && support.is_poor(p) ? 1 : 0;
+        return count;
+    }
+
+    /// Whether a field that is a limit of the mesh follows from its samples.
+    [[nodiscard]] bool is_decided() const { return undecided() == 0 && limit.rows() >= limit.columns(); }
+
+    /// The control values of a channel, the limit of which is near to the samples.
+    ///
+    /// wanted: at the samples
+    /// found:  becomes the limit there
+    [[nodiscard]] Vector control_values(const Vector& wanted, Vector& found, int& iterations, Progress* progress) const {
+        const Trend trend = trend_of(positions, wanted);
+        Vector rest = wanted;
+        for (std::size_t k = 0; k < rest.size(); ++k) rest[k] -= trend.at(positions[k]);
+        Vector x = start.values(rest);
+        iterations = std::max(iterations, system.solve(rest, x, options.iterations, progress));
+        const auto [low, high] = std::ranges::minmax(rest);
+        constexpr double kBeyond = 0.25;
+        const double beyond = kBeyond * (high - low);
+        for (std::size_t p = 0; p < x.size(); ++p) {
+            if (support.is_poor(p)) x[p] = std::clamp(x[p], low - beyond, high + beyond);
+        }
+        found = limit.apply(x);
+        for (std::size_t k = 0; k < found.size(); ++k) found[k] += trend.at(positions[k]);
+        for (std::size_t p = 0; p < x.size(); ++p)
+            x[p] += topology.point_edges[p].empty() ? trend.mean : trend.at(mesh.points[p]);
+        if (!options.clamp) return x;
+        const auto [least, most] = located.range_of(wanted);
+        for (double& value : x) value = std::clamp(value, least, most);
+        found = limit.apply(x);
+        return x;
+    }
+
+    /// Evaluates the limit itself where its matrix may not be exact enough for what is said: at the worst samples, between the
+    /// samples, and at extremes.
+    ///
+    /// field:   the fitted one; wanted: at the samples, channel by channel
+    /// between: at the places of the comparison, if the data has values there
+    void compare(const Attribute& field, const std::vector<Vector>& wanted, const Vector& between, ErrorSum& errors,
+                 FieldError& error) const {
+        const auto channels = static_cast<std::size_t>(field.channels);
+        constexpr std::size_t kWorst = 64;
+        const std::vector<Index> worst = errors.worst(kWorst);
+        std::vector<LimitQuery> places;
+        for (const Index k : worst) places.push_back(located.places[k]);
+        places.insert(places.end(), comparison.places.begin(), comparison.places.end());
+        const std::vector<LimitQuery> extremes = places_of_extremes(topology, field);
+        places.insert(places.end(), extremes.begin(), extremes.end());
+        HexMesh fitted = mesh;
+        fitted.attributes = {field};
+        const LimitSamples limit_there = limit_at(fitted, places, options.scheme);
+        const Vector& found = limit_there.attributes[0].values;
+        for (std::size_t i = 0; i < worst.size(); ++i) {
+            double most = 0;
+            for (std::size_t c = 0; c < channels; ++c)
+                most = std::max(most, std::abs(found[i * channels + c] - wanted[c][worst[i]]));
+            errors.note_max(most, located.positions[worst[i]]);
+        }
+        error = errors.result(field.name);
+        double squares = 0;
+        for (std::size_t i = 0; i < comparison.places.size(); ++i) {
+            for (std::size_t c = 0; c < channels; ++c) {
+                const double value = comparison.nearest.empty() ? between[i * channels + c] : wanted[c][comparison.nearest[i]];
+                const double off = std::abs(found[(worst.size() + i) * channels + c] - value);
+                squares += off * off;
+                if (off > error.max_between) {
+                    error.max_between = off;
+                    error.max_between_at = limit_there.positions[worst.size() + i];
+                }
+            }
+        }
+        if (!comparison.places.empty())
+            error.rms_between = std::sqrt(squares / static_cast<double>(comparison.places.size() * channels));
+        for (std::size_t c = 0; c < channels; ++c) {
+            const auto [low, high] = located.range_of(wanted[c]);
+            for (std::size_t i = 0; i < places.size(); ++i)
+                error.beyond = std::max({error.beyond, low - found[i * channels + c], found[i * channels + c] - high});
+        }
+    }
 };
 
-Fitter::Fitter(HexMesh mesh, std::vector<Vec3> positions, const ApproximateOptions& options, SampleFinder& finder)
-    : parts_(std::make_unique<Parts>(std::move(mesh), std::move(positions), options, finder)) {
+Fitter::Fitter(HexMesh mesh, DataField data, const ApproximateOptions& options, SampleFinder& finder)
+    : parts_(std::make_unique<Parts>(std::move(mesh), std::move(data), options, finder)) {
 }
 
 Fitter::~Fitter() = default;
 
-bool Fitter::is_for(std::span<const Vec3> positions) const {
-    return std::ranges::equal(positions, parts_->positions);
+bool Fitter::is_for(const HexMesh& samples) const {
+    const HexMesh& data = parts_->data.mesh();
+    return std::ranges::equal(samples.points, data.points) && std::ranges::equal(samples.cells, data.cells);
+}
+
+std::vector<Vector> Fitter::wanted(const Attribute& field, const Vector& between) const {
+    const Located& located = parts_->located;
+    const auto channels = static_cast<std::size_t>(field.channels);
+    std::vector<Vector> wanted(channels);
+    for (std::size_t c = 0; c < channels; ++c) {
+        wanted[c].reserve(located.places.size());
+        for (const Index s : located.samples) wanted[c].push_back(field.values[s * channels + c]);
+        for (std::size_t k = 0; k < located.between.size(); ++k) wanted[c].push_back(between[k * channels + c]);
+    }
+    return wanted;
 }
 
 Approximation Fitter::fit(std::span<const Attribute> fields, Progress* progress) const {
@@ -300,23 +383,28 @@ Approximation Fitter::fit(std::span<const Attribute> fields, Progress* progress)
     const Located& located = parts.located;
     Approximation made{.mesh = parts.mesh, .report = {}};
     ApproximateReport& report = made.report;
-    report.samples = located.places.size();
+    report.samples = located.samples.size();
+    report.between = located.between.size();
     report.outside = located.outside;
     report.snapped = located.snapped;
     report.unseen = parts.start.unseen();
-    for (const Attribute& field : fields) {
-        const auto channels = static_cast<std::size_t>(field.channels);
-        Attribute fitted{.name = field.name, .channels = field.channels, .values = Vector(parts.mesh.points.size() * channels)};
-        ErrorSum errors(parts.positions, located, parts.at_boundary);
+    report.undecided = parts.undecided();
+    report.continuous = parts.data.has_cells();
+    const auto between = parts.data.values(fields, located.between),
+               compared = parts.data.values(fields, parts.comparison.in_data);
+    for (std::size_t f = 0; f < fields.size(); ++f) {
+        const auto channels = static_cast<std::size_t>(fields[f].channels);
+        Attribute fitted{.name = fields[f].name, .channels = fields[f].channels, .values = {}};
+        fitted.values.resize(parts.mesh.points.size() * channels);
+        ErrorSum errors(located, parts.at_boundary);
+        const std::vector<Vector> wanted = this->wanted(fields[f], between[f]);
         for (std::size_t c = 0; c < channels; ++c) {
-            Vector wanted;
-            for (const Index s : located.samples) wanted.push_back(field.values[s * channels + c]);
-            Vector x = parts.start.values(wanted);
-            report.iterations = std::max(report.iterations, parts.system.solve(wanted, x, parts.options.iterations, progress));
-            errors.add(wanted, parts.limit.apply(x));
+            Vector found;
+            const Vector x = parts.control_values(wanted[c], found, report.iterations, progress);
+            errors.add(wanted[c], found);
             for (std::size_t p = 0; p < x.size(); ++p) fitted.values[p * channels + c] = x[p];
         }
-        report.fields.push_back(errors.result(field.name));
+        parts.compare(fitted, wanted, compared[f], errors, report.fields.emplace_back());
         made.mesh.attributes.push_back(std::move(fitted));
     }
     return made;
@@ -326,16 +414,17 @@ std::vector<std::uint8_t> Fitter::cells_beyond(double tolerance, std::span<const
                                                const Approximation& fit) const {
     const Located& located = parts_->located;
     std::vector<std::uint8_t> beyond(parts_->mesh.cells.size(), 0);
+    const auto between = parts_->data.values(fields, located.between);
     for (std::size_t f = 0; f < fields.size(); ++f) {
         const double enough = tolerance * fit.report.fields[f].range;
         const auto channels = static_cast<std::size_t>(fields[f].channels);
+        const std::vector<Vector> wanted = this->wanted(fields[f], between[f]);
         for (std::size_t c = 0; c < channels; ++c) {
             Vector x(parts_->mesh.points.size());
             for (std::size_t p = 0; p < x.size(); ++p) x[p] = fit.mesh.attributes[f].values[p * channels + c];
             const Vector found = parts_->limit.apply(x);
             for (std::size_t k = 0; k < found.size(); ++k) {
-                const double wanted = fields[f].values[located.samples[k] * channels + c];
-                if (std::abs(found[k] - wanted) > enough) beyond[located.places[k].cell] = 1;
+                if (std::abs(found[k] - wanted[c][k]) > enough) beyond[located.places[k].cell] = 1;
             }
         }
     }

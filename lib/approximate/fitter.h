@@ -34,20 +34,24 @@ private:
     std::optional<LimitProbe> inside_, near_;
 };
 
+class DataField;
+
 /// Fits fields that are sampled at the same positions onto one control mesh. What does not depend on values is found once: the
-/// places of the samples in the limit, its matrix, the weights of differences along edges, and how a start continues samples.
+/// places of the samples in the limit, its matrix, the weights of differences, how a start continues samples, and the places at
+/// which the result is compared with the data between the samples.
 class Fitter {
 public:
     /// mesh, options: as `prepared` made them; refine and tolerance are not used
+    /// data:          the samples without their fields
     /// finder:        of the same mesh
     /// throws: Error(InvalidInput) if no position lies in the volume, or the memory is not enough
-    Fitter(HexMesh mesh, std::vector<Vec3> positions, const ApproximateOptions& options, SampleFinder& finder);
+    Fitter(HexMesh mesh, DataField data, const ApproximateOptions& options, SampleFinder& finder);
     ~Fitter();
     Fitter(const Fitter&) = delete;
     Fitter& operator=(const Fitter&) = delete;
 
-    /// Whether these are the positions that it was made for.
-    [[nodiscard]] bool is_for(std::span<const Vec3> positions) const;
+    /// Whether these have the points and cells that it was made for.
+    [[nodiscard]] bool is_for(const HexMesh& samples) const;
 
     /// fields: with a value for each position
     [[nodiscard]] Approximation fit(std::span<const Attribute> fields, Progress* progress) const;
@@ -57,6 +61,9 @@ public:
                                                          const Approximation& fit) const;
 
 private:
+    /// The values at all samples, channel by channel. between: at those between the data's points
+    [[nodiscard]] std::vector<std::vector<double>> wanted(const Attribute& field, const std::vector<double>& between) const;
+
     struct Parts;
     std::unique_ptr<const Parts> parts_;
 };

@@ -45,8 +45,8 @@ SplitMesh refine_where(const HexMesh& given, std::span<const std::uint8_t> cells
         }
     }
     const LimitMatrix old_limit(mesh, options, wanted_places), new_limit(split.mesh, once, corners);
-    const WeightedDifferences none;
-    const LeastSquares fit(new_limit, none, std::vector<double>(after.point_count, 1));
+    const CsrMatrix no_differences;
+    const LeastSquares fit(new_limit, no_differences, false, std::vector<double>(after.point_count, 1));
     for (int axis = 0; axis < 3; ++axis) {
         const std::vector<double> wanted = old_limit.apply(coordinates(mesh.points, axis));
         std::vector<double> x = wanted;

@@ -123,21 +123,6 @@ void add_tags(HexMesh& made, const HexMesh& mesh, const Topology& topology, cons
     }
 }
 
-/// The edge on which an edge goes on beyond an end: the single one that shares no face with it; else kNone.
-Index edge_beyond(const Topology& topology, Index edge, Index end) {
-    Index found = kNone;
-    for (const Index other : topology.point_edges[end]) {
-        if (other == edge) continue;
-        const bool turns = std::ranges::any_of(topology.edge_faces[edge], [&](Index f) {
-            return std::ranges::find(topology.face_edges[f], other) != topology.face_edges[f].end();
-        });
-        if (turns) continue;
-        if (found != kNone) return kNone;
-        found = other;
-    }
-    return found;
-}
-
 /// The point there.
 Index beyond(const Topology& topology, Index edge, Index end) {
     const Index next = edge_beyond(topology, edge, end);
@@ -205,6 +190,20 @@ double bend_along(const HexMesh& mesh, const Topology& topology, Index edge, std
 }
 
 }  // namespace
+
+Index edge_beyond(const Topology& topology, Index edge, Index end) {
+    Index found = kNone;
+    for (const Index other : topology.point_edges[end]) {
+        if (other == edge) continue;
+        const bool turns = std::ranges::any_of(topology.edge_faces[edge], [&](Index f) {
+            return std::ranges::find(topology.face_edges[f], other) != topology.face_edges[f].end();
+        });
+        if (turns) continue;
+        if (found != kNone) return kNone;
+        found = other;
+    }
+    return found;
+}
 
 std::vector<std::uint8_t> edges_to_split(const HexMesh& mesh, const Topology& topology, std::span<const std::uint8_t> cells) {
     DisjointSets sheets(topology.edges.size());

@@ -19,6 +19,9 @@ namespace subvol::detail {
 //     │   │ s │   │        │   │ │ │   │
 //     •───•───•───•        •───•─•─•───•
 
+/// The edge on which an edge goes on beyond one of its ends: the single one there that shares no face with it; else kNone.
+[[nodiscard]] Index edge_beyond(const Topology& topology, Index edge, Index end);
+
 /// parts: of each cell of the mesh
 struct SplitMesh {
     HexMesh mesh;

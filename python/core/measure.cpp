@@ -398,9 +398,18 @@ py::tuple mend_folds_of(const HexMesh& mesh, const py::object& progress, const p
     return py::make_tuple(std::move(mended.mesh), dict_of(std::move(mended.check)), dict_of(facts_of(mended.report)));
 }
 
+/// points: places, or a mesh, whose points are the places and whose cells go along
 HexMesh samples_of(const py::object& points, const py::dict& given) {
     HexMesh samples;
-    samples.points = vectors(points, "samples");
+    if (py::isinstance<HexMesh>(points)) {
+        const auto& mesh = points.cast<const HexMesh&>();
+        samples.points = mesh.points;
+        samples.cells = mesh.cells;
+        samples.creases = mesh.creases;
+        samples.sharp_faces = mesh.sharp_faces;
+    } else {
+        samples.points = vectors(points, "samples");
+    }
     for (const auto& [name, values] : given) {
         samples.attributes.push_back(attribute_of(py::str(name), values, samples.points.size()));
     }

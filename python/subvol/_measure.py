@@ -112,15 +112,19 @@ def approximate(onto: HexMesh, samples: Union[HexMesh, npt.ArrayLike], fields: O
                 progress: Progress = None, **options: Any) -> tuple[HexMesh, dict[str, Any]]:
     """Fits fields of a control mesh so that its limit is as near to samples as it can be, by least squares.
 
-    onto: the control mesh; samples: a mesh whose points and fields are the data, or places (n,3) with values in `fields`.
-    Returns the control mesh with the fitted fields, and a report: samples, outside, snapped, unseen, iterations, refined, and for each
-    of fields rms, rms_boundary, max, max_at and range.
+    onto: the control mesh; samples: a mesh whose points and fields are the data, or places (n,3) with values in `fields`. The fields of a
+    mesh are known between its points, too: where these are too few for the control mesh, more places are sampled.
+    Returns the control mesh with the fitted fields, and a report: samples, between (places between the points of the data), outside,
+    snapped, unseen, undecided (control points that samples hardly decide, where no error is known), iterations, refined, continuous (the
+    data is a mesh), and for each of fields rms, rms_boundary, max, max_at and range; rms_between, max_between and max_between_at, the
+    distance from the data between the samples, or from the nearest sample if the data is not a mesh; and beyond, how far the limit leaves
+    the range of the data.
 
     {keywords}
     """
     with listening(progress) as listener:
         if isinstance(samples, HexMesh):
-            return _core.approximate(onto, samples.points, samples.fields if fields is None else fields, listener, **options)
+            return _core.approximate(onto, samples, samples.fields if fields is None else fields, listener, **options)
         return _core.approximate(onto, samples, fields or {}, listener, **options)
 
 
@@ -129,7 +133,7 @@ def approximate_series(onto: HexMesh, steps: Iterable[Union[HexMesh, tuple[float
                        **options: Any) -> Iterator[tuple[HexMesh, dict[str, Any]]]:
     """Fits the steps of a series one after the other, as `approximate` does: for each the control mesh with its fields, and the report.
 
-    onto: the control mesh of all steps; steps: meshes whose points and fields are the data, as of `open_series`, each taken when its turn
+    onto: the control mesh of all steps; steps: meshes whose fields are the data, as of `open_series`, each taken when its turn
     comes. While their points stay the same, their places in the limit are found once; `placements` of a report says how often they
     were so far. The pairs of a time and a mesh that `open_series` gives are taken as they are.
 
@@ -141,7 +145,7 @@ def approximate_series(onto: HexMesh, steps: Iterable[Union[HexMesh, tuple[float
         for step in steps:
             mesh = step[1] if isinstance(step, tuple) else step
             with listening(progress) as listener:
-                made = approximator.fit(mesh.points, mesh.fields, listener)
+                made = approximator.fit(mesh, mesh.fields, listener)
             yield made
 
     return fitted()

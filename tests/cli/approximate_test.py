@@ -41,6 +41,47 @@ class Approximate(InFolder):
         self.assertIn(finer["cells"], (16, 32, 64))  # sheets across one, two or three directions
         self.assertLess(finer["fields"]["density"]["rms"], .5 * coarse["fields"]["density"]["rms"])
 
+    def test_a_level_set_is_the_background_below_zero_inside(self):
+        self.run_ok("vdb", "model:ball:4", "-o", "ball.vdb", "--sdf", "--resolution", "40", "--quiet")
+        grids = self.run_ok("info", "ball.vdb", "--json").json()["grids"]
+        background = 3 * next(grid["voxel_size"] for grid in grids if grid["name"] == "sdf")
+        self.fit("ball.vdb", "--field", "sdf", "--onto", "model:ball:4", "-o", "fitted.vtu")
+        self.fit("ball.vdb", "--field", "density", "--onto", "model:ball:4", "-o", "fog.vtu")
+        for file, value in (("fitted.vtu", -background), ("fog.vtu", 1)):
+            at = self.run_ok("probe", file, "--at", "0,0,0", "--json").json()["values"][0]["value"]
+            self.assertAlmostEqual(at / value, 1, 1)  # the ball is deeper than three voxels there
+
+    def test_coarse_data_on_a_fine_mesh(self):
+        (self.folder / "coarse.vtk").write_text(box_of_cells(2))
+        self.run_ok("subdivide", "coarse.vtk", "--density", "x*y-2*z", "--scheme", "linear", "-o", "data.vtu", "--levels", "0")
+        self.run_ok("subdivide", "coarse.vtk", "--scheme", "linear", "-o", "fine.vtu", "--levels", "2")
+        found = self.fit("data.vtu", "--onto", "fine.vtu", "-o", "fitted.vtu", "--scheme", "linear")
+        self.assertEqual((found["undecided"], found["continuous"]), (0, True))
+        self.assertGreater(found["between"], 0)
+        self.assertLess(found["fields"]["density"]["max_between"], 1e-6)
+        at = self.run_ok("probe", "fitted.vtu", "--at", ".4,.7,.3", "--scheme", "linear", "--json").json()
+        self.assertAlmostEqual(at["values"][0]["value"], .4 * .7 - .6, 5)  # trilinear in each coarse cell
+
+    def test_warns_where_samples_decide_nothing(self):
+        rows = [f"{x / 9},{y / 9},{z / 9},{x}" for x in range(4) for y in range(10) for z in range(10)]
+        (self.folder / "box.vtk").write_text(box_of_cells(4))
+        (self.folder / "side.csv").write_text("\n".join(["x,y,z,T", *rows, ""]))
+        done = self.run_ok("approximate", "side.csv", "--onto", "box.vtk", "-o", "fitted.vtu")
+        self.assertRegex(done.err, r"samples hardly decide the values of \d+ control points, 50 of which have none near them")
+        at = self.run_ok("probe", "fitted.vtu", "--at", ".95,.5,.5", "--field", "T", "--json").json()
+        self.assertAlmostEqual(at["values"][0]["value"], 9 * .95, 5)  # a linear function is continued
+
+    def test_clamp(self):
+        rows = [f"{x / 9},{y / 9},{z / 9},{int(x + y > 9)}" for x in range(10) for y in range(10) for z in range(10)]
+        (self.folder / "box.vtk").write_text(box_of_cells(4))
+        (self.folder / "front.csv").write_text("\n".join(["x,y,z,T", *rows, ""]))
+        for words, least in (([], -1), (["--clamp"], 0)):
+            self.fit("front.csv", "--onto", "box.vtk", "-o", "fitted.vtu", *words)
+            found = self.run_ok("info", "fitted.vtu", "--json").json()["fields"]
+            low = next(field for field in found if field["name"] == "T")["min"]
+            self.assertEqual(low >= 0, least == 0)
+            self.assertGreater(low, least - 1e-12)
+
     def test_the_steps_of_a_series(self):
         for number in range(3):
             self.run_ok("subdivide", "model:twist:3", "--density", f"sin(4*x+{number})*cos(3*z)", "-o", f"step_{number}.vtu", "--levels", "2")

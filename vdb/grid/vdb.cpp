@@ -76,12 +76,14 @@ void detail::set_frame(openvdb::GridBase& grid, const Box& frame) {
 detail::VdbData::VdbData(const openvdb::GridBase::Ptr& from)
     : grid(from),
       floats(openvdb::gridPtrCast<openvdb::FloatGrid>(from)),
+      is_level_set(floats && floats->getGridClass() == openvdb::GRID_LEVEL_SET),
       report_{.name = printable(grid->getName()),
               .kind = {},
               .active_voxels = grid->activeVoxelCount(),
               .voxel_size_world = grid->voxelSize()[0],
               .bytes = grid->memUsage()} {
     set_kind_and_range(*grid, report_);
+    if (is_level_set) report_.outside = std::max(0.0, static_cast<double>(floats->background()));
     if (report_.active_voxels == 0) return;
     const openvdb::CoordBBox voxels = grid->evalActiveVoxelBoundingBox();
     const auto box = grid->transform().indexToWorld(openvdb::BBoxd(voxels.min().asVec3d(), voxels.max().asVec3d()));
@@ -104,14 +106,16 @@ std::optional<double> detail::VdbData::value(const Vec3& x) const {
 
     // Not registered with the tree, hence cheap to make; safe in many threads as long as the tree does not change.
     const openvdb::FloatGrid::ConstUnsafeAccessor accessor(floats->constTree());
-    if (!accessor.isValueOn(openvdb::Coord::round(index))) return std::nullopt;
+    float nearest = 0;
+    const bool active = accessor.probeValue(openvdb::Coord::round(index), nearest);
+    if (!active && !(is_level_set && nearest < 0)) return std::nullopt;
     const auto lower = openvdb::Coord::floor(index);
     const auto beyond = index - lower.asVec3d();
     double sum = 0, weights = 0;
     for (int k = 0; k < 8; ++k) {
         const openvdb::Coord step(k & 1, k >> 1 & 1, k >> 2);
         float voxel = 0;
-        if (!accessor.probeValue(lower + step, voxel)) continue;
+        if (!accessor.probeValue(lower + step, voxel) && !is_level_set) continue;
         double weight = 1;
         for (int d = 0; d < 3; ++d) weight *= (k >> d & 1) ? beyond[d] : 1.0 - beyond[d];
         sum += weight * static_cast<double>(voxel);

@@ -7,7 +7,10 @@
 
 namespace subvol::detail {
 
-/// What a VdbGrid holds. floats: the same grid if it is one of floats, else null
+/// What a VdbGrid holds.
+///
+/// floats:       the same grid if it is one of floats, else null
+/// is_level_set: its inactive voxels with values below 0 lie inside and have values, too
 class VdbData : public GridData {
 public:
     explicit VdbData(const openvdb::GridBase::Ptr& from);
@@ -20,6 +23,7 @@ public:
 
     openvdb::GridBase::Ptr grid;
     openvdb::FloatGrid::Ptr floats;
+    bool is_level_set;
 
 private:
     GridReport report_;

@@ -3,6 +3,7 @@
 
 #include <openvdb/io/Archive.h>
 #include <openvdb/io/GridDescriptor.h>
+#include <openvdb/tools/SignedFloodFill.h>
 #include <algorithm>
 #include <fstream>
 #include <span>
@@ -68,12 +69,21 @@ std::uint32_t flag_of(VdbCompression compression) {
     }
 }
 
+/// Gives the inactive voxels of a level set the background with the sign of their side, which some programs leave out.
+void fill_sides(openvdb::GridBase& grid) {
+    auto* const floats = dynamic_cast<openvdb::FloatGrid*>(&grid);
+    if (floats == nullptr || floats->getGridClass() != openvdb::GRID_LEVEL_SET || !(floats->background() > 0)) return;
+    openvdb::tools::signedFloodFill(floats->tree());
+}
+
 openvdb::GridPtrVec read_entries(const std::filesystem::path& path, std::span<const GridEntry> entries) {
     std::ifstream file(path, std::ios::binary);
     // OpenVDB continues after a short read with memory that was never filled; a stream that throws stops it.
     file.exceptions(std::ios::failbit | std::ios::badbit | std::ios::eofbit);
     try {
-        return CheckedReader().read(file, entries);
+        openvdb::GridPtrVec grids = CheckedReader().read(file, entries);
+        for (const auto& grid : grids) fill_sides(*grid);
+        return grids;
     } catch (const std::ios_base::failure&) {
         throw Error(ErrorCode::InvalidInput, "is not a whole OpenVDB file: it ends too early", path.string());
     } catch (const std::exception& error) {

@@ -23,16 +23,17 @@ Vec3 vec_of(const openvdb::Vec3d& v) {
 
 class Cursor : public VoxelCursor {
 public:
-    explicit Cursor(const Tree& tree) : accessor_(tree) {}
+    Cursor(const Tree& tree, bool is_level_set) : accessor_(tree), is_level_set_(is_level_set) {}
 
     VoxelBlock block(const Voxel& voxel) override {
         const openvdb::Coord c = coord_of(voxel);
         if (const auto* leaf = accessor_.probeConstLeaf(c)) {
-            const auto kind = leaf->isValueMaskOff() ? VoxelBlock::Kind::Nothing : VoxelBlock::Kind::Mixed;
+            const bool nothing = leaf->isValueMaskOff() && !is_inside(leaf->getFirstValue());
+            const auto kind = nothing ? VoxelBlock::Kind::Nothing : VoxelBlock::Kind::Mixed;
             return {kind, voxel_of(leaf->origin()), static_cast<std::int32_t>(Tree::LeafNodeType::DIM), 0};
         }
         float value = 0;
-        const bool active = accessor_.probeValue(c, value);
+        const bool active = accessor_.probeValue(c, value) || is_inside(value);
         const std::int32_t size = tile_size(accessor_.getValueDepth(c));
         return {active ? VoxelBlock::Kind::Constant : VoxelBlock::Kind::Nothing,
                 {c[0] & ~(size - 1), c[1] & ~(size - 1), c[2] & ~(size - 1)},
@@ -45,13 +46,16 @@ public:
         for (unsigned k = 0; k < 8; ++k) {
             const openvdb::Coord c = coord_of(lower).offsetBy(k & 1, k >> 1 & 1, k >> 2);
             float value = 0;
-            if (accessor_.probeValue(c, value)) corners.active |= 1u << k;
+            if (accessor_.probeValue(c, value) || is_inside(value)) corners.active |= 1u << k;
             corners.values[k] = static_cast<double>(value);
         }
         return corners;
     }
 
 private:
+    /// Of an inactive voxel: it has a value if it lies inside a level set.
+    [[nodiscard]] bool is_inside(float value) const { return is_level_set_ && value < 0; }
+
     /// depth: of the node with the tile: 2: lower inner node, 1: upper inner node, 0: root; -1: background
     static std::int32_t tile_size(int depth) {
         using Upper = Tree::RootNodeType::ChildNodeType;
@@ -62,6 +66,7 @@ private:
 
     // Not registered with the tree, hence cheap to make; safe in many threads as long as the tree does not change.
     openvdb::FloatGrid::ConstUnsafeAccessor accessor_;
+    bool is_level_set_;
 };
 
 class GridVoxels : public Voxels {
@@ -73,7 +78,9 @@ public:
     Mat3 to_world() const override { return {column({1, 0, 0}), column({0, 1, 0}), column({0, 0, 1})}; }
     Vec3 origin() const override { return vec_of(grid_->indexToWorld(openvdb::Vec3d(0.0))); }
     std::array<Voxel, 2> range() const override { return range_; }
-    std::unique_ptr<VoxelCursor> cursor() const override { return std::make_unique<Cursor>(grid_->constTree()); }
+    std::unique_ptr<VoxelCursor> cursor() const override {
+        return std::make_unique<Cursor>(grid_->constTree(), grid_->getGridClass() == openvdb::GRID_LEVEL_SET);
+    }
 
 private:
     Vec3 column(const openvdb::Vec3d& axis) const {

@@ -13,6 +13,7 @@
 #include "subvol/approximate.h"
 #include "subvol/approximator.h"
 #include "subvol/model.h"
+#include "subvol/probe.h"
 
 namespace subvol {
 namespace approximate_test {
@@ -188,6 +189,150 @@ TEST(Approximate, ValuesThatSamplesHardlyDecideFollowTheirNeighbors) {
     const auto [low, high] = std::ranges::minmax(made.mesh.attributes[0].values);
     EXPECT_GT(low, least - 0.3 * (most - least));
     EXPECT_LT(high, most + 0.3 * (most - least));
+}
+
+/// Random places in a box, as samples of a function.
+template <class Function>
+HexMesh random_samples(std::size_t count, const Box& box, unsigned seed, const Function& function) {
+    std::mt19937 dice(seed);
+    std::uniform_real_distribution<double> part(0, 1);
+    HexMesh samples;
+    samples.attributes = {{.name = "f", .channels = 1, .values = {}}};
+    for (std::size_t k = 0; k < count; ++k) {
+        const double x = part(dice), y = part(dice), z = part(dice);
+        samples.points.push_back(glm::mix(box.lower, box.upper, Vec3(x, y, z)));
+        samples.attributes[0].values.push_back(function(samples.points.back()));
+    }
+    return samples;
+}
+
+TEST(Approximate, LinearFunctionsAreMetEverywhereByWhateverSamples) {
+    const auto linear = [](const Vec3& x) { return 3 + 2 * x.x - x.y + 0.5 * x.z; };
+    for (const HexMesh& mesh : {make_box(7, 3, 3), make_model("ball", 3), test::irregular()}) {
+        const Box all = bounds(mesh);
+        Box corner = all;
+        corner.upper = glm::mix(all.lower, all.upper, 0.6);
+        for (const Scheme scheme : {Scheme::Mcq, Scheme::CatmullClark, Scheme::Linear}) {
+            const HexMesh samples = random_samples(200, corner, 3, linear);
+            const Approximation made = approximate(mesh, samples, {.scheme = {.kind = scheme}, .reach = 0});
+            EXPECT_GT(made.report.undecided, 0U);
+            for (std::size_t p = 0; p < mesh.points.size(); ++p) {
+                // Rounding of sums over 200 samples, continued over a few cells
+                EXPECT_NEAR(made.mesh.attributes[0].values[p], linear(mesh.points[p]), 1e-8) << name_of(scheme);
+            }
+            EXPECT_LT(made.report.fields[0].max, 1e-8);
+        }
+    }
+}
+
+TEST(Approximate, AFinerControlMeshNeverFitsWorse) {
+    const auto wave = [](const Vec3& x) { return std::sin(3 * x.x) * std::cos(2 * x.y) + x.z * x.z * std::sin(2 * x.x); };
+    double max_before = INFINITY, unseen_before = INFINITY, rms_before = INFINITY;
+    for (const Index cells : {4U, 8U, 12U}) {  // 300, 37 and 11 samples a cell
+        HexMesh box = make_box(cells, cells, cells);
+        for (Vec3& x : box.points) x /= cells;
+        const HexMesh samples = random_samples(19000, bounds(box), 7, wave);
+        const Approximation made = approximate(box, samples);
+        const HexMesh unseen = random_samples(4000, bounds(box), 8, wave);
+        std::vector<LimitQuery> places;
+        for (const Vec3& x : unseen.points) {
+            const Vec3 at = x * double(cells), cell = glm::min(glm::floor(at), double(cells - 1));
+            places.push_back({static_cast<Index>(cell.x + cells * (cell.y + cells * cell.z)), at - cell});
+        }
+        const LimitSamples found = evaluate_limit(made.mesh, places);
+        double most = 0;
+        for (std::size_t k = 0; k < places.size(); ++k)
+            most = std::max(most, std::abs(found.attributes[0].values[k] - unseen.attributes[0].values[k]));
+        EXPECT_LT(made.report.fields[0].max, max_before);
+        EXPECT_LT(most, unseen_before);
+        // At least of second order, and between 4³ and 8³ of third
+        EXPECT_LT(made.report.fields[0].rms, rms_before * (cells == 8 ? 0.125 : 0.44));
+        max_before = made.report.fields[0].max;
+        unseen_before = most;
+        rms_before = made.report.fields[0].rms;
+    }
+}
+
+/// Trilinear values of a mesh at the points of its linear refinement.
+HexMesh halved(const HexMesh& mesh, int levels) {
+    return refine(mesh, {.scheme = {.kind = Scheme::Linear}, .levels = levels});
+}
+
+TEST(Approximate, CoarseDataIsSampledBetweenItsPoints) {
+    const HexMesh coarse = with_noise(test::irregular(), 5);
+    for (const int levels : {0, 1, 2}) {  // also onto the mesh itself
+        const HexMesh fine = halved(coarse, levels);
+        const Approximation made = approximate(fine, coarse, {.scheme = {.kind = Scheme::Linear}});
+        // What is trilinear in a coarse cell is so in the fine cells, whose values are means of the coarse ones.
+        EXPECT_LT(difference(made.mesh.attributes[0].values, fine.attributes[0].values), 1e-7) << levels;
+        EXPECT_LT(made.report.fields[0].max_between, 1e-6);
+        EXPECT_EQ(made.report.undecided, 0U);
+        EXPECT_TRUE(made.report.continuous);
+    }
+}
+
+// Data that is coarser along x and finer along y and z than the control mesh, with errors that no field of this mesh has: values
+// half way along x are not decided by its points.
+TEST(Approximate, ValuesBetweenTheDataDoNotRing) {
+    HexMesh data = with_noise(make_box(6, 20, 20), 9), onto = make_box(12, 8, 8);
+    for (Vec3& x : data.points) x = {x.x / 6, x.y / 20, x.z / 20};
+    for (Vec3& x : onto.points) x = {x.x / 12, x.y / 8, x.z / 8};
+    for (const bool with_cells : {true, false}) {
+        HexMesh samples = data;
+        if (!with_cells) samples.cells.clear();
+        const Approximation made = approximate(onto, samples, {.scheme = {.kind = Scheme::Linear}});
+        const auto [low, high] = std::ranges::minmax(made.mesh.attributes[0].values);
+        EXPECT_GT(low, -1.3);  // the data's values are in [-1, 1]
+        EXPECT_LT(high, 1.3);
+        EXPECT_GE(made.report.fields[0].beyond, std::max(high - 1, -1 - low));
+        EXPECT_EQ(made.report.continuous, with_cells);
+    }
+}
+
+TEST(Approximate, ClampKeepsControlValuesInTheRangeOfTheSamples) {
+    const HexMesh box = make_box(5, 5, 5);
+    const HexMesh samples = random_samples(3000, bounds(box), 4, [](const Vec3& x) { return x.x + x.y > 5 ? 1.0 : 0.0; });
+    const Approximation free = approximate(box, samples), kept = approximate(box, samples, {.clamp = true});
+    EXPECT_LT(std::ranges::min(free.mesh.attributes[0].values), -0.01);
+    EXPECT_GE(std::ranges::min(kept.mesh.attributes[0].values), 0);
+    EXPECT_LE(std::ranges::max(kept.mesh.attributes[0].values), 1);
+    EXPECT_GT(kept.report.fields[0].rms, free.report.fields[0].rms);  // the error that is said is that of the clamped field
+}
+
+// The error and the range that are said, against an evaluation of the limit at other places; a larger version of this is
+// bench/fit_errors.py.
+TEST(Approximate, NoErrorIsLargerThanIsSaid) {
+    std::mt19937 dice(12);
+    std::uniform_real_distribution<double> part(0, 1);
+    for (unsigned seed = 0; seed < 12; ++seed) {
+        const HexMesh mesh = std::array{make_box(4, 3, 5), make_model("ball", 2), make_model("twist", 3), test::irregular()}[seed % 4];
+        const double noise = seed % 3 == 0 ? 0.2 : 0;
+        const auto wave = [&](const Vec3& x) { return std::sin(2 * x.x + seed) * std::cos(x.y - x.z) + noise * part(dice); };
+        Box box = bounds(mesh);
+        if (seed % 5 == 1) box.upper.x = box.center().x;  // from one side alone
+        const HexMesh samples = random_samples(seed % 2 == 0 ? 150 : 4000, box, seed, wave);
+        const Approximation made = approximate(mesh, samples);
+        const FieldError& said = made.report.fields[0];
+        const ProbeResult found = LimitProbe(made.mesh, {.reach_world = 0.01 * bounds(mesh).diagonal()}).at(samples.points);
+        double most = 0, squares = 0, count = 0;
+        for (std::size_t k = 0; k < samples.points.size(); ++k) {
+            if (!found.inside(k)) continue;
+            const double off = std::abs(found.fields[0].values[k] - samples.attributes[0].values[k]);
+            most = std::max(most, off);
+            squares += off * off;
+            count += 1;
+        }
+        EXPECT_EQ(made.report.samples, static_cast<std::size_t>(count));
+        EXPECT_LT(most, 1.01 * said.max + 1e-12) << seed;
+        EXPECT_NEAR(said.rms, std::sqrt(squares / count), 0.15 * said.rms) << seed;  // the matrix interpolates, as above
+        const auto [low, high] = std::ranges::minmax(samples.attributes[0].values);
+        std::vector<LimitQuery> places;
+        for (Index k = 0; k < 5000; ++k)
+            places.push_back({k % static_cast<Index>(mesh.cells.size()), {part(dice), part(dice), part(dice)}});
+        const LimitSamples limit = evaluate_limit(made.mesh, places);
+        const auto [least, greatest] = std::ranges::minmax(limit.attributes[0].values);
+        EXPECT_LT(std::max(low - least, greatest - high), 1.02 * said.beyond + 1e-3 * said.range) << seed;
+    }
 }
 
 TEST(Approximate, RefinesUntilTheSamplesAreMet) {
@@ -367,6 +512,7 @@ TEST(Approximator, FindsPlacesAnewWhereSamplesMoveOrAreOthers) {
     for (Vec3& x : moved.points) x.x += 0.3;  // some samples leave the box
     fewer.points.resize(fewer.points.size() / 2);
     fewer.attributes[0].values.resize(fewer.points.size());
+    fewer.cells.clear();  // which have points that are no longer there
     Approximator approximator(control);
     std::size_t placements = 0;
     for (const HexMesh& step : {still, moved, moved, fewer, still}) {

@@ -3,6 +3,7 @@
 
 #include <limits>
 
+#include "lib/temp_folder.h"
 #include "subvol/rasterize.h"
 #include "subvol/vdb_grid.h"
 #include "vdb/test_meshes.h"
@@ -39,6 +40,25 @@ TEST(GridValue, NothingFarAwayOrNowhere) {
     EXPECT_FALSE(grid.value(Vec3(1e300)));
     EXPECT_FALSE(grid.value(Vec3(-std::numeric_limits<double>::infinity())));
     EXPECT_FALSE(grid.value(Vec3(0.5, std::numeric_limits<double>::quiet_NaN(), 0.5)));
+}
+
+using LevelSetFile = TempFolder;
+
+// Inactive voxels of a level set have a side: inside the value is the background below zero, and not nothing.
+TEST_F(LevelSetFile, InsideIsTheBackgroundBelowZero) {
+    const HexMesh box = with_field(box_mesh(4), "f", [](const Vec3&) { return 1.0; });
+    const std::vector<std::string> fields{"f"};
+    const double voxel = 0.02, half_width = 3;
+    const std::vector<VdbGrid> grids = rasterize(
+        box, fields, {.voxel_size_world = voxel, .level_set = LevelSetOptions{.name = "sdf", .half_width_voxels = half_width}});
+    write_vdb(path("box.vdb"), grids);
+    for (const VdbGrid& grid : read_vdb(path("box.vdb"))) {
+        const bool distances = grid.report().name == "sdf";
+        EXPECT_NEAR(grid.report().outside, distances ? half_width * voxel : 0, 1e-7);
+        EXPECT_NEAR(*grid.value(Vec3(0.5)), distances ? -half_width * voxel : 1, 1e-6);
+        EXPECT_NEAR(*grid.value({0.5, 0.5, 0.97}), distances ? -0.03 : 1, 1e-3);
+        EXPECT_FALSE(grid.value({0.5, 0.5, 1.5}));
+    }
 }
 
 }  // namespace grid_value_test

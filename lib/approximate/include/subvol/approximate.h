@@ -17,9 +17,9 @@ namespace subvol {
 
 /// levels:     the limit at a sample is interpolated between its points on this level: 27 about each cell of the level before
 /// reach:      samples outside the volume, at most this part of the box's diagonal from it, count at the nearest place
-/// smoothing:  the weight of the differences along edges, in the usual weight of the samples about a control point; with 0 only
-///             control values that samples hardly decide have it
+/// smoothing:  the weight of the differences along edges, in the usual weight of the samples about a control point
 /// iterations: the most steps of the search, for each channel; it ends when it cannot make the sum of squares much smaller
+/// clamp:      control values beyond the range of the samples become its nearer end, as for densities that are not below 0
 /// refine:     the control mesh is refined up to so often where the samples are not met within `tolerance`: whole sheets of
 ///             its cells are split, across the directions in which the fields bend there
 /// tolerance:  the largest error that is good enough, as a part of the range of the samples
@@ -30,6 +30,7 @@ struct ApproximateOptions {
     double reach = 0.01;
     double smoothing = 0;
     int iterations = 200;
+    bool clamp = false;
     int refine = 0;
     double tolerance = 1e-3;
     OptionNames names = OptionNames::Keywords;
@@ -44,18 +45,29 @@ struct ApproximateOptions {
 /// rms, max: over all samples and channels; rms_boundary: over those in cells at the boundary
 /// max_at:   the sample where it is farthest
 /// range:    of the samples
+/// rms_between, max_between, max_between_at: at some thousand places between the samples, evenly spread: how far the limit is
+///           from the data's own field there, where the data is a mesh; of other data, from the value of the nearest sample,
+///           in which case it also has what the field changes on the way there
+/// beyond:   how far the limit leaves the range of the samples
 struct FieldError {
     std::string name;
     double rms = 0, rms_boundary = 0, max = 0, range = 0;
     Vec3 max_at{0.0};
+    double rms_between = 0, max_between = 0;
+    Vec3 max_between_at{0.0};
+    double beyond = 0;
 };
 
 /// samples:    that were used; outside: that lie beyond the reach; snapped: of the used ones, outside
+/// between:    places between the points of a mesh of data, where these are too few, at which its field is sampled too
 /// unseen:     control points without a sample in their cells: they continue what is around them
+/// undecided:  control points that samples hardly decide, the unseen ones included: no error is known there
 /// iterations: of the channel that took most; refined: how often the control mesh was
+/// continuous: the data is a mesh, whose fields are known between its points
 struct ApproximateReport {
-    std::size_t samples = 0, outside = 0, snapped = 0, unseen = 0;
+    std::size_t samples = 0, between = 0, outside = 0, snapped = 0, unseen = 0, undecided = 0;
     int iterations = 0, refined = 0;
+    bool continuous = false;
     std::vector<FieldError> fields;
 };
 
@@ -72,11 +84,15 @@ struct Approximation {
 
 /// Fits control values so that the limit is as near to samples as it can be: in the least squares sense, by conjugate gradients
 /// with the tables that make the limit and their transposes, from a start that continues the samples. A field that is a limit
-/// of the mesh already is found again.
+/// of the mesh already is found again. Values that samples leave open follow second differences, a continuation of those around
+/// them; those that samples hardly decide stay within a quarter of the range of what the nearest linear function leaves of the
+/// samples. A linear function of places is met everywhere.
 ///
 /// onto:    the control mesh; its attributes are not used
-/// samples: places and their fields, as points and attributes; cells are not used
-/// throws:  Error(InvalidInput) as `refine`, if no sample lies in the volume, if there is no field, or if an option is
+/// samples: places and their fields, as points and attributes. With cells the fields are known between the points too: where
+///          these are too few for the control mesh, more places are sampled
+/// throws:  Error(InvalidInput) as `refine`, of both meshes, if no sample lies in the volume, if there is no field, or if an
+/// option is
 ///          out of range
 /// cost:    time and memory grow with the samples and the cells that have any: 10⁵ control points and 8·10⁵ samples take some
 ///          15 CPU seconds and 0.8 GB, where most cells have neighbourhoods that are alike. Others take about 20 kB each with

@@ -17,6 +17,8 @@ namespace subvol {
 
 /// kind:     float, vector, integer, mask, or the name of another type
 /// min, max: of the active values; of a vector its length
+/// outside:  the value that stands for places where there is none: 0; of a level set the background, which is the largest
+///           distance that it has
 /// frame:    what named views show: the box of the mesh or the points that the grid was made of, which its file has; of other
 ///           grids, the box of the active voxels
 struct GridReport {
@@ -26,6 +28,7 @@ struct GridReport {
     double voxel_size_world = 0;
     std::size_t bytes = 0;  // of the tree in memory
     double min = 0, max = 0;
+    double outside = 0;
     Box bounds{};  // of the active voxels' centres, world; empty if there are none
     Box frame{};   // empty if there are no active voxels
 };
@@ -53,7 +56,8 @@ public:
     [[nodiscard]] const GridReport& report() const { return data_->report(); }
 
     /// Trilinear between the eight voxels about x; nothing where the voxel that contains x is inactive. Inactive neighbours are
-    /// ignored: the weights of the active ones are normalised. Nothing if the voxels are not floats.
+    /// ignored: the weights of the active ones are normalised. Nothing if the voxels are not floats. Inactive voxels of a level
+    /// set have values, the background with the sign of their side; there is nothing only where they lie outside.
     [[nodiscard]] std::optional<double> value(const Vec3& x) const { return data_->value(x); }
 
     /// The voxels, for a renderer; they share the grid's memory and may outlive it.
