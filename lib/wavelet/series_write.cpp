@@ -5,6 +5,8 @@
 #include <cmath>
 #include <map>
 #include <optional>
+#include <string_view>
+#include <utility>
 
 #include "output_file.h"
 #include "series_channels.h"
@@ -197,12 +199,16 @@ private:
         file_.write(packed);
     }
 
-    [[nodiscard]] const Attribute* attribute_of(const HexMesh& mesh, std::size_t array) const {
-        const SeriesArray& wanted = index_.arrays[array];
-        for (const Attribute& a : mesh.attributes) {
-            if (a.name == wanted.name && static_cast<std::size_t>(a.channels) == wanted.channels.size()) return &a;
+    /// For each array, points included, the attribute with its name and channels; null if the mesh has none.
+    [[nodiscard]] std::vector<const Attribute*> attributes_of(const HexMesh& mesh) const {
+        std::map<std::pair<std::string_view, std::size_t>, const Attribute*> known;
+        for (const Attribute& a : mesh.attributes) known.try_emplace({a.name, static_cast<std::size_t>(a.channels)}, &a);
+        std::vector<const Attribute*> found(index_.arrays.size(), nullptr);
+        for (std::size_t a = 1; a < found.size(); ++a) {
+            const auto at = known.find({index_.arrays[a].name, index_.arrays[a].channels.size()});
+            if (at != known.end()) found[a] = at->second;
         }
-        return nullptr;
+        return found;
     }
 
     /// The hash of what is written.
@@ -217,8 +223,9 @@ private:
         Bytes head;
         std::vector<Task> tasks;
         std::vector<const Attribute*> there;
+        const std::vector<const Attribute*> attributes = attributes_of(mesh);
         for (std::size_t a = 0; a < index_.arrays.size(); ++a) {
-            const Attribute* attribute = a == 0 ? nullptr : attribute_of(mesh, a);
+            const Attribute* attribute = attributes[a];
             const bool present = a == 0 || attribute != nullptr;
             head.byte(present ? 1 : 0);
             if (!present) {
