@@ -85,7 +85,7 @@ void add_facts(const DenseReport& dense, bool chosen_level, Facts& facts) {
     add_rays(dense.rays, dense.lost_rays, facts);
     if (chosen_level || dense.converged) return;
     const std::string level = " at level " + std::to_string(dense.levels) + ": --levels draws a finer one";
-    facts.warn(dense.error_px ? "the boundary lies about " + number_text(*dense.error_px) + " pixels and colours about " +
+    facts.warn(dense.error_px ? "the boundary and jumps of colours lie about " + number_text(*dense.error_px) + " pixels and colours about " +
                                     number_text(dense.error_color.value_or(0)) + " from the limit" + level
                               : "the picture still changes by " + number_text(dense.image_change.value_or(0)) + level);
 }
