@@ -103,6 +103,7 @@ Vec3 PictureArguments::background_color() const {
 PictureSize PictureArguments::size_of_body() const {
     PictureSize size = eye.size;
     (legend_style.side == LegendSide::Right ? size.width : size.height) -= legend_px;
+    size.height -= caption_px;
     return size;
 }
 
@@ -188,12 +189,13 @@ void PictureArguments::check() const {
 LegendOptions PictureArguments::legend_options(const ShownField& field, const ShownField& colors) const {
     const Range range = shown_range(choices, colors.range, OptionNames::Flags);
     const std::string& known = unit.empty() ? colors.unit : unit;
-    LegendOptions options{.title = colors.name + (known.empty() ? "" : " [" + known + "]"),
+    LegendOptions options{.title = legend_title(colors.name, known),
                           .min = range.min,
                           .max = range.max,
                           .shape = color_shape(choices, OptionNames::Flags)};
     options.note = legend_note;
     options.names = legend_names;
+    if (choices.colors == "categories") name_categories(options, colors.categories);
     options.format = legend_format.value_or("");
     if (field.name != colors.name) {
         const Range opacities = shown_range(choices, field.range, OptionNames::Flags);

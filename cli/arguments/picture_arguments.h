@@ -31,6 +31,7 @@ struct ShownField {
     std::string name;
     Range range;
     std::string unit = {};
+    std::vector<double> categories = {};  // the different values of integers; none: others, or too many
 };
 
 /// The box of the points that are not transparent; the pawn, for example, fills only a small part of its block.
@@ -46,12 +47,13 @@ struct PictureArguments {
     Look look = Look::Volume;                  // as settled
     std::optional<std::string> legend;         // the file; empty: inside the picture
     int legend_px = 0;                         // the columns or rows of a legend inside the picture, as settled
+    int caption_px = 0;                        // the rows above the body for the title and the time, as settled
     LegendStyle legend_style;                  // without its ink
     std::optional<std::string> legend_format;  // of its ticks; else as many digits as they need
     std::string unit;                          // of the field that the legend shows
     std::string legend_note;                   // what the legend says besides, as settled
     std::vector<std::string> legend_names;     // of the values 1, 2, …, as settled; empty: the legend has a colour bar
-    std::string title;                         // above the picture
+    std::string title;                         // above the body
     bool time_label = false;                   // the time of the step below it
     bool axes = false, edges = false, scale_bar = false, extremes = false;
     std::optional<std::string> background;

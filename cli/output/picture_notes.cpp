@@ -8,27 +8,36 @@
 
 #include "subvol/detail/coverage.h"
 #include "subvol/detail/number_text.h"
+#include "subvol/detail/printable.h"
 #include "subvol/error.h"
 #include "subvol/overlay.h"
+#include "subvol/raster.h"
 #include "subvol/shell_scene.h"
+#include "text.h"
 
 namespace subvol::cli {
 namespace {
 
 constexpr double kDarkInk = 0.012, kLightInk = 0.85;  // linear
 
-/// Copies a picture into a larger one, transparent at its right and below.
-Picture extended(const Picture& from, int width, int height) {
-    Picture to{Image(width, height), {}};
-    if (!from.depth.empty()) to.depth.assign(to.image.rgba.size() / 4, std::numeric_limits<float>::infinity());
-    const auto columns = static_cast<std::size_t>(from.image.width);
+/// Puts a picture into a larger one, which is transparent around it. top: the rows above it
+Picture extended(const Picture& from, int top, int width, int height) {
+    Picture to{padded(from.image, 0, top, width, height), {}};
+    if (from.depth.empty()) return to;
+    to.depth.assign(to.image.rgba.size() / 4, std::numeric_limits<float>::infinity());
     for (int y = 0; y < from.image.height; ++y) {
-        const auto row = static_cast<std::size_t>(y), to_row = row * static_cast<std::size_t>(width);
-        std::copy_n(from.image.rgba.data() + 4 * row * columns, 4 * columns, to.image.rgba.data() + 4 * to_row);
-        if (from.depth.empty()) continue;
-        std::copy_n(from.depth.data() + row * columns, columns, to.depth.data() + to_row);
+        std::copy_n(from.depth.data() + pixel_index(from.image.width, 0, y), from.image.width,
+                    to.depth.data() + pixel_index(width, 0, top + y));
     }
     return to;
+}
+
+double caption_letter(int width, int height) {
+    return std::clamp(std::min(width, height) / 30.0, 9.0, 140.0);
+}
+
+double caption_base(std::size_t line, double letter) {
+    return (1.5 + 1.4 * static_cast<double>(line)) * letter;
 }
 
 /// Whether the picture shows something before a place; without depths nobody knows.
@@ -117,40 +126,60 @@ void PictureNotes::draw_over(Picture& picture, const View& view, const DrawnLine
         const Vec3 at = view.to_eye(mark.place);
         if (view.perspective() && !(at.z > 0)) continue;
         const Vec2 place = view.to_pixels(at);
-        const double size = std::clamp(picture.image.height / 34.0, 9.0, 100.0);
+        const double size = std::clamp(std::min(picture.image.width, picture.image.height) / 34.0, 9.0, 100.0);
         draw_mark(picture.image, place, mark.text, size, ink, paper, is_hidden(picture, at.z, place));
     }
     if (!axes && !scale_at) return;
     draw(picture.image, [&](Image& image) {
         if (axes) draw_axes(image, view, ink);
-        if (scale_at) draw_scale_bar(image, view, *scale_at, ink);
+        if (scale_at) {
+            // Both at the lower edge need room side by side: the bar has a quarter of the width, and its letters.
+            const Vec2 corner = axes_extent_px(image.width, image.height);
+            const bool above = axes && corner.x > 0.65 * image.width;
+            draw_scale_bar(image, view, *scale_at, ink, above ? corner.y : 0);
+        }
     });
 }
 
 void PictureNotes::name_view(Picture& picture, const std::string& name) const {
-    const double letter = std::clamp(picture.image.height / 24.0, 9.0, 70.0);
+    const double letter = std::clamp(std::min(picture.image.width, picture.image.height) / 24.0, 9.0, 70.0);
     draw(picture.image, [&](Image& image) {
         draw_text(image, {0.7 * letter, 1.4 * letter}, name, {.size_px = letter, .color = ink});
     });
 }
 
-void PictureNotes::add_legend(Picture& picture) const {
-    const double letter = std::clamp(picture.image.height / 30.0, 9.0, 140.0);
+void PictureNotes::add_margins(Picture& picture) const {
+    const int width = picture.image.width, height = picture.image.height;
+    const bool right = legend_style.side == LegendSide::Right;
+    const int columns = legend && right ? legend_px : 0, rows = legend && !right ? legend_px : 0;
+    if (!caption.empty() || legend) picture = extended(picture, caption_px, width + columns, caption_px + height + rows);
+    const double letter = caption_letter(picture.image.width, picture.image.height);
     draw(picture.image, [&](Image& image) {
         for (std::size_t line = 0; line < caption.size(); ++line) {
-            draw_text(image, {0.9 * letter, (1.5 + 1.4 * static_cast<double>(line)) * letter}, caption[line],
+            draw_text(image, {0.9 * letter, caption_base(line, letter)}, cut_text(caption[line], letter, width - 1.8 * letter),
                       {.size_px = letter, .color = ink});
         }
     });
     if (!legend) return;
-    const bool right = legend_style.side == LegendSide::Right;
-    picture = extended(picture, picture.image.width + (right ? legend_px : 0), picture.image.height + (right ? 0 : legend_px));
     LegendStyle style = legend_style;
     style.ink = ink;
     draw(picture.image, [&](Image& image) { draw_legend(image, function, *legend, style, legend_height); });
 }
 
-PictureNotes make_notes(PictureArguments& arguments, const ShownColors& colors, const HexMesh* mesh) {
+void warn_of_boxes(std::span<const std::string> texts, Facts& facts) {
+    std::vector<std::string> missing = missing_letters(texts);
+    if (missing.empty()) return;
+    constexpr std::size_t kMost = 20;
+    const std::size_t more = missing.size() > kMost ? missing.size() - kMost : 0;
+    missing.resize(missing.size() - more);
+    std::string list;
+    for (const std::string& letter : missing) list += (list.empty() ? "" : " ") + detail::printable(letter);
+    if (more > 0) list += text(" and ", more, " more");
+    facts.warn("boxes stand for letters that pictures have no outlines of: " + list +
+               " (Latin, Greek and Cyrillic letters and the signs of physics are there)");
+}
+
+PictureNotes make_notes(PictureArguments& arguments, const ShownColors& colors, const HexMesh* mesh, Facts& facts) {
     const LegendOptions& legend = colors.legend;
     const Vec3 behind = arguments.background_color();
     PictureNotes notes{.axes = arguments.axes, .function = colors.optics.function()};
@@ -168,22 +197,37 @@ PictureNotes make_notes(PictureArguments& arguments, const ShownColors& colors, 
             throw Error(ErrorCode::InvalidInput, "the input has no steps with times", "--time-label", "--title");
         notes.caption.push_back("t = " + detail::number_text(*mesh->time, 4));
     }
+    std::vector<std::string> texts = notes.caption;
+    const auto [whole_width, whole_height] = arguments.eye.size;
+    if (!notes.caption.empty()) {
+        const double letter = caption_letter(whole_width, whole_height);
+        const int parts = std::max(1, arguments.sheet_rows());
+        notes.caption_px = static_cast<int>(std::ceil(caption_base(notes.caption.size() - 1, letter) + 0.5 * letter));
+        notes.caption_px += (whole_height - notes.caption_px) % parts;  // each of the parts gets as many rows
+    }
     if (arguments.legend_inside()) {
         notes.legend = legend;
-        const auto [width, height] = arguments.eye.size;
         notes.legend_style = arguments.legend_style;
-        notes.legend_height = height;
-        notes.legend_px = legend_extent_px(notes.function, legend, arguments.legend_style, height);
+        notes.legend_style.width = whole_width;
+        notes.legend_height = whole_height;
+        notes.legend_px = legend_extent_px(notes.function, legend, notes.legend_style, whole_height);
         const bool right = arguments.legend_style.side == LegendSide::Right;
         const int parts = right ? std::max(1, arguments.sheet_columns()) : std::max(1, arguments.sheet_rows());
-        const int whole = right ? width : height;  // each of the parts gets as many columns or rows
+        const int whole = right ? whole_width : whole_height - notes.caption_px;
         notes.legend_px += (whole - notes.legend_px) % parts;
         if (whole - notes.legend_px < whole / 3) {
             throw Error(ErrorCode::InvalidInput, "leaves no room for the picture", "--legend",
                         "a larger --size, or --legend FILE.svg");
         }
         arguments.legend_px = notes.legend_px;
+        texts.insert(texts.end(), {legend.title, legend.opacity_title, legend.note});
+        texts.insert(texts.end(), legend.names.begin(), legend.names.end());
     }
+    arguments.caption_px = notes.caption_px;
+    if (whole_height - notes.caption_px < whole_height / 3)
+        throw Error(ErrorCode::InvalidInput, "leaves no room for the picture",
+                    arguments.title.empty() ? "--time-label" : "--title", "a larger --size");
+    warn_of_boxes(texts, facts);
     return notes;
 }
 

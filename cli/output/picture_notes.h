@@ -4,6 +4,8 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
+#include <string>
 #include <vector>
 
 #include "picture_arguments.h"
@@ -52,12 +54,13 @@ struct PictureNotes {
     std::shared_ptr<const ShellScene> flow{};  // streamlines and arrows
     Vec3 ink{0.0}, paper{1.0};
     bool rim = false;                    // of paper around all notes, as nobody knows the page behind them
-    std::vector<std::string> caption{};  // lines in the upper left corner
+    std::vector<std::string> caption{};  // lines above the body
+    int caption_px = 0;                  // their rows
     TransferFunction function{};
     std::optional<LegendOptions> legend{};
     LegendStyle legend_style{};
     int legend_px = 0;      // its columns or rows
-    int legend_height = 0;  // of the whole picture, by which its letters go
+    int legend_height = 0;  // of the whole picture, by which its letters go with the width in the style
 
     /// The view of the volume, whose rays end at streamlines, arrows, and shells in a transparent body.
     [[nodiscard]] View view_of_volume(const View& view) const;
@@ -69,19 +72,24 @@ struct PictureNotes {
     void draw_over(Picture& picture, const View& view, const DrawnLines& lines) const;
     /// Writes the name of a view into its upper left corner.
     void name_view(Picture& picture, const std::string& name) const;
-    /// Draws the caption. Makes room at the right or below for the legend, and draws it.
-    void add_legend(Picture& picture) const;
+    /// Makes room above the body for the caption and beside it for the legend, and draws them.
+    void add_margins(Picture& picture) const;
 
 private:
     /// Draws notes, with their rim if they have one.
     void draw(Image& image, const std::function<void(Image&)>& notes) const;
 };
 
-/// The notes that the arguments ask for. The legend's width is taken off the views that `arguments.make_views` makes from then
-/// on.
+/// The notes that the arguments ask for. The room for legend and caption is taken off the views that `arguments.make_views`
+/// makes from then on.
 ///
-/// mesh: the control mesh, which the notes refer to; null: there is none
-/// throws: Error(InvalidInput) if it is needed for edges or its time for a label
-[[nodiscard]] PictureNotes make_notes(PictureArguments& arguments, const ShownColors& colors, const HexMesh* mesh);
+/// mesh:   the control mesh, which the notes refer to; null: there is none
+/// facts:  get a warning that names the letters that cannot be drawn
+/// throws: Error(InvalidInput) if the mesh is needed for edges or its time for a label, or there is no room
+[[nodiscard]] PictureNotes make_notes(PictureArguments& arguments, const ShownColors& colors, const HexMesh* mesh,
+                                      Facts& facts);
+
+/// Warns of letters in these texts for which there are boxes in pictures.
+void warn_of_boxes(std::span<const std::string> texts, Facts& facts);
 
 }  // namespace subvol::cli

@@ -129,8 +129,8 @@ Facts PictureOutput::write_sheet(const std::vector<View>& views, const DrawPictu
     if (silent_) return facts;
     if (is_png) warn_if_blank(blank, opacity_, facts);
     const detail::Stopwatch watch;
-    notes_.add_legend(sheet);
-    write_frame(0, sheet, {});
+    notes_.add_margins(sheet);
+    write_frame(0, sheet, rows * height, {});
     facts.add_seconds("write", watch.seconds());
     return facts;
 }
@@ -163,9 +163,9 @@ Facts PictureOutput::write(const std::vector<View>& views, const DrawPicture& dr
         }
         const detail::Stopwatch watch;
         notes_.draw_over(picture, view, within);
-        notes_.add_legend(picture);
-        const bool alone = picture.image.width == view.width();  // without a legend beside it
-        write_frame(written_++, picture, alone ? camera_text(view.camera()) : std::string());
+        notes_.add_margins(picture);
+        const bool alone = picture.image.width == view.width() && picture.image.height == view.height();  // without margins
+        write_frame(written_++, picture, view.height(), alone ? camera_text(view.camera()) : std::string());
         facts.add_seconds("write", watch.seconds());
     }
     return facts;
@@ -205,20 +205,22 @@ std::filesystem::path PictureOutput::frame_path(std::size_t frame) const {
                                   std::string(digits - number.size(), '0') + number + path_.extension().string());
 }
 
-void PictureOutput::write_frame(std::size_t frame, const Picture& picture, const std::string& camera) {
+void PictureOutput::write_frame(std::size_t frame, const Picture& picture, int body_rows, const std::string& camera) {
     if (video_) {
         video_->write(srgb_bytes(picture.image, background_));
     } else if (share_ && !frames_) {
-        write_rows(picture, camera);
+        write_rows(picture, body_rows, camera);
     } else {
         write_image(frame_path(frame), picture.image, transparent_ ? std::nullopt : std::optional(background_), picture.depth,
                     camera);
     }
 }
 
-void PictureOutput::write_rows(const Picture& picture, const std::string& camera) {
+void PictureOutput::write_rows(const Picture& picture, int body_rows, const std::string& camera) {
     const Image& image = picture.image;
-    const PixelRows rows = rows_of(*share_, image.height);
+    PixelRows rows = rows_of(*share_, body_rows);  // of the body; the first and the last share have the margins, too
+    rows.first = share_->number == 1 ? 0 : rows.first + notes_.caption_px;
+    rows.end = share_->number == share_->count ? image.height : rows.end + notes_.caption_px;
     note_.range = {static_cast<std::uint64_t>(rows.first), static_cast<std::uint64_t>(rows.end),
                    static_cast<std::uint64_t>(image.height)};
     note_.how = {{"first_row", rows.first},

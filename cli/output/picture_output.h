@@ -57,8 +57,8 @@ public:
 private:
     [[nodiscard]] std::filesystem::path frame_path(std::size_t frame) const;
     Facts write_sheet(const std::vector<View>& views, const DrawPicture& draw, Progress* progress);
-    void write_frame(std::size_t frame, const Picture& picture, const std::string& camera);
-    void write_rows(const Picture& picture, const std::string& camera);
+    void write_frame(std::size_t frame, const Picture& picture, int body_rows, const std::string& camera);
+    void write_rows(const Picture& picture, int body_rows, const std::string& camera);
 
     std::filesystem::path path_;
     std::optional<int> frames_;

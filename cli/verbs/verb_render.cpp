@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <iterator>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -123,7 +124,8 @@ WithFacts<ShownBody> load_shown_body(const std::string& input, const CommonOptio
         check_points(mesh->points);
         check_points(shown.body.shells.points);
         const std::string& colors = mesh->attributes.back().name;
-        shown.colors = {colors, shown.body.range(colors), unit_of(shown.body.of_file, colors)};
+        shown.colors = {colors, shown.body.range(colors), unit_of(shown.body.of_file, colors),
+                        categories_of(mesh->attributes.back().values)};
         if (!shown.body.opacities.empty()) {  // colours and views are those of the whole
             const Shells parts = with_fields_of(shown.body.shells, *mesh);
             shown.field.range = with_values(shown.field.range, parts.attributes.front().values);
@@ -141,7 +143,7 @@ WithFacts<ShownBody> load_shown_body(const std::string& input, const CommonOptio
 PictureNotes make_notes(const ShownBody& shown, const ShownColors& colors, RenderArguments& arguments,
                         const StreamArguments& streams, Progress* progress, Facts& facts) {
     const MeshSource source = shown.body.source();
-    PictureNotes notes = make_notes(arguments.picture, colors, source.mesh());
+    PictureNotes notes = make_notes(arguments.picture, colors, source.mesh(), facts);
     notes.clip = arguments.clip;
     const bool transparent = arguments.picture.look != Look::Solid || arguments.picture.choices.opacity;
     const bool ends_rays = arguments.method != Method::Footprints;  // else lines lie before or behind the whole
@@ -167,7 +169,11 @@ PictureNotes make_notes(const ShownBody& shown, const ShownColors& colors, Rende
 }
 
 ShownField united(const ShownField& a, const ShownField& b) {
-    return {b.name, {std::min(a.range.min, b.range.min), std::max(a.range.max, b.range.max)}, b.unit};
+    std::vector<double> categories;
+    if (!a.categories.empty() && !b.categories.empty())
+        std::set_union(a.categories.begin(), a.categories.end(), b.categories.begin(), b.categories.end(),
+                       std::back_inserter(categories));
+    return {b.name, {std::min(a.range.min, b.range.min), std::max(a.range.max, b.range.max)}, b.unit, std::move(categories)};
 }
 
 class RenderVerb : public Verb {
@@ -198,8 +204,8 @@ public:
         add_part_opacities(
             "of a solid: the opacity of the surface of a set of cells or of a region as of --only, 0 to 1; 0 leaves it out "
             "(repeatable)");
-        app().add_option("--title", picture_.title, "a line of text in the upper left corner")->type_name("TEXT");
-        app().add_flag("--time-label", picture_.time_label, "draw the time of the step in the upper left corner");
+        app().add_option("--title", picture_.title, "a line of text above the body")->type_name("TEXT");
+        app().add_flag("--time-label", picture_.time_label, "draw the time of the step above the body");
         share_.add_to(app(), "rows of the picture, or some of the frames");
         set_essentials({"--output", "--field", "--look", "--tf", "--opacity", "--background", "--size", "--view", "--views",
                         "--camera", "--turntable", "--legend", "--per-edge", "--method", "--levels", "--json"});
@@ -374,7 +380,9 @@ private:
 
     /// The pictures of a body without notes of its own, framed by its box.
     void write(PictureBody body, const ShownColors& shown, PictureOutput& output, Report& report) {
-        set_notes(make_notes(picture_, shown, nullptr), output);
+        Facts facts;
+        set_notes(make_notes(picture_, shown, nullptr, facts), output);
+        report.merge(facts);
         PictureMaker maker = maker_of(std::move(body), report);
         const std::vector<Vec3> framed = framed_points(maker, shown.optics, report);
         write(maker, picture_.make_views(box_, framed), shown.optics, output, report);

@@ -11,6 +11,7 @@
 #include "options.h"
 #include "outputs.h"
 #include "picture_arguments.h"
+#include "picture_notes.h"
 #include "places_input.h"
 #include "refine_arguments.h"
 #include "subvol/color_name.h"
@@ -114,7 +115,8 @@ private:
         const TetRefinement tets(scheme_);
         report["input"] = input_;
         BodyInput body = report.unpack(open_body(input_, common(), app(), report.progress()));
-        (void)report.unpack(body.select(common(), OtherFields::Drop));
+        const std::string field = report.unpack(body.select(common(), OtherFields::Drop));
+        known_unit_ = unit_of(body.of_file, field);
         report.merge(body.refine(tets, 2, report.progress()));
         const MeshSource source = body.source();
         const Vec3 center = source.bounds().center();
@@ -130,7 +132,7 @@ private:
         TransferFunction function = shaped(find_transfer_function(function_, range), shape);
         function.opacity = {{range.min, 1}, {range.max, 1}};  // a slice is opaque
         const bool png = output_.ends_with(".png");
-        const LegendOptions legend{.title = slice.field + (unit_.empty() ? "" : " (" + unit_ + ")"),
+        const LegendOptions legend{.title = legend_title(slice.field, unit_.empty() ? known_unit_ : unit_),
                                    .min = range.min,
                                    .max = range.max,
                                    .shape = shape};
@@ -141,13 +143,17 @@ private:
         const PictureScale up = scale_of(-slice.down, slice.place(0, slice.height - 0.5), slice.height, point, "t");
         const PlotMargins margins = axes_ ? plot_margins_px(slice.height, up) : PlotMargins{};
         int extra = 0;
+        const int width = margins.left + slice.width + margins.right;
         int height = slice.height + margins.top + margins.bottom;
         if (png && !no_legend_) {
             height = std::max(height, kLeastLegend_px);
-            extra = legend_width_px(function, legend, height);
+            extra = legend_width_px(function, legend, height, width);
+            Facts facts;
+            warn_of_boxes(std::array{legend.title}, facts);
+            report.merge(facts);
         }
         const int left = margins.left;
-        Image image(left + slice.width + margins.right + extra, height);
+        Image image(width, height);
         const int top = margins.top + (height - slice.height - margins.top - margins.bottom) / 2;
         for (int row = 0; row < slice.height; ++row) {
             for (int column = 0; column < slice.width; ++column) {
@@ -173,7 +179,10 @@ private:
         if (contour_labels_) label_lines(image, lines, Vec2(0.5 + left, 0.5 + top), letter);
         if (axes_) draw_scales(image, {left, top, slice.width, slice.height}, across, up, ink);
         if (extremes_) mark_extremes(image, slice, Vec2(0.5 + left, 0.5 + top), letter, report);
-        if (extra > 0) draw_legend(image, function, legend, ink);
+        if (extra > 0) {
+            image = padded(image, 0, 0, width + extra, height);
+            draw_legend(image, function, legend, ink, width);
+        }
         report.timed("write", [&] { write_image(output_, image, background); });
     }
 
@@ -249,7 +258,7 @@ private:
     }
 
     static constexpr int kLeastLegend_px = 200;
-    std::string input_, output_, plane_, function_ = "viridis", background_ = "white", unit_;
+    std::string input_, output_, plane_, function_ = "viridis", background_ = "white", unit_, known_unit_;
     std::optional<std::string> range_;
     SliceOptions options_;
     LookChoices choices_;  // the shape of the colours alone

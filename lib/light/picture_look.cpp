@@ -17,10 +17,11 @@ namespace {
 
 constexpr double kIsosurfaceHalfWidth = 0.01, kIsosurfaceOpacity = 0.9;  // the width as a part of the range
 constexpr double kOpacityUnitsPerDiagonal = 100;
-constexpr double kFaint = 0.02;                 // of the largest opacity: what has less is not framed
-constexpr double kAlmostWhole = 0.8;            // of the box's diagonal
-constexpr double kSolidUnitsPerDiagonal = 1e6;  // all light ends far within a pixel
-const Vec3 kPlainColor(0.72, 0.76, 0.82);       // of a body without a field, sRGB
+constexpr double kXrayOpacity = 0.5, kXrayUnitsPerDiagonal = 4;  // of a body without a field: one sees how thick it is
+constexpr double kFaint = 0.02;                                  // of the largest opacity: what has less is not framed
+constexpr double kAlmostWhole = 0.8;                             // of the box's diagonal
+constexpr double kSolidUnitsPerDiagonal = 1e6;                   // all light ends far within a pixel
+const Vec3 kPlainColor(0.72, 0.76, 0.82);                        // of a body without a field, sRGB
 
 /// The largest opacity of the values from low to high.
 double largest_alpha(const TransferFunction& function, double low, double high) {
@@ -110,7 +111,9 @@ std::vector<Option> options_of(LookChoices& choices) {
                 "a ParaView colour-map JSON file (FILE.json:NAME for one of several in it)"),
         Option("opacity-unit", choices.opacity_unit_world)
             .positive()
-            .help("D", "the world distance over which an opacity acts (default: 1/100 of the bounding box's diagonal)"),
+            .help("D",
+                  "the world distance over which an opacity acts (default: 1/100 of the bounding box's diagonal; 1/4 for xray "
+                  "of a body without a field)"),
         Option("clamp", choices.clamp)
             .help("show values beyond the field's range, where interpolating schemes overshoot, as its ends"),
         Option("range", choices.range)
@@ -246,6 +249,12 @@ Optics picture_optics(TransferFunction function, const LookOptions& options, con
                       const ValueRange& colors, bool plain) {
     function = shaped(function, options.shape);
     if (options.look == Look::Solid) make_solid(function, plain && !(colors.min < colors.max));
+    const bool shadow = options.look == Look::Xray && !(field.min < field.max);
+    if (shadow) {
+        for (auto& knot : function.opacity) knot.alpha = kXrayOpacity;
+        const Vec3 darkest = function.color.back().rgb;
+        for (auto& knot : function.color) knot.rgb = plain ? darkest : knot.rgb;
+    }
     if (!options.opacity.empty()) function.opacity = options.opacity;
     if (options.clamp || field.bounded || colors.bounded) {
         TransferFunction kept = function;
@@ -253,7 +262,8 @@ Optics picture_optics(TransferFunction function, const LookOptions& options, con
         if (options.clamp || colors.bounded) kept.color = clamped(function, colors.min, colors.max).color;
         function = std::move(kept);
     }
-    return {std::move(function), options.opacity_unit_world.value_or(opacity_unit_of(options.look, box))};
+    const double unit = shadow ? box.diagonal() / kXrayUnitsPerDiagonal : opacity_unit_of(options.look, box);
+    return {std::move(function), options.opacity_unit_world.value_or(unit)};
 }
 
 std::vector<Vec3> framed_points(const MeshSource& source, Look look, const Optics& optics, Progress* progress) {

@@ -142,7 +142,7 @@ private:
                     {"y", number(top)},
                     {"width", "14"},
                     {"height", "14"},
-                    {"fill", hex(color_at(function_, options_.min + static_cast<double>(i)))},
+                    {"fill", hex(color_at(function_, options_.value_of(i)))},
                     {"stroke", kInk}});
             append_text(svg, kLeft + 22, top + 12, "start", options_.names[i]);
         }
@@ -212,6 +212,30 @@ private:
 };
 
 }  // namespace
+
+std::string legend_title(const std::string& field, const std::string& unit) {
+    return unit.empty() ? field : field + " [" + unit + "]";
+}
+
+std::vector<double> categories_of(std::span<const double> values) {
+    constexpr std::size_t kMost = 1000;
+    std::set<double> found;
+    for (const double value : values) {
+        if (value != std::round(value)) return {};
+        found.insert(value);
+        if (found.size() > kMost) return {};
+    }
+    return {found.begin(), found.end()};
+}
+
+void name_categories(LegendOptions& options, std::span<const double> categories) {
+    if (!options.names.empty()) return;
+    for (const double value : categories) {
+        if (value < options.min || value > options.max) continue;
+        options.values.push_back(value);
+        options.names.push_back(number_text(value));
+    }
+}
 
 bool is_tick_format(const std::string& format) {
     const std::size_t percent = format.find('%');

@@ -16,8 +16,9 @@ namespace subvol {
 using namespace detail;
 namespace {
 
-constexpr double kMostOfHeight = 0.45;  // a longer title is cut off
-constexpr double kNameRow = 1.7;        // of a category, in letters
+constexpr double kMostOfSide = 0.45;  // a longer title is cut off
+constexpr double kLeastLetter_px = 8;
+constexpr double kNameRow = 1.7;  // of a category, in letters
 
 /// A legend without a bar has names: of categories, or the value of a constant field.
 LegendOptions with_names(LegendOptions options) {
@@ -39,13 +40,14 @@ public:
           colors_(usable_range(options.min, options.max)),
           opacities_(options.opacity_title.empty() ? colors_ : usable_range(options.opacity_min, options.opacity_max)),
           height_(height),
-          letter_(style.size * std::clamp(height / 40.0, 8.0, 120.0)),
+          shorter_(style.width > 0 ? std::min(style.width, height) : height),
+          letter_(std::max(kLeastLetter_px, style.size * std::clamp(shorter_ / 40, kLeastLetter_px, 120.0))),
           ink_(style.ink) {
         validate(function);
     }
 
     [[nodiscard]] int width() const {
-        const double most = kMostOfHeight * height_;
+        const double most = kMostOfSide * shorter_;
         if (!options_.names.empty()) return static_cast<int>(std::ceil(std::min(names_width(), most) + 2 * margin()));
         const double titles = std::max(
             {title_width(options_.title), title_width(options_.note), apart() ? title_width(options_.opacity_title) : 0.0});
@@ -80,7 +82,7 @@ public:
             for (int y = static_cast<int>(y0); y < static_cast<int>(y1); ++y) put_inside(x, y, color);
         }
         draw_frame(static_cast<int>(left), static_cast<int>(y0), static_cast<int>(right), static_cast<int>(y1));
-        for (const auto& [value, label] : ticks(colors_)) {
+        for (const auto& [value, label] : side_by_side(ticks(colors_), right - left)) {
             const double x = left + part_of(colors_, value) * (right - left);
             line({x, y1}, {x, y1 + 0.4 * letter_}, 1);
             const double half = 0.5 * text_width_px(label, letter_);
@@ -116,6 +118,16 @@ private:
     [[nodiscard]] std::vector<Tick> ticks(const KnotRange& range) const {
         return formatted(bar_ticks(options_.shape, range.min, range.max, apart() ? 5 : 8), options_.format);
     }
+    /// Every n-th tick, so that there is room for the labels of all that are left.
+    [[nodiscard]] std::vector<Tick> side_by_side(const std::vector<Tick>& ticks, double room) const {
+        double widest = 0;
+        for (const Tick& tick : ticks) widest = std::max(widest, text_width_px(tick.label, letter_));
+        const double needed = (widest + 0.5 * letter_) * static_cast<double>(ticks.size() - 1);
+        const auto step = static_cast<std::size_t>(std::clamp(std::ceil(needed / room), 1.0, 1e6));
+        std::vector<Tick> kept;
+        for (std::size_t i = 0; i < ticks.size(); i += step) kept.push_back(ticks[i]);
+        return kept;
+    }
     [[nodiscard]] double labels_width(const KnotRange& range) const {
         double width = 0;
         for (const auto& [value, label] : ticks(range)) width = std::max(width, text_width_px(label, letter_));
@@ -129,15 +141,8 @@ private:
     void draw_title(const std::string& title, double base) const { write_within({left_, base}, title, 1.08); }
 
     /// Writes a text up to the picture's edge.
-    void write_within(const Vec2& place, std::string text, double size) const {
-        const double room = image_->width - place.x - 0.3 * margin();
-        const auto width = [&](const std::string& t) { return text_width_px(t, size * letter_); };
-        if (width(text) > room) {
-            while (!text.empty() && width(text + "…") > room) text.pop_back();
-            while (!text.empty() && (static_cast<unsigned char>(text.back()) & 0xc0U) == 0x80) text.pop_back();
-            text += "…";
-        }
-        write(place, text, TextAnchor::Start, size);
+    void write_within(const Vec2& place, const std::string& text, double size) const {
+        write(place, cut_text(text, size * letter_, image_->width - place.x - 0.3 * margin()), TextAnchor::Start, size);
     }
 
     [[nodiscard]] double names_width() const {
@@ -155,7 +160,7 @@ private:
         const std::size_t count = options_.names.size(), shown = count <= rows ? count : rows - 1;
         for (std::size_t i = 0; i < shown; ++i) {
             const double y = top + static_cast<double>(i) * row;
-            const Vec3 color = color_at(function_, options_.min + static_cast<double>(i));
+            const Vec3 color = color_at(function_, options_.value_of(i));
             draw_swatch(left_, y, color);
             write_within({left_ + row, y + 0.92 * letter_}, options_.names[i], 1);
         }
@@ -174,7 +179,7 @@ private:
             const double width = row + text_width_px(options_.names[i], letter_) + letter_;
             if (x + width + (last ? 0 : 6 * letter_) > image_->width)
                 return write({x, base}, "and " + std::to_string(options_.names.size() - i) + " more");
-            draw_swatch(x, y, color_at(function_, options_.min + static_cast<double>(i)));
+            draw_swatch(x, y, color_at(function_, options_.value_of(i)));
             write({x + row, base}, options_.names[i]);
             x += width;
         }
@@ -264,22 +269,32 @@ private:
         values.push_back(range.max);
         for (std::size_t i = 0; i + 1 < values.size(); ++i) line(place(values[i]), place(values[i + 1]), 1.6);
         line({right, top}, {right, bottom}, 1);
-        write({right - width, bottom + 1.2 * letter_}, "1", TextAnchor::Middle, 0.8);
-        write({right, bottom + 1.2 * letter_}, "0", TextAnchor::Middle, 0.8);
-        write({right - 0.5 * width, bottom + 2 * letter_}, "opacity", TextAnchor::Middle, 0.8);
+        const double size = std::max(0.8, kLeastLetter_px / letter_);
+        write({right - width, bottom + 1.2 * letter_}, "1", TextAnchor::Middle, size);
+        write({right, bottom + 1.2 * letter_}, "0", TextAnchor::Middle, size);
+        write({right - 0.5 * width, bottom + 2 * letter_}, "opacity", TextAnchor::Middle, size);
         if (apart()) draw_ticks(right, top, bottom, range);
     }
 
     const TransferFunction& function_;
     LegendOptions options_;
     KnotRange colors_, opacities_;
-    double height_, letter_;
+    double height_, shorter_, letter_;
     Image* image_ = nullptr;
     Vec3 ink_{0.0};
     double left_ = 0;
 };
 
 }  // namespace
+
+Image padded(const Image& image, int left, int top, int width, int height) {
+    Image all(width, height);
+    for (int y = 0; y < image.height; ++y) {
+        const float* const row = image.rgba.data() + 4 * pixel_index(image.width, 0, y);
+        std::copy_n(row, 4 * static_cast<std::size_t>(image.width), all.pixel(left, top + y).data());
+    }
+    return all;
+}
 
 int legend_extent_px(const TransferFunction& function, const LegendOptions& options, const LegendStyle& style, int height) {
     const LegendPainter painter(function, options, style, height);

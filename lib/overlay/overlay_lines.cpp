@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
 #include <map>
 #include <sstream>
@@ -29,7 +30,7 @@ struct Glyph {
 
 /// The glyphs of a text in UTF-8, each with the place where it starts on the base line, in ems.
 struct PlacedGlyph {
-    const Glyph* glyph;
+    Glyph glyph;
     double start;
 };
 
@@ -68,26 +69,43 @@ Glyph read_glyph(std::istream& in) {
     return glyph;
 }
 
-using Font = std::map<char32_t, Glyph>;
+/// The lines of the font, whose outlines are read where they are drawn: a picture needs a few of its hundreds of letters.
+using Font = std::map<char32_t, std::string_view>;
 
-Font read_font() {
-    Font font;
-    std::istringstream lines{std::string(kTexts[0].text)};
-    for (std::string line; std::getline(lines, line);) {
-        if (line.empty() || line[0] == '#') continue;
-        std::istringstream in(line);
-        in.imbue(std::locale::classic());
-        std::uint32_t code = 0;
-        in >> code;
-        font.emplace(code, read_glyph(in));
-    }
+const Font& built_in_font() {
+    static const Font font = [] {
+        Font lines;
+        for (std::string_view text = kTexts[0].text; !text.empty();) {
+            const std::size_t end = std::min(text.find('\n'), text.size());
+            std::uint32_t code = 0;
+            const auto [rest, error] = std::from_chars(text.data(), text.data() + end, code);
+            if (error == std::errc()) {  // not a comment
+                const auto head = static_cast<std::size_t>(rest - text.data());
+                lines.emplace(code, text.substr(head, end - head));
+            }
+            text.remove_prefix(std::min(end + 1, text.size()));
+        }
+        return lines;
+    }();
+    return font;
+}
+
+/// What is drawn for letters that the font lacks.
+Glyph make_box() {
     const auto box = [](double left, double top, double right, double bottom) {
         return std::vector<Vec2>{{left, top}, {right, top}, {right, bottom}, {left, bottom}};
     };
-    Glyph unknown{0.6, {box(0.08, -0.72, 0.52, 0)}};  // 0: what the font lacks
+    Glyph unknown{0.6, {box(0.08, -0.72, 0.52, 0)}};
     unknown.polygons.push_back({{0.13, -0.67}, {0.13, -0.05}, {0.47, -0.05}, {0.47, -0.67}});
-    font.emplace(0, std::move(unknown));
-    return font;
+    return unknown;
+}
+
+Glyph glyph_of(char32_t code) {
+    const auto found = built_in_font().find(code);
+    if (found == built_in_font().end()) return make_box();
+    std::istringstream line{std::string(found->second)};
+    line.imbue(std::locale::classic());
+    return read_glyph(line);
 }
 
 /// Takes the next code point off a text; 0 for a byte that is not UTF-8.
@@ -106,13 +124,10 @@ char32_t next_code(std::string_view& text) {
 }
 
 PlacedText place_glyphs(std::string_view utf8) {
-    static const Font font = read_font();
     PlacedText placed;
     while (!utf8.empty()) {
-        const auto found = font.find(next_code(utf8));
-        const Glyph& glyph = found != font.end() ? found->second : font.at(0);
-        placed.glyphs.push_back({&glyph, placed.width});
-        placed.width += glyph.advance;
+        placed.glyphs.push_back({glyph_of(next_code(utf8)), placed.width});
+        placed.width += placed.glyphs.back().glyph.advance;
     }
     return placed;
 }
@@ -124,7 +139,7 @@ void draw_text(Image& image, const Vec2& place, const std::string& text, const T
     const double part = options.anchor == TextAnchor::Start ? 0 : options.anchor == TextAnchor::Middle ? 0.5 : 1;
     const double start = place.x - part * placed.width * options.size_px;
     for (const auto& [glyph, offset] : placed.glyphs) {
-        std::vector<std::vector<Vec2>> polygons = glyph->polygons;
+        std::vector<std::vector<Vec2>> polygons = glyph.polygons;
         for (auto& polygon : polygons) {
             for (Vec2& p : polygon) p = Vec2(start + offset * options.size_px, place.y) + options.size_px * p;
         }
@@ -136,10 +151,44 @@ double text_width_px(const std::string& text, double size_px) {
     return place_glyphs(text).width * size_px;
 }
 
+std::string cut_text(std::string text, double size_px, double room_px) {
+    if (text_width_px(text, size_px) <= room_px) return text;
+    while (!text.empty() && text_width_px(text + "…", size_px) > room_px) {
+        while ((static_cast<unsigned char>(text.back()) & 0xc0U) == 0x80 && text.size() > 1) text.pop_back();
+        text.pop_back();
+    }
+    return text + "…";
+}
+
+std::vector<std::string> missing_letters(std::span<const std::string> texts) {
+    std::vector<std::string> missing;
+    for (const std::string& text : texts) {
+        for (std::string_view rest = text; !rest.empty();) {
+            const std::string_view before = rest;
+            if (built_in_font().contains(next_code(rest))) continue;
+            std::string letter(before.substr(0, before.size() - rest.size()));
+            if (std::ranges::find(missing, letter) == missing.end()) missing.push_back(std::move(letter));
+        }
+    }
+    return missing;
+}
+
 void draw_line(Image& image, const Vec2& from, const Vec2& to, const LineOptions& options) {
     for_each_pixel_of_line(image.width, image.height, from, to, options.width_px, [&](int x, int y, double cover, double) {
         put_over(image, x, y, options.color, options.alpha * cover);
     });
+}
+
+namespace {
+
+double axes_scale(int width, int height) {
+    return std::max(1.0, std::min(width, height) / 512.0);
+}
+
+}  // namespace
+
+Vec2 axes_extent_px(int width, int height) {
+    return axes_scale(width, height) * Vec2(34 + 22 + 34 + 19, 34 + 20 + 34 + 19);  // margin, arms to both sides, a name
 }
 
 void draw_axes(Image& image, const View& view, const Vec3& ink) {
@@ -153,7 +202,7 @@ void draw_axes(Image& image, const View& view, const Vec3& ink) {
     std::array<Axis, 3> axes{{{{}, "x", linear(214, 48, 49)}, {{}, "y", linear(24, 150, 72)}, {{}, "z", linear(40, 98, 224)}}};
     for (int a = 0; a < 3; ++a) axes[static_cast<std::size_t>(a)].eye = {right[a], up[a], forward[a]};
     std::ranges::sort(axes, std::greater{}, [](const Axis& axis) { return axis.eye.z; });  // those away from the eye first
-    const double scale = std::max(1.0, std::min(image.width, image.height) / 512.0);
+    const double scale = axes_scale(image.width, image.height);
     const double arm = 34 * scale, size = 13 * scale;
     const Vec2 origin(arm + 22 * scale, image.height - arm - 20 * scale);
     for (const Axis& axis : axes) {
@@ -175,14 +224,14 @@ void draw_axes(Image& image, const View& view, const Vec3& ink) {
     }
 }
 
-void draw_scale_bar(Image& image, const View& view, const Vec3& at, const Vec3& ink) {
+void draw_scale_bar(Image& image, const View& view, const Vec3& at, const Vec3& ink, double above_px) {
     const double depth = view.perspective() ? view.to_eye(at).z : 1;
     const double world_per_px = view.pixel() * depth;
     if (!(world_per_px > 0) || !std::isfinite(world_per_px)) return;  // the point is behind the eye
     const double most = 0.25 * view.width() * world_per_px, power = std::pow(10, std::floor(std::log10(most)));
     const double length = (most >= 5 * power ? 5 : most >= 2 * power ? 2 : 1) * power;
-    const double letter = std::clamp(image.height / 36.0, 8.0, 120.0), line = std::max(1.0, letter / 8);
-    const Vec2 end{view.width() - letter, view.height() - letter}, start = end - Vec2(length / world_per_px, 0);
+    const double letter = std::clamp(std::min(image.width, image.height) / 36.0, 8.0, 120.0), line = std::max(1.0, letter / 8);
+    const Vec2 end{view.width() - letter, view.height() - letter - above_px}, start = end - Vec2(length / world_per_px, 0);
     const Vec2 cap{0, 0.35 * letter};
     draw_line(image, start, end, {.width_px = line, .color = ink});
     for (const Vec2& p : {start, end}) draw_line(image, p - cap, p + cap, {.width_px = line, .color = ink});

@@ -111,11 +111,26 @@ std::vector<Tick> side_ticks(double least, double largest, int most) {
 
 }  // namespace
 
+namespace {
+
+/// The bands from one tick to the next, so that there are at most `most` ticks after the first: if possible a divisor of all,
+/// so that both ends of the range have a tick.
+int band_step(int bands, int most) {
+    const int least = (bands + most - 1) / most;
+    for (const int step : {least, least + 1}) {
+        if (bands % step == 0) return step;
+    }
+    return least;
+}
+
+}  // namespace
+
 std::vector<Tick> bar_ticks(const ColorShape& shape, double min, double max, int most) {
     const ColorScale& scale = shape.scale;
     std::vector<Tick> ticks;
-    if (shape.bands > 0 && shape.bands < most + 2) {
-        for (int end = 0; end <= shape.bands; ++end) {
+    constexpr int kMostBandsOfTick = 3;  // of more, bands are hardly seen, and round values are read better
+    if (shape.bands > 0 && shape.bands <= kMostBandsOfTick * most) {
+        for (int end = 0; end <= shape.bands; end += band_step(shape.bands, most + 2)) {
             const double value = end == 0 ? min : end == shape.bands ? max : scale.at(double(end) / shape.bands, min, max);
             ticks.push_back({value, sign_of(value) + number_text(std::abs(value), 4)});
         }

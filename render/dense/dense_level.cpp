@@ -6,8 +6,12 @@
 //      ────┴────      makes the step four times shorter, so level L lies (4/3) step / 4^L from the limit.
 //
 // Only the part of a node's step δx across the boundary is seen, in pixels. Inside, a step moves the point and its value
-// together: what is wrong at a fixed place is δv − ∇v·δx, and is seen as a change of colour, by the steepness of the transfer
+// together: what is wrong at a fixed place is δ = δv − ∇v·δx, and is seen as a change of colour, by the steepness of the transfer
 // function there. Means are taken over the rectangles that cells, or their open sides, have in the picture.
+//
+// Where colours jump (bands, categories, colours beyond the range), the steepness times δ says nothing: the colour changes by
+// no more than it does within ±δ. What is seen there is a line, like the outline of the body, that lies beside its place: in a
+// cell whose values differ by R over a number of pixels, δ / R of them.
 #include "dense_level.h"
 
 #include <tbb/parallel_for.h>
@@ -15,7 +19,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <optional>
+#include <span>
+#include <utility>
 #include <vector>
 
 #include "dense_grid.h"
@@ -70,31 +75,75 @@ Vec3 gradient(const Nodes<Vec3>& points, const Nodes<double>& values) {
     return (along(values, 0) * cross(v, w) + along(values, 1) * cross(w, u) + along(values, 2) * cross(u, v)) / volume;
 }
 
-/// The largest change of colour or opacity by a change of the value, for values from min to max; nothing if all are invisible.
-std::optional<double> steepness(const Optics& optics, double min, double max) {
-    double steepest = 0;
-    bool visible = false;
-    const auto spans = optics.spans();
-    const auto knots = optics.knots();
-    for (std::size_t k = 0; k < spans.size(); ++k) {
-        if ((k > 0 && knots[k - 1] > max) || (k < knots.size() && knots[k] < min)) continue;
-        visible |= !spans[k].transparent;
-        const Vec3 color = spans[k].transparent ? Vec3(0.0) : glm::abs(spans[k].color_step);
-        steepest = std::max({steepest, color.x * spans[k].inverse_width, color.y * spans[k].inverse_width,
-                             color.z * spans[k].inverse_width, std::abs(spans[k].alpha_step) * spans[k].inverse_width});
+/// How colours and opacities change with the value, as the largest change of one of the four.
+class ColorChanges {
+public:
+    explicit ColorChanges(const Optics& optics) : knots_(optics.knots()), spans_(optics.spans()) {
+        double sum = 0;
+        for (std::size_t k = 0; k < spans_.size(); ++k) {
+            const Optics::Span& span = spans_[k];
+            const Vec3 color = span.transparent ? Vec3(0.0) : glm::abs(span.color_step);
+            steps_.push_back(std::max({color.x, color.y, color.z, std::abs(span.alpha_step)}));
+            sums_.push_back(sum += steps_.back());
+        }
     }
-    return visible ? std::optional(steepest) : std::nullopt;
-}
+
+    [[nodiscard]] bool visible(double min, double max) const {
+        const auto [first, end] = spans_within(min, max);
+        return std::any_of(spans_.begin() + first, spans_.begin() + end, [](const auto& span) { return !span.transparent; });
+    }
+
+    /// color: of values from min to max, if each may be wrong by `error`, where colours change slowly
+    /// jumps: whether they change faster somewhere, so that one sees it
+    struct Seen {
+        double color = 0;
+        bool jumps = false;
+    };
+    [[nodiscard]] Seen seen(double min, double max, double error) const {
+        Seen seen;
+        const auto [first, end] = spans_within(min, max);
+        for (std::ptrdiff_t k = std::max<std::ptrdiff_t>(first, 1); k < std::min(end, std::ssize(knots_)); ++k) {
+            const auto at = static_cast<std::size_t>(k);
+            const double change = steps_[at] * spans_[at].inverse_width * error;
+            if (change <= seen.color) continue;
+            const double most = sum_at(knots_[at] + error) - sum_at(knots_[at - 1] - error);
+            if (change <= most)
+                seen.color = change;
+            else
+                seen.jumps |= most > kMostColor;
+        }
+        return seen;
+    }
+
+private:
+    /// The spans that values from min to max lie in: the first, and the one after the last.
+    [[nodiscard]] std::pair<std::ptrdiff_t, std::ptrdiff_t> spans_within(double min, double max) const {
+        return {std::lower_bound(knots_.begin(), knots_.end(), min) - knots_.begin(),
+                std::upper_bound(knots_.begin(), knots_.end(), max) - knots_.begin() + 1};
+    }
+
+    /// The sum of all changes up to a value.
+    [[nodiscard]] double sum_at(double value) const {
+        const auto k = static_cast<std::size_t>(std::upper_bound(knots_.begin(), knots_.end(), value) - knots_.begin());
+        return k == 0 ? 0 : sums_[k - 1] + steps_[k] * spans_[k].inverse_width * (value - knots_[k - 1]);
+    }
+
+    std::span<const double> knots_;
+    std::span<const Optics::Span> spans_;
+    std::vector<double> steps_, sums_;  // of each span, and up to its end
+};
 
 /// What level 0 of a cell shows beside its place: weights are pixels in the picture.
 struct CellError {
-    float color = 0, color_weight = 0;
+    float value = 0, value_weight = 0;
+    float min = 0, max = 0;              // of its values, less the first knot of the transfer function
     float side_px = 0, side_weight = 0;  // the largest of its open sides, and all of them
 };
 
 class CellJudge {
 public:
-    CellJudge(const View& view, const Optics& optics, const DenseCell& cell) : view_(view), optics_(optics) {
+    CellJudge(const View& view, const ColorChanges& changes, double first, const DenseCell& cell)
+        : view_(view), changes_(changes), first_(first) {
         for (std::size_t n = 0; n < kNodes; ++n) {
             points_[n] = cell.points[n];
             values_[n] = cell.values[0][n];
@@ -104,17 +153,17 @@ public:
 
     [[nodiscard]] CellError judge(const CellSides& sides, Index cell) const {
         const auto [min, max] = std::ranges::minmax(values_);
-        const std::optional<double> steep = steepness(optics_, min, max);
         Nodes<bool> all;
         all.fill(true);
-        const double seen = steep ? pixels(all) : 0;
+        const double seen = changes_.visible(min, max) ? pixels(all) : 0;
         if (seen == 0) return {};
         const Vec3 slope = gradient(points_, values_);
         double value = 0;
         for (std::size_t n = 0; n < kNodes; ++n) {
             value = std::max(value, std::abs(values_[n] - between_corners(values_, n) - dot(slope, steps_[n])));
         }
-        CellError error{static_cast<float>(4.0 / 3 * value * *steep), static_cast<float>(seen)};
+        CellError error{static_cast<float>(4.0 / 3 * value), static_cast<float>(seen), static_cast<float>(min - first_),
+                        static_cast<float>(max - first_)};
         for (std::size_t side = 0; side < 6; ++side) {
             if (sides.open(cell, side)) add_side(side, error);
         }
@@ -156,20 +205,44 @@ private:
     }
 
     const View& view_;
-    const Optics& optics_;
+    const ColorChanges& changes_;
+    double first_;
     Nodes<Vec3> points_{}, steps_{};
     Nodes<double> values_{};
 };
 
-/// √(Σ w e² / Σ w) of errors that are 4^level times smaller; none is counted as more than `most`.
-double mean(const std::vector<CellError>& errors, float CellError::*error, float CellError::*weight, int level, double most) {
-    double sum = 0, weights = 0;
-    for (const CellError& cell : errors) {
-        const double e = std::min(std::ldexp(double{cell.*error}, -2 * level), most);
-        sum += double{cell.*weight} * e * e;
-        weights += double{cell.*weight};
+/// √(Σ w e² / Σ w)
+class Mean {
+public:
+    void add(double error, double weight) {
+        sum_ += weight * error * error;
+        weights_ += weight;
     }
-    return weights > 0 ? std::sqrt(sum / weights) : 0;
+    [[nodiscard]] double value() const { return weights_ > 0 ? std::sqrt(sum_ / weights_) : 0; }
+
+private:
+    double sum_ = 0, weights_ = 0;
+};
+
+/// What a level shows beside its place, where errors are 4^level times smaller than those of level 0.
+///
+/// first: what the cells' values are less
+DenseLevel errors_of(int level, const std::vector<CellError>& errors, const ColorChanges& changes, double first,
+                     double most_px) {
+    Mean sides, colors, jumps;
+    for (const CellError& cell : errors) {
+        sides.add(std::min(std::ldexp(double{cell.side_px}, -2 * level), most_px), double{cell.side_weight});
+        if (cell.value_weight == 0) continue;
+        const double min = double{cell.min} + first, max = double{cell.max} + first;
+        const double error = std::ldexp(double{cell.value}, -2 * level);
+        const auto seen = changes.seen(min, max, error);
+        colors.add(std::min(seen.color, 1.0), double{cell.value_weight});
+        if (!seen.jumps) continue;
+        const double across_px = std::sqrt(double{cell.value_weight});
+        jumps.add(std::min(error / (max - min), 1.0) * across_px, across_px);
+    }
+    const double pixels = std::max(sides.value(), jumps.value());
+    return {level, pixels, colors.value(), pixels <= kMost_px && colors.value() <= kMostColor};
 }
 
 }  // namespace
@@ -180,15 +253,15 @@ DenseLevel find_dense_level(const HexMesh& mesh, const CellSides& sides, const R
     once.levels = 1;
     once.progress = nullptr;
     std::vector<CellError> errors(mesh.cells.size());
+    const ColorChanges changes(optics);
+    const double first = optics.knots().front();
     const DenseCells cells(mesh, once, true, DenseBits::ToRounding);
-    cells.for_each(all_cells(mesh),
-                   [&](const DenseCell& cell) { errors[cell.cell] = CellJudge(view, optics, cell).judge(sides, cell.cell); });
+    cells.for_each(all_cells(mesh), [&](const DenseCell& cell) {
+        errors[cell.cell] = CellJudge(view, changes, first, cell).judge(sides, cell.cell);
+    });
     DenseLevel found;
-    for (int level = 0; level <= most && !found.within; ++level) {
-        const double pixels = mean(errors, &CellError::side_px, &CellError::side_weight, level, view.width() + view.height());
-        const double color = mean(errors, &CellError::color, &CellError::color_weight, level, 1);
-        found = {level, pixels, color, pixels <= kMost_px && color <= kMostColor};
-    }
+    for (int level = 0; level <= most && !found.within; ++level)
+        found = errors_of(level, errors, changes, first, view.width() + view.height());
     return found;
 }
 

@@ -9,8 +9,8 @@
 
 namespace subvol::detail {
 
-/// A level of dense grids, and how far what it shows lies from the limit, in the mean over the picture (RMS): the boundary in
-/// pixels, colours and opacities as parts of 1.
+/// A level of dense grids, and how far what it shows lies from the limit, in the mean over the picture (RMS): the boundary
+/// and the lines where colours jump in pixels, colours and opacities elsewhere as parts of 1.
 ///
 /// within: the one is not more than a quarter, the other not more than 1/256
 struct DenseLevel {

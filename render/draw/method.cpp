@@ -210,7 +210,7 @@ void check_flow(const FlowChoices& flow, Method method, BodyKind body, bool whol
     if (body != BodyKind::Mesh) throw Error(ErrorCode::InvalidInput, "needs a mesh of hexahedra in memory", option);
     if (method == Method::Footprints) {
         throw Error(ErrorCode::InvalidInput, "is not drawn within footprints", option,
-                    option_name("method", names) + " splat, tets or dense");
+                    option_name("method", names) + " " + names_of(kSplat | kSheets | kCells));
     }
     if (!whole) {
         throw Error(ErrorCode::InvalidInput, "goes through a whole body", option,

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "picture_facts.h"
 
+#include <map>
+#include <utility>
+
 #include <string>
 
 #include "subvol/detail/number_text.h"
@@ -85,9 +88,10 @@ void add_facts(const DenseReport& dense, bool chosen_level, Facts& facts) {
     add_rays(dense.rays, dense.lost_rays, facts);
     if (chosen_level || dense.converged) return;
     const std::string level = " at level " + std::to_string(dense.levels) + ": --levels draws a finer one";
-    facts.warn(dense.error_px ? "the boundary lies about " + number_text(*dense.error_px) + " pixels and colours about " +
-                                    number_text(dense.error_color.value_or(0)) + " from the limit" + level
-                              : "the picture still changes by " + number_text(dense.image_change.value_or(0)) + level);
+    facts.warn(dense.error_px
+                   ? "the boundary and jumps of colours lie about " + number_text(*dense.error_px) +
+                         " pixels and colours about " + number_text(dense.error_color.value_or(0)) + " from the limit" + level
+                   : "the picture still changes by " + number_text(dense.image_change.value_or(0)) + level);
 }
 
 void add_facts(const GridTraceReport& grid, Facts& facts) {
@@ -96,6 +100,37 @@ void add_facts(const GridTraceReport& grid, Facts& facts) {
     facts["rays"] = grid.rays;
     facts["cells"] = grid.cells;
     facts["blocks"] = grid.blocks;
+}
+
+std::size_t count_tiny_bodies(std::span<const Box> boxes, const View& view) {
+    constexpr int kMostNeighbours = 8;
+    std::map<std::pair<int, int>, int> at;  // tiny bodies by their pixel
+    for (const Box& box : boxes) {
+        Box seen;
+        for (int k = 0; k < 8; ++k) {
+            const auto end = [&](int axis) { return (k >> axis & 1) != 0 ? box.upper[axis] : box.lower[axis]; };
+            const Vec3 eye = view.to_eye({end(0), end(1), end(2)});
+            if (view.perspective() && !(eye.z > 0)) break;  // behind the eye
+            const Vec2 px = view.to_pixels(eye);
+            seen.add({px.x, px.y, k});
+        }
+        if (!(seen.upper.z == 7 && seen.upper.x - seen.lower.x < 1 && seen.upper.y - seen.lower.y < 1)) continue;
+        const Vec3 center = seen.center();
+        if (center.x >= 0 && center.y >= 0 && center.x < view.width() && center.y < view.height())
+            ++at[{static_cast<int>(center.x), static_cast<int>(center.y)}];
+    }
+    std::size_t tiny = 0;
+    for (const auto& [pixel, count] : at) {
+        int near = 0;
+        for (int y = -1; y <= 1; ++y) {
+            for (int x = -1; x <= 1; ++x) {
+                const auto found = at.find({pixel.first + x, pixel.second + y});
+                near += found == at.end() ? 0 : found->second;
+            }
+        }
+        if (near <= kMostNeighbours) tiny += static_cast<std::size_t>(count);
+    }
+    return tiny;
 }
 
 }  // namespace subvol::detail

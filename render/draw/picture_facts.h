@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
+#include <span>
+
+#include "subvol/camera.h"
 #include "subvol/facts.h"
 #include "subvol/method.h"
 #include "subvol/render_dense.h"
@@ -21,5 +25,11 @@ void add_facts(const ProjectedReport& pt, ProjectedOrder order, Facts& facts);
 /// chosen_level: whether the level was given; else it is warned if the picture still changes
 void add_facts(const DenseReport& dense, bool chosen_level, Facts& facts);
 void add_facts(const GridTraceReport& grid, Facts& facts);
+
+/// Returns how many bodies in the picture are smaller than a pixel, so that a ray may miss them. Many that lie in neighbouring
+/// pixels are no bodies but cells that share no points: they are seen together, and do not count.
+///
+/// boxes: of all bodies
+[[nodiscard]] std::size_t count_tiny_bodies(std::span<const Box> boxes, const View& view);
 
 }  // namespace subvol::detail

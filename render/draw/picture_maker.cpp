@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <tuple>
 #include <utility>
@@ -10,6 +11,7 @@
 #include "kernel_levels.h"
 #include "picture_facts.h"
 #include "subvol/boundary_shading.h"
+#include "subvol/detail/mesh_bodies.h"
 #include "subvol/detail/points_frame.h"
 #include "subvol/draw_shells.h"
 #include "subvol/error.h"
@@ -35,6 +37,31 @@ namespace {
 int tets_level(std::uint64_t cells) {
     constexpr std::uint64_t kMostCells = 300'000;
     return cells <= kMostCells ? 1 : 0;
+}
+
+/// Moves the knots of opacities and of colours down.
+TransferFunction less(TransferFunction function, const std::array<double, 2>& origins) {
+    for (auto& knot : function.opacity) knot.value -= origins[0];
+    for (auto& knot : function.color) knot.value -= origins[1];
+    return function;
+}
+
+/// Moves the values of the opacities and those of the colours down.
+void move_down(HexMesh& mesh, const std::array<double, 2>& origins) {
+    const auto move = [](Attribute& field, double origin) {
+        for (double& value : field.values) value -= origin;
+        for (auto& bounds : field.bounds) bounds = {bounds[0] - origin, bounds[1] - origin};
+    };
+    move(mesh.attributes.front(), origins[0]);
+    if (mesh.attributes.size() > 1) move(mesh.attributes.back(), origins[1]);
+}
+
+/// The value that those of kernels are relative to, in 32-bit floats: the middle of a transfer function's range, where it is so
+/// narrow that floats would round away what one sees in it (101325 ± .01); else 0, and values keep their bits.
+double origin_for(double low, double high) {
+    constexpr double kMostRounding = 1e-4, kHalfDigit = 0x1p-25;  // a fortieth of a step of 8 bits
+    const double largest = std::max(std::abs(low), std::abs(high));
+    return low < high && largest * kHalfDigit > kMostRounding * (high - low) ? low + (high - low) / 2 : 0;
 }
 
 SplatMethod splat_method(Method method, SplatMethod otherwise) {
@@ -67,6 +94,12 @@ struct PictureMaker::State {
     std::optional<MeshHull> hull{};  // of a mesh in pieces, like the next two
     std::optional<Surface> piece_boundary{};
     std::optional<BrickTets> piece_tets{};
+    // Kernels have the values of a mesh less these: of opacities, and of colours. Where they are not 0, a mesh in memory and
+    // the values on its boundary are kept less these, too.
+    std::array<double, 2> origins{};
+    std::optional<HexMesh> relative_mesh{};
+    std::optional<BoundaryValues> relative_skin{};
+    bool bodies_seen = false;  // whether a picture was looked at for bodies that are too small in it
 
     /// A splatter for each way of drawing: method, samples, the part of the light at the eye (-1: not lit), and the kernels
     /// that it was made for.
@@ -93,6 +126,64 @@ struct PictureMaker::State {
         hull.reset();
         piece_boundary.reset();
         piece_tets.reset();
+        relative_mesh.reset();
+        relative_skin.reset();
+        bodies_seen = body.moved;  // which bodies there are does not change, and moving has to be fast
+    }
+
+    [[nodiscard]] std::array<double, 2> origins_for(const Optics& optics) const {
+        if (!body.mesh || !draws_kernels(method())) return origins;
+        const TransferFunction& function = optics.function();
+        std::array<double, 4> ends{function.opacity.front().value, function.opacity.back().value, function.color.front().value,
+                                   function.color.back().value};
+        if (mesh() == nullptr || mesh()->attributes.size() == 1) {  // opacities and colours are of the same values
+            ends[0] = ends[2] = std::min(ends[0], ends[2]);
+            ends[1] = ends[3] = std::max(ends[1], ends[3]);
+        }
+        return {origin_for(ends[0], ends[1]), origin_for(ends[2], ends[3])};
+    }
+    /// Decides on `origins`; kernels with others are given up.
+    void settle_origins(const Optics& optics) {
+        const std::array<double, 2> next = origins_for(optics);
+        if (next == origins) return;
+        origins = next;
+        splatters.clear();
+        levels.reset();
+        volume.reset();
+        relative_mesh.reset();
+        relative_skin.reset();
+    }
+    [[nodiscard]] bool is_relative() const { return body.mesh && origins != std::array<double, 2>{}; }
+
+    const HexMesh& mesh_of_kernels() {
+        if (!is_relative()) return *mesh();
+        if (!relative_mesh) {
+            relative_mesh = *mesh();
+            move_down(*relative_mesh, origins);
+        }
+        return *relative_mesh;
+    }
+    const BoundaryValues& skin_of_kernels() {
+        if (!is_relative()) return *skin;
+        if (!relative_skin) {
+            relative_skin = *skin;
+            for (double& value : relative_skin->values.back()) value -= origins[1];
+        }
+        return *relative_skin;
+    }
+    [[nodiscard]] Optics optics_of_kernels(const Optics& optics) const {
+        return is_relative() ? Optics(less(optics.function(), origins), optics.opacity_unit()) : optics;
+    }
+
+    /// Warns of bodies that the first picture can hardly show.
+    void warn_of_tiny_bodies(const View& view, Facts& facts) {
+        if (std::exchange(bodies_seen, true) || mesh() == nullptr) return;
+        const std::vector<Box> boxes = detail::boxes_of_bodies(*mesh());
+        const std::size_t tiny = detail::count_tiny_bodies(boxes, view);
+        if (tiny == 0) return;
+        facts.warn(std::to_string(tiny) + " of " + std::to_string(boxes.size()) +
+                   " bodies in the picture are smaller than a pixel and may not be seen: a larger picture or a nearer camera "
+                   "shows them");
     }
 
     /// The mesh, if the body is one in memory; else null.
@@ -154,17 +245,18 @@ struct PictureMaker::State {
         choices.tets = body.tets;
         choices.progress = progress;
         if (options.drop_invisible && !choices.visible) choices.visible = optics.function();
+        if (choices.visible && is_relative()) choices.visible = less(*choices.visible, origins);
         SampleOptions sample = choices.sample;
         sample.progress = progress;
         if (body.moved && !choices.tets && !choices.levels && !choices.visible && choices.reduce_rmse == 0 &&
             SampleTables::are_for(sample)) {
             volume = facts.timed(progress, "sample", [&] {
                 if (!kernel_tables) kernel_tables.emplace(*mesh(), sample);
-                return kernel_tables->apply(*mesh()).volume;
+                return kernel_tables->apply(mesh_of_kernels()).volume;
             });
             return *volume;
         }
-        volume = facts.unpack(make_mesh_kernels(*mesh(), choices));
+        volume = facts.unpack(make_mesh_kernels(mesh_of_kernels(), choices));
         return *volume;
     }
 
@@ -175,6 +267,7 @@ struct PictureMaker::State {
 
     Facts prepare(const Optics& optics, Progress* progress) {
         check_method(method(), body.kind(), options.names);
+        settle_origins(optics);
         Facts facts;
         if (is_translucent()) {
             if (!body.mesh) {
@@ -297,11 +390,12 @@ struct PictureMaker::State {
         return splatters.emplace_back(KeptSplatter{key, Splatter(kernels, splat), version});
     }
 
-    Picture draw_splats(const View& view, const Optics& optics, Progress* progress, const RbfVolume* stand_in) {
+    Picture draw_splats(const View& view, const Optics& of_field, Progress* progress, const RbfVolume* stand_in) {
         Picture picture;
+        const Optics optics = optics_of_kernels(of_field);
         const RbfVolume& shown = stand_in != nullptr ? *stand_in : levels->kernels(view, progress, picture.facts);
         const BoundaryValues none;
-        const BoundaryValues& colors = paints_splats() ? *skin : none;
+        const BoundaryValues& colors = paints_splats() ? skin_of_kernels() : none;
         SplatResult drawn;
         if (team != nullptr) {
             drawn = team->splat(shown, splat_options(optics), colors, view, optics, progress, picture.facts);
@@ -326,8 +420,8 @@ struct PictureMaker::State {
         return picture;
     }
 
-    Picture draw_splats_in_time(const View& view, const Optics& optics, Progress* progress) const {
-        ProgressiveResult drawn = render_progressively(*mesh(), view, optics,
+    Picture draw_splats_in_time(const View& view, const Optics& optics, Progress* progress) {
+        ProgressiveResult drawn = render_progressively(mesh_of_kernels(), view, optics_of_kernels(optics),
                                                        {.seconds = *options.seconds,
                                                         .sample = options.kernels.sample,
                                                         .splat = splat_options(optics),
@@ -341,8 +435,14 @@ struct PictureMaker::State {
         return picture;
     }
 
-    Picture draw_piece_splats(const View& view, const Optics& optics, Progress* progress) const {
+    Picture draw_piece_splats(const View& view, const Optics& of_field, Progress* progress) const {
         Picture picture;
+        const Optics optics = optics_of_kernels(of_field);
+        const auto relative = [by = origins](HexMesh piece) {
+            move_down(piece, by);
+            return piece;
+        };
+        const MeshSource source = is_relative() ? body.mesh->changed(relative) : *body.mesh;
         BrickSplatOptions pieces{.sample = options.kernels.sample,
                                  .splat = splat_options(optics),
                                  .memory_bytes = options.memory_bytes,
@@ -350,8 +450,8 @@ struct PictureMaker::State {
         pieces.sample.progress = pieces.splat.progress = progress;
         if (team != nullptr) pieces.rows = team->rows(view.height());
         SplatResult drawn = picture.facts.timed(progress, "draw", [&] {
-            if (team != nullptr) return team->splat(*body.mesh, *piece_boundary, pieces, view, optics, picture.facts);
-            return render_bricks(*body.mesh, *piece_boundary, view, optics, pieces);
+            if (team != nullptr) return team->splat(source, *piece_boundary, pieces, view, optics, picture.facts);
+            return render_bricks(source, *piece_boundary, view, optics, pieces);
         });
         detail::add_facts(drawn.report, method(), picture.facts);
         picture.facts["points"] = drawn.report.points;
@@ -509,6 +609,7 @@ Facts PictureMaker::prepare(const Optics& optics, Progress* progress, bool splat
 
 Picture PictureMaker::draw(const View& view, const Optics& optics, Progress* progress, const RbfVolume* stand_in) {
     Facts facts = state_->prepare(optics, progress);
+    state_->warn_of_tiny_bodies(view, facts);
     Picture picture = state_->drawn_rows(view, optics, progress, stand_in);
     if (state_->team != nullptr) state_->team->gather(picture);
     state_->finish(picture, view, optics);
@@ -542,10 +643,16 @@ const BoundaryValues& PictureMaker::skin(Progress* progress, Facts& facts) {
 
 const Surface& PictureMaker::boundary(const Optics& optics, Progress* progress, Facts& facts) {
     const bool of_kernels = draws_kernels(state_->method()) && !state_->is_translucent() && !state_->options.seconds;
+    state_->settle_origins(optics);
     return of_kernels ? state_->kernels(optics, progress, facts).boundary : state_->skin_of_mesh(progress, facts).surface;
 }
 
+bool PictureMaker::keeps_kernels(const Optics& optics) const {
+    return state_->origins_for(optics) == state_->origins;
+}
+
 const RbfVolume& PictureMaker::kernels(const Optics& optics, Progress* progress, Facts& facts) {
+    state_->settle_origins(optics);
     return state_->kernels(optics, progress, facts);
 }
 

@@ -4,7 +4,10 @@
 //
 //     sign         +1      +1      −1      −1          +1 where the ray enters a shell, −1 where it leaves one
 //     ray   -------|-------|-------|-------|------->   sorted by depth
-//     sum      0       1       2       1       0       the number of shells that the ray is in; it is inside where this is > 0
+//     sum      0       1       2       1       0       how often the surface goes round the place; it is inside where this is not 0
+//
+// Where a surface folds, a ray may leave it before it has entered it: the sum is −1 in the part that is turned inside out, which
+// is inside like the rest. It must not be counted as 0 there, or the ray would be one shell further in for the rest of its way.
 //
 // A missed or doubled crossing would exchange inside and outside for the rest of a ray, so coverage has to be exact: vertices
 // are snapped to 1/4096 of a pixel, and the edge functions E(p) = (b − a) × (p − a) [pineda1988] are 64-bit integers. A pixel
@@ -243,17 +246,17 @@ void sort_hits(std::vector<Hit>& hits, std::size_t pixels, std::vector<std::uint
 
 /// Turns the sorted hits of one pixel into intervals.
 void resolve(std::span<const Hit> hits, float near, std::vector<float>& depths, std::vector<std::uint32_t>& triangles) {
-    int inside = 0;  // number of shells that the eye is in
+    int inside = 0;  // how often the surface goes round the eye, and then round the place behind each hit
     for (const Hit& hit : hits) inside -= hit.sign;
-    inside = std::max(inside, 0);
     float enter = near;
     std::uint32_t triangle = PixelIntervals::kNoTriangle;
     for (const Hit& hit : hits) {
-        if (hit.sign > 0 && inside++ == 0) {
+        if (inside == 0) {
             enter = hit.depth;
             triangle = hit.triangle;
         }
-        if (hit.sign < 0 && inside > 0 && --inside == 0 && hit.depth > enter) {
+        inside += hit.sign;
+        if (inside == 0 && hit.depth > enter) {
             depths.push_back(enter);
             depths.push_back(hit.depth);
             triangles.push_back(triangle);

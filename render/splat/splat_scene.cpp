@@ -56,7 +56,7 @@ void check_range(const RbfChannel& channel, float largest, double min, double ma
         const double value = static_cast<double>(v), rounding = std::abs(value) * kRounding;
         if (rounding > most_rounding && value + rounding >= min && value - rounding <= max) {
             refuse("beside a value of " + number_text(value) + " the transfer function's range is ", range,
-                   "a wider range, or the field less its mean");
+                   "a wider range, or kernels of the field less its mean");
         }
     }
 }

@@ -448,7 +448,105 @@ class Looks(Pictures):
         self.assertEqual(self.render("-o", "a.png", "--look", "nothing").code, 2)
 
 
+TWO_FAR_APART = """# vtk DataFile Version 3.0
+two
+ASCII
+DATASET UNSTRUCTURED_GRID
+POINTS 16 float
+0 0 0 1 0 0 1 1 0 0 1 0 0 0 1 1 0 1 1 1 1 0 1 1
+9999 0 0 10000 0 0 10000 1 0 9999 1 0 9999 0 1 10000 0 1 10000 1 1 9999 1 1
+CELLS 2 18
+8 0 1 2 3 4 5 6 7
+8 8 9 10 11 12 13 14 15
+CELL_TYPES 2
+12 12
+"""
+
+
+class Captions(Pictures):
+    TITLE_ROWS = 18  # of letters of 9 pixels, the smallest: twice as many
+
+    def colored(self, name):
+        """The rows with colours, which letters do not have, and the columns of what is dark above the body."""
+        channels, width, rows = self.pixels(name)
+        pixels = [[row[channels * x:channels * x + 3] for x in range(width)] for row in rows]
+        colors = {y for y, row in enumerate(pixels) for p in row if max(p) - min(p) > 40}
+        ink = {x for row in pixels[:self.TITLE_ROWS] for x, p in enumerate(row) if max(p) < 120}
+        return colors, ink
+
+    def test_a_title_stands_above_the_body(self):
+        for words in [], ["--edges", "--legend"], ["--streamlines", "grad(density)", "--seeds", "line:-.5,0,0,.5,0,0"], ["--camera", "0,-1.2,0,0,0,0,0,0,1,60"]:
+            done = self.render("-o", "a.png", "--title", "A title", "--look", "solid", *words, size="240x160")
+            self.assertEqual(done.code, 0, done.err)
+            colors, ink = self.colored("a.png")
+            self.assertGreaterEqual(min(colors), 0 if "--legend" in words else self.TITLE_ROWS, words)
+            self.assertGreater(len(ink), 20)
+        self.assertEqual((min(colors), max(colors)), (self.TITLE_ROWS, 159), "the last camera's body fills what is left")
+
+    def test_a_long_title_is_cut_with_dots(self):
+        for name, letters in ("a.png", 60), ("b.png", 90):
+            self.assertEqual(self.render("-o", name, "--title", "W" * letters, size="240x160").code, 0)
+        self.assertEqual(self.bytes_of("a.png"), self.bytes_of("b.png"))
+        ink = self.colored("a.png")[1]
+        self.assertTrue(200 < max(ink) < 240 - 5, max(ink))
+        self.assertEqual(self.render("-o", "c.png", "--title", "W", "--size", "60x20").code, 2, "no room for the body")
+
+    def test_letters_that_cannot_be_drawn_are_named(self):
+        done = self.render("-o", "a.png", "--title", "T = 20 ℃, ∂p/∂x, Темп", "--legend", "--unit", "kg m⁻³ s⁻²", "--json", size="240x160")
+        self.assertEqual((done.code, done.json()["warnings"]), (0, []), done.err)
+        done = self.render("-o", "a.png", "--title", "温度 T", "--legend", "--unit", "度秒", "--json", size="240x160")
+        self.assertRegex(" ".join(done.json()["warnings"]), "boxes stand for letters .*: 温 度 秒 ")
+
+    def test_axes_and_scale_bar_of_a_narrow_picture_lie_apart(self):
+        def changed(a, b):
+            (channels, width, one), (_, _, two) = self.pixels(a), self.pixels(b)
+            places = [(x, y) for y in range(len(one)) for x in range(width) if one[y][channels * x:channels * x + 3] != two[y][channels * x:channels * x + 3]]
+            return [min(p[k] for p in places) for k in (0, 1)], [max(p[k] for p in places) for k in (0, 1)]
+        for size in "100x400", "200x800", "480x320":
+            for name, words in ("plain", []), ("axes", ["--axes"]), ("both", ["--axes", "--scale-bar"]):
+                self.assertEqual(self.render("-o", f"{name}.png", *words, size=size).code, 0)
+            (axes_low, axes_high), (bar_low, bar_high) = changed("plain.png", "axes.png"), changed("axes.png", "both.png")
+            self.assertTrue(axes_high[0] < bar_low[0] or bar_high[1] < axes_low[1], (size, axes_high, bar_low))
+
+    def test_bodies_below_a_pixel_are_said(self):
+        (self.folder / "far.vtk").write_text(TWO_FAR_APART)
+        for method in "splat", "tets":
+            done = subprocess.run([COMMAND, "render", "far.vtk", "-o", "a.png", "--size", "160x120", "--method", method, "--json"], cwd=self.folder,
+                                  capture_output=True, text=True, check=True)
+            self.assertRegex(" ".join(json.loads(done.stdout)["warnings"]), "2 of 2 bodies in the picture are smaller than a pixel")
+
+    def test_an_xray_of_a_body_without_a_field_shows_how_thick_it_is(self):
+        (self.folder / "cube.vtk").write_text(TWO_FIELDS)
+        subprocess.run([COMMAND, "render", "cube.vtk", "-o", "a.png", "--density", "1", "--look", "xray", "--size", "60x60", "--ortho", "--view", "1,-1,0",
+                        "--json"], cwd=self.folder, capture_output=True, text=True, check=True)
+        channels, width, rows = self.pixels("a.png")
+        line = [row for row in zip(*[iter(rows[30])] * channels)]
+        dark = [255 - p[0] for p in line]
+        inside = [d for d in dark if d > 0]
+        # Along the diagonal of a square the thickness grows and falls linearly; nothing is saturated.
+        self.assertGreater(len(set(inside)), 10)
+        self.assertLess(max(inside), 250)
+        self.assertEqual(max(range(60), key=dark.__getitem__) in range(27, 33), True)
+
+
 class Legends(Pictures):
+    def test_integers_as_categories_are_named(self):
+        done = self.render("-o", "a.png", "--density", "1+2*(x>0)", "--tf", "categories", "--legend", "a.svg")
+        self.assertEqual(done.code, 0, done.err)
+        texts = [node.text for node in ElementTree.parse(Path(self.folder) / "a.svg").iter() if node.tag.endswith("text")]
+        self.assertEqual(texts, ["density", "1", "3"])
+        fills = [node.get("fill") for node in ElementTree.parse(Path(self.folder) / "a.svg").iter() if node.tag.endswith("rect")]
+        self.assertEqual(fills, ["#fff", "#1f77b4", "#2ca02c"])  # Tableau's first and third
+        self.render("-o", "a.png", "--density", "1+.5*(x>0)", "--tf", "categories", "--legend", "b.svg")
+        self.assertGreater(len((self.folder / "b.svg").read_text()), 2000, "a bar: these are no integers")
+
+    def test_a_legend_hides_nothing_of_a_slice(self):
+        for name, words in ("a.png", []), ("b.png", ["--no-legend"]):
+            subprocess.run([COMMAND, "slice", "model:ball:3", "-o", name, "--extremes", "--resolution", "240", *words], cwd=self.folder, check=True,
+                           capture_output=True)
+        (channels, _, one), (_, width, two) = self.pixels("a.png"), self.pixels("b.png")
+        self.assertEqual([row[:channels * width] for row in one], two)
+
     def test_legend_names_the_field(self):
         done = self.render("-o", "a.png", "--legend", "a.svg", "--opacity", "0%:0,100%:1", "--json")
         self.assertEqual(done.code, 0, done.err)

@@ -167,6 +167,7 @@ struct PictureDrawer::State {
     void draw(const View& view, const Optics& optics, DrawnPicture& picture, Progress* progress) {
         const Stopwatch watch;
         Facts facts;
+        if (!maker->keeps_kernels(optics)) few.reset();
         const bool few_suffice = picture.scale > 1 && draws_kernels(settings.style.method);
         const RbfVolume* merged = few_suffice ? stand_in(optics, progress, facts) : nullptr;
         facts.merge(maker->prepare(optics, progress, merged == nullptr));

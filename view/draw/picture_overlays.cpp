@@ -8,6 +8,7 @@
 #include "subvol/error.h"
 #include "subvol/lines_in_volume.h"
 #include "subvol/overlay.h"
+#include "subvol/raster.h"
 
 namespace subvol::detail {
 
@@ -17,16 +18,21 @@ constexpr double kDarkInk = 0.012, kLightInk = 0.85;  // linear
 
 /// Makes a picture wider; the new columns at its right are transparent.
 void widen(DrawnPicture& picture, int width) {
-    Image wide(width, picture.image.height);
-    std::vector<float> depth;
-    if (!picture.depth.empty()) depth.assign(wide.rgba.size() / 4, std::numeric_limits<float>::infinity());
-    const auto from = static_cast<std::ptrdiff_t>(picture.image.width), to = static_cast<std::ptrdiff_t>(width);
-    for (std::ptrdiff_t y = 0; y < picture.image.height; ++y) {
-        std::copy_n(picture.image.rgba.begin() + 4 * y * from, 4 * from, wide.rgba.begin() + 4 * y * to);
-        if (!depth.empty()) std::copy_n(picture.depth.begin() + y * from, from, depth.begin() + y * to);
-    }
-    picture.image = std::move(wide);
+    const int columns = picture.image.width, rows = picture.image.height;
+    picture.image = padded(picture.image, 0, 0, width, rows);
+    if (picture.depth.empty()) return;
+    std::vector<float> depth(pixel_count(width, rows), std::numeric_limits<float>::infinity());
+    for (int y = 0; y < rows; ++y)
+        std::copy_n(picture.depth.data() + pixel_index(columns, 0, y), columns, depth.data() + pixel_index(width, 0, y));
     picture.depth = std::move(depth);
+}
+
+}  // namespace
+
+namespace {
+
+int legend_columns_of(const ViewState& state, const ViewBody& body, const Optics& optics) {
+    return legend_width_px(optics.function(), legend_of(state, body), state.height, state.width);
 }
 
 }  // namespace
@@ -38,18 +44,20 @@ Vec3 ink_on(const Vec3& background) {
 
 LegendOptions legend_of(const ViewState& state, const ViewBody& body) {
     const ValueRange range = state.look.range.value_or(body.range);
-    return {.title = body.field(), .min = range.min, .max = range.max, .shape = state.look.shape};
+    LegendOptions legend{.title = body.field(), .min = range.min, .max = range.max, .shape = state.look.shape};
+    if (state.look.colors == "categories") name_categories(legend, categories_of(body.mesh.attributes.front().values));
+    return legend;
 }
 
 View seen_view(const ViewState& state, const ViewBody& body) {
     int width = state.width;
-    if (state.legend) width -= legend_width_px(optics_of(state, body).function(), legend_of(state, body), state.height);
+    if (state.legend) width -= legend_columns_of(state, body, optics_of(state, body));
     return {state.camera, std::max(1, width), state.height};
 }
 
 int legend_columns(const ViewState& state, const ViewBody& body, const Optics& optics) {
     if (!state.legend) return 0;
-    const int columns = legend_width_px(optics.function(), legend_of(state, body), state.height);
+    const int columns = legend_columns_of(state, body, optics);
     if (state.width - columns < state.width / 3) {
         throw Error(ErrorCode::InvalidInput, "leaves no room for the picture", "legend", "a wider picture");
     }
@@ -73,7 +81,7 @@ void draw_overlays(DrawnPicture& picture, const View& view, const ViewBody& body
     if (state.axes) draw_axes(picture.image, view, ink);
     if (state.legend) {
         widen(picture, state.width);
-        draw_legend(picture.image, optics.function(), legend_of(state, body), ink);
+        draw_legend(picture.image, optics.function(), legend_of(state, body), ink, state.width);
     }
 }
 

@@ -19,19 +19,17 @@ void sort_hits(uint first, uint end) {
     }
 }
 
+// As resolve() of boundary_intervals.cpp.
 uint resolve(uint first, uint end) {
-    int inside = 0;  // number of shells that the eye is in
+    int inside = 0;  // how often the surface goes round the eye, and then round the place behind each hit
     for (uint i = first; i < end; ++i) inside -= int(hits[i].y);
-    inside = max(inside, 0);
     float enter = float(scale.z);
     uint to = first;
     for (uint i = first; i < end; ++i) {
         vec2 hit = hits[i];
-        if (hit.y > 0.0) {
-            if (inside++ == 0) enter = hit.x;
-        } else if (inside > 0 && --inside == 0 && hit.x > enter) {
-            hits[to++] = vec2(enter, hit.x);
-        }
+        if (inside == 0) enter = hit.x;
+        inside += int(hit.y);
+        if (inside == 0 && hit.x > enter) hits[to++] = vec2(enter, hit.x);
     }
     return to;
 }

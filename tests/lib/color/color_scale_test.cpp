@@ -66,6 +66,14 @@ TEST(ColorScale, HasColoursBeyondTheRange) {
 TEST(ColorNames, AreReadInEachForm) {
     EXPECT_EQ(parse_color("1,.5,0", "x"), Vec3(1, .5, 0));
     EXPECT_EQ(parse_color("#ff0000", "x"), Vec3(1, 0, 0));
+    for (const auto& [name, same] : {std::pair{"cyan", "#00ffff"},
+                                     {"magenta", "#ff00ff"},
+                                     {"orange", "#ffa500"},
+                                     {"lightgrey", "#d3d3d3"},
+                                     {"DarkSlateGray", "#2f4f4f"},
+                                     {"rebeccapurple", "#663399"},
+                                     {"green", "#008000"}})
+        EXPECT_EQ(parse_color(name, "x"), parse_color(same, "x")) << name;  // of CSS Color Module Level 4
     EXPECT_EQ(parse_color("white", "x"), Vec3(1, 1, 1));
     for (const char* wrong : {"", "1,2,3", "1,1", "#12", "whit", "1,a,0"})
         expect_error(kInvalid, "--below", [&] { (void)parse_color(wrong, "--below"); });

@@ -147,6 +147,42 @@ TEST_F(Legend, NamesCategories) {
     EXPECT_FALSE(document.child("svg").child("linearGradient")) << "there is no bar";
 }
 
+TEST_F(Legend, IntegersAreNamedByTheirValues) {
+    EXPECT_EQ(categories_of(std::vector<double>{7, 2, 2, 7, -1}), (std::vector<double>{-1, 2, 7}));
+    EXPECT_TRUE(categories_of(std::vector<double>{1, 2.5}).empty());
+    EXPECT_TRUE(categories_of(std::vector<double>{1, std::nan("")}).empty());
+    LegendOptions options{.title = "block", .min = 2, .max = 7};
+    name_categories(options, std::vector<double>{-1, 2, 7});
+    EXPECT_EQ(options.names, (std::vector<std::string>{"2", "7"})) << "in the range";
+    const auto document = parsed(legend_svg(transfer_function_preset("categories", 2, 7), options));
+    std::vector<std::string> fills;
+    for (const pugi::xml_node rect : document.child("svg").children("rect")) fills.emplace_back(rect.attribute("fill").value());
+    EXPECT_EQ(fills, (std::vector<std::string>{"#fff", "#ff7f0e", "#e377c2"})) << "Tableau's second and seventh colour";
+}
+
+TEST(BarTicks, AreTheEndsOfBands) {
+    const auto ends = [](int bands, int most) {
+        std::vector<double> parts;
+        for (const Tick& tick : bar_ticks({.bands = bands}, 293.15, 913.15, most))
+            parts.push_back((tick.value - 293.15) / 620 * bands);
+        return parts;
+    };
+    const auto every = [](int step, int last) {
+        std::vector<double> all;
+        for (int end = 0; end <= last; end += step) all.push_back(end);
+        return all;
+    };
+    // Values are rounded to 1e-13 of themselves, which is 1e-12 of a band.
+    for (const auto& [found, expected] : {std::pair{ends(10, 8), every(1, 10)},
+                                          {ends(12, 8), every(2, 12)},
+                                          {ends(20, 8), every(2, 20)},
+                                          {ends(13, 8), every(2, 12)},
+                                          {ends(21, 7), every(3, 21)}}) {
+        ASSERT_EQ(found.size(), expected.size());
+        for (std::size_t i = 0; i < found.size(); ++i) EXPECT_NEAR(found[i], expected[i], 1e-10);
+    }
+}
+
 TEST(BarTicks, FollowTheScale) {
     const auto texts = [](const ColorShape& shape, double min, double max) {
         std::vector<std::string> all;

@@ -57,6 +57,51 @@ TEST(Overlay, TextIsAnchoredAndCutOff) {
     EXPECT_GT(text_width_px("日", 10), 0) << "a box for letters that the font lacks";
 }
 
+TEST(Overlay, UnitsGreekAndCyrillicHaveOutlines) {
+    const std::vector<std::string> texts{"kg m⁻³ s⁻²",         "T = 20 ℃, ∂p/∂x, Ω·m, Å",
+                                         "Температура",        "αβγδεζηθικλμνξοπρστυφχψω",
+                                         "Größe, naïve, Łódź", "±∞ ≤ ≥ ≈ √ ∫ ∑ → ½ ‰ “quotes” – —"};
+    EXPECT_EQ(missing_letters(texts), std::vector<std::string>());
+    EXPECT_EQ(missing_letters(std::vector<std::string>{"温度 T 温", "\xff!"}), (std::vector<std::string>{"温", "度", "\xff"}));
+    Image minus(40, 40), box(40, 40);
+    draw_text(minus, {5, 30}, "⁻", {.size_px = 30});
+    draw_text(box, {5, 30}, "温", {.size_px = 30});
+    EXPECT_LT(extent_of(minus).bottom, 20) << "it is raised";
+    EXPECT_LT(extent_of(minus).bottom - extent_of(minus).top, 5) << "and a line";
+    EXPECT_GT(extent_of(box).bottom - extent_of(box).top, 15);
+}
+
+TEST(Overlay, TextsAreCutWithDotsAtWholeLetters) {
+    EXPECT_EQ(cut_text("Größe", 10, 1000), "Größe");
+    const std::string cut = cut_text("ÄÄÄÄÄÄÄÄ", 10, 0.6 * text_width_px("ÄÄÄÄÄÄÄÄ", 10));
+    EXPECT_LE(text_width_px(cut, 10), 0.6 * text_width_px("ÄÄÄÄÄÄÄÄ", 10));
+    EXPECT_TRUE(cut.ends_with("…"));
+    EXPECT_EQ(missing_letters(std::vector<std::string>{cut}).size(), 0U) << "no half of a letter is left";
+    EXPECT_EQ((cut.size() - std::string("…").size()) % 2, 0U);
+    EXPECT_EQ(cut_text("abc", 10, 0), "…");
+}
+
+TEST(Overlay, LegendsOfTallPicturesHaveTheLettersOfTheirWidth) {
+    const TransferFunction f = transfer_function_preset("viridis", 0, 1);
+    const LegendOptions options{.title = "T"};
+    EXPECT_EQ(legend_width_px(f, options, 800, 800), legend_width_px(f, options, 800)) << "a square";
+    EXPECT_EQ(legend_width_px(f, options, 400, 1200), legend_width_px(f, options, 400)) << "a wide picture";
+    EXPECT_EQ(legend_width_px(f, options, 800, 400), legend_width_px(f, options, 400)) << "a tall one: as of its width";
+    EXPECT_EQ(legend_width_px(f, options, 80, 80), legend_width_px(f, options, 320)) << "letters of 8 pixels at least";
+}
+
+TEST(Overlay, PaddedPicturesAreWhereTheyBelong) {
+    Image small(2, 1);
+    for (std::size_t i = 0; i < 8; ++i) small.rgba[i] = static_cast<float>(i + 1);
+    const Image large = padded(small, 1, 2, 4, 5);
+    for (int y = 0; y < 5; ++y) {
+        for (int x = 0; x < 4; ++x) {
+            const float expected = y == 2 && (x == 1 || x == 2) ? static_cast<float>(4 * (x - 1) + 1) : 0.F;
+            EXPECT_EQ(large.pixel(x, y)[0], expected) << x << ' ' << y;
+        }
+    }
+}
+
 TEST(Overlay, LinesHaveTheirWidth) {
     for (const Vec2& to : {Vec2(80, 20), Vec2(20, 70), Vec2(75, 61)}) {
         Image image(100, 100);

@@ -271,6 +271,34 @@ TEST(RenderDense, ColoursLieWithinTheErrorThatIsSaid) {
     EXPECT_LT(rms(found.image, draw(levels + 2)), *found.report.error_color);
 }
 
+TEST(RenderDense, WhereColoursJumpTheLevelIsNoFinerAndThePictureNear) {
+    const HexMesh mesh = with_field(test::box(6), waves);
+    const View view = slanted_view(64);
+    const auto optics = [](const ColorShape& shape) {
+        TransferFunction ramp = transfer_function_preset("viridis", .1, .9);
+        ramp.opacity = {{.1, .3}, {.9, .3}};
+        return Optics(shaped(ramp, shape), .3);
+    };
+    const int smooth = render_dense(mesh, {}, view, optics({}), {}).report.levels;
+    for (const ColorShape& shape :
+         {ColorShape{.bands = 5}, ColorShape{.bands = 40}, ColorShape{.below = Vec3(1, 0, 0), .above = Vec3(1)}}) {
+        const DenseResult found = render_dense(mesh, {}, view, optics(shape));
+        EXPECT_TRUE(found.report.converged);
+        EXPECT_LE(*found.report.error_px, .25);
+        EXPECT_LE(found.report.levels, smooth + 1);  // each level costs eight times as much
+        // A line a quarter of a pixel beside its place changes a quarter of the pixels along it, by less than the whole colour;
+        // lines go through at most a tenth of these 64² pixels each: √(.25 · .1) · .2 of 1 for bands, and opacity takes half.
+        const Image finer = render_dense(mesh, {}, view, optics(shape), {.levels = found.report.levels + 2}).image;
+        EXPECT_LT(rms(found.image, finer), .015) << shape.bands;
+    }
+}
+
+TEST(RenderDense, AJumpOutsideTheFieldNeedsNoLevel) {
+    const HexMesh mesh = with_field(test::box(4), [](const Vec3& p) { return p.x * p.x; });
+    TransferFunction step{{{0, {1, 0, 0}}, {2, {1, 0, 0}}, {2 + 1e-12, {0, 0, 1}}, {3, {0, 0, 1}}}, {{0, .5}, {3, .5}}};
+    EXPECT_EQ(render_dense(mesh, {}, slanted_view(64), Optics(step, .3)).report.levels, 0);
+}
+
 TEST(RenderDense, WhatIsLinearNeedsNoLevel) {
     const HexMesh mesh = with_field(test::box(4), [](const Vec3& p) { return p.x; });
     const DenseReport found = render_dense(mesh, {}, slanted_view(64), ramp_optics(0.3)).report;

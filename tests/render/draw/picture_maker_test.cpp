@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 #include "lib/expect_error.h"
@@ -11,6 +12,7 @@
 #include "lib/test_meshes.h"
 #include "subvol/boundary_shading.h"
 #include "subvol/error.h"
+#include "subvol/gl_device.h"
 #include "subvol/limit.h"
 #include "subvol/model.h"
 #include "subvol/render_tets.h"
@@ -154,6 +156,95 @@ TEST(PictureMaker, LightFollowsWhenTheColoursBecomeOne) {
     };
     PictureMaker kept({.mesh = ball()}, solid_by(Method::Splat));
     for (const Optics& optics : {colored, plain, colored}) EXPECT_EQ(kept.draw(view, optics).image.rgba, fresh(optics));
+}
+
+/// The root of the mean square of the differences of colours and opacities.
+double rms(const Image& a, const Image& b) {
+    double sum = 0;
+    for (std::size_t i = 0; i < a.rgba.size(); ++i) sum += std::pow(double{a.rgba[i]} - double{b.rgba[i]}, 2);
+    return std::sqrt(sum / static_cast<double>(a.rgba.size()));
+}
+
+TEST(PictureMaker, AFieldWithALargeMeanLooksLikeTheFieldLessItsMean) {
+    constexpr double kMean = 101325, kHalf = .01;
+    HexMesh small = ball();
+    small.attributes = {{.name = "p", .values = {}}};
+    for (const Vec3& p : small.points) small.attributes[0].values.push_back(kHalf * std::sin(3 * p.x + p.y));
+    HexMesh large = small;
+    for (double& value : large.attributes[0].values) value += kMean;
+    const Box box = bounds(ball());
+    const View view = view_of(box);
+    const auto draw = [&](const HexMesh& mesh, Look look, double mean, SplatMethod backend, bool occlusion = false) {
+        MethodOptions options = solid_by(Method::Splat);
+        options.style.look.look = look;
+        options.splat.method = backend;
+        options.splat.ambient_occlusion = occlusion ? .1 : 0;
+        const Optics optics = picture_optics({.look = look}, box, {mean - kHalf, mean + kHalf}, {mean - kHalf, mean + kHalf});
+        return PictureMaker({.mesh = mesh}, options).draw(view, optics).image;
+    };
+    std::vector<SplatMethod> backends{SplatMethod::Cpu};
+    if (find_gl_device()) backends.push_back(SplatMethod::Gl);
+    for (const SplatMethod backend : backends) {
+        for (const Look look : {Look::Solid, Look::Volume, Look::Isosurface}) {
+            // A double holds 101325 to 1.5e-11, which is 1e-9 of the range; knots are 1e-9 of it apart where they are a jump.
+            EXPECT_LT(rms(draw(small, look, 0, backend), draw(large, look, kMean, backend)), 1e-5) << name_of(look);
+        }
+        EXPECT_LT(rms(draw(small, Look::Solid, 0, backend, true), draw(large, Look::Solid, kMean, backend, true)), 1e-5);
+    }
+}
+
+TEST(PictureMaker, OriginsFollowTheRangeOfTheColours) {
+    HexMesh mesh = ball();
+    mesh.attributes = {{.name = "p", .values = {}}};
+    for (const Vec3& p : mesh.points) mesh.attributes[0].values.push_back(1e6 + p.x);
+    const View view = view_of(bounds(ball()));
+    const auto optics = [&](double min, double max) {
+        return picture_optics({.look = Look::Volume, .range = ValueRange{min, max}, .stretch = true}, bounds(ball()),
+                              {min, max}, {min, max});
+    };
+    MethodOptions options = solid_by(Method::Splat);
+    options.style.look.look = Look::Volume;
+    PictureMaker kept({.mesh = mesh}, options);
+    EXPECT_TRUE(kept.keeps_kernels(optics(0, 2e6)));
+    EXPECT_FALSE(kept.keeps_kernels(optics(1e6 - .5, 1e6 + .5)));
+    for (const double half : {1e6, .5, .01, 1e6, .5}) {
+        const Optics one = optics(1e6 - half, 1e6 + half);
+        EXPECT_EQ(kept.draw(view, one).image.rgba, PictureMaker({.mesh = mesh}, options).draw(view, one).image.rgba) << half;
+    }
+}
+
+TEST(PictureMaker, BodiesBelowAPixelAreSaid) {
+    HexMesh mesh = test::make_box(1, 1, 1);
+    const auto add_box = [&](const Vec3& at, double size) {
+        const HexMesh box = test::make_box(1, 1, 1);
+        const auto first = static_cast<Index>(mesh.points.size());
+        for (const Vec3& p : box.points) mesh.points.push_back(at + size * p);
+        auto cell = box.cells[0];
+        for (Index& corner : cell) corner += first;
+        mesh.cells.push_back(cell);
+    };
+    const auto warnings = [&] {
+        mesh.attributes = {{.name = "f", .values = std::vector<double>(mesh.points.size(), 1.0)}};
+        const Optics optics = picture_optics({.look = Look::Solid}, bounds(mesh), {1, 1}, {1, 1});
+        const View view({.eye = {.5, -20, .5}, .target = {.5, 0, .5}, .up = {0, 0, 1}, .ortho_height = 12}, 60,
+                        60);  // 5 pixels a unit
+        const Facts facts = PictureMaker({.mesh = mesh}, solid_by(Method::Tets)).draw(view, optics).facts;
+        std::string all;
+        if (const FactValue* found = facts.find("warnings")) {
+            for (const FactValue& one : std::get<FactValue::List>(found->value)) all += std::get<std::string>(one.value) + "\n";
+        }
+        return all;
+    };
+    EXPECT_EQ(warnings().find("pixel"), std::string::npos);
+    add_box({4, 0, 4}, .1);     // half a pixel
+    add_box({-4, 0, -4}, .19);  // a little less than one
+    add_box({3, 0, -3}, .21);   // a little more
+    add_box({90, 0, 0}, .1);    // beside the picture
+    EXPECT_NE(warnings().find("2 of 5 bodies in the picture are smaller than a pixel"), std::string::npos) << warnings();
+    for (int i = 0; i < 20; ++i) {
+        for (int k = 0; k < 20; ++k) add_box({-3 + .1 * i, 0, .1 * k}, .1);  // cells side by side that share no points
+    }
+    EXPECT_NE(warnings().find("2 of 405 bodies"), std::string::npos) << warnings();
 }
 
 TEST(PictureMaker, StylesAndBodiesChangeBetweenPictures) {

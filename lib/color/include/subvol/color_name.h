@@ -7,7 +7,7 @@
 
 namespace subvol {
 
-/// A colour in linear light: three numbers in 0..1 such as "1,.5,0", "#rrggbb" (sRGB), or a name.
+/// A colour in linear light: three numbers in 0..1 such as "1,.5,0", "#rrggbb" (sRGB), or a name of CSS.
 ///
 /// where:  is named in the error
 /// throws: Error(InvalidInput)

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -19,8 +21,9 @@ namespace subvol {
 ///           get a plot of their own; an empty title: they are of the same field
 /// note:     a line below the legend
 /// format:   of the ticks' values, as of printf: %.2f, %g, %.3e; empty: as many digits as they need
-/// names:    of categories, whose values are min, min + 1, …: the legend has a swatch and the name for each, in place of the
-/// bar
+/// names:    of categories, whose values are `values`, or min, min + 1, … if there are none: the legend has a swatch and the
+/// name
+///           for each, in place of the bar
 struct LegendOptions {
     std::string title{};
     double min = 0;
@@ -33,7 +36,22 @@ struct LegendOptions {
     std::string note{};
     std::string format{};
     std::vector<std::string> names{};
+    std::vector<double> values{};
+
+    /// The value of the category with a name.
+    [[nodiscard]] double value_of(std::size_t name) const {
+        return name < values.size() ? values[name] : min + static_cast<double>(name);
+    }
 };
+
+/// Returns the name of a field with its unit, if it has one: Temp [K].
+[[nodiscard]] std::string legend_title(const std::string& field, const std::string& unit);
+
+/// Returns the different values, ascending, if all are integers (blocks, materials) and there are at most 1000; else none.
+[[nodiscard]] std::vector<double> categories_of(std::span<const double> values);
+
+/// Gives a legend without names the categories that lie in its range, named by their values.
+void name_categories(LegendOptions& options, std::span<const double> categories);
 
 /// Whether a format of ticks has one number, by e, f or g, at most 20 digits, and no other conversion.
 [[nodiscard]] bool is_tick_format(const std::string& format);

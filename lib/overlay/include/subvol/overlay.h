@@ -31,11 +31,18 @@ struct TextOptions {
 
 /// Draws one line of text, with the start of its base line at `place`, or its middle or end.
 ///
-/// text: UTF-8; letters of the built-in font (Latin letters, digits, signs, some Greek), a box for all others
+/// text: UTF-8; letters of the built-in font (Latin, Greek and Cyrillic letters, digits, raised and lowered too, and the signs
+///       of physics); a box for all others, as `missing_letters` names them
 void draw_text(Image& image, const Vec2& place, const std::string& text, const TextOptions& options = {});
 
 /// The width of a text in pixels.
 [[nodiscard]] double text_width_px(const std::string& text, double size_px);
+
+/// Returns a text that is at most room_px wide: the text itself, or its beginning with "…".
+[[nodiscard]] std::string cut_text(std::string text, double size_px, double room_px);
+
+/// Returns the letters (or bytes that are not UTF-8) of the texts that the built-in font lacks, each once.
+[[nodiscard]] std::vector<std::string> missing_letters(std::span<const std::string> texts);
 
 /// alpha: 0..1
 struct LineOptions {
@@ -120,11 +127,15 @@ struct LineSample {
 /// ink: of the names
 void draw_axes(Image& image, const View& view, const Vec3& ink);
 
+/// Returns the columns and rows that `draw_axes` may need in the corner of a picture of this size.
+[[nodiscard]] Vec2 axes_extent_px(int width, int height);
+
 /// Draws a bar of a round length in the lower right corner, at most a quarter of the picture wide, with the length above it.
 ///
-/// at:  the point at whose depth lengths are those of the bar; of an orthographic view it does not matter
-/// ink: of bar and text
-void draw_scale_bar(Image& image, const View& view, const Vec3& at, const Vec3& ink);
+/// at:       the point at whose depth lengths are those of the bar; of an orthographic view it does not matter
+/// ink:      of bar and text
+/// above_px: the height above the lower edge at which the corner begins
+void draw_scale_bar(Image& image, const View& view, const Vec3& at, const Vec3& ink, double above_px = 0);
 
 /// Where a legend stands: at the right edge of the picture, upright, or along its lower edge.
 enum class LegendSide { Right, Bottom };
@@ -134,13 +145,15 @@ struct NameTable<LegendSide> {
     static constexpr Name<LegendSide> rows[] = {{LegendSide::Right, "right"}, {LegendSide::Bottom, "bottom"}};
 };
 
-/// side: where it stands
-/// size: of the letters and the bar, 1 as they are by default
-/// ink:  of text and lines, in linear light
+/// side:  where it stands
+/// size:  of the letters and the bar, 1 as they are by default
+/// ink:   of text and lines, in linear light
+/// width: of the whole picture in pixels: letters follow the shorter of its sides; 0: its height alone
 struct LegendStyle {
     LegendSide side = LegendSide::Right;
     double size = 1;
     Vec3 ink{0.0};
+    int width = 0;
 };
 
 /// The pixels that `draw_legend` needs in a picture of this height: columns at its right, or rows below.
@@ -150,17 +163,24 @@ struct LegendStyle {
 /// Draws a colour bar with ticks at round values, its title, and the curve of the opacities where they differ (not along the
 /// lower edge); of categories a swatch and a name for each, as many as there is room for.
 ///
-/// height: of the picture, which decides the size of the letters
+/// height: of the picture, which decides the size of the letters with `style.width`; they are at least 8 pixels high
 /// throws: Error(InvalidInput) as `legend_svg`
 void draw_legend(Image& image, const TransferFunction& function, const LegendOptions& options, const LegendStyle& style,
                  int height);
 
-/// The same at the right edge, in the usual size.
-[[nodiscard]] inline int legend_width_px(const TransferFunction& function, const LegendOptions& options, int height) {
-    return legend_extent_px(function, options, {}, height);
+/// The same at the right edge, in the usual size. width: as `LegendStyle::width`
+[[nodiscard]] inline int legend_width_px(const TransferFunction& function, const LegendOptions& options, int height,
+                                         int width = 0) {
+    return legend_extent_px(function, options, {.width = width}, height);
 }
-inline void draw_legend(Image& image, const TransferFunction& function, const LegendOptions& options, const Vec3& ink) {
-    draw_legend(image, function, options, {.ink = ink}, image.height);
+inline void draw_legend(Image& image, const TransferFunction& function, const LegendOptions& options, const Vec3& ink,
+                        int width = 0) {
+    draw_legend(image, function, options, {.ink = ink, .width = width}, image.height);
 }
+
+/// Returns a larger picture with the given one in it; the new pixels are transparent.
+///
+/// left, top: where it lies in the new one
+[[nodiscard]] Image padded(const Image& image, int left, int top, int width, int height);
 
 }  // namespace subvol

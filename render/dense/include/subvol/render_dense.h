@@ -35,8 +35,9 @@ struct DenseOptions {
     Progress* progress = nullptr;
 };
 
-/// error_px:     how far the boundary lies from that of the limit (RMS, estimated), if the level was chosen by it
-/// error_color:  the same for colours and opacities
+/// error_px:     how far the boundary, or the lines where colours jump if that is more, lie from those of the limit (RMS,
+///               estimated), if the level was chosen by it
+/// error_color:  the same for colours and opacities elsewhere
 /// image_change: RMS by which the picture changed at the last level; none if only one level was drawn
 /// converged:    whether these were below their tolerance, or image_change was
 /// bytes:        the most that grids took at once

@@ -21,7 +21,7 @@ struct Tick {
 [[nodiscard]] std::vector<Tick> round_ticks(double min, double max, int most = 7);
 
 /// Ticks of a colour bar: of a linear scale as `round_ticks`; powers of ten on logarithmic ones, with twice and five times
-/// these if there are few; the ends of the bands if these are as few.
+/// these if there are few; ends of bands, all or every second or third, if there are not many.
 [[nodiscard]] std::vector<Tick> bar_ticks(const ColorShape& shape, double min, double max, int most = 7);
 
 /// The labels of ticks in another format, as of `LegendOptions::format`; empty: unchanged.
