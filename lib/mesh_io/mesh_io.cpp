@@ -282,6 +282,23 @@ std::string way_to(const std::filesystem::path& path) {
     return {};
 }
 
+// Files that are of something else than cells, of which the command makes a mesh.
+void refuse_others(const std::filesystem::path& path) {
+    std::string extension = path.extension().string();
+    std::ranges::transform(extension, extension.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    const std::string file = path.filename().string(), mesh = " -o " + path.stem().string() + ".vtu` makes a control mesh of it";
+    const auto refuse = [&](const std::string& what, const std::string& way) {
+        std::error_code none;
+        if (!std::filesystem::exists(path, none))
+            throw Error(ErrorCode::Io, "cannot be read: No such file or directory", path.string());
+        throw Error(ErrorCode::InvalidInput, "is " + what + ", not a mesh of cells", path.string(), way);
+    };
+    if (extension == ".stl" || extension == ".obj" || extension == ".ply") refuse("a surface", "`subvol mesh " + file + mesh);
+    if (extension == ".glb" || extension == ".gltf")
+        refuse("a surface", "`subvol mesh` makes a control mesh of an .stl, .obj or .ply file; export one of these");
+    if (extension == ".vdb") refuse("a grid", "`subvol mesh " + file + " --iso VALUE" + mesh);
+}
+
 // The row with an extension in any case; null if there is none.
 const MeshFormat* format_with(std::string_view extension) {
     const std::string upper = upper_case(extension);
@@ -324,6 +341,7 @@ const MeshFormat* detail::format_of(const std::filesystem::path& path) {
 const MeshFormat& detail::readable_format(const std::filesystem::path& path) {
     const MeshFormat* format = format_of(path);
     if (!format) {
+        refuse_others(path);
         refuse_format(path, "read", list_formats(false) + way_to(path));
     }
     return *format;
