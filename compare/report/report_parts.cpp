@@ -187,10 +187,10 @@ std::string triple_html(const fs::path& ours, const fs::path& reference,
 /// How small a table is to be printed, by the letters that lie side by side: numbers are not broken, words are. A sheet of A4
 /// is 538 pt wide between its margins, and a digit .64 of its size.
 const char* paper_class(const StudyTable& table, const std::vector<bool>& words) {
-    constexpr std::size_t kPadding = 1, kWord = 6;  // in letters, of each column
+    constexpr std::size_t kPadding = 1, kWord = 7;  // in letters, of each column: style.css has their sum
     std::size_t letters = 0;
     for (std::size_t c = 0; c < table.columns.size(); ++c) {
-        std::size_t longest = words[c] ? kWord : 1;
+        std::size_t longest = kWord;
         for (std::size_t r = 0; r < table.rows.size() && !words[c]; ++r) longest = std::max(longest, shown(table, r, c).size());
         letters += kPadding + longest;
     }

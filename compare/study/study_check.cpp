@@ -29,9 +29,9 @@ std::string joined(const std::vector<std::string>& names) {
 
 class Checker {
 public:
-    Checker(const Study& study, const std::string& root, const std::vector<StudyMethod>& unread)
-        : study_(study), root_(root), keys_(all_keys(study)), complete_(unread.empty()) {
-        if (complete_) return;
+    Checker(const Study& study, const std::string& root, const std::vector<StudyMethod>& unread, bool keys_alone)
+        : study_(study), root_(root), keys_(all_keys(study)), complete_(!keys_alone) {
+        if (unread.empty()) return;
         for (const StudyMethod& method : unread) {
             for (const Key& key : method.keys) keys_.push_back(key.name);
         }
@@ -60,7 +60,7 @@ public:
 
 private:
     void check_key(const std::string& key, const std::string& path) const {
-        if (std::ranges::find(keys_, key) != keys_.end() || key.starts_with("parameter.")) return;
+        if (key.empty() || std::ranges::find(keys_, key) != keys_.end() || key.starts_with("parameter.")) return;
         if (!complete_ && key.find('.') != std::string::npos) return;  // such as given.KEY, of a case that could not be read
         refuse(path, "no case has the key '" + shortened(key) + "'" + did_you_mean(key, keys_), joined(keys_));
     }
@@ -220,8 +220,8 @@ private:
 
 }  // namespace
 
-void check_presentation(const Study& study, const std::string& root, const std::vector<StudyMethod>& unread) {
-    Checker(study, root, unread).check();
+void check_presentation(const Study& study, const std::string& root, const std::vector<StudyMethod>& unread, bool keys_alone) {
+    Checker(study, root, unread, keys_alone).check();
 }
 
 }  // namespace subvol::detail

@@ -67,10 +67,12 @@ public:
         mistakes.none_in([&] {
             if (!json_.contains("pictures") || !json_["pictures"].is_object()) result.pictures = flag("pictures");
         });
-        mistakes.none_in([&] { read_presentation(json_, root_, result); });
+        const bool shown_well = mistakes.none_in([&] { read_presentation(json_, root_, result); });
         const bool complete = mistakes.none_in([&] { expand(result); });
-        mistakes.none_in(
-            [&] { check_presentation(result, root_, complete ? std::vector<StudyMethod>() : all_methods(methods_)); });
+        mistakes.none_in([&] {
+            const auto unread = complete ? std::vector<StudyMethod>() : all_methods(methods_);
+            check_presentation(result, root_, unread, !complete || !shown_well);
+        });
         mistakes.check(file_.string());
         return result;
     }

@@ -112,11 +112,11 @@ private:
 
 using Headings = std::map<std::string, std::string>;
 
-StudyTableSpec read_table(const Json& json, const std::string& path, const std::string& title, const Headings& common) {
+void read_table(const Json& json, const std::string& path, const std::string& title, const Headings& common,
+                StudyTableSpec& table) {
     static const Known kKnown{"title",  "caption", "rows",     "columns", "across",
                               "values", "average", "headings", "where",   "digits"};
     PartReader part(json, path, kKnown);
-    StudyTableSpec table;
     part.text(table.title, "title", title);
     part.text(table.caption, "caption");
     part.list(table.rows, "rows", true);
@@ -137,14 +137,13 @@ StudyTableSpec read_table(const Json& json, const std::string& path, const std::
         return table.across;
     });
     part.check();
-    return table;
 }
 
-StudyPlotSpec read_plot(const Json& json, const std::string& path, const std::string& title, const Headings& common) {
+void read_plot(const Json& json, const std::string& path, const std::string& title, const Headings& common,
+               StudyPlotSpec& plot) {
     static const Known kKnown{"title", "caption", "x",   "y",        "series", "panels",  "average",
                               "log_x", "log_y",   "fit", "headings", "where",  "together"};
     PartReader part(json, path, kKnown);
-    StudyPlotSpec plot;
     part.text(plot.title, "title", title);
     part.text(plot.caption, "caption");
     part.first(plot.x, "x");
@@ -159,13 +158,11 @@ StudyPlotSpec read_plot(const Json& json, const std::string& path, const std::st
     part.flag(plot.fit, "fit");
     part.where(plot.where);
     part.check();
-    return plot;
 }
 
-StudyDemand read_demand(const Json& json, const std::string& path) {
+void read_demand(const Json& json, const std::string& path, StudyDemand& demand) {
     static const Known kKnown{"metric", "least", "most", "where"};
     PartReader part(json, path, kKnown);
-    StudyDemand demand;
     part.first(demand.metric, "metric");
     part.where(demand.where);
     for (auto [key, value] : {std::pair{"least", &demand.least}, {"most", &demand.most}}) {
@@ -181,7 +178,6 @@ StudyDemand read_demand(const Json& json, const std::string& path) {
         return demand.least;
     });
     part.check();
-    return demand;
 }
 
 }  // namespace
@@ -201,12 +197,14 @@ void read_presentation(const Json& json, const std::string& root, Study& study) 
             for (std::size_t i = 0; i < parts.size(); ++i) mistakes.none_in([&] { read(parts[i], at(in(root, key), i)); });
         });
     };
+    // A part with a mistake stays as far as it could be read: its keys are checked, too.
     each("tables", [&](const Json& part, const std::string& path) {
-        study.tables.push_back(read_table(part, path, study.title, common));
+        read_table(part, path, study.title, common, study.tables.emplace_back());
     });
-    each("plots",
-         [&](const Json& part, const std::string& path) { study.plots.push_back(read_plot(part, path, study.title, common)); });
-    each("demands", [&](const Json& part, const std::string& path) { study.demands.push_back(read_demand(part, path)); });
+    each("plots", [&](const Json& part, const std::string& path) {
+        read_plot(part, path, study.title, common, study.plots.emplace_back());
+    });
+    each("demands", [&](const Json& part, const std::string& path) { read_demand(part, path, study.demands.emplace_back()); });
     mistakes.check();
 }
 

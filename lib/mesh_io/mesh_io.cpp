@@ -13,6 +13,7 @@
 #include "series_format.h"
 #include "subvol/cell_means.h"
 #include "subvol/detail/number_text.h"
+#include "subvol/detail/refuse_surface.h"
 #include "subvol/error.h"
 #include "subvol/mesh_series.h"
 #include "text_scanner.h"
@@ -284,19 +285,22 @@ std::string way_to(const std::filesystem::path& path) {
 
 // Files that are of something else than cells, of which the command makes a mesh.
 void refuse_others(const std::filesystem::path& path) {
-    std::string extension = path.extension().string();
-    std::ranges::transform(extension, extension.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    const std::string file = path.filename().string(), mesh = " -o " + path.stem().string() + ".vtu` makes a control mesh of it";
-    const auto refuse = [&](const std::string& what, const std::string& way) {
-        std::error_code none;
-        if (!std::filesystem::exists(path, none))
-            throw Error(ErrorCode::Io, "cannot be read: No such file or directory", path.string());
-        throw Error(ErrorCode::InvalidInput, "is " + what + ", not a mesh of cells", path.string(), way);
-    };
-    if (extension == ".stl" || extension == ".obj" || extension == ".ply") refuse("a surface", "`subvol mesh " + file + mesh);
-    if (extension == ".glb" || extension == ".gltf")
-        refuse("a surface", "`subvol mesh` makes a control mesh of an .stl, .obj or .ply file; export one of these");
-    if (extension == ".vdb") refuse("a grid", "`subvol mesh " + file + " --iso VALUE" + mesh);
+    const std::string extension = upper_case(path.extension().string());
+    const bool surface = extension == ".STL" || extension == ".OBJ" || extension == ".PLY";
+    const bool scene = extension == ".GLB" || extension == ".GLTF", grid = extension == ".VDB";
+    std::error_code none;
+    if ((surface || scene || grid) && !std::filesystem::exists(path, none))
+        throw Error(ErrorCode::Io, "cannot be read: No such file or directory", path.string());
+    if (surface) refuse_surface(path);
+    if (scene) {
+        throw Error(ErrorCode::InvalidInput, "is a surface, not a mesh of cells", path.string(),
+                    "`subvol mesh` makes a control mesh of an .stl, .obj or .ply file: export one of these");
+    }
+    if (grid) {
+        throw Error(ErrorCode::InvalidInput, "is a grid, not a mesh of cells", path.string(),
+                    "`subvol mesh " + path.filename().string() + " --iso VALUE -o " + path.stem().string() +
+                        ".vtu` makes a control mesh of it");
+    }
 }
 
 // The row with an extension in any case; null if there is none.
