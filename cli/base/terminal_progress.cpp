@@ -88,16 +88,18 @@ void TerminalProgress::report(std::string_view stage, double fraction) {
         name = part_ + ": " + name;
     }
     const double time = now();
-    const bool begins = !active_ || (part_.empty() && (kind(name) != kind(stage_) || fraction < fraction_));
+    const bool in_parts = !part_.empty();
+    const bool begins = !active_ || (!in_parts && (kind(name) != kind(stage_) || fraction < fraction_));
     const bool other = begins || name != stage_;
-    if (begins) {
+    if (begins && (!in_parts || part_begin_ == 0)) {
         pace_.clear();
         stage_start_ = time;
     }
     stage_ = std::move(name);
     fraction_ = fraction;
     active_ = true;
-    if (fraction > 0 || begins) pace_.add(time, fraction);
+    // The stages of a part take longer or shorter, so only whole parts show the pace (begin_part).
+    if (in_parts ? begins && part_begin_ == 0 : fraction > 0 || begins) pace_.add(time, fraction);
     hint(time);
     if (visible_ && (other || time - last_draw_ >= kRedraw_s)) draw();
 }
@@ -116,7 +118,8 @@ void TerminalProgress::hint(double now) {
     const auto say = std::exchange(say_, nullptr);
     if (drawn_) std::fputs("\r\033[K", stderr);
     drawn_ = false;
-    say(stage_ + " takes about " + seconds_text(left + now - stage_start_) + "; quicker: " + quicker_);
+    const std::string whole = part_.empty() ? stage_ + " takes about " : "all of it takes about ";
+    say(whole + seconds_text(left + now - stage_start_) + "; quicker: " + quicker_);
 }
 
 bool TerminalProgress::cancelled() const {
@@ -129,6 +132,7 @@ void TerminalProgress::begin_part(const std::string& name, std::size_t index, st
     part_size_ = count > 0 ? 1.0 / static_cast<double>(count) : 1;
     part_begin_ = static_cast<double>(index) * part_size_;
     part_done_ = 0;
+    if (active_ && index > 0 && index < count) pace_.add(now(), part_begin_);
 }
 
 void TerminalProgress::hint_at(std::string quicker, std::function<void(const std::string&)> say) {

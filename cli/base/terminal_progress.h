@@ -49,8 +49,8 @@ public:
     void report(std::string_view stage, double fraction) override;
     [[nodiscard]] bool cancelled() const override;
 
-    /// From now on stages are those of one of several parts, as "frame 3 of 120"; the bar is that of all parts. Empty: no
-    /// longer.
+    /// From now on stages are those of one of several parts, as "frame 3 of 120"; the bar is that of all parts, and the time
+    /// left is estimated from those that are done. Empty: no longer.
     void begin_part(const std::string& name, std::size_t index, std::size_t count);
 
     /// What can be done if the work turns out to be long. `say` gets one sentence, once, as soon as the estimate is more than

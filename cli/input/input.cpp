@@ -14,6 +14,7 @@
 #include "subvol/mesh_motion.h"
 #include "subvol/model.h"
 #include "subvol/quantity.h"
+#include "subvol/read_surface.h"
 #include "subvol/warp.h"
 #include "text.h"
 
@@ -195,7 +196,7 @@ InputKind kind_of(const std::string& input) {
     if (is_model(input) || std::ranges::find(meshes, extension_of(input)) != meshes.end()) return InputKind::Mesh;
     if (holds_points(input)) return InputKind::Points;
     if (is_vdb_file(input)) return InputKind::Grid;
-    return is_mesh_file(input) ? InputKind::Mesh : InputKind::Picture;
+    return is_mesh_file(input) || is_surface_file(input) ? InputKind::Mesh : InputKind::Picture;  // the way to a mesh is said
 }
 
 bool is_model(const std::string& input) {

@@ -17,11 +17,22 @@ namespace subvol::cli {
 namespace {
 
 constexpr double kMostCellsOfTables = 8e6;  // refined cells, about 200 bytes each
+constexpr double kMostOfPieces = 1.5;       // cells of tables for each piece of the limit
 // Velocities are written beyond the volume as far as it moves in this time: renderers open the shutter for a frame at most,
 // usually centred on the frame's time.
 constexpr double kShutter_frames = 0.5;
 // In voxels. With more, the grid of a volume 200 voxels wide would have more voxels outside the volume than inside.
 constexpr int kMostVelocityLayers = 64;
+
+/// Whether tables of one level for all cells make the frames cheaper: they refine each cell as far as the finest one.
+bool tables_pay(const HexMesh& mesh, const RasterizeOptions& options) {
+    if (options.refine.scheme.crease_angle_deg) return false;
+    const int levels = options.limit ? finest_level(*options.limit) : options.refine.levels;
+    const double cells = std::ldexp(static_cast<double>(mesh.cells.size()), 3 * levels);
+    if (cells > kMostCellsOfTables) return false;
+    // A curved piece is a cell of the level before, and is worked on as long as one.
+    return !options.limit || cells / 8 <= kMostOfPieces * static_cast<double>(options.limit->piece_count);
+}
 
 /// Adds the velocity of a mesh to its fields. Where the mesh stands still, that of the flow in it stays, if it has one.
 ///
@@ -69,9 +80,7 @@ FrameWriter::FrameWriter(MeshGrids& maker, const FramesToGrids& frames, const Vd
       progress_(progress),
       first_(frames_.frames.mesh(frames_.all.first)),
       options_(facts_.unpack(maker.set_up(first_, progress))) {
-    const int levels = options_.limit ? finest_level(*options_.limit) : options_.refine.levels;
-    if (!options_.refine.scheme.crease_angle_deg &&
-        std::ldexp(static_cast<double>(first_.cells.size()), 3 * levels) <= kMostCellsOfTables) {
+    if (tables_pay(first_, options_)) {
         tables_ = facts_.timed(progress, "tables", [&] { return vdb().rasterization_tables(first_, options_); });
     }
 }

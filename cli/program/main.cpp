@@ -36,6 +36,7 @@ namespace {
 using subvol::Error;
 using subvol::ErrorCode;
 using subvol::detail::printable_message;
+using subvol::detail::SeveralErrors;
 
 constexpr int kBadInput = 2;
 constexpr int kEnvironment = 3;
@@ -71,13 +72,19 @@ bool speaks() {
 }
 
 /// Says what is wrong on standard error; with --json an object on standard output says it, too.
-int complain(const Error& error, int code, bool json) {
+int complain(const Error& error, int code, bool json, const std::optional<SeveralErrors>& several = {}) {
     if (!speaks()) return code;
     subvol::cli::say_at_last([&] {
         // The message is put together from the error's parts, because what() ends at a zero byte.
         const std::string sentence = subvol::detail::error_sentence(error.where(), error.message(), error.allowed());
-        std::cerr << "subvol: " + printable_message(sentence) + "\n";  // in one go: mpirun may write between two
-        if (json) std::cout << subvol::cli::error_json(error, code) << std::endl;
+        std::string text = "subvol: " + printable_message(sentence) + "\n";
+        if (several) {  // each mistake on a line of its own
+            text = "subvol: ";
+            for (const std::string& line : several->lines()) text += line + "\n";
+        }
+        std::cerr << text;  // in one go: mpirun may write between two
+        if (json)
+            std::cout << subvol::cli::error_json(error, code, several ? several->all() : std::vector<Error>()) << std::endl;
     });
     return code;
 }
@@ -86,6 +93,8 @@ int complain(const Error& error, int code, bool json) {
 int run_naming_input(subvol::cli::Verb& verb, subvol::cli::Report& report) {
     try {
         return verb.run(report);
+    } catch (const SeveralErrors&) {  // they name their input
+        throw;
     } catch (const Error& error) {
         const std::string input = report.json().value("input", "");
         if (error.code() != ErrorCode::InvalidInput || std::string(error.what()).find(input) != std::string::npos) throw;
@@ -94,10 +103,18 @@ int run_naming_input(subvol::cli::Verb& verb, subvol::cli::Report& report) {
     }
 }
 
-/// The exception that is being handled as an error, and the program's exit code for it.
-std::pair<Error, int> error_at_hand() {
+/// The exception that is being handled as an error, the program's exit code for it, and its parts if it is of several mistakes.
+struct ErrorAtHand {
+    Error error;
+    int code;
+    std::optional<SeveralErrors> several{};
+};
+
+ErrorAtHand error_at_hand() {
     try {
         throw;
+    } catch (const SeveralErrors& several) {
+        return {several, exit_code(several.code()), several};
     } catch (const Error& error) {
         return {error, exit_code(error.code())};
     } catch (const std::bad_alloc&) {
@@ -123,14 +140,14 @@ int run_in_ranks(subvol::cli::Verb& verb, subvol::cli::Report& report, subvol::c
         code = run_naming_input(verb, report);
         report.merge(ranks.facts());
     } catch (...) {
-        auto [error, wrong] = error_at_hand();
+        auto [error, wrong, several] = error_at_hand();
         try {
             if (!ranks.agreed()) ranks.agree(&error);
         } catch (const Error& of_all) {
             error = of_all;
             wrong = exit_code(of_all.code());
         }
-        complain(error, wrong, verb.common().json);
+        complain(error, wrong, verb.common().json, several);
         ranks.finish();
         throw Said{wrong};
     }
@@ -253,7 +270,7 @@ int main(int argc, char** argv) {
     } catch (const Said& error) {
         return error.code;
     } catch (...) {
-        const auto [error, code] = error_at_hand();
-        return complain(error, code, json);
+        const auto [error, code, several] = error_at_hand();
+        return complain(error, code, json, several);
     }
 }

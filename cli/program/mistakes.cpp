@@ -35,10 +35,25 @@ std::string help_hint(const CLI::App* verb) {
     return verb ? "see subvol " + verb->get_name() + " --help" : "see subvol --help";
 }
 
-/// The verbs that have the option; else near names; else the options that begin as the given one does.
+/// The switch that turns the given one round, where that is how the verb is without both.
+std::string opposite(const std::vector<std::string>& names, const std::string& given) {
+    constexpr std::string_view kOn = "--", kOff = "--no-";
+    const auto is_known = [&](const std::string& name) { return std::ranges::find(names, name) != names.end(); };
+    if (given.starts_with(kOff)) {
+        const std::string on = std::string(kOn) + given.substr(kOff.size());
+        return is_known(on) ? "; it is off unless " + on + " is given" : "";
+    }
+    if (!given.starts_with(kOn)) return {};
+    const std::string off = std::string(kOff) + given.substr(kOn.size());
+    return is_known(off) ? "; it is on, and " + off + " turns it off" : "";
+}
+
+/// The opposite switch; else the verbs that have the option; else near names; else the options that begin as the given one
+/// does.
 std::string proposal(const CLI::App& program, const CLI::App& verb, const std::string& given) {
     constexpr std::size_t kMostOffered = 4;
     const std::vector<std::string> names = option_names(verb);
+    if (const std::string other = opposite(names, given); !other.empty()) return other;
     std::vector<std::string> longer, elsewhere;
     for (const CLI::App* other : verbs_of(program)) {
         const std::vector<std::string> its = option_names(*other);
@@ -102,6 +117,21 @@ std::optional<Error> conflict_of(const CLI::App& verb) {
     return std::nullopt;
 }
 
+/// An option that was given more often than it has a meaning for, without its value, or with one that it does not have.
+Error of_number_of_values(const CLI::App& verb, const std::string& message) {
+    for (const CLI::Option* option : verb.get_options()) {
+        const auto most = static_cast<std::size_t>(std::max(option->get_items_expected_max(), 1));
+        const auto given = option->results().size();
+        if (option->get_multi_option_policy() != CLI::MultiOptionPolicy::Throw || given <= most) continue;
+        const std::string times = given == 2 ? "twice" : std::to_string(given) + " times";
+        return {ErrorCode::InvalidInput, "is given " + times + ", but has one value", option->get_name(), help_hint(&verb)};
+    }
+    const std::string name = message.substr(0, message.find_first_of(": "));  // the parser's message begins with it
+    const std::string said = usage_name(verb, name);
+    if (message.ends_with(" missing")) return {ErrorCode::InvalidInput, "needs a value: " + said, name, help_hint(&verb)};
+    return {ErrorCode::InvalidInput, "is a switch, which has no value", name, help_hint(&verb)};
+}
+
 }  // namespace
 
 void check_verb(const CLI::App& program, const std::vector<std::string>& arguments) {
@@ -137,6 +167,7 @@ Error explained(const CLI::App& program, const CLI::ParseError& error) {
                              dynamic_cast<const CLI::ExcludesError*>(&error) != nullptr;
     if (const auto conflict = in_conflict ? conflict_of(*verb) : std::nullopt) return *conflict;
     if (dynamic_cast<const CLI::ValidationError*>(&error) != nullptr) return of_an_option(message);
+    if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) != nullptr) return of_number_of_values(*verb, message);
     return {ErrorCode::InvalidInput, message, {}, help_hint(verb)};
 }
 
@@ -145,13 +176,16 @@ Error explained(const CLI::App& program, const Error& error) {
     return error;
 }
 
-std::string error_json(const Error& error, int code) {
+std::string error_json(const Error& error, int code, std::span<const Error> all) {
+    const auto parts = [](const Error& one) {
+        return nlohmann::ordered_json{{"what", detail::printable_message(detail::error_sentence({}, one.message(), {}))},
+                                      {"where", detail::printable_message(one.where())},
+                                      {"allowed", detail::printable_message(one.allowed())}};
+    };
     nlohmann::ordered_json json;
-    const auto part = [](const std::string& text) { return detail::printable_message(detail::error_sentence({}, text, {})); };
-    json["error"] = {{"code", code},
-                     {"what", part(error.message())},
-                     {"where", detail::printable_message(error.where())},
-                     {"allowed", detail::printable_message(error.allowed())}};
+    json["error"] = {{"code", code}};
+    json["error"].update(parts(error));
+    for (const Error& one : all) json["error"]["mistakes"].push_back(parts(one));
     return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
 }
 

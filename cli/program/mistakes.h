@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,8 @@ void check_verb(const CLI::App& program, const std::vector<std::string>& argumen
 [[nodiscard]] Error explained(const CLI::App& program, const Error& error);
 
 /// An error as the JSON object that --json prints: {"error": {code, what, where, allowed}}. code: the program's exit code
-[[nodiscard]] std::string error_json(const Error& error, int code);
+///
+/// all: its parts, if it is of several mistakes; they are listed under "mistakes"
+[[nodiscard]] std::string error_json(const Error& error, int code, std::span<const Error> all = {});
 
 }  // namespace subvol::cli

@@ -126,6 +126,9 @@ public:
             session = open_window(std::move(session), script, report);
             if (session) report["state"] = Json::parse(session->state_json());
         }
+        if (session) {
+            for (const std::string& warning : session->warnings()) report.warn(warning);
+        }
         return 0;
     }
 

@@ -2,11 +2,14 @@
 #include <algorithm>
 #include <map>
 #include <set>
+#include <utility>
 
 #include "study_keys.h"
 #include "subvol/detail/near_name.h"
 #include "subvol/detail/printable.h"
+#include "subvol/detail/several_errors.h"
 #include "subvol/detail/study_strands.h"
+#include "subvol/picture_metrics.h"
 #include "subvol/study_measures.h"
 
 // Tables and plots are checked before the first case runs. A key must exist. Cases may only meet in one cell of a table, or on
@@ -26,26 +29,47 @@ std::string joined(const std::vector<std::string>& names) {
 
 class Checker {
 public:
-    Checker(const Study& study, const std::string& root) : study_(study), root_(root), keys_(all_keys(study)) {}
+    Checker(const Study& study, const std::string& root, const std::vector<StudyMethod>& unread, bool keys_alone)
+        : study_(study), root_(root), keys_(all_keys(study)), complete_(!keys_alone) {
+        if (unread.empty()) return;
+        for (const StudyMethod& method : unread) {
+            for (const Key& key : method.keys) keys_.push_back(key.name);
+        }
+        for (const StudyMeasure& one : study_measures()) keys_.emplace_back(one.key);
+        for (const std::string& metric : study_metrics()) keys_.insert(keys_.end(), {metric, "floor_" + metric});
+        keys_.insert(keys_.end(),
+                     {"study", "method", "label", "input", "view", "camera", "tf", "width", "height", "metrics", "exr"});
+    }
 
     void check() const {
-        for (std::size_t i = 0; i < study_.tables.size(); ++i) check(study_.tables[i], at(in(root_, "tables"), i));
-        for (std::size_t i = 0; i < study_.plots.size(); ++i) check(study_.plots[i], at(in(root_, "plots"), i));
+        Mistakes mistakes;
+        for (std::size_t i = 0; i < study_.tables.size(); ++i)
+            mistakes.none_in([&] { check(study_.tables[i], at(in(root_, "tables"), i)); });
+        for (std::size_t i = 0; i < study_.plots.size(); ++i)
+            mistakes.none_in([&] { check(study_.plots[i], at(in(root_, "plots"), i)); });
         for (std::size_t i = 0; i < study_.demands.size(); ++i) {
             const std::string path = at(in(root_, "demands"), i);
-            check_measured(study_.demands[i].metric, chosen(study_.demands[i].where, in(path, "where")), in(path, "metric"));
+            Cases cases;
+            const bool chosen_well = mistakes.none_in([&] { cases = chosen(study_.demands[i].where, in(path, "where")); });
+            mistakes.none_in([&] { check_key(study_.demands[i].metric, in(path, "metric")); });
+            if (chosen_well) mistakes.none_in([&] { check_measured(study_.demands[i].metric, cases, in(path, "metric")); });
         }
-        (void)chosen(study_.pictures_where, in(root_, "pictures"));
+        mistakes.none_in([&] { (void)chosen(study_.pictures_where, in(root_, "pictures")); });
+        mistakes.check();
     }
 
 private:
     void check_key(const std::string& key, const std::string& path) const {
-        if (std::ranges::find(keys_, key) != keys_.end() || key.starts_with("parameter.")) return;
+        if (key.empty() || std::ranges::find(keys_, key) != keys_.end() || key.starts_with("parameter.")) return;
+        if (!complete_ && key.find('.') != std::string::npos) return;  // such as given.KEY, of a case that could not be read
         refuse(path, "no case has the key '" + shortened(key) + "'" + did_you_mean(key, keys_), joined(keys_));
     }
 
     void check_keys(const std::vector<std::string>& keys, const std::string& path) const {
-        for (std::size_t i = 0; i < keys.size(); ++i) check_key(keys[i], keys.size() == 1 ? path : at(path, i));
+        Mistakes mistakes;
+        for (std::size_t i = 0; i < keys.size(); ++i)
+            mistakes.none_in([&] { check_key(keys[i], keys.size() == 1 ? path : at(path, i)); });
+        mistakes.check();
     }
 
     /// Whether some case has the key before it runs.
@@ -57,7 +81,7 @@ private:
     [[nodiscard]] Cases chosen(const StudyFilter& where, const std::string& path) const {
         for (const auto& [key, wish] : where) {
             check_key(key, in(path, key));
-            if (!is_value(key)) continue;
+            if (!is_value(key) || !complete_) continue;
             std::set<std::string> values;
             for (const StudyCase& one : study_.cases) {
                 if (one.has(key)) values.insert(as_text(one.values.at(key)));
@@ -74,12 +98,13 @@ private:
             };
             if (std::ranges::all_of(where, fits)) cases.push_back(c);
         }
-        if (cases.empty()) refuse(path, "no case has all these values");
+        if (cases.empty() && complete_) refuse(path, "no case has all these values");
         return cases;
     }
 
+    /// A known key.
     void check_measured(const std::string& key, const Cases& cases, const std::string& path) const {
-        check_key(key, path);
+        if (!complete_) return;
         if (std::ranges::any_of(cases, [&](std::size_t c) { return has_key(study_, study_.cases[c], key); })) return;
         refuse(path, "none of the cases is measured by '" + shortened(key) + "'");
     }
@@ -97,21 +122,30 @@ private:
     }
 
     void check(const StudyTableSpec& table, const std::string& path) const {
-        const Cases cases = chosen(table.where, in(path, "where"));
-        check_keys(table.rows, in(path, "rows"));
-        check_keys(table.columns, in(path, "columns"));
-        check_keys(table.values, in(path, "values"));
-        check_keys(table.average, in(path, "average"));
+        Mistakes mistakes;
+        Cases cases;
+        mistakes.none_in([&] { cases = chosen(table.where, in(path, "where")); });
+        for (const auto& [keys, name] : {std::pair{&table.rows, "rows"},
+                                         {&table.columns, "columns"},
+                                         {&table.values, "values"},
+                                         {&table.average, "average"}}) {
+            const auto* const list = keys;
+            const std::string place = in(path, name);
+            mistakes.none_in([&] { check_keys(*list, place); });
+        }
         std::vector<std::string> named = table.rows;
         if (!table.across.empty()) {
-            check_key(table.across, in(path, "across"));
+            mistakes.none_in([&] { check_key(table.across, in(path, "across")); });
             named.push_back(table.across);
         }
+        mistakes.check();
         named.insert(named.end(), table.average.begin(), table.average.end());
         for (const auto* keys : {&table.columns, &table.values}) {
             for (const std::string& key : *keys)
-                check_measured(key, cases, in(path, keys == &table.columns ? "columns" : "values"));
+                mistakes.none_in([&] { check_measured(key, cases, in(path, keys == &table.columns ? "columns" : "values")); });
         }
+        mistakes.check();
+        if (!complete_) return;
         // What is measured is known after the cases ran: such rows show the spread of what they merge.
         if (!std::ranges::all_of(named, [&](const std::string& key) { return is_value(key); })) return;
         std::vector<std::string> shown = table.columns;
@@ -139,17 +173,25 @@ private:
     }
 
     void check(const StudyPlotSpec& plot, const std::string& path) const {
-        Cases cases = chosen(plot.where, in(path, "where"));
-        check_measured(plot.x, cases, in(path, "x"));
-        check_measured(plot.y, cases, in(path, "y"));
-        check_keys(plot.series, in(path, "series"));
-        check_keys(plot.average, in(path, "average"));
-        check_keys(plot.together, in(path, "together"));
+        Mistakes mistakes;
+        Cases cases;
+        mistakes.none_in([&] { cases = chosen(plot.where, in(path, "where")); });
+        const bool known = mistakes.none_in([&] { check_key(plot.x, in(path, "x")); }) &
+                           mistakes.none_in([&] { check_key(plot.y, in(path, "y")); });
+        mistakes.none_in([&] { check_keys(plot.series, in(path, "series")); });
+        mistakes.none_in([&] { check_keys(plot.average, in(path, "average")); });
+        mistakes.none_in([&] { check_keys(plot.together, in(path, "together")); });
         std::vector<std::string> named = plot.series;
         if (!plot.panels.empty()) {
-            check_key(plot.panels, in(path, "panels"));
+            mistakes.none_in([&] { check_key(plot.panels, in(path, "panels")); });
             named.push_back(plot.panels);
         }
+        if (known && !cases.empty()) {
+            mistakes.none_in([&] { check_measured(plot.x, cases, in(path, "x")); });
+            mistakes.none_in([&] { check_measured(plot.y, cases, in(path, "y")); });
+        }
+        mistakes.check();
+        if (!complete_) return;
         named.insert(named.end(), plot.together.begin(), plot.together.end());
         if (!std::ranges::all_of(named, [&](const std::string& key) { return is_value(key); })) return;
         std::map<std::string, Cases> series;
@@ -173,12 +215,13 @@ private:
     const Study& study_;
     const std::string& root_;
     std::vector<std::string> keys_;
+    bool complete_;
 };
 
 }  // namespace
 
-void check_presentation(const Study& study, const std::string& root) {
-    Checker(study, root).check();
+void check_presentation(const Study& study, const std::string& root, const std::vector<StudyMethod>& unread, bool keys_alone) {
+    Checker(study, root, unread, keys_alone).check();
 }
 
 }  // namespace subvol::detail

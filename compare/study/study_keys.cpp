@@ -6,6 +6,7 @@
 
 #include "subvol/detail/near_name.h"
 #include "subvol/detail/printable.h"
+#include "subvol/detail/several_errors.h"
 #include "subvol/error.h"
 #include "subvol/kernel.h"
 
@@ -73,11 +74,16 @@ std::string at(const std::string& path, std::size_t index) {
 
 void check_object(const Json& json, const std::string& path, std::span<const std::string> known) {
     if (!json.is_object()) refuse(path, must_be("an object", json));
-    for (const auto& [key, value] : json.items()) {
-        if (std::ranges::find(known, key) == known.end())
+    Mistakes mistakes;
+    for (const auto& item : json.items()) {
+        const std::string& key = item.key();
+        if (std::ranges::find(known, key) != known.end()) continue;
+        mistakes.none_in([&] {
             refuse(in(path, shortened(key)), "this key is unknown" + did_you_mean(key, {known.begin(), known.end()}),
                    joined(known));
+        });
     }
+    mistakes.check();
 }
 
 std::string read_text(const Json& json, const std::string& path) {
@@ -154,7 +160,9 @@ std::vector<StudyValues> read_values(const Json& json, std::span<const Key> keys
                                      const std::string& path) {
     std::vector<std::string> known(besides.begin(), besides.end());
     for (const Key& key : keys) known.emplace_back(key.name);
-    check_object(json, path, known);
+    if (!json.is_object()) refuse(path, must_be("an object", json));
+    Mistakes mistakes;
+    mistakes.none_in([&] { check_object(json, path, known); });
     std::vector<StudyValues> all(1);
     for (const Key& key : keys) {
         const auto found = json.find(key.name);
@@ -166,11 +174,15 @@ std::vector<StudyValues> read_values(const Json& json, std::span<const Key> keys
         const std::string place = in(path, key.name);
         std::vector<StudyValue> choices;
         if (found->is_array()) {
-            if (found->empty()) refuse(place, "the list is empty");
-            for (std::size_t i = 0; i < found->size(); ++i) choices.push_back(read_value((*found)[i], key, at(place, i)));
+            mistakes.none_in([&] {
+                if (found->empty()) refuse(place, "the list is empty");
+            });
+            for (std::size_t i = 0; i < found->size(); ++i)
+                mistakes.none_in([&] { choices.push_back(read_value((*found)[i], key, at(place, i))); });
         } else {
-            choices.push_back(read_value(*found, key, place));
+            mistakes.none_in([&] { choices.push_back(read_value(*found, key, place)); });
         }
+        if (!mistakes.empty()) continue;  // the rest is only checked
         if (all.size() * choices.size() > kMaxStudyCases) {
             refuse(place, "there are too many combinations", "at most " + std::to_string(kMaxStudyCases) + " cases");
         }
@@ -180,6 +192,7 @@ std::vector<StudyValues> read_values(const Json& json, std::span<const Key> keys
         }
         all = std::move(product);
     }
+    mistakes.check();
     return all;
 }
 

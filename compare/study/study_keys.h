@@ -76,7 +76,10 @@ void check_object(const Json& json, const std::string& path, std::span<const std
 void read_presentation(const Json& json, const std::string& path, Study& study);
 
 /// Refuses tables, plots and demands of keys that no case has, and those that would merge different cases.
-void check_presentation(const Study& study, const std::string& root);
+///
+/// unread:     methods of cases that are not in the study because of other mistakes: their keys are known, too
+/// keys_alone: nothing else is checked, as there are other mistakes
+void check_presentation(const Study& study, const std::string& root, const std::vector<StudyMethod>& unread, bool keys_alone);
 
 /// The id of a case: a hash of its values, without those that are only shown.
 [[nodiscard]] std::string case_id(const StudyValues& values);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <filesystem>
 #include <fstream>
@@ -11,6 +12,7 @@
 #include "subvol/detail/json_depth.h"
 #include "subvol/detail/near_name.h"
 #include "subvol/detail/printable.h"
+#include "subvol/detail/several_errors.h"
 #include "subvol/error.h"
 #include "subvol/image_io.h"
 #include "subvol/picture_metrics.h"
@@ -43,21 +45,35 @@ public:
         : json_(json), file_(file), root_(file.string() + ": "), methods_(methods) {}
 
     Study study() {
-        check_object(json_, root_, kStudyKeys);
+        if (!json_.is_object()) refuse(root_, must_be("an object", json_));
         Study result;
-        result.name = name_of(json_, root_);
-        result.title = json_.contains("title") ? read_text(json_["title"], in(root_, "title")) : result.name;
-        if (json_.contains("about")) result.about = read_text(json_["about"], in(root_, "about"));
-        result.timed = flag("timed");
-        if (json_.contains("seconds")) {
+        Mistakes mistakes;
+        const bool all_known = mistakes.none_in([&] { check_object(json_, root_, kStudyKeys); });
+        if (all_known || json_.contains("name")) mistakes.none_in([&] { result.name = name_of(json_, root_); });
+        result.title = result.name;
+        mistakes.none_in([&] {
+            if (json_.contains("title")) result.title = read_text(json_["title"], in(root_, "title"));
+        });
+        mistakes.none_in([&] {
+            if (json_.contains("about")) result.about = read_text(json_["about"], in(root_, "about"));
+        });
+        mistakes.none_in([&] { result.timed = flag("timed"); });
+        mistakes.none_in([&] {
             constexpr double kMost = 1e7;
+            if (!json_.contains("seconds")) return;
             result.seconds =
                 std::get<double>(read_value(json_["seconds"], {"seconds", KeyKind::Number, 0, kMost}, in(root_, "seconds")));
-        }
-        if (!json_.contains("pictures") || !json_["pictures"].is_object()) result.pictures = flag("pictures");
-        read_presentation(json_, root_, result);
-        expand(result);
-        check_presentation(result, root_);
+        });
+        mistakes.none_in([&] {
+            if (!json_.contains("pictures") || !json_["pictures"].is_object()) result.pictures = flag("pictures");
+        });
+        const bool shown_well = mistakes.none_in([&] { read_presentation(json_, root_, result); });
+        const bool complete = mistakes.none_in([&] { expand(result); });
+        mistakes.none_in([&] {
+            const auto unread = complete ? std::vector<StudyMethod>() : all_methods(methods_);
+            check_presentation(result, root_, unread, !complete || !shown_well);
+        });
+        mistakes.check(file_.string());
         return result;
     }
 
@@ -69,56 +85,78 @@ private:
     /// The values that all pictures share: their size, metrics and reference.
     StudyValues picture_values() const {
         StudyValues values;
-        const auto size = json_.find("size");
-        const Key edge{"size", KeyKind::Whole, 8, 8192};
-        if (size != json_.end() && size->is_array()) {
+        Mistakes mistakes;
+        mistakes.none_in([&] {
+            const auto size = json_.find("size");
+            const Key edge{"size", KeyKind::Whole, 8, 8192};
             const std::string path = in(root_, "size");
-            if (size->size() != 2) refuse(path, "a size is a width and a height");
-            values["width"] = read_value((*size)[0], edge, at(path, 0));
-            values["height"] = read_value((*size)[1], edge, at(path, 1));
-        } else {
-            values["width"] = values["height"] = size == json_.end() ? 512.0 : read_value(*size, edge, in(root_, "size"));
-        }
-        std::string metrics;
-        const Json& names = list_of(json_, root_, "metrics");
-        for (std::size_t i = 0; i < names.size(); ++i) {
+            if (size != json_.end() && size->is_array()) {
+                if (size->size() != 2) refuse(path, "a size is a width and a height");
+                values["width"] = read_value((*size)[0], edge, at(path, 0));
+                values["height"] = read_value((*size)[1], edge, at(path, 1));
+            } else {
+                values["width"] = values["height"] = size == json_.end() ? 512.0 : read_value(*size, edge, path);
+            }
+        });
+        mistakes.none_in([&] {
+            std::string metrics;
+            const Json& names = list_of(json_, root_, "metrics");
             const Key metric{"metric", KeyKind::Text, 0, 0, {}, study_metrics()};
-            metrics += (metrics.empty() ? "" : ",") + as_text(read_value(names[i], metric, at(in(root_, "metrics"), i)));
-        }
-        values["metrics"] = metrics.empty() ? "rmse,psnr" : metrics;
-        const Json none = Json::object();
-        const auto reference = json_.find("reference");
-        const std::string path = in(root_, "reference");
-        const auto read = read_values(reference == json_.end() ? none : *reference, reference_keys(), {}, path);
-        if (read.size() != 1) refuse(path, "there is only one reference: lists are not allowed");
-        for (const auto& [key, value] : read.front()) values["reference." + key] = value;
-        if (flag("exr")) values["exr"] = true;
+            for (std::size_t i = 0; i < names.size(); ++i) {
+                mistakes.none_in([&] {
+                    metrics +=
+                        (metrics.empty() ? "" : ",") + as_text(read_value(names[i], metric, at(in(root_, "metrics"), i)));
+                });
+            }
+            values["metrics"] = metrics.empty() ? "rmse,psnr" : metrics;
+        });
+        mistakes.none_in([&] {
+            const Json none = Json::object();
+            const auto reference = json_.find("reference");
+            const std::string path = in(root_, "reference");
+            const auto read = read_values(reference == json_.end() ? none : *reference, reference_keys(), {}, path);
+            if (read.size() != 1) refuse(path, "there is only one reference: lists are not allowed");
+            for (const auto& [key, value] : read.front()) values["reference." + key] = value;
+        });
+        mistakes.none_in([&] {
+            if (flag("exr")) values["exr"] = true;
+        });
+        mistakes.check();
         return values;
     }
 
     void expand(Study& study) const {
-        const StudyScenes scenes = read_scenes(json_, file_, root_);
-        const StudyValues common = picture_values();
-        const Json& items = list_of(json_, root_, "methods");
-        if (items.empty()) refuse(in(root_, "methods"), "the list is missing");
-        for (std::size_t m = 0; m < items.size(); ++m) {
-            const std::string path = at(in(root_, "methods"), m);
-            if (!items[m].is_object() || !items[m].contains("method")) refuse(path, "the method is missing");
-            const StudyMethod method =
-                find_method(read_text(items[m]["method"], in(path, "method")), in(path, "method"), methods_);
-            if (method.needs_mesh() && scenes.inputs.empty()) refuse(in(root_, "inputs"), "the list is missing");
-            const auto swept = swept_keys(items[m]);
-            for (StudyValues& values : combinations(items[m], method, scenes, study.cases.size(), path)) {
-                values["label"] = filled_in(as_text(values["label"]), values, in(path, "label"));
-                values["study"] = study.name;
-                if (method.needs_view()) values.insert(common.begin(), common.end());
-                if (method.name == "file") add_file(values, in(path, "file"));
-                if (method.name == "approximate") add_onto(values, path);
-                check_exact(method, values, path);
-                study.cases.push_back(named_case(std::move(values), swept));
-            }
-        }
+        Mistakes mistakes;
+        StudyScenes scenes;
+        StudyValues common;
+        mistakes.none_in([&] { scenes = read_scenes(json_, file_, root_); });
+        mistakes.none_in([&] { common = picture_values(); });
+        mistakes.none_in([&] {
+            const Json& items = list_of(json_, root_, "methods");
+            if (items.empty()) refuse(in(root_, "methods"), "the list is missing");
+            for (std::size_t m = 0; m < items.size(); ++m)
+                mistakes.none_in([&] { add_cases(items[m], at(in(root_, "methods"), m), scenes, common, study); });
+        });
+        mistakes.check();
         check_different(study);
+    }
+
+    /// The cases of one method.
+    void add_cases(const Json& item, const std::string& path, const StudyScenes& scenes, const StudyValues& common,
+                   Study& study) const {
+        if (!item.is_object() || !item.contains("method")) refuse(path, "the method is missing");
+        const StudyMethod method = find_method(read_text(item["method"], in(path, "method")), in(path, "method"), methods_);
+        if (method.needs_mesh() && !json_.contains("inputs")) refuse(in(root_, "inputs"), "the list is missing");
+        const auto swept = swept_keys(item);
+        for (StudyValues& values : combinations(item, method, scenes, study.cases.size(), path)) {
+            values["label"] = filled_in(as_text(values["label"]), values, in(path, "label"));
+            values["study"] = study.name;
+            if (method.needs_view()) values.insert(common.begin(), common.end());
+            if (method.name == "file") add_file(values, in(path, "file"));
+            if (method.name == "approximate") add_onto(values, path);
+            check_exact(method, values, path);
+            study.cases.push_back(named_case(std::move(values), swept));
+        }
     }
 
     /// The picture that was made elsewhere, and its camera: a description beside it, else the numbers in its header.
@@ -168,14 +206,21 @@ private:
                                                  std::size_t already, const std::string& path) {
         const std::vector<std::string> besides{"method", "label", "given"};
         StudyValues head{{"method", std::string(method.name)}, {"label", std::string(method.name)}};
-        if (item.contains("label")) head["label"] = read_text(item["label"], in(path, "label"));
-        read_given(item, path, head);
-        const std::vector<StudyValues> nothing(1), options = read_values(item, method.keys, besides, path);
+        Mistakes mistakes;
+        mistakes.none_in([&] {
+            if (item.contains("label")) head["label"] = read_text(item["label"], in(path, "label"));
+        });
+        mistakes.none_in([&] { read_given(item, path, head); });
+        const std::vector<StudyValues> nothing(1);
+        std::vector<StudyValues> options;
+        mistakes.none_in([&] { options = read_values(item, method.keys, besides, path); });
+        mistakes.check();
         for (const StudyValues& values : options) check_needs(method, values, item, path);
         std::vector<StudyValues> all{head};
-        for (const auto* factor :
-             {method.needs_mesh() ? &scenes.inputs : &nothing, method.needs_view() ? &scenes.cameras : &nothing,
-              method.needs_view() ? &scenes.lights : &nothing, &options}) {
+        const std::array<const std::vector<StudyValues>*, 4> factors{method.needs_mesh() ? &scenes.inputs : &nothing,
+                                                                     method.needs_view() ? &scenes.cameras : &nothing,
+                                                                     method.needs_view() ? &scenes.lights : &nothing, &options};
+        for (const auto* factor : factors) {
             check_count(already + all.size() * factor->size(), path);  // each is at most kMaxStudyCases: no overflow
             std::vector<StudyValues> product;
             for (const StudyValues& values : all) {

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <utility>
+
 #include "study_keys.h"
+#include "subvol/detail/several_errors.h"
 
 namespace subvol::detail {
 
@@ -58,70 +61,151 @@ std::map<std::string, std::string> with_common(std::map<std::string, std::string
 
 }  // namespace
 
+namespace {
+
+using Known = std::vector<std::string>;
+
+/// A part of the report, read key by key, so that all of its mistakes are found.
+class PartReader {
+public:
+    /// known: all keys that it may have
+    PartReader(const Json& json, std::string path, const Known& known) : json_(json), path_(std::move(path)) {
+        is_object_ = mistakes_.none_in([&] {
+            if (!json.is_object()) refuse(path_, must_be("an object", json));
+        });
+        if (is_object_) mistakes_.none_in([&] { check_object(json, path_, known); });
+    }
+
+    /// Gives a member what `read` makes of the part.
+    template <class Value, class Read>
+    void take(Value& value, const Read& read) {
+        if (is_object_) mistakes_.none_in([&] { value = read(json_, path_); });
+    }
+    void text(std::string& value, const char* key, const std::string& otherwise = {}) {
+        take(value, [&](const Json& json, const std::string& path) { return text_or(json, key, path, otherwise); });
+    }
+    void list(Known& value, const char* key, bool needed = false) {
+        take(value, [&](const Json& json, const std::string& path) { return texts(json, key, path, needed); });
+    }
+    void first(std::string& value, const char* key) {
+        take(value, [&](const Json& json, const std::string& path) { return texts(json, key, path, true).front(); });
+    }
+    void flag(bool& value, const char* key) {
+        take(value, [&](const Json& json, const std::string& path) { return flag_or(json, key, path, value); });
+    }
+    void headings(std::map<std::string, std::string>& value, const std::map<std::string, std::string>& common) {
+        take(value,
+             [&](const Json& json, const std::string& path) { return with_common(words(json, "headings", path), common); });
+    }
+    void where(StudyFilter& value) {
+        take(value, [&](const Json& json, const std::string& path) { return words(json, "where", path); });
+    }
+
+    void check() const { mistakes_.check(); }
+
+private:
+    const Json& json_;
+    std::string path_;
+    bool is_object_ = false;
+    Mistakes mistakes_;
+};
+
+using Headings = std::map<std::string, std::string>;
+
+void read_table(const Json& json, const std::string& path, const std::string& title, const Headings& common,
+                StudyTableSpec& table) {
+    static const Known kKnown{"title",  "caption", "rows",     "columns", "across",
+                              "values", "average", "headings", "where",   "digits"};
+    PartReader part(json, path, kKnown);
+    part.text(table.title, "title", title);
+    part.text(table.caption, "caption");
+    part.list(table.rows, "rows", true);
+    part.list(table.columns, "columns");
+    part.text(table.across, "across");
+    part.list(table.values, "values", json.contains("across"));
+    part.list(table.average, "average");
+    part.headings(table.headings, common);
+    part.where(table.where);
+    part.take(table.digits, [&](const Json& own, const std::string& place) {
+        const Key digits{"digits", KeyKind::Whole, 1, 17};
+        if (!own.contains("digits")) return table.digits;
+        return static_cast<int>(std::get<double>(read_value(own["digits"], digits, in(place, "digits"))));
+    });
+    part.take(table.across, [&](const Json& own, const std::string& place) {
+        if (own.contains("values") && !own.contains("across"))
+            refuse(in(place, "across"), "this key is missing; 'values' needs it");
+        return table.across;
+    });
+    part.check();
+}
+
+void read_plot(const Json& json, const std::string& path, const std::string& title, const Headings& common,
+               StudyPlotSpec& plot) {
+    static const Known kKnown{"title", "caption", "x",   "y",        "series", "panels",  "average",
+                              "log_x", "log_y",   "fit", "headings", "where",  "together"};
+    PartReader part(json, path, kKnown);
+    part.text(plot.title, "title", title);
+    part.text(plot.caption, "caption");
+    part.first(plot.x, "x");
+    part.first(plot.y, "y");
+    part.list(plot.series, "series", true);
+    part.text(plot.panels, "panels");
+    part.list(plot.average, "average");
+    part.list(plot.together, "together");
+    part.headings(plot.headings, common);
+    part.flag(plot.log_x, "log_x");
+    part.flag(plot.log_y, "log_y");
+    part.flag(plot.fit, "fit");
+    part.where(plot.where);
+    part.check();
+}
+
+void read_demand(const Json& json, const std::string& path, StudyDemand& demand) {
+    static const Known kKnown{"metric", "least", "most", "where"};
+    PartReader part(json, path, kKnown);
+    part.first(demand.metric, "metric");
+    part.where(demand.where);
+    for (auto [key, value] : {std::pair{"least", &demand.least}, {"most", &demand.most}}) {
+        const char* const name = key;
+        part.take(*value, [&](const Json& own, const std::string& place) -> std::optional<double> {
+            if (!own.contains(name)) return std::nullopt;
+            if (!own[name].is_number()) refuse(in(place, name), must_be("a number", own[name]));
+            return own[name].get<double>();
+        });
+    }
+    part.take(demand.least, [&](const Json& own, const std::string& place) {
+        if (!own.contains("least") && !own.contains("most")) refuse(place, "a demand needs 'least' or 'most'");
+        return demand.least;
+    });
+    part.check();
+}
+
+}  // namespace
+
 void read_presentation(const Json& json, const std::string& root, Study& study) {
-    const auto common = words(json, "headings", root);
+    Mistakes mistakes;
+    Headings common;
+    mistakes.none_in([&] { common = words(json, "headings", root); });
     if (json.contains("pictures") && json["pictures"].is_object()) {
         study.pictures = true;
-        study.pictures_where = words(json, "pictures", root);
+        mistakes.none_in([&] { study.pictures_where = words(json, "pictures", root); });
     }
-    study.measured = texts(json, "measured", root, false);
-    const Json& tables = optional_list(json, "tables", root);
-    for (std::size_t i = 0; i < tables.size(); ++i) {
-        const std::string path = at(in(root, "tables"), i);
-        const std::vector<std::string> known{"title",  "caption", "rows",     "columns", "across",
-                                             "values", "average", "headings", "where",   "digits"};
-        check_object(tables[i], path, known);
-        StudyTableSpec table{.title = text_or(tables[i], "title", path, study.title),
-                             .caption = text_or(tables[i], "caption", path),
-                             .rows = texts(tables[i], "rows", path, true),
-                             .columns = texts(tables[i], "columns", path, false),
-                             .across = text_or(tables[i], "across", path),
-                             .values = texts(tables[i], "values", path, tables[i].contains("across")),
-                             .average = texts(tables[i], "average", path, false),
-                             .headings = with_common(words(tables[i], "headings", path), common),
-                             .where = words(tables[i], "where", path)};
-        if (tables[i].contains("digits")) {
-            const Key digits{"digits", KeyKind::Whole, 1, 17};
-            table.digits = static_cast<int>(std::get<double>(read_value(tables[i]["digits"], digits, in(path, "digits"))));
-        }
-        if (!table.values.empty() && table.across.empty()) refuse(in(path, "across"), "this key is missing; 'values' needs it");
-        study.tables.push_back(std::move(table));
-    }
-    const Json& plots = optional_list(json, "plots", root);
-    for (std::size_t i = 0; i < plots.size(); ++i) {
-        const std::string path = at(in(root, "plots"), i);
-        const std::vector<std::string> known{"title", "caption", "x",   "y",        "series", "panels",  "average",
-                                             "log_x", "log_y",   "fit", "headings", "where",  "together"};
-        check_object(plots[i], path, known);
-        study.plots.push_back({.title = text_or(plots[i], "title", path, study.title),
-                               .caption = text_or(plots[i], "caption", path),
-                               .x = texts(plots[i], "x", path, true).front(),
-                               .y = texts(plots[i], "y", path, true).front(),
-                               .series = texts(plots[i], "series", path, true),
-                               .panels = text_or(plots[i], "panels", path),
-                               .average = texts(plots[i], "average", path, false),
-                               .together = texts(plots[i], "together", path, false),
-                               .headings = with_common(words(plots[i], "headings", path), common),
-                               .log_x = flag_or(plots[i], "log_x", path, true),
-                               .log_y = flag_or(plots[i], "log_y", path, true),
-                               .fit = flag_or(plots[i], "fit", path, false),
-                               .where = words(plots[i], "where", path)});
-    }
-    const Json& demands = optional_list(json, "demands", root);
-    for (std::size_t i = 0; i < demands.size(); ++i) {
-        const std::string path = at(in(root, "demands"), i);
-        const std::vector<std::string> known{"metric", "least", "most", "where"};
-        check_object(demands[i], path, known);
-        StudyDemand demand{.metric = texts(demands[i], "metric", path, true).front(),
-                           .where = words(demands[i], "where", path)};
-        for (auto [key, value] : {std::pair{"least", &demand.least}, {"most", &demand.most}}) {
-            if (!demands[i].contains(key)) continue;
-            if (!demands[i][key].is_number()) refuse(in(path, key), must_be("a number", demands[i][key]));
-            *value = demands[i][key].get<double>();
-        }
-        if (!demand.least && !demand.most) refuse(path, "a demand needs 'least' or 'most'");
-        study.demands.push_back(std::move(demand));
-    }
+    mistakes.none_in([&] { study.measured = texts(json, "measured", root, false); });
+    const auto each = [&](const char* key, const auto& read) {
+        mistakes.none_in([&] {
+            const Json& parts = optional_list(json, key, root);
+            for (std::size_t i = 0; i < parts.size(); ++i) mistakes.none_in([&] { read(parts[i], at(in(root, key), i)); });
+        });
+    };
+    // A part with a mistake stays as far as it could be read: its keys are checked, too.
+    each("tables", [&](const Json& part, const std::string& path) {
+        read_table(part, path, study.title, common, study.tables.emplace_back());
+    });
+    each("plots", [&](const Json& part, const std::string& path) {
+        read_plot(part, path, study.title, common, study.plots.emplace_back());
+    });
+    each("demands", [&](const Json& part, const std::string& path) { read_demand(part, path, study.demands.emplace_back()); });
+    mistakes.check();
 }
 
 }  // namespace subvol::detail

@@ -11,6 +11,7 @@
 #include "subvol/camera.h"
 #include "subvol/detail/printable.h"
 #include "subvol/detail/read_file.h"
+#include "subvol/detail/several_errors.h"
 #include "subvol/error.h"
 #include "subvol/model.h"
 
@@ -64,13 +65,10 @@ public:
     SceneReader(const Json& json, const fs::path& file, const std::string& root) : json_(json), file_(file), root_(root) {}
 
     [[nodiscard]] std::vector<StudyValues> inputs() const {
-        std::vector<StudyValues> all;
-        const Json& items = list_of(json_, root_, "inputs");
-        for (std::size_t i = 0; i < items.size(); ++i) {
-            const std::string path = at(in(root_, "inputs"), i);
+        return each("inputs", [&](const Json& item, const std::string& path, std::size_t, std::vector<StudyValues>& all) {
             const auto keys = input_keys();
             const std::vector<std::string> besides{"name", "given"};
-            for (const StudyValues& read : read_values(items[i], keys, besides, path)) {
+            for (const StudyValues& read : read_values(item, keys, besides, path)) {
                 if (read.contains("model") == read.contains("file")) refuse(path, "an input has either a model or a file");
                 if (read.contains("file") && read.contains("resolution")) refuse(path, "a file has no resolution");
                 if (read.contains("field") && read.contains("density"))
@@ -86,39 +84,36 @@ public:
                     values["input.file"] = file;
                     values["input.content"] = content;
                 }
-                values["input"] = items[i].contains("name") ? name_of(items[i], path) : name;
-                read_given(items[i], path, values);
+                values["input"] = item.contains("name") ? name_of(item, path) : name;
+                read_given(item, path, values);
                 all.push_back(std::move(values));
                 check_count(all.size(), path);
             }
-        }
-        return all;
+        });
     }
 
     [[nodiscard]] std::vector<StudyValues> cameras() const {
-        std::vector<StudyValues> all;
-        const Json& items = list_of(json_, root_, "cameras");
-        for (std::size_t i = 0; i < items.size(); ++i) {
-            const std::string path = at(in(root_, "cameras"), i);
+        const auto read = [&](const Json& item, const std::string& path, std::size_t i, std::vector<StudyValues>& all) {
             std::string name = "camera" + std::to_string(i), camera;
-            if (items[i].is_object()) {
+            if (item.is_object()) {
                 const std::vector<std::string> known{"name", "camera", "visible"};
-                check_object(items[i], path, known);
-                name = name_of(items[i], path);
-                if (!items[i].contains("camera")) refuse(in(path, "camera"), "the camera is missing");
-                camera = read_text(items[i]["camera"], in(path, "camera"));
+                check_object(item, path, known);
+                name = name_of(item, path);
+                if (!item.contains("camera")) refuse(in(path, "camera"), "the camera is missing");
+                camera = read_text(item["camera"], in(path, "camera"));
             } else {
-                camera = read_text(items[i], path);
+                camera = read_text(item, path);
                 if (camera.size() <= 4) name = camera;  // a side, such as +x
             }
             StudyValues values{{"view", name}, {"camera", camera}};
-            if (items[i].is_object() && items[i].contains("visible")) {
-                values["camera.visible"] = read_value(items[i]["visible"], {"visible", KeyKind::Switch}, in(path, "visible"));
+            if (item.is_object() && item.contains("visible")) {
+                values["camera.visible"] = read_value(item["visible"], {"visible", KeyKind::Switch}, in(path, "visible"));
             }
             if (camera.ends_with(".json")) add_file(values, "camera", path);
             check_camera(as_text(values["camera"]), path);
             all.push_back(std::move(values));
-        }
+        };
+        std::vector<StudyValues> all = each("cameras", read);
         if (all.empty()) all.push_back({{"view", "iso"}, {"camera", "iso"}});
         return all;
     }
@@ -133,26 +128,24 @@ public:
     }
 
     [[nodiscard]] std::vector<StudyValues> lights() const {
-        std::vector<StudyValues> all;
-        const Json& items = list_of(json_, root_, "transfer_functions");
-        for (std::size_t i = 0; i < items.size(); ++i) {
-            const std::string path = at(in(root_, "transfer_functions"), i);
-            if (items[i].is_string()) {
-                const std::string colors = read_text(items[i], path);
+        const auto read_light = [&](const Json& item, const std::string& path, std::size_t, std::vector<StudyValues>& all) {
+            if (item.is_string()) {
+                const std::string colors = read_text(item, path);
                 StudyValues values{{"tf", fs::path(colors).stem().string()}, {"tf.colors", colors}};
                 add_file(values, "tf.colors", path);
                 all.push_back(std::move(values));
-                continue;
+                return;
             }
             const std::vector<std::string> besides{"name"};
-            for (const StudyValues& read : read_values(items[i], light_keys(), besides, path)) {
-                StudyValues values{{"tf", name_of(items[i], path)}};
+            for (const StudyValues& read : read_values(item, light_keys(), besides, path)) {
+                StudyValues values{{"tf", name_of(item, path)}};
                 for (const auto& [key, value] : read) values["tf." + key] = value;
                 add_file(values, "tf.colors", path);
                 all.push_back(std::move(values));
                 check_count(all.size(), path);
             }
-        }
+        };
+        std::vector<StudyValues> all = each("transfer_functions", read_light);
         if (all.empty()) all.push_back({{"tf", "viridis"}, {"tf.colors", "viridis"}});
         return all;
     }
@@ -170,6 +163,17 @@ public:
     }
 
 private:
+    /// Reads a list. read(item, its path, its number, the values to which it adds its own)
+    template <class Read>
+    [[nodiscard]] std::vector<StudyValues> each(const char* key, const Read& read) const {
+        Mistakes mistakes;
+        std::vector<StudyValues> all;
+        const Json& items = list_of(json_, root_, key);
+        for (std::size_t i = 0; i < items.size(); ++i) mistakes.none_in([&] { read(items[i], at(in(root_, key), i), i, all); });
+        mistakes.check();
+        return all;
+    }
+
     [[nodiscard]] std::string resolved(const std::string& name) const {
         const fs::path path(name);
         return path.is_absolute() ? name : (file_.parent_path() / path).lexically_normal().string();
@@ -184,7 +188,13 @@ private:
 
 StudyScenes read_scenes(const Json& json, const fs::path& file, const std::string& root) {
     const SceneReader reader(json, file, root);
-    return {reader.inputs(), reader.cameras(), reader.lights()};
+    Mistakes mistakes;
+    StudyScenes scenes;
+    mistakes.none_in([&] { scenes.inputs = reader.inputs(); });
+    mistakes.none_in([&] { scenes.cameras = reader.cameras(); });
+    mistakes.none_in([&] { scenes.lights = reader.lights(); });
+    mistakes.check();
+    return scenes;
 }
 
 std::string content_of(const fs::path& file, const std::string& path) {

@@ -99,12 +99,20 @@ def fill_ramp(ramp, knots, low, high):
         stop.color = (*value, 1.0) if len(value) == 3 else (value[0],) * 3 + (1.0,)
 
 
+def range_that_can_be_divided(low, high):
+    """The range of a field as `subvol render` spreads colours over it: one of a constant is widened, with the constant in the
+    middle. Blender computes with 32 bits, so that is done where these cannot tell the ends apart."""
+    magnitude = max(abs(low), abs(high))
+    if high - low > 1e-5 * magnitude:
+        return low, high
+    half = max(0.5, 1e-3 * magnitude)
+    return (low + high) / 2 - half, (low + high) / 2 + half
+
+
 def make_material(name, grid, low, high, transfer_function="", unit=1.0, density_scale=1.0):
     """Emission and absorption of the transfer function: opacities are for a path of the length `unit`."""
-    colors, opacities = read_transfer_function(transfer_function, low, high)
-    low, high = min(colors[0][0], opacities[0][0]), max(colors[-1][0], opacities[-1][0])
-    if not high > low:
-        high = low + 1
+    colors, opacities = read_transfer_function(transfer_function, *range_that_can_be_divided(low, high))
+    low, high = range_that_can_be_divided(min(colors[0][0], opacities[0][0]), max(colors[-1][0], opacities[-1][0]))
     material = bpy.data.materials.new(name)
     material.use_nodes = True
     nodes, links = material.node_tree.nodes, material.node_tree.links

@@ -13,6 +13,7 @@
 #include "series_format.h"
 #include "subvol/cell_means.h"
 #include "subvol/detail/number_text.h"
+#include "subvol/detail/refuse_surface.h"
 #include "subvol/error.h"
 #include "subvol/mesh_series.h"
 #include "text_scanner.h"
@@ -285,6 +286,26 @@ std::string way_to(const std::filesystem::path& path) {
     return {};
 }
 
+// Files that are of something else than cells, of which the command makes a mesh.
+void refuse_others(const std::filesystem::path& path) {
+    const std::string extension = upper_case(path.extension().string());
+    const bool surface = extension == ".STL" || extension == ".OBJ" || extension == ".PLY";
+    const bool scene = extension == ".GLB" || extension == ".GLTF", grid = extension == ".VDB";
+    std::error_code none;
+    if ((surface || scene || grid) && !std::filesystem::exists(path, none))
+        throw Error(ErrorCode::Io, "cannot be read: No such file or directory", path.string());
+    if (surface) refuse_surface(path);
+    if (scene) {
+        throw Error(ErrorCode::InvalidInput, "is a surface, not a mesh of cells", path.string(),
+                    "`subvol mesh` makes a control mesh of an .stl, .obj or .ply file: export one of these");
+    }
+    if (grid) {
+        throw Error(ErrorCode::InvalidInput, "is a grid, not a mesh of cells", path.string(),
+                    "`subvol mesh " + path.filename().string() + " --iso VALUE -o " + path.stem().string() +
+                        ".vtu` makes a control mesh of it");
+    }
+}
+
 // The row with an extension in any case; null if there is none.
 const MeshFormat* format_with(std::string_view extension) {
     const std::string upper = upper_case(extension);
@@ -327,6 +348,7 @@ const MeshFormat* detail::format_of(const std::filesystem::path& path) {
 const MeshFormat& detail::readable_format(const std::filesystem::path& path) {
     const MeshFormat* format = format_of(path);
     if (!format) {
+        refuse_others(path);
         refuse_format(path, "read", list_formats(false) + way_to(path));
     }
     return *format;

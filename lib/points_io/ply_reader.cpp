@@ -10,6 +10,7 @@
 
 #include "ply_table.h"
 #include "points_file.h"
+#include "subvol/detail/refuse_surface.h"
 #include "subvol/detail/surface_io.h"
 #include "subvol/error.h"
 #include "text_scanner.h"
@@ -72,6 +73,8 @@ private:
                 std::from_chars(value.data(), value.data() + value.size(), triangles_beside_);
             }
         }
+        if (!has_kernel && std::ranges::find(header_.elements, "face", &PlyElement::name) != header_.elements.end())
+            refuse_surface(path_);
         if (!has_kernel) in_.fail("the header has no comment with the kernel", "write points with subvol");
         if (volume_.channels.empty()) volume_.channels.push_back({.name = "value"});
     }

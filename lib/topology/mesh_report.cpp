@@ -161,6 +161,21 @@ std::vector<std::size_t> inverted_cells(const HexMesh& mesh, std::size_t at_most
     return numbers;
 }
 
+std::vector<std::size_t> inverted_cells(const HexMesh& moved, std::span<const Vec3> before,
+                                        std::span<const std::size_t> known) {
+    std::vector<std::uint8_t> has_moved(moved.points.size());
+    for (std::size_t p = 0; p < has_moved.size(); ++p) has_moved[p] = moved.points[p] != before[p] ? 1 : 0;
+    std::vector<std::size_t> numbers;
+    auto next = known.begin();
+    for (std::size_t c = 0; c < moved.cells.size(); ++c) {
+        const bool was = next != known.end() && *next == c;
+        if (was) ++next;
+        const bool changed = std::ranges::any_of(moved.cells[c], [&](Index p) { return has_moved[p] != 0; });
+        if (changed ? quality_of(moved, c).inverted : was) numbers.push_back(c);
+    }
+    return numbers;
+}
+
 void detail::add_part(const HexMesh& part, std::span<const std::uint8_t> owned_points,
                       std::span<const std::uint8_t> owned_cells, MeshReport& report) {
     HexMesh bare;  // tags matter only to schemes

@@ -120,6 +120,21 @@ class ReportInBrowser(unittest.TestCase):
         self.assertEqual(self.browser.evaluate("getComputedStyle(document.querySelector('.reference')).clipPath"), "none")
         self.assertEqual(self.browser.evaluate("getComputedStyle(document.querySelector('.slide')).display"), "none")
 
+    def test_on_paper_no_table_is_cut(self):
+        # A4 between Chromium's margins of .4 inch, 96 pixels an inch; US letter is wider.
+        self.browser.resize(718)
+        self.browser.open(self.page.as_uri())
+        self.browser.send("Emulation.setEmulatedMedia", media="print")
+        self.assertGreater(self.browser.evaluate("document.querySelectorAll('.wide td').length"), 50)
+        self.assertEqual(self.browser.evaluate(OVERFLOWING.replace("!e.closest('.wide') && ", "")), [])
+        # Nor where a study measures much: forty columns of numbers.
+        self.browser.evaluate("""document.querySelectorAll('.wide').forEach(box => {
+            box.className = 'wide densest broken';
+            for (const row of box.querySelectorAll('tr'))
+                for (let k = 0; k < 40; ++k) row.append(Object.assign(document.createElement(row.parentNode.tagName === 'THEAD' ? 'th' : 'td'),
+                                                                      {textContent: '1.234e-05'})); })""")
+        self.assertEqual(self.browser.evaluate(OVERFLOWING.replace("!e.closest('.wide') && ", "")), [])
+
     def test_on_paper_all_pictures_are_seen(self):
         self.browser.resize(1280)
         self.browser.open(self.page.as_uri())

@@ -104,6 +104,20 @@ class WithoutWindow(InSession):
         self.run_ok("view", BALL, *SMALL, "--state", "state.json", "--screenshot", "again.png", "--quiet")
         self.assertEqual(self.bytes_of("view.png"), self.bytes_of("again.png"))
 
+    def test_inverted_cells_are_said(self):
+        push = [{"select": {"ball": [0, 0, 0.5, 0.5]}}, {"move": [0, 0, -1]}]
+        said = self.view(*push, {"save_mesh": "pushed.vtu"}, options=["--look", "solid"])
+        count = self.run_ok("info", "pushed.vtu", "--json").json()["inverted_cells"]
+        self.assertGreater(count, 2)
+        self.assertEqual(said["state"]["inverted_cells"], count)
+        self.assertIn(f"pushed.vtu: {count} of its ", said["warnings"][-1])
+        self.assertIn("# without the marks of inverted cells", said["render"])
+        self.run_ok(*shlex.split(said["render"], comments=True)[1:], "--quiet")
+        self.assertNotEqual(self.bytes_of("view.png"), self.bytes_of("picture.png"))
+        said = self.view(*push, {"save_mesh": "pushed.vtu"}, {"inverted": False}, options=["--look", "solid"])
+        self.run_ok(*shlex.split(said["render"])[1:], "--quiet")
+        self.assertEqual(self.bytes_of("view.png"), self.bytes_of("picture.png"))
+
     def test_edits_are_in_the_state_and_the_command(self):
         edit = [{"select": "all"}, {"twist": {"angle": 40}}]
         said = self.view(*edit, {"save_state": "state.json"})

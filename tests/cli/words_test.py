@@ -39,9 +39,41 @@ SLIPS = [
     (["probe", "model:ball", "--points", "gone.csv"], "gone.csv: cannot be read: No such file or directory"),
     (["render", "model:ball", "-o", "a.png", "--spacing", "-1"], "--spacing: '-1' is out of range (more than 0)"),
     (["vdb", "in_##.vtu", "-o", "out_##.vdb", "--frames", "1-5"], "5 of 5 frames are missing: in_01.vtu, in_02.vtu, in_03.vtu and 2 more"),
+    (["slice", "model:ball:4", "-o", "a.png", "--legend"], "--legend: slice has no such option; it is on, and --no-legend turns it off"),
+    (["render", "model:ball", "-o", "a.png", "--no-legend"], "--no-legend: render has no such option; it is off unless --legend is given"),
+    (["render", "model:ball", "-o", "a.png", "--levels", "1", "--levels", "2"], "--levels: is given twice, but has one value"),
+    (["vdb", "model:ball", "-o", "a.vdb", "--fields", "a", "--fields", "b", "--fields", "c"], "--fields: is given 3 times, but has one value"),
+    (["render", "model:ball", "-o"], "--output: needs a value: -o IMAGE"),
+    (["info", "model:ball", "--json=3"], "--json: is a switch, which has no value"),
     ([], "a verb is needed: model, info"),
     (["--verson"], "did you mean --version?"),
 ]
+
+
+class OtherInputs(InFolder):
+    """Surfaces and grids that are given to verbs of meshes."""
+
+    def test_the_way_to_a_mesh_is_said(self):
+        for name in ("torus.stl", "torus.ply"):
+            self.run_ok("surface", "model:ball:2", "-o", name, "--boundary")
+        (self.folder / "torus.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
+        (self.folder / "torus.glb").write_text("glTF")
+        self.run_ok("vdb", "model:ball:2", "-o", "smoke.vdb", "--resolution", 8)
+        for arguments in (["info"], ["render", "-o", "a.png"], ["vdb", "-o", "a.vdb"], ["points", "-o", "a.ply"], ["page", "-o", "a.html"], ["check"],
+                          ["probe", "--stats"], ["slice", "-o", "a.png"], ["surface", "-o", "a.stl", "--boundary"], ["subdivide", "-o", "a.vtu"],
+                          ["split", "-o", "a.bricks"], ["view", "--screenshot", "a.png"], ["compare", "model:ball:2"]):
+            for file in ("torus.stl", "torus.obj", "torus.ply"):
+                with self.subTest(arguments=arguments, file=file):
+                    done = subvol(arguments[0], file, *arguments[1:], folder=self.folder)
+                    self.assertEqual(done.code, 2, done.err)
+                    self.assertIn(f"{file}: is a surface, not a mesh of cells (`subvol mesh {file} -o torus.vtu` makes a control mesh of it)", done.err)
+                    self.assertEqual(done.err.count("\n"), 1, done.err)
+        for verb, more in (("page", ["-o", "a.html"]), ("check", []), ("subdivide", ["-o", "a.vtu"])):
+            done = subvol(verb, "smoke.vdb", *more, folder=self.folder)
+            self.assertEqual(done.code, 2, done.err)
+            self.assertIn("smoke.vdb: is a grid, not a mesh of cells (`subvol mesh smoke.vdb --iso VALUE -o smoke.vtu` makes", done.err)
+        self.assertIn("is a surface", subvol("info", "torus.glb", folder=self.folder).err)
+        self.assertIn("gone.obj: cannot be read: No such file", subvol("info", "gone.obj", folder=self.folder).err)
 
 
 class Slips(InFolder):

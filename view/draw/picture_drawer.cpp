@@ -208,7 +208,10 @@ DrawnPicture PictureDrawer::draw(const ViewState& state, const std::shared_ptr<c
         state_->draw(of_volume, optics, picture, progress);
         if (flow != nullptr) flow->draw_into(picture.image, picture.depth, view);
     }
-    if (scale > 1) return picture;
+    if (scale > 1) {
+        draw_inverted(picture, view, *body);
+        return picture;
+    }
     const bool edges = state.edges && body->mesh.cells.size() > 0;
     const bool within = edges && (state.look.look != Look::Solid || !state.look.opacity.empty() || picture.depth.empty());
     if (within) {

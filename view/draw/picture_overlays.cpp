@@ -2,9 +2,11 @@
 #include "picture_overlays.h"
 
 #include <algorithm>
+#include <array>
 #include <limits>
 
 #include "seen_view.h"
+#include "subvol/cell.h"
 #include "subvol/error.h"
 #include "subvol/lines_in_volume.h"
 #include "subvol/overlay.h"
@@ -74,10 +76,28 @@ void draw_edges_within(DrawnPicture& picture, const View& view, const ViewBody& 
     draw_lines(picture.image, lines, ended, style.color);
 }
 
+void draw_inverted(DrawnPicture& picture, const View& view, const ViewBody& body) {
+    if (!picture.state.inverted || !body.inverted) return;
+    constexpr std::size_t kMost = 3000;  // cells: more would only cover each other, and make a drag slow
+    constexpr Vec3 kRed(0.85, 0.015, 0.01);
+    LineOptions style = edge_style(view, kRed);
+    style.alpha = 1;
+    const std::size_t step = (body.inverted->size() + kMost - 1) / kMost;
+    for (std::size_t k = 0; k < body.inverted->size(); k += step) {
+        std::array<Vec3, 8> corners;
+        for (std::size_t c = 0; c < 8; ++c) corners[c] = view.to_eye(body.mesh.points[body.mesh.cells[(*body.inverted)[k]][c]]);
+        for (const auto& [a, b] : kCellEdges) {
+            if (corners[a].z > 0 && corners[b].z > 0)
+                draw_line(picture.image, view.to_pixels(corners[a]), view.to_pixels(corners[b]), style);
+        }
+    }
+}
+
 void draw_overlays(DrawnPicture& picture, const View& view, const ViewBody& body, const Optics& optics, bool edges) {
     const ViewState& state = picture.state;
     const Vec3 ink = ink_on(background_of(state));
     if (edges) draw_edges(picture.image, picture.depth, view, body.mesh, edge_style(view, ink), state.clip);
+    draw_inverted(picture, view, body);
     if (state.axes) draw_axes(picture.image, view, ink);
     if (state.legend) {
         widen(picture, state.width);

@@ -26,7 +26,11 @@ namespace subvol::detail {
 void draw_edges_within(DrawnPicture& picture, const View& view, const ViewBody& body, const Surface& boundary,
                        const std::function<Image(const View&)>& draw_ended);
 
-/// Draws axes, edges and the legend over a full picture, which the legend makes wider.
+/// Marks the inverted cells of an edited mesh, unless the state says otherwise: their edges in red, also where the body hides
+/// them.
+void draw_inverted(DrawnPicture& picture, const View& view, const ViewBody& body);
+
+/// Draws edges, marks, axes and the legend over a full picture, which the legend makes wider.
 ///
 /// edges: those on an opaque body, by the depths of the picture
 void draw_overlays(DrawnPicture& picture, const View& view, const ViewBody& body, const Optics& optics, bool edges);

@@ -11,6 +11,7 @@
 #include "subvol/edit_mesh.h"
 #include "subvol/error.h"
 #include "subvol/mesh_io.h"
+#include "subvol/mesh_report.h"
 #include "subvol/raster.h"
 
 namespace subvol::detail {
@@ -198,11 +199,26 @@ void save_mesh(Session& session, const Json& value) {
     const std::string file = word(value);
     (void)write_mesh(file, session.body->mesh);
     session.saved_edit = {file, session.body};
+    if (const std::size_t count = session.inverted_cells().size(); count > 0) {
+        session.warnings.push_back(file + ": " + std::to_string(count) + " of its " +
+                                   std::to_string(session.body->mesh.cells.size()) + " cells " + (count == 1 ? "is" : "are") +
+                                   " inverted (subvol check --mend moves points until they are not)");
+    }
 }
 
 }  // namespace subvol::detail
 
 namespace subvol {
+
+const std::vector<std::size_t>& ViewSession::State::inverted_cells() {
+    if (body->inverted) return *body->inverted;
+    if (counted != body) {
+        const bool cells = !body->points.volume && !body->tets;
+        inverted_at_first = cells ? subvol::inverted_cells(body->mesh, body->mesh.cells.size()) : std::vector<std::size_t>();
+        counted = body;
+    }
+    return inverted_at_first;
+}
 
 void ViewSession::State::replace(HexMesh next) {
     const std::string field = next.attributes.front().name;
@@ -210,6 +226,8 @@ void ViewSession::State::replace(HexMesh next) {
     changed->shape = shape;
     changed->moved = grabbed;
     changed->flow = body->flow;
+    changed->inverted = std::make_shared<const std::vector<std::size_t>>(
+        subvol::inverted_cells(changed->mesh, body->mesh.points, inverted_cells()));
     body = std::move(changed);
     take_values_of_body();
     edited = true;

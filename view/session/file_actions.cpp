@@ -20,7 +20,7 @@ using Session = ViewSession::State;
 
 void restore(Session& session, const Json& json, const Json& known, const std::string& path) {
     for (const auto& [key, value] : json.items()) {
-        if (key == "mesh") continue;
+        if (key == "mesh" || key == kInvertedCells) continue;  // a file, and a fact
         if (!known.contains(key)) throw Error(ErrorCode::InvalidInput, "the key " + in_quotes(key) + " is not known", path);
         run_part(session, key, value);
     }
@@ -102,7 +102,7 @@ void save_tf(Session& session, const Json& file) {
 /// An edited mesh is saved beside the state, as NAME.edits.vtu: NAME.vtu may be the mesh that it was made of.
 void save_state(Session& session, const Json& file) {
     const std::filesystem::path path = word(file);
-    Json json = json_of(session.state);
+    Json json = saved_state(session);
     if (session.edited) {
         std::filesystem::path mesh = path;
         mesh.replace_extension(".edits.vtu");

@@ -146,6 +146,10 @@ void legend(Session& session, const Json& value) {
     edit_state(session, [&](ViewState& next) { next.legend = flag(value); });
 }
 
+void inverted(Session& session, const Json& value) {
+    edit_state(session, [&](ViewState& next) { next.inverted = flag(value); });
+}
+
 /// Streamlines and arrows, by the options of the command; no options: none are drawn.
 void flow(Session& session, const Json& value) {
     ViewFlow next;

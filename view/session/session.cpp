@@ -308,6 +308,14 @@ const std::vector<WaitReport>& ViewSession::waits() const {
     return state_->waits;
 }
 
+const std::vector<std::string>& ViewSession::warnings() const {
+    return state_->warnings;
+}
+
+const std::vector<std::size_t>& ViewSession::inverted_cells() const {
+    return state_->inverted_cells();
+}
+
 std::vector<std::string> ViewSession::fields() const {
     std::vector<std::string> names;
     for (const Attribute& field : state_->mesh->attributes) names.push_back(field.name);
@@ -442,7 +450,7 @@ void ViewSession::take_state(const ViewSession& other) {
 }
 
 std::string ViewSession::state_json() const {
-    return json_of(state_->state).dump(2) + "\n";
+    return saved_state(*state_).dump(2) + "\n";
 }
 
 const ViewBody* ViewSession::unsaved_edits() const {
@@ -457,7 +465,9 @@ std::string ViewSession::render_command() const {
         ViewSource of_file = source;
         of_file.input = state_->saved_edit->file;
         of_file.times = {0.0};
-        return detail::render_command(state_->state, *state_->body, of_file, {});
+        const bool marked = state_->state.inverted && !state_->inverted_cells().empty();
+        return detail::render_command(state_->state, *state_->body, of_file, {}) +
+               (marked ? "  # without the marks of inverted cells" : "");
     }
     return detail::render_command(state_->state, *state_->body, source, source.read_words) +
            "  # without the edits of the mesh, which is not saved";

@@ -34,6 +34,10 @@ void run_part(ViewSession::State& session, const std::string& name, const Json& 
 /// The state as an object whose keys are names of actions: running them one by one restores it.
 [[nodiscard]] Json json_of(const ViewState& state);
 
+/// The same as it is saved: with the number of inverted cells, a fact that is not read again.
+[[nodiscard]] Json saved_state(ViewSession::State& session);
+inline constexpr const char* kInvertedCells = "inverted_cells";
+
 /// The word-by-word command that draws the state.
 ///
 /// read_words: options for reading the input
@@ -112,6 +116,8 @@ struct ViewSession::State {
     void take_values_of_body();
     /// Shows another shape of the body's mesh.
     void replace(HexMesh next);
+    /// The numbers of the inverted cells of the body. They are counted when somebody asks, and from then on kept up to date.
+    [[nodiscard]] const std::vector<std::size_t>& inverted_cells();
     /// The picture beside that of the other method, if two are compared and the other one is there.
     [[nodiscard]] Image composed(const DrawnPicture& picture) const;
     /// The two pictures that are compared, once both are full; else null.
@@ -133,6 +139,8 @@ struct ViewSession::State {
         std::shared_ptr<const ViewBody> body{};
     };
     std::optional<SavedEdit> saved_edit;
+    std::shared_ptr<const ViewBody> counted;  // a body that was not edited, and its inverted cells
+    std::vector<std::size_t> inverted_at_first;
     std::optional<CoarseEdit> coarse;         // the level that is edited; none: the mesh itself
     int edit_level = 0;                       // how much coarser it is
     Selection selection;                      // of `handles`; empty: nothing
@@ -145,6 +153,7 @@ struct ViewSession::State {
     std::uint64_t measured_number = 0;       // how many pictures there were then
     std::size_t action = 0;
     std::vector<WaitReport> waits;
+    std::vector<std::string> warnings;  // of actions
     detail::WindowLook look;
     std::function<void()> on_picture;
     DrawWorker worker;

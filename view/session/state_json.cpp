@@ -52,6 +52,7 @@ Json json_of(const ViewState& state) {
     json["axes"] = state.axes;
     json["edges"] = state.edges;
     json["legend"] = state.legend;
+    json["inverted"] = state.inverted;
     json["flow"] = Json::object();
     for (const auto& [name, value] : state.flow.words()) {
         if (name == "seeds")
@@ -68,6 +69,12 @@ Json json_of(const ViewState& state) {
     json["compare"] = state.compare ? Json(name_of(*state.compare)) : Json(nullptr);
     json["slider"] = state.slider;
     json["difference"] = state.difference;
+    return json;
+}
+
+Json saved_state(ViewSession::State& session) {
+    Json json = json_of(session.state);
+    if (!session.body->points.volume && !session.body->tets) json[kInvertedCells] = session.inverted_cells().size();
     return json;
 }
 

@@ -64,6 +64,7 @@ void background(ViewSession::State& session, const Json& value);
 void axes(ViewSession::State& session, const Json& value);
 void edges(ViewSession::State& session, const Json& value);
 void legend(ViewSession::State& session, const Json& value);
+void inverted(ViewSession::State& session, const Json& value);
 void flow(ViewSession::State& session, const Json& value);
 void clip(ViewSession::State& session, const Json& value);
 void clip_box(ViewSession::State& session, const Json& value);

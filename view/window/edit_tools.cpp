@@ -16,6 +16,13 @@ namespace {
 
 constexpr double kTurnOfHandle_deg = 0.4;  // for each pixel of a drag
 
+/// "3 inverted cells"; empty: there are none
+std::string inverted_text(const WindowHost& host) {
+    const std::size_t count = host.inverted_cells();
+    if (count == 0) return {};
+    return std::to_string(count) + (count == 1 ? " inverted cell" : " inverted cells");
+}
+
 std::string three_text(const Vec3& v) {
     return "[" + json_text(v.x) + ", " + json_text(v.y) + ", " + json_text(v.z) + "]";
 }
@@ -51,6 +58,11 @@ void paint(WindowHost& host, WindowMemory& memory) {
 }
 
 }  // namespace
+
+std::string with_inverted(const WindowHost& host) {
+    const std::string inverted = inverted_text(host);
+    return inverted.empty() ? inverted : ", with " + inverted;
+}
 
 bool take_tool(WindowHost& host, WindowMemory& memory, float height) {
     const ImGuiIO& io = ImGui::GetIO();
@@ -127,7 +139,7 @@ void draw_sculpt(WindowHost& host, WindowMemory& memory) {
     const float label = -0.34F * ImGui::GetContentRegionAvail().x;
     auto radius = static_cast<float>(host.look().brush_px);
     ImGui::SetNextItemWidth(label);
-    if (ImGui::SliderFloat("brush", &radius, 5, 300, "%.0f px")) host.look().brush_px = double{radius};
+    if (ImGui::SliderFloat("size", &radius, 5, 300, "%.0f px")) host.look().brush_px = double{radius};
     ImGui::SetNextItemWidth(label);
     ImGui::DragFloat("paints", &memory.paint_value, 0.01F, 0, 0, "%.4g");
     int level = host.edit_level();
@@ -141,15 +153,23 @@ void draw_sculpt(WindowHost& host, WindowMemory& memory) {
     button("select all", "select", "\"all\"");
     ImGui::SameLine();
     button("select none", "select", "null");
-    button("undo", "undo", "true");
-    ImGui::SameLine();
-    button("redo", "redo", "true");
+    const std::string inverted = inverted_text(host);
+    if (inverted.empty())
+        ImGui::TextDisabled("no inverted cells");
+    else
+        ImGui::TextColored({0.92F, 0.36F, 0.28F, 1}, "%s", inverted.c_str());
+    tip(memory,
+        "cells with a corner at which the edges are left-handed, as `subvol info` counts them; those of an edited mesh are "
+        "marked");
+    bool marks = host.state().inverted;
+    ImGui::SameLine(half + 2 * ImGui::GetStyle().ItemSpacing.x);
+    if (ImGui::Checkbox("marked", &marks)) run(host, memory, "inverted", marks ? "true" : "false");
     ImGui::SetNextItemWidth(label);
     ImGui::InputText("##mesh_file", memory.mesh_file, sizeof memory.mesh_file);
     ImGui::SameLine();
     const std::string file = memory.mesh_file;
     if (ImGui::Button("save mesh", {ImGui::GetContentRegionAvail().x, 0}))
-        run_and_tell(host, memory, "save_mesh", json_text(file), "wrote " + file);
+        run_and_tell(host, memory, "save_mesh", json_text(file), "wrote " + file + with_inverted(host));
     ImGui::TextDisabled("shift and drag: select a rectangle");
 }
 

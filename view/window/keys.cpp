@@ -64,7 +64,7 @@ void go_to_step(WindowHost& host, WindowMemory& memory, int by) {
 void with_control(WindowHost& host, WindowMemory& memory, int key) {
     const std::string picture = memory.picture_file, state = memory.state_file;
     if (key == GLFW_KEY_P) run_and_tell(host, memory, "screenshot", json_text(picture), "wrote " + picture);
-    if (key == GLFW_KEY_S) run_and_tell(host, memory, "save_state", json_text(state), "wrote " + state);
+    if (key == GLFW_KEY_S) save_state(host, memory);
     if (key == GLFW_KEY_L) run_and_tell(host, memory, "load_state", json_text(state), "read " + state);
     if (key == GLFW_KEY_Z) run(host, memory, "undo", "true");
     if (key == GLFW_KEY_Y) run(host, memory, "redo", "true");

@@ -17,8 +17,8 @@ constexpr double kTip_s = 0.5;  // the pointer rests before a tooltip shows
 void draw_choice(WindowHost& host, WindowMemory& memory, const char* label, const char* action, const std::string& now,
                  const std::vector<std::string>& words) {
     if (!ImGui::BeginMenu(label)) return;
-    for (const std::string& word : words) {
-        if (ImGui::MenuItem(word.c_str(), nullptr, word == now)) run(host, memory, action, json_text(word));
+    for (std::size_t k = 0; k < words.size(); ++k) {
+        if (draw_entry(k, words[k], words[k] == now)) run(host, memory, action, json_text(words[k]));
     }
     ImGui::EndMenu();
 }

@@ -31,15 +31,17 @@ std::string choose(const WindowMemory& memory, const char* label, const std::str
     ImGui::SetNextItemWidth(-0.34F * ImGui::GetContentRegionAvail().x);
     if (!ImGui::BeginCombo(label, current.c_str())) return chosen;
     if (memory.close_popup) ImGui::CloseCurrentPopup();
-    for (const std::string& word : words) {
-        if (ImGui::Selectable(word.c_str(), word == current)) chosen = word;
+    for (std::size_t k = 0; k < words.size(); ++k) {
+        if (draw_entry(k, words[k], words[k] == current)) chosen = words[k];
     }
     ImGui::EndCombo();
     return chosen;
 }
 
-/// A heading that opens and closes its part of the panel; one part is open at a time.
-bool section(WindowHost& host, WindowMemory& memory, const char* title, const char* name) {
+/// A part of the panel below a heading that opens and closes it; one part is open at a time. The identifiers of its widgets are
+/// below its name, so that parts may use the same words.
+void draw_section(WindowHost& host, WindowMemory& memory, const char* title, const char* name,
+                  void (*draw)(WindowHost&, WindowMemory&)) {
     const bool open = host.look().section == name;
     if (host.look().section != "sculpt") host.look().tool = "turn";  // no tool works unseen
     ImGui::SetNextItemOpen(open, ImGuiCond_Always);
@@ -47,7 +49,10 @@ bool section(WindowHost& host, WindowMemory& memory, const char* title, const ch
     if (now != open && ImGui::IsItemToggledOpen()) host.look().section = open ? "" : name;
     if (open && memory.section != name) ImGui::SetScrollHereY(0);  // a key has opened it
     if (open) memory.section = name;
-    return now;
+    if (!now) return;
+    ImGui::PushID(name);
+    draw(host, memory);
+    ImGui::PopID();
 }
 
 /// The fields, and a line for what is computed of them.
@@ -61,8 +66,9 @@ void choose_field(WindowHost& host, WindowMemory& memory) {
             run(host, memory, "field", json_text(memory.expression));
             if (memory.problem.empty()) ImGui::CloseCurrentPopup();
         }
-        for (const std::string& name : host.fields()) {
-            if (ImGui::Selectable(name.c_str(), name == now)) run(host, memory, "field", json_text(name));
+        const std::vector<std::string> names = host.fields();
+        for (std::size_t k = 0; k < names.size(); ++k) {
+            if (draw_entry(k, names[k], names[k] == now)) run(host, memory, "field", json_text(names[k]));
         }
         ImGui::EndCombo();
     }
@@ -230,7 +236,7 @@ void draw_files(WindowHost& host, WindowMemory& memory) {
     ImGui::SetNextItemWidth(label);
     ImGui::InputText("##state_file", memory.state_file, sizeof memory.state_file);
     ImGui::SameLine();
-    if (ImGui::Button("save", {part_width(2), 0})) run_and_tell(host, memory, "save_state", json_text(state), "wrote " + state);
+    if (ImGui::Button("save", {part_width(2), 0})) save_state(host, memory);
     ImGui::SameLine();
     if (ImGui::Button("load##state", {ImGui::GetContentRegionAvail().x, 0}))
         run_and_tell(host, memory, "load_state", json_text(state), "read " + state);
@@ -317,12 +323,27 @@ void run_and_tell(WindowHost& host, WindowMemory& memory, const std::string& nam
     memory.message_until = ImGui::GetTime() + kMessage_s;
 }
 
+void save_state(WindowHost& host, WindowMemory& memory) {
+    const std::string file = memory.state_file;
+    const bool edited = host.unsaved_edits() != 0;  // they are saved beside it
+    run_and_tell(host, memory, "save_state", json_text(file), "wrote " + file + (edited ? with_inverted(host) : ""));
+}
+
 void copy_command(WindowHost& host, WindowMemory& memory) {
     const std::string command = host.render_command();
     ImGui::SetClipboardText(command.c_str());
     const auto comment = command.find("  # ");  // what the command leaves out
     memory.message = comment == std::string::npos ? "copied the command" : "copied, but" + command.substr(comment + 3);
     memory.message_until = ImGui::GetTime() + kMessage_s;
+}
+
+bool draw_entry(std::size_t number, const std::string& text, bool chosen, int flags) {
+    ImGui::PushID(static_cast<int>(number));
+    const bool clicked = ImGui::Selectable("##entry", chosen, flags);
+    ImGui::PopID();
+    ImGui::SameLine(0, 0);
+    ImGui::TextUnformatted(text.c_str());
+    return clicked;
 }
 
 bool input_line(const char* label, const char* hint, std::string& text) {
@@ -367,13 +388,13 @@ void draw_panel(WindowHost& host, WindowMemory& memory, float left, float width,
         ImGui::PopStyleColor(2);
     }
     draw_what(host, memory);
-    if (section(host, memory, "Colours and opacity", "colours")) draw_colours(host, memory);
-    if (section(host, memory, "Camera and overlays", "camera")) draw_camera(host, memory);
-    if (section(host, memory, "Cuts and slices", "cuts")) draw_cuts(host, memory);
-    if (section(host, memory, "Comparison", "compare")) draw_compare(host, memory);
-    if (section(host, memory, "Sculpting", "sculpt")) draw_sculpt(host, memory);
-    if (section(host, memory, "Saving and copying", "files")) draw_files(host, memory);
-    if (section(host, memory, "File and region", "input")) draw_input(host, memory);
+    draw_section(host, memory, "Colours and opacity", "colours", draw_colours);
+    draw_section(host, memory, "Camera and overlays", "camera", draw_camera);
+    draw_section(host, memory, "Cuts and slices", "cuts", draw_cuts);
+    draw_section(host, memory, "Comparison", "compare", draw_compare);
+    draw_section(host, memory, "Sculpting", "sculpt", draw_sculpt);
+    draw_section(host, memory, "Saving and copying", "files", draw_files);
+    draw_section(host, memory, "File and region", "input", draw_input);
     ImGui::EndChild();
     draw_foot(host, memory);
     ImGui::End();

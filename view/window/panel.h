@@ -82,8 +82,18 @@ void draw_file_dialog(WindowHost& host, WindowMemory& memory);
 void draw_menu(WindowHost& host, WindowMemory& memory);
 /// The warnings of the file, while they are shown.
 void draw_notes(WindowHost& host, WindowMemory& memory);
+/// Saves the state, and the edits of the mesh beside it.
+void save_state(WindowHost& host, WindowMemory& memory);
 /// Copies the command that draws the picture.
 void copy_command(WindowHost& host, WindowMemory& memory);
+
+/// An entry of a list. Its text may be anything: a name of a file or a field has no part in the identifier, in which Dear ImGui
+/// reads "##" and "###" as marks.
+///
+/// number:  of the entry in its list
+/// flags:   ImGuiSelectableFlags
+/// returns: whether it was clicked
+[[nodiscard]] bool draw_entry(std::size_t number, const std::string& text, bool chosen, int flags = 0);
 
 /// Lines of text that are typed. returns: whether Enter was pressed
 bool input_line(const char* label, const char* hint, std::string& text);
@@ -110,6 +120,8 @@ void draw_cut_handles(WindowHost& host, const WindowMemory& memory);
 /// The planes, in the panel.
 void draw_cuts(WindowHost& host, WindowMemory& memory);
 
+/// What is said where an edited mesh is saved: ", with 3 inverted cells"; empty: it has none.
+[[nodiscard]] std::string with_inverted(const WindowHost& host);
 /// The tools, in the panel.
 void draw_sculpt(WindowHost& host, WindowMemory& memory);
 

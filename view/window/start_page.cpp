@@ -58,12 +58,14 @@ void take(WindowHost& host, WindowMemory& memory, const std::string& name) {
 
 void draw_entries(WindowHost& host, WindowMemory& memory) {
     FileDialog& dialog = memory.dialog;
+    constexpr int kTwice = ImGuiSelectableFlags_AllowDoubleClick;
     std::string chosen;
-    if (ImGui::Selectable("..", false, ImGuiSelectableFlags_AllowDoubleClick) && ImGui::IsMouseDoubleClicked(0)) chosen = "..";
+    std::size_t number = 0;
+    if (draw_entry(number, "..", false, kTwice) && ImGui::IsMouseDoubleClicked(0)) chosen = "..";
     for (const auto& [name, folder] : dialog.entries) {
+        ++number;
         if (!folder && !dialog.all_files && !can_open(host, name)) continue;
-        const std::string shown = folder ? name + "/" : name;
-        if (!ImGui::Selectable(shown.c_str(), dialog.name == name, ImGuiSelectableFlags_AllowDoubleClick)) continue;
+        if (!draw_entry(number, folder ? name + "/" : name, dialog.name == name, kTwice)) continue;
         dialog.name = name;
         if (ImGui::IsMouseDoubleClicked(0)) chosen = name;
     }
@@ -131,12 +133,14 @@ void draw_start_page(WindowHost& host, WindowMemory& memory, float width, float 
         if (list.empty()) return;
         ImGui::Dummy({0, 6 * memory.scale});
         ImGui::TextDisabled("%s", title);
-        for (const std::string& name : list) {
+        ImGui::PushID(title);
+        for (std::size_t k = 0; k < list.size(); ++k) {
+            const std::string& name = list[k];
             const auto slash = name.rfind('/');
-            const std::string text = name.substr(slash == std::string::npos ? 0 : slash + 1) + "##" + name;
-            if (ImGui::Selectable(text.c_str())) open_path(host, memory, name);
+            if (draw_entry(k, name.substr(slash == std::string::npos ? 0 : slash + 1), false)) open_path(host, memory, name);
             if (slash != std::string::npos && ImGui::IsItemHovered()) ImGui::SetTooltip("%s", name.c_str());
         }
+        ImGui::PopID();
     };
     names("Recent files", host.recent());
     names("Built-in models", host.models());

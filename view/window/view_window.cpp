@@ -252,6 +252,7 @@ public:
     }
 
     [[nodiscard]] int edit_level() const override { return session_->edit_level(); }
+    [[nodiscard]] std::size_t inverted_cells() const override { return session_->inverted_cells().size(); }
 
     [[nodiscard]] std::vector<Vec3> selected_pixels() const override {
         constexpr std::size_t kMost = 3000;  // more would hide the body
@@ -360,6 +361,10 @@ private:
 };
 
 }  // namespace
+
+std::unique_ptr<WindowHost> detail::window_host(std::unique_ptr<ViewSession> session, const WindowOptions& options) {
+    return std::make_unique<Host>(std::move(session), options);
+}
 
 std::unique_ptr<ViewSession> open_view_window(std::unique_ptr<ViewSession> session, const WindowOptions& options) {
 #ifdef SUBVOL_WITH_WINDOW

@@ -91,6 +91,8 @@ public:
     [[nodiscard]] virtual std::vector<TransferFunction::OpacityKnot> opacity() const = 0;
     /// How much coarser the level is that is edited.
     [[nodiscard]] virtual int edit_level() const = 0;
+    /// How many cells of the mesh are inverted.
+    [[nodiscard]] virtual std::size_t inverted_cells() const = 0;
     /// Where selected control points are in the picture (column, row) and their shares.
     [[nodiscard]] virtual std::vector<Vec3> selected_pixels() const = 0;
     [[nodiscard]] virtual std::vector<CutHandle> cut_handles() const = 0;
@@ -104,6 +106,9 @@ public:
     /// pixels: RGB, rows from the top
     virtual void save_window(int width, int height, const std::vector<std::uint8_t>& pixels) = 0;
 };
+
+/// A session as the window sees it. options: referred to
+[[nodiscard]] std::unique_ptr<WindowHost> window_host(std::unique_ptr<ViewSession> session, const WindowOptions& options);
 
 /// What the window is opened with.
 struct WindowStart {

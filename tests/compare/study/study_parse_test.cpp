@@ -1,11 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cstdint>
 #include <ostream>
 #include <set>
+#include <string>
+#include <vector>
 
 #include "lib/temp_folder.h"
 #include "picture_methods.h"
+#include "subvol/detail/several_errors.h"
 #include "subvol/study.h"
 
 namespace subvol {
@@ -136,6 +141,73 @@ TEST(StudyFile, OneReferenceForAllMethods) {
     std::set<std::string> references;
     for (const StudyCase& of : parse(study_with(kTets, kTets)).cases) references.insert(reference_of(of)->id);
     EXPECT_EQ(references.size(), 2U);  // one per camera
+}
+
+/// The places of all mistakes of a study.
+std::set<std::string> places_of(const std::string& text) {
+    std::set<std::string> places;
+    try {
+        (void)parse(text);
+    } catch (const detail::SeveralErrors& several) {
+        for (const Error& one : several.all()) EXPECT_TRUE(places.insert(one.where()).second) << one.what();
+    } catch (const Error& one) {
+        places.insert(one.where());
+    }
+    return places;
+}
+
+TEST(StudyMistakes, AreFoundTogether) {
+    // Parts of a study, right and wrong, and the place of the mistake.
+    struct Part {
+        std::string right, wrong, place;
+    };
+    const std::vector<Part> parts{
+        {R"("name": "s")", R"("name": "a b")", "name"},
+        {R"("timed": true)", R"("timed": 1)", "timed"},
+        {R"("size": [64, 48])", R"("size": [64, 4])", "size[1]"},
+        {R"("metrics": ["psnr"])", R"("metrics": ["psnr", "psrn"])", "metrics[1]"},
+        {R"("reference": {"max_levels": 3})", R"("reference": {"max_levels": 30})", "reference.max_levels"},
+        {R"("inputs": [{"model": "ball", "resolution": 4}])", R"("inputs": [{"model": "bal", "resolution": 4}])",
+         "inputs[0].model"},
+        {R"("cameras": ["iso"])", R"("cameras": ["iso", 7])", "cameras[1]"},
+        {R"("transfer_functions": ["turbo"])", R"("transfer_functions": [{"name": "t", "opacity_unit": -1}])",
+         "transfer_functions[0].opacity_unit"},
+        {R"("methods": [{"method": "splat", "sheets": 50}, {"method": "tets"}])",
+         R"("methods": [{"method": "splat", "sheets": 1}, {"method": "tets"}])", "methods[0].sheets"},
+        {R"("tables": [{"rows": ["label"], "columns": ["psnr"], "digits": 3}])",
+         R"("tables": [{"rows": ["label"], "columns": ["psnr"], "digits": 99}])", "tables[0].digits"},
+        {R"("plots": [{"x": "kernels", "y": "psnr", "series": "label"}])",
+         R"("plots": [{"x": "kernels", "y": "psnrr", "series": "label"}])", "plots[0].y"},
+        {R"("demands": [{"metric": "psnr", "least": 1}])", R"("demands": [{"metric": "psnr", "least": "1"}])",
+         "demands[0].least"},
+        {R"("seconds": 3)", R"("secons": 3)", "secons"}};
+    std::uint32_t random = 7;
+    for (int round = 0; round < 200; ++round) {
+        std::string text;
+        std::set<std::string> wanted;
+        for (const Part& part : parts) {
+            random = 1664525 * random + 1013904223;  // Numerical Recipes
+            const bool wrong = round > 0 && (random >> 16U) % 100 < static_cast<unsigned>(10 + round / 2 % 60);
+            text += (text.empty() ? "{" : ", ") + (wrong ? part.wrong : part.right);
+            if (wrong) wanted.insert("s.json: " + part.place);
+        }
+        EXPECT_EQ(places_of(text + "}"), wanted) << text;
+    }
+}
+
+TEST(StudyMistakes, OfOneObjectAreFoundTogether) {
+    const std::string text = R"({"name": "s", "inputs": [{"model": "ball", "resolution": [4, 1], "filed": "T"}],
+        "methods": [{"method": "splat", "sheets": [1, 50, 2.5], "per_edges": 2, "backend": "gpu"}],
+        "tables": [{"rows": ["label", "sheet"], "columns": ["psrn"], "digit": 3, "where": {"lable": "x"}}]})";
+    EXPECT_EQ(places_of(text), (std::set<std::string>{"s.json: inputs[0].resolution[1]", "s.json: inputs[0].filed",
+                                                      "s.json: methods[0].sheets[0]", "s.json: methods[0].sheets[2]",
+                                                      "s.json: methods[0].per_edges", "s.json: methods[0].backend",
+                                                      "s.json: tables[0].digit", "s.json: tables[0].rows[1]",
+                                                      "s.json: tables[0].columns", "s.json: tables[0].where.lable"}));
+    const std::string message = error_of([&] { (void)parse(text); });
+    EXPECT_LE(std::ranges::count(message, '\n'), 10) << message;
+    EXPECT_TRUE(message.starts_with("s.json: 10 mistakes:\n  ")) << message;
+    EXPECT_TRUE(message.ends_with("\n  and 2 more")) << message;
 }
 
 struct Mistake {

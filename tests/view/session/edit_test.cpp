@@ -2,9 +2,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 
+#include "subvol/detail/atomic_file.h"
 #include "subvol/edit_mesh.h"
 #include "subvol/error.h"
 #include "subvol/mesh_io.h"
@@ -72,6 +74,100 @@ protected:
         {.camera = fit_camera(bounds(mesh), {-1, 1, -1}), .width = 64, .height = 64, .look = {.look = Look::Solid}},
         {.splat = {.method = SplatMethod::Cpu}}};
 };
+
+/// The cells with a corner at which the edges along u, v and w are left-handed.
+std::vector<std::size_t> left_handed(const HexMesh& mesh) {
+    // The corners in VTK's order by their places in the unit cube.
+    constexpr std::array<std::array<int, 3>, 8> kPlaces{
+        {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}}};
+    std::vector<std::size_t> found;
+    for (std::size_t c = 0; c < mesh.cells.size(); ++c) {
+        bool wrong = false;
+        for (const auto& place : kPlaces) {
+            std::array<Vec3, 3> edges;
+            for (std::size_t d = 0; d < 3; ++d) {
+                auto low = place, high = place;
+                low[d] = 0;
+                high[d] = 1;
+                const auto at = [&](const std::array<int, 3>& p) {
+                    return mesh
+                        .points[mesh.cells[c][static_cast<std::size_t>(std::ranges::find(kPlaces, p) - kPlaces.begin())]];
+                };
+                edges[d] = at(high) - at(low);
+            }
+            const Vec3 &u = edges[0], &v = edges[1], &w = edges[2];
+            wrong = wrong || u.x * (v.y * w.z - v.z * w.y) + u.y * (v.z * w.x - v.x * w.z) + u.z * (v.x * w.y - v.y * w.x) < 0;
+        }
+        if (wrong) found.push_back(c);
+    }
+    return found;
+}
+
+std::size_t red_pixels(const Image& image) {
+    std::size_t count = 0;
+    for (std::size_t p = 0; p < image.rgba.size(); p += 4)
+        count += image.rgba[p] > 0.5F && image.rgba[p + 1] < 0.1F && image.rgba[p + 2] < 0.1F ? 1 : 0;
+    return count;
+}
+
+TEST_F(Editing, InvertedCellsAreKnownAfterEachMove) {
+    EXPECT_TRUE(session.inverted_cells().empty());
+    EXPECT_NE(session.state_json().find(R"("inverted_cells": 0)"), std::string::npos);
+    std::size_t most = 0, changed = 0, before = 0;
+    for (int k = 0; k < 24; ++k) {  // to and fro, so that cells are turned inside out and back
+        const double angle = 1.9 * k;
+        const std::string ball =
+            std::to_string(0.6 * std::cos(angle)) + ", " + std::to_string(0.6 * std::sin(angle)) + ", 0, 0.7";
+        session.run(R"({"select": {"ball": [)" + ball + "]}}");
+        session.run(k % 3 == 2 ? R"({"undo": true})" : R"({"move": [0.25, -0.1, 0.3]})");
+        EXPECT_EQ(session.inverted_cells(), left_handed(session.body().mesh)) << k;
+        const std::size_t now = session.inverted_cells().size();
+        EXPECT_NE(session.state_json().find("\"inverted_cells\": " + std::to_string(now)), std::string::npos);
+        most = std::max(most, now);
+        changed += now != before ? 1 : 0;
+        before = now;
+    }
+    EXPECT_GT(most, 3U);
+    EXPECT_GT(changed, 6U);
+}
+
+TEST_F(Editing, InvertedCellsAreMarkedInPictures) {
+    EXPECT_EQ(red_pixels(session.wait()->image), 0U);
+    session.run(R"({"select": {"ball": [0, 0, 0.5, 0.5]}})");
+    session.run(R"({"move": [0, 0, -1]})");
+    ASSERT_FALSE(session.inverted_cells().empty());
+    EXPECT_GT(red_pixels(session.wait()->image), 20U);
+    session.run(R"({"inverted": false})");
+    EXPECT_EQ(red_pixels(session.wait()->image), 0U);
+    session.run(R"({"inverted": true})");
+    EXPECT_GT(red_pixels(session.wait()->image), 20U);
+    session.run(R"({"undo": true})");
+    session.run(R"({"undo": true})");
+    session.run(R"({"undo": true})");
+    EXPECT_EQ(red_pixels(session.wait()->image), 0U) << "the mesh as it was";
+}
+
+TEST_F(Editing, SavingSaysWhatIsInverted) {
+    const detail::TemporaryFile saved("ball.vtu");
+    const std::string save = R"({"save_mesh": ")" + saved.path().string() + "\"}";
+    session.run(save);
+    EXPECT_TRUE(session.warnings().empty());
+    session.run(R"({"select": {"ball": [0, 0, 0.5, 0.5]}})");
+    session.run(R"({"move": [0, 0, -1]})");
+    session.run(save);
+    const std::size_t count = left_handed(session.body().mesh).size();
+    ASSERT_EQ(session.warnings().size(), 1U);
+    EXPECT_NE(
+        session.warnings().front().find(std::to_string(count) + " of its " + std::to_string(mesh.cells.size()) + " cells"),
+        std::string::npos)
+        << session.warnings().front();
+    // A state that was saved with the count is read again.
+    const detail::TemporaryFile state("state.json");
+    session.run(R"({"save_state": ")" + state.path().string() + "\"}");
+    session.run(R"({"undo": true})");
+    session.run(R"({"load_state": ")" + state.path().string() + "\"}");
+    EXPECT_EQ(session.inverted_cells().size(), count);
+}
 
 TEST_F(Editing, PicturesFollowTheMeshAndUndoBringsThemBack) {
     const auto before = session.wait();

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <map>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -51,6 +52,13 @@ struct ShapeReport {
 
 /// The numbers of the first cells with a negative Jacobian at a corner, ascending.
 [[nodiscard]] std::vector<std::size_t> inverted_cells(const HexMesh& mesh, std::size_t at_most);
+
+/// All of them after some points have moved. Only the cells about these are measured.
+///
+/// before: the places of the points before
+/// known:  the numbers of the cells that were inverted then, ascending
+[[nodiscard]] std::vector<std::size_t> inverted_cells(const HexMesh& moved, std::span<const Vec3> before,
+                                                      std::span<const std::size_t> known);
 
 /// The least at the corners of a cell, in VTK order: 1 for a cube, at most 0 where the cell is turned inside out or degenerate.
 [[nodiscard]] double min_scaled_jacobian(const std::array<Vec3, 8>& corners);

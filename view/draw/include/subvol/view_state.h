@@ -41,6 +41,7 @@ struct ViewFlow {
 /// method:        one of `kViewMethods`
 /// background:    in linear light; none: that of the look
 /// axes, edges, legend: what is drawn over the picture
+/// inverted:      marks the cells of an edited mesh that are inverted
 /// flow:          streamlines and arrows in the body
 /// clip:          how the volume is cut open
 /// compare:       the method of a second picture, which is shown right of `slider` (0 to 1 of the width); none: no other
@@ -54,6 +55,7 @@ struct ViewState {
     LookOptions look{};
     std::optional<Vec3> background{};
     bool axes = false, edges = false, legend = false;
+    bool inverted = true;
     ViewFlow flow{};
     Clip clip{};
     std::optional<Method> compare{};
@@ -78,14 +80,15 @@ struct ViewPoints {
 
 /// A mesh with one field, which is its only attribute, and what the picture needs to know about both.
 ///
-/// mesh:    of points, their centres without cells (`mesh_of_points`)
-/// shape:   bodies with the same number have the same cells; 0: of its own
-/// moved:   it is being moved, so that tables for its cells pay
-/// points:  shown instead of cells; without a volume: there are cells
-/// channel: of the points
-/// flow:    vectors at the points of the mesh that are drawn, with seeds; null: none
-/// tets:    the mesh is a level of a scheme of tetrahedra on its limit, in hexahedra. It is drawn as tetrahedra and octahedra,
-///          or with one kernel at each point
+/// mesh:     of points, their centres without cells (`mesh_of_points`)
+/// shape:    bodies with the same number have the same cells; 0: of its own
+/// moved:    it is being moved, so that tables for its cells pay
+/// points:   shown instead of cells; without a volume: there are cells
+/// channel:  of the points
+/// flow:     vectors at the points of the mesh that are drawn, with seeds; null: none
+/// inverted: the numbers of the cells with a negative Jacobian at a corner, ascending; null: the mesh has not been edited
+/// tets:     the mesh is a level of a scheme of tetrahedra on its limit, in hexahedra. It is drawn as tetrahedra and octahedra,
+///           or with one kernel at each point
 struct ViewBody {
     HexMesh mesh;
     Box box;
@@ -96,6 +99,7 @@ struct ViewBody {
     std::size_t channel = 0;
     bool tets = false;
     std::shared_ptr<const Flow> flow{};
+    std::shared_ptr<const std::vector<std::size_t>> inverted{};
 
     [[nodiscard]] const std::string& field() const { return mesh.attributes.front().name; }
 };

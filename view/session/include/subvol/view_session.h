@@ -105,6 +105,12 @@ public:
     /// What the last action `pick` found; none: it missed the volume.
     [[nodiscard]] const std::optional<Picked>& picked() const;
     [[nodiscard]] const std::vector<WaitReport>& waits() const;
+    /// What users should know about what actions did, such as inverted cells of a mesh that was saved.
+    [[nodiscard]] const std::vector<std::string>& warnings() const;
+    /// The numbers of the cells with a negative Jacobian at a corner, ascending; of points none.
+    ///
+    /// cost: the first call measures all cells; after an edit only those about moved points are measured
+    [[nodiscard]] const std::vector<std::size_t>& inverted_cells() const;
 
     /// Runs one action. Nothing changes if it throws.
     ///
