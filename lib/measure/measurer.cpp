@@ -19,6 +19,7 @@
 
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include "node_steps.h"
 #include "refine_steps.h"
@@ -87,11 +88,38 @@ Measurer::Measurer(const HexMesh& mesh, std::span<const std::uint8_t> owned, con
 
 std::vector<PartMeasure> Measurer::measure() {
     start();
-    std::vector<Index> cells = cells_;
-    for (int level = 1; !cells.empty(); ++level) cells = run(cells, level);
+    notes_.resize(std::min(kBlock, cells_.size()));
+    Changes changes = run(cells_, 1);
+    const std::vector<PartSums> first = parts_;
+    refine_for(0, 1, changes);
+    if (has_fields_) {
+        const std::vector<PartSums> volumes = std::exchange(parts_, first);
+        refine_for(1, scales_.size(), std::move(changes));
+        for (std::size_t p = 0; p < parts_.size(); ++p) {
+            // A mean is divided by the volume, and a field is within half its range of its origin.
+            parts_[p].left = std::max(volumes[p].left, parts_[p].left + volumes[p].left / 2);
+            parts_[p].sums[0] = volumes[p].sums[0];
+        }
+    }
     std::vector<PartMeasure> found = results();
     extremes_.find(control_, options_.scheme, extent_, options_.progress, found);
     return found;
+}
+
+void Measurer::refine_for(std::size_t first, std::size_t last, Changes changes) {
+    const std::vector<double> scales = scales_;
+    const auto is_meant = [&](std::size_t sum) { return sum >= first && sum < last; };
+    for (std::size_t i = 0; i < scales_.size(); ++i) scales_[i] = is_meant(i) ? scales[i] : 0;
+    changes.keep(is_meant);
+    std::ranges::fill(levels_, 1);
+    std::ranges::fill(coarsest_, 1);
+    std::vector<Index> cells = cells_;
+    for (int level = 1; !cells.empty(); ++level) {
+        if (level > 1) changes = run(cells, level);
+        learn(cells, level, changes);
+        cells = choose(cells, changes, level, /*for_fields=*/first > 0);
+    }
+    scales_ = scales;
 }
 
 std::size_t Measurer::part_count(const MeasureOptions& options) {
@@ -135,23 +163,17 @@ void Measurer::start() {
 }
 
 void Measurer::calibrate(std::span<const Index> cells, int level, Changes& changes) {
-    constexpr std::size_t kSample = 128;
-    std::vector<std::uint32_t> order;
-    for (std::uint32_t i = 0; i < cells.size(); ++i) {
-        if (levels_[cells[i]] == level) order.push_back(i);
-    }
-    std::ranges::stable_sort(order, std::ranges::greater{}, [&](std::uint32_t i) { return changes.largest(i); });
-    const std::size_t stride = std::max<std::size_t>(static_cast<std::size_t>(level) * order.size() / kSample, 1);
-    const std::size_t all = order.size(), count = (all + stride - 1) / stride;
+    constexpr std::size_t kSample = 128, kLeastWork = 8192;  // cells; pieces
+    std::vector<std::uint32_t> order = by_change(cells, level, changes);
+    const std::size_t wanted = std::max(kSample / static_cast<std::size_t>(level), kLeastWork >> 3 * level);
+    const std::size_t stride = std::max<std::size_t>((order.size() + wanted - 1) / wanted, 1);
+    const std::size_t count = (order.size() + stride - 1) / stride;
     for (std::size_t i = 0; i < count; ++i) order[i] = order[i * stride];
     order.resize(count);
     std::vector<Index> sample(count);
-    Rest before(scales_.size());
-    for (std::size_t i = 0; i < count; ++i) {
-        sample[i] = cells[order[i]];
-        before.add(changes, order[i], 1);
-    }
-    Changes next(1 + channels_.size(), sample.size(), 0);
+    for (std::size_t i = 0; i < count; ++i) sample[i] = cells[order[i]];
+    sample_.emplace(std::move(order), Changes(1 + channels_.size(), sample.size(), 0), stride == 1);
+    Changes& next = sample_->next;
     each_block(
         sample, level + 1, "measure",
         [&](const DenseCell& grid, std::size_t slot) {
@@ -165,13 +187,20 @@ void Measurer::calibrate(std::span<const Index> cells, int level, Changes& chang
         },
         [&](Index, std::size_t number, std::size_t slot) { next.note(number, notes_[slot].changes, scales_); });
     next.compare([](std::size_t) { return std::array<Index, 0>{}; });
-    Rest after(scales_.size());
-    for (std::size_t i = 0; i < sample.size(); ++i) after.add(next, i, 1);
-    changes.expect(before, after, stray_of_sample(changes, order, next, all));
+    changes.expect(*sample_);
 }
 
-std::vector<Index> Measurer::run(std::span<const Index> cells, int level) {
-    notes_.resize(std::min(kBlock, cells.size()));
+/// The cells of a level, those with the largest changes first.
+std::vector<std::uint32_t> Measurer::by_change(std::span<const Index> cells, int level, const Changes& changes) const {
+    std::vector<std::uint32_t> order;
+    for (std::uint32_t i = 0; i < cells.size(); ++i) {
+        if (levels_[cells[i]] == level) order.push_back(i);
+    }
+    std::ranges::stable_sort(order, std::ranges::greater{}, [&](std::uint32_t i) { return changes.largest(i); });
+    return order;
+}
+
+Changes Measurer::run(std::span<const Index> cells, int level) {
     pieces_ += level == 1 ? cells.size() : 7 * static_cast<std::size_t>(std::ranges::count(levels_, level)) << 3 * (level - 2);
     Changes changes(1 + channels_.size(), cells.size(), level == 1 ? kLeftOfTrilinear : kLeftOfQuadratic);
     each_block(
@@ -182,6 +211,11 @@ std::vector<Index> Measurer::run(std::span<const Index> cells, int level) {
             collect(cell, number, std::ldexp(0.5, -level), notes_[slot]);
         });
     compare_with_neighbors(cells, changes);
+    return changes;
+}
+
+void Measurer::learn(std::span<const Index> cells, int level, Changes& changes) {
+    sample_.reset();
     if (level > 2 && gone_on_) {
         Rest after(scales_.size());
         for (std::size_t i = 0; i < cells.size(); ++i) {
@@ -191,7 +225,6 @@ std::vector<Index> Measurer::run(std::span<const Index> cells, int level) {
     } else if (!is_enough(cells, level, changes)) {
         calibrate(cells, level, changes);
     }
-    return choose(cells, changes, level);
 }
 
 void Measurer::compare_with_neighbors(std::span<const Index> cells, Changes& changes) {
@@ -282,15 +315,12 @@ void Measurer::collect(Index cell, std::size_t number, double step, const CellNo
     extremes_.look(p, cell, number, Vec3(step), note.extremes);
 }
 
-std::vector<Index> Measurer::choose(std::span<const Index> cells, const Changes& changes, int level) {
+std::vector<Index> Measurer::choose(std::span<const Index> cells, Changes& changes, int level, bool for_fields) {
     constexpr std::size_t kLeastWork = 32768;  // pieces
     const std::size_t work = level >= kMostLevels ? 0 : std::max(cells_.size(), kLeastWork);
     std::vector<std::uint8_t> for_extremes(cells.size(), 0), for_sums(cells.size(), 0);
-    if (level == 1) {
-        extremes_.end_level(work >> 3, for_extremes);
-    } else {
-        extremes_.end_cells(cells);
-    }
+    if (for_fields && level == 1) extremes_.end_level(work >> 3, for_extremes);
+    if (for_fields && level > 1) extremes_.end_cells(cells);
     choose_for_sums(cells, changes, level, 8 * work >> 3 * level, for_sums);
     std::vector<Index> next, summed;
     for (std::size_t i = 0; i < cells.size(); ++i) {
@@ -322,23 +352,27 @@ bool Measurer::is_enough(std::span<const Index> cells, int level, const Changes&
     return true;
 }
 
-void Measurer::choose_for_sums(std::span<const Index> cells, const Changes& changes, int level, std::size_t room,
+void Measurer::choose_for_sums(std::span<const Index> cells, Changes& changes, int level, std::size_t room,
                                std::vector<std::uint8_t>& chosen) {
+    constexpr int kRounds = 8;
     std::vector<Rest> rests = rests_of(cells, level, changes);
-    std::vector<std::uint32_t> order;
-    for (std::uint32_t i = 0; i < cells.size(); ++i) {
-        if (levels_[cells[i]] == level) order.push_back(i);
-    }
-    std::ranges::stable_sort(order, std::ranges::greater{}, [&](std::uint32_t i) { return changes.largest(i); });
+    const std::vector<std::uint32_t> order = by_change(cells, level, changes);
     gone_on_.reset();
-    for (const std::uint32_t i : order) {
-        const std::size_t p = part_of(cells[i]);
-        if (room == 0 || rests[p].size(changes.left) <= allowed(p, level)) continue;
-        chosen[i] = 1;
-        rests[p].add(changes, i, -1);
-        if (!gone_on_) gone_on_.emplace(scales_.size());
-        gone_on_->add(changes, i, 1);
-        --room;
+    // What is not refined has smaller changes than what is, and need not behave like it: it is judged by itself.
+    for (int round = 0; round < kRounds; ++round) {
+        bool is_enough = true;
+        for (const std::uint32_t i : order) {
+            const std::size_t p = part_of(cells[i]);
+            if (chosen[i] != 0 || room == 0 || rests[p].size(changes.left) <= allowed(p, level)) continue;
+            is_enough = false;
+            chosen[i] = 1;
+            rests[p].add(changes, i, -1);
+            if (!gone_on_) gone_on_.emplace(scales_.size());
+            gone_on_->add(changes, i, 1);
+            --room;
+        }
+        if (is_enough || !sample_) break;
+        changes.expect(*sample_, chosen);
     }
     for (std::size_t p = 0; p < parts_.size(); ++p) {
         parts_[p].left += rests[p].size(changes.left);

@@ -107,8 +107,19 @@ private:
     /// of the cells tells.
     void calibrate(std::span<const Index> cells, int level, Changes& changes);
 
-    /// Measures cells at a level. Returns those that are to be refined further, in the same order.
-    std::vector<Index> run(std::span<const Index> cells, int level);
+    /// Measures cells at a level: adds their sums. Returns by how much these differ from those of the level before.
+    [[nodiscard]] Changes run(std::span<const Index> cells, int level);
+
+    /// Refines cells until some of the sums, from `first` to before `last`, are known well enough; the others are left alone.
+    /// So the volume is the same whatever fields there are.
+    ///
+    /// changes: of level 1
+    void refine_for(std::size_t first, std::size_t last, Changes changes);
+
+    /// Learns from the cells of the level, or from a sample of them, which part of their changes is left.
+    void learn(std::span<const Index> cells, int level, Changes& changes);
+
+    [[nodiscard]] std::vector<std::uint32_t> by_change(std::span<const Index> cells, int level, const Changes& changes) const;
 
     void compare_with_neighbors(std::span<const Index> cells, Changes& changes);
 
@@ -130,7 +141,9 @@ private:
 
     /// The cells that go on to the next level: those with candidates for extremes, and those of whose sums most is left. At
     /// most so many as cost about as much as the first level. What stays is added to what is left of the parts.
-    std::vector<Index> choose(std::span<const Index> cells, const Changes& changes, int level);
+    ///
+    /// for_fields: extremes are looked for, too
+    std::vector<Index> choose(std::span<const Index> cells, Changes& changes, int level, bool for_fields);
 
     /// What is left of each part in the cells that are known to a level.
     [[nodiscard]] std::vector<Rest> rests_of(std::span<const Index> cells, int level, const Changes& changes) const;
@@ -140,7 +153,7 @@ private:
     /// Whether nothing has to be refined for sums.
     [[nodiscard]] bool is_enough(std::span<const Index> cells, int level, const Changes& changes) const;
 
-    void choose_for_sums(std::span<const Index> cells, const Changes& changes, int level, std::size_t room,
+    void choose_for_sums(std::span<const Index> cells, Changes& changes, int level, std::size_t room,
                          std::vector<std::uint8_t>& chosen);
 
     /// The whole and the parts, without their extremes.
@@ -164,6 +177,7 @@ private:
     std::vector<Index> cells_, slots_;             // that are measured; the place of each in its block
     std::vector<std::uint8_t> levels_, coarsest_;  // of the cells; the least at each point
     std::vector<std::uint8_t> is_candidate_;       // a flag for each cell: for an extreme
+    std::optional<SampleOfChanges> sample_;        // of the level's cells, refined once more
     std::optional<Rest> gone_on_;                  // the changes of the cells that were refined further for their sums
     std::vector<PartSums> parts_;
     std::vector<CellNote> notes_;

@@ -16,6 +16,7 @@
 namespace subvol::detail {
 
 class Rest;
+struct SampleOfChanges;
 
 /// By how much the sums of the cells of a level differ from those of the level before: of integrals divided by the range.
 ///
@@ -26,10 +27,13 @@ class Rest;
 ///       The cells beside it tell: the largest change of a cell and those across its sides counts
 class Changes {
     static constexpr double kMostKnown = 0.25;  // a ratio of two levels that falls no further is not one of smooth pieces
+    // What follows the next level, as a part of that: at least a tenth, or more than what the changes have shrunk by.
+    static constexpr double kLater = 1.5, kLeastLater = 0.1;
+    static constexpr double kLeastPart = 0.05;  // of a change, that is left however little the next one is
 
 public:
     Changes(std::size_t sums, std::size_t cells, double part)
-        : follows(sums, 0), left(sums, {part, part}), sums_(sums), changes_(sums * cells), sizes_(sums * cells) {}
+        : follows(sums, 0), left(sums, {part, part}), part_(part), sums_(sums), changes_(sums * cells), sizes_(sums * cells) {}
 
     struct Left {
         double of_sum, of_spread;
@@ -41,10 +45,21 @@ public:
     ///
     /// stray: how far off a sum of `after` may be as that of a sample, in its unit; none: they are all cells
     void expect(const Rest& before, const Rest& after, std::span<const double> stray = {});
+    /// The same for cells of which a sample has been refined.
+    ///
+    /// left_out: a flag for each cell; those that have it are none of these; none: all are
+    void expect(const SampleOfChanges& sample, std::span<const std::uint8_t> left_out = {});
 
     /// scales: of each sum
     void note(std::size_t number, std::span<const double> changes, std::span<const double> scales) {
         for (std::size_t i = 0; i < sums_; ++i) changes_[sums_ * number + i] = static_cast<float>(changes[i] * scales[i]);
+    }
+    /// Forgets the changes of the sums that are not meant.
+    template <class IsMeant>
+    void keep(const IsMeant& is_meant) {
+        for (std::size_t n = 0; n < changes_.size(); ++n) {
+            if (!is_meant(n % sums_)) changes_[n] = sizes_[n] = 0;
+        }
     }
     [[nodiscard]] std::span<const float> of_cell(std::size_t number) const {
         return std::span(changes_).subspan(sums_ * number, sums_);
@@ -69,8 +84,16 @@ public:
     [[nodiscard]] float largest(std::size_t number) const { return std::ranges::max(sizes(number)); }
 
 private:
+    double part_;
     std::size_t sums_;
     std::vector<float> changes_, sizes_;
+};
+
+/// numbers: of the cells of a sample; next: their changes at the next level, in this order; is_all: no cell is missing
+struct SampleOfChanges {
+    std::vector<std::uint32_t> numbers;
+    Changes next;
+    bool is_all;
 };
 
 /// What is left in the cells that are not refined further. Volumes that one cell gains are mostly lost by its neighbours, so
@@ -108,48 +131,60 @@ private:
 
 inline void Changes::expect(const Rest& before, const Rest& after, std::span<const double> stray) {
     for (std::size_t i = 0; i < left.size(); ++i) {
+        follows[i] = 0;
+        left[i] = {part_, part_};
         if (before.change(i) <= 0) continue;
         const double off = stray.empty() ? 0 : stray[i], all = (after.change(i) + off) / before.change(i),
                      ratio = before.sum(i) != 0 ? after.sum(i) / before.sum(i) : 0;
-        // A sample whose cells agree on a ratio knows the next level but for what strays. The levels after it are less sure.
-        if (off > 0 && ratio > 0 && ratio < kMostKnown && 2 * off < std::abs(after.sum(i))) {
+        // A sample whose cells agree on a ratio knows the next level but for what strays. The levels after it are less sure:
+        // the limit of MCQ has no second derivatives, so that later ratios may be larger than the first one. What a sum of the
+        // next level is by its sign may be small by chance, so what does not cancel counts, too.
+        const double of_spread = before.spread(i) > 0 ? after.spread(i) / before.spread(i) : 0;
+        const double later = std::clamp(kLater * of_spread, kLeastLater, 0.5);
+        const bool agrees = ratio > 0 && ratio < kMostKnown && 2 * off < std::abs(after.sum(i));
+        if (off > 0 && agrees) {
             follows[i] = ratio / (1 - ratio);
-            left[i].of_sum = std::min(left[i].of_sum, 2 * off / std::abs(before.sum(i)) + ratio * ratio);
-            left[i].of_spread = std::min(left[i].of_spread, 2 * off / before.spread(i) + ratio * ratio);
+            left[i].of_sum = std::min(left[i].of_sum, 2 * off / std::abs(before.sum(i)) + later * ratio);
+            left[i].of_spread = std::min(left[i].of_spread, 2 * off / before.spread(i) + later * of_spread);
             continue;
         }
         // Signs that cancel say nothing about what follows.
         const bool has_sign = std::abs(before.sum(i)) > before.spread(i) && ratio > 0;
-        const double again = has_sign ? std::min(ratio, 0.5) : 0, part = has_sign ? all : 2 * all;
+        const double again = has_sign ? std::min(ratio, 0.5) : 0, part = std::max(has_sign ? all : 2 * all, kLeastPart);
         follows[i] = again / (1 - again);
         left[i] = {std::min(left[i].of_sum, part), std::min(left[i].of_spread, part)};
     }
 }
 
-/// How far off the sums of a sample may be: twice the deviation of what the ratio of the sums does not explain, cell by cell.
-///
-/// numbers: of the cells of the sample in `before`, in the order of `after`; all: how many cells they stand for
-inline std::vector<double> stray_of_sample(const Changes& before, std::span<const std::uint32_t> numbers, const Changes& after,
-                                           std::size_t all) {
-    const std::size_t sums = before.left.size();
-    std::vector<double> ratios(sums, 0), totals(sums, 0), stray(sums, 0);
+/// What strays is twice the deviation of what the ratio of the sums does not explain, cell by cell.
+inline void Changes::expect(const SampleOfChanges& sample, std::span<const std::uint8_t> left_out) {
+    constexpr std::size_t kFewest = 8;  // of a sample that tells something about cells that are not in it
+    Rest before(sums_), after(sums_);
+    std::size_t count = 0;
     const auto each = [&](const auto& visit) {
-        for (std::size_t n = 0; n < numbers.size(); ++n) {
-            for (std::size_t i = 0; i < sums; ++i) {
-                visit(i, static_cast<double>(before.of_cell(numbers[n])[i]), static_cast<double>(after.of_cell(n)[i]));
-            }
+        for (std::size_t n = 0; n < sample.numbers.size(); ++n) {
+            if (left_out.empty() || left_out[sample.numbers[n]] == 0) visit(sample.numbers[n], n);
         }
     };
-    each([&](std::size_t i, double first, double next) {
-        totals[i] += first;
-        ratios[i] += next;
+    each([&](std::size_t number, std::size_t n) {
+        before.add(*this, number, 1);
+        after.add(sample.next, n, 1);
+        ++count;
     });
-    for (std::size_t i = 0; i < sums; ++i) ratios[i] = totals[i] != 0 ? ratios[i] / totals[i] : 0;
-    each(
-        [&](std::size_t i, double first, double next) { stray[i] += (next - ratios[i] * first) * (next - ratios[i] * first); });
-    const double missing = 1 - static_cast<double>(numbers.size()) / static_cast<double>(all);
-    for (double& one : stray) one = 2 * std::sqrt(missing * one);
-    return stray;
+    std::vector<double> stray(sums_, 0);
+    if (!sample.is_all) {
+        if (count < kFewest) return expect(Rest(sums_), Rest(sums_));
+        each([&](std::size_t number, std::size_t n) {
+            for (std::size_t i = 0; i < sums_; ++i) {
+                const double ratio = before.sum(i) != 0 ? after.sum(i) / before.sum(i) : 0;
+                const double off =
+                    static_cast<double>(sample.next.of_cell(n)[i]) - ratio * static_cast<double>(of_cell(number)[i]);
+                stray[i] += off * off;
+            }
+        });
+        for (double& one : stray) one = 2 * std::sqrt(one);
+    }
+    expect(before, after, stray);
 }
 
 }  // namespace subvol::detail
