@@ -41,9 +41,10 @@ class CellsInside {
 public:
     CellsInside(const SurfaceBodies& bodies, const ControlMeshOptions& options, double side)
         : options_(options), bodies_(bodies), grid_(grid_about(bodies.surface(), options, side)), cubes_(grid_) {
-        // Some of the cubes of the smallest possible volume lie at the boundary, and more do with layers around.
+        // Cubes fill about the volume, and layers come on top.
         const double least = bodies.least_volume() / (side * side * side);
-        if (least > static_cast<double>(options.max_cells)) check_count(static_cast<std::size_t>(least));
+        if (least > static_cast<double>(options.max_cells)) check_count(static_cast<std::size_t>(std::round(least)));
+        if (bodies.is_sheet()) refuse_sheet();
         inside_.resize(grid_.size());
         std::size_t found = 0;
         constexpr std::size_t kTogether = std::size_t{1} << 18;
@@ -60,9 +61,14 @@ public:
             throw Error(ErrorCode::InvalidInput, "no cell has its middle inside the surface", "surface",
                         "a closed surface, and more cells if it is thin");
         }
-        if (bodies.is_sheet()) {
-            throw Error(ErrorCode::InvalidInput, "it is a sheet, which encloses no volume", "surface", "a closed surface");
-        }
+        // Beside a bent sheet the surface winds by a half and a little more, somewhere inside of what it encloses by nearly one.
+        const auto clearly_inside = [&](std::size_t cube) {
+            constexpr float kClear = 0.75F;
+            return inside_[cube] != 0 && bodies.likeness(grid_.center(cube)) > kClear;
+        };
+        bool clear = !bodies.is_open();
+        for (std::size_t cube = 0; cube < inside_.size() && !clear; ++cube) clear = clearly_inside(cube);
+        if (!clear) refuse_sheet();
     }
 
     void divide_at(const std::vector<Vec3>& places) { cubes_.divide_at(places, options_.refine); }
@@ -94,6 +100,12 @@ public:
 
 private:
     static constexpr float kHalf = 0.5F;
+
+    [[noreturn]] static void refuse_sheet() {
+        throw Error(ErrorCode::InvalidInput,
+                    "no cell has its middle inside the surface, as it is a sheet, which encloses no volume", "surface",
+                    "a closed surface");
+    }
 
     static CubeGrid grid_about(const Surface& surface, const ControlMeshOptions& options, double side) {
         const Box box = box_of(surface);

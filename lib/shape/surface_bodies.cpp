@@ -47,11 +47,11 @@ Vec3 middle_of(const Surface& surface, std::size_t triangle) {
     return (surface.points[a] + surface.points[b] + surface.points[c]) / 3.0;
 }
 
-/// Whether an edge of a surface passes through a triangle of another one.
-bool pierces(const Surface& surface, const SurfaceTree& tree, double touching) {
+/// Whether an edge of some triangles of a surface passes through a triangle of another one.
+bool pierces(const Surface& surface, const std::vector<Index>& triangles, const SurfaceTree& tree, double touching) {
     std::atomic<bool> found = false;
-    parallel_each(surface.triangles.size(), [&](std::size_t t) {
-        const auto& corners = surface.triangles[t];
+    parallel_each(triangles.size(), [&](std::size_t t) {
+        const auto& corners = surface.triangles[triangles[t]];
         for (std::size_t k = 0; k < 3 && !found; ++k) {
             const Index a = corners[k], b = corners[(k + 1) % 3];
             if (tree.pierced_by(surface.points[a], surface.points[b], touching)) found = true;
@@ -271,9 +271,10 @@ void SurfaceBodies::unite() {
         for (std::size_t j = i + 1; j < order.size() && box(order[j]).lower.x <= box(order[i]).upper.x; ++j) {
             const auto a = static_cast<Index>(order[i]), b = static_cast<Index>(order[j]);
             if (!meet(box(a), box(b)) || sets.least(a) == sets.least(b)) continue;
-            if (pierces(walls_[a].surface, *walls_[b].tree, same_) || pierces(walls_[b].surface, *walls_[a].tree, same_)) {
-                sets.join(a, b);
-            }
+            const auto passes = [&](const Wall& wall, const Wall& other) {
+                return pierces(wall.surface, wall.tree->triangles_near(other.tree->box()), *other.tree, same_);
+            };
+            if (passes(walls_[a], walls_[b]) || passes(walls_[b], walls_[a])) sets.join(a, b);
         }
     }
     for (Index w = 0; w < walls_.size(); ++w) {
@@ -297,13 +298,11 @@ void SurfaceBodies::nest() {
         for (std::size_t k = 0; k < votes; ++k) {
             const Vec3 at = middle_of(wall.surface, k * count / votes);
             std::vector<std::pair<std::size_t, const Wall*>> here;
-            for (const Wall& other : walls_) {
-                Box point;
-                point.add(at);
-                if (other.joined == wall.joined || !meet(other.tree->box(), point)) continue;
+            each_wall_about(at, [&](const Wall& other) {
+                if (other.joined == wall.joined) return;
                 if (std::abs(other.tree->winding(at)) > kInside) here.emplace_back(other.joined, &other);
-            }
-            std::ranges::sort(here, {}, [](const auto& a) { return a.first; });
+            });
+            std::ranges::stable_sort(here, {}, [](const auto& a) { return a.first; });
             for (std::size_t n = 0; n < here.size(); ++n) {
                 if (n == 0 || here[n].first != here[n - 1].first) found.push_back(here[n]);
             }
@@ -324,19 +323,10 @@ void SurfaceBodies::nest() {
 
 float SurfaceBodies::likeness(const Vec3& x) const {
     if (walls_.size() == 1) return static_cast<float>(std::abs(walls_.front().tree->winding(x)));
-    Box point;
-    point.add(x);
     std::vector<std::pair<std::size_t, float>> here;
-    boxes_->visit_leaves([&](const Box& box) { return meet(box, point); },
-                         [&](std::size_t first, std::size_t last) {
-                             for (std::size_t slot = first; slot < last; ++slot) {
-                                 const Wall& wall = walls_[boxes_->item(slot)];
-                                 if (!meet(wall.tree->box(), point)) continue;
-                                 const double winding = std::abs(wall.tree->winding(x));
-                                 here.emplace_back(wall.joined, static_cast<float>(std::min(1.0, winding)));
-                             }
-                             return false;
-                         });
+    each_wall_about(x, [&](const Wall& wall) {
+        here.emplace_back(wall.joined, static_cast<float>(std::min(1.0, std::abs(wall.tree->winding(x)))));
+    });
     std::ranges::sort(here);
     float inside = 0;  // of an odd number of unions
     for (std::size_t n = 0; n < here.size(); ++n) {
@@ -360,8 +350,7 @@ double SurfaceBodies::least_volume() const {
 }
 
 bool SurfaceBodies::is_sheet() const {
-    return walls_.size() == 1 && !walls_.front().closed &&
-           glm::length(walls_.front().area) > kFlat * walls_.front().size;
+    return is_open() && glm::length(walls_.front().area) > kFlat * walls_.front().size;
 }
 
 }  // namespace subvol::detail

@@ -43,6 +43,9 @@ public:
     /// Less than what closed walls enclose: of united ones only the largest counts.
     [[nodiscard]] double least_volume() const;
 
+    /// Whether nothing is closed.
+    [[nodiscard]] bool is_open() const { return walls_.size() == 1 && !walls_.front().closed; }
+
     /// Whether nothing is closed, and the hole is nearly as large as the surface.
     [[nodiscard]] bool is_sheet() const;
 
@@ -57,6 +60,21 @@ private:
         Vec3 area{0.0};
         double size = 0;  // of its area
     };
+
+    /// Calls visit(wall) for the walls whose boxes hold a place.
+    template <class Visit>
+    void each_wall_about(const Vec3& x, const Visit& visit) const {
+        Box point;
+        point.add(x);
+        boxes_->visit_leaves([&](const Box& box) { return meet(box, point); },
+                             [&](std::size_t first, std::size_t last) {
+                                 for (std::size_t slot = first; slot < last; ++slot) {
+                                     const Wall& wall = walls_[boxes_->item(slot)];
+                                     if (meet(wall.tree->box(), point)) visit(wall);
+                                 }
+                                 return false;
+                             });
+    }
 
     void leave_out_copies();
     bool leave_out_fins();

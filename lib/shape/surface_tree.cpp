@@ -155,6 +155,16 @@ bool SurfaceTree::pierced_by(const Vec3& a, const Vec3& b, double touching) cons
     return pierced;
 }
 
+std::vector<Index> SurfaceTree::triangles_near(const Box& box) const {
+    std::vector<Index> near;
+    tree_->visit_leaves([&](const Box& part) { return meet(part, box); },
+                        [&](std::size_t first, std::size_t last) {
+                            for (std::size_t slot = first; slot < last; ++slot) near.push_back(tree_->item(slot));
+                            return false;
+                        });
+    return near;
+}
+
 double SurfaceTree::winding(const Vec3& x) const {
     constexpr double kFar = 2.5;  // radii
     double sum = 0;

@@ -45,6 +45,9 @@ public:
 
     [[nodiscard]] const Box& box() const { return tree_->box(0); }
 
+    /// The triangles that may meet a box.
+    [[nodiscard]] std::vector<Index> triangles_near(const Box& box) const;
+
 private:
     /// Triangles as one: their area vectors' sum at the centre of their areas; all lie within `radius` of it.
     struct Cluster {

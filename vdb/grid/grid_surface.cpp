@@ -29,7 +29,7 @@ Surface grid_surface(const VdbGrid& grid, std::optional<double> value) {
     // from the grid's lowest one.
     const openvdb::Vec3d lowest = data.floats->evalActiveVoxelBoundingBox().min().asVec3d();
     const auto in_voxels = openvdb::FloatGrid::create(data.floats->treePtr());
-    in_voxels->setTransform(openvdb::math::Transform::createLinearTransform(openvdb::Mat4d::identity()));
+    in_voxels->setTransform(openvdb::math::Transform::createLinearTransform(1.0));
     in_voxels->transform().postTranslate(-lowest);
     openvdb::tools::volumeToMesh(*in_voxels, points, triangles, quads, iso);
     if (triangles.empty() && quads.empty()) {
