@@ -256,9 +256,16 @@ std::string mesh_lines(const ReadResult& read, const detail::MeshShare& joined, 
 std::string fold_text(const FoldReport& folds, std::size_t cells) {
     std::vector<std::string> parts{text(count_text(folds.proved), " of ", counted(cells, "cell"), " proved not to fold")};
     if (folds.folded > 0) parts.push_back(text(count_text(folds.folded), " folded (check says where)"));
+    if (folds.sampled.folded > 0) parts.push_back(text(count_text(folds.sampled.folded), " of them found to fold by sampling"));
     if (folds.open > 0) parts.push_back(text(count_text(folds.open), " undecided"));
     if (folds.irregular > 0) parts.push_back(text(count_text(folds.irregular), " near irregular edges not decided"));
+    if (folds.sampled.cells > 0) parts.push_back(sample_text(folds));
     return join(parts);
+}
+
+std::string sample_text(const FoldReport& folds) {
+    return text("sampled at ", count_text(folds.sampled.places), " places, least determinant ", folds.sampled.least,
+                " of the mean");
 }
 
 std::string refined_lines(const Json& figures) {

@@ -65,6 +65,9 @@ inline constexpr std::size_t kCellsNamed = 8;
 /// Whether the limit folds, in words. cells: of the mesh
 [[nodiscard]] std::string fold_text(const FoldReport& folds, std::size_t cells);
 
+/// At how many places undecided cells were sampled, and what the least determinant is.
+[[nodiscard]] std::string sample_text(const FoldReport& folds);
+
 /// A line about the mesh that a scheme of tetrahedra makes, from `TetRefinement::figures`.
 [[nodiscard]] std::string refined_lines(const Json& figures);
 

@@ -104,7 +104,7 @@ public:
         if (!made.parts.empty()) sets = sets_of_parts(std::move(sets), made.parts);
         report.merge(write_reported(output_, made.mesh, {}, sets, report.progress()));
         put(made, report);
-        return 0;
+        return is_sound_ ? 0 : 1;
     }
 
 private:
@@ -213,6 +213,8 @@ private:
         report.say(text("            surface ", after.missed_rms, " RMS from the boundary (before ", before.missed_rms,
                         "), at most ", after.missed_max));
         report.say(text("folds       ", fold_text(made.report.folds, made.mesh.cells.size())));
+        for (const std::string& warning : made.report.warnings) report.warn(warning);
+        is_sound_ = made.report.is_sound();
         return std::move(made.mesh);
     }
 
@@ -304,6 +306,7 @@ private:
     ApproximateOptions options_;
     FitShapeOptions shaping_;
     bool shape_ = false;
+    bool is_sound_ = true;  // the shape that was fitted
 };
 
 }  // namespace

@@ -26,11 +26,13 @@ public:
               "  subvol check part.vtu --mend -o sound.vtu\n"
               "\n"
               "The exit code is 1 if the limit folds. Cells at irregular edges are refined; near the edges they stay "
-              "undecided. With --mend control points move, as little as it takes, until no regular cell folds; the figures are "
+              "undecided. Undecided cells are sampled: a negative determinant is a fold, but without one nothing is proved. "
+              "With --mend control points move, as little as it takes, until no regular cell folds; the figures are "
               "then of the mended mesh, whose fields stay with their points.\n"
               "JSON: verdict (sound, folded or undecided), cells {proved, folded, undecided, irregular: those of the "
-              "undecided that are at irregular edges}, open_volume (of undecided cells, in cells), places, one for each "
-              "folded cell: cell, parameters, at, determinant; with --mend also mend {folded, open: before; moved, "
+              "undecided that are at irregular edges}, open_volume (of undecided cells, in cells), sampled {cells: that no test "
+              "decided; places; folded: cells with a negative determinant; least: determinant, as a part of the mean}, places, "
+              "one for each folded cell: cell, parameters, at, determinant, sampled (found by sampling); with --mend also mend {folded, open: before; moved, "
               "farthest_edges, boundary_edges, rounds, left: cells with reasons}.") {
         app().add_option("FILE", input_, input_help())->required();
         scheme_.add_scheme_to(app());
@@ -91,7 +93,8 @@ private:
             places.push_back(Json{{"cell", at.cell},
                                   {"parameters", {at.uvw.x, at.uvw.y, at.uvw.z}},
                                   {"at", {at.position.x, at.position.y, at.position.z}},
-                                  {"determinant", at.determinant}});
+                                  {"determinant", at.determinant},
+                                  {"sampled", at.sampled}});
         }
         report["places"] = std::move(places);
         say(found, cells, report);
@@ -109,7 +112,7 @@ private:
         for (std::size_t k = 0; k < std::min(kShown, found.places.size()); ++k) {
             const FoldPlace& at = found.places[k];
             line(k == 0 ? "folded" : "", text("cell ", at.cell, " at ", at.position.x, ", ", at.position.y, ", ", at.position.z,
-                                              " (determinant ", at.determinant, ")"));
+                                              " (determinant ", at.determinant, at.sampled ? ", found to fold by sampling)" : ")"));
         }
         if (all.folded > kShown) line("", text("and ", counted(all.folded - kShown, "more cell")));
         if (all.open > 0) {
@@ -120,6 +123,7 @@ private:
             line("irregular", text(counted(all.irregular, "cell"), " near irregular edges, of which the volume of ",
                                    all.irregular_volume, " cells is open"));
         }
+        if (all.sampled.cells > 0) line("sampled", text(counted(all.sampled.cells, "undecided cell"), ": ", sample_text(all)));
         line("verdict", report["verdict"].get<std::string>());
         report.all_said();
     }

@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <iomanip>
 
 #include "grid_input.h"
+#include "input.h"
 #include "mesh_figures.h"
 #include "mesh_output.h"
 #include "options.h"
 #include "outputs.h"
 #include "refine_arguments.h"
 #include "subvol/control_mesh.h"
+#include "subvol/detail/missing_file.h"
 #include "subvol/error.h"
 #include "subvol/read_surface.h"
 #include "text.h"
@@ -27,13 +30,16 @@ public:
                "  subvol mesh statue.obj -o statue.vtu --cells 16 --refine 1 --tolerance .15\n"
                "  subvol mesh smoke.vdb -o smoke.vtu --iso .01\n"
                "\n"
-               "Sharp edges become creases. The exit code is 1 if the limit folds.\n"
+               "Sharp edges become creases. A part of the surface within another is the wall of a cavity; parts that cross are "
+               "united; holes are spanned. The exit code is 1 if the limit folds or control cells are inverted; the mesh is written "
+               "all the same.\n"
                "JSON: triangles, points, cells, before and after {rms, max, max_at: of the boundary from the surface; "
-               "missed_rms, "
+               "covered_rms, covered_max: the same but over holes; hole_part: of the boundary's area over holes; missed_rms, "
                "missed_max, missed_at: of the surface from the boundary}, rounds, moved_world, folds (as of check), mended, "
                "sharp {curves, missed: chains of sharp edges, and those without creases; length_world, missed_length_world, "
                "creases, rms, max: of the creases from the chains}, parts, added, refined, divided, side_world, "
-               "min_scaled_jacobian.") {
+               "min_scaled_jacobian, folded_cells, inverted_cells, open_edges, open_length (of edges of one triangle), surface {walls, "
+               "united, cavities, cavities_alike, copies, sheets, turned, one_sided, many_edges}.") {
         app().add_option("FILE", input_, "a closed surface (.stl, .obj, .ply), or a .vdb grid of floats")->required();
         app().add_option("-o,--output", output_, "the control mesh (.vtu, .vtkhdf)")->type_name("FILE")->required();
         app()
@@ -59,7 +65,7 @@ public:
         const ControlMesh made = report.timed("shape", [&] { return control_mesh_of(surface, options); });
         report.merge(write_reported(output_, made.mesh, report.progress()));
         put(made, report);
-        return made.report.shape.folds.folded > 0 ? 1 : 0;
+        return made.report.shape.is_sound() ? 0 : 1;
     }
 
 private:
@@ -69,6 +75,7 @@ private:
             return report.timed("surface", [&] { return vdb().grid_surface(grid, iso_); });
         }
         if (!is_surface_file(input_)) {
+            if (!is_model(input_)) detail::refuse_missing(input_);
             throw Error(ErrorCode::InvalidInput, "is not a surface", input_,
                         "an .stl, .obj or .ply file of triangles, or a .vdb grid");
         }
@@ -91,6 +98,11 @@ private:
                         found.parts > 1 ? text(", in ", found.parts, " parts that are not joined") : ""));
         report.say(text("boundary      ", error.rms, " RMS from the surface (", sides(error.rms), " cells), at most ",
                         error.max, " at ", error.max_at.x, ", ", error.max_at.y, ", ", error.max_at.z));
+        if (error.hole_part > 0) {
+            report.say(text("holes         under ", text(std::setprecision(2), 100 * error.hole_part),
+                            " % of the boundary's area; the rest ", error.covered_rms, " RMS from the surface, at most ",
+                            error.covered_max));
+        }
         report.say(text("surface       ", error.missed_rms, " RMS from the boundary (", sides(error.missed_rms),
                         " cells), at most ", error.missed_max, " at ", error.missed_at.x, ", ", error.missed_at.y, ", ",
                         error.missed_at.z));
@@ -107,6 +119,7 @@ private:
             report.warn(text("sharp edges of the length ", found.sharp.missed_length_world, " of ", found.sharp.length_world,
                              " become round, as no edges of the mesh can follow them: more --cells or --refine may"));
         }
+        if (!found.shape.is_sound()) report.warn(text(output_, " is written all the same; the exit code is 1"));
         report.all_said();
     }
 

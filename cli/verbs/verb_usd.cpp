@@ -9,6 +9,7 @@
 #include "points_input.h"
 #include "quantities.h"
 #include "steps.h"
+#include "subvol/detail/missing_file.h"
 #include "subvol/error.h"
 #include "subvol/picture_look.h"
 #include "subvol/usd_file.h"
@@ -50,9 +51,11 @@ public:
         (void)optics(Box{Vec3(0.0), Vec3(1.0)}, {0, 1});  // a mistake is found before anything is written
         const InputKind kind = kind_of(inputs_.front());
         for (const std::string& input : inputs_) {
-            if (kind_of(input) != kind || (kind != InputKind::Mesh && kind != InputKind::Grid && kind != InputKind::Points))
+            if (kind_of(input) != kind || (kind != InputKind::Mesh && kind != InputKind::Grid && kind != InputKind::Points)) {
+                if (!is_model(input)) detail::refuse_missing(input);
                 throw Error(ErrorCode::InvalidInput, "is neither a mesh nor a .vdb file or points, or not as the first", input,
                             "one mesh, or several .vdb files, or several files of points");
+            }
         }
         if (kind == InputKind::Mesh) {
             write_meshes(report);

@@ -252,6 +252,7 @@ void FoldChecker::check(std::span<const Index> cells, FoldEffort effort) {
         }
     }
     descend_together(irregular, effort == FoldEffort::Verdict ? FoldEffort::Witness : effort);
+    if (effort == FoldEffort::Whole) sample(cells);
     if (effort != FoldEffort::Verdict) return;
     // What remains is decided after all where no descendant is irregular.
     std::erase_if(irregular, [&](const OpenCell& at) { return cells_[at.control].fold || cells_[at.control].irregular > 0; });
@@ -272,6 +273,7 @@ void FoldChecker::add(Index control, const PartResult& result, int level) {
     CellState& cell = cells_[control];
     cell.open += result.open;
     cell.tests += result.tests;
+    tests_ += result.tests;
     cell.deepest = std::max(cell.deepest, level + result.deepest);
     if (result.fold && !cell.fold) {
         cell.fold = result.fold;
@@ -285,7 +287,10 @@ void FoldChecker::descend(const HexMesh& mesh, const std::vector<OpenCell>& open
         for (const OpenCell& at : open) cells_[at.control].irregular += volume_of(at.frame);
         return;
     }
-    const HexMesh fine = refine_cells(mesh, with_neighbors(mesh, open), {.scheme = scheme_, .levels = 1});
+    const std::vector<Index> around = with_neighbors(mesh, open);
+    constexpr std::size_t kRefined = 4;  // tests that take as long as to refine a cell
+    tests_ += kRefined * around.size();
+    const HexMesh fine = refine_cells(mesh, around, {.scheme = scheme_, .levels = 1});
     // Each level sums up to some tens of products of coordinates.
     constexpr double kOfLevel = 256 * std::numeric_limits<double>::epsilon();
     const Limits limits{std::max(0, options_.levels - level - 1), static_cast<std::size_t>(std::max(1, options_.tests / 8)),
@@ -314,6 +319,21 @@ void FoldChecker::descend(const HexMesh& mesh, const std::vector<OpenCell>& open
     descend(fine, next, level + 1, effort);
 }
 
+void FoldChecker::sample(std::span<const Index> cells) {
+    std::vector<Index> undecided;
+    for (const Index c : cells) {
+        const FoldVerdict found = verdict(c);
+        if (found == FoldVerdict::Irregular || found == FoldVerdict::Open) undecided.push_back(c);
+    }
+    const std::vector<CellSamples> samples = sample_folds(mesh_, undecided, scheme_, options_.progress);
+    for (std::size_t k = 0; k < undecided.size(); ++k) {
+        CellState& cell = cells_[undecided[k]];
+        cell.samples = samples[k];
+        tests_ += samples[k].places;  // a place takes about as long as a test
+        if (samples[k].least.determinant < 0) cell.fold = samples[k].least;
+    }
+}
+
 FoldVerdict FoldChecker::verdict(Index number) const {
     const CellState& cell = cells_[number];
     return cell.fold            ? FoldVerdict::Folded
@@ -327,12 +347,20 @@ FoldCheck FoldChecker::found() const {
     check.verdicts.reserve(cells_.size());
     check.open.reserve(cells_.size());
     FoldReport& report = check.report;
+    double least = std::numeric_limits<double>::infinity(), size = 0;
     for (Index c = 0; c < cells_.size(); ++c) {
         const CellState& cell = cells_[c];
         check.verdicts.push_back(verdict(c));
         check.open.push_back(cell.fold ? 0 : cell.open + cell.irregular);
         report.tests += cell.tests;
         report.deepest = std::max(report.deepest, cell.deepest);
+        if (cell.samples.places > 0) {
+            ++report.sampled.cells;
+            report.sampled.places += cell.samples.places;
+            report.sampled.folded += cell.fold ? 1 : 0;
+            least = std::min(least, cell.samples.least.determinant);
+            size += cell.samples.size;
+        }
         switch (check.verdicts.back()) {
             case FoldVerdict::Folded:
                 ++report.folded;
@@ -352,6 +380,7 @@ FoldCheck FoldChecker::found() const {
         report.open_volume += cell.open;
         report.irregular_volume += cell.irregular;
     }
+    if (size > 0) report.sampled.least = least * static_cast<double>(report.sampled.places) / size;
     place(check.places);
     return check;
 }
@@ -388,6 +417,11 @@ Facts facts_of(const FoldReport& report) {
     cells["undecided"] = undecided;
     cells["irregular"] = report.irregular;
     facts["open_volume"] = report.open_volume + report.irregular_volume;
+    Facts& sampled = facts.group("sampled");
+    sampled["cells"] = report.sampled.cells;
+    sampled["places"] = report.sampled.places;
+    sampled["folded"] = report.sampled.folded;
+    sampled["least"] = report.sampled.least;
     return facts;
 }
 

@@ -7,13 +7,14 @@
 #include <vector>
 
 #include "cell_parts.h"
+#include "fold_samples.h"
 #include "subvol/certificate.h"
 
 namespace subvol::detail {
 
 /// How much is done for a cell.
 ///
-/// Whole:   all that the options allow
+/// Whole:   all that the options allow, and samples where that does not decide
 /// Verdict: the same until it is clear that the cell will stay undecided, whose open volume is then too large; cells that touch
 ///          irregular edges only as far as Witness
 /// Witness: looks for folds at the corners of its children, and proves nothing
@@ -32,6 +33,9 @@ public:
     /// Checks some cells anew, ascending.
     void check(std::span<const Index> cells, FoldEffort effort);
 
+    /// All tests so far, and what refinement and samples took in tests that take about as long.
+    [[nodiscard]] std::size_t tests() const { return tests_; }
+
     /// What the last check of a cell found.
     [[nodiscard]] FoldVerdict verdict(Index cell) const;
 
@@ -45,6 +49,7 @@ private:
         double open = 0, irregular = 0;
         std::size_t tests = 0;
         int deepest = 0;
+        CellSamples samples;
     };
     /// A descendant of a control cell that is not decided: its number in its level.
     struct OpenCell {
@@ -61,12 +66,14 @@ private:
     void add(Index control, const PartResult& result, int level = 0);
     void descend_together(const std::vector<OpenCell>& irregular, FoldEffort effort);
     void descend(const HexMesh& mesh, const std::vector<OpenCell>& open, int level, FoldEffort effort);
+    void sample(std::span<const Index> cells);
     void place(std::vector<FoldPlace>& places) const;
 
     HexMesh mesh_;
     const FoldOptions& options_;
     SchemeOptions scheme_;
     std::vector<CellState> cells_;
+    std::size_t tests_ = 0;
 };
 
 }  // namespace subvol::detail

@@ -83,9 +83,13 @@ public:
         FoldCheck check = checker_.found();
         MendReport report;
         report.before = check.report;
+        constexpr std::size_t kBudget = 200'000, kOfCell = 200;
+        report.budget = budget_ = kBudget + kOfCell * mesh_.cells.size();
+        first_tests_ = checker_.tests();
         if (any_bad) {
             freedom_ = freedom_of(mesh_, options_.boundary_edges);
             work(bad, report);
+            report.work = used();
             check = checker_.found();
         }
         for (std::size_t c = 0; c < bad.size(); ++c) {
@@ -103,13 +107,16 @@ public:
     }
 
 private:
+    /// The tests since the mesh was checked first, and the steps that take as long.
+    [[nodiscard]] std::size_t used() const { return checker_.tests() - first_tests_ + steps_; }
+
     // Ends early where three rounds in a row left as many bad cells as before. bad: of each cell how often it was bad
     void work(std::vector<std::uint8_t>& bad, MendReport& report) {
         std::size_t fewest = bad.size() + 1, left = 0;
         std::vector<Vec3> best;
         constexpr int kPatience = 3;
         int in_vain = 0;
-        for (int round = 0; round < options_.rounds && in_vain < kPatience; ++round) {
+        for (int round = 0; round < options_.rounds && in_vain < kPatience && used() < budget_; ++round) {
             ++report.rounds;
             left = move_around(bad, round);
             if (left == 0) left = check_all(bad);  // which finds more folds near irregular edges
@@ -190,8 +197,13 @@ private:
         }
         const int levels = round == 0 || options_.folds.scheme.kind == Scheme::Linear ? 1 : 2;
         MovablePatch movable(patch.mesh, options_.folds.scheme, levels, std::move(start), std::move(freedom), patch_cells);
-        patch.mesh.points = movable.move(
-            [&](double part) { report_progress(options_.folds.progress, "mend", (round + part) / options_.rounds); });
+        const auto used_with = [&] { return used() + movable.tests(); };
+        patch.mesh.points = movable.move([&](double part) {
+            const double spent = static_cast<double>(used_with()) / static_cast<double>(budget_);
+            report_progress(options_.folds.progress, "mend", std::min(1.0, std::max((round + part) / options_.rounds, spent)));
+            return spent < 1;
+        });
+        steps_ += movable.tests();
         std::vector<Vec3> points = mesh_.points;
         for (std::size_t k = 0; k < patch.points.size(); ++k) {
             if (moves[patch.points[k]] != 0) points[patch.points[k]] = patch.mesh.points[k];
@@ -223,6 +235,7 @@ private:
     std::vector<Freedom> freedom_;
     FoldChecker checker_;
     std::vector<std::uint8_t> stale_;  // of which more can be known than the last check found
+    std::size_t budget_ = 0, first_tests_ = 0, steps_ = 0;
 };
 
 }  // namespace
@@ -242,6 +255,8 @@ Facts facts_of(const MendReport& report) {
     facts["farthest_edges"] = report.farthest_edges;
     facts["boundary_edges"] = report.boundary_edges;
     facts["rounds"] = report.rounds;
+    facts["work"] = report.work;
+    facts["budget"] = report.budget;
     FactValue::List left;
     for (const MendReport::Left& cell : report.left) {
         Facts one;

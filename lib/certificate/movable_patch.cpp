@@ -13,6 +13,7 @@ namespace subvol::detail {
 
 namespace {
 
+constexpr double kProducts = 8000;  // of vectors with numbers, that take as long as a test of a cell
 constexpr double kKept = 0.7;  // a determinant that is small but sound may fall by a third
 
 double determinant_at(const std::vector<Vec3>& x, const std::array<Index, 4>& p) {
@@ -42,6 +43,8 @@ MovablePatch::MovablePatch(const HexMesh& patch, const SchemeOptions& scheme, in
       freedom_(std::move(freedom)) {
     for (const StencilTable& table : tables_.levels) rows_.push_back(table.csr());
     make_corners(patch, cells);
+    constexpr double kTablesOfCell = 50;
+    tests_ = kTablesOfCell * static_cast<double>(patch.cells.size());
 }
 
 void MovablePatch::make_corners(const HexMesh& patch, const std::vector<PatchCell>& cells) {
@@ -165,7 +168,7 @@ MovablePatch::ActiveMatrix MovablePatch::matrix_of(const std::vector<Active>& la
 }
 
 // The Gauss-Newton step, by conjugate gradients, in edges. A is the change of the determinants with the points in their edges.
-std::vector<Vec3> MovablePatch::step(const std::vector<Vec3>& points, const std::vector<Active>& lacks, double weight) const {
+std::vector<Vec3> MovablePatch::step(const std::vector<Vec3>& points, const std::vector<Active>& lacks, double weight) {
     const ActiveMatrix active = matrix_of(lacks);
     const auto pulled = [&](const auto& by) {  // Aᵀ y
         std::vector<Vec3> forces(active.matrix.offsets.size() - 1, Vec3(0.0));
@@ -194,7 +197,11 @@ std::vector<Vec3> MovablePatch::step(const std::vector<Vec3>& points, const std:
     constexpr int kSteps = 40;
     constexpr double kEnough = 1e-4;
     const double enough = kEnough * left;
+    const auto entries = static_cast<double>(active.matrix.columns.size());
+    constexpr double kOfMatrix = 8;  // products that take as long as to make it
+    tests_ += kOfMatrix * entries / kProducts;
     for (int k = 0; k < kSteps && left > enough; ++k) {
+        tests_ += (2 * entries + static_cast<double>(points.size())) / kProducts;
         const std::vector<Vec3> image = applied(way);
         const double length = left / product(way, image);
         found = along(found, length, way);
@@ -205,7 +212,9 @@ std::vector<Vec3> MovablePatch::step(const std::vector<Vec3>& points, const std:
     return found;
 }
 
-std::vector<Vec3> MovablePatch::move(const std::function<void(double)>& done) {
+std::vector<Vec3> MovablePatch::move(const std::function<bool(double)>& goes_on) {
+    double refined = static_cast<double>(corners_.size());
+    for (const CsrMatrix& table : rows_) refined += static_cast<double>(table.columns.size());
     const auto moved = [&](const std::vector<Vec3>& step, double part) {
         std::vector<Vec3> points = points_;
         for (std::size_t p = 0; p < points.size(); ++p) {
@@ -224,7 +233,7 @@ std::vector<Vec3> MovablePatch::move(const std::function<void(double)>& done) {
     for (int k = 0; k < kWeights; ++k, weight *= 10) {
         double now = cost(points_, lacks, weight);
         for (int n = 0; n < kNewton; ++n) {
-            done(static_cast<double>(k * kNewton + n) / (kWeights * kNewton));
+            if (!goes_on(static_cast<double>(k * kNewton + n) / (kWeights * kNewton))) return points_;
             const std::vector<Vec3> way = step(points_, lacks, weight);
             double part = 1;
             bool better = false;
@@ -233,6 +242,7 @@ std::vector<Vec3> MovablePatch::move(const std::function<void(double)>& done) {
             for (int h = 0; h < kHalvings && !better; ++h, part /= 2) {
                 std::vector<Vec3> points = moved(way, part);
                 std::vector<Active> next = lacking(points);
+                tests_ += refined / kProducts;
                 const double then = cost(points, next, weight);
                 if (!(then < now * (1 - kProgress))) continue;
                 better = true;

@@ -42,8 +42,11 @@ public:
     MovablePatch(const HexMesh& patch, const SchemeOptions& scheme, int levels, std::vector<Vec3> start,
                  std::vector<Freedom> freedom, const std::vector<PatchCell>& cells);
 
-    /// The new points. done: called before each step with the part of the work that is done, 0 to 1; may throw
-    [[nodiscard]] std::vector<Vec3> move(const std::function<void(double)>& done);
+    /// The new points. goes_on: called before each step with the part of the work that is done, 0 to 1; false ends it; may throw
+    [[nodiscard]] std::vector<Vec3> move(const std::function<bool(double)>& goes_on);
+
+    /// What was done so far, in tests of cells that take about as long.
+    [[nodiscard]] std::size_t tests() const { return static_cast<std::size_t>(tests_); }
 
 private:
     /// A corner of a child: its points and what its determinant has to be, in `volume`.
@@ -69,8 +72,7 @@ private:
     [[nodiscard]] std::vector<Vec3> fine(const std::vector<Vec3>& points) const;
     [[nodiscard]] std::vector<Active> lacking(const std::vector<Vec3>& points) const;
     [[nodiscard]] double cost(const std::vector<Vec3>& points, const std::vector<Active>& lacks, double weight) const;
-    [[nodiscard]] std::vector<Vec3> step(const std::vector<Vec3>& points, const std::vector<Active>& lacks,
-                                         double weight) const;
+    [[nodiscard]] std::vector<Vec3> step(const std::vector<Vec3>& points, const std::vector<Active>& lacks, double weight);
     [[nodiscard]] ActiveMatrix matrix_of(const std::vector<Active>& lacks) const;
     void make_corners(const HexMesh& patch, const std::vector<PatchCell>& cells);
 
@@ -79,6 +81,7 @@ private:
     std::vector<Vec3> points_, start_;
     std::vector<Freedom> freedom_;
     std::vector<Corner> corners_;
+    double tests_ = 0;
 };
 
 }  // namespace subvol::detail

@@ -10,6 +10,7 @@
 #include <system_error>
 #include <tuple>
 
+#include "subvol/detail/missing_file.h"
 #include "subvol/detail/number_text.h"
 #include "subvol/detail/printable.h"
 #include "subvol/error.h"
@@ -42,6 +43,11 @@ void expect_memory(const std::filesystem::path& path, std::size_t size) {
 }
 
 }  // namespace
+
+void refuse_missing(const std::filesystem::path& path) {
+    struct stat about {};
+    if (::stat(path.c_str(), &about) != 0 && (errno == ENOENT || errno == ENOTDIR)) fail_read(path, errno);
+}
 
 std::string read_text(const std::filesystem::path& path) {
     const File file(std::fopen(path.c_str(), "rb"), &std::fclose);

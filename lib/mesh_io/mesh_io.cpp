@@ -12,6 +12,7 @@
 #include "formats.h"
 #include "series_format.h"
 #include "subvol/cell_means.h"
+#include "subvol/detail/missing_file.h"
 #include "subvol/detail/number_text.h"
 #include "subvol/detail/refuse_surface.h"
 #include "subvol/error.h"
@@ -348,6 +349,7 @@ const MeshFormat* detail::format_of(const std::filesystem::path& path) {
 const MeshFormat& detail::readable_format(const std::filesystem::path& path) {
     const MeshFormat* format = format_of(path);
     if (!format) {
+        refuse_missing(path);
         refuse_others(path);
         refuse_format(path, "read", list_formats(false) + way_to(path));
     }

@@ -17,7 +17,8 @@
 #include "subvol/detail/parallel_each.h"
 #include "subvol/error.h"
 #include "subvol/mesh_report.h"
-#include "surface_tree.h"
+#include "surface_bodies.h"
+#include "text_scanner.h"
 
 namespace subvol {
 
@@ -38,13 +39,36 @@ Box box_of(const Surface& surface) {
 /// Cells inside a surface: cubes of a grid, some of them divided.
 class CellsInside {
 public:
-    CellsInside(const Surface& surface, const ControlMeshOptions& options, double side)
-        : options_(options), grid_(grid_about(surface, options, side)), cubes_(grid_), tree_(surface), inside_(grid_.size()) {
-        parallel_each(grid_.size(), [&](std::size_t c) { inside_[c] = likeness(grid_.center(c)) > kHalf ? 1 : 0; });
-        if (std::ranges::count(inside_, 1) == 0) {
+    CellsInside(const SurfaceBodies& bodies, const ControlMeshOptions& options, double side)
+        : options_(options), bodies_(bodies), grid_(grid_about(bodies.surface(), options, side)), cubes_(grid_) {
+        // Cubes fill about the volume, and layers come on top.
+        const double least = bodies.least_volume() / (side * side * side);
+        if (least > static_cast<double>(options.max_cells)) check_count(static_cast<std::size_t>(std::round(least)));
+        if (bodies.is_sheet()) refuse_sheet();
+        inside_.resize(grid_.size());
+        std::size_t found = 0;
+        constexpr std::size_t kTogether = std::size_t{1} << 18;
+        for (std::size_t begin = 0; begin < inside_.size(); begin += kTogether) {
+            report_progress(options.progress, "fill", begin, inside_.size());
+            const std::size_t count = std::min(kTogether, inside_.size() - begin);
+            parallel_each(count, [&](std::size_t k) {
+                inside_[begin + k] = bodies.likeness(grid_.center(begin + k)) > kHalf ? 1 : 0;
+            });
+            for (std::size_t k = begin; k < begin + count; ++k) found += inside_[k];
+            check_count(found);
+        }
+        if (found == 0) {
             throw Error(ErrorCode::InvalidInput, "no cell has its middle inside the surface", "surface",
                         "a closed surface, and more cells if it is thin");
         }
+        // Beside a bent sheet the surface winds by a half and a little more, somewhere inside of what it encloses by nearly one.
+        const auto clearly_inside = [&](std::size_t cube) {
+            constexpr float kClear = 0.75F;
+            return inside_[cube] != 0 && bodies.likeness(grid_.center(cube)) > kClear;
+        };
+        bool clear = !bodies.is_open();
+        for (std::size_t cube = 0; cube < inside_.size() && !clear; ++cube) clear = clearly_inside(cube);
+        if (!clear) refuse_sheet();
     }
 
     void divide_at(const std::vector<Vec3>& places) { cubes_.divide_at(places, options_.refine); }
@@ -58,7 +82,7 @@ public:
         std::vector<float> likenesses(all.sides.size());
         std::vector<std::uint8_t> chosen(all.sides.size());
         parallel_each(chosen.size(), [&](std::size_t c) {
-            likenesses[c] = likeness(middle_of(all.mesh, static_cast<Index>(c)));
+            likenesses[c] = bodies_.likeness(middle_of(all.mesh, static_cast<Index>(c)));
             chosen[c] = likenesses[c] > kHalf ? 1 : 0;
         });
         added = make_manifold(all.mesh, likenesses, chosen);
@@ -77,6 +101,12 @@ public:
 private:
     static constexpr float kHalf = 0.5F;
 
+    [[noreturn]] static void refuse_sheet() {
+        throw Error(ErrorCode::InvalidInput,
+                    "no cell has its middle inside the surface, as it is a sheet, which encloses no volume", "surface",
+                    "a closed surface");
+    }
+
     static CubeGrid grid_about(const Surface& surface, const ControlMeshOptions& options, double side) {
         const Box box = box_of(surface);
         const Vec3 counts = box.size() / side + 3.0;
@@ -88,13 +118,11 @@ private:
         return {box, side};
     }
 
-    [[nodiscard]] float likeness(const Vec3& place) const { return static_cast<float>(std::abs(tree_.winding(place))); }
-
     void check_count(std::size_t cells) const {
         if (cells <= options_.max_cells) return;
         throw Error(
             ErrorCode::InvalidInput,
-            "there would be " + std::to_string(cells) + (cubes_.count() > 0 ? " cells with divided cubes" : " cells"),
+            "there would be " + std::to_string(cells) + " or more" + (cubes_.count() > 0 ? " cells with divided cubes" : " cells"),
             option_name("cells", options_.names),
             std::string("fewer cells, ") + (cubes_.count() > 0 ? "a larger tolerance, " : "") + "or more with --max-cells");
     }
@@ -111,9 +139,9 @@ private:
     }
 
     const ControlMeshOptions& options_;
+    const SurfaceBodies& bodies_;
     CubeGrid grid_;
     DividedCubes cubes_;
-    SurfaceTree tree_;
     std::vector<std::uint8_t> inside_;
 };
 
@@ -148,6 +176,24 @@ std::vector<double> sides_of(const LayeredMesh& mesh, const std::vector<double>&
     const double less = std::cbrt(volume(sides) / volume(made));
     for (double& side : made) side *= less;
     return made;
+}
+
+/// What is odd about a surface, and what was done about it.
+void warn_of(const SurfaceReport& found, std::vector<std::string>& warnings) {
+    const auto warn = [&](std::size_t count, const char* one, const char* many, const std::string& rest) {
+        if (count > 0) warnings.push_back(counted(count, one, many) + rest);
+    };
+    warn(found.united, "part of the surface crosses", "parts of the surface cross", " others: the mesh is that of their union");
+    warn(found.cavities_alike, "inner part of the surface has", "inner parts of the surface have",
+         " the orientation of the outer one: taken as the walls of cavities");
+    warn(found.copies, "triangle is", "triangles are", " there twice; copies are left out");
+    warn(found.sheets, "triangle is", "triangles are", " in sheets that enclose nothing, which are left out");
+    warn(found.turned, "triangle has", "triangles have", " another orientation than those around; they count as if turned");
+    warn(found.many_edges, "edge belongs", "edges belong", " to more than two triangles");
+    if (found.one_sided > 0) {
+        warnings.push_back("no orientation of the triangles agrees everywhere: the surface has only one side, and what is inside is "
+                           "a guess");
+    }
 }
 
 std::size_t parts_of(const HexMesh& mesh) {
@@ -285,10 +331,20 @@ Facts facts_of(const ControlMeshReport& report) {
     sharp["rms"] = report.sharp.rms;
     sharp["max"] = report.sharp.max;
     facts["min_scaled_jacobian"] = report.min_scaled_jacobian;
+    Facts& surface = facts.group("surface");
+    surface["walls"] = report.surface.walls;
+    surface["united"] = report.surface.united;
+    surface["cavities"] = report.surface.cavities;
+    surface["cavities_alike"] = report.surface.cavities_alike;
+    surface["copies"] = report.surface.copies;
+    surface["sheets"] = report.surface.sheets;
+    surface["turned"] = report.surface.turned;
+    surface["one_sided"] = report.surface.one_sided;
+    surface["many_edges"] = report.surface.many_edges;
     return facts;
 }
 
-ControlMesh control_mesh_of(const Surface& surface, const ControlMeshOptions& given) {
+ControlMesh control_mesh_of(const Surface& all, const ControlMeshOptions& given) {
     ControlMeshOptions options = given;
     check_options(options);
     check_options(options.scheme);
@@ -297,8 +353,9 @@ ControlMesh control_mesh_of(const Surface& surface, const ControlMeshOptions& gi
                     option_name("crease-angle", options.names),
                     option_name("sharp-angle", options.names) + " for other angles");
     }
-    validate(surface);
-    const Vec3 size = box_of(surface).size();
+    validate(all);
+    const Box box = box_of(all);
+    const Vec3 size = box.size();
     ControlMeshReport report;
     report.side_world = std::max({size.x, size.y, size.z}) / options.cells;
     constexpr double kSmallest = 1e-60, kLargest = 1e60;  // so that powers of it are numbers
@@ -308,9 +365,24 @@ ControlMesh control_mesh_of(const Surface& surface, const ControlMeshOptions& gi
             "the surface has no size that can be worked with: a cell would have the side " + number_text(report.side_world),
             "surface", "1e-60 to 1e60");
     }
+    const Vec3 far = glm::max(glm::abs(box.lower), glm::abs(box.upper));
+    const double farthest = std::max({far.x, far.y, far.z}) / report.side_world;
+    constexpr double kFarthest = 1e9;  // so that coordinates have seven digits within a cell
+    if (farthest > kFarthest) {
+        throw Error(ErrorCode::InvalidInput,
+                    "the surface is " + number_text(farthest, 2) + " cells away from the origin: its coordinates have no digits left",
+                    "surface", "up to 1e9 cells");
+    }
+    const SurfaceBodies bodies(all);
+    const Surface& surface = bodies.surface();
+    report.surface = bodies.report();
+    warn_of(report.surface, report.shape.warnings);
+    if (surface.triangles.empty()) {
+        throw Error(ErrorCode::InvalidInput, "no triangle has an area", "surface", "a closed surface");
+    }
     const SharpEdges sharp =
         options.sharp_angle_deg < kStraight ? sharp_edges(surface, options.sharp_angle_deg, report.side_world) : SharpEdges{};
-    CellsInside inside(surface, options, report.side_world);
+    CellsInside inside(bodies, options, report.side_world);
     SurfaceFiller filler(surface, sharp, options, report);
     for (;;) {
         filler.fill(inside.cells(report.added));
@@ -327,6 +399,11 @@ ControlMesh control_mesh_of(const Surface& surface, const ControlMeshOptions& gi
     ending.folds = options.folds;
     ending.progress = options.progress;
     mesh = finished(std::move(mesh), surface, ending, report.shape);
+    if (surface.triangles.size() < all.triangles.size()) {
+        const OpenEdges open = open_edges(all);
+        report.shape.open_edges = open.count;
+        report.shape.open_length_world = open.length_world;
+    }
     for (std::size_t p = 0; p < mesh.points.size(); ++p) {
         report.shape.moved_world = std::max(report.shape.moved_world, glm::distance(filler.start()[p], mesh.points[p]));
     }

@@ -8,11 +8,14 @@
 
 #include "shape_fitter.h"
 #include "subvol/detail/parallel_each.h"
+#include "subvol/detail/number_text.h"
 #include "subvol/detail/parallel_sums.h"
 #include "subvol/error.h"
 #include "subvol/limit.h"
 #include "subvol/mesh_report.h"
+#include "surface_bodies.h"
 #include "surface_builder.h"
+#include "text_scanner.h"
 
 // A step looks for the nearest places of the surface and the boundary x = A c, both ways, and finds the ways d of the control
 // points c that minimise
@@ -33,6 +36,27 @@ constexpr double kSliding = 0.01;  // the part
 
 double product_of(const Vectors& a, const Vectors& b) {
     return parallel_sums(1, a.size(), [&](std::size_t i, std::vector<double>& sum) { sum[0] += glm::dot(a[i], b[i]); })[0];
+}
+
+constexpr int kDigits = 4;
+
+/// "3, 17, 20 and 1,996 more"
+std::string first_of(const std::vector<std::size_t>& cells) {
+    constexpr std::size_t kNamed = 10;
+    std::string list;
+    for (std::size_t k = 0; k < std::min(kNamed, cells.size()); ++k) list += (k > 0 ? ", " : "") + std::to_string(cells[k]);
+    if (cells.size() > kNamed) list += " and " + std::to_string(cells.size() - kNamed) + " more";
+    return list;
+}
+
+void note_folds(const FoldCheck& check, FitShapeReport& report) {
+    report.folds = check.report;
+    for (const FoldPlace& at : check.places) report.folded_cells.push_back(at.cell);
+    if (report.folded_cells.empty()) return;
+    const std::size_t sampled = check.report.sampled.folded;
+    report.warnings.push_back("the limit folds in " + counted(report.folded_cells.size(), "cell", "cells") + ": " +
+                              first_of(report.folded_cells) +
+                              (sampled > 0 ? " (" + std::to_string(sampled) + " found to fold by sampling)" : ""));
 }
 
 /// The boundary of the limit by its vertices of level 2. Of the cells only those at the boundary are refined, where that gives
@@ -197,11 +221,35 @@ HexMesh finished(HexMesh mesh, const Surface& surface, const FitShapeOptions& op
         Mended mended = mend_folds(std::move(mesh), mending);
         report.folds = mended.check.report;
         report.mended = mended.report.before.folded + mended.report.before.open;
+        if (mended.report.work >= mended.report.budget && !mended.report.left.empty()) {
+            report.warnings.push_back("mending ended with " + counted(mended.report.left.size(), "bad cell", "bad cells") +
+                                      ", as its budget of " + std::to_string(mended.report.budget) + " tests was used up");
+        }
+        note_folds(mended.check, report);
         mesh = std::move(mended.mesh);
     } else {
-        report.folds = check_folds(mesh, folds).report;
+        note_folds(check_folds(mesh, folds), report);
+    }
+    report.inverted_cells = inverted_cells(mesh, mesh.cells.size());
+    if (!report.inverted_cells.empty()) {
+        report.warnings.push_back(counted(report.inverted_cells.size(), "control cell is", "control cells are") +
+                                  " turned inside out at a corner: " + first_of(report.inverted_cells));
     }
     report.after = shape_error(mesh, surface, options.scheme);
+    const OpenEdges open = open_edges(surface);
+    report.open_edges = open.count;
+    report.open_length_world = open.length_world;
+    if (report.after.hole_part > 0) {
+        report.warnings.push_back(
+            "the surface is open: " + counted(open.count, "edge belongs", "edges belong") + " to one triangle alone, of the length " +
+            number_text(open.length_world, kDigits) + "; the mesh spans holes freely: " +
+            number_text(100 * report.after.hole_part, 2) + " % of its boundary is over them, at most " +
+            number_text(report.after.max, kDigits) + " from the surface, the rest at most " +
+            number_text(report.after.covered_max, kDigits));
+    } else if (open.count > 0) {
+        report.warnings.push_back("the surface is open: " + counted(open.count, "edge belongs", "edges belong") +
+                                  " to one triangle alone, of the length " + number_text(open.length_world, kDigits));
+    }
     return mesh;
 }
 
@@ -249,16 +297,24 @@ Facts facts_of(const FitShapeReport& report) {
         group["rms"] = error.rms;
         group["max"] = error.max;
         group["max_at"] = std::array{error.max_at.x, error.max_at.y, error.max_at.z};
+        group["covered_rms"] = error.covered_rms;
+        group["covered_max"] = error.covered_max;
+        group["hole_part"] = error.hole_part;
         group["missed_rms"] = error.missed_rms;
         group["missed_max"] = error.missed_max;
         group["missed_at"] = std::array{error.missed_at.x, error.missed_at.y, error.missed_at.z};
     };
+    facts["open_edges"] = report.open_edges;
+    facts["open_length"] = report.open_length_world;
     put("before", report.before);
     put("after", report.after);
     facts["rounds"] = report.rounds;
     facts["moved_world"] = report.moved_world;
     facts["folds"] = facts_of(report.folds);
     facts["mended"] = report.mended;
+    facts["folded_cells"] = report.folded_cells;
+    facts["inverted_cells"] = report.inverted_cells;
+    for (const std::string& warning : report.warnings) facts.warn(warning);
     return facts;
 }
 
@@ -286,7 +342,7 @@ ShapedMesh fit_shape(HexMesh mesh, const Surface& surface, const FitShapeOptions
         report_progress(options.progress, "fit shape", static_cast<double>(round) / options.rounds);
         std::vector<Vec3> points = fitter.step(mesh.points, options.stiffness);
         const ShapeError error = fitter.error(points);
-        const double sum = error.rms * error.rms + error.missed_rms * error.missed_rms;
+        const double sum = error.covered_rms * error.covered_rms + error.missed_rms * error.missed_rms;
         constexpr double kProgress = 0.999;
         if (!(sum < kProgress * best)) break;
         best = sum;

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "subvol/detail/parallel_each.h"
+#include "surface_bodies.h"
 #include "surface_sides.h"
 
 namespace subvol::detail {
@@ -42,13 +43,8 @@ std::vector<Vec3> places_on(const Surface& surface, std::size_t count) {
 
 /// A flag for each side of each triangle: whether the edge is that of no other one.
 std::vector<std::array<std::uint8_t, 3>> open_sides_of(const Surface& surface) {
-    Box box;
-    for (const auto& t : surface.triangles) {
-        for (const Index p : t) box.add(surface.points[p]);
-    }
     std::vector<std::array<std::uint8_t, 3>> open(surface.triangles.size(), {0, 0, 0});
-    constexpr double kSame = 1e-7;  // of the box
-    each_edge(sides_of(surface, kSame * box.diagonal()), [&](std::span<const TriangleSide> sides) {
+    each_edge(sides_of(surface, same_place(surface)), [&](std::span<const TriangleSide> sides) {
         if (sides.size() == 1) open[sides[0].triangle][sides[0].side] = 1;
     });
     return open;
@@ -94,21 +90,37 @@ std::vector<Pull> SurfaceDistances::pulls(const Surface& boundary, double weight
 ShapeError SurfaceDistances::error(const Surface& boundary) const {
     const std::vector<Pull> found = pulls(boundary, 1);
     const std::size_t first = boundary.points.size();
+    const auto at_hole = [&](std::size_t k) { return k < first && found[k].weight == 0; };
     ShapeError error;
-    std::size_t counted = 0;
+    std::size_t covered = 0;
     for (std::size_t k = 0; k < found.size(); ++k) {
-        const bool missed = k >= first;
-        if (!missed && found[k].weight == 0) continue;
-        counted += missed ? 0 : 1;
         const double distance = found[k].distance;
+        if (k < first && !at_hole(k)) {
+            ++covered;
+            error.covered_rms += distance * distance;
+            error.covered_max = std::max(error.covered_max, distance);
+        }
+        const bool missed = k >= first;
         (missed ? error.missed_rms : error.rms) += distance * distance;
         double& most = missed ? error.missed_max : error.max;
         if (distance <= most) continue;
         most = distance;
         (missed ? error.missed_at : error.max_at) = missed ? places_[k - first] : boundary.points[k];
     }
-    error.rms = std::sqrt(error.rms / static_cast<double>(std::max<std::size_t>(counted, 1)));
-    error.missed_rms = std::sqrt(error.missed_rms / static_cast<double>(places_.size()));
+    const auto root = [](double sum, std::size_t count) {
+        return std::sqrt(sum / static_cast<double>(std::max<std::size_t>(count, 1)));
+    };
+    error.rms = root(error.rms, first);
+    error.covered_rms = root(error.covered_rms, covered);
+    error.missed_rms = root(error.missed_rms, places_.size());
+    double area = 0, over_holes = 0;
+    for (const auto& t : boundary.triangles) {
+        const Vec3& a = boundary.points[t[0]];
+        const double here = glm::length(glm::cross(boundary.points[t[1]] - a, boundary.points[t[2]] - a));
+        area += here;
+        over_holes += here / 3 * static_cast<double>(std::ranges::count_if(t, at_hole));
+    }
+    if (area > 0) error.hole_part = over_holes / area;
     return error;
 }
 

@@ -36,7 +36,6 @@ public:
     /// they are nearest, have the weight 0.
     [[nodiscard]] std::vector<Pull> pulls(const Surface& boundary, double weight) const;
 
-    /// Points over holes do not count.
     [[nodiscard]] ShapeError error(const Surface& boundary) const;
 
     /// The points and places whose distances are above `far`, but for points over holes.

@@ -10,11 +10,15 @@
 namespace subvol::detail {
 
 /// A side of a triangle, from its corner `side` to the next one. ends: the edge by its points, the smaller first, of which
-/// those at the same place are one
+/// those at the same place are one; forward: it runs from the first end to the second
 struct TriangleSide {
     std::array<Index, 2> ends;
     Index triangle, side;
+    bool forward;
 };
+
+/// For each point the first one at the same place. same_place: how far apart points are that are the same
+[[nodiscard]] std::vector<Index> welded_points(const Surface& surface, double same_place);
 
 /// The sides of all triangles, those of an edge one after the other. Sides without length are left out.
 ///

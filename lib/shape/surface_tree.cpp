@@ -18,6 +18,10 @@ double squared_distance_to(const Box& box, const Vec3& x) {
     return glm::dot(off, off);
 }
 
+Vec3 place_at(const Vec3& weights, const std::array<Vec3, 3>& corners) {
+    return corners[0] + weights.y * (corners[1] - corners[0]) + weights.z * (corners[2] - corners[0]);
+}
+
 /// The signed solid angle of a triangle as seen from the origin.
 ///
 /// source: [vanoosterom1983]
@@ -110,7 +114,7 @@ SurfacePlace SurfaceTree::nearest(const Vec3& x) const {
             const Index t = tree_->item(slot);
             const auto c = corners(t);
             const Vec3 weights = nearest_in_triangle(x, c[0], c[1], c[2]).weights;
-            const Vec3 place = c[0] + weights.y * (c[1] - c[0]) + weights.z * (c[2] - c[0]);
+            const Vec3 place = place_at(weights, c);
             const Vec3 off = x - place;
             const double distance2 = glm::dot(off, off);
             if (distance2 >= best) continue;
@@ -125,6 +129,40 @@ SurfacePlace SurfaceTree::nearest(const Vec3& x) const {
     found.toward =
         found.distance > kOn * tree_->box(0).diagonal() ? (x - found.point) / found.distance : normal(found.triangle);
     return found;
+}
+
+bool SurfaceTree::pierced_by(const Vec3& a, const Vec3& b, double touching) const {
+    Box segment;
+    segment.add(a);
+    segment.add(b);
+    bool pierced = false;
+    tree_->visit_leaves([&](const Box& box) { return meet(box, segment); },
+                        [&](std::size_t first, std::size_t last) {
+                            for (std::size_t slot = first; slot < last && !pierced; ++slot) {
+                                const Index t = tree_->item(slot);
+                                const auto x = corners(t);
+                                const Vec3 n = normal(t);
+                                const double above = glm::dot(n, a - x[0]), below = glm::dot(n, b - x[0]);
+                                const bool across = (above > touching && below < -touching) ||
+                                                    (above < -touching && below > touching);
+                                if (!across) continue;
+                                const Vec3 at = a + above / (above - below) * (b - a);
+                                pierced = glm::distance(at, place_at(nearest_in_triangle(at, x[0], x[1], x[2]).weights, x)) <=
+                                          touching;
+                            }
+                            return pierced;
+                        });
+    return pierced;
+}
+
+std::vector<Index> SurfaceTree::triangles_near(const Box& box) const {
+    std::vector<Index> near;
+    tree_->visit_leaves([&](const Box& part) { return meet(part, box); },
+                        [&](std::size_t first, std::size_t last) {
+                            for (std::size_t slot = first; slot < last; ++slot) near.push_back(tree_->item(slot));
+                            return false;
+                        });
+    return near;
 }
 
 double SurfaceTree::winding(const Vec3& x) const {

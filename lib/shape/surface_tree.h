@@ -9,6 +9,11 @@
 
 namespace subvol::detail {
 
+/// Whether two boxes have a place in common.
+[[nodiscard]] inline bool meet(const Box& a, const Box& b) {
+    return glm::all(glm::lessThanEqual(a.lower, b.upper)) && glm::all(glm::lessThanEqual(b.lower, a.upper));
+}
+
 /// The place of a surface that is nearest to a point.
 ///
 /// weights: of the triangle's corners; toward: the unit vector from the place to the point, or the triangle's normal where the
@@ -34,6 +39,14 @@ public:
     [[nodiscard]] double winding(const Vec3& x) const;
 
     [[nodiscard]] Vec3 normal(Index triangle) const;
+
+    /// Whether a segment passes through a triangle: its ends lie on both sides, farther from it than `touching`.
+    [[nodiscard]] bool pierced_by(const Vec3& a, const Vec3& b, double touching) const;
+
+    [[nodiscard]] const Box& box() const { return tree_->box(0); }
+
+    /// The triangles that may meet a box.
+    [[nodiscard]] std::vector<Index> triangles_near(const Box& box) const;
 
 private:
     /// Triangles as one: their area vectors' sum at the centre of their areas; all lie within `radius` of it.

@@ -367,6 +367,8 @@ py::dict dict_of(FoldCheck found) {
         positions.push_back(at.position);
         determinants.push_back(at.determinant);
     }
+    py::array_t<bool> sampled(length(found.places.size()));
+    for (std::size_t k = 0; k < found.places.size(); ++k) sampled.mutable_at(length(k)) = found.places[k].sampled;
     py::dict result;
     const py::ssize_t all = length(verdicts.size()), folded = length(cells.size());
     result["verdicts"] = owned(std::move(verdicts), {all});
@@ -375,7 +377,10 @@ py::dict dict_of(FoldCheck found) {
     result["parameters"] = owned(std::move(parameters));
     result["positions"] = owned(std::move(positions));
     result["determinants"] = owned(std::move(determinants), {folded});
+    result["sampled"] = std::move(sampled);
     result["tests"] = found.report.tests;
+    result["places"] = found.report.sampled.places;
+    result["least"] = found.report.sampled.least;
     return result;
 }
 

@@ -163,8 +163,10 @@ def fit_shape(mesh: HexMesh, points: npt.ArrayLike, triangles: npt.ArrayLike, *,
     """Moves control points so that the boundary of the limit lies on a surface of triangles, by least squares.
 
     points, triangles: (n,3) and (m,3), as `read_surface` and `surface` have them.
-    Returns the mesh, and a report: before and after, the distances of the boundary from the surface (rms, max, max_at) and of the surface
-    from the boundary (missed_rms, missed_max, missed_at), rounds, moved_world, folds (verdict, cells, open_volume), and mended.
+    Returns the mesh, and a report: before and after, the distances of the boundary from the surface (rms, max, max_at; covered_rms and
+    covered_max without places over holes, which are hole_part of its area) and of the surface from the boundary (missed_rms, missed_max,
+    missed_at), rounds, moved_world, folds (verdict, cells, open_volume, sampled), mended, folded_cells, inverted_cells, open_edges and
+    open_length (of the surface), and warnings if something is wrong.
 
     {keywords}
     """
@@ -179,7 +181,9 @@ def control_mesh(points: npt.ArrayLike, triangles: npt.ArrayLike, *, progress: P
     """A mesh of hexahedra whose limit fills a closed surface of triangles.
 
     points, triangles: (n,3) and (m,3), as `read_surface` and `surface` have them; either side may be outside.
-    Returns the mesh, and a report as of `fit_shape`, with parts (that are not joined), added, side_world and min_scaled_jacobian.
+    Returns the mesh, and a report as of `fit_shape`, with parts (that are not joined), added, side_world, min_scaled_jacobian, and surface:
+    walls (closed parts), united (that cross others), cavities, cavities_alike (with the orientation of the wall around them), copies,
+    sheets and turned triangles, one_sided and many_edges.
 
     {keywords}
     """
@@ -191,7 +195,8 @@ def control_mesh(points: npt.ArrayLike, triangles: npt.ArrayLike, *, progress: P
 @dataclass(frozen=True)
 class FoldCheck:
     """verdicts: (cells,) 0 proved, 1 folded, 2 open, 3 irregular; open: (cells,), the part of each cell that is not decided; of the
-    folded cells, in their order: cells, parameters (n,3), positions (n,3) and determinants (n,); tests: in all"""
+    folded cells, in their order: cells, parameters (n,3), positions (n,3), determinants (n,) and sampled (n,): found by sampling, where
+    no test decided; tests: in all; places: that were sampled in undecided cells; least: the least determinant there beside the mean"""
 
     verdicts: npt.NDArray[np.uint8]
     open: npt.NDArray[np.float64]
@@ -199,7 +204,10 @@ class FoldCheck:
     parameters: npt.NDArray[np.float64]
     positions: npt.NDArray[np.float64]
     determinants: npt.NDArray[np.float64]
+    sampled: npt.NDArray[np.bool_]
     tests: int
+    places: int
+    least: float
 
     @property
     def verdict(self) -> str:

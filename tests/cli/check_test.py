@@ -48,7 +48,7 @@ class Check(InFolder):
         (self.folder / "a.mesh").write_text(box(7, lambda x, y, z: (x + {3: .85, 5: -.85}.get(x, 0), y, z)))
         _, found = self.check("a.mesh")
         about = self.run_ok("info", "a.mesh", "--folds", "--json").json()
-        self.assertEqual(about["folds"], {key: found[key] for key in ("verdict", "cells", "open_volume")})
+        self.assertEqual(about["folds"], {key: found[key] for key in ("verdict", "cells", "open_volume", "sampled")})
         self.assertNotIn("folds", self.run_ok("info", "a.mesh", "--json").json())
         said = [line for line in self.run_ok("info", "a.mesh", "--folds").out.splitlines() if line.startswith("folds")]
         self.assertEqual(len(said), 1)
@@ -83,9 +83,14 @@ class Check(InFolder):
         self.assertEqual((code, found["verdict"]), (0, "undecided"))
         self.assertEqual(found["cells"]["undecided"], found["cells"]["irregular"])
         self.assertGreater(found["open_volume"], 0)
+        # Undecided cells are sampled: at corners, edges, sides and inside, and then near the least determinant.
+        sampled = found["sampled"]
+        self.assertEqual((sampled["cells"], sampled["folded"]), (found["cells"]["undecided"], 0))
+        self.assertGreater(sampled["places"], 100 * sampled["cells"])
+        self.assertTrue(0 < sampled["least"] < 1)
         done = self.run_ok("check", "model:ball:3")
         said = done.out + done.err
-        for word in ("proved", "irregular", "verdict"):
+        for word in ("proved", "irregular", "sampled", "verdict"):
             self.assertIn(word, said)
 
     def test_what_has_no_proof_is_refused(self):

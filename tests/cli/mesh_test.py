@@ -7,6 +7,13 @@ import unittest
 from command import InFolder, subvol
 
 
+def cube(at, faces=6):
+    """A unit cube at (at, at, at), or its first faces."""
+    corners = [(at + (n & 1), at + (n >> 1 & 1), at + (n >> 2)) for n in range(8)]
+    sides = ["1 3 4 2", "1 2 6 5", "3 7 8 4", "1 5 7 3", "2 4 8 6", "5 6 8 7"]
+    return "".join(f"v {x!r} {y!r} {z!r}\n" for x, y, z in corners) + "".join(f"f {side}\n" for side in sides[:faces])
+
+
 class Mesh(InFolder):
     def make(self, *words):
         return self.run_ok("mesh", *words, "--json").json()
@@ -61,6 +68,23 @@ class Mesh(InFolder):
         distances = self.make("fog.vdb", "--field", "sdf", "-o", "set.vtu", "--cells", "6")
         self.assertAlmostEqual(distances["side_world"] / whole["side_world"], 1, 1)
 
+    def test_a_hole_is_said(self):
+        # without its face at z = 1, over which the boundary bulges
+        (self.folder / "open.obj").write_text(cube(0, 5))
+        found = self.make("open.obj", "-o", "open.vtu", "--cells", "6")
+        self.assertEqual((found["open_edges"], found["open_length"]), (4, 4))
+        self.assertTrue(any("the surface is open: 4 edges belong to one triangle alone, of the length 4" in said for said in found["warnings"]))
+        after = found["after"]
+        self.assertGreater(after["max"], 2 * after["covered_max"])
+        x, y, z = after["max_at"]
+        # the distance of that place from the five faces that are there
+        outside = lambda u: max(-u, 0, u - 1)
+        faces = [math.hypot(value, *(outside(other) for other in others))
+                 for value, others in ((x, (y, z)), (x - 1, (y, z)), (y, (x, z)), (y - 1, (x, z)), (z, (x, y)))]
+        self.assertAlmostEqual(after["max"], min(faces), 9)
+        self.assertTrue(.1 < after["hole_part"] < .3)  # a sixth, and more as it is round
+        self.assertTrue({"walls", "cavities", "united", "turned"} <= found["surface"].keys())
+
     def test_a_shape_is_fitted(self):
         self.ball()
         found = self.run_ok("approximate", "ball.stl", "--shape", "--onto", "model:twist:3", "-o", "fitted.vtu", "--keep-folds", "--json").json()
@@ -75,9 +99,13 @@ class Mesh(InFolder):
     def test_says_what_is_wrong(self):
         self.ball()
         (self.folder / "flat.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
+        (self.folder / "sheet.obj").write_text("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n")
+        (self.folder / "cube.obj").write_text(cube(0))
+        (self.folder / "far.obj").write_text(cube(1e12))
         (self.folder / "bad.obj").write_text("v 0 0 0\nf 1 2 3\n")
         self.run_ok("vdb", "model:ball:2", "-o", "fog.vdb", "--resolution", "16", "--quiet")
-        for words, part in ((["none.stl"], "none.stl"), (["flat.obj"], "no cell has its middle inside the surface"),
+        for words, part in ((["none.stl"], "none.stl"), (["none.glb"], "none.glb: cannot be read: No such file"), (["sheet.obj"], "it is a sheet, which encloses no volume"),
+                            (["cube.obj", "--cells", "490"], "--cells: there would be 117649000 or more cells"), (["far.obj"], "cells away from the origin"), (["flat.obj"], "no cell has its middle inside the surface"),
                             (["bad.obj"], "bad.obj, line 2: a face has the corner 2"), (["model:ball"], "is not a surface"),
                             (["ball.stl", "--iso", "1"], "--iso: needs a grid"), (["ball.stl", "--field", "T"], "--field: needs a grid"),
                             (["ball.stl", "--cells", "1"], "--cells"), (["ball.stl", "--max-cells", "10"], "--cells: "),

@@ -16,6 +16,7 @@
 #include "shape_fitter.h"
 #include "sharp_paths.h"
 #include "subvol/control_mesh.h"
+#include "subvol/detail/triangle_distance.h"
 #include "subvol/mesh_report.h"
 
 namespace subvol {
@@ -112,11 +113,68 @@ TEST(ControlMesh, SpansAHoleFreely) {
     std::erase_if(ball.triangles,
                   [&](const auto& t) { return std::ranges::all_of(t, [&](Index p) { return ball.points[p].z > 0.9; }); });
     const ControlMesh made = control_mesh_of(ball, {.cells = 10});
-    EXPECT_LT(made.report.shape.after.rms, 0.1 * made.report.side_world);
+    const ShapeError& error = made.report.shape.after;
+    EXPECT_LT(error.covered_rms, 0.1 * made.report.side_world);
     EXPECT_EQ(made.report.shape.folds.folded, 0U);
+    // All of the boundary counts: its vertices of level 2 against each triangle.
+    const HexMesh fine = refine(made.mesh, {.levels = 2});
+    const Topology topology = build_topology(fine);
+    double farthest = 0, highest_of_rim = 0;
+    for (Index p = 0; p < fine.points.size(); ++p) {
+        if (topology.point_on_boundary[p] == 0) continue;
+        double nearest = std::numeric_limits<double>::infinity();
+        for (const auto& t : ball.triangles) {
+            const auto& x = ball.points;
+            nearest = std::min(nearest, detail::squared_distance(fine.points[p], x[t[0]], x[t[1]], x[t[2]]));
+        }
+        farthest = std::max(farthest, std::sqrt(nearest));
+    }
+    for (const auto& t : ball.triangles) {
+        for (const Index p : t) highest_of_rim = std::max(highest_of_rim, ball.points[p].z);
+    }
+    EXPECT_NEAR(error.max, farthest, 1e-9);
+    EXPECT_GT(error.max, 2 * error.covered_max);
+    // The hole of a ball beyond a height has the part (1 − z) / 2 of its area; the rim is a ring of squares.
+    EXPECT_NEAR(error.hole_part, (1 - highest_of_rim) / 2, 0.03);
+    std::map<std::pair<Index, Index>, int> sides;
+    for (const auto& t : ball.triangles) {
+        for (std::size_t k = 0; k < 3; ++k) ++sides[std::minmax(t[k], t[(k + 1) % 3])];
+    }
+    std::size_t open = 0;
+    double length = 0;
+    for (const auto& [side, count] : sides) {
+        if (count != 1) continue;
+        ++open;
+        length += glm::distance(ball.points[side.first], ball.points[side.second]);
+    }
+    EXPECT_EQ(made.report.shape.open_edges, open);
+    EXPECT_NEAR(made.report.shape.open_length_world, length, 1e-9);
+    EXPECT_THAT(made.report.shape.warnings, testing::Contains(HasSubstr("the surface is open")));
     double highest = 0;
     for (const Vec3& x : made.mesh.points) highest = std::max(highest, x.z);
     EXPECT_GT(highest, 0.8);
+}
+
+TEST(ControlMesh, OfSpheresWithinEachOtherIsAShellWhateverTheirOrientation) {
+    Surface shell = test::sphere(16);
+    const auto first = static_cast<Index>(shell.points.size());
+    for (const Vec3& x : test::sphere(16).points) shell.points.push_back(0.5 * x);
+    for (const auto& t : test::sphere(16).triangles) shell.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+    const ControlMesh made = control_mesh_of(shell, {.cells = 8});
+    EXPECT_EQ(made.report.surface.cavities_alike, 1U);
+    EXPECT_THAT(made.report.shape.warnings, testing::Contains(HasSubstr("taken as the walls of cavities")));
+    EXPECT_NEAR(limit_volume(made.mesh), 4 * std::numbers::pi / 3 * (1 - 0.125), 0.05);
+}
+
+TEST(ControlMesh, OfBoxesThatCrossIsTheirUnion) {
+    Surface boxes = boundary_surface(test::make_box(1, 1, 1));
+    const Surface one = boxes;
+    const auto first = static_cast<Index>(boxes.points.size());
+    for (const Vec3& x : one.points) boxes.points.push_back(x + 0.5);
+    for (const auto& t : one.triangles) boxes.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+    const ControlMesh made = control_mesh_of(boxes, {.cells = 6});
+    EXPECT_EQ(made.report.surface.united, 1U);
+    EXPECT_NEAR(limit_volume(made.mesh), 1.875, 0.06);  // the notch between the boxes has no creases, as they are not joined there
 }
 
 TEST(ControlMesh, IsTheSameFarFromTheOrigin) {
@@ -259,6 +317,13 @@ TEST(ControlMesh, SaysWhatIsWrong) {
     EXPECT_THAT(error_of([&] { std::ignore = control_mesh_of(test::sphere(4, 1e200)); }), HasSubstr("has no size that can be"));
     Surface flat{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}};
     EXPECT_THAT(error_of([&] { std::ignore = control_mesh_of(flat); }), HasSubstr("no cell has its middle inside"));
+    const Surface sheet{{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, {{0, 1, 2}, {0, 2, 3}}};
+    EXPECT_THAT(error_of([&] { std::ignore = control_mesh_of(sheet, {.cells = 8}); }), HasSubstr("encloses no volume"));
+    Surface far = test::sphere(4);
+    for (Vec3& x : far.points) x += 1e12;
+    EXPECT_THAT(error_of([&] { std::ignore = control_mesh_of(far); }), HasSubstr("cells away from the origin"));
+    // 4 π/3 (490/2)³ cells, which the volume shows before any place is looked at
+    EXPECT_THAT(error_of([&] { std::ignore = control_mesh_of(test::sphere(12), {.cells = 490}); }), HasSubstr("there would be 6"));
     surface.triangles[3][1] = 99999;
     EXPECT_THAT(error_of([&] { std::ignore = control_mesh_of(surface); }), HasSubstr("triangle 3 has the corner 99999"));
     surface = test::sphere(4);

@@ -57,6 +57,28 @@ TEST(GridSurface, OfALevelSetIsAtTheDistanceZero) {
     EXPECT_NEAR(larger_box.size().x - box.size().x, 0.1, 0.01);
 }
 
+TEST(GridSurface, IsRoundFarFromTheOrigin) {
+    HexMesh ball = make_model("ball", 4);
+    RasterizeOptions options;
+    options.voxel_size_world = 0.1;
+    options.level_set.emplace();
+    const auto radii = [&](const Vec3& center) {
+        HexMesh moved = ball;
+        for (Vec3& x : moved.points) x += center;
+        const std::vector<std::string> none;
+        std::pair<double, double> least_and_most(10, 0);
+        for (const Vec3& x : grid_surface(rasterize(moved, none, options).back()).points) {
+            least_and_most.first = std::min(least_and_most.first, glm::distance(x, center));
+            least_and_most.second = std::max(least_and_most.second, glm::distance(x, center));
+        }
+        return least_and_most;
+    };
+    const auto near = radii(Vec3(0.0)), far = radii(Vec3(1e6, 1e6, -1e6));
+    // Floats have steps of 0.06 there.
+    EXPECT_NEAR(far.first, near.first, 1e-4);
+    EXPECT_NEAR(far.second, near.second, 1e-4);
+}
+
 TEST(GridSurface, OfFogIsAtHalfOfItsGreatestValue) {
     const std::vector<VdbGrid> grids = grids_of_ball();
     EXPECT_EQ(grid_surface(grids[0]).points, grid_surface(grids[0], grids[0].report().max / 2).points);

@@ -39,6 +39,21 @@ struct SharpEdgeReport {
     double rms = 0, max = 0;
 };
 
+/// What a surface of triangles encloses, and what is odd about it.
+///
+/// walls:      closed parts of it, that are not joined by edges
+/// united:     walls that cross others before them; the mesh is that of their union
+/// cavities:   walls within another wall that bound a cavity; alike: those of them with the orientation of the wall around them
+/// copies:     triangles that are there twice, which are left out
+/// sheets:     triangles of sheets that enclose nothing, which are left out
+/// turned:     triangles with another orientation than most of those that they are joined with
+/// one_sided:  edges at which no orientation of the triangles agrees
+/// many_edges: edges of more than two triangles
+struct SurfaceReport {
+    std::size_t walls = 0, united = 0, cavities = 0, cavities_alike = 0, copies = 0, sheets = 0, turned = 0, one_sided = 0,
+                many_edges = 0;
+};
+
 /// shape:      how far the limit's boundary is from the surface; before: as cubes with a layer around them
 /// parts:      of the mesh, that are not joined
 /// added:      cubes that were needed to make the boundary of the cubes a surface
@@ -48,6 +63,7 @@ struct SharpEdgeReport {
 struct ControlMeshReport {
     FitShapeReport shape;
     SharpEdgeReport sharp;
+    SurfaceReport surface;
     std::size_t parts = 0, added = 0;
     int refined = 0;
     std::size_t divided = 0;
@@ -71,8 +87,10 @@ struct ControlMesh {
 /// too far away, cubes are divided and all is done again. Chains of sharp edges become creases, with a layer of cells on both
 /// sides. Where that cannot be, as in chains nearer to each other than a cell, edges become round, by a part of a cell.
 ///
-/// surface: closed; small holes are closed where most of the surface winds about a place. Either side may be outside
-/// throws:  Error(InvalidInput) if the surface is not valid, if no cube has its middle inside, or if an option is out of range;
+/// surface: closed; holes are spanned where most of the surface winds about a place, with a warning. Either side may be outside.
+///          A wall within another is that of a cavity, whatever its orientation; walls that cross are united
+/// throws:  Error(InvalidInput) if the surface is not valid, if it is a sheet without volume, if no cube has its middle inside,
+///          if it is more than 1e9 cubes away from the origin, if there would be too many cells, or if an option is out of range;
 ///          Error(Cancelled)
 /// cost:    some 1 to 5 ms and 10 kB a cell, more where folds are mended; parallel, the same bits for any number of threads
 /// source:  [marechal2009] for layers over cubes, [barill2018] for what is inside, [garanzha2021] for distortions

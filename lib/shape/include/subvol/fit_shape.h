@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "subvol/facts.h"
@@ -40,11 +41,12 @@ struct FitShapeOptions {
 
 /// Distances between the boundary of a limit and a surface, in the world.
 ///
-/// rms, max:       from places of the boundary to the surface, and max_at: the place that is farthest; but not from places over
-///                 a hole, to whose edge they are nearest
+/// rms, max:       from places of the boundary to the surface, and max_at: the place that is farthest
+/// covered_rms, covered_max: the same without places over a hole, to whose edge they are nearest
+/// hole_part:      the part of the boundary's area that is over holes
 /// missed_rms, missed_max, missed_at: from places of the surface to the boundary: large where the mesh does not reach
 struct ShapeError {
-    double rms = 0, max = 0, missed_rms = 0, missed_max = 0;
+    double rms = 0, max = 0, covered_rms = 0, covered_max = 0, hole_part = 0, missed_rms = 0, missed_max = 0;
     Vec3 max_at{0.0}, missed_at{0.0};
 };
 
@@ -56,12 +58,22 @@ struct ShapeError {
 /// before, after: of the fit; rounds: that were made; moved_world: the longest way of a control point
 /// folds:  of the limit in the end; mended: the cells that folded or were undecided though they are regular, before they were
 ///         mended
+/// open_edges, open_length_world: of the surface: edges of one triangle alone, and their length
+/// folded_cells, inverted_cells: control cells whose limit folds, and those that are turned inside out at a corner
+/// warnings: sentences for users about what is wrong: folds, inverted cells, holes of the surface, mending that did not end
 struct FitShapeReport {
     ShapeError before, after;
     int rounds = 0;
     double moved_world = 0;
     FoldReport folds;
     std::size_t mended = 0;
+    std::size_t open_edges = 0;
+    double open_length_world = 0;
+    std::vector<std::size_t> folded_cells, inverted_cells;
+    std::vector<std::string> warnings;
+
+    /// Whether no cell is known to fold or to be inverted.
+    [[nodiscard]] bool is_sound() const { return folded_cells.empty() && inverted_cells.empty(); }
 };
 
 /// The report under its members' names.

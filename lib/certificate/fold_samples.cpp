@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "fold_samples.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+
+#include "subvol/limit.h"
+
+namespace subvol::detail {
+
+namespace {
+
+/// Place k of a sequence of low discrepancy in [0,1)³.
+///
+/// source: [roberts2018]
+Vec3 spread(std::size_t k) {
+    constexpr double kU = 0.8191725133961645, kV = 0.6710436067037893, kW = 0.5497004779019703;  // 1/g, g⁴ = g + 1
+    const Vec3 at = 0.5 + (static_cast<double>(k) + 1) * Vec3(kU, kV, kW);
+    return at - glm::floor(at);
+}
+
+/// Corners, middles of edges and of sides, the middle of the cell, and places between them.
+std::vector<Vec3> first_places() {
+    std::vector<Vec3> places;
+    for (int i = 0; i < 27; ++i) places.push_back(0.5 * Vec3(i % 3, i / 3 % 3, i / 9));
+    constexpr std::size_t kBetween = 37;
+    for (std::size_t k = 0; k < kBetween; ++k) places.push_back(spread(k));
+    return places;
+}
+
+}  // namespace
+
+std::vector<CellSamples> sample_folds(const HexMesh& mesh, std::span<const Index> cells, const SchemeOptions& scheme,
+                                      Progress* progress) {
+    std::vector<CellSamples> found(cells.size());
+    if (cells.empty()) return found;
+    constexpr double kTolerance = 1e-6, kFine = 1e-9;
+    const LimitEvaluator limit(mesh, {.scheme = scheme, .tolerance = kTolerance});
+    std::optional<LimitEvaluator> fine;  // where it is needed
+    const std::vector<Vec3> first = first_places();
+    constexpr std::size_t kNear = 16, kTogether = std::size_t{1} << 12;  // places, cells
+    constexpr std::array<double, 4> kRadii{1, 0.25, 0.06, 0.015};
+    for (std::size_t begin = 0; begin < cells.size(); begin += kTogether) {
+        const std::size_t end = std::min(cells.size(), begin + kTogether);
+        for (std::size_t round = 0; round < kRadii.size(); ++round) {
+            report_progress(progress, "sample", begin * kRadii.size() + round * (end - begin), cells.size() * kRadii.size());
+            const std::size_t each = round == 0 ? first.size() : kNear;
+            std::vector<LimitQuery> queries;
+            queries.reserve(each * (end - begin));
+            for (std::size_t k = begin; k < end; ++k) {
+                for (std::size_t n = 0; n < each; ++n) {
+                    const Vec3 near = found[k].least.uvw + kRadii[round] * (2.0 * spread(n) - 1.0);
+                    queries.push_back({cells[k], round == 0 ? first[n] : glm::clamp(near, Vec3(0.0), Vec3(1.0))});
+                }
+            }
+            const LimitSamples at = limit.at(queries);
+            std::vector<double> determinants;
+            determinants.reserve(queries.size());
+            for (const Mat3& jacobian : at.jacobians) determinants.push_back(glm::determinant(jacobian));
+            std::vector<LimitQuery> doubted;
+            std::vector<std::size_t> numbers;
+            for (std::size_t n = 0; n < queries.size(); ++n) {
+                if (determinants[n] >= 0) continue;
+                doubted.push_back(queries[n]);
+                numbers.push_back(n);
+            }
+            if (!doubted.empty() && !fine) fine.emplace(mesh, LimitOptions{.scheme = scheme, .tolerance = kFine});
+            const LimitSamples again = doubted.empty() ? LimitSamples{} : fine->at(doubted);
+            for (std::size_t n = 0; n < numbers.size(); ++n) {
+                determinants[numbers[n]] = std::max(determinants[numbers[n]], glm::determinant(again.jacobians[n]));
+            }
+            for (std::size_t n = 0; n < queries.size(); ++n) {
+                CellSamples& cell = found[begin + n / each];
+                const double determinant = determinants[n];
+                if (cell.places == 0 || determinant < cell.least.determinant) {
+                    cell.least = {queries[n].cell, queries[n].uvw, at.positions[n], determinant, true};
+                }
+                ++cell.places;
+                cell.size += std::abs(determinant);
+            }
+        }
+    }
+    return found;
+}
+
+}  // namespace subvol::detail
