@@ -26,14 +26,18 @@ __version__: str
 def approximate(
     onto: HexMesh, samples: Union[HexMesh, npt.ArrayLike], fields: Optional[Mapping[str, npt.ArrayLike]] = None, *,
     scheme: str = 'mcq', tension: float = 0.0625, crease_angle: Optional[float] = None, levels: int = 2,
-    reach: float = 0.01, smoothing: float = 0.0, iterations: int = 200, refine: int = 0, tolerance: float = 0.001,
-    progress: Progress = None
+    reach: float = 0.01, smoothing: float = 0.0, iterations: int = 200, clamp: bool = False, refine: int = 0,
+    tolerance: float = 0.001, progress: Progress = None
 ) -> tuple[HexMesh, dict[str, Any]]:
     """Fits fields of a control mesh so that its limit is as near to samples as it can be, by least squares.
 
-    onto: the control mesh; samples: a mesh whose points and fields are the data, or places (n,3) with values in `fields`.
-    Returns the control mesh with the fitted fields, and a report: samples, outside, snapped, unseen, iterations, refined, and for each
-    of fields rms, rms_boundary, max, max_at and range.
+    onto: the control mesh; samples: a mesh whose points and fields are the data, or places (n,3) with values in `fields`. The fields of a
+    mesh are known between its points, too: where these are too few for the control mesh, more places are sampled.
+    Returns the control mesh with the fitted fields, and a report: samples, between (places between the points of the data), outside,
+    snapped, unseen, undecided (control points that samples hardly decide, where no error is known), iterations, refined, continuous (the
+    data is a mesh), and for each of fields rms, rms_boundary, max, max_at and range; rms_between, max_between and max_between_at, the
+    distance from the data between the samples, or from the nearest sample if the data is not a mesh; and beyond, how far the limit leaves
+    the range of the data.
 
     scheme:      mcq (smooth, through the control points), cc (Catmull-Clark), bsxw (Bajaj-Schaefer-Warren-Xu), linear [mcq,
                  cc, bsxw, linear]
@@ -43,6 +47,7 @@ def approximate(
     reach:       samples outside count at the nearest place up to R times the box's diagonal away [0 to 1]
     smoothing:   the weight of the differences along edges: for samples with noise [0 to 1e+06]
     iterations:  the most steps of the search [1 to 100000]
+    clamp:       keep control values within the range of the samples
     refine:      refine the control mesh up to N times, where the samples are not met within tolerance [0 to 6]
     tolerance:   an error that is good enough, as a part of the range [0 to 1; with refine]
     """
@@ -50,11 +55,11 @@ def approximate(
 def approximate_series(
     onto: HexMesh, steps: Iterable[Union[HexMesh, tuple[float, HexMesh]]], *, scheme: str = 'mcq',
     tension: float = 0.0625, crease_angle: Optional[float] = None, levels: int = 2, reach: float = 0.01,
-    smoothing: float = 0.0, iterations: int = 200, progress: Progress = None
+    smoothing: float = 0.0, iterations: int = 200, clamp: bool = False, progress: Progress = None
 ) -> Iterator[tuple[HexMesh, dict[str, Any]]]:
     """Fits the steps of a series one after the other, as `approximate` does: for each the control mesh with its fields, and the report.
 
-    onto: the control mesh of all steps; steps: meshes whose points and fields are the data, as of `open_series`, each taken when its turn
+    onto: the control mesh of all steps; steps: meshes whose fields are the data, as of `open_series`, each taken when its turn
     comes. While their points stay the same, their places in the limit are found once; `placements` of a report says how often they
     were so far. The pairs of a time and a mesh that `open_series` gives are taken as they are.
 
@@ -66,6 +71,7 @@ def approximate_series(
     reach:       samples outside count at the nearest place up to R times the box's diagonal away [0 to 1]
     smoothing:   the weight of the differences along edges: for samples with noise [0 to 1e+06]
     iterations:  the most steps of the search [1 to 100000]
+    clamp:       keep control values within the range of the samples
     """
 
 def check_folds(

@@ -271,8 +271,8 @@ TEST(Approximate, CoarseDataIsSampledBetweenItsPoints) {
     }
 }
 
-// Data that is coarser along x and finer along y and z than the control mesh, with errors that no field of this mesh has: values
-// half way along x are not decided by its points.
+// Data that is coarser along x and finer along y and z than the control mesh, with errors that no field of this mesh has:
+// values half way along x are not decided by its points.
 TEST(Approximate, ValuesBetweenTheDataDoNotRing) {
     HexMesh data = with_noise(make_box(6, 20, 20), 9), onto = make_box(12, 8, 8);
     for (Vec3& x : data.points) x = {x.x / 6, x.y / 20, x.z / 20};
@@ -305,7 +305,8 @@ TEST(Approximate, NoErrorIsLargerThanIsSaid) {
     std::mt19937 dice(12);
     std::uniform_real_distribution<double> part(0, 1);
     for (unsigned seed = 0; seed < 12; ++seed) {
-        const HexMesh mesh = std::array{make_box(4, 3, 5), make_model("ball", 2), make_model("twist", 3), test::irregular()}[seed % 4];
+        const HexMesh mesh =
+            std::array{make_box(4, 3, 5), make_model("ball", 2), make_model("twist", 3), test::irregular()}[seed % 4];
         const double noise = seed % 3 == 0 ? 0.2 : 0;
         const auto wave = [&](const Vec3& x) { return std::sin(2 * x.x + seed) * std::cos(x.y - x.z) + noise * part(dice); };
         Box box = bounds(mesh);

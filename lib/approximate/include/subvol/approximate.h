@@ -86,7 +86,7 @@ struct Approximation {
 /// with the tables that make the limit and their transposes, from a start that continues the samples. A field that is a limit
 /// of the mesh already is found again. Values that samples leave open follow second differences, a continuation of those around
 /// them; those that samples hardly decide stay within a quarter of the range of what the nearest linear function leaves of the
-/// samples. A linear function of places is met everywhere.
+/// samples. Without smoothing a linear function of places is met everywhere.
 ///
 /// onto:    the control mesh; its attributes are not used
 /// samples: places and their fields, as points and attributes. With cells the fields are known between the points too: where
