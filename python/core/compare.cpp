@@ -7,6 +7,7 @@
 
 #include "bind.h"
 #include "picture.h"
+#include "subvol/detail/printable.h"
 #include "subvol/field_metrics.h"
 #include "subvol/flip.h"
 #include "subvol/image_metrics.h"
@@ -24,16 +25,20 @@ struct Field {
     std::string name;
 };
 
-Field field_of_mesh(const HexMesh& mesh, const std::string& name) {
-    const py::gil_scoped_release without_gil;
-    auto field = std::make_shared<const MeshField>(with_scalar_field(mesh, name), name);
+Field field_of_mesh(const HexMesh& mesh, const std::string& name, const py::object& progress) {
+    auto field = result_of(progress, [&](Progress* listener) {
+        report_progress(listener, "tree of cells", 0);
+        return std::make_shared<const MeshField>(with_scalar_field(mesh, name), name);
+    });
     FieldView view = field->view();
     return {std::move(field), std::move(view), name};
 }
 
-Field field_of_limit(const HexMesh& mesh, const std::string& name, const py::object& progress) {
+Field field_of_limit(const HexMesh& mesh, const std::string& name, const std::string& scheme, const py::object& progress) {
+    RefineOptions options{.scheme = {.kind = scheme_named(scheme)}};
     auto field = result_of(progress, [&](Progress* listener) {
-        return std::make_shared<const LimitField>(mesh, name, RefineOptions{.progress = listener});
+        options.progress = listener;
+        return std::make_shared<const LimitField>(mesh, name, options);
     });
     FieldView view = view_of(*field);
     return {std::move(field), std::move(view), name};
@@ -46,22 +51,29 @@ Field field_of_points(const RbfVolume& volume, std::size_t channel) {
     return {std::move(field), std::move(view), volume.channels[channel].name};
 }
 
+/// Does something for each place that is finite, in parallel, until Ctrl-C.
+template <class Body>
+void for_finite(const std::vector<Vec3>& places, const Body& body) {
+    run(py::none(), [&](Progress* listener) {
+        tbb::parallel_for(tbb::blocked_range<std::size_t>(0, places.size(), 64), [&](const auto& range) {
+            if (listener->cancelled()) return;  // `run` raises what cancelled it
+            for (std::size_t i = range.begin(); i != range.end(); ++i) {
+                if (std::isfinite(places[i].x) && std::isfinite(places[i].y) && std::isfinite(places[i].z)) body(i);
+            }
+        });
+    });
+}
+
 /// Values at places of the world (nan outside the field), and whether there is one.
 py::tuple values_at(const Field& field, const py::object& at) {
     const std::vector<Vec3> places = vectors(at, "at");
-    std::vector<double> values(places.size());
+    std::vector<double> values(places.size(), std::numeric_limits<double>::quiet_NaN());
     std::vector<std::uint8_t> inside(places.size());
-    {
-        const py::gil_scoped_release without_gil;
-        tbb::parallel_for(tbb::blocked_range<std::size_t>(0, places.size(), 64), [&](const auto& range) {
-            for (std::size_t i = range.begin(); i != range.end(); ++i) {
-                const bool finite = std::isfinite(places[i].x) && std::isfinite(places[i].y) && std::isfinite(places[i].z);
-                const std::optional<double> value = finite ? field.view.value(places[i]) : std::nullopt;
-                values[i] = value.value_or(std::numeric_limits<double>::quiet_NaN());
-                inside[i] = value ? 1 : 0;
-            }
-        });
-    }
+    for_finite(places, [&](std::size_t i) {
+        const std::optional<double> value = field.view.value(places[i]);
+        values[i] = value.value_or(values[i]);
+        inside[i] = value ? 1 : 0;
+    });
     const py::ssize_t count = length(places.size());
     return py::make_tuple(owned(std::move(values), {count}), owned(std::move(inside), {count}).attr("view")("bool"));
 }
@@ -69,15 +81,7 @@ py::tuple values_at(const Field& field, const py::object& at) {
 py::array gradients_at(const Field& field, const py::object& at) {
     const std::vector<Vec3> places = vectors(at, "at");
     std::vector<Vec3> gradients(places.size(), Vec3(std::numeric_limits<double>::quiet_NaN()));
-    {
-        const py::gil_scoped_release without_gil;
-        tbb::parallel_for(tbb::blocked_range<std::size_t>(0, places.size(), 64), [&](const auto& range) {
-            for (std::size_t i = range.begin(); i != range.end(); ++i) {
-                const bool finite = std::isfinite(places[i].x) && std::isfinite(places[i].y) && std::isfinite(places[i].z);
-                if (finite) gradients[i] = gradient_at(field.view, places[i]).value_or(gradients[i]);
-            }
-        });
-    }
+    for_finite(places, [&](std::size_t i) { gradients[i] = gradient_at(field.view, places[i]).value_or(gradients[i]); });
     return owned(std::move(gradients));
 }
 
@@ -136,14 +140,14 @@ py::tuple as_map(double mean, MetricMap map) {
 
 void bind_compare(py::module_& module) {
     py::class_<Field>(module, "Field", "A scalar field in world space.")
-        .def_static("of_mesh", &field_of_mesh, py::arg("mesh"), py::arg("name"))
-        .def_static("of_limit", &field_of_limit, py::arg("mesh"), py::arg("name"), py::arg("progress"))
+        .def_static("of_mesh", &field_of_mesh, py::arg("mesh"), py::arg("name"), py::arg("progress"))
+        .def_static("of_limit", &field_of_limit, py::arg("mesh"), py::arg("name"), py::arg("scheme"), py::arg("progress"))
         .def_static("of_points", &field_of_points, py::arg("volume"), py::arg("channel"))
         .def_readonly("name", &Field::name)
-        .def_property_readonly("bounds", [](const Field& field) { return as_array(field.view.box); })
+        .def_property_readonly("bounds", [](const Field& field) { return read_only(as_array(field.view.box)); })
         .def("values", &values_at, py::arg("at"))
         .def("gradients", &gradients_at, py::arg("at"))
-        .def("__repr__", [](const Field& field) { return "<subvol.Field: " + field.name + ">"; });
+        .def("__repr__", [](const Field& field) { return "<subvol.Field: " + detail::printable(field.name) + ">"; });
     module.def("compare_fields", &difference_of, py::arg("test"), py::arg("reference"), py::arg("samples"), py::arg("seed"),
                py::arg("gradients"), py::arg("progress"));
     module.def("common_pixels", &common_of, py::arg("test"), py::arg("reference"));
