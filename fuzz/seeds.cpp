@@ -22,6 +22,14 @@
 #include "svw_parts.h"
 #include "vtu_bytes.h"
 #include "wavelet_format.h"
+#ifdef SUBVOL_FUZZ_VDB
+#include "subvol/rasterize.h"
+#include "subvol/vdb_grid.h"
+#include "subvol/vdb_points.h"
+#endif
+#ifdef SUBVOL_FUZZ_COMPARE
+#include "subvol/image_io.h"
+#endif
 
 namespace subvol::test {
 
@@ -353,6 +361,25 @@ void add_shares(Seeds& seeds) {
     seeds.add("bricks", index);
 }
 
+/// Files of the components that there are in this build.
+void add_of_components(Seeds& seeds) {
+    const HexMesh mesh = make_model("ball", 2);
+#ifdef SUBVOL_FUZZ_VDB
+    const std::vector<std::string> fields{"density"};
+    for (const VdbCompression compression : {VdbCompression::None, VdbCompression::Zip, VdbCompression::Blosc}) {
+        write_vdb(seeds.path("vdb", ".vdb"), rasterize(mesh, fields, {.voxel_size_world = .3}), compression);
+    }
+    write_vdb_points(seeds.path("vdb", ".vdb"), sample_rbf_points(mesh, {}).volume);
+#endif
+#ifdef SUBVOL_FUZZ_COMPARE
+    Image image(3, 2);
+    for (std::size_t k = 0; k < image.rgba.size(); ++k) image.rgba[k] = static_cast<float>(k) / 24;
+    for (const std::string format : {"png", "exr"}) write_image(seeds.path(format, "." + format), image, std::nullopt);
+#endif
+    static_cast<void>(seeds);
+    static_cast<void>(mesh);
+}
+
 void add_texts(Seeds& seeds) {
     seeds.add("tables", "x,y,z,T\n0,0,0,1\n1,0,0,2\n# of the third\n0,1,0,3\n");
     seeds.add("tables", "0 0 0 4.5 1e-3\n1\t2\t3\t4\t5\n");
@@ -411,5 +438,6 @@ int main(int argc, char** argv) {
     subvol::test::add_surfaces(seeds);
     subvol::test::add_shares(seeds);
     subvol::test::add_texts(seeds);
+    subvol::test::add_of_components(seeds);
     subvol::test::add_small_files(seeds);
 }

@@ -40,7 +40,10 @@ class CellsInside {
 public:
     CellsInside(const Surface& surface, const ControlMeshOptions& options, double side)
         : options_(options), grid_(grid_about(surface, options, side)), cubes_(grid_), tree_(surface), inside_(grid_.size()) {
-        parallel_each(grid_.size(), [&](std::size_t c) { inside_[c] = likeness(grid_.center(c)) > kHalf ? 1 : 0; });
+        parallel_each(grid_.size(), [&](std::size_t c) {
+            if (!cancelled()) inside_[c] = likeness(grid_.center(c)) > kHalf ? 1 : 0;
+        });
+        report_progress(options.progress, "shape", 0);  // ends what was cancelled
         if (std::ranges::count(inside_, 1) == 0) {
             throw Error(ErrorCode::InvalidInput, "no cell has its middle inside the surface", "surface",
                         "a closed surface, and more cells if it is thin");
@@ -58,9 +61,11 @@ public:
         std::vector<float> likenesses(all.sides.size());
         std::vector<std::uint8_t> chosen(all.sides.size());
         parallel_each(chosen.size(), [&](std::size_t c) {
+            if (cancelled()) return;
             likenesses[c] = likeness(middle_of(all.mesh, static_cast<Index>(c)));
             chosen[c] = likenesses[c] > kHalf ? 1 : 0;
         });
+        if (cancelled()) throw Error(ErrorCode::Cancelled, "stopped in shape");
         added = make_manifold(all.mesh, likenesses, chosen);
         SizedMesh made;
         for (std::size_t c = 0; c < chosen.size(); ++c) {
@@ -87,6 +92,8 @@ private:
         }
         return {box, side};
     }
+
+    [[nodiscard]] bool cancelled() const { return options_.progress != nullptr && options_.progress->cancelled(); }
 
     [[nodiscard]] float likeness(const Vec3& place) const { return static_cast<float>(std::abs(tree_.winding(place))); }
 
@@ -229,7 +236,7 @@ private:
             const double part = static_cast<double>(round) / options_.rounds;
             report_progress(options_.progress, "shape", (report_.refined + part) / (options_.refine + 1));
             constexpr double kMore = 1.5;
-            mesh_.points = fitter_->relaxed(mesh_.points, sides_, std::pow(kMore, round));
+            mesh_.points = fitter_->relaxed(mesh_.points, sides_, std::pow(kMore, round), options_.progress);
         }
         report_.shape.rounds += end - first;
         report_.sharp = report_of(sharp_, paths_, fitter_->sharp_error(mesh_.points));
