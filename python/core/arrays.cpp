@@ -166,7 +166,8 @@ void for_each_named(const py::handle& given, const std::string& what,
             throw Error(ErrorCode::InvalidInput, "has the name " + py::repr(name).cast<std::string>() + ", which is not text", what,
                         "names such as '" + py::str(name).cast<std::string>() + "'");
         }
-        use(name.cast<std::string>(), pair[1]);
+        const std::string text = py::str(name);
+        use(text, pair[1]);
     }
 }
 

@@ -18,10 +18,10 @@ from ._progress import Progress, listening
 
 def as_field(what: Union[HexMesh, RbfVolume, Field], field: Optional[str] = None, *, levels: Optional[int] = None, scheme: str = "mcq",
              progress: Progress = None) -> Field:
-    """The field of a mesh's limit or of points as an object that is evaluated anywhere, many times: some microseconds a place.
+    """The field of a mesh's limit or of points as an object that is evaluated anywhere, many times.
 
-    levels: of the trilinear cells that stand for the limit; None: curved pieces, as `compare_fields` has them, whose values are within
-            5e-4 of the field's range and places within 3e-4 of the diagonal. `evaluate` and `probe` have no such error
+    levels: of the trilinear cells that stand for the limit, which are faster; None: the limit itself, as `probe` has it,
+            in about 1.5 kB of memory for each cell
     """
     if isinstance(what, Field):
         return what
@@ -34,7 +34,7 @@ def as_field(what: Union[HexMesh, RbfVolume, Field], field: Optional[str] = None
     name = next(iter(mesh.fields))
     with listening(progress) as listener:
         if levels is None:
-            return Field.of_limit(mesh, name, scheme, listener)
+            return Field.of_limit(mesh, name, scheme, True, listener)
         fine = _core.subdivide(mesh, True, listener, levels=levels, scheme=scheme)
         return Field.of_mesh(fine, name, listener)
 
@@ -44,23 +44,14 @@ def evaluate(what: Union[HexMesh, RbfVolume, Field], field: Optional[str] = None
     """The values of a field at places in the world.
 
     at:     (n,3), world
-    levels: of a mesh: of the trilinear cells that stand for the limit; None: the limit itself, as `probe` has it
+    levels: as of `as_field`
 
     Returns the values (n,) in the field's unit, nan outside the volume, and whether each place is inside (n,). To evaluate more than
     once, make a field by `as_field` first. `evaluate_limit` takes places in cells.
     """
     places = np.asarray(at)
-    places = np.empty((0, 3)) if places.size == 0 else places
-    if not isinstance(what, HexMesh) or levels is not None:
-        return as_field(what, field, levels=levels, scheme=scheme, progress=progress).values(places)
-    mesh = _selected(what, field)
-    finite = np.isfinite(places).all(-1) if places.ndim == 2 and places.dtype.kind in "fiu" else np.ones(len(places), bool)
-    values, inside = np.full(len(places), np.nan), np.zeros(len(places), bool)
-    with listening(progress) as listener:
-        found: dict[str, Any] = _core.probe(mesh, places[finite], 2, listener, scheme=scheme)
-    values[finite] = next(iter(found["fields"].values()))
-    inside[finite] = found["cells"] >= 0
-    return values, inside
+    field_of = as_field(what, field, levels=levels, scheme=scheme, progress=progress)
+    return field_of.values(np.empty((0, 3)) if places.size == 0 else places)
 
 
 @dataclass(frozen=True)

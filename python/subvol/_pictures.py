@@ -255,7 +255,7 @@ def compare_fields(test: Union[HexMesh, RbfVolume, Field], reference: Union[HexM
             if not isinstance(what, HexMesh):
                 return as_field(what, field)
             mesh = _selected(what, field)
-            return Field.of_limit(mesh, next(iter(mesh.fields)), "mcq", listener)
+            return Field.of_limit(mesh, next(iter(mesh.fields)), "mcq", False, listener)
 
         a, b = field_of(test), field_of(reference)
         return FieldComparison(_core.compare_fields(a, b, samples, seed, gradients, listener))
