@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <cstdint>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -25,6 +26,18 @@ int run(const Call& call) {
     } catch (const Error&) {
     }
     return 0;
+}
+
+/// Ends the fuzzer if something does not hold.
+inline void check(bool holds) {
+    if (!holds) std::abort();
+}
+
+/// A folder that this process alone writes to.
+inline std::filesystem::path own_folder() {
+    const auto folder = std::filesystem::temp_directory_path() / ("fuzz_" + std::to_string(::getpid()));
+    std::filesystem::create_directories(folder);
+    return folder;
 }
 
 /// The bytes as a file, for what reads files only: one in the temporary folder, again and again.

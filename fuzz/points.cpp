@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Files of points, .ply, .vtp or .svk; what is read has to be valid.
+// Files of points, .ply or .vtp; what is read has to be valid.
 
 #include "input.h"
 #include "subvol/points_io.h"

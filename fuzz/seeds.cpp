@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // fuzz_seeds FOLDER: writes small good inputs, those of each fuzzer into a folder of its name.
 
+#include <array>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
@@ -9,16 +10,26 @@
 #include "lib/mesh_io/exodus_texts.h"
 #include "lib/mesh_io/mesh_texts.h"
 #include "lib/mesh_io/vtu_texts.h"
+#include "subvol/detail/surface_share.h"
 #include "subvol/kernel_file.h"
 #include "subvol/mesh_io.h"
 #include "subvol/points_io.h"
 #include "subvol/refine.h"
 #include "subvol/sample.h"
+#include "subvol/split.h"
 #include "subvol/vtk_grid.h"
 #include "subvol/wavelet_file.h"
 #include "svw_parts.h"
 #include "vtu_bytes.h"
 #include "wavelet_format.h"
+#ifdef SUBVOL_FUZZ_VDB
+#include "subvol/rasterize.h"
+#include "subvol/vdb_grid.h"
+#include "subvol/vdb_points.h"
+#endif
+#ifdef SUBVOL_FUZZ_COMPARE
+#include "subvol/image_io.h"
+#endif
 
 namespace subvol::test {
 
@@ -290,6 +301,110 @@ void add_points(Seeds& seeds, const HexMesh& mesh) {
     seeds.add("kernel", to_json(volume.kernel));
 }
 
+/// A tetrahedron as a surface.
+void add_surfaces(Seeds& seeds) {
+    const std::array<std::array<std::uint32_t, 3>, 4> triangles{{{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}}};
+    const std::array<std::array<float, 3>, 4> points{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+    std::string stl(80, ' '), ascii = "solid t\n";
+    std::string ply = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
+                      "element face 4\nproperty list uchar int vertex_indices\nend_header\n";
+    std::string binary = ply, obj, faces;
+    binary.replace(binary.find("ascii"), 5, "binary_little_endian");
+    stl += little<std::uint32_t>({4});
+    for (const auto& p : points) {
+        const std::string row = std::to_string(p[0]) + " " + std::to_string(p[1]) + " " + std::to_string(p[2]) + "\n";
+        obj += "v " + row;
+        ply += row;
+        binary += little<float>({p[0], p[1], p[2]});
+    }
+    for (const auto& t : triangles) {
+        stl += little<float>({0, 0, 0});
+        ascii += "facet normal 0 0 0\nouter loop\n";
+        std::string row = "f", corners = "3";
+        for (const std::uint32_t c : t) {
+            stl += little<float>({points[c][0], points[c][1], points[c][2]});
+            ascii += "vertex " + std::to_string(points[c][0]) + " " + std::to_string(points[c][1]) + " " +
+                     std::to_string(points[c][2]) + "\n";
+            row += " " + std::to_string(c + 1);
+            corners += " " + std::to_string(c);
+        }
+        stl += std::string(2, '\0');
+        ascii += "endloop\nendfacet\n";
+        obj += row + "\n";
+        ply += corners + "\n";
+        binary += "\3" + little<std::uint32_t>({t[0], t[1], t[2]});
+    }
+    seeds.add("stlsurface", stl);
+    seeds.add("stlsurface", ascii + "endsolid t\n");
+    seeds.add("objsurface", obj);
+    seeds.add("objsurface", "o a\nvn 0 0 1\nvt 0 0\n" + obj + "f 1/1/1 2//1 -1 -2\n");
+    seeds.add("plysurface", ply);
+    seeds.add("plysurface", binary);
+}
+
+void add_shares(Seeds& seeds) {
+    const HexMesh mesh = make_model("ball", 2);
+    for (const std::size_t number : {std::size_t{1}, std::size_t{2}}) {
+        const std::string bytes =
+            detail::share_of_surface(mesh, "density", {.isos = {.5}}, {.number = number, .count = 2}).bytes;
+        seeds.add("share", bytes);
+        const std::filesystem::path file = seeds.path("share", ".svshare");
+        detail::write_surface_share(file, {R"({"part":1})", bytes});
+        const std::string whole = detail::read_text(file);
+        std::filesystem::remove(file);
+        seeds.add("share", "f" + whole);
+    }
+    const std::filesystem::path folder = seeds.path("bricks");
+    split_mesh(folder, make_model("ball", 4), {.bricks = 2});
+    const std::string index = detail::read_text(folder / "index.json");
+    std::filesystem::remove_all(folder);
+    seeds.add("bricks", index);
+}
+
+/// Files of the components that there are in this build.
+void add_of_components(Seeds& seeds) {
+    const HexMesh mesh = make_model("ball", 2);
+#ifdef SUBVOL_FUZZ_VDB
+    const std::vector<std::string> fields{"density"};
+    for (const VdbCompression compression : {VdbCompression::None, VdbCompression::Zip, VdbCompression::Blosc}) {
+        write_vdb(seeds.path("vdb", ".vdb"), rasterize(mesh, fields, {.voxel_size_world = .3}), compression);
+    }
+    write_vdb_points(seeds.path("vdb", ".vdb"), sample_rbf_points(mesh, {}).volume);
+#endif
+#ifdef SUBVOL_FUZZ_COMPARE
+    Image image(3, 2);
+    for (std::size_t k = 0; k < image.rgba.size(); ++k) image.rgba[k] = static_cast<float>(k) / 24;
+    for (const std::string format : {"png", "exr"}) write_image(seeds.path(format, "." + format), image, std::nullopt);
+#endif
+    static_cast<void>(seeds);
+    static_cast<void>(mesh);
+}
+
+void add_texts(Seeds& seeds) {
+    seeds.add("tables", "x,y,z,T\n0,0,0,1\n1,0,0,2\n# of the third\n0,1,0,3\n");
+    seeds.add("tables", "0 0 0 4.5 1e-3\n1\t2\t3\t4\t5\n");
+    seeds.add("tables", "T;z;y;x\n1;2;3;4\n");
+    for (const std::string region : {"box:-1,-1,-1,0,1,1", "sphere:0,0,0,.7", "half:0,0,0,1,0,0\nset:core", "where:density>.2",
+                                     "set:core", "box:0,0,0,1,1,1\nfold:folded,open"}) {
+        seeds.add("region", region);
+    }
+    for (const std::string text : {"at:0,0,0", "line:0,0,0,1,1,1", "disk:0,0,0,0,0,1,.5", "sphere:0,0,0,1", "box:0,0,0,1,1,1"}) {
+        seeds.add("region", "s" + text);
+    }
+    seeds.add("study",
+              R"({"name":"a","title":"A","inputs":[{"model":"ball","resolution":[4,6]},{"file":"a.vtu","field":"T"}],)"
+              R"("cameras":["iso",{"name":"close","camera":"2,-3,1,0,0,0,0,0,1,30"}],)"
+              R"("transfer_functions":["viridis",{"name":"s","colors":"coolwarm","opacity":"0%:0,50%:.5"}],"size":[64,64],)"
+              R"("methods":[{"method":"splat","samples":[1,2],"label":"s{samples}"},{"method":"dense","step":0.5}],)"
+              R"("reference":{"tolerance":1e-3,"max_levels":5},"metrics":["rmse","psnr"],"timed":true,)"
+              R"("tables":[{"rows":["input","camera","transfer_function","label"],"columns":["psnr"]}],)"
+              R"("plots":[{"x":"seconds","y":"rmse","series":"label","panels":"input","fit":true}],)"
+              R"("demands":[{"metric":"psnr","least":40,"where":{"method":"splat"}}]})");
+    seeds.add("session", R"([{"orbit":[30,-10]},{"zoom":1.2},{"field":"height"},{"tf":"viridis"},{"pick":[20,20]}])");
+    seeds.add("session", R"([{"select":[3,4]},{"drag":[1,0,0]},{"undo":true},{"save_state":"a.json"},{"load_state":"a.json"}])");
+    seeds.add("session", R"(s{"field":"height","camera":"1,2,3,0,0,0,0,0,1,40","range":[0,1],"size":[48,40],"step":0})");
+}
+
 void add_small_files(Seeds& seeds) {
     seeds.add("ensight",
               "ca\nFORMAT\ntype: ensight gold\nGEOMETRY\nmodel: 1 geo\nVARIABLE\nscalar per node: 1 T val\nTIME\ntime set: 1\n"
@@ -320,5 +435,9 @@ int main(int argc, char** argv) {
     subvol::test::Seeds seeds(argv[1]);
     subvol::test::add_meshes(seeds, subvol::test::cube());
     subvol::test::add_points(seeds, subvol::test::cube());
+    subvol::test::add_surfaces(seeds);
+    subvol::test::add_shares(seeds);
+    subvol::test::add_texts(seeds);
+    subvol::test::add_of_components(seeds);
     subvol::test::add_small_files(seeds);
 }

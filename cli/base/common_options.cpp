@@ -7,6 +7,7 @@
 #include "choices.h"
 #include "numbers.h"
 #include "options.h"
+#include "subvol/detail/most_threads.h"
 #include "subvol/error.h"
 
 namespace subvol::cli {
@@ -68,7 +69,7 @@ void add_common_options(CLI::App& app, CommonOptions& options, Reads reads) {
     }
     options.app = &app;
     add_option(app, Option("threads", options.threads)
-                        .between(0, 4096)
+                        .between(0, detail::kMostThreads)
                         .help("N", "number of threads (0: all); results do not depend on it"))
         ->group(group);
     app.add_flag("--json", options.json, "print one JSON object on standard output, also if there is an error")->group(group);

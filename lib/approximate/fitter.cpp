@@ -126,10 +126,11 @@ public:
         error_.range = std::max(error_.range, high - low);
         for (std::size_t k = 0; k < wanted.size(); ++k) {
             const double error = std::abs(found[k] - wanted[k]);
-            squares_ += error * error;
+            const long double square = static_cast<long double>(error) * error;
+            squares_ += square;
             ++count_;
             if (at_boundary_[located_.places[k].cell] != 0) {
-                squares_of_boundary_ += error * error;
+                squares_of_boundary_ += square;
                 ++boundary_count_;
             }
             errors_[k] = std::max(errors_[k], error);
@@ -157,17 +158,21 @@ public:
     [[nodiscard]] FieldError result(const std::string& name) const {
         FieldError error = error_;
         error.name = name;
-        error.rms = std::sqrt(squares_ / static_cast<double>(std::max<std::size_t>(count_, 1)));
-        error.rms_boundary = std::sqrt(squares_of_boundary_ / static_cast<double>(std::max<std::size_t>(boundary_count_, 1)));
+        error.rms = root_mean(squares_, count_);
+        error.rms_boundary = root_mean(squares_of_boundary_, boundary_count_);
         return error;
     }
 
 private:
+    static double root_mean(long double squares, std::size_t count) {
+        return static_cast<double>(std::sqrt(squares / static_cast<long double>(std::max<std::size_t>(count, 1))));
+    }
+
     const Located& located_;
     const std::vector<std::uint8_t>& at_boundary_;
     std::vector<double> errors_;  // of each sample, the largest of the channels
     FieldError error_;
-    double squares_ = 0, squares_of_boundary_ = 0;
+    long double squares_ = 0, squares_of_boundary_ = 0;  // the square of an error of 1e284 is no double
     std::size_t count_ = 0, boundary_count_ = 0;
 };
 

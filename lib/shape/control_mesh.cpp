@@ -49,11 +49,11 @@ public:
         std::size_t found = 0;
         constexpr std::size_t kTogether = std::size_t{1} << 18;
         for (std::size_t begin = 0; begin < inside_.size(); begin += kTogether) {
-            report_progress(options.progress, "fill", begin, inside_.size());
             const std::size_t count = std::min(kTogether, inside_.size() - begin);
             parallel_each(count, [&](std::size_t k) {
-                inside_[begin + k] = bodies.likeness(grid_.center(begin + k)) > kHalf ? 1 : 0;
+                if (!cancelled()) inside_[begin + k] = bodies.likeness(grid_.center(begin + k)) > kHalf ? 1 : 0;
             });
+            report_progress(options.progress, "fill", begin + count, inside_.size());  // ends what was cancelled
             for (std::size_t k = begin; k < begin + count; ++k) found += inside_[k];
             check_count(found);
         }
@@ -82,9 +82,11 @@ public:
         std::vector<float> likenesses(all.sides.size());
         std::vector<std::uint8_t> chosen(all.sides.size());
         parallel_each(chosen.size(), [&](std::size_t c) {
+            if (cancelled()) return;
             likenesses[c] = bodies_.likeness(middle_of(all.mesh, static_cast<Index>(c)));
             chosen[c] = likenesses[c] > kHalf ? 1 : 0;
         });
+        if (cancelled()) throw Error(ErrorCode::Cancelled, "stopped in shape");
         added = make_manifold(all.mesh, likenesses, chosen);
         SizedMesh made;
         for (std::size_t c = 0; c < chosen.size(); ++c) {
@@ -117,6 +119,8 @@ private:
         }
         return {box, side};
     }
+
+    [[nodiscard]] bool cancelled() const { return options_.progress != nullptr && options_.progress->cancelled(); }
 
     void check_count(std::size_t cells) const {
         if (cells <= options_.max_cells) return;
@@ -275,7 +279,7 @@ private:
             const double part = static_cast<double>(round) / options_.rounds;
             report_progress(options_.progress, "shape", (report_.refined + part) / (options_.refine + 1));
             constexpr double kMore = 1.5;
-            mesh_.points = fitter_->relaxed(mesh_.points, sides_, std::pow(kMore, round));
+            mesh_.points = fitter_->relaxed(mesh_.points, sides_, std::pow(kMore, round), options_.progress);
         }
         report_.shape.rounds += end - first;
         report_.sharp = report_of(sharp_, paths_, fitter_->sharp_error(mesh_.points));

@@ -161,8 +161,25 @@ private:
     double least_ = 1, epsilon_ = 0;
 };
 
-std::vector<Vec3> ShapeFitter::relaxed(const std::vector<Vec3>& control, const std::vector<double>& sides,
-                                       double weight) const {
+namespace {
+
+/// Ends the steps of Ceres when the work is cancelled.
+class UntilCancelled : public ceres::IterationCallback {
+public:
+    explicit UntilCancelled(const Progress* progress) : progress_(progress) {}
+
+    ceres::CallbackReturnType operator()(const ceres::IterationSummary&) override {
+        return progress_ != nullptr && progress_->cancelled() ? ceres::SOLVER_ABORT : ceres::SOLVER_CONTINUE;
+    }
+
+private:
+    const Progress* progress_;
+};
+
+}  // namespace
+
+std::vector<Vec3> ShapeFitter::relaxed(const std::vector<Vec3>& control, const std::vector<double>& sides, double weight,
+                                       const Progress* progress) const {
     std::vector<Vec3> ways(control.size(), Vec3(0.0));
     const ceres::GradientProblem problem(new ShapeEnergy(*this, control, sides, weight));
     ceres::GradientProblemSolver::Options options;
@@ -170,6 +187,8 @@ std::vector<Vec3> ShapeFitter::relaxed(const std::vector<Vec3>& control, const s
     options.max_num_iterations = kSteps;
     options.logging_type = ceres::SILENT;
     options.function_tolerance = 1e-5;
+    UntilCancelled until_cancelled(progress);
+    options.callbacks = {&until_cancelled};
     ceres::GradientProblemSolver::Summary summary;
     ceres::Solve(options, problem, &ways.front().x, &summary);
     std::vector<Vec3> points = control;

@@ -52,8 +52,9 @@ public:
     /// sides:  of each cell, if it were not distorted at all
     /// weight: of the squares of distances in sides, about each control point of the boundary, beside the distortion of a
     /// corner source: [garanzha2021]
-    [[nodiscard]] std::vector<Vec3> relaxed(const std::vector<Vec3>& control, const std::vector<double>& sides,
-                                            double weight) const;
+    /// progress: only asked whether the work is cancelled: then the steps end
+    [[nodiscard]] std::vector<Vec3> relaxed(const std::vector<Vec3>& control, const std::vector<double>& sides, double weight,
+                                            const Progress* progress = nullptr) const;
 
 private:
     friend class ShapeEnergy;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cstring>
+#include <utility>
 
 #include "bind.h"
 
@@ -41,8 +42,18 @@ py::array array_of(const py::handle& given, bool integers, const std::string& wh
                 integers ? "integers" : "real numbers");
 }
 
+/// Whether there are numbers that int64 does not hold: numpy would make negative ones of them.
+bool beyond_int64(const py::array& array) {
+    if (array.dtype().kind() != 'u' || array.itemsize() < 8) return false;
+    const py::array_t<std::uint64_t, py::array::c_style | py::array::forcecast> all(array);
+    return std::any_of(all.data(), all.data() + all.size(), [](std::uint64_t n) { return n >> 63 != 0; });
+}
+
 template <class T>
 py::array_t<T> converted(const py::array& array, const std::string& what) {
+    if (std::is_same_v<T, std::int64_t> && beyond_int64(array)) {
+        throw Error(ErrorCode::InvalidInput, "has a number of 2^63 or more", what, "numbers below 2^63");
+    }
     return or_error([&] { return py::array_t<T, py::array::c_style | py::array::forcecast>(array); },
                     {ErrorCode::InvalidInput, "cannot be converted", what, "an array of numbers"});
 }
@@ -102,36 +113,40 @@ template py::array_t<double> numbers<double>(const py::handle&, const std::strin
 template py::array_t<float> numbers<float>(const py::handle&, const std::string&);
 template py::array_t<std::int64_t> numbers<std::int64_t>(const py::handle&, const std::string&);
 
+namespace {
+
+/// Numbers below `end` as they are: a number that is negative or too large is named as it was given.
+template <class T>
+void fill_indices(const py::array& array, std::size_t end, std::size_t columns, const std::string& what, Index* to) {
+    const auto numbers = converted<T>(array, what);
+    const T* const from = numbers.data();
+    for (std::size_t i = 0; i < static_cast<std::size_t>(numbers.size()); ++i) {
+        if (!std::cmp_less(from[i], 0) && std::cmp_less(from[i], end)) {
+            to[i] = static_cast<Index>(from[i]);
+            continue;
+        }
+        throw Error(ErrorCode::InvalidInput,
+                    "row " + std::to_string(i / columns) + " has the number " + std::to_string(from[i]) + "; there are " +
+                        std::to_string(end) + " points",
+                    what, "numbers from 0");
+    }
+}
+
+}  // namespace
+
 template <std::size_t N>
 std::vector<std::array<Index, N>> index_rows(const py::handle& given, std::size_t end, const std::string& what) {
     const py::array array = array_of(given, true, what);
     check_columns(array, N, what);
-    const auto count = static_cast<std::size_t>(array.shape(0));
-    std::vector<std::array<Index, N>> rows(count);
-    if (py::isinstance<py::array_t<Index>>(array) && (array.flags() & py::array::c_style) != 0) {
-        if (count > 0) std::memcpy(rows.data(), array.data(), count * sizeof(rows[0]));
+    std::vector<std::array<Index, N>> rows(static_cast<std::size_t>(array.shape(0)));
+    if (rows.empty()) return rows;
+    Index* const to = rows.front().data();
+    if (py::isinstance<py::array_t<Index>>(array)) {
+        fill_indices<Index>(array, end, N, what, to);
+    } else if (array.dtype().kind() == 'u') {
+        fill_indices<std::uint64_t>(array, end, N, what, to);
     } else {
-        const auto wide = converted<std::int64_t>(array, what);
-        const std::int64_t* from = wide.data();
-        for (std::size_t i = 0; i < count * N; ++i) {
-            const bool exists = from[i] >= 0 && static_cast<std::uint64_t>(from[i]) < end;
-            rows[i / N][i % N] = exists ? static_cast<Index>(from[i]) : kNone;
-            if (!exists) {
-                throw Error(ErrorCode::InvalidInput,
-                            "row " + std::to_string(i / N) + " has the number " + std::to_string(from[i]) + "; there are " +
-                                std::to_string(end) + " points",
-                            what, "numbers from 0");
-            }
-        }
-        return rows;
-    }
-    for (std::size_t i = 0; i < count; ++i) {
-        const Index largest = *std::ranges::max_element(rows[i]);
-        if (largest < end) continue;
-        throw Error(ErrorCode::InvalidInput,
-                    "row " + std::to_string(i) + " has the number " + std::to_string(largest) + "; there are " +
-                        std::to_string(end) + " points",
-                    what, "numbers from 0");
+        fill_indices<std::int64_t>(array, end, N, what, to);
     }
     return rows;
 }
@@ -140,6 +155,35 @@ template std::vector<std::array<Index, 8>> index_rows<8>(const py::handle&, std:
 template std::vector<std::array<Index, 4>> index_rows<4>(const py::handle&, std::size_t, const std::string&);
 template std::vector<std::array<Index, 3>> index_rows<3>(const py::handle&, std::size_t, const std::string&);
 template std::vector<std::array<Index, 2>> index_rows<2>(const py::handle&, std::size_t, const std::string&);
+
+void for_each_named(const py::handle& given, const std::string& what,
+                    const std::function<void(const std::string& name, const py::handle& array)>& use) {
+    if (!py::hasattr(given, "items")) refuse_type(what, "a dictionary of arrays by name", given);
+    for (const py::handle item : py::list(given.attr("items")())) {  // a list: making arrays may run code that changes the mapping
+        const py::sequence pair(py::reinterpret_borrow<py::object>(item));
+        const py::object name = pair[0];
+        if (!py::isinstance<py::str>(name)) {
+            throw Error(ErrorCode::InvalidInput, "has the name " + py::repr(name).cast<std::string>() + ", which is not text", what,
+                        "names such as '" + py::str(name).cast<std::string>() + "'");
+        }
+        const std::string text = py::str(name);
+        use(text, pair[1]);
+    }
+}
+
+void refuse_type(const std::string& what, const std::string& needed, const py::handle& given) {
+    throw py::type_error(what + ": " + needed + " is needed, not " +
+                         py::str(py::type::of(given).attr("__name__")).cast<std::string>());
+}
+
+py::array read_only(py::array array) {
+    py::detail::array_proxy(array.ptr())->flags &= ~py::detail::npy_api::NPY_ARRAY_WRITEABLE_;
+    return array;
+}
+
+py::object read_only(const py::dict& items, const char* of, const char* instead) {
+    return py::module_::import("subvol._read_only").attr("ReadOnlyDict")(items, of, instead);
+}
 
 std::vector<Vec3> vectors(const py::handle& given, const std::string& what) {
     const py::array_t<double> rows = rows_of<double>(given, 3, what);

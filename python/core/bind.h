@@ -54,6 +54,30 @@ template <std::size_t N>
 [[nodiscard]] std::vector<Vec3> vectors(const py::handle& given, const std::string& what);
 /// A field of (points,) or (points, channels) numbers.
 [[nodiscard]] Attribute attribute_of(const std::string& name, const py::handle& given, std::size_t points);
+/// Arrays by name, as the mapping has them: `use(name, array)`.
+///
+/// throws: Error(InvalidInput) if it is not a mapping, or a name is not text: 3 and "3" would be one name
+void for_each_named(const py::handle& given, const std::string& what,
+                    const std::function<void(const std::string& name, const py::handle& array)>& use);
+
+/// TypeError: "grids[1]: a Grid is needed, not NoneType".
+[[noreturn]] void refuse_type(const std::string& what, const std::string& needed, const py::handle& given);
+
+/// An object of ours. pybind11 would make a null pointer of None, and other words of another type.
+template <class T>
+[[nodiscard]] const T& object_of(const py::handle& given, const std::string& what, const std::string& needed) {
+    if (!py::isinstance<T>(given)) refuse_type(what, needed, given);
+    return given.cast<const T&>();
+}
+/// The objects of a list or tuple, which has to outlive the pointers. This is how every call takes several objects of ours.
+template <class T>
+[[nodiscard]] std::vector<const T*> objects_of(const py::handle& given, const std::string& what, const std::string& needed) {
+    if (!py::isinstance<py::list>(given) && !py::isinstance<py::tuple>(given)) refuse_type(what, "a list", given);
+    std::vector<const T*> objects;
+    for (const py::handle item : given)
+        objects.push_back(&object_of<T>(item, what + "[" + std::to_string(objects.size()) + "]", needed));
+    return objects;
+}
 
 /// A read-only array over memory of `owner`, which the array keeps alive. The memory must not move as long as the owner lives.
 template <class T>
@@ -72,6 +96,13 @@ template <class T>
 }
 [[nodiscard]] py::array owned(std::vector<Vec3> values);
 
+/// What a property returns that is made anew each time, so that a change of it would be lost without a word: an array that
+/// cannot be written to, or a dictionary that refuses changes with a sentence (subvol/_read_only.py).
+///
+/// of: whose property it is, as in "the fields of a mesh"; instead: how to have another, as in "mesh.with_fields({…})"
+[[nodiscard]] py::array read_only(py::array array);
+[[nodiscard]] py::object read_only(const py::dict& items, const char* of, const char* instead = "");
+
 [[nodiscard]] inline py::ssize_t length(std::size_t n) {
     return static_cast<py::ssize_t>(n);
 }
@@ -83,10 +114,11 @@ template <class T>
 /// Lower and upper corner, (2,3).
 [[nodiscard]] py::array as_array(const Box& box);
 
-/// The patches and sets of a mesh that was read; none for others. Meshes are given to C++ without them.
-[[nodiscard]] const MeshSets& sets_of(const py::object& mesh);
+/// The patches and sets of a mesh that was read; none for others. Meshes are given to C++ without them. They are copied, as
+/// another thread of Python may give the mesh others while a call works with them.
+[[nodiscard]] MeshSets sets_of(const py::object& mesh);
 /// The same of a mesh that came from Python.
-[[nodiscard]] const MeshSets& sets_of(const HexMesh& mesh);
+[[nodiscard]] MeshSets sets_of(const HexMesh& mesh);
 /// A mesh as an object of Python, with its patches and sets.
 [[nodiscard]] py::object with_sets(HexMesh mesh, MeshSets sets);
 

@@ -7,33 +7,59 @@
 
 #include "bind.h"
 #include "picture.h"
+#include "subvol/detail/printable.h"
 #include "subvol/field_metrics.h"
 #include "subvol/flip.h"
 #include "subvol/image_metrics.h"
 #include "subvol/mesh_field.h"
 #include "subvol/points_field.h"
+#include "subvol/probe.h"
 #include "subvol/ssim.h"
 
 namespace subvol::python {
 namespace {
 
-/// A field in world space with the object that it refers to.
+/// A field in world space with the object that it refers to. probe: that object, if it is best asked for many places at once
 struct Field {
     std::shared_ptr<const void> owner;
     FieldView view;
     std::string name;
+    std::shared_ptr<const LimitProbe> probe{};
 };
 
-Field field_of_mesh(const HexMesh& mesh, const std::string& name) {
-    const py::gil_scoped_release without_gil;
-    auto field = std::make_shared<const MeshField>(with_scalar_field(mesh, name), name);
+Field field_of_mesh(const HexMesh& mesh, const std::string& name, const py::object& progress) {
+    auto field = result_of(progress, [&](Progress* listener) {
+        report_progress(listener, "tree of cells", 0);
+        return std::make_shared<const MeshField>(with_scalar_field(mesh, name), name);
+    });
     FieldView view = field->view();
     return {std::move(field), std::move(view), name};
 }
 
-Field field_of_limit(const HexMesh& mesh, const std::string& name, const py::object& progress) {
+/// The limit itself, or the curved pieces by which the command compares fields, which are faster.
+Field field_of_limit(const HexMesh& mesh, const std::string& name, const std::string& scheme, bool exact,
+                     const py::object& progress) {
+    RefineOptions options{.scheme = {.kind = scheme_named(scheme)}};
+    if (exact) {
+        auto probe = result_of(progress, [&](Progress* listener) {
+            return std::make_shared<const LimitProbe>(with_scalar_field(mesh, name),
+                                                      ProbeOptions{.limit = {.scheme = options.scheme, .progress = listener}});
+        });
+        const auto at = [&limit = *probe](const Vec3& x) { return limit.at(std::span(&x, 1)); };
+        FieldView view{.value = [at](const Vec3& x) -> std::optional<double> {
+                           const ProbeResult found = at(x);
+                           return found.inside(0) ? std::optional(found.fields.front().values.front()) : std::nullopt;
+                       },
+                       .gradient = [at](const Vec3& x) -> std::optional<Vec3> {
+                           const ProbeResult found = at(x);
+                           return found.inside(0) ? std::optional(found.fields.front().gradients.front()) : std::nullopt;
+                       },
+                       .box = probe->box()};
+        return {probe, std::move(view), name, probe};
+    }
     auto field = result_of(progress, [&](Progress* listener) {
-        return std::make_shared<const LimitField>(mesh, name, RefineOptions{.progress = listener});
+        options.progress = listener;
+        return std::make_shared<const LimitField>(mesh, name, options);
     });
     FieldView view = view_of(*field);
     return {std::move(field), std::move(view), name};
@@ -46,22 +72,53 @@ Field field_of_points(const RbfVolume& volume, std::size_t channel) {
     return {std::move(field), std::move(view), volume.channels[channel].name};
 }
 
+bool is_finite(const Vec3& x) {
+    return std::isfinite(x.x) && std::isfinite(x.y) && std::isfinite(x.z);
+}
+
+/// Calls use(i, value, gradient) for each place in the field, in parallel, until Ctrl-C. Either is asked for, or both at once.
+template <class Use>
+void each_inside(const Field& field, const std::vector<Vec3>& places, bool gradients, const Use& use) {
+    run(py::none(), [&](Progress* listener) {
+        if (field.probe) {
+            std::vector<Vec3> finite;
+            std::vector<std::size_t> numbers_of;
+            for (std::size_t i = 0; i < places.size(); ++i) {
+                if (!is_finite(places[i])) continue;
+                finite.push_back(places[i]);
+                numbers_of.push_back(i);
+            }
+            if (finite.empty()) return;
+            const ProbeResult found = field.probe->at(finite, listener);
+            const ProbedField& only = found.fields.front();
+            for (std::size_t i = 0; i < finite.size(); ++i) {
+                if (found.inside(i)) use(numbers_of[i], only.values[i], only.gradients[i]);
+            }
+            return;
+        }
+        tbb::parallel_for(tbb::blocked_range<std::size_t>(0, places.size(), 64), [&](const auto& range) {
+            if (listener->cancelled()) return;  // `run` raises what cancelled it
+            for (std::size_t i = range.begin(); i != range.end(); ++i) {
+                if (!is_finite(places[i])) continue;
+                if (gradients) {
+                    if (const auto slope = gradient_at(field.view, places[i])) use(i, 0.0, *slope);
+                } else if (const auto value = field.view.value(places[i])) {
+                    use(i, *value, Vec3(0.0));
+                }
+            }
+        });
+    });
+}
+
 /// Values at places of the world (nan outside the field), and whether there is one.
 py::tuple values_at(const Field& field, const py::object& at) {
     const std::vector<Vec3> places = vectors(at, "at");
-    std::vector<double> values(places.size());
+    std::vector<double> values(places.size(), std::numeric_limits<double>::quiet_NaN());
     std::vector<std::uint8_t> inside(places.size());
-    {
-        const py::gil_scoped_release without_gil;
-        tbb::parallel_for(tbb::blocked_range<std::size_t>(0, places.size(), 64), [&](const auto& range) {
-            for (std::size_t i = range.begin(); i != range.end(); ++i) {
-                const bool finite = std::isfinite(places[i].x) && std::isfinite(places[i].y) && std::isfinite(places[i].z);
-                const std::optional<double> value = finite ? field.view.value(places[i]) : std::nullopt;
-                values[i] = value.value_or(std::numeric_limits<double>::quiet_NaN());
-                inside[i] = value ? 1 : 0;
-            }
-        });
-    }
+    each_inside(field, places, false, [&](std::size_t i, double value, const Vec3&) {
+        values[i] = value;
+        inside[i] = 1;
+    });
     const py::ssize_t count = length(places.size());
     return py::make_tuple(owned(std::move(values), {count}), owned(std::move(inside), {count}).attr("view")("bool"));
 }
@@ -69,15 +126,7 @@ py::tuple values_at(const Field& field, const py::object& at) {
 py::array gradients_at(const Field& field, const py::object& at) {
     const std::vector<Vec3> places = vectors(at, "at");
     std::vector<Vec3> gradients(places.size(), Vec3(std::numeric_limits<double>::quiet_NaN()));
-    {
-        const py::gil_scoped_release without_gil;
-        tbb::parallel_for(tbb::blocked_range<std::size_t>(0, places.size(), 64), [&](const auto& range) {
-            for (std::size_t i = range.begin(); i != range.end(); ++i) {
-                const bool finite = std::isfinite(places[i].x) && std::isfinite(places[i].y) && std::isfinite(places[i].z);
-                if (finite) gradients[i] = gradient_at(field.view, places[i]).value_or(gradients[i]);
-            }
-        });
-    }
+    each_inside(field, places, true, [&](std::size_t i, double, const Vec3& slope) { gradients[i] = slope; });
     return owned(std::move(gradients));
 }
 
@@ -136,14 +185,15 @@ py::tuple as_map(double mean, MetricMap map) {
 
 void bind_compare(py::module_& module) {
     py::class_<Field>(module, "Field", "A scalar field in world space.")
-        .def_static("of_mesh", &field_of_mesh, py::arg("mesh"), py::arg("name"))
-        .def_static("of_limit", &field_of_limit, py::arg("mesh"), py::arg("name"), py::arg("progress"))
+        .def_static("of_mesh", &field_of_mesh, py::arg("mesh"), py::arg("name"), py::arg("progress"))
+        .def_static("of_limit", &field_of_limit, py::arg("mesh"), py::arg("name"), py::arg("scheme"), py::arg("exact"),
+                    py::arg("progress"))
         .def_static("of_points", &field_of_points, py::arg("volume"), py::arg("channel"))
         .def_readonly("name", &Field::name)
-        .def_property_readonly("bounds", [](const Field& field) { return as_array(field.view.box); })
+        .def_property_readonly("bounds", [](const Field& field) { return read_only(as_array(field.view.box)); })
         .def("values", &values_at, py::arg("at"))
         .def("gradients", &gradients_at, py::arg("at"))
-        .def("__repr__", [](const Field& field) { return "<subvol.Field: " + field.name + ">"; });
+        .def("__repr__", [](const Field& field) { return "<subvol.Field: " + detail::printable(field.name) + ">"; });
     module.def("compare_fields", &difference_of, py::arg("test"), py::arg("reference"), py::arg("samples"), py::arg("seed"),
                py::arg("gradients"), py::arg("progress"));
     module.def("common_pixels", &common_of, py::arg("test"), py::arg("reference"));

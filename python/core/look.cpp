@@ -30,13 +30,13 @@ TransferFunction function_of(const py::object& color, const py::object& opacity)
 py::array colors_of(const TransferFunction& function) {
     std::vector<double> rows;
     for (const auto& [value, rgb] : function.color) rows.insert(rows.end(), {value, rgb.x, rgb.y, rgb.z});
-    return owned(std::move(rows), {length(function.color.size()), 4});
+    return read_only(owned(std::move(rows), {length(function.color.size()), 4}));
 }
 
 py::array opacities_of(const TransferFunction& function) {
     std::vector<double> rows;
     for (const auto& [value, alpha] : function.opacity) rows.insert(rows.end(), {value, alpha});
-    return owned(std::move(rows), {length(function.opacity.size()), 2});
+    return read_only(owned(std::move(rows), {length(function.opacity.size()), 2}));
 }
 
 Vec3 vector_of(const py::object& given, const char* what) {

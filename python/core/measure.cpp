@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <iterator>
 #include <limits>
+#include <utility>
 
 #include "bind.h"
 #include "subvol/approximate.h"
@@ -404,7 +405,7 @@ py::tuple mend_folds_of(const HexMesh& mesh, const py::object& progress, const p
 }
 
 /// points: places, or a mesh, whose points are the places and whose cells go along
-HexMesh samples_of(const py::object& points, const py::dict& given) {
+HexMesh samples_of(const py::object& points, const py::object& given) {
     HexMesh samples;
     if (py::isinstance<HexMesh>(points)) {
         const auto& mesh = points.cast<const HexMesh&>();
@@ -415,13 +416,13 @@ HexMesh samples_of(const py::object& points, const py::dict& given) {
     } else {
         samples.points = vectors(points, "samples");
     }
-    for (const auto& [name, values] : given) {
-        samples.attributes.push_back(attribute_of(py::str(name), values, samples.points.size()));
-    }
+    for_each_named(given, "fields", [&](const std::string& name, const py::handle& values) {
+        samples.attributes.push_back(attribute_of(name, values, samples.points.size()));
+    });
     return samples;
 }
 
-py::tuple approximate_of(const HexMesh& onto, const py::object& points, const py::dict& given, const py::object& progress,
+py::tuple approximate_of(const HexMesh& onto, const py::object& points, const py::object& given, const py::object& progress,
                          const py::kwargs& keywords) {
     ApproximateOptions options;
     set_options(keywords_of(options), keywords);
@@ -433,40 +434,44 @@ py::tuple approximate_of(const HexMesh& onto, const py::object& points, const py
     return py::make_tuple(std::move(made.mesh), dict_of(facts_of(made.report)));
 }
 
-Approximator approximator(const HexMesh& onto, const py::kwargs& keywords) {
-    ApproximateOptions options;
-    set_options(series_keywords_of(options), keywords);
-    return Approximator(onto, options);
-}
+/// An Approximator keeps what it found for the next step, so that its steps come one after the other: a second thread, or a call
+/// from within its own progress, is refused.
+class StepFitter {
+public:
+    StepFitter(const HexMesh& onto, const py::kwargs& keywords) : approximator_([&] {
+        ApproximateOptions options;
+        set_options(series_keywords_of(options), keywords);
+        return Approximator(onto, options);
+    }()) {}
 
-py::tuple fit_step(Approximator& self, const py::object& points, const py::dict& given, const py::object& progress) {
-    const HexMesh samples = samples_of(points, given);
-    Approximation made = result_of(progress, [&](Progress* listener) { return self.fit(samples, listener); });
-    py::dict report = dict_of(facts_of(made.report));
-    report["placements"] = self.placements();
-    return py::make_tuple(std::move(made.mesh), report);
-}
+    [[nodiscard]] py::tuple fit(const py::object& points, const py::object& given, const py::object& progress) {
+        const HexMesh samples = samples_of(points, given);
+        if (std::exchange(busy_, true)) {  // under the GIL
+            throw Error(ErrorCode::InvalidInput, "is fitting a step already", "Approximator", "one step after the other");
+        }
+        Approximation made = [&] {
+            const Done done{busy_};
+            return result_of(progress, [&](Progress* listener) { return approximator_.fit(samples, listener); });
+        }();
+        py::dict report = dict_of(facts_of(made.report));
+        report["placements"] = approximator_.placements();
+        return py::make_tuple(std::move(made.mesh), report);
+    }
+
+private:
+    struct Done {
+        bool& busy;
+        ~Done() { busy = false; }
+    };
+
+    Approximator approximator_;
+    bool busy_ = false;
+};
 
 Surface surface_of(const py::object& points, const py::object& triangles) {
     Surface surface;
     surface.points = vectors(points, "points");
-    const auto corners = py::array_t<std::int64_t, py::array::c_style | py::array::forcecast>::ensure(triangles);
-    if (!corners || corners.ndim() != 2 || corners.shape(1) != 3) {
-        throw Error(ErrorCode::InvalidInput, "must be an array of shape (n,3)", "triangles");
-    }
-    const auto rows = corners.unchecked<2>();
-    for (py::ssize_t t = 0; t < rows.shape(0); ++t) {
-        auto& triangle = surface.triangles.emplace_back();
-        for (py::ssize_t k = 0; k < 3; ++k) {
-            const std::int64_t corner = rows(t, k);
-            if (corner < 0 || corner >= static_cast<std::int64_t>(surface.points.size())) {
-                throw Error(ErrorCode::InvalidInput,
-                            "triangle " + std::to_string(t) + " has the corner " + std::to_string(corner), "triangles",
-                            "0 to " + std::to_string(surface.points.size()) + ", not included");
-            }
-            triangle[static_cast<std::size_t>(k)] = static_cast<Index>(corner);
-        }
-    }
+    surface.triangles = index_rows<3>(triangles, surface.points.size(), "triangles");
     return surface;
 }
 
@@ -506,9 +511,9 @@ py::tuple read_triangles(const std::string& path) {
 void bind_measure(py::module_& module) {
     module.def("approximate", &approximate_of, py::arg("onto"), py::arg("points"), py::arg("fields"), py::arg("progress"));
     describe_call<ApproximateOptions>(module, "approximate");
-    py::class_<Approximator>(module, "Approximator")
-        .def(py::init(&approximator), py::arg("onto"))
-        .def("fit", &fit_step, py::arg("points"), py::arg("fields"), py::arg("progress"));
+    py::class_<StepFitter>(module, "Approximator")
+        .def(py::init<const HexMesh&, const py::kwargs&>(), py::arg("onto"))
+        .def("fit", &StepFitter::fit, py::arg("points"), py::arg("fields"), py::arg("progress"));
     ApproximateOptions of_series;
     describe(module, "approximate_series", series_keywords_of(of_series));
     module.def("fit_shape", &fit_shape_of, py::arg("mesh"), py::arg("points"), py::arg("triangles"), py::arg("progress"));

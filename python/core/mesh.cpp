@@ -3,8 +3,10 @@
 #include <iterator>
 #include <string_view>
 #include <tuple>
+#include <utility>
 
 #include "bind.h"
+#include "subvol/detail/printable.h"
 #include "subvol/expression.h"
 #include "subvol/mesh_io.h"
 #include "subvol/mesh_motion.h"
@@ -28,7 +30,7 @@ py::array view_of_rows(const std::vector<std::array<Index, N>>& rows, const py::
     return view(rows.empty() ? nullptr : rows.front().data(), {length(rows.size()), length(N)}, owner);
 }
 
-py::dict fields_of(const py::object& self) {
+py::object fields_of(const py::object& self) {
     py::dict fields;
     for (const Attribute& attribute : self.cast<const HexMesh&>().attributes) {
         const auto channels = length(static_cast<std::size_t>(attribute.channels));
@@ -37,7 +39,7 @@ py::dict fields_of(const py::object& self) {
         if (channels > 1) shape.push_back(channels);
         fields[py::str(attribute.name)] = view(attribute.values.data(), std::move(shape), self);
     }
-    return fields;
+    return read_only(fields, "the fields of a mesh", "mesh.with_fields({...}) is a mesh with others");
 }
 
 }  // namespace
@@ -67,9 +69,9 @@ HexMesh mesh_of(const py::object& points, const py::object& cells, const py::obj
     if (!creases.is_none()) mesh.creases = index_rows<2>(creases, count, "creases");
     if (!sharp_faces.is_none()) mesh.sharp_faces = index_rows<4>(sharp_faces, count, "sharp_faces");
     if (!fields.is_none()) {
-        for (const auto& [name, values] : py::dict(fields)) {
-            mesh.attributes.push_back(attribute_of(py::str(name), values, count));
-        }
+        for_each_named(fields, "fields", [&](const std::string& name, const py::handle& values) {
+            mesh.attributes.push_back(attribute_of(name, values, count));
+        });
     }
     const py::gil_scoped_release without_gil;
     validate(mesh);
@@ -81,7 +83,7 @@ std::string mesh_text(const HexMesh& mesh) {
                        std::to_string(mesh.cells.size()) + (mesh.cells.size() == 1 ? " cell" : " cells");
     for (std::size_t i = 0; i < mesh.attributes.size(); ++i) {
         const Attribute& field = mesh.attributes[i];
-        text += (i == 0 ? ", fields " : ", ") + field.name;
+        text += (i == 0 ? ", fields " : ", ") + detail::printable(field.name);
         if (field.channels > 1) text += "[" + std::to_string(field.channels) + "]";
     }
     return text + ">";
@@ -139,8 +141,10 @@ py::tuple from_vtk(const py::object& points, const py::object& types, const py::
     };
     VtkUnstructuredGrid grid;
     grid.points = vectors(points, "points");
-    const std::vector<std::int64_t> kinds = whole(types, "types");
-    grid.types.assign(kinds.begin(), kinds.end());
+    for (const std::int64_t type : whole(types, "types")) {
+        if (type < 0 || type > 255) throw Error(ErrorCode::InvalidInput, "there is no type " + std::to_string(type), "types", "0 to 255");
+        grid.types.push_back(static_cast<std::uint8_t>(type));
+    }
     grid.ends = whole(ends, "offsets");
     grid.connectivity = whole(connectivity, "connectivity");
     grid.faces = whole(faces, "faces");
@@ -160,7 +164,7 @@ py::tuple from_vtk(const py::object& points, const py::object& types, const py::
 /// The mesh of some cells, with what is left of its patches and sets.
 py::object only_of(const py::object& self, const std::vector<std::string>& texts) {
     const auto& mesh = self.cast<const HexMesh&>();
-    const MeshSets& sets = sets_of(self);
+    const MeshSets sets = sets_of(self);
     auto [part, of_part] = [&] {
         const py::gil_scoped_release without_gil;
         const std::vector<std::uint8_t> cells = cells_in(mesh, parse_regions(texts), sets);
@@ -178,20 +182,36 @@ py::object warped(const py::object& self, const std::string& field, std::optiona
     return with_sets(std::move(mesh), sets_of(self));
 }
 
-py::dict patches_of(const py::object& self) {
+py::object patches_of(const py::object& self) {
     py::dict patches;
-    for (const Patch& patch : sets_of(self).patches) {
+    const MeshSets given = sets_of(self);
+    for (const Patch& patch : given.patches) {
         std::vector<Index> rows;
         for (const CellSide& side : patch.sides) rows.insert(rows.end(), {side.cell, Index{side.side}});
-        patches[py::str(patch.name)] = owned(std::move(rows), {length(patch.sides.size()), 2});
+        patches[py::str(patch.name)] = read_only(owned(std::move(rows), {length(patch.sides.size()), 2}));
     }
-    return patches;
+    return read_only(patches, "the patches of a mesh");
 }
 
-py::dict cell_sets_of(const py::object& self) {
+py::object cell_sets_of(const py::object& self) {
     py::dict sets;
-    for (const CellSet& set : sets_of(self).sets) sets[py::str(set.name)] = owned(set.cells, {length(set.cells.size())});
-    return sets;
+    MeshSets given = sets_of(self);
+    for (CellSet& set : given.sets) {
+        const py::ssize_t cells = length(set.cells.size());
+        sets[py::str(set.name)] = read_only(owned(std::move(set.cells), {cells}));
+    }
+    return read_only(sets, "the sets of a mesh");
+}
+
+/// The mesh with other fields, and all else that it has.
+py::object with_fields(const py::object& self, const py::object& fields) {
+    const auto& mesh = self.cast<const HexMesh&>();
+    HexMesh changed{mesh.points, mesh.cells, {}, mesh.creases, mesh.sharp_faces};
+    for_each_named(fields, "fields", [&](const std::string& name, const py::handle& values) {
+        changed.attributes.push_back(attribute_of(name, values, changed.points.size()));
+    });
+    validate(changed);
+    return with_sets(std::move(changed), sets_of(self));
 }
 
 py::tuple selected(const HexMesh& mesh, const std::optional<std::string>& name) {
@@ -251,8 +271,9 @@ py::dict write_series(const std::string& path, const std::vector<double>& times,
                           [&](std::size_t step) {
                               const py::gil_scoped_acquire gil;
                               const py::object mesh = read(step);
+                              const HexMesh& given = object_of<HexMesh>(mesh, "steps[" + std::to_string(step) + "]", "a HexMesh");
                               sets = sets_of(mesh);
-                              return mesh.cast<HexMesh>();
+                              return given;
                           },
                           [&] { return sets; }};
     return dict_of(facts_of(result_of(progress, [&](Progress* listener) {
@@ -263,14 +284,33 @@ py::dict write_series(const std::string& path, const std::vector<double>& times,
 
 constexpr const char* kSets = "_sets";
 
-}  // namespace
-
-const MeshSets& sets_of(const py::object& mesh) {
-    static const MeshSets none;
-    return py::hasattr(mesh, kSets) ? mesh.attr(kSets).cast<const MeshSets&>() : none;
+/// The patches and sets of a pickled mesh.
+MeshSets sets_from(const py::object& patches, const py::object& cells, const HexMesh& mesh) {
+    MeshSets sets;
+    for_each_named(patches, "patches", [&](const std::string& name, const py::handle& rows) {
+        Patch& patch = sets.patches.emplace_back(Patch{.name = name, .sides = {}});
+        constexpr Index kNoSide = 6;
+        for (const auto& [cell, side] : index_rows<2>(rows, std::max<std::size_t>(mesh.cells.size(), kNoSide), name))
+            patch.sides.push_back({cell, static_cast<std::uint8_t>(std::min(side, kNoSide))});
+    });
+    for_each_named(cells, "sets", [&](const std::string& name, const py::handle& numbers_of_cells) {
+        CellSet& set = sets.sets.emplace_back(CellSet{.name = name, .cells = {}});
+        const py::array_t<std::int64_t> given = numbers<std::int64_t>(numbers_of_cells, name);
+        for (py::ssize_t i = 0; i < given.size(); ++i)
+            set.cells.push_back(std::in_range<Index>(given.at(i)) ? static_cast<Index>(given.at(i)) : kNone);
+    });
+    validate(sets, mesh);
+    return sets;
 }
 
-const MeshSets& sets_of(const HexMesh& mesh) {
+}  // namespace
+
+MeshSets sets_of(const py::object& mesh) {
+    const py::object sets = py::getattr(mesh, kSets, py::none());
+    return sets.is_none() ? MeshSets{} : object_of<MeshSets>(sets, "_sets", "MeshSets");
+}
+
+MeshSets sets_of(const HexMesh& mesh) {
     return sets_of(py::cast(&mesh, py::return_value_policy::reference));
 }
 
@@ -301,33 +341,40 @@ void bind_mesh(py::module_& module) {
         .def_property_readonly("fields", &fields_of)
         .def_property_readonly("patches", &patches_of)
         .def_property_readonly("sets", &cell_sets_of)
-        .def_property_readonly("bounds", [](const HexMesh& mesh) { return as_array(bounds(mesh)); })
+        .def_property_readonly("bounds", [](const HexMesh& mesh) { return read_only(as_array(bounds(mesh))); })
         .def("report", &figures_of)
         .def("boundary",
              [](const HexMesh& mesh) {
                  SurfaceArrays surface = boundary_of(mesh);
                  return py::make_tuple(surface.points, surface.triangles);
              })
-        .def("without_unused_points", [](const HexMesh& mesh) { return without_unused_points(mesh); })
+        .def("without_unused_points",
+             [](const py::object& self) {
+                 return with_sets(without_unused_points(self.cast<const HexMesh&>()), sets_of(self));
+             })
         .def(
             "with_creases",
-            [](const HexMesh& mesh, double angle_deg) {
-                HexMesh tagged = mesh;
+            [](const py::object& self, double angle_deg) {
+                auto tagged = self.cast<HexMesh>();
                 tag_creases(tagged, angle_deg);
-                return tagged;
+                return with_sets(std::move(tagged), sets_of(self));
             },
             py::arg("angle_deg"))
+        .def("with_fields", &with_fields, py::arg("fields"))
         .def(
             "same_cells", [](const HexMesh& mesh, const HexMesh& other) { return same_cells(mesh, other); }, py::arg("other"))
         .def("__repr__", &mesh_text)
         .def(py::pickle(
             [](const py::object& self) {
                 return py::make_tuple(self.attr("points"), self.attr("cells"), self.attr("fields"), self.attr("creases"),
-                                      self.attr("sharp_faces"));
+                                      self.attr("sharp_faces"), self.attr("patches"), self.attr("sets"));
             },
             [](const py::tuple& state) {
-                if (state.size() != 5) throw Error(ErrorCode::InvalidInput, "is not a mesh", "pickle");
-                return mesh_of(state[0], state[1], state[2], state[3], state[4]);
+                if (state.size() != 7) throw Error(ErrorCode::InvalidInput, "is not a mesh of this version", "pickle");
+                HexMesh mesh = mesh_of(state[0], state[1], state[2], state[3], state[4]);
+                py::dict attributes;
+                if (MeshSets sets = sets_from(state[5], state[6], mesh); !sets.empty()) attributes[kSets] = std::move(sets);
+                return std::pair(std::move(mesh), attributes);
             }));
 
     module.def("read_mesh", &read, py::arg("path"));

@@ -7,6 +7,7 @@
 
 #include "bind.h"
 #include "given_grids.h"
+#include "subvol/detail/most_threads.h"
 #include "subvol/scheme.h"
 #include "subvol/version.h"
 #include "uninitialised.h"
@@ -50,7 +51,10 @@ void translate(std::exception_ptr failure) {
 std::unique_ptr<tbb::global_control> thread_limit;
 
 void set_threads(int threads) {
-    if (threads < 0) throw Error(ErrorCode::InvalidInput, std::to_string(threads) + " threads", "set_threads", "0 or more");
+    if (threads < 0 || threads > detail::kMostThreads) {
+        throw Error(ErrorCode::InvalidInput, std::to_string(threads) + " threads", "set_threads",
+                    "0 to " + std::to_string(detail::kMostThreads));
+    }
     thread_limit.reset();
     if (threads == 0) return;
     thread_limit =

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <filesystem>
 
 #include "bind.h"
 #include "subvol/basis_function.h"
+#include "subvol/detail/printable.h"
 #include "subvol/fit_kernel.h"
 #include "subvol/kernel_file.h"
 #include "subvol/points_io.h"
@@ -21,7 +23,7 @@ py::array view_of_points(const std::vector<Vec3>& points, const py::handle& owne
 
 /// A dictionary of the channels' arrays; of Hessians only where there are some.
 template <class Array>
-py::dict of_channels(const Array RbfChannel::*array, const py::object& self) {
+py::object of_channels(const Array RbfChannel::*array, const py::object& self) {
     py::dict channels;
     for (const RbfChannel& channel : self.cast<const RbfVolume&>().channels) {
         const auto& values = channel.*array;
@@ -31,41 +33,47 @@ py::dict of_channels(const Array RbfChannel::*array, const py::object& self) {
         if (values.empty()) continue;
         channels[py::str(channel.name)] = view(reinterpret_cast<const float*>(values.data()), std::move(shape), self);
     }
-    return channels;
+    return read_only(channels, "the channels of a volume", "RbfVolume(...) makes one with others");
 }
 
+/// Puts arrays by name into the channels of these names; one of a channel that there is not is refused.
 template <class Item>
-std::vector<Item> floats_of(const py::dict& arrays, const py::handle& name, const std::string& what) {
+void fill_channels(std::vector<RbfChannel>& channels, std::vector<Item> RbfChannel::*array, const py::object& arrays,
+                   const std::string& what) {
     constexpr std::size_t kWide = sizeof(Item) / sizeof(float);
-    if (!arrays.contains(name)) return {};
-    const std::string where = what + "['" + py::str(name).cast<std::string>() + "']";
-    py::array_t<float> rows;
-    if constexpr (kWide == 1) {
-        rows = numbers<float>(arrays[name], where);
-    } else {
-        rows = rows_of<float>(arrays[name], kWide, where);
-    }
-    const auto* first = reinterpret_cast<const Item*>(rows.data());
-    return std::vector<Item>(first, first + rows.size() / py::ssize_t(kWide));
+    for_each_named(arrays, what, [&](const std::string& name, const py::handle& given) {
+        const std::string where = what + "['" + name + "']";
+        const auto channel = std::ranges::find(channels, name, &RbfChannel::name);
+        if (channel == channels.end()) throw Error(ErrorCode::InvalidInput, "is of no channel", where, "a name of values");
+        py::array_t<float> rows;
+        if constexpr (kWide == 1) {
+            rows = numbers<float>(given, where);
+        } else {
+            rows = rows_of<float>(given, kWide, where);
+        }
+        const auto* first = reinterpret_cast<const Item*>(rows.data());
+        ((*channel).*array).assign(first, first + rows.size() / py::ssize_t(kWide));
+    });
 }
 
-RbfVolume volume_of(const py::object& centers, const py::object& frames, const py::dict& values, const py::dict& gradients,
-                    const py::dict& moments, const py::dict& hessians, const std::string& kernel, const py::object& boundary) {
+RbfVolume volume_of(const py::object& centers, const py::object& frames, const py::object& values, const py::object& gradients,
+                    const py::object& moments, const py::object& hessians, const std::string& kernel,
+                    const py::object& boundary) {
     RbfVolume volume;
     volume.centers = vectors(centers, "centers");
     const auto rows = rows_of<float>(frames, 6, "frames");
     const auto* first = reinterpret_cast<const Symmetric3*>(rows.data());
     volume.frames.assign(first, first + rows.shape(0));
-    for (const auto& item : values) {
-        const py::handle name = item.first;
-        RbfChannel channel{.name = py::str(name),
-                           .values = floats_of<float>(values, name, "values"),
-                           .gradients = floats_of<std::array<float, 3>>(gradients, name, "gradients"),
-                           .moments = floats_of<float>(moments, name, "moments"),
-                           .hessians = floats_of<Symmetric3>(hessians, name, "hessians")};
+    for_each_named(values, "values", [&](const std::string& name, const py::handle&) {
+        volume.channels.push_back(RbfChannel{.name = name, .values = {}, .gradients = {}, .moments = {}, .hessians = {}});
+    });
+    fill_channels(volume.channels, &RbfChannel::values, values, "values");
+    fill_channels(volume.channels, &RbfChannel::gradients, gradients, "gradients");
+    fill_channels(volume.channels, &RbfChannel::moments, moments, "moments");
+    fill_channels(volume.channels, &RbfChannel::hessians, hessians, "hessians");
+    for (RbfChannel& channel : volume.channels) {
         if (channel.gradients.empty()) channel.gradients.resize(volume.centers.size());
         if (channel.moments.empty()) channel.moments.resize(volume.centers.size());
-        volume.channels.push_back(std::move(channel));
     }
     volume.kernel = kernel_from_json(kernel);
     if (!boundary.is_none()) {
@@ -168,7 +176,7 @@ py::tuple fit(const std::string& shape, const std::string& scheme, int level, co
 
 std::string points_text(const RbfVolume& volume) {
     std::string text = "<subvol.RbfVolume: " + std::to_string(volume.size()) + " points, channels";
-    for (const RbfChannel& channel : volume.channels) text += " " + channel.name;
+    for (const RbfChannel& channel : volume.channels) text += " " + detail::printable(channel.name);
     return text + (volume.boundary.triangles.empty() ? ", no boundary>" : ">");
 }
 
@@ -195,7 +203,7 @@ void bind_points(py::module_& module) {
         .def_property_readonly("hessians", [](const py::object& self) { return of_channels(&RbfChannel::hessians, self); })
         .def_property_readonly("kernel", [](const RbfVolume& volume) { return to_json(volume.kernel); })
         .def_property_readonly("boundary", &boundary_arrays)
-        .def_property_readonly("bounds", [](const RbfVolume& volume) { return as_array(volume.bounds); })
+        .def_property_readonly("bounds", [](const RbfVolume& volume) { return read_only(as_array(volume.bounds)); })
         .def("__repr__", &points_text)
         .def(py::pickle(
             [](const py::object& self) {
@@ -254,6 +262,11 @@ void bind_points(py::module_& module) {
                             "there are " + std::to_string(codes.size()) + " for " + std::to_string(files.size()) + " files",
                             "codes", "one for each file, ascending");
             }
+            if (boxes.size() != files.size()) {
+                throw Error(ErrorCode::InvalidInput,
+                            "there are " + std::to_string(boxes.size()) + " for " + std::to_string(files.size()) + " files",
+                            "boxes", "one for each file");
+            }
             for (std::size_t k = 0; k < files.size(); ++k) {
                 const auto& [lower, upper] = boxes[k];
                 volume.steps.push_back(
@@ -266,10 +279,9 @@ void bind_points(py::module_& module) {
         py::arg("opacity_unit"));
     module.def(
         "write_usd_splats",
-        [](const std::string& path, const std::vector<const RbfVolume*>& steps, const std::vector<double>& codes,
-           const TransferFunction& knots) {
+        [](const std::string& path, const py::object& steps, const std::vector<double>& codes, const TransferFunction& knots) {
             std::vector<RbfVolume> volumes;
-            for (const RbfVolume* const step : steps) volumes.push_back(*step);
+            for (const RbfVolume* const step : objects_of<RbfVolume>(steps, "steps", "an RbfVolume")) volumes.push_back(*step);
             const py::gil_scoped_release without_gil;
             write_usd(path, volumes, codes, knots);
         },

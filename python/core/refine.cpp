@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bind.h"
 #include "subvol/limit.h"
-#include "subvol/limit_level.h"
 #include "subvol/mesh_motion.h"
 #include "subvol/topology.h"
 
@@ -251,18 +250,6 @@ void bind_refine(py::module_& module) {
     module.def("evaluate_limit", &limit_of, py::arg("mesh"), py::arg("cells"), py::arg("uvw"), py::arg("progress"));
     LimitOptions limit;
     describe(module, "evaluate_limit", keywords_of(limit));
-    module.def(
-        "limit_level",
-        [](const HexMesh& mesh, const std::string& scheme, double position_world, double max_cells,
-           const py::object& progress) {
-            RefineOptions options{.scheme = {.kind = scheme_named(scheme)}, .levels = 0};
-            const LimitLevel level = result_of(progress, [&](Progress* listener) {
-                options.progress = listener;
-                return find_limit_level(mesh, options, {.position_world = position_world, .max_cells = max_cells});
-            });
-            return py::make_tuple(level.level, level.converged, level.value_of_range);
-        },
-        py::arg("mesh"), py::arg("scheme"), py::arg("position_world"), py::arg("max_cells"), py::arg("progress"));
 }
 
 }  // namespace subvol::python

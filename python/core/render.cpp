@@ -92,6 +92,25 @@ struct DrawnBody {
     py::object seeds = py::none();
 };
 
+/// What `render` relies on.
+DrawnBody checked(DrawnBody body) {
+    const auto refuse = [](const char* what, const char* allowed) {
+        throw Error(ErrorCode::InvalidInput, what, "DrawnBody", allowed);
+    };
+    if ((body.mesh != nullptr) + (body.points != nullptr) + (body.voxels != nullptr) != 1) {
+        refuse("there is no body, or more than one", "one of mesh, points and voxels");
+    }
+    const bool of_mesh = body.colors != nullptr || body.patches != nullptr || body.parts != nullptr || body.source != nullptr;
+    if (of_mesh && body.mesh == nullptr) refuse("colors, patches, parts and source are of a mesh", "mesh with them");
+    if (body.colors != nullptr && body.colors->attributes.empty()) refuse("colors has no field", "a mesh with one");
+    for (const std::size_t channel : body.channels) {
+        if (body.points != nullptr && channel >= body.points->channels.size()) {
+            refuse("there is no such channel", "numbers of channels of the points");
+        }
+    }
+    return body;
+}
+
 /// The patches of a mesh, alone.
 Picture render_patches(const HexMesh& mesh, const Shells& patches, const View& view, const PictureLight& light,
                        const py::dict& given, const py::object& progress) {
@@ -151,6 +170,7 @@ std::optional<ShellScene> flow_scene(const DrawnBody& drawn, const HexMesh* show
     const LimitOptions limit{.scheme = refine.scheme};
     std::vector<Vec3> seeds;
     if (!given.flow.streamlines.empty()) seeds = seeds_in(*shown, drawn.seeds, given.flow.seed_count, limit);
+    if (drawn.source == nullptr) throw Error(ErrorCode::InvalidInput, "has no mesh of its own", "streamlines", "source with them");
     return result_of(progress, [&](Progress* listener) {
         Flow flow = flow_in(*drawn.source, given.flow, OptionNames::Keywords, listener);
         flow.limit = limit;
@@ -246,7 +266,7 @@ void bind_render(py::module_& module) {
         .def(py::init([](const HexMesh* mesh, const HexMesh* colors, const Shells* patches, const RbfVolume* points,
                          const std::vector<std::size_t>& channels, const Voxels* voxels, const TranslucentParts* parts,
                          const HexMesh* source, const py::object& seeds) {
-                 return DrawnBody{mesh, colors, patches, points, channels, voxels, parts, source, seeds};
+                 return checked({mesh, colors, patches, points, channels, voxels, parts, source, seeds});
              }),
              py::arg("mesh").none(true) = py::none(), py::arg("colors").none(true) = py::none(),
              py::arg("patches").none(true) = py::none(), py::arg("points").none(true) = py::none(),
@@ -266,10 +286,10 @@ void bind_render(py::module_& module) {
             "The points, without cells, with the fields and, last, \"patch\": the number of each.");
     py::class_<TranslucentParts>(module, "TranslucentParts", "Parts of a solid with opacities of their own, and the rest.")
         .def_property_readonly("rest", [](const TranslucentParts& parts) { return parts.rest; })
-        .def_property_readonly("points", [](const TranslucentParts& parts) { return owned(parts.shells.points); })
+        .def_property_readonly("points", [](const TranslucentParts& parts) { return read_only(owned(parts.shells.points)); })
         .def_property_readonly("values", [](const TranslucentParts& parts) {
             const std::vector<double>& values = parts.shells.attributes.front().values;
-            return owned(values, {length(values.size())});
+            return read_only(owned(values, {length(values.size())}));
         });
     module.def(
         "only_points",

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bind.h"
+#include "subvol/detail/printable.h"
 #include "subvol/picture_maker.h"
 #include "subvol/study.h"
 #include "subvol/study_run.h"
@@ -17,10 +18,11 @@ py::dict as_dict(const StudyValues& values) {
 }
 
 py::dict as_dict(const CaseResult& result) {
+    constexpr const char* kWhose = "the results of a study";
     py::dict figures;
-    figures["metrics"] = result.metrics;
-    figures["costs"] = result.costs;
-    figures["notes"] = result.notes;
+    figures["metrics"] = read_only(py::cast(result.metrics), kWhose);
+    figures["costs"] = read_only(py::cast(result.costs), kWhose);
+    figures["notes"] = read_only(py::cast(result.notes), kWhose);
     figures["failure"] = result.failure;
     return figures;
 }
@@ -87,15 +89,16 @@ void bind_studies(py::module_& module) {
     py::class_<StudyCase>(module, "StudyCase", "One computation of a study.")
         .def_readonly("id", &StudyCase::id)
         .def_readonly("name", &StudyCase::name)
-        .def_property_readonly("values", [](const StudyCase& item) { return as_dict(item.values); })
-        .def("__repr__", [](const StudyCase& item) { return "<subvol.StudyCase: " + item.name + ">"; });
+        .def_property_readonly("values",
+                               [](const StudyCase& item) { return read_only(as_dict(item.values), "the values of a case"); })
+        .def("__repr__", [](const StudyCase& item) { return "<subvol.StudyCase: " + detail::printable(item.name) + ">"; });
     py::class_<Study>(module, "Study", "Cases to run and measure, and how to show them.")
         .def_readonly("name", &Study::name)
         .def_readonly("title", &Study::title)
-        .def_property_readonly("cases", [](const Study& study) { return study.cases; })
+        .def_property_readonly("cases", [](const Study& study) { return py::tuple(py::cast(study.cases)); })
         .def("__len__", [](const Study& study) { return study.cases.size(); })
         .def("__repr__", [](const Study& study) {
-            return "<subvol.Study: " + study.name + ", " + std::to_string(study.cases.size()) + " cases>";
+            return "<subvol.Study: " + detail::printable(study.name) + ", " + std::to_string(study.cases.size()) + " cases>";
         });
     py::class_<StudyResults>(module, "StudyResults", "What the cases of a study gave, in their order.")
         .def_readonly("ran", &StudyResults::ran)
@@ -103,8 +106,10 @@ void bind_studies(py::module_& module) {
         .def_property_readonly("results",
                                [](const StudyResults& r) {
                                    py::list list;
-                                   for (const CaseResult& one : r.results) list.append(as_dict(one));
-                                   return list;
+                                   for (const CaseResult& one : r.results) {
+                                       list.append(read_only(as_dict(one), "the results of a study"));
+                                   }
+                                   return py::tuple(list);
                                })
         .def("tables", &tables_of)
         .def("csv", &results_csv)

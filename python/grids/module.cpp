@@ -8,6 +8,7 @@
 
 #include "bind.h"
 #include "given_grids.h"
+#include "subvol/detail/shared_grid.h"
 #include "subvol/nanovdb.h"
 #include "subvol/rasterize.h"
 #include "subvol/vdb_grid.h"
@@ -117,25 +118,17 @@ py::object rasterize_volume(const RbfVolume& volume, const std::optional<std::st
     return written_or_made(std::move(grids), path);
 }
 
-/// Holds the GIL: the writers take grids side by side, so these are moved there and back.
-void write_grids(const std::string& path, const std::vector<Grid>& grids, bool nano) {
+/// The grids of Python stay as they are, and other threads may use them meanwhile.
+void write_grids(const std::string& path, const py::object& given, bool nano) {
+    const std::vector<const VdbGrid*> grids = objects_of<VdbGrid>(given, "grids", "a Grid");
     if (grids.empty()) throw Error(ErrorCode::InvalidInput, "there is no grid", path, "at least one");
-    if (std::set<Grid>(grids.begin(), grids.end()).size() < grids.size()) {
+    if (std::set<const VdbGrid*>(grids.begin(), grids.end()).size() < grids.size()) {
         throw Error(ErrorCode::InvalidInput, "a grid is listed twice", path, "each once");
     }
     std::vector<VdbGrid> side_by_side;
-    side_by_side.reserve(grids.size());
-    for (const Grid& grid : grids) side_by_side.push_back(std::move(*grid));
-    const auto give_back = [&] {
-        for (std::size_t i = 0; i < grids.size(); ++i) *grids[i] = std::move(side_by_side[i]);
-    };
-    try {
-        write_files(path, side_by_side, nano);
-    } catch (...) {
-        give_back();
-        throw;
-    }
-    give_back();
+    for (const VdbGrid* const grid : grids) side_by_side.push_back(detail::shared_grid(*grid));
+    const py::gil_scoped_release without_gil;
+    write_files(path, side_by_side, nano);
 }
 
 py::tuple sample_grid(const VdbGrid& grid, double spacing_world, const py::object& progress) {
@@ -154,7 +147,8 @@ PYBIND11_MODULE(_grids, module) {
     py::module_::import("subvol._core");
     py::class_<VdbGrid, Grid>(module, "Grid", "An OpenVDB grid: voxels with centres at world = h ijk.")
         .def_property_readonly("name", [](const VdbGrid& grid) { return grid.report().name; })
-        .def_property_readonly("report", &report_of)
+        .def_property_readonly("report",
+                               [](const VdbGrid& grid) { return read_only(report_of(grid), "the report of a grid"); })
         .def_property_readonly("bounds",
                                [](const VdbGrid& grid) {
                                    const Box& box = grid.report().bounds;

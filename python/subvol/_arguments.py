@@ -5,12 +5,13 @@ from __future__ import annotations
 import os
 import warnings
 from collections.abc import Mapping
-from typing import Any, Optional, Union
+from typing import Any, TypeVar, Union
 
 from ._errors import InvalidInput, SubvolWarning
 
 Path = Union[str, bytes, "os.PathLike[str]", "os.PathLike[bytes]"]
 Kernel = Union[str, Mapping[str, Any]]
+Kind = TypeVar("Kind")
 
 TET_SCHEMES = ("tetoct", "boxspline")  # of tetrahedra as tetrahedra
 
@@ -25,6 +26,15 @@ def path_bytes(path: Path) -> bytes:
 
 def extension(path: Path) -> str:
     return os.path.splitext(os.fsdecode(path))[1].lower()
+
+
+def needed(given: Any, kinds: Union[type[Kind], tuple[type[Any], ...]], what: str) -> Kind:
+    """What was given, if it is of one of these classes. `what` is its name: "steps[1]"."""
+    if not isinstance(given, kinds):
+        names = [kind.__name__ for kind in (kinds if isinstance(kinds, tuple) else (kinds,))]
+        words = ", ".join(f"{'an' if name == 'RbfVolume' else 'a'} {name}" for name in names)
+        raise TypeError(f"{what}: {' or '.join(words.rsplit(', ', 1))} is needed, not {type(given).__name__}")
+    return given  # type: ignore[no-any-return]
 
 
 def warn(text: str, level: int = 3) -> None:

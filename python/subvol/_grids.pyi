@@ -6,6 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ._core import HexMesh, RbfVolume, Voxels
+from ._read_only import ReadOnlyDict
 
 _Listener = Optional[Callable[[str, float], object]]
 
@@ -13,7 +14,7 @@ class Grid:
     @property
     def name(self) -> str: ...
     @property
-    def report(self) -> dict[str, Any]: ...
+    def report(self) -> ReadOnlyDict[Any]: ...
     @property
     def bounds(self) -> tuple[tuple[float, float, float], tuple[float, float, float]]: ...
     @property

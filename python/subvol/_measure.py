@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core
-from ._arguments import TET_SCHEMES, Path, path_bytes, warn
+from ._arguments import TET_SCHEMES, Path, needed, path_bytes, warn
 from ._core import HexMesh, RbfVolume
 from ._errors import InvalidInput
 from ._options import described
@@ -142,8 +142,8 @@ def approximate_series(onto: HexMesh, steps: Iterable[Union[HexMesh, tuple[float
     approximator = _core.Approximator(onto, **options)
 
     def fitted() -> Iterator[tuple[HexMesh, dict[str, Any]]]:
-        for step in steps:
-            mesh = step[1] if isinstance(step, tuple) else step
+        for k, step in enumerate(steps):
+            mesh = needed(step[1] if isinstance(step, tuple) and len(step) == 2 else step, HexMesh, f"steps[{k}]")
             with listening(progress) as listener:
                 made = approximator.fit(mesh, mesh.fields, listener)
             yield made

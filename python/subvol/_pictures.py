@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core
-from ._arguments import TET_SCHEMES, Path, path_bytes, warn
+from ._arguments import TET_SCHEMES, Path, needed, path_bytes, warn
 from ._colors import TransferFunction, _camera_of, _light_of, _range_of
 from ._core import Camera, Field, HexMesh, Image, RbfVolume
 from ._errors import InvalidInput
@@ -57,8 +57,7 @@ def render(what: Drawable, *, method: str = "splat", camera: Union[None, str, Ca
     frame = np.array(what.frame) if isinstance(what, Grid) else None
     if isinstance(what, Grid) and _core.draws_kernels(method):
         what = sample_grid(what)
-    if not isinstance(what, (HexMesh, RbfVolume, Grid)):
-        raise TypeError(f"render() takes a HexMesh, RbfVolume or Grid, not {type(what).__name__}")
+    needed(what, (HexMesh, RbfVolume, Grid), "what")
     given = {name: value for name, value in options.items() if value is not None and value is not False}
     color_field = options.get("color_field")
     patches = None
@@ -256,7 +255,7 @@ def compare_fields(test: Union[HexMesh, RbfVolume, Field], reference: Union[HexM
             if not isinstance(what, HexMesh):
                 return as_field(what, field)
             mesh = _selected(what, field)
-            return Field.of_limit(mesh, next(iter(mesh.fields)), listener)
+            return Field.of_limit(mesh, next(iter(mesh.fields)), "mcq", False, listener)
 
         a, b = field_of(test), field_of(reference)
         return FieldComparison(_core.compare_fields(a, b, samples, seed, gradients, listener))

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, Optional, Union
 
 from . import _core
-from ._arguments import Path, extension, path_bytes, warn
+from ._arguments import Path, extension, needed, path_bytes, warn
 from ._colors import TransferFunction
 from ._core import HexMesh, RbfVolume
 from ._errors import InvalidInput
@@ -57,8 +57,7 @@ def _make(what: Union[HexMesh, RbfVolume], path: Optional[bytes], fields: Option
           options: dict[str, Any]) -> Any:
     from . import _grids
 
-    if not isinstance(what, (HexMesh, RbfVolume)):
-        raise TypeError(f"a HexMesh or an RbfVolume is needed, not {type(what).__name__}")
+    needed(what, (HexMesh, RbfVolume), "what")
     with listening(progress) as listener:
         if isinstance(what, RbfVolume):
             of_meshes = [name for name, value in {**options, "fields": fields}.items() if value and name not in _OF_POINTS]

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "subvol/detail/printable.h"
+#include "subvol/detail/shared_grid.h"
 #include "subvol/detail/vdb_file.h"
 #include "vdb_data.h"
 
@@ -96,6 +97,10 @@ detail::VdbData::VdbData(const openvdb::GridBase::Ptr& from)
 
 VdbGrid detail::make_vdb_grid(const openvdb::GridBase::Ptr& grid) {
     return VdbGrid(std::make_unique<VdbData>(grid));
+}
+
+VdbGrid detail::shared_grid(const VdbGrid& grid) {
+    return VdbGrid(std::make_unique<VdbData>(VdbData::of(grid)));
 }
 
 std::optional<double> detail::VdbData::value(const Vec3& x) const {
