@@ -41,7 +41,7 @@ public:
     CellsInside(const Surface& surface, const ControlMeshOptions& options, double side)
         : options_(options), grid_(grid_about(surface, options, side)), cubes_(grid_), tree_(surface), inside_(grid_.size()) {
         parallel_each(grid_.size(), [&](std::size_t c) {
-            if (!cancelled()) inside_[c] = likeness(grid_.center(c)) > kHalf ? 1 : 0;
+            if (!is_cancelled(options_.progress)) inside_[c] = likeness(grid_.center(c)) > kHalf ? 1 : 0;
         });
         report_progress(options.progress, "shape", 0);  // ends what was cancelled
         if (std::ranges::count(inside_, 1) == 0) {
@@ -61,11 +61,11 @@ public:
         std::vector<float> likenesses(all.sides.size());
         std::vector<std::uint8_t> chosen(all.sides.size());
         parallel_each(chosen.size(), [&](std::size_t c) {
-            if (cancelled()) return;
+            if (is_cancelled(options_.progress)) return;
             likenesses[c] = likeness(middle_of(all.mesh, static_cast<Index>(c)));
             chosen[c] = likenesses[c] > kHalf ? 1 : 0;
         });
-        if (cancelled()) throw Error(ErrorCode::Cancelled, "stopped in shape");
+        if (is_cancelled(options_.progress)) throw Error(ErrorCode::Cancelled, "stopped in shape");
         added = make_manifold(all.mesh, likenesses, chosen);
         SizedMesh made;
         for (std::size_t c = 0; c < chosen.size(); ++c) {
@@ -92,8 +92,6 @@ private:
         }
         return {box, side};
     }
-
-    [[nodiscard]] bool cancelled() const { return options_.progress != nullptr && options_.progress->cancelled(); }
 
     [[nodiscard]] float likeness(const Vec3& place) const { return static_cast<float>(std::abs(tree_.winding(place))); }
 
@@ -192,7 +190,7 @@ public:
         mesh_ = std::move(layered.mesh);
         start_ = mesh_.points;
         paths_ = {};
-        report_.shape.before = shape_error(mesh_, surface_, options_.scheme);
+        report_.shape.before = error_until(mesh_, surface_, options_.scheme, options_.progress);
         report_.shape.rounds = 0;
         // The first rounds have control cells, as the limit of cubes is none of the surface's.
         const int half = options_.rounds / 2;
@@ -230,13 +228,13 @@ private:
     void draw(Scheme kind, int first, int end) {
         SchemeOptions scheme = options_.scheme;
         scheme.kind = kind;
-        fitter_.emplace(build_topology(mesh_), surface_, scheme);
+        fitter_.emplace(build_topology(mesh_), surface_, scheme, options_.progress);
         fitter_->follow(sharp_, paths_);
         for (int round = first; round < end; ++round) {
             const double part = static_cast<double>(round) / options_.rounds;
             report_progress(options_.progress, "shape", (report_.refined + part) / (options_.refine + 1));
             constexpr double kMore = 1.5;
-            mesh_.points = fitter_->relaxed(mesh_.points, sides_, std::pow(kMore, round), options_.progress);
+            mesh_.points = fitter_->relaxed(mesh_.points, sides_, std::pow(kMore, round));
         }
         report_.shape.rounds += end - first;
         report_.sharp = report_of(sharp_, paths_, fitter_->sharp_error(mesh_.points));
