@@ -51,7 +51,7 @@ public:
         for (std::size_t begin = 0; begin < inside_.size(); begin += kTogether) {
             const std::size_t count = std::min(kTogether, inside_.size() - begin);
             parallel_each(count, [&](std::size_t k) {
-                if (!cancelled()) inside_[begin + k] = bodies.likeness(grid_.center(begin + k)) > kHalf ? 1 : 0;
+                if (!is_cancelled(options.progress)) inside_[begin + k] = bodies.likeness(grid_.center(begin + k)) > kHalf ? 1 : 0;
             });
             report_progress(options.progress, "fill", begin + count, inside_.size());  // ends what was cancelled
             for (std::size_t k = begin; k < begin + count; ++k) found += inside_[k];
@@ -82,11 +82,11 @@ public:
         std::vector<float> likenesses(all.sides.size());
         std::vector<std::uint8_t> chosen(all.sides.size());
         parallel_each(chosen.size(), [&](std::size_t c) {
-            if (cancelled()) return;
+            if (is_cancelled(options_.progress)) return;
             likenesses[c] = bodies_.likeness(middle_of(all.mesh, static_cast<Index>(c)));
             chosen[c] = likenesses[c] > kHalf ? 1 : 0;
         });
-        if (cancelled()) throw Error(ErrorCode::Cancelled, "stopped in shape");
+        if (is_cancelled(options_.progress)) throw Error(ErrorCode::Cancelled, "stopped in shape");
         added = make_manifold(all.mesh, likenesses, chosen);
         SizedMesh made;
         for (std::size_t c = 0; c < chosen.size(); ++c) {
@@ -120,7 +120,6 @@ private:
         return {box, side};
     }
 
-    [[nodiscard]] bool cancelled() const { return options_.progress != nullptr && options_.progress->cancelled(); }
 
     void check_count(std::size_t cells) const {
         if (cells <= options_.max_cells) return;
@@ -235,7 +234,7 @@ public:
         mesh_ = std::move(layered.mesh);
         start_ = mesh_.points;
         paths_ = {};
-        report_.shape.before = shape_error(mesh_, surface_, options_.scheme);
+        report_.shape.before = error_until(mesh_, surface_, options_.scheme, options_.progress);
         report_.shape.rounds = 0;
         // The first rounds have control cells, as the limit of cubes is none of the surface's.
         const int half = options_.rounds / 2;
@@ -273,13 +272,13 @@ private:
     void draw(Scheme kind, int first, int end) {
         SchemeOptions scheme = options_.scheme;
         scheme.kind = kind;
-        fitter_.emplace(build_topology(mesh_), surface_, scheme);
+        fitter_.emplace(build_topology(mesh_), surface_, scheme, options_.progress);
         fitter_->follow(sharp_, paths_);
         for (int round = first; round < end; ++round) {
             const double part = static_cast<double>(round) / options_.rounds;
             report_progress(options_.progress, "shape", (report_.refined + part) / (options_.refine + 1));
             constexpr double kMore = 1.5;
-            mesh_.points = fitter_->relaxed(mesh_.points, sides_, std::pow(kMore, round), options_.progress);
+            mesh_.points = fitter_->relaxed(mesh_.points, sides_, std::pow(kMore, round));
         }
         report_.shape.rounds += end - first;
         report_.sharp = report_of(sharp_, paths_, fitter_->sharp_error(mesh_.points));

@@ -92,7 +92,7 @@ Surface fine_boundary(const HexMesh& mesh, const SchemeOptions& scheme) {
 
 namespace detail {
 
-ShapeFitter::ShapeFitter(const Topology& control, const Surface& surface, const SchemeOptions& scheme)
+ShapeFitter::ShapeFitter(const Topology& control, const Surface& surface, const SchemeOptions& scheme, const Progress* progress)
     : cells_(control.cells),
       edges_(control.edges),
       point_edges_(control.point_edges),
@@ -100,7 +100,8 @@ ShapeFitter::ShapeFitter(const Topology& control, const Surface& surface, const 
       children_(scheme.kind == Scheme::Linear ? RefinementTables{control.point_count, {}, control.cells, {}, {}}
                                               : refinement_tables(control, {.scheme = scheme, .levels = 1})),
       matrix_(control, scheme),
-      distances_(surface, matrix_.rows()) {
+      distances_(surface, matrix_.rows(), progress),
+      progress_(progress) {
 }
 
 std::vector<Pull> ShapeFitter::pulls(const Vectors& control) const {
@@ -146,7 +147,7 @@ Vectors ShapeFitter::solved(const std::vector<Pull>& pulls, double stiffness) co
     constexpr int kSteps = 300;
     constexpr double kEnough = 1e-8;
     const double enough = kEnough * left;
-    for (int k = 0; k < kSteps && left > enough; ++k) {
+    for (int k = 0; k < kSteps && left > enough && !is_cancelled(progress_); ++k) {
         const Vectors image = applied(way);
         const double length = left / product_of(way, image);
         parallel_each(found.size(), [&](std::size_t p) {
@@ -235,7 +236,7 @@ HexMesh finished(HexMesh mesh, const Surface& surface, const FitShapeOptions& op
         report.warnings.push_back(counted(report.inverted_cells.size(), "control cell is", "control cells are") +
                                   " turned inside out at a corner: " + first_of(report.inverted_cells));
     }
-    report.after = shape_error(mesh, surface, options.scheme);
+    report.after = error_until(mesh, surface, options.scheme, options.progress);
     const OpenEdges open = open_edges(surface);
     report.open_edges = open.count;
     report.open_length_world = open.length_world;
@@ -250,7 +251,15 @@ HexMesh finished(HexMesh mesh, const Surface& surface, const FitShapeOptions& op
         report.warnings.push_back("the surface is open: " + counted(open.count, "edge belongs", "edges belong") +
                                   " to one triangle alone, of the length " + number_text(open.length_world, kDigits));
     }
+    report_progress(options.progress, "fit shape", 1);  // ends what was cancelled
     return mesh;
+}
+
+ShapeError error_until(const HexMesh& mesh, const Surface& surface, const SchemeOptions& scheme, const Progress* progress) {
+    validate(mesh);
+    validate(surface);
+    const Surface boundary = fine_boundary(mesh, scheme);
+    return SurfaceDistances(surface, boundary.points.size(), progress).error(boundary);
 }
 
 }  // namespace detail
@@ -319,10 +328,7 @@ Facts facts_of(const FitShapeReport& report) {
 }
 
 ShapeError shape_error(const HexMesh& mesh, const Surface& surface, const SchemeOptions& scheme) {
-    validate(mesh);
-    validate(surface);
-    const Surface boundary = fine_boundary(mesh, scheme);
-    return SurfaceDistances(surface, boundary.points.size()).error(boundary);
+    return error_until(mesh, surface, scheme, nullptr);
 }
 
 ShapedMesh fit_shape(HexMesh mesh, const Surface& surface, const FitShapeOptions& given) {
@@ -334,8 +340,8 @@ ShapedMesh fit_shape(HexMesh mesh, const Surface& surface, const FitShapeOptions
     if (options.scheme.crease_angle_deg) tag_creases(mesh, *options.scheme.crease_angle_deg);
     options.scheme.crease_angle_deg.reset();
     FitShapeReport report;
-    report.before = shape_error(mesh, surface, options.scheme);
-    const ShapeFitter fitter(build_topology(mesh), surface, options.scheme);
+    report.before = error_until(mesh, surface, options.scheme, options.progress);
+    const ShapeFitter fitter(build_topology(mesh), surface, options.scheme, options.progress);
     const std::vector<Vec3> start = mesh.points;
     double best = std::numeric_limits<double>::infinity();
     for (int round = 0; round < options.rounds; ++round) {

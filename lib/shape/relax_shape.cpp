@@ -169,7 +169,7 @@ public:
     explicit UntilCancelled(const Progress* progress) : progress_(progress) {}
 
     ceres::CallbackReturnType operator()(const ceres::IterationSummary&) override {
-        return progress_ != nullptr && progress_->cancelled() ? ceres::SOLVER_ABORT : ceres::SOLVER_CONTINUE;
+        return is_cancelled(progress_) ? ceres::SOLVER_ABORT : ceres::SOLVER_CONTINUE;
     }
 
 private:
@@ -178,8 +178,8 @@ private:
 
 }  // namespace
 
-std::vector<Vec3> ShapeFitter::relaxed(const std::vector<Vec3>& control, const std::vector<double>& sides, double weight,
-                                       const Progress* progress) const {
+std::vector<Vec3> ShapeFitter::relaxed(const std::vector<Vec3>& control, const std::vector<double>& sides,
+                                       double weight) const {
     std::vector<Vec3> ways(control.size(), Vec3(0.0));
     const ceres::GradientProblem problem(new ShapeEnergy(*this, control, sides, weight));
     ceres::GradientProblemSolver::Options options;
@@ -187,7 +187,7 @@ std::vector<Vec3> ShapeFitter::relaxed(const std::vector<Vec3>& control, const s
     options.max_num_iterations = kSteps;
     options.logging_type = ceres::SILENT;
     options.function_tolerance = 1e-5;
-    UntilCancelled until_cancelled(progress);
+    UntilCancelled until_cancelled(progress_);
     options.callbacks = {&until_cancelled};
     ceres::GradientProblemSolver::Summary summary;
     ceres::Solve(options, problem, &ways.front().x, &summary);

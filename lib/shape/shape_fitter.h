@@ -19,8 +19,10 @@ class ShapeEnergy;
 /// The boundary of a limit and a surface that it is fitted to.
 class ShapeFitter {
 public:
-    /// surface: referred to
-    ShapeFitter(const Topology& control, const Surface& surface, const SchemeOptions& scheme);
+    /// surface:  referred to
+    /// progress: asked whether the work is cancelled: the steps end then, and what they return is of no use
+    ShapeFitter(const Topology& control, const Surface& surface, const SchemeOptions& scheme,
+                const Progress* progress = nullptr);
 
     /// Creases are drawn to sharp edges of the surface, too, by `relaxed`.
     ///
@@ -52,9 +54,8 @@ public:
     /// sides:  of each cell, if it were not distorted at all
     /// weight: of the squares of distances in sides, about each control point of the boundary, beside the distortion of a
     /// corner source: [garanzha2021]
-    /// progress: only asked whether the work is cancelled: then the steps end
-    [[nodiscard]] std::vector<Vec3> relaxed(const std::vector<Vec3>& control, const std::vector<double>& sides, double weight,
-                                            const Progress* progress = nullptr) const;
+    [[nodiscard]] std::vector<Vec3> relaxed(const std::vector<Vec3>& control, const std::vector<double>& sides,
+                                            double weight) const;
 
 private:
     friend class ShapeEnergy;
@@ -87,10 +88,15 @@ private:
     RefinementTables children_;
     SurfaceMatrix matrix_;
     SurfaceDistances distances_;
+    const Progress* progress_;
     SharpPulls sharp_;
 };
 
 /// The end of a fit: folds are mended if that is asked for, and the report gets what is known in the end.
 [[nodiscard]] HexMesh finished(HexMesh mesh, const Surface& surface, const FitShapeOptions& options, FitShapeReport& report);
+
+/// `shape_error`, of no use once the work is cancelled.
+[[nodiscard]] ShapeError error_until(const HexMesh& mesh, const Surface& surface, const SchemeOptions& scheme,
+                                     const Progress* progress);
 
 }  // namespace subvol::detail

@@ -52,8 +52,8 @@ std::vector<std::array<std::uint8_t, 3>> open_sides_of(const Surface& surface) {
 
 }  // namespace
 
-SurfaceDistances::SurfaceDistances(const Surface& surface, std::size_t places)
-    : open_sides_(open_sides_of(surface)), tree_(surface), places_(places_on(surface, places)) {
+SurfaceDistances::SurfaceDistances(const Surface& surface, std::size_t places, const Progress* progress)
+    : open_sides_(open_sides_of(surface)), tree_(surface), places_(places_on(surface, places)), progress_(progress) {
 }
 
 bool SurfaceDistances::at_hole(const SurfacePlace& place) const {
@@ -75,11 +75,13 @@ std::vector<Pull> SurfaceDistances::pulls(const Surface& boundary, double weight
     };
     std::vector<Pull> made(count);
     parallel_each(first, [&](std::size_t p) {
+        if (is_cancelled(progress_)) return;
         const SurfacePlace near = tree_.nearest(boundary.points[p]);
         const auto point = static_cast<Index>(p);
         made[p] = {{point, point, point}, {1, 0, 0}, near.toward, near.distance, at_hole(near) ? 0 : weight_at(near.distance)};
     });
     parallel_each(places_.size(), [&](std::size_t k) {
+        if (is_cancelled(progress_)) return;
         const SurfacePlace near = boundary_tree.nearest(places_[k]);
         made[first + k] = {boundary.triangles[near.triangle], near.weights, -near.toward, near.distance,
                            weight_at(near.distance)};

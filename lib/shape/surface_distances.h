@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "subvol/fit_shape.h"
+#include "subvol/progress.h"
 #include "surface_tree.h"
 
 namespace subvol::detail {
@@ -28,8 +29,9 @@ struct Pull {
 /// surface.
 class SurfaceDistances {
 public:
-    /// surface: referred to; places: how many
-    SurfaceDistances(const Surface& surface, std::size_t places);
+    /// surface:  referred to; places: how many
+    /// progress: asked whether the work is cancelled: what is returned then is of no use
+    SurfaceDistances(const Surface& surface, std::size_t places, const Progress* progress = nullptr);
 
     /// The distances from all points of a boundary, then those from all places. The weights sum to `weight`, but for distances
     /// longer than a side of the boundary, which may be to the wrong place. Points over a hole of the surface, to whose edge
@@ -48,6 +50,11 @@ private:
     std::vector<std::array<std::uint8_t, 3>> open_sides_;  // of each triangle
     SurfaceTree tree_;
     std::vector<Vec3> places_;
+    const Progress* progress_;
 };
+
+[[nodiscard]] inline bool is_cancelled(const Progress* progress) {
+    return progress != nullptr && progress->cancelled();
+}
 
 }  // namespace subvol::detail
