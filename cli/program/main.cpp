@@ -25,6 +25,7 @@
 #include "ranks.h"
 #include "subvol/detail/atomic_file.h"
 #include "subvol/detail/printable.h"
+#include "subvol/detail/several_errors.h"
 #include "subvol/error.h"
 #include "subvol/version.h"
 #include "text.h"

@@ -17,8 +17,9 @@ import subprocess
 import sys
 import unittest
 
+import documents_test
 from command import COMMAND, HANGS_AFTER, InFolder, subvol
-from documents_test import DOCUMENTS, TOP, WALKS, CodeInDocuments
+from documents_test import DOCUMENTS, TOP, WALKS
 from patches_test import foam, write_foam
 
 BLOCK = re.compile(r"(?:^<!-- (needs|with|not run): (.*?) -->\n)?^```(\w*)\n(.*?)^```$", re.M | re.S)
@@ -359,8 +360,8 @@ class Marks(unittest.TestCase):
 
 
 @unittest.skipUnless("SUBVOL_COMPILER" in os.environ, "no compiler is named by SUBVOL_COMPILER")
-class Code(CodeInDocuments):
-    test_the_examples_of_the_table_compile = test_the_program_of_the_readme_compiles = None  # of documents_test.py
+class Code(documents_test.CodeInDocuments):
+    test_the_examples_of_the_table_compile = None  # in documents_test.py
 
     def test_the_blocks_of_all_pages_compile(self):
         functions = ""
