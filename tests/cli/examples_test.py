@@ -43,7 +43,10 @@ def all_blocks():
 
 # What is smaller here: the same command with less work.
 SMALLER = [(r"(--resolution )\d+", r"\g<1>16"), (r"(--size )\d+x\d+", r"\g<1>40x30"), (r"(--frames )1-\d+", r"\g<1>1-3"),
-           (r"(--frames )\d+$", r"\g<1>3"), (r"(--frames )\d+(?= )", r"\g<1>3"), (r"(--turntable )\d+", r"\g<1>3"), (r"(--cells )\d+", r"\g<1>6"),
+           (r"(--frames )\d+$", r"\g<1>3"), (r"(--frames )\d+(?= )", r"\g<1>3"), (r"(--turntable )\d+", r"\g<1>3"), (r"(--cells )\d+", r"\g<1>4"), (r"(subvol mesh (?!.*--cells)\S+)", r"\1 --cells 4"),
+           (r"(subvol vdb (?!.*(--resolution|--voxel-size))\S+)", r"\1 --resolution 16"),
+           (r"(subvol usd (?!.*(--resolution|\.vdb|\.svk))\S+)", r"\1 --resolution 16"),
+           (r"model:(nozzle|pawn)(?= )", r"model:\1:4"), (r"model:twist:8", "model:twist:3"),
            (r"(--count )\d+", r"\g<1>9"), (r"(-count )\d+", r"\g<1>6"), (r"(subvol render (?!.*(--size|--legend))\S+)", r"\1 --size 40x30"),
            (r"\.mp4", "_##.png")]  # no ffmpeg is needed for single pictures
 # Files of other programs, of which the tests of their readers make real ones: here files with the same contents.
@@ -91,7 +94,7 @@ class Files:
             self.command("subdivide", "made.vtk", "-o", name, "--levels", 0)
 
     def surface(self, name):
-        self.command("surface", "model:ball:4", "-o", name, "--boundary")
+        self.command("surface", "model:ball:2", "-o", name, "--boundary")
 
     def series(self, pattern, count=3):
         for k in range(1, count + 1):
