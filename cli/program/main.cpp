@@ -26,6 +26,7 @@
 #include "subvol/detail/atomic_file.h"
 #include "subvol/detail/error_text.h"
 #include "subvol/detail/printable.h"
+#include "subvol/detail/several_errors.h"
 #include "subvol/error.h"
 #include "subvol/version.h"
 #include "text.h"

@@ -204,10 +204,6 @@ class CodeInDocuments(unittest.TestCase):
                      "const Optics& optics, Image& image, const VdbGrid& grid, const std::vector<double>& values, "
                      "const Study& study")
 
-    def test_the_program_of_the_readme_compiles(self):
-        code = re.search(r"```cpp\n(.*?)```", (TOP / "README.md").read_text(), re.S)[1]
-        self.compile("\n".join(line for line in code.splitlines() if not line.startswith("#include")))
-
 
 if __name__ == "__main__":
     unittest.main()

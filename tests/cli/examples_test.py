@@ -17,8 +17,9 @@ import subprocess
 import sys
 import unittest
 
+import documents_test
 from command import COMMAND, HANGS_AFTER, InFolder, subvol
-from documents_test import DOCUMENTS, TOP, WALKS, CodeInDocuments
+from documents_test import DOCUMENTS, TOP, WALKS
 from patches_test import foam, write_foam
 
 BLOCK = re.compile(r"(?:^<!-- (needs|with|not run): (.*?) -->\n)?^```(\w*)\n(.*?)^```$", re.M | re.S)
@@ -42,7 +43,10 @@ def all_blocks():
 
 # What is smaller here: the same command with less work.
 SMALLER = [(r"(--resolution )\d+", r"\g<1>16"), (r"(--size )\d+x\d+", r"\g<1>40x30"), (r"(--frames )1-\d+", r"\g<1>1-3"),
-           (r"(--frames )\d+$", r"\g<1>3"), (r"(--frames )\d+(?= )", r"\g<1>3"), (r"(--turntable )\d+", r"\g<1>3"), (r"(--cells )\d+", r"\g<1>6"),
+           (r"(--frames )\d+$", r"\g<1>3"), (r"(--frames )\d+(?= )", r"\g<1>3"), (r"(--turntable )\d+", r"\g<1>3"), (r"(--cells )\d+", r"\g<1>4"), (r"(subvol mesh (?!.*--cells)\S+)", r"\1 --cells 4"),
+           (r"(subvol vdb (?!.*(--resolution|--voxel-size))\S+)", r"\1 --resolution 16"),
+           (r"(subvol usd (?!.*(--resolution|\.vdb|\.svk))\S+)", r"\1 --resolution 16"),
+           (r"model:(nozzle|pawn)(?= )", r"model:\1:4"), (r"model:twist:8", "model:twist:3"),
            (r"(--count )\d+", r"\g<1>9"), (r"(-count )\d+", r"\g<1>6"), (r"(subvol render (?!.*(--size|--legend))\S+)", r"\1 --size 40x30"),
            (r"\.mp4", "_##.png")]  # no ffmpeg is needed for single pictures
 # Files of other programs, of which the tests of their readers make real ones: here files with the same contents.
@@ -90,7 +94,7 @@ class Files:
             self.command("subdivide", "made.vtk", "-o", name, "--levels", 0)
 
     def surface(self, name):
-        self.command("surface", "model:ball:4", "-o", name, "--boundary")
+        self.command("surface", "model:ball:2", "-o", name, "--boundary")
 
     def series(self, pattern, count=3):
         for k in range(1, count + 1):
@@ -359,8 +363,8 @@ class Marks(unittest.TestCase):
 
 
 @unittest.skipUnless("SUBVOL_COMPILER" in os.environ, "no compiler is named by SUBVOL_COMPILER")
-class Code(CodeInDocuments):
-    test_the_examples_of_the_table_compile = test_the_program_of_the_readme_compiles = None  # of documents_test.py
+class Code(documents_test.CodeInDocuments):
+    test_the_examples_of_the_table_compile = None  # in documents_test.py
 
     def test_the_blocks_of_all_pages_compile(self):
         functions = ""
