@@ -3,14 +3,17 @@
 #include <tbb/global_control.h>
 
 #include <algorithm>
+#include <limits>
 #include <random>
 
 #include "lib/temp_folder.h"
 #include "lib/test_meshes.h"
+#include "subvol/cell.h"
 #include "subvol/certificate.h"
 #include "subvol/limit.h"
 #include "subvol/mesh_report.h"
 #include "subvol/model.h"
+#include "subvol/refine.h"
 
 namespace subvol {
 namespace check_folds_test {
@@ -174,6 +177,56 @@ TEST(CheckFolds, WhatIsNotProvedIsRefused) {
     EXPECT_THAT(error_of([&] { (void)check_folds(mesh, {.scheme = {.tension = 0.05}}); }), HasSubstr("tension"));
     EXPECT_EQ(check_folds(mesh, {.scheme = {.tension = 0}}).report.proved, 8u);
     EXPECT_THAT(error_of([&] { (void)check_folds(mesh, {.levels = 99}); }), HasSubstr("levels"));
+}
+
+// A second evaluator: the corners of the descendants that subdivision makes. All cells of the small ball touch irregular edges.
+TEST(CheckFolds, SamplesFindFoldsNearIrregularEdges) {
+    HexMesh mesh = make_model("ball", 2);
+    mesh.attributes.clear();
+    std::mt19937 dice(11);
+    std::uniform_real_distribution<double> off(-0.22, 0.22);
+    for (Vec3& x : mesh.points) {
+        if (glm::length(x) < 0.9) x += Vec3(off(dice), off(dice), off(dice));
+    }
+    const FoldCheck check = check_folds(mesh);
+    const FoldReport::Sampled& sampled = check.report.sampled;
+    EXPECT_GT(sampled.folded, 0U);
+    EXPECT_LT(sampled.least, 0);
+    EXPECT_GE(sampled.cells, check.report.irregular + sampled.folded);
+    EXPECT_GE(sampled.places, 100 * sampled.cells);
+
+    constexpr std::size_t kLevels = 4, kDescendants = 4096;
+    const HexMesh fine = refine(mesh, {.levels = kLevels});
+    // det ∂x/∂u at the corners of a descendant, the edges of which are 1/16 of the cell's
+    const auto determinant = [&](std::size_t cell, std::size_t corner) {
+        const auto& points = fine.cells[cell];
+        const auto& [a, b, c] = kCornerNeighbors[corner];
+        const Vec3& x = fine.points[points[corner]];
+        return kDescendants * glm::dot(fine.points[points[a]] - x,
+                                       glm::cross(fine.points[points[b]] - x, fine.points[points[c]] - x));
+    };
+    double mean = 0;
+    std::vector<double> least(mesh.cells.size(), std::numeric_limits<double>::infinity());
+    for (std::size_t n = 0; n < fine.cells.size(); ++n) {
+        for (std::size_t k = 0; k < 8; ++k) {
+            const double det = determinant(n, k);
+            mean += det / (8.0 * static_cast<double>(fine.cells.size()));
+            least[n / kDescendants] = std::min(least[n / kDescendants], det);
+        }
+    }
+    constexpr double kClear = 0.1;  // of the mean: far more than derivatives change within 1/16 of a cell where they are continuous
+    std::size_t confirmed = 0;
+    for (const FoldPlace& at : check.places) {
+        if (!at.sampled) continue;
+        EXPECT_LT(at.determinant, 0);
+        if (at.determinant > -kClear * mean) continue;
+        ++confirmed;
+        EXPECT_LT(least[at.cell], 0) << at.cell;
+    }
+    EXPECT_GT(confirmed, 0U);
+    for (std::size_t c = 0; c < least.size(); ++c) {
+        if (least[c] < -kClear * mean) EXPECT_EQ(check.verdicts[c], FoldVerdict::Folded) << c;
+    }
 }
 
 }  // namespace check_folds_test
