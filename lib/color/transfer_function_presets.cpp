@@ -10,6 +10,7 @@
 #include "curves.h"
 #include "knot_values.h"
 #include "subvol/detail/near_name.h"
+#include "subvol/detail/small_letters.h"
 #include "subvol/error.h"
 #include "subvol/srgb.h"
 #include "subvol/transfer_function.h"
@@ -275,9 +276,7 @@ std::vector<std::string> transfer_function_names() {
 
 TransferFunction transfer_function_preset(const std::string& given, double min, double max) {
     const KnotRange range = usable_range(min, max);
-    std::string name = given;
-    std::ranges::transform(name, name.begin(),
-                           [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+    std::string name = detail::small_letters(given);
     const auto alias = std::ranges::find(kAliases, name, &Alias::name);
     if (alias != kAliases.end()) name = alias->preset;
     const auto preset = std::ranges::find(kPresets, name, &Preset::name);

@@ -6,6 +6,7 @@
 //
 // A quantity that is one term keeps the channels of the term.
 #include "subvol/quantity.h"
+#include "subvol/detail/small_letters.h"
 
 #include <muParser.h>
 #include <tbb/blocked_range.h>
@@ -22,13 +23,34 @@
 #include "subvol/detail/error_text.h"
 #include "subvol/detail/near_name.h"
 #include "subvol/detail/printable.h"
+#include "subvol/detail/scalar_groups.h"
 #include "subvol/error.h"
 #include "tensor_functions.h"
 
 namespace subvol {
 namespace {
 
-constexpr std::array<std::string_view, 5> kDerivatives{"grad", "div", "curl", "vorticity", "qcriterion"};
+constexpr std::array<std::string_view, 8> kDerivatives{"grad", "gradient", "div",       "divergence",
+                                                       "curl", "rot",      "vorticity", "qcriterion"};
+
+/// Functions that make a field of scalars.
+constexpr std::array<std::string_view, 2> kMakers{"vector", "tensor"};
+
+/// Words of other programs for functions of ours.
+constexpr std::array<std::pair<std::string_view, std::string_view>, 8> kOtherWords{{{"mag", "norm"},
+                                                                                    {"magnitude", "norm"},
+                                                                                    {"vonmises", "mises"},
+                                                                                    {"von_mises", "mises"},
+                                                                                    {"gradient", "grad"},
+                                                                                    {"divergence", "div"},
+                                                                                    {"rot", "curl"},
+                                                                                    {"vorticity", "curl"}}};
+
+/// Our word for a function, whoever's word it is.
+std::string_view our_word(std::string_view word) {
+    const auto* const other = std::ranges::find(kOtherWords, word, &std::pair<std::string_view, std::string_view>::first);
+    return other == kOtherWords.end() ? word : other->second;
+}
 
 bool is_letter(char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
@@ -59,9 +81,33 @@ std::vector<std::string> names_of(const HexMesh& mesh) {
     return names;
 }
 
+bool is_ours(std::string_view word) {
+    return detail::find_tensor_function(our_word(word)) != nullptr ||
+           std::ranges::find(kDerivatives, word) != kDerivatives.end() || std::ranges::find(kMakers, word) != kMakers.end();
+}
+
 [[noreturn]] void refuse_name(const HexMesh& mesh, const std::string& name) {
+    if (is_ours(name)) {
+        throw Error(ErrorCode::InvalidInput, "'" + name + "' is a function, of a field in parentheses", {},
+                    name + "(NAME); the mesh has " + (mesh.attributes.empty() ? "no fields" : detail::list_of(mesh)));
+    }
     throw Error(ErrorCode::InvalidInput, "there is no field \"" + name + "\"" + detail::did_you_mean(name, names_of(mesh)), {},
                 mesh.attributes.empty() ? "the mesh has no fields" : "the mesh has: " + detail::list_of(mesh));
+}
+
+/// Scalars as the channels of one field.
+Attribute joined(std::span<const Attribute* const> scalars, std::string name) {
+    Attribute result{std::move(name), static_cast<int>(scalars.size()), {}};
+    result.values.resize(scalars.size() * scalars[0]->values.size());
+    for (std::size_t c = 0; c < scalars.size(); ++c) {
+        for (std::size_t p = 0; p < scalars[c]->values.size(); ++p) {
+            result.values[p * scalars.size() + c] = scalars[c]->values[p];
+        }
+    }
+    if (std::ranges::none_of(scalars, [](const Attribute* scalar) { return scalar->bounds.empty(); })) {
+        for (const Attribute* scalar : scalars) result.bounds.push_back(scalar->bounds[0]);
+    }
+    return result;
 }
 
 /// The channel that a component's name or number means.
@@ -70,7 +116,7 @@ std::optional<std::size_t> channel_named(int channels, std::string_view componen
     const char* const end = component.data() + component.size();
     const auto read = std::from_chars(component.data(), end, number);
     if (read.ec == std::errc() && read.ptr == end && number < static_cast<std::size_t>(channels)) return number;
-    std::string name(component);
+    std::string name = detail::small_letters(component);
     const std::vector<std::string> names = component_names(channels);
     auto found = std::ranges::find(names, name);
     if (found == names.end() && channels == 6) {
@@ -137,8 +183,7 @@ public:
         begin += text.find_first_not_of(' ') == std::string_view::npos ? 0 : text.find_first_not_of(' ');
         text = trimmed(text);
         if (text.empty()) refuse("is empty", begin);
-        if (const Attribute* field = mesh_.find_attribute(text)) return *field;
-        if (auto component = component_of_field(text)) return std::move(*component);
+        if (auto named = name(text)) return std::move(*named);
         std::size_t at = 0;
         if (is_quote(text[0]) || is_letter(text[0])) {
             auto whole = term(text, at, begin, depth);
@@ -147,7 +192,26 @@ public:
         return arithmetic(text, begin, depth);
     }
 
+    /// What a name alone means: a field, a component of a field, or a function of tensors where it has one that it can be of.
+    [[nodiscard]] std::optional<Attribute> name(std::string_view text) const {
+        if (auto field = detail::named_field(mesh_, text)) return field;
+        if (auto component = component_of_field(text)) return component;
+        const detail::TensorFunction* function = detail::find_tensor_function(our_word(text));
+        const Attribute* tensor = function != nullptr && !function->sizes.empty() ? only_tensor() : nullptr;
+        return tensor == nullptr ? std::nullopt : std::optional(each_point(*tensor, function->value));
+    }
+
 private:
+    /// The stress of the mesh, or its tensor, if there is one alone; else null.
+    [[nodiscard]] const Attribute* only_tensor() const {
+        const auto only = [&](const auto& is_one) -> const Attribute* {
+            if (std::ranges::count_if(mesh_.attributes, is_one) != 1) return nullptr;
+            return &*std::ranges::find_if(mesh_.attributes, is_one);
+        };
+        if (const Attribute* stress = only(detail::is_stress)) return stress;
+        return only([](const Attribute& field) { return field.channels == 6 || field.channels == 9; });
+    }
+
     [[noreturn]] void refuse(const std::string& message, std::size_t position) const {
         std::string allowed = "numbers, functions and x, y, z";
         if (!mesh_.attributes.empty()) allowed += ", " + detail::list_of(mesh_);
@@ -155,15 +219,19 @@ private:
                     "expression '" + detail::shortened(source_) + "', position " + std::to_string(position), allowed);
     }
 
-    /// NAME.x of any field, whatever its name.
+    /// NAME.x of any field, whatever its name; NAME_x, as files without vectors call it; U.magnitude, S.Mises, as other
+    /// programs do.
     [[nodiscard]] std::optional<Attribute> component_of_field(std::string_view text) const {
-        const std::size_t dot = text.rfind('.');
-        if (dot == std::string_view::npos) return std::nullopt;
-        const Attribute* field = mesh_.find_attribute(text.substr(0, dot));
-        if (field == nullptr) return std::nullopt;
-        const auto channel = channel_named(field->channels, text.substr(dot + 1));
-        if (!channel) return std::nullopt;
-        return channel_of(*field, *channel, std::string(text));
+        const std::size_t separator = text.find_last_of("._");
+        if (separator == std::string_view::npos) return std::nullopt;
+        const auto field = detail::named_field(mesh_, text.substr(0, separator));
+        if (!field) return std::nullopt;
+        if (const auto channel = channel_named(field->channels, text.substr(separator + 1))) {
+            return channel_of(*field, *channel, std::string(text));
+        }
+        const auto* function = detail::find_tensor_function(our_word(detail::small_letters(text.substr(separator + 1))));
+        if (function == nullptr || field->channels == 1 || !function->takes_channels(field->channels)) return std::nullopt;
+        return each_point(*field, function->value);
     }
 
     /// The term at a place of the text, which moves behind it; nothing, and the place stays, if there is none.
@@ -173,19 +241,20 @@ private:
             end = text.find(text[at], at + 1);
             if (end == std::string_view::npos) refuse(std::string("has no second ") + text[at], begin + at);
             const std::string name(text.substr(at + 1, end - at - 1));
-            const Attribute* field = mesh_.find_attribute(name);
-            if (field == nullptr)
-                refuse("there is no field \"" + name + "\"" + detail::did_you_mean(name, names_of(mesh_)), begin + at);
+            auto field = detail::named_field(mesh_, name);
+            if (!field) refuse("there is no field \"" + name + "\"" + detail::did_you_mean(name, names_of(mesh_)), begin + at);
             at = end + 1;
-            return with_component(*field, text, at, begin);
+            return with_component(std::move(*field), text, at, begin);
         }
         while (end < text.size() && (is_letter(text[end]) || is_digit(text[end]) || text[end] == '.')) ++end;
         const std::string_view word = text.substr(at, end - at);
         if (end < text.size() && text[end] == '(') {
             if (!is_ours(word)) return std::nullopt;
             const std::size_t close = closing(text, end, begin);
-            const Attribute argument = value(text.substr(end + 1, close - end - 1), begin + end + 1, depth + 1);
-            Attribute result = call(word, argument, begin + at);
+            const std::string_view inside = text.substr(end + 1, close - end - 1);
+            Attribute result = std::ranges::find(kMakers, word) != kMakers.end()
+                                   ? made(word, inside, begin + at, begin + end + 1, depth + 1)
+                                   : call(our_word(word), value(inside, begin + end + 1, depth + 1), begin + at);
             at = close + 1;
             return with_component(std::move(result), text, at, begin);
         }
@@ -198,13 +267,9 @@ private:
             at = end;
             return coordinate(word[0] - 'x');
         }
-        if (const Attribute* field = mesh_.find_attribute(word)) {
-            at = end;
-            return *field;
-        }
-        auto component = component_of_field(word);
-        if (component) at = end;
-        return component;
+        auto named = name(word);
+        if (named) at = end;
+        return named;
     }
 
     /// `.x` behind a term is its component.
@@ -225,10 +290,6 @@ private:
         return channel_of(field, *channel, field.name);
     }
 
-    [[nodiscard]] static bool is_ours(std::string_view word) {
-        return detail::find_tensor_function(word) != nullptr || std::ranges::find(kDerivatives, word) != kDerivatives.end();
-    }
-
     [[nodiscard]] std::size_t closing(std::string_view text, std::size_t open, std::size_t begin) const {
         int depth = 0;
         char quote = 0;
@@ -241,15 +302,54 @@ private:
         refuse("has no closing parenthesis", begin + open);
     }
 
+    /// The vector or the tensor of scalars.
+    ///
+    /// inside: the scalars, with commas between
+    [[nodiscard]] Attribute made(std::string_view word, std::string_view inside, std::size_t position, std::size_t begin,
+                                 int depth) const {
+        std::vector<Attribute> scalars;
+        for (std::size_t from = 0; from <= inside.size();) {
+            const std::size_t end = next_comma(inside, from);
+            scalars.push_back(value(inside.substr(from, end - from), begin + from, depth));
+            if (scalars.back().channels != 1) {
+                refuse(std::string(word) + " takes scalars, not one with " + std::to_string(scalars.back().channels) +
+                           " components",
+                       begin + from);
+            }
+            from = end + 1;
+        }
+        const bool right = word == "vector" ? scalars.size() == 3 : scalars.size() == 6 || scalars.size() == 9;
+        if (!right) {
+            refuse(std::string(word) + " takes " +
+                       (word == "vector" ? "x, y, z" : "xx, yy, zz, xy, yz, xz, or all nine: xx, xy, xz, yx, …") + ", not " +
+                       std::to_string(scalars.size()) + (scalars.size() == 1 ? " scalar" : " scalars"),
+                   position);
+        }
+        std::vector<const Attribute*> members;
+        for (const Attribute& scalar : scalars) members.push_back(&scalar);
+        return joined(members, std::string(word));
+    }
+
+    /// Where the next comma is that is in no parentheses and no quotes; else the end.
+    [[nodiscard]] static std::size_t next_comma(std::string_view text, std::size_t from) {
+        int depth = 0;
+        char quote = 0;
+        for (std::size_t at = from; at < text.size(); ++at) {
+            if (quote == 0 ? is_quote(text[at]) : text[at] == quote) quote = quote == 0 ? text[at] : '\0';
+            if (quote != 0) continue;
+            depth += text[at] == '(' ? 1 : text[at] == ')' ? -1 : 0;
+            if (depth == 0 && text[at] == ',') return at;
+        }
+        return text.size();
+    }
+
     [[nodiscard]] Attribute call(std::string_view word, const Attribute& argument, std::size_t position) const {
         const auto needs = [&](bool right, const std::string& kind) {
             if (right) return;
             refuse(std::string(word) + " takes " + kind + ", not one with " + std::to_string(argument.channels), position);
         };
         if (const detail::TensorFunction* function = detail::find_tensor_function(word)) {
-            const bool any = function->sizes.empty();
-            needs(any || std::ranges::find(function->sizes, argument.channels) != function->sizes.end(),
-                  std::string(function->takes));
+            needs(function->takes_channels(argument.channels), std::string(function->takes));
             return each_point(argument, function->value);
         }
         if (mesh_.cells.empty()) refuse("there are no cells to take derivatives in", position);
@@ -299,8 +399,12 @@ private:
                 while (at < text.size() && (is_letter(text[at]) || is_digit(text[at]) || text[at] == '.')) ++at;
                 const std::string word(text.substr(from, at - from));
                 const bool constant = word == "pi" || word == "_pi" || word == "_e";
-                if (!constant && (at == text.size() || text[at] != '(')) {
+                const bool function = at < text.size() && text[at] == '(';
+                if (!constant && !function) {
                     refuse("there is no field \"" + word + "\"" + detail::did_you_mean(word, names_of(mesh_)), begin + from);
+                }
+                if (function && !mu::Parser().GetFunDef().contains(word)) {
+                    refuse("there is no function " + word + detail::did_you_mean(word, functions()), begin + from);
                 }
                 put(word, from);
             } else {
@@ -315,6 +419,16 @@ private:
             }
         }
         return rest;
+    }
+
+    /// The names of all functions.
+    [[nodiscard]] static std::vector<std::string> functions() {
+        std::vector<std::string> names(kDerivatives.begin(), kDerivatives.end());
+        names.insert(names.end(), kMakers.begin(), kMakers.end());
+        for (const auto& [word, ours] : kOtherWords) names.emplace_back(word);
+        for (const std::string_view name : detail::tensor_functions()) names.emplace_back(name);
+        for (const auto& [name, definition] : mu::Parser().GetFunDef()) names.push_back(name);
+        return names;
     }
 
     [[nodiscard]] Attribute arithmetic(std::string_view text, std::size_t begin, int depth) const {
@@ -355,6 +469,24 @@ bool may_be_name(std::string_view source) {
 
 }  // namespace
 
+std::optional<Attribute> detail::named_field(const HexMesh& mesh, std::string_view name) {
+    if (const Attribute* field = mesh.find_attribute(name)) return *field;
+    std::vector<std::string> scalars;
+    std::vector<const Attribute*> fields;
+    for (const Attribute& attribute : mesh.attributes) {
+        if (attribute.channels != 1 || !attribute.name.starts_with(name)) continue;
+        scalars.push_back(attribute.name);
+        fields.push_back(&attribute);
+    }
+    for (const detail::ScalarGroup& group : detail::scalar_groups(scalars)) {
+        if (group.name != name) continue;
+        std::vector<const Attribute*> members;
+        for (const std::size_t member : group.members) members.push_back(fields[member]);
+        return joined(members, std::string(name));
+    }
+    return std::nullopt;
+}
+
 std::string detail::list_of(const HexMesh& mesh) {
     std::vector<std::string> names;
     for (const Attribute& attribute : mesh.attributes) names.push_back(attribute.name);
@@ -393,11 +525,9 @@ Attribute field_of(const HexMesh& mesh, const std::string& name, const std::stri
     const std::string_view text = trimmed(source);
     const bool coordinate = text == "x" || text == "y" || text == "z" || text == "time";
     const Evaluation evaluation(mesh, source, progress);
-    if (mesh.find_attribute(source) == nullptr && may_be_name(text) && !text.empty() && is_letter(text[0]) && !coordinate) {
-        const std::size_t dot = text.rfind('.');
-        const Attribute* field = dot == std::string_view::npos ? nullptr : mesh.find_attribute(text.substr(0, dot));
-        const bool component = field != nullptr && channel_named(field->channels, text.substr(dot + 1));
-        if (!component && mesh.find_attribute(text) == nullptr) refuse_name(mesh, source);
+    if (may_be_name(text) && !text.empty() && is_letter(text[0]) && !coordinate && mesh.find_attribute(source) == nullptr &&
+        !evaluation.name(text)) {
+        refuse_name(mesh, source);
     }
     const Attribute* plain = mesh.find_attribute(source);
     Attribute result = plain != nullptr ? *plain : evaluation.value(source, 0);

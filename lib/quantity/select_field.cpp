@@ -4,21 +4,14 @@
 #include <cstdint>
 
 #include "quantity_source.h"
+#include "subvol/detail/small_letters.h"
 #include "subvol/quantity.h"
 
 namespace subvol {
 namespace {
 
-// Not by tolower, which leaves the I in a Turkish locale.
-std::string lower(std::string_view name) {
-    std::string text(name);
-    std::ranges::transform(text, text.begin(),
-                           [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
-    return text;
-}
-
 bool has_one_of(std::string_view name, std::span<const std::string_view> parts) {
-    const std::string text = lower(name);
+    const std::string text = detail::small_letters(name);
     return std::ranges::any_of(parts, [&](std::string_view part) { return text.find(part) != std::string::npos; });
 }
 
@@ -27,7 +20,7 @@ bool ends_in_id(std::string_view name) {
     for (const std::string_view end : {"Id", "Ids", "ID", "IDs"}) {
         if (name.ends_with(end)) return true;
     }
-    const std::string text = lower(name);
+    const std::string text = detail::small_letters(name);
     return text == "id" || text == "ids" || text.ends_with("_id") || text.ends_with("_ids") || text.ends_with(" id") ||
            text.ends_with(":id");
 }
@@ -49,12 +42,6 @@ bool is_identifier(std::string_view name) {
     return ends_in_id(name) || has_one_of(name, kMarks);
 }
 
-/// Whether a tensor of that name is a stress: `STRESS`, `CauchyStress`, `S`, `sigma`.
-bool is_stress(const Attribute& attribute) {
-    constexpr std::array<std::string_view, 2> parts{"stress", "sigma"};
-    return attribute.channels == 6 && (has_one_of(attribute.name, parts) || attribute.name == "S");
-}
-
 bool is_constant(const Attribute& attribute) {
     const auto channels = static_cast<std::size_t>(attribute.channels);
     for (std::size_t i = channels; i < attribute.values.size(); ++i) {
@@ -69,7 +56,7 @@ int merit_of(const Attribute& attribute) {
     if (is_identifier(attribute.name)) return 0;
     if (is_constant(attribute)) return scalar ? 2 : 1;
     if (has_one_of(attribute.name, kEstimates)) return 3;
-    if (!scalar) return is_stress(attribute) ? 5 : 4;
+    if (!scalar) return detail::is_stress(attribute) ? 5 : 4;
     return has_one_of(attribute.name, kPhysical) ? 7 : 6;
 }
 
@@ -77,7 +64,7 @@ int merit_of(const Attribute& attribute) {
 SelectedField scalar_of(const HexMesh& mesh, const Attribute& attribute) {
     constexpr int kSymmetric = 6, kFull = 9;
     const std::string quoted = "\"" + attribute.name + "\"";
-    if (is_stress(attribute)) {
+    if (detail::is_stress(attribute)) {
         const std::string name = "mises(" + detail::quoted_name(attribute.name) + ")";
         return {field_of(mesh, name, name), "field " + quoted + " is a stress tensor: its von Mises stress is taken"};
     }
@@ -94,11 +81,16 @@ SelectedField density(const HexMesh& mesh, std::string warning) {
 
 }  // namespace
 
+bool detail::is_stress(const Attribute& attribute) {
+    constexpr std::array<std::string_view, 2> parts{"stress", "sigma"};
+    return attribute.channels == 6 && (has_one_of(attribute.name, parts) || attribute.name == "S");
+}
+
 SelectedField select_field(const HexMesh& mesh, const std::optional<std::string>& name, Progress* progress) {
     if (name) {
         Attribute found = field_of(mesh, *name, *name, progress);
         if (found.channels == 1) return {std::move(found), {}};
-        if (mesh.find_attribute(*name) != nullptr) return scalar_of(mesh, found);
+        if (detail::named_field(mesh, *name)) return scalar_of(mesh, found);
         return {detail::length_of(found), "\"" + *name + "\" is a vector or a tensor: its length is taken"};
     }
     const Attribute* best = nullptr;

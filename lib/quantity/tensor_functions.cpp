@@ -113,4 +113,10 @@ const TensorFunction* find_tensor_function(std::string_view name) {
     return found == kFunctions.end() ? nullptr : found;
 }
 
+std::vector<std::string_view> tensor_functions() {
+    std::vector<std::string_view> names;
+    for (const TensorFunction& function : kFunctions) names.push_back(function.name);
+    return names;
+}
+
 }  // namespace subvol::detail

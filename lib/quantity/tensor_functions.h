@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <span>
 #include <string_view>
+#include <vector>
 
 namespace subvol::detail {
 
@@ -15,9 +17,16 @@ struct TensorFunction {
     std::string_view takes;
     std::span<const int> sizes;
     double (*value)(std::span<const double> channels);
+
+    [[nodiscard]] bool takes_channels(int channels) const {
+        return sizes.empty() || std::ranges::find(sizes, channels) != sizes.end();
+    }
 };
 
 /// Null: there is none of that name.
 [[nodiscard]] const TensorFunction* find_tensor_function(std::string_view name);
+
+/// The names of all.
+[[nodiscard]] std::vector<std::string_view> tensor_functions();
 
 }  // namespace subvol::detail

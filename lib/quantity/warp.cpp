@@ -38,8 +38,9 @@ Attribute displacement_of(const HexMesh& mesh, const std::string& field) {
 }  // namespace
 
 Warp parse_warp(const std::string& text) {
-    const std::size_t star = text.rfind('*');
-    if (star == std::string::npos) return {text};
+    // Behind the last parenthesis: vector(2*a,b,c) has no factor.
+    const std::size_t star = text.rfind('*'), parenthesis = text.rfind(')');
+    if (star == std::string::npos || (parenthesis != std::string::npos && star < parenthesis)) return {text};
     const std::string field = text.substr(0, star), factor = text.substr(star + 1);
     if (factor == "auto") return {field, std::nullopt};
     const std::optional<double> number = detail::plain_number(factor);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "subvol/detail/small_letters.h"
 #include "subvol/error.h"
 #include "text_scanner.h"
 
@@ -14,13 +15,6 @@ namespace subvol::detail {
 namespace {
 
 constexpr std::size_t kMostSteps = 1000000;
-
-std::string lower_case(std::string_view text) {
-    std::string lower(text);
-    std::ranges::transform(lower, lower.begin(),
-                           [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
-    return lower;
-}
 
 // Words; one in quotes may have blanks.
 std::vector<std::string> words_of(std::string_view text) {
@@ -56,7 +50,7 @@ EnsightCase::EnsightCase(std::string_view text, std::string_view file)
         if (line.empty()) continue;
         const std::size_t colon = line.find(':');
         if (colon == std::string_view::npos) {
-            const std::string word = lower_case(line);
+            const std::string word = small_letters(line);
             if (word == "format" || word == "geometry" || word == "variable" || word == "time" || word == "file" ||
                 word == "material" || word == "scripts" || word == "block_continuation") {
                 section = word;
@@ -66,11 +60,11 @@ EnsightCase::EnsightCase(std::string_view text, std::string_view file)
             }
             continue;
         }
-        const std::string key = lower_case(trimmed(line.substr(0, colon)));
+        const std::string key = small_letters(trimmed(line.substr(0, colon)));
         const std::string_view rest = trimmed(line.substr(colon + 1));
         if (section == "format" && key == "type") {
-            six_ = lower_case(rest) == "ensight" || lower_case(rest) == "ensight6";
-            if (!six_ && lower_case(rest) != "ensight gold") {
+            six_ = small_letters(rest) == "ensight" || small_letters(rest) == "ensight6";
+            if (!six_ && small_letters(rest) != "ensight gold") {
                 in_.fail_at(position, "the format is " + in_quotes(rest), "ensight gold and ensight (6) are supported");
             }
         }
@@ -95,10 +89,10 @@ void EnsightCase::take_geometry(std::string_view key, std::string_view rest, std
     if (key != "model") return;
     auto words = words_of(rest);
     const auto option = std::ranges::find_if(words, [](const std::string& word) {
-        return lower_case(word) == "change_coords_only" || lower_case(word) == "changing_geometry_per_part";
+        return small_letters(word) == "change_coords_only" || small_letters(word) == "changing_geometry_per_part";
     });
     if (option != words.end()) {
-        if (lower_case(*option) != "change_coords_only") {
+        if (small_letters(*option) != "change_coords_only") {
             in_.fail_at(position, "changing_geometry_per_part is not supported", "whole geometry files are");
         }
         const auto step = option + 1;

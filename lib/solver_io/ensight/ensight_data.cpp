@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "number_type.h"
+#include "subvol/detail/small_letters.h"
 
 namespace subvol::detail {
 
@@ -143,10 +144,7 @@ std::string EnsightData::description() {
 }
 
 std::string EnsightData::keyword() {
-    std::string text = line();
-    std::ranges::transform(text, text.begin(),
-                           [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
-    return text;
+    return small_letters(line());
 }
 
 void EnsightData::expect_room(std::size_t count, const std::string& what) const {

@@ -18,6 +18,7 @@
 #include "netcdf_source.h"
 #include "solver_formats.h"
 #include "subvol/detail/read_file.h"
+#include "subvol/detail/scalar_groups.h"
 #include "subvol/error.h"
 #include "text_scanner.h"
 
@@ -184,28 +185,21 @@ struct Variable {
     std::vector<std::size_t> numbers;  // of its components, from 1
 };
 
-bool is_axis(std::string_view name, char axis) {
-    return !name.empty() && (name.back() == axis || name.back() == axis - 'A' + 'a');
-}
-
-// Exodus has only scalars: three consecutive ones whose names end in X, Y and Z are read as a vector.
-std::vector<Variable> with_vectors(const std::vector<std::string>& names) {
+// Exodus has only scalars: those whose names say that they are components are read as a vector or a tensor.
+std::vector<Variable> with_components(const std::vector<std::string>& names) {
     std::vector<Variable> variables;
-    for (std::size_t i = 0; i < names.size(); ++i) {
-        std::string stem = names[i].substr(0, names[i].empty() ? 0 : names[i].size() - 1);
-        const auto follows = [&](std::size_t k, char axis) {
-            return i + k < names.size() && is_axis(names[i + k], axis) &&
-                   names[i + k].substr(0, names[i + k].size() - 1) == stem;
-        };
-        const bool vector = !stem.empty() && follows(0, 'X') && follows(1, 'Y') && follows(2, 'Z');
-        if (!vector) {
-            variables.push_back({names[i], {i + 1}});
-            continue;
+    std::vector<bool> grouped(names.size());
+    for (const detail::ScalarGroup& group : detail::scalar_groups(names)) {
+        Variable& variable = variables.emplace_back(Variable{group.name, {}});
+        for (const std::size_t member : group.members) {
+            variable.numbers.push_back(member + 1);
+            grouped[member] = true;
         }
-        if (stem.size() > 1 && stem.back() == '_') stem.pop_back();
-        variables.push_back({stem, {i + 1, i + 2, i + 3}});
-        i += 2;
     }
+    for (std::size_t n = 0; n < names.size(); ++n) {
+        if (!grouped[n]) variables.push_back({names[n], {n + 1}});
+    }
+    std::ranges::sort(variables, {}, [](const Variable& variable) { return *std::ranges::min_element(variable.numbers); });
     return variables;
 }
 
@@ -443,8 +437,8 @@ private:
         if (steps == 0) return;
         const auto of_nodes = exodus_.names("name_nod_var", exodus_.dimension("num_nod_var"));
         const auto of_elements = exodus_.names("name_elem_var", exodus_.dimension("num_elem_var"));
-        for (const Variable& variable : with_vectors(of_nodes)) add_array(variable, false);
-        for (const Variable& variable : with_vectors(of_elements)) add_array(variable, true);
+        for (const Variable& variable : with_components(of_nodes)) add_array(variable, false);
+        for (const Variable& variable : with_components(of_elements)) add_array(variable, true);
     }
 
     void add_array(const Variable& variable, bool at_cells) {

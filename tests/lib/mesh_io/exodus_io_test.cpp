@@ -47,6 +47,23 @@ TEST_F(ExodusIo, EveryVersionGivesTheMeshAndTheFieldsOfTheLastStep) {
     }
 }
 
+TEST_F(ExodusIo, ScalarsThatAreComponentsBecomeTensorsAndVectors) {
+    // As MOOSE writes a tensor, of which the first three in a row are no vector; and a vector in another order.
+    ExodusText file{.points = kBox.points, .blocks = {hex_block(kBox)}, .times = {0}};
+    for (const std::string name : {"s_xx", "s_xy", "s_xz", "s_yy", "s_yz", "s_zz", "T", "u_z", "u_x", "u_y"}) {
+        file.of_nodes.emplace_back(name, std::vector<double>(kPoints, static_cast<double>(file.of_nodes.size())));
+    }
+    const HexMesh mesh = read(file).mesh;
+    ASSERT_EQ(mesh.attributes.size(), 3u);
+    const auto first = [&](const std::string& name, std::size_t count) {
+        const std::vector<double>& values = mesh.find_attribute(name)->values;
+        return std::vector<double>(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(count));
+    };
+    EXPECT_THAT(first("s", 6), ElementsAre(0, 3, 5, 1, 4, 2)) << "xx, yy, zz, xy, yz, xz";
+    EXPECT_THAT(first("u", 3), ElementsAre(8, 9, 7));
+    EXPECT_THAT(first("T", 1), ElementsAre(6));
+}
+
 TEST_F(ExodusIo, EveryNameOfSuchAFile) {
     for (const std::string name : {"a.e", "a.exo", "a.ex2", "a.g", "a.EXO"}) {
         const ReadResult result = read_mesh(write(name, exodus_text({.points = kBox.points, .blocks = {hex_block(kBox)}})));

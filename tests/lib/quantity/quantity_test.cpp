@@ -137,6 +137,81 @@ TEST(Quantity, NamesComponentsAndOddNames) {
     EXPECT_FALSE(has_derivatives("upgrad(T)+div"));
 }
 
+/// A box with scalars whose names say that they are components; tensor: the names of its six.
+HexMesh mesh_of_scalars(const std::vector<std::string>& tensor) {
+    HexMesh mesh = test::make_box(1, 1, 1);
+    const std::vector<double> values{100, -50, 10, 30, 40, 20};  // xx, yy, zz, xy, yz, xz
+    for (std::size_t c = 0; c < tensor.size(); ++c) {
+        mesh.attributes.push_back({tensor[c], 1, std::vector<double>(mesh.points.size(), values[c])});
+    }
+    for (const char axis : {'z', 'x', 'y'}) {
+        Attribute& component = mesh.attributes.emplace_back(Attribute{std::string("disp_") + axis, 1, {}});
+        for (const Vec3& p : mesh.points) component.values.push_back(p[axis - 'x'] + 2);
+    }
+    return mesh;
+}
+
+TEST(Quantity, ScalarsMakeVectorsAndTensors) {
+    // Invariants of the tensor by numpy.linalg.eigvalsh.
+    constexpr double kMises = 145.945195193264, kFirst = 112.215769359, kThird = -56.168127154;
+    for (const std::vector<std::string>& names :
+         {std::vector<std::string>{"stress_xx", "stress_yy", "stress_zz", "stress_xy", "stress_yz", "stress_xz"},
+          {"stressXX", "stressYY", "stressZZ", "stressXY", "stressYZ", "stressZX"},
+          {"stress:xx", "stress:yy", "stress:zz", "stress:yx", "stress:zy", "stress:zx"}}) {
+        const HexMesh mesh = mesh_of_scalars(names);
+        const auto value = [&](const std::string& source) { return field_of(mesh, "q", source).values.back(); };
+        EXPECT_NEAR(value("mises(stress)"), kMises, 1e-10) << names[0];
+        EXPECT_NEAR(value("principal1(stress)"), kFirst, 1e-8);
+        EXPECT_NEAR(value("principal3(stress) + 0"), kThird, 1e-8);
+        EXPECT_EQ(value("stress.zy"), 40);
+        std::string made = "tensor(";
+        for (const std::string& name : names) made += (made.back() == '(' ? "`" : ", `") + name + "`";
+        EXPECT_NEAR(value("mises(" + made + "))"), kMises, 1e-10);
+        EXPECT_EQ(select_field(mesh, "stress").scalar.name, "mises(stress)");
+    }
+    const HexMesh mesh = mesh_of_scalars({});
+    const Attribute group = field_of(mesh, "q", "disp"), made = field_of(mesh, "q", "vector(x+2, disp_y, max(z+2, 0))");
+    ASSERT_EQ(group.channels, 3);
+    for (std::size_t p = 0; p < mesh.points.size(); ++p) {
+        for (std::size_t c = 0; c < 3; ++c) {
+            EXPECT_EQ(group.values[3 * p + c], mesh.points[p][static_cast<int>(c)] + 2);
+            EXPECT_EQ(made.values[3 * p + c], group.values[3 * p + c]);
+        }
+    }
+    EXPECT_EQ(field_of(mesh, "q", "disp.z").values, mesh.attributes[0].values);
+    // A vector that other programs call by its components.
+    const HexMesh vectors = mesh_with_fields();
+    EXPECT_EQ(field_of(vectors, "q", "V_X").values, field_of(vectors, "q", "V.x").values);
+    const Attribute nine = field_of(mesh, "q", "tensor(1,2,3,4,5,6,7,8,10)");
+    EXPECT_EQ(nine.channels, 9);
+    EXPECT_NEAR(field_of(mesh, "q", "det(tensor(1,2,3,4,5,6,7,8,10))").values[0], -3, 1e-12);
+}
+
+TEST(Quantity, WordsOfOtherPrograms) {
+    const HexMesh mesh = mesh_with_tensors();
+    const auto at = [&](const std::string& source) { return field_of(mesh, "q", source).values; };
+    EXPECT_EQ(at("mag(U)"), at("length(U)"));
+    EXPECT_EQ(at("U.magnitude"), at("length(U)"));
+    EXPECT_EQ(at("vonMises(STRESS)"), at("mises(STRESS)"));
+    EXPECT_EQ(at("mises"), at("mises(STRESS)")) << "the one stress of the mesh, although G is a tensor, too";
+    EXPECT_EQ(at("2*tresca"), at("2*tresca(STRESS)"));
+    EXPECT_EQ(at("STRESS.Mises"), at("mises(STRESS)"));
+    EXPECT_EQ(at("gradient(T).y"), at("grad(T).y"));
+    EXPECT_TRUE(has_derivatives("divergence(U)"));
+    HexMesh two = mesh;
+    two.attributes[1] = {"sigma", 6, mesh.attributes[0].values};
+    const auto refused = [](const HexMesh& of, const std::string& part, const std::string& source) {
+        test::expect_error(ErrorCode::InvalidInput, part, [&] { (void)field_of(of, "f", source); });
+    };
+    refused(two, "'mises' is a function, of a field in parentheses", "mises");
+    refused(mesh, "'vorticity' is a function", "vorticity");
+    refused(mesh, "there is no function misses: did you mean mises?", "misses(STRESS)");
+    refused(mesh, "vector takes x, y, z, not 2 scalars", "vector(T,x)");
+    refused(mesh, "vector takes scalars, not one with 3 components", "vector(T,U,x)");
+    refused(mesh, "tensor takes xx, yy, zz, xy, yz, xz", "trace(tensor(1,2,3))");
+    refused(mesh, "is empty", "vector(1,,2)");
+}
+
 TEST(Quantity, SaysWhatATensorFunctionTakes) {
     const HexMesh mesh = mesh_with_tensors();
     const auto refused = [&](const std::string& part, const std::string& source) {

@@ -33,12 +33,15 @@ struct SelectedField {
 ///     T   `von Mises`   U.x   S.xy   U.0          fields, in quotes (` or ') unless their names are words; components
 ///     length(U)  mises(S)  principal1(S)  …       functions of vectors and tensors
 ///     grad(T)  grad(U)  div(U)  curl(U)           derivatives of the limit of the scheme MCQ by places, at the points
+///     vector(ux,uy,uz)  tensor(sxx,syy,…)         fields of scalars
 ///     (T-293)/620 + 2*length(U)*(z>0)             arithmetic and functions of muParser, of scalars; a vector stands for its
 ///     length x  y  z  time  pi                           coordinates, and the time of the mesh's step
 ///
 /// The components of a vector are x, y, z; of a symmetric tensor, with six channels, xx, yy, zz, xy, yz, xz; of a tensor, with
-/// nine, xx, xy, xz, yx and so on. grad(U).xy is the derivative of U.x by y. Coordinates come before fields of the same name,
-/// but for a quantity that is a name alone.
+/// nine, xx, xy, xz, yx and so on. grad(U).xy is the derivative of U.x by y. A name that is no
+/// field stands for the vector or tensor of the scalars that are called as its components (disp for disp_x, disp_y, disp_z),
+/// mises and other functions of tensors alone for that of the one stress that the mesh has. Coordinates come before fields of
+/// the same name, but for a quantity that is a name alone.
 ///
 /// name:   of the result
 /// progress: of derivatives
