@@ -15,9 +15,9 @@ std::optional<std::array<double, 2>> where_not_negative(const std::array<double,
     if (b[0] >= 0 && b[2] >= 0) return std::array{0.0, 1.0};
     std::vector<double> roots;
     add_roots(b, roots);
-    if (roots.empty()) {
+    if (roots.empty()) {  // it is at an end
         if (b[0] < 0 && b[2] < 0) return std::nullopt;
-        return std::array{0.0, 1.0};  // the root is at an end
+        return b[0] < 0 ? std::array{1.0, 1.0} : std::array{0.0, 0.0};
     }
     return std::array{b[0] < 0 ? roots.front() : 0.0, b[2] < 0 ? roots.back() : 1.0};
 }

@@ -112,6 +112,7 @@ public:
     /// Least and largest values over the sides of the patches.
     void find_extremes(std::span<const Patch> patches, const PatchOptions& options, std::vector<PatchMeasure>& all) const {
         constexpr double kTolerance = 1e-4;  // of a range
+        if (channels_.empty()) return;
         detail::ExtremeSearch search(patches.size(), scales_, kTolerance);
         for (std::size_t p = 0; p < patches.size(); ++p) look(search, p, patches[p]);
         HexMesh mesh = part_.mesh;

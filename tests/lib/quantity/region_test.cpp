@@ -5,12 +5,16 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <numbers>
+#include <random>
 
 #include "lib/expect_error.h"
 #include "lib/test_meshes.h"
+#include "subvol/limit.h"
 #include "subvol/measure.h"
 #include "subvol/model.h"
+#include "subvol/refine.h"
 #include "subvol/warp.h"
 
 namespace subvol {
@@ -121,6 +125,91 @@ TEST(MeasureRegion, PartsSumToTheWhole) {
     EXPECT_EQ(found.parts[1].name, "right");
     EXPECT_NEAR(found.parts[0].volume + found.parts[1].volume, found.whole.volume, 1e-9);
     EXPECT_NEAR(found.parts[0].volume, 1.5 * 4 * 1.25, 1e-6);
+}
+
+/// A box of 2³ unit cells whose limit is the box and whose field is x.
+HexMesh two_by_two() {
+    HexMesh mesh = test::make_box(2, 2, 2);
+    Attribute field{"f", 1, {}};
+    for (const Vec3& p : mesh.points) field.values.push_back(p.x);
+    mesh.attributes = {field};
+    return mesh;
+}
+
+TEST(MeasureRegion, ExtremesAreThoseOfWhatIsCut) {
+    struct Case {
+        std::string region;
+        double min, max;
+    };
+    for (const auto& [region, min, max] :
+         {Case{"half:0.3,0,0,-1,0,0", 0, 0.3}, Case{"half:0.55,0,0,-1,0,0", 0, 0.55}, Case{"half:0.55,0,0,1,0,0", 0.55, 2},
+          Case{"box:.1,.1,.1,.13,1.9,1.9", 0.1, 0.13}, Case{"box:.1,.1,.1,1.1,1.100001,.100001", 0.1, 1.1},
+          Case{"sphere:.5,.5,.5,.01", 0.49, 0.51}, Case{"sphere:1,1,1,.25", 0.75, 1.25}, Case{"half:1,1,1,-1,-1,-1", 0, 2},
+          Case{"half:.2,.2,.2,-1,-1,-1", 0, 0.6}}) {
+        const FieldMeasure field = measured(two_by_two(), {region}).whole.fields[0];
+        EXPECT_NEAR(field.min.value, min, field.extreme_error) << region;
+        EXPECT_NEAR(field.max.value, max, field.extreme_error) << region;
+        EXPECT_LE(field.extreme_error, 2e-4) << region << ": the tolerance is 1e-4 of the range, which is 2";
+        EXPECT_NEAR(field.max.place.x, field.max.value, 1e-6) << region << ": the field is x";
+    }
+    const FieldMeasure both = measured(two_by_two(), {"half:.5,0,0,1,0,0", "sphere:.5,1,1,.25"}).whole.fields[0];
+    EXPECT_NEAR(both.min.value, 0.5, both.extreme_error);
+    EXPECT_NEAR(both.max.value, 0.75, both.extreme_error);
+}
+
+TEST(MeasureRegion, SmallRegionsAreFound) {
+    constexpr double kBall = 4 * std::numbers::pi / 3;
+    const auto volume_of = [](const HexMesh& mesh, const std::vector<std::string>& regions, double volume) {
+        const PartMeasure found = measured(mesh, regions).whole;
+        EXPECT_NEAR(found.volume, volume, found.error * volume + 1e-9 * volume) << regions[0];
+        EXPECT_LT(found.error, 0.02) << regions[0];
+        EXPECT_GE(found.cells, 1u);
+    };
+    volume_of(two_by_two(), {"sphere:.5,.5,.5,.01"}, kBall * 1e-6);
+    volume_of(two_by_two(), {"sphere:.37,.61,1.43,1e-4"}, kBall * 1e-12);
+    volume_of(two_by_two(), {"sphere:1,1,1,1e-3"}, kBall * 1e-9);
+    volume_of(two_by_two(), {"sphere:0,0,0,1e-3"}, kBall * 1e-9 / 8);
+    volume_of(two_by_two(), {"box:0,0,0,1e-3,2e-3,3e-3"}, 6e-9);
+    volume_of(two_by_two(), {"box:.999,.4,.1,1.001,1.6,1.9"}, 2e-3 * 1.2 * 1.8);
+    // Between two planes along a diagonal: as long as the box is wide there, on the average.
+    const double thin = 1e-4, diagonal = std::sqrt(8.0);
+    volume_of(two_by_two(), {"half:1,1,0,1,1,0", "half:1.00005,1.00005,0,-1,-1,0"},
+              2 * thin / std::sqrt(2.0) * (diagonal - thin / std::sqrt(2.0)));
+    // A cell of a bent body: where it is does not matter to the volume.
+    volume_of(make_model("ball", 4), {"sphere:.51,.32,.17,.003"}, kBall * 2.7e-8);
+    volume_of(make_model("ball", 4), {"box:-.4,-.3,.1,.4,.3,.1001"}, 0.8 * 0.6 * 1e-4);
+}
+
+/// No value of the limit, at the vertices of four levels more, lies beyond what is said of the region, and what is said is not
+/// far from them.
+TEST(MeasureRegion, ExtremesAreBounds) {
+    std::mt19937 random(5);
+    const auto between = [&](double a, double b) { return std::uniform_real_distribution(a, b)(random); };
+    for (const char* region :
+         {"half:1,1,1,-.5,.7,.3", "sphere:.7,1.2,1.1,.4", "box:.5,.1,.1,.8,1.9,1.9", "half:1.1,1,1,1,0,0"}) {
+        HexMesh mesh = test::make_box(2, 2, 2);
+        mesh.cells.pop_back();  // an edge that is irregular
+        mesh = without_unused_points(std::move(mesh));
+        for (Vec3& p : mesh.points) p += Vec3(between(-.15, .15), between(-.15, .15), between(-.15, .15));
+        Attribute field{"f", 1, {}};
+        for (std::size_t p = 0; p < mesh.points.size(); ++p) field.values.push_back(between(-1, 1));
+        mesh.attributes = {field};
+        const FieldMeasure found = measured(mesh, {region}).whole.fields[0];
+        const HexMesh fine = on_limit(refine(mesh, {.levels = 4}), Scheme::Mcq);
+        double least = HUGE_VAL, most = -HUGE_VAL;
+        for (std::size_t p = 0; p < fine.points.size(); ++p) {
+            if (Region(region).depth(fine.points[p]) < 0) continue;
+            least = std::min(least, fine.attributes[0].values[p]);
+            most = std::max(most, fine.attributes[0].values[p]);
+        }
+        EXPECT_GE(least, found.min.value - found.extreme_error) << region;
+        EXPECT_LE(most, found.max.value + found.extreme_error) << region;
+        constexpr double kBetween = 0.15;  // of a range of 2: between vertices, where the limit is steep and cut
+        EXPECT_NEAR(least, found.min.value, found.extreme_error + kBetween) << region;
+        EXPECT_NEAR(most, found.max.value, found.extreme_error + kBetween) << region;
+        EXPECT_LT(found.extreme_error, 0.1)
+            << region << ": random values, which pieces of three levels resolve to some per cent";
+    }
 }
 
 TEST(Warp, MovesPointsByAVectorField) {
