@@ -30,9 +30,11 @@ public:
               "With --mend control points move, as little as it takes, until no regular cell folds; the figures are "
               "then of the mended mesh, whose fields stay with their points.\n"
               "JSON: verdict (sound, folded or undecided), cells {proved, folded, undecided, irregular: those of the "
-              "undecided that are at irregular edges}, open_volume (of undecided cells, in cells), sampled {cells: that no test "
+              "undecided that are at irregular edges}, open_volume (of undecided cells, in cells), sampled {cells: that no "
+              "test "
               "decided; places; folded: cells with a negative determinant; least: determinant, as a part of the mean}, places, "
-              "one for each folded cell: cell, parameters, at, determinant, sampled (found by sampling); with --mend also mend {folded, open: before; moved, "
+              "one for each folded cell: cell, parameters, at, determinant, sampled (found by sampling); with --mend also mend "
+              "{folded, open: before; moved, "
               "farthest_edges, boundary_edges, rounds, left: cells with reasons}.") {
         app().add_option("FILE", input_, input_help())->required();
         scheme_.add_scheme_to(app());
@@ -111,8 +113,9 @@ private:
         constexpr std::size_t kShown = 5;
         for (std::size_t k = 0; k < std::min(kShown, found.places.size()); ++k) {
             const FoldPlace& at = found.places[k];
-            line(k == 0 ? "folded" : "", text("cell ", at.cell, " at ", at.position.x, ", ", at.position.y, ", ", at.position.z,
-                                              " (determinant ", at.determinant, at.sampled ? ", found to fold by sampling)" : ")"));
+            line(k == 0 ? "folded" : "",
+                 text("cell ", at.cell, " at ", at.position.x, ", ", at.position.y, ", ", at.position.z, " (determinant ",
+                      at.determinant, at.sampled ? ", found to fold by sampling)" : ")"));
         }
         if (all.folded > kShown) line("", text("and ", counted(all.folded - kShown, "more cell")));
         if (all.open > 0) {

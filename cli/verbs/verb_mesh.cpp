@@ -31,14 +31,16 @@ public:
                "  subvol mesh smoke.vdb -o smoke.vtu --iso .01\n"
                "\n"
                "Sharp edges become creases. A part of the surface within another is the wall of a cavity; parts that cross are "
-               "united; holes are spanned. The exit code is 1 if the limit folds or control cells are inverted; the mesh is written "
+               "united; holes are spanned. The exit code is 1 if the limit folds or control cells are inverted; the mesh is "
+               "written "
                "all the same.\n"
                "JSON: triangles, points, cells, before and after {rms, max, max_at: of the boundary from the surface; "
                "covered_rms, covered_max: the same but over holes; hole_part: of the boundary's area over holes; missed_rms, "
                "missed_max, missed_at: of the surface from the boundary}, rounds, moved_world, folds (as of check), mended, "
                "sharp {curves, missed: chains of sharp edges, and those without creases; length_world, missed_length_world, "
                "creases, rms, max: of the creases from the chains}, parts, added, refined, divided, side_world, "
-               "min_scaled_jacobian, folded_cells, inverted_cells, open_edges, open_length (of edges of one triangle), surface {walls, "
+               "min_scaled_jacobian, folded_cells, inverted_cells, open_edges, open_length (of edges of one triangle), surface "
+               "{walls, "
                "united, cavities, cavities_alike, copies, sheets, turned, one_sided, many_edges}.") {
         app().add_option("FILE", input_, "a closed surface (.stl, .obj, .ply), or a .vdb grid of floats")->required();
         app().add_option("-o,--output", output_, "the control mesh (.vtu, .vtkhdf)")->type_name("FILE")->required();

@@ -14,7 +14,7 @@ namespace subvol::detail {
 namespace {
 
 constexpr double kProducts = 8000;  // of vectors with numbers, that take as long as a test of a cell
-constexpr double kKept = 0.7;  // a determinant that is small but sound may fall by a third
+constexpr double kKept = 0.7;       // a determinant that is small but sound may fall by a third
 
 double determinant_at(const std::vector<Vec3>& x, const std::array<Index, 4>& p) {
     return glm::dot(x[p[1]] - x[p[0]], glm::cross(x[p[2]] - x[p[0]], x[p[3]] - x[p[0]]));

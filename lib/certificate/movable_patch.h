@@ -42,7 +42,8 @@ public:
     MovablePatch(const HexMesh& patch, const SchemeOptions& scheme, int levels, std::vector<Vec3> start,
                  std::vector<Freedom> freedom, const std::vector<PatchCell>& cells);
 
-    /// The new points. goes_on: called before each step with the part of the work that is done, 0 to 1; false ends it; may throw
+    /// The new points. goes_on: called before each step with the part of the work that is done, 0 to 1; false ends it; may
+    /// throw
     [[nodiscard]] std::vector<Vec3> move(const std::function<bool(double)>& goes_on);
 
     /// What was done so far, in tests of cells that take about as long.

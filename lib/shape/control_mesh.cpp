@@ -51,7 +51,8 @@ public:
         for (std::size_t begin = 0; begin < inside_.size(); begin += kTogether) {
             const std::size_t count = std::min(kTogether, inside_.size() - begin);
             parallel_each(count, [&](std::size_t k) {
-                if (!is_cancelled(options.progress)) inside_[begin + k] = bodies.likeness(grid_.center(begin + k)) > kHalf ? 1 : 0;
+                if (!is_cancelled(options.progress))
+                    inside_[begin + k] = bodies.likeness(grid_.center(begin + k)) > kHalf ? 1 : 0;
             });
             report_progress(options.progress, "fill", begin + count, inside_.size());  // ends what was cancelled
             for (std::size_t k = begin; k < begin + count; ++k) found += inside_[k];
@@ -61,7 +62,8 @@ public:
             throw Error(ErrorCode::InvalidInput, "no cell has its middle inside the surface", "surface",
                         "a closed surface, and more cells if it is thin");
         }
-        // Beside a bent sheet the surface winds by a half and a little more, somewhere inside of what it encloses by nearly one.
+        // Beside a bent sheet the surface winds by a half and a little more, somewhere inside of what it encloses by nearly
+        // one.
         const auto clearly_inside = [&](std::size_t cube) {
             constexpr float kClear = 0.75F;
             return inside_[cube] != 0 && bodies.likeness(grid_.center(cube)) > kClear;
@@ -120,12 +122,12 @@ private:
         return {box, side};
     }
 
-
     void check_count(std::size_t cells) const {
         if (cells <= options_.max_cells) return;
         throw Error(
             ErrorCode::InvalidInput,
-            "there would be " + std::to_string(cells) + " or more" + (cubes_.count() > 0 ? " cells with divided cubes" : " cells"),
+            "there would be " + std::to_string(cells) + " or more" +
+                (cubes_.count() > 0 ? " cells with divided cubes" : " cells"),
             option_name("cells", options_.names),
             std::string("fewer cells, ") + (cubes_.count() > 0 ? "a larger tolerance, " : "") + "or more with --max-cells");
     }
@@ -194,8 +196,9 @@ void warn_of(const SurfaceReport& found, std::vector<std::string>& warnings) {
     warn(found.turned, "triangle has", "triangles have", " another orientation than those around; they count as if turned");
     warn(found.many_edges, "edge belongs", "edges belong", " to more than two triangles");
     if (found.one_sided > 0) {
-        warnings.push_back("no orientation of the triangles agrees everywhere: the surface has only one side, and what is inside is "
-                           "a guess");
+        warnings.push_back(
+            "no orientation of the triangles agrees everywhere: the surface has only one side, and what is inside is "
+            "a guess");
     }
 }
 
@@ -372,9 +375,10 @@ ControlMesh control_mesh_of(const Surface& all, const ControlMeshOptions& given)
     const double farthest = std::max({far.x, far.y, far.z}) / report.side_world;
     constexpr double kFarthest = 1e9;  // so that coordinates have seven digits within a cell
     if (farthest > kFarthest) {
-        throw Error(ErrorCode::InvalidInput,
-                    "the surface is " + number_text(farthest, 2) + " cells away from the origin: its coordinates have no digits left",
-                    "surface", "up to 1e9 cells");
+        throw Error(
+            ErrorCode::InvalidInput,
+            "the surface is " + number_text(farthest, 2) + " cells away from the origin: its coordinates have no digits left",
+            "surface", "up to 1e9 cells");
     }
     const SurfaceBodies bodies(all);
     const Surface& surface = bodies.surface();

@@ -7,8 +7,8 @@
 #include <iterator>
 
 #include "shape_fitter.h"
-#include "subvol/detail/parallel_each.h"
 #include "subvol/detail/number_text.h"
+#include "subvol/detail/parallel_each.h"
 #include "subvol/detail/parallel_sums.h"
 #include "subvol/error.h"
 #include "subvol/limit.h"
@@ -241,12 +241,11 @@ HexMesh finished(HexMesh mesh, const Surface& surface, const FitShapeOptions& op
     report.open_edges = open.count;
     report.open_length_world = open.length_world;
     if (report.after.hole_part > 0) {
-        report.warnings.push_back(
-            "the surface is open: " + counted(open.count, "edge belongs", "edges belong") + " to one triangle alone, of the length " +
-            number_text(open.length_world, kDigits) + "; the mesh spans holes freely: " +
-            number_text(100 * report.after.hole_part, 2) + " % of its boundary is over them, at most " +
-            number_text(report.after.max, kDigits) + " from the surface, the rest at most " +
-            number_text(report.after.covered_max, kDigits));
+        report.warnings.push_back("the surface is open: " + counted(open.count, "edge belongs", "edges belong") +
+                                  " to one triangle alone, of the length " + number_text(open.length_world, kDigits) +
+                                  "; the mesh spans holes freely: " + number_text(100 * report.after.hole_part, 2) +
+                                  " % of its boundary is over them, at most " + number_text(report.after.max, kDigits) +
+                                  " from the surface, the rest at most " + number_text(report.after.covered_max, kDigits));
     } else if (open.count > 0) {
         report.warnings.push_back("the surface is open: " + counted(open.count, "edge belongs", "edges belong") +
                                   " to one triangle alone, of the length " + number_text(open.length_world, kDigits));

@@ -89,7 +89,8 @@ OpenEdges open_edges(const Surface& surface) {
 SurfaceBodies::SurfaceBodies(const Surface& surface) : surface_(surface), same_(same_place(surface)) {
     leave_out_copies();
     constexpr int kTimes = 64;
-    for (int k = 0; k < kTimes && leave_out_fins(); ++k) {}
+    for (int k = 0; k < kTimes && leave_out_fins(); ++k) {
+    }
     turn();
     make_walls();
     unite();

@@ -136,22 +136,21 @@ bool SurfaceTree::pierced_by(const Vec3& a, const Vec3& b, double touching) cons
     segment.add(a);
     segment.add(b);
     bool pierced = false;
-    tree_->visit_leaves([&](const Box& box) { return meet(box, segment); },
-                        [&](std::size_t first, std::size_t last) {
-                            for (std::size_t slot = first; slot < last && !pierced; ++slot) {
-                                const Index t = tree_->item(slot);
-                                const auto x = corners(t);
-                                const Vec3 n = normal(t);
-                                const double above = glm::dot(n, a - x[0]), below = glm::dot(n, b - x[0]);
-                                const bool across = (above > touching && below < -touching) ||
-                                                    (above < -touching && below > touching);
-                                if (!across) continue;
-                                const Vec3 at = a + above / (above - below) * (b - a);
-                                pierced = glm::distance(at, place_at(nearest_in_triangle(at, x[0], x[1], x[2]).weights, x)) <=
-                                          touching;
-                            }
-                            return pierced;
-                        });
+    tree_->visit_leaves(
+        [&](const Box& box) { return meet(box, segment); },
+        [&](std::size_t first, std::size_t last) {
+            for (std::size_t slot = first; slot < last && !pierced; ++slot) {
+                const Index t = tree_->item(slot);
+                const auto x = corners(t);
+                const Vec3 n = normal(t);
+                const double above = glm::dot(n, a - x[0]), below = glm::dot(n, b - x[0]);
+                const bool across = (above > touching && below < -touching) || (above < -touching && below > touching);
+                if (!across) continue;
+                const Vec3 at = a + above / (above - below) * (b - a);
+                pierced = glm::distance(at, place_at(nearest_in_triangle(at, x[0], x[1], x[2]).weights, x)) <= touching;
+            }
+            return pierced;
+        });
     return pierced;
 }
 

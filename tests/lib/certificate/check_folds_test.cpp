@@ -202,8 +202,8 @@ TEST(CheckFolds, SamplesFindFoldsNearIrregularEdges) {
         const auto& points = fine.cells[cell];
         const auto& [a, b, c] = kCornerNeighbors[corner];
         const Vec3& x = fine.points[points[corner]];
-        return kDescendants * glm::dot(fine.points[points[a]] - x,
-                                       glm::cross(fine.points[points[b]] - x, fine.points[points[c]] - x));
+        return kDescendants *
+               glm::dot(fine.points[points[a]] - x, glm::cross(fine.points[points[b]] - x, fine.points[points[c]] - x));
     };
     double mean = 0;
     std::vector<double> least(mesh.cells.size(), std::numeric_limits<double>::infinity());
@@ -214,7 +214,8 @@ TEST(CheckFolds, SamplesFindFoldsNearIrregularEdges) {
             least[n / kDescendants] = std::min(least[n / kDescendants], det);
         }
     }
-    constexpr double kClear = 0.1;  // of the mean: far more than derivatives change within 1/16 of a cell where they are continuous
+    constexpr double kClear =
+        0.1;  // of the mean: far more than derivatives change within 1/16 of a cell where they are continuous
     std::size_t confirmed = 0;
     for (const FoldPlace& at : check.places) {
         if (!at.sampled) continue;

@@ -174,7 +174,8 @@ TEST(ControlMesh, OfBoxesThatCrossIsTheirUnion) {
     for (const auto& t : one.triangles) boxes.triangles.push_back({first + t[0], first + t[1], first + t[2]});
     const ControlMesh made = control_mesh_of(boxes, {.cells = 6});
     EXPECT_EQ(made.report.surface.united, 1U);
-    EXPECT_NEAR(limit_volume(made.mesh), 1.875, 0.06);  // the notch between the boxes has no creases, as they are not joined there
+    EXPECT_NEAR(limit_volume(made.mesh), 1.875,
+                0.06);  // the notch between the boxes has no creases, as they are not joined there
 }
 
 TEST(ControlMesh, IsTheSameFarFromTheOrigin) {
@@ -323,7 +324,8 @@ TEST(ControlMesh, SaysWhatIsWrong) {
     for (Vec3& x : far.points) x += 1e12;
     EXPECT_THAT(error_of([&] { std::ignore = control_mesh_of(far); }), HasSubstr("cells away from the origin"));
     // 4 π/3 (490/2)³ cells, which the volume shows before any place is looked at
-    EXPECT_THAT(error_of([&] { std::ignore = control_mesh_of(test::sphere(12), {.cells = 490}); }), HasSubstr("there would be 6"));
+    EXPECT_THAT(error_of([&] { std::ignore = control_mesh_of(test::sphere(12), {.cells = 490}); }),
+                HasSubstr("there would be 6"));
     surface.triangles[3][1] = 99999;
     EXPECT_THAT(error_of([&] { std::ignore = control_mesh_of(surface); }), HasSubstr("triangle 3 has the corner 99999"));
     surface = test::sphere(4);

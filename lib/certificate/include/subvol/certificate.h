@@ -93,8 +93,8 @@ struct FoldCheck {
 /// Where the cells around are a grid, the derivatives are a polynomial and a rest with a proved bound (docs/science.md); those
 /// of Catmull-Clark, BSXW and the linear scheme are polynomials. Cells at irregular edges are refined: what lies farther from
 /// the edge is decided, a tube around it is not. Cells that stay undecided are sampled at some hundred places each, and folded
-/// where a determinant is negative; that none was found proves nothing. Positive Jacobians exclude folds inside the volume; that no two parts of it
-/// overlap also needs a boundary that does not meet itself.
+/// where a determinant is negative; that none was found proves nothing. Positive Jacobians exclude folds inside the volume;
+/// that no two parts of it overlap also needs a boundary that does not meet itself.
 ///
 /// throws: Error(InvalidInput) as `refine`, or if an option is out of range
 /// cost:   parallel, about 40 µs a test and 1 ms for each cell that is sampled; the same result for any number of threads
