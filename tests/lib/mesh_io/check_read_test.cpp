@@ -2,6 +2,7 @@
 // What read_mesh does with whatever a reader has read.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 
 #include "formats.h"
@@ -54,10 +55,10 @@ TEST_F(CheckRead, NamesAreMadeDistinct) {
     EXPECT_EQ(read_.sets.patches[1].name, "p_2");
     EXPECT_EQ(read_.sets.sets[1].name, "s_2");
     EXPECT_EQ(read_.sets.sets[2].name, "unnamed");
-    EXPECT_EQ(read_.warnings, (std::vector<std::string>{
-                                  "there is more than one array \"T\": 2 others are called \"T_2\" to \"T_3\"",
-                                  "there is more than one patch \"p\": another is called \"p_2\"",
-                                  "there is more than one set of cells \"s\": another is called \"s_2\""}));
+    EXPECT_EQ(read_.warnings,
+              (std::vector<std::string>{"there is more than one array \"T\": 2 others are called \"T_2\" to \"T_3\"",
+                                        "there is more than one patch \"p\": another is called \"p_2\"",
+                                        "there is more than one set of cells \"s\": another is called \"s_2\""}));
 }
 
 TEST_F(CheckRead, WhatIsThereTwiceOrNotAtAll) {
@@ -94,7 +95,8 @@ TEST_F(CheckRead, Bounds) {
     EXPECT_NE(with({{0, 1}, {0, 1}}).find("has 2 pairs of bounds"), std::string::npos);
     EXPECT_NE(with({{4, 3}}).find("has the bounds 4 to 3 (the lower one first)"), std::string::npos);
     EXPECT_NE(with({{std::nan(""), 3}}).find("the lower one first"), std::string::npos);
-    EXPECT_NE(with({{12, 13}}).find("no value lies within them (its values are 0 to 11)"), std::string::npos) << with({{12, 13}});
+    EXPECT_NE(with({{12, 13}}).find("no value lies within them (its values are 0 to 11)"), std::string::npos)
+        << with({{12, 13}});
     EXPECT_NE(with({{-2, -.5}}).find("no value lies within them"), std::string::npos);
     // 8 to 11 are cut off; what is a hundredth of the range beyond is rounding.
     read_.mesh.attributes[0].bounds = {{0, 7}};
