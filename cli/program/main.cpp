@@ -24,6 +24,7 @@
 #include "mistakes.h"
 #include "ranks.h"
 #include "subvol/detail/atomic_file.h"
+#include "subvol/detail/error_text.h"
 #include "subvol/detail/printable.h"
 #include "subvol/error.h"
 #include "subvol/version.h"
@@ -74,10 +75,8 @@ int complain(const Error& error, int code, bool json) {
     if (!speaks()) return code;
     subvol::cli::say_at_last([&] {
         // The message is put together from the error's parts, because what() ends at a zero byte.
-        const std::string where = error.where().empty() ? "" : error.where() + ": ";
-        const std::string allowed = error.allowed().empty() ? "" : " (" + error.allowed() + ")";
-        std::cerr << "subvol: " + printable_message(where + error.message() + allowed) +
-                         "\n";  // in one go: mpirun may write between two
+        const std::string sentence = subvol::detail::error_sentence(error.where(), error.message(), error.allowed());
+        std::cerr << "subvol: " + printable_message(sentence) + "\n";  // in one go: mpirun may write between two
         if (json) std::cout << subvol::cli::error_json(error, code) << std::endl;
     });
     return code;

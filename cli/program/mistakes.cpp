@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "manual.h"
+#include "subvol/detail/error_text.h"
 #include "subvol/detail/near_name.h"
 #include "subvol/detail/printable.h"
 #include "text.h"
@@ -146,8 +147,9 @@ Error explained(const CLI::App& program, const Error& error) {
 
 std::string error_json(const Error& error, int code) {
     nlohmann::ordered_json json;
+    const auto part = [](const std::string& text) { return detail::printable_message(detail::error_sentence({}, text, {})); };
     json["error"] = {{"code", code},
-                     {"what", detail::printable_message(error.message())},
+                     {"what", part(error.message())},
                      {"where", detail::printable_message(error.where())},
                      {"allowed", detail::printable_message(error.allowed())}};
     return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace);

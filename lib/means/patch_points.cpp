@@ -17,7 +17,9 @@
 //     ───> p       inlet: v
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <span>
+#include <string_view>
 
 #include "mesh_subset.h"
 #include "subvol/cell.h"
@@ -423,9 +425,12 @@ PatchValuesReport meet_patch_values(HexMesh& mesh, const ValuesOnPatches& on_pat
     PatchValuesReport report;
     PatchPoints points(mesh, on_patches, use);
     const std::vector<double> volumes = volumes_at(mesh);
+    std::map<std::string_view, Attribute*> known;
+    for (Attribute& attribute : mesh.attributes) known.try_emplace(attribute.name, &attribute);
     for (const FieldOnPatches& field : on_patches.fields) {
-        const auto attribute = std::ranges::find(mesh.attributes, field.name, &Attribute::name);
-        if (attribute == mesh.attributes.end() || attribute->channels != field.channels) continue;
+        const auto found = known.find(field.name);
+        if (found == known.end() || found->second->channels != field.channels) continue;
+        Attribute* const attribute = found->second;
         const std::vector<double> before = attribute->values;
         const std::size_t met = points.meet(field, *attribute);
         if (met == 0) continue;

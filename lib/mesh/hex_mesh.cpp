@@ -15,6 +15,7 @@
 #include <string_view>
 
 #include "mesh_subset.h"
+#include "subvol/detail/error_text.h"
 #include "subvol/detail/near_name.h"
 #include "subvol/error.h"
 
@@ -90,16 +91,16 @@ const Attribute* HexMesh::find_attribute(std::string_view name) const {
 }
 
 const Attribute& scalar_field(const HexMesh& mesh, std::string_view name) {
-    std::string known;
+    std::vector<std::string> known;
     for (const auto& attribute : mesh.attributes) {
         if (attribute.channels != 1) continue;
         if (name.empty() || attribute.name == name) return attribute;
-        known += (known.empty() ? "" : ", ") + attribute.name;
+        known.push_back(attribute.name);
     }
     throw Error(ErrorCode::InvalidInput,
                 name.empty() ? "the mesh has no field of one channel"
                              : "there is no field \"" + std::string(name) + "\" of one channel",
-                {}, known.empty() ? "an attribute of one channel" : "the mesh has: " + known);
+                {}, known.empty() ? "an attribute of one channel" : "the mesh has: " + detail::listed(known));
 }
 
 std::vector<std::uint8_t> detail::used_points(const HexMesh& mesh) {

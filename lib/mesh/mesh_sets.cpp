@@ -3,9 +3,13 @@
 
 #include <algorithm>
 #include <iterator>
+#include <optional>
+#include <string_view>
+#include <unordered_set>
 #include <utility>
 
 #include "subvol/cell.h"
+#include "subvol/detail/error_text.h"
 #include "subvol/detail/printable.h"
 #include "subvol/error.h"
 
@@ -16,14 +20,14 @@ template <class Named>
 const Named& find(const std::vector<Named>& all, std::string_view name, const std::string& kind, const std::string& kinds) {
     const auto found = std::ranges::find(all, name, &Named::name);
     if (found != all.end()) return *found;
-    std::string known;
-    for (const Named& one : all) known += (known.empty() ? "" : ", ") + one.name;
+    std::vector<std::string> known;
+    for (const Named& one : all) known.push_back(one.name);
     throw Error(ErrorCode::InvalidInput, "there is no " + kind + " \"" + std::string(name) + "\"", {},
-                known.empty() ? "the mesh has no " + kinds : "the mesh has: " + known);
+                known.empty() ? "the mesh has no " + kinds : "the mesh has: " + detail::listed(known));
 }
 
 template <class Named>
-std::string listed(const std::vector<Named>& all, std::string_view one, std::string_view many) {
+std::string counted_names(const std::vector<Named>& all, std::string_view one, std::string_view many) {
     if (all.empty()) return {};
     constexpr std::size_t kNamed = 6;
     std::string list = std::to_string(all.size()) + " " + std::string(all.size() == 1 ? one : many) + " (";
@@ -32,29 +36,63 @@ std::string listed(const std::vector<Named>& all, std::string_view one, std::str
     return list + (all.size() > kNamed ? ", …)" : ")");
 }
 
+/// The first item that is there more than once; nothing if each is there once.
+template <class Item, class Key>
+std::optional<Item> repeated(const std::vector<Item>& items, const Key& key) {
+    const auto not_ascending = [&](const Item& a, const Item& b) { return !(key(a) < key(b)); };
+    if (std::ranges::adjacent_find(items, not_ascending) == items.end()) return std::nullopt;  // as most are
+    std::vector<Item> sorted = items;
+    std::ranges::sort(sorted, {}, key);
+    const auto same = [&](const Item& a, const Item& b) { return key(a) == key(b); };
+    const auto found = std::ranges::adjacent_find(sorted, same);
+    return found == sorted.end() ? std::nullopt : std::optional(*found);
+}
+
 }  // namespace
 
 void validate(const MeshSets& sets, const HexMesh& mesh) {
     const auto check = [&](const std::string& kind, const std::string& name, const std::string& entity, std::size_t number,
                            std::size_t count) {
         if (number < count) return;
-        throw Error(ErrorCode::InvalidInput, kind + " \"" + name + "\" has " + entity + " " + std::to_string(number), {},
+        throw Error(ErrorCode::InvalidInput,
+                    kind + " " + detail::in_quotes(name) + " has " + entity + " " + std::to_string(number), {},
                     "less than " + std::to_string(count));
+    };
+    const auto check_names = [](const std::string& kind, const auto& all) {
+        std::unordered_set<std::string_view> names;
+        for (const auto& one : all) {
+            if (!names.insert(one.name).second)
+                throw Error(ErrorCode::InvalidInput, "two " + kind + " have the name " + detail::in_quotes(one.name), {},
+                            "a name for each");
+        }
     };
     for (const Patch& patch : sets.patches) {
         for (const CellSide& side : patch.sides) {
             check("patch", patch.name, "a side of cell", side.cell, mesh.cells.size());
             check("patch", patch.name, "side", side.side, kCellFaces.size());
         }
+        const auto twice = repeated(patch.sides, [](const CellSide& side) { return std::pair(side.cell, side.side); });
+        if (!twice) continue;
+        throw Error(ErrorCode::InvalidInput,
+                    "patch " + detail::in_quotes(patch.name) + " has side " + std::to_string(twice->side) + " of cell " +
+                        std::to_string(twice->cell) + " more than once",
+                    {}, "once");
     }
     for (const CellSet& set : sets.sets) {
         for (const Index cell : set.cells) check("set", set.name, "cell", cell, mesh.cells.size());
+        const auto twice = repeated(set.cells, [](Index cell) { return cell; });
+        if (!twice) continue;
+        throw Error(ErrorCode::InvalidInput,
+                    "set " + detail::in_quotes(set.name) + " has cell " + std::to_string(*twice) + " more than once", {},
+                    "once");
     }
+    check_names("patches", sets.patches);
+    check_names("sets of cells", sets.sets);
 }
 
 std::string list_of(const MeshSets& sets) {
-    const std::string patches = listed(sets.patches, "patch", "patches");
-    const std::string cells = listed(sets.sets, "set of cells", "sets of cells");
+    const std::string patches = counted_names(sets.patches, "patch", "patches");
+    const std::string cells = counted_names(sets.sets, "set of cells", "sets of cells");
     return patches + (patches.empty() || cells.empty() ? "" : " and ") + cells;
 }
 

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
-#include <unordered_map>
 #include <utility>
 
 #include "cell_splits.h"
@@ -112,7 +111,7 @@ public:
         if (array.components == 1 && upper_case(array.name) == "DENSITY" && info.min < 0) {
             result_.warnings.push_back(in_quotes(array.name) + " has negative values");
         }
-        Attribute attribute{unused_name(array.name), array.components, {}};
+        Attribute attribute{distinct_.take(array.name), array.components, {}};
         if (array.at_cells && !array.on_patches.empty()) take_on_patches(attribute.name, array);
         if (array.at_cells && fits_) {
             attribute.values.assign(result_.mesh.points.size() * static_cast<std::size_t>(array.components), 0);
@@ -141,14 +140,7 @@ public:
                         std::string(file_) + ", array " + in_quotes(result_.unread.back().name));
         }
         left_out.report("field", "fields", result_.warnings);
-        for (const std::string& name : repeated_) {
-            const auto& others = names_taken_[name].others;
-            const std::string last = others.size() > 1 ? " to " + in_quotes(others.back()) : "";
-            result_.warnings.push_back(
-                "there is more than one array " + in_quotes(name) + ": " +
-                (others.size() > 1 ? std::to_string(others.size()) + " others are called " : "another is called ") +
-                in_quotes(others.front()) + last);
-        }
+        distinct_.report(result_.warnings);
         if (averaged_.empty()) return;
         constexpr std::size_t kMostNamed = 6;
         const bool one = averaged_.size() == 1;
@@ -225,35 +217,13 @@ private:
         }
     }
 
-    // The name itself, or with the first number that makes it a name of no other array.
-    std::string unused_name(const std::string& name) {
-        Taken& taken = names_taken_[name];
-        if (!taken.itself) {
-            taken.itself = true;
-            return name;
-        }
-        std::string other;
-        do {
-            other = name + "_" + std::to_string(taken.next++);
-        } while (std::exchange(names_taken_[other].itself, true));
-        if (taken.others.empty()) repeated_.push_back(name);
-        taken.others.push_back(other);
-        return other;
-    }
-
     ReadResult& result_;
     const Origin& origin_;
     std::string_view file_;
     const EntityNames& names_;
     bool fits_;
-    // A name that is taken by an array, or that several have: those of the others, and the next number to try.
-    struct Taken {
-        bool itself = false;
-        std::size_t next = 2;
-        std::vector<std::string> others;
-    };
-    std::unordered_map<std::string, Taken> names_taken_;
-    std::vector<std::string> averaged_, repeated_;
+    NamesApart distinct_{"array"};
+    std::vector<std::string> averaged_;
     std::vector<UnreadField> unread_;
 };
 

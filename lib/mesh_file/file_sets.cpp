@@ -128,7 +128,7 @@ std::vector<Patch> patches_of_mesh(const HexMesh& mesh, const MeshFile& found, c
     }
     std::vector<std::uint8_t> inside(found.patches.size(), 0);
     std::vector<Patch> result;
-    for (const FilePatch& patch : found.patches) result.push_back({printable(patch.name), {}});
+    for (const FilePatch& patch : found.patches) result.push_back({patch.name, {}});
     for (const auto& [key, side] : sides) {
         for (const std::size_t patch : side.patches) inside[patch] |= side.inside ? 1 : 0;
         if (side.inside) continue;
@@ -161,7 +161,7 @@ FileSetsOfMesh sets_of_mesh(const HexMesh& mesh, const MeshFile& found, std::spa
     std::iota(by_number.begin(), by_number.end(), Index{0});
     std::ranges::stable_sort(by_number, {}, number);
     for (const FileSet& set : found.sets) {
-        CellSet of_mesh{printable(set.name), {}};
+        CellSet of_mesh{set.name, {}};
         for (const Index wanted : set.numbers) {
             const auto first = std::ranges::lower_bound(by_number, wanted, {}, number);
             const auto last = std::ranges::upper_bound(by_number, wanted, {}, number);

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "subvol/cell.h"
+#include "subvol/detail/error_text.h"
 #include "subvol/detail/number_text.h"
 #include "subvol/detail/printable.h"
 #include "subvol/error.h"
@@ -197,6 +198,31 @@ void LeftOut::report(std::string_view one, std::string_view many, std::vector<st
                        why_);
 }
 
+std::string NamesApart::take(const std::string& name) {
+    const std::string wanted = name.empty() ? "unnamed" : name;
+    std::string taken = distinct_.take(wanted);
+    if (taken == wanted) return taken;
+    const auto [at, is_new] = places_.try_emplace(wanted, repeated_.size());
+    if (is_new) repeated_.push_back({wanted, taken, {}, 0});
+    Repeated& repeated = repeated_[at->second];
+    repeated.last = taken;
+    ++repeated.others;
+    return taken;
+}
+
+void NamesApart::report(std::vector<std::string>& warnings) const {
+    constexpr std::size_t kNamed = 6;
+    for (std::size_t k = 0; k < std::min(kNamed, repeated_.size()); ++k) {
+        const Repeated& one = repeated_[k];
+        warnings.push_back("there is more than one " + thing_ + " " + in_quotes(one.name) + ": " +
+                           (one.others > 1 ? std::to_string(one.others) + " others are called " : "another is called ") +
+                           in_quotes(one.first) + (one.others > 1 ? " to " + in_quotes(one.last) : ""));
+    }
+    if (repeated_.size() > kNamed) {
+        warnings.push_back(std::to_string(repeated_.size() - kNamed) + " more names are those of more than one " + thing_);
+    }
+}
+
 BlockChoice::BlockChoice(std::span<const std::string> wanted, const std::vector<std::string>& there, std::string_view file) {
     for (const std::string& name : wanted) {
         const auto same = [&](const std::string& other) { return upper_case(other) == upper_case(name); };
@@ -208,12 +234,8 @@ BlockChoice::BlockChoice(std::span<const std::string> wanted, const std::vector<
             std::ranges::copy_if(there, std::inserter(wanted_, wanted_.end()), same);
             continue;
         }
-        constexpr std::size_t kListed = 20;
-        std::string list;
-        for (std::size_t b = 0; b < std::min(there.size(), kListed); ++b) list += (b == 0 ? "" : ", ") + printable(there[b]);
-        if (there.size() > kListed) list += " and " + std::to_string(there.size() - kListed) + " more";
         throw Error(ErrorCode::InvalidInput, "there is no block " + in_quotes(name), std::string(file),
-                    list.empty() ? "it has none" : "it has: " + list);
+                    there.empty() ? "it has none" : "it has: " + listed(there));
     }
 }
 

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "curved_cells.h"
+#include "subvol/detail/distinct_names.h"
 #include "subvol/detail/flat_array.h"
 #include "subvol/index.h"
 #include "subvol/patch_values.h"
@@ -214,6 +215,28 @@ public:
 private:
     std::string names_, why_;
     std::size_t count_ = 0;
+};
+
+/// Names of the things of a mesh that are made distinct: one warning for each name that several have.
+class NamesApart {
+public:
+    /// thing: a word for them, such as "array"
+    explicit NamesApart(std::string thing) : thing_(std::move(thing)) {}
+
+    /// The name that the next thing gets; "unnamed" if it has none.
+    [[nodiscard]] std::string take(const std::string& name);
+    /// Appends 'there is more than one array "T": another is called "T_2"'.
+    void report(std::vector<std::string>& warnings) const;
+
+private:
+    struct Repeated {
+        std::string name, first, last;
+        std::size_t others = 0;
+    };
+    std::string thing_;
+    DistinctNames distinct_;
+    std::vector<Repeated> repeated_;
+    std::unordered_map<std::string, std::size_t> places_;  // of names in `repeated_`
 };
 
 /// Leaves out the quads that are faces of hexahedra and the lines that are edges of them, and all of them if there are other

@@ -5,6 +5,7 @@
 #include <map>
 #include <optional>
 
+#include "subvol/detail/error_text.h"
 #include "subvol/error.h"
 #include "subvol/topology.h"
 
@@ -99,10 +100,9 @@ bool SharpGroups::takes(const std::string& name, const std::string& number) {
 
 void SharpGroups::check(std::string_view file) const {
     if (missing_.empty()) return;
-    std::string known;
-    for (const std::string& name : known_) known += (known.empty() ? "" : ", ") + name;
+    const std::vector<std::string> known(known_.begin(), known_.end());
     throw Error(ErrorCode::InvalidInput, "there is no group " + in_quotes(*missing_.begin()) + " of faces or edges",
-                std::string(file), known.empty() ? "the file has none" : "it has: " + known);
+                std::string(file), known.empty() ? "the file has none" : "it has: " + listed(known));
 }
 
 void add_sharp_tags(HexMesh& mesh, FileTags&& tags, const IndexRows* sources, std::string_view file, const EntityNames& names) {

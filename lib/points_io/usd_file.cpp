@@ -15,6 +15,7 @@
 
 #include "output_file.h"
 #include "splat_gaussians.h"
+#include "subvol/detail/distinct_names.h"
 #include "subvol/detail/number_text.h"
 #include "subvol/detail/printable.h"
 #include "subvol/error.h"
@@ -65,13 +66,9 @@ std::string identifier(const std::string& text) {
 
 /// Identifiers of several names, each another one.
 std::vector<std::string> identifiers(const std::vector<std::string>& names) {
+    DistinctNames distinct;
     std::vector<std::string> made;
-    for (const std::string& name : names) {
-        const std::string base = identifier(name);
-        std::string next = base;
-        for (int count = 2; std::ranges::find(made, next) != made.end(); ++count) next = base + "_" + std::to_string(count);
-        made.push_back(next);
-    }
+    for (const std::string& name : names) made.push_back(distinct.take(identifier(name)));
     return made;
 }
 

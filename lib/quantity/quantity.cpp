@@ -19,6 +19,7 @@
 
 #include "limit_gradient.h"
 #include "quantity_source.h"
+#include "subvol/detail/error_text.h"
 #include "subvol/detail/near_name.h"
 #include "subvol/detail/printable.h"
 #include "subvol/error.h"
@@ -355,9 +356,9 @@ bool may_be_name(std::string_view source) {
 }  // namespace
 
 std::string detail::list_of(const HexMesh& mesh) {
-    std::string list;
-    for (const Attribute& attribute : mesh.attributes) list += (list.empty() ? "" : ", ") + attribute.name;
-    return list;
+    std::vector<std::string> names;
+    for (const Attribute& attribute : mesh.attributes) names.push_back(attribute.name);
+    return listed(names);
 }
 
 Attribute detail::length_of(const Attribute& attribute) {

@@ -2,8 +2,10 @@
 #include <algorithm>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "subvol/detail/bucket_sort.h"
+#include "subvol/detail/error_text.h"
 #include "subvol/error.h"
 #include "surface_builder.h"
 #include "topology_parts.h"
@@ -53,17 +55,21 @@ std::string name_cells(const Cells& cells, Index a, Index b) {
 
 template <class Cells>
 [[noreturn]] void refuse_face(const Cells& all, std::span<const FaceRecord> sharing) {
-    for (std::size_t i = 0; i < sharing.size(); ++i) {
-        for (std::size_t j = i + 1; j < sharing.size(); ++j) {
+    // Few are enough to be compared with each other, however many there are.
+    constexpr std::size_t kCompared = 100;
+    const std::size_t compared = std::min(kCompared, sharing.size());
+    for (std::size_t i = 0; i < compared; ++i) {
+        for (std::size_t j = i + 1; j < compared; ++j) {
             const auto text = name_cells(all, sharing[i].cell, sharing[j].cell);
             if (!text.empty()) throw Error(ErrorCode::InvalidInput, text, {}, "each cell may be listed once");
         }
     }
-    std::string points, cells;
+    std::string points;
     for (const Index p : sharing[0].points) points += (points.empty() ? "" : " ") + std::to_string(p);
-    for (const auto& record : sharing) cells += (cells.empty() ? "" : ", ") + std::to_string(record.cell);
+    std::vector<std::string> cells;
+    for (const auto& record : sharing) cells.push_back(std::to_string(record.cell));
     throw Error(ErrorCode::InvalidInput,
-                "face (" + points + ") has " + std::to_string(sharing.size()) + " cells: " + cells +
+                "face (" + points + ") has " + std::to_string(sharing.size()) + " cells: " + listed(cells) +
                     " (points and cells counted from 0)",
                 {}, "at most two cells share a face");
 }

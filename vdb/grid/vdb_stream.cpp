@@ -8,6 +8,7 @@
 #include <span>
 
 #include "openvdb_grids.h"
+#include "subvol/detail/error_text.h"
 #include "subvol/detail/printable.h"
 #include "subvol/detail/vdb_file.h"
 #include "subvol/error.h"
@@ -96,13 +97,14 @@ openvdb::GridPtrVec read_grids(const std::filesystem::path& path, std::span<cons
 
 openvdb::GridPtrVec read_grids(const std::filesystem::path& path, const std::string& type, const std::string& what) {
     std::vector<GridEntry> entries = checked_grids(path, std::span(&type, 1));
-    std::string others;
+    std::vector<std::string> others;
     for (const GridEntry& entry : entries) {
-        if (entry.type != type) others += (others.empty() ? "" : ", ") + printable(entry.type);
+        if (entry.type != type) others.push_back(entry.type);
     }
     std::erase_if(entries, [&](const GridEntry& entry) { return entry.type != type; });
     if (entries.empty()) {
-        throw Error(ErrorCode::InvalidInput, "holds no " + what, path.string(), others.empty() ? "" : "it holds: " + others);
+        throw Error(ErrorCode::InvalidInput, "holds no " + what, path.string(),
+                    others.empty() ? "" : "it holds: " + listed(others));
     }
     return read_entries(path, entries);
 }

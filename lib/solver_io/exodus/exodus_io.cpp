@@ -568,14 +568,8 @@ ReadResult read_exodus_file(const std::filesystem::path& path, const ReadOptions
     MeshFile found = join_pieces(std::move(pieces), "piece", path.string());
     std::erase_if(found.arrays, [](const FileArray& array) { return array.name == kNodeNumberMap; });
     std::vector<MeshBlock> blocks;
-    for (const MeshBlock& block : found.blocks) {
-        const auto same = std::ranges::find(blocks, block.name, &MeshBlock::name);
-        if (same == blocks.end()) {
-            blocks.push_back(block);
-        } else {
-            same->cells += block.cells;
-        }
-    }
+    ByName<MeshBlock> by_name(blocks);
+    for (const MeshBlock& block : found.blocks) by_name[block.name].cells += block.cells;
     found.blocks = std::move(blocks);
     return assemble(std::move(found), path.string(), kExodusNames, options);
 }
