@@ -37,12 +37,6 @@ struct Preamble {
 };
 static_assert(sizeof(Preamble) == 48);
 
-std::uint64_t hash_of(std::string_view bytes) {
-    ByteHash hash;
-    hash.add(bytes);
-    return hash.value();
-}
-
 template <class T>
 void put(std::string& bytes, const T& value) {
     bytes.append(reinterpret_cast<const char*>(&value), sizeof value);

@@ -40,7 +40,7 @@ bool unpack_lzma(std::string_view bytes, std::string& into) {
     const auto result =
         lzma_stream_buffer_decode(&dictionary_limit, 0, nullptr, reinterpret_cast<const std::uint8_t*>(bytes.data()), &read,
                                   bytes.size(), reinterpret_cast<std::uint8_t*>(into.data()), &written, into.size());
-    return result == LZMA_OK && written == into.size();
+    return result == LZMA_OK && written == into.size() && read == bytes.size();
 }
 
 bool unpack_lz4(std::string_view bytes, std::string& into) {
@@ -164,6 +164,7 @@ std::optional<std::string_view> LzmaReader::next() {
     const lzma_ret result = lzma_code(&lzma, LZMA_FINISH);
     stream_->ended = result == LZMA_STREAM_END;
     if (result != LZMA_OK && !stream_->ended) return std::nullopt;
+    if (stream_->ended && lzma.avail_in > 0) return std::nullopt;
     return std::string_view(piece_).substr(0, piece_.size() - lzma.avail_out);
 }
 

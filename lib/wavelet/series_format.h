@@ -18,8 +18,10 @@
 
 namespace subvol::detail {
 
-// A .svw file of steps: kSeriesMagic; place, length and unpacked length of the index (8 bytes each, lowest first); meshes and
-// steps one after the other; the index. Numbers are as in wavelet_format.h.
+// A .svw file of steps: kSeriesMagic; place, length and unpacked length of the index, and the hash of these three and of the
+// index as it is stored (8 bytes each, lowest first); meshes and steps one after the other; zeros, where the file would
+// otherwise stand for more memory than kMostGrowth times its bytes; the index. Numbers are as in wavelet_format.h. Hashes are
+// those of byte_hash.h, so that no byte is read that is not as it was written.
 //
 //   mesh    compressed: levels; points and cells, creases, sharp faces, as in a file of wavelets; refined so often they are
 //             those of the steps
@@ -37,13 +39,15 @@ namespace subvol::detail {
 //             other, each as planes of bytes, lowest first, without sign as 0, -1, 1, -2, …; it ends with the channel with
 //             which it reaches kBlockBytes
 //   index   compressed:
-//             meshes: how many; for each place, length, unpacked length
+//             meshes: how many; for each place, length, hash, unpacked length
 //             arrays: how many; for each its name, channels, and of each channel origin, step, least, greatest value (reals).
 //               The first array has the points, and no name.
-//             steps: how many; for each its time (real), the number of its mesh, 1 if it is a key step, place, length
+//             steps: how many; for each its time (real), the number of its mesh, 1 if it is a key step, place, length, hash
+//
+// Files of the first version begin with kFirstSeriesMagic, and have no hashes.
 
-inline constexpr std::string_view kSeriesMagic = "subvol-series-1\n";
-inline constexpr std::size_t kSeriesHead = kSeriesMagic.size() + 24;
+inline constexpr std::string_view kSeriesMagic = "subvol-series-2\n", kFirstSeriesMagic = "subvol-series-1\n";
+inline constexpr std::size_t kSeriesHead = kSeriesMagic.size() + 32, kFirstSeriesHead = kFirstSeriesMagic.size() + 24;
 inline constexpr std::size_t kBlockBytes = std::size_t{1} << 20;
 inline constexpr int kFractionBits = 8;
 inline constexpr std::int64_t kMostQuantized = std::int64_t{1} << 50;
@@ -69,8 +73,10 @@ struct SeriesArray {
     std::vector<Quantization> channels;
 };
 
+/// hash: of the bytes there; none in files of the first version
 struct SeriesPlace {
     std::uint64_t place = 0, length = 0;
+    std::optional<std::uint64_t> hash = {};
 };
 
 struct SeriesMesh {
@@ -89,7 +95,32 @@ struct SeriesIndex {
     std::vector<SeriesMesh> meshes;
     std::vector<SeriesArray> arrays;
     std::vector<SeriesStep> steps;
+
+    /// Of all arrays, as if a step had all of them.
+    [[nodiscard]] std::uint64_t channels() const {
+        std::uint64_t sum = 0;
+        for (const SeriesArray& array : arrays) sum += array.channels.size();
+        return sum;
+    }
 };
+
+// Few bytes can say that they are a large mesh with many steps. Reading a step takes at most so much memory, or so many times
+// the bytes of the file, and decodes at most so many values, or so many for each byte of the steps that are decoded. The writer
+// keeps to both: it adds zeros to the file, and begins anew with a key step.
+inline constexpr std::uint64_t kSeriesMemory = std::uint64_t{512} << 20, kMostGrowth = 8192;
+inline constexpr std::uint64_t kMostDecoded = std::uint64_t{1} << 28, kMostDecodedPerByte = 1024;
+inline constexpr int kMostKeySteps = 1000;
+
+/// What is in memory while a step is read.
+///
+/// cells, points: of the mesh, refined; channels: of its arrays, points included; set_bytes: of patches and sets, as stored
+[[nodiscard]] inline std::uint64_t series_memory(std::uint64_t cells, std::uint64_t points, std::uint64_t channels,
+                                                 std::uint64_t set_bytes) {
+    // A cell with its part of the topology, as measured. A point; in each channel the numbers of three steps, residuals of
+    // at most 6 bytes, the value. A side of a cell, of a byte or more: itself and its number.
+    constexpr std::uint64_t kCell = 300, kPoint = 24, kChannel = 3 * 8 + 6 + 8, kSetByte = 16;
+    return kCell * cells + (kPoint + kChannel * channels) * std::max(points, cells) + kSetByte * set_bytes;
+}
 
 /// What the steps before predict for value `p`.
 [[nodiscard]] inline std::int64_t earlier(Temporal temporal, const std::vector<std::int64_t>& before,

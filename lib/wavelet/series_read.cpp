@@ -4,6 +4,7 @@
 #include <system_error>
 
 #include "series_channels.h"
+#include "subvol/detail/byte_hash.h"
 #include "subvol/detail/read_file.h"
 #include "subvol/error.h"
 #include "subvol/refine.h"
@@ -15,10 +16,11 @@ namespace subvol::detail {
 namespace {
 
 constexpr std::size_t kMostChannels = 1000;
+constexpr std::uint64_t kMostPadding = std::uint64_t{64} << 20;
 constexpr int kMostResidualBytes = 6;
 constexpr std::int64_t kMostChange = 4 * kMostQuantized;
 
-/// The bytes of a file, each range only if it is there.
+/// The bytes of a file, each range only if it is there, and as it was written.
 class SeriesBytes {
 public:
     explicit SeriesBytes(const std::filesystem::path& path) : path_(path), file_(path.string()) {
@@ -31,6 +33,7 @@ public:
         if (place.place > size_ || place.length > size_ - place.place) fail(std::string(what) + " is not in the file");
         std::string bytes = read_range(path_, place.place, place.length);
         if (bytes.size() != place.length) fail(std::string(what) + " is not in the file");
+        if (place.hash && *place.hash != hash_of(bytes)) fail("the bytes of " + std::string(what) + " are damaged");
         return bytes;
     }
 
@@ -38,12 +41,22 @@ public:
         throw Error(ErrorCode::InvalidInput, what, file_, allowed);
     }
 
-    /// Refuses memory that so few bytes do not stand for: no more than 8192 times them, or 256 MB.
+    /// Refuses memory that so few bytes do not stand for.
     void expect_growth(std::uint64_t packed, std::uint64_t unpacked) const {
-        constexpr std::uint64_t kAlways = std::uint64_t{256} << 20, kMostGrowth = 8192;
+        constexpr std::uint64_t kAlways = kSeriesMemory / 2;
         if (unpacked <= kAlways || unpacked / kMostGrowth <= packed) return;
         fail(std::to_string(packed) + " bytes say that they are " + std::to_string(unpacked),
-             "at most 8192 times as many, or 256 MB");
+             "at most " + std::to_string(kMostGrowth) + " times as many, or " + std::to_string(kAlways >> 20) + " MiB");
+    }
+
+    /// Refuses what reading a step would take, if the file is too small for it. counts: of the refined mesh
+    void expect_memory(std::uint64_t cells, std::uint64_t points, std::uint64_t channels, std::uint64_t set_bytes) const {
+        if (std::max(cells, points) >= kNone) fail(std::to_string(cells) + " cells are too many");
+        const std::uint64_t memory = series_memory(cells, points, channels, set_bytes);
+        if (memory <= kSeriesMemory || memory / kMostGrowth <= size_) return;
+        fail("a step of " + std::to_string(cells) + " cells takes " + std::to_string(memory >> 20) +
+                 " MiB of memory, and the file has " + std::to_string(size_) + " bytes",
+             "at most " + std::to_string(kMostGrowth) + " times as many, or " + std::to_string(kSeriesMemory >> 20) + " MiB");
     }
 
     [[nodiscard]] std::string unpacked(const std::string& packed, std::uint64_t length) const {
@@ -62,10 +75,11 @@ private:
     std::uint64_t size_ = 0;
 };
 
-SeriesPlace read_place(Contents& in) {
+SeriesPlace read_place(Contents& in, bool with_hash) {
     SeriesPlace place;
     place.place = in.number();
     place.length = in.number();
+    if (with_hash) place.hash = in.number();
     return place;
 }
 
@@ -79,23 +93,77 @@ Quantization read_quantization(Contents& in) {
     return q;
 }
 
-SeriesIndex read_index(const SeriesBytes& bytes) {
-    const std::string head = bytes.range({0, kSeriesHead}, "the head");
-    if (!is_series_text(head)) bytes.fail("not a file of steps", "it begins with subvol-series-1");
-    std::array<std::uint64_t, 3> numbers{};
-    for (std::size_t k = 0; k < 24; ++k) {
-        numbers[k / 8] |= std::uint64_t{static_cast<unsigned char>(head[kSeriesMagic.size() + k])} << 8 * (k % 8);
+/// What is before the index: where the index is, and whether there are hashes.
+struct SeriesHead {
+    SeriesPlace index;
+    std::uint64_t unpacked = 0, length = 0;
+    bool with_hashes = false;
+};
+
+SeriesHead read_head_of(const SeriesBytes& bytes) {
+    const std::string magic = bytes.range({0, kSeriesMagic.size()}, "the head");
+    if (!is_series_text(magic)) bytes.fail("not a file of steps", "it begins with subvol-series-");
+    SeriesHead head;
+    head.with_hashes = magic == kSeriesMagic;
+    head.length = head.with_hashes ? kSeriesHead : kFirstSeriesHead;
+    const std::string text = bytes.range({0, head.length}, "the head");
+    std::array<std::uint64_t, 4> numbers{};
+    for (std::size_t k = magic.size(); k < text.size(); ++k) {
+        const std::size_t at = k - magic.size();
+        numbers[at / 8] |= std::uint64_t{static_cast<unsigned char>(text[k])} << 8 * (at % 8);
     }
-    const std::string contents = bytes.unpacked(bytes.range({numbers[0], numbers[1]}, "the index"), numbers[2]);
+    head.index = {numbers[0], numbers[1]};
+    head.unpacked = numbers[2];
+    if (head.with_hashes) {
+        const std::string stored = text.substr(0, kFirstSeriesHead) + bytes.range(head.index, "the index");
+        if (hash_of(stored) != numbers[3]) bytes.fail("the bytes of the head or of the index are damaged");
+    }
+    return head;
+}
+
+/// Meshes and steps lie one after the other between the head and the index: no byte belongs to two of them, or to none but
+/// zeros before the index.
+void check_places(const SeriesBytes& bytes, const SeriesHead& head, const SeriesIndex& index) {
+    std::vector<SeriesPlace> places;
+    for (const SeriesMesh& mesh : index.meshes) places.push_back(mesh.place);
+    for (const SeriesStep& step : index.steps) places.push_back(step.place);
+    std::ranges::sort(places, {}, &SeriesPlace::place);
+    std::uint64_t end = head.length;
+    for (const SeriesPlace& place : places) {
+        if (place.place != end) {
+            bytes.fail("a mesh or a step begins at byte " + std::to_string(place.place) + ", where " +
+                           (place.place < end ? "another one is" : "none does"),
+                       "they follow each other: byte " + std::to_string(end));
+        }
+        if (place.length == 0 || place.length > bytes.size() - end) bytes.fail("a mesh or a step is not in the file");
+        end += place.length;
+    }
+    if (head.index.place < end || head.index.place - end > kMostPadding ||
+        head.index.length != bytes.size() - head.index.place) {
+        bytes.fail("the index does not follow the last step, or is not the end of the file");
+    }
+    const std::string padding = bytes.range({end, head.index.place - end}, "the end of the steps");
+    if (padding.find_first_not_of('\0') != std::string::npos) bytes.fail("bytes before the index are damaged");
+}
+
+SeriesIndex read_index(const SeriesBytes& bytes) {
+    // Times and places do not repeat: an index is not packed as well as values are.
+    constexpr std::uint64_t kMostIndex = std::uint64_t{16} << 20, kMostIndexGrowth = 64;
+    const SeriesHead head = read_head_of(bytes);
+    if (head.unpacked > kMostIndex && head.unpacked / kMostIndexGrowth > bytes.size()) {
+        bytes.fail(std::to_string(bytes.size()) + " bytes have an index of " + std::to_string(head.unpacked),
+                   "at most 64 times as many, or 16 MiB");
+    }
+    const std::string contents = bytes.unpacked(bytes.range(head.index, "the index"), head.unpacked);
     Contents in(contents, bytes.file());
     SeriesIndex index;
     const std::size_t meshes = in.count("meshes", 3);
     for (std::size_t k = 0; k < meshes; ++k) {
-        SeriesMesh mesh{read_place(in), 0};
+        SeriesMesh mesh{read_place(in, head.with_hashes), 0};
         mesh.unpacked = in.number();
         index.meshes.push_back(mesh);
     }
-    const std::size_t arrays = in.count("arrays", 3);
+    const std::size_t arrays = in.count("arrays", 34);
     for (std::size_t a = 0; a < arrays; ++a) {
         SeriesArray array{in.text(), {}};
         const std::size_t channels = in.count("channels", 32);
@@ -109,12 +177,15 @@ SeriesIndex read_index(const SeriesBytes& bytes) {
     if (arrays == 0) in.fail("there are no points");
     const std::size_t steps = in.count("steps", 12);
     if (steps == 0) in.fail("there is no step");
+    std::size_t since_key = 0;
     for (std::size_t k = 0; k < steps; ++k) {
         SeriesStep step;
         step.time = in.real();
         step.mesh = in.number();
-        step.key = in.number() != 0;
-        step.place = read_place(in);
+        const std::uint64_t key = in.number();
+        if (key > 1) in.fail("step " + std::to_string(k) + " is key step " + std::to_string(key), "0 or 1");
+        step.key = key == 1;
+        step.place = read_place(in, head.with_hashes);
         if (!std::isfinite(step.time) || (k > 0 && !(step.time > index.steps.back().time)))
             in.fail("the times of steps do not ascend");
         if (step.mesh >= meshes)
@@ -122,9 +193,14 @@ SeriesIndex read_index(const SeriesBytes& bytes) {
                     std::to_string(meshes) + " are there");
         if (!step.key && (k == 0 || step.mesh != index.steps.back().mesh))
             in.fail("step " + std::to_string(k) + " depends on another mesh");
+        since_key = step.key ? 0 : since_key + 1;
+        if (since_key >= kMostKeySteps)
+            in.fail("step " + std::to_string(k) + " depends on " + std::to_string(since_key) + " others",
+                    "less than " + std::to_string(kMostKeySteps));
         index.steps.push_back(step);
     }
     in.expect_end();
+    check_places(bytes, head, index);
     return index;
 }
 
@@ -207,7 +283,9 @@ private:
     void read_head(Contents& in, std::vector<StepArray>& arrays) const {
         std::uint64_t channels = 0;
         for (std::size_t a = 0; a < arrays.size(); ++a) {
-            arrays[a].present = in.byte() != 0;
+            const std::uint64_t present = in.byte();
+            if (present > 1) in.fail("a step has " + std::to_string(present) + " of an array", "0 or 1");
+            arrays[a].present = present == 1;
             if (arrays[a].present) channels += index_.arrays[a].channels.size();
             if (a == 0 && !arrays[a].present) in.fail("a step has no points");
         }
@@ -220,11 +298,9 @@ private:
         for (std::size_t a = 0; a < arrays.size(); ++a) {
             if (!arrays[a].present) continue;
             const std::size_t bounds = in.count("bounds", 16);
-            if (bounds != 0 && (a == 0 || bounds != arrays[a].channels.size()))
-                in.fail("an array has bounds for other channels");
+            if (bounds != 0 && a == 0) in.fail("points have bounds");
             for (std::size_t k = 0; k < bounds; ++k) {
                 const double low = in.real(), high = in.real();
-                if (!(low <= high)) in.fail("the bounds of an array are not in order");
                 arrays[a].bounds.push_back({low, high});
             }
         }
@@ -339,7 +415,9 @@ private:
 
 /// Numbers that are written as differences, each below a limit.
 std::vector<std::uint64_t> read_differences(Contents& in, const char* what, std::uint64_t limit) {
-    std::vector<std::uint64_t> numbers(in.count(what, 1));
+    const std::size_t count = in.count(what, 1);
+    if (count > limit) in.fail(std::to_string(count) + " " + what + " in one list", "there are " + std::to_string(limit));
+    std::vector<std::uint64_t> numbers(count);
     std::int64_t number = 0;
     for (std::uint64_t& n : numbers) {
         const std::int64_t change = in.signed_number();
@@ -370,22 +448,36 @@ MeshSets read_sets(Contents& in, std::size_t cells) {
     return sets;
 }
 
-SeriesMeshAndSets read_cells_of(const SeriesBytes& bytes, const SeriesMesh& stored) {
+SeriesMeshAndSets read_cells_of(const SeriesBytes& bytes, const SeriesMesh& stored, std::uint64_t channels) {
     const std::string contents = bytes.unpacked(bytes.range(stored.place, "a mesh"), stored.unpacked);
     Contents in(contents, bytes.file());
     const std::uint64_t levels = in.number();
     if (levels > kMostLevels) in.fail("the number of levels is " + std::to_string(levels), "0 to 6");
-    HexMesh mesh = read_cells(in, 0);
-    if (levels > 0) {
-        if (mesh.cells.size() > kMostRefinedCells >> 3 * levels) {
-            in.fail(std::to_string(levels) + " levels of " + std::to_string(mesh.cells.size()) + " cells are too many",
-                    "at most 4194304 cells that are refined");
-        }
-        mesh = refined_cells(mesh, static_cast<int>(levels));
+    Contents ahead = in;
+    const std::uint64_t points = ahead.number(), cells = ahead.number();
+    if (std::max(points, cells) > contents.size() * 8) in.fail("more points or cells than the file has room for");
+    if (levels > 0 && cells > kMostRefinedCells >> 3 * levels) {
+        in.fail(std::to_string(levels) + " levels of " + std::to_string(cells) + " cells are too many",
+                "at most 4194304 cells that are refined");
     }
+    bytes.expect_memory(cells << 3 * levels, points, channels, 0);
+    HexMesh mesh = read_cells(in, 0);
+    if (levels > 0) mesh = refined_cells(mesh, static_cast<int>(levels));
+    bytes.expect_memory(mesh.cells.size(), mesh.points.size(), channels, in.left());
     MeshSets sets = read_sets(in, mesh.cells.size());
     in.expect_end();
     return {std::move(mesh), std::move(sets)};
+}
+
+/// Refuses many steps of many values that few bytes stand for.
+void expect_decoding(const SeriesBytes& bytes, const SeriesIndex& index, std::size_t key, std::size_t step,
+                     std::uint64_t points) {
+    std::uint64_t length = 0;
+    for (std::size_t k = key; k <= step; ++k) length += index.steps[k].place.length;
+    const std::uint64_t values = (step - key + 1) * index.channels() * points;
+    if (values <= kMostDecoded || values / kMostDecodedPerByte <= length) return;
+    bytes.fail(std::to_string(length) + " bytes of steps have " + std::to_string(values) + " values",
+               "at most " + std::to_string(kMostDecodedPerByte) + " for each, or " + std::to_string(kMostDecoded));
 }
 
 }  // namespace
@@ -397,7 +489,7 @@ HexMesh refined_cells(const HexMesh& coarse, int levels) {
 }
 
 bool is_series_text(std::string_view text) {
-    return text.starts_with(kSeriesMagic);
+    return text.starts_with(kSeriesMagic) || text.starts_with(kFirstSeriesMagic);
 }
 
 std::vector<double> series_file_times(const std::filesystem::path& path) {
@@ -413,12 +505,12 @@ SeriesMeshAndSets read_series_file(const std::filesystem::path& path, std::size_
     std::size_t key = step;
     while (!index.steps[key].key) --key;
     try {
-        SeriesMeshAndSets cells = read_cells_of(bytes, index.meshes[index.steps[step].mesh]);
+        SeriesMeshAndSets cells = read_cells_of(bytes, index.meshes[index.steps[step].mesh], index.channels());
+        expect_decoding(bytes, index, key, step, cells.mesh.points.size());
         StepDecoder decoder(bytes, index, std::move(cells.mesh));
         for (std::size_t k = key; k <= step; ++k) decoder.decode(k);
         HexMesh mesh = decoder.take();
         if (index.steps.size() > 1) mesh.time = index.steps[step].time;
-        validate(mesh);
         return {std::move(mesh), std::move(cells.sets)};
     } catch (const Error& error) {
         if (error.where() == bytes.file()) throw;

@@ -86,12 +86,9 @@ void SeriesSurvey::look_at(const HexMesh& mesh) {
 }
 
 ArrayRange& SeriesSurvey::range_of_array(const std::string& name, std::size_t channels) {
-    const auto found = std::find_if(ranges_.begin() + 1, ranges_.end(), [&](const ArrayRange& range) {
-        return range.name == name && range.channels.size() == channels;
-    });
-    if (found != ranges_.end()) return *found;
-    ranges_.push_back({name, std::vector<ChannelRange>(channels)});
-    return ranges_.back();
+    const auto [at, is_new] = places_.try_emplace({name, channels}, ranges_.size());
+    if (is_new) ranges_.push_back({name, std::vector<ChannelRange>(channels)});
+    return ranges_[at->second];
 }
 
 void SeriesSurvey::keep_cells_sound(const HexMesh& mesh) {

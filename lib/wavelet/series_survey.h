@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "series_format.h"
@@ -60,6 +62,7 @@ private:
 
     const SeriesFileOptions& options_;
     std::vector<ArrayRange> ranges_;
+    std::map<std::pair<std::string, std::size_t>, std::size_t> places_;  // in `ranges_`, by name and channels
     double length_ = 0, point_error_ = 0;
 };
 

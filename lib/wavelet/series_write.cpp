@@ -5,10 +5,13 @@
 #include <cmath>
 #include <map>
 #include <optional>
+#include <string_view>
+#include <utility>
 
 #include "output_file.h"
 #include "series_channels.h"
 #include "series_survey.h"
+#include "subvol/detail/byte_hash.h"
 #include "subvol/error.h"
 #include "subvol/hierarchy.h"
 #include "subvol/mesh_motion.h"
@@ -137,7 +140,7 @@ public:
 
     SeriesFileReport write() {
         file_.write(kSeriesMagic);
-        file_.write(std::string(24, '\0'));
+        file_.write(std::string(kSeriesHead - kSeriesMagic.size(), '\0'));
         for (std::size_t k = 0; k < steps_.times.size(); ++k) {
             report_progress(options_.progress, "steps", k, steps_.times.size());
             put_step(k);
@@ -157,7 +160,9 @@ private:
         const bool other_mesh = index_.meshes.empty() || !same_cells(mesh, cells_);
         if (other_mesh) put_mesh_block(mesh);
         step.mesh = index_.meshes.size() - 1;
-        step.key = other_mesh || since_key_ >= static_cast<std::size_t>(options_.key_steps);
+        const std::uint64_t values = index_.channels() * mesh.points.size();
+        step.key = other_mesh || since_key_ >= static_cast<std::size_t>(options_.key_steps) ||
+                   (since_key_ + 1) * values > kMostDecoded;
         if (step.key) {
             since_key_ = 0;
             ++report_.key_steps;
@@ -165,7 +170,7 @@ private:
         }
         ++since_key_;
         step.place.place = file_.position();
-        put_values(mesh);
+        step.place.hash = put_values(mesh);
         step.place.length = file_.position() - step.place.place;
         index_.steps.push_back(step);
         report_.points = mesh.points.size();
@@ -184,22 +189,30 @@ private:
         const std::optional<CoarseCells> coarse = coarse_cells(cells_);
         out.number(coarse ? static_cast<std::uint64_t>(coarse->levels) : 0);
         put_mesh(coarse ? coarse->mesh : cells_, out);
+        const std::size_t before_sets = out.all().size();
         put_sets(steps_.sets ? steps_.sets() : MeshSets{}, out);
+        memory_ = std::max(
+            memory_, series_memory(mesh.cells.size(), mesh.points.size(), index_.channels(), out.all().size() - before_sets));
         const std::string packed = compressed_numbers(out.all());
-        index_.meshes.push_back({{file_.position(), packed.size()}, out.all().size()});
+        index_.meshes.push_back({{file_.position(), packed.size(), hash_of(packed)}, out.all().size()});
         report_.mesh_bytes += packed.size();
         file_.write(packed);
     }
 
-    [[nodiscard]] const Attribute* attribute_of(const HexMesh& mesh, std::size_t array) const {
-        const SeriesArray& wanted = index_.arrays[array];
-        for (const Attribute& a : mesh.attributes) {
-            if (a.name == wanted.name && static_cast<std::size_t>(a.channels) == wanted.channels.size()) return &a;
+    /// For each array, points included, the attribute with its name and channels; null if the mesh has none.
+    [[nodiscard]] std::vector<const Attribute*> attributes_of(const HexMesh& mesh) const {
+        std::map<std::pair<std::string_view, std::size_t>, const Attribute*> known;
+        for (const Attribute& a : mesh.attributes) known.try_emplace({a.name, static_cast<std::size_t>(a.channels)}, &a);
+        std::vector<const Attribute*> found(index_.arrays.size(), nullptr);
+        for (std::size_t a = 1; a < found.size(); ++a) {
+            const auto at = known.find({index_.arrays[a].name, index_.arrays[a].channels.size()});
+            if (at != known.end()) found[a] = at->second;
         }
-        return nullptr;
+        return found;
     }
 
-    void put_values(const HexMesh& mesh) {
+    /// The hash of what is written.
+    std::uint64_t put_values(const HexMesh& mesh) {
         struct Task {
             std::size_t array, channel;
             std::span<const double> values;
@@ -210,8 +223,9 @@ private:
         Bytes head;
         std::vector<Task> tasks;
         std::vector<const Attribute*> there;
+        const std::vector<const Attribute*> attributes = attributes_of(mesh);
         for (std::size_t a = 0; a < index_.arrays.size(); ++a) {
-            const Attribute* attribute = a == 0 ? nullptr : attribute_of(mesh, a);
+            const Attribute* attribute = attributes[a];
             const bool present = a == 0 || attribute != nullptr;
             head.byte(present ? 1 : 0);
             if (!present) {
@@ -258,7 +272,7 @@ private:
                 head.real(bound[1]);
             }
         }
-        put_blocks(tasks, head);
+        const std::uint64_t hash = put_blocks(tasks, head);
         measure_shapes(mesh, places, tasks);
         for (Task& task : tasks) {
             History& history = before_[task.array];
@@ -268,10 +282,11 @@ private:
             }
             history.front().push_back(std::move(task.coded.residuals.numbers));
         }
+        return hash;
     }
 
     template <class Tasks>
-    void put_blocks(const Tasks& tasks, Bytes& head) {
+    std::uint64_t put_blocks(const Tasks& tasks, Bytes& head) {
         std::vector<std::string> blocks;
         bool full = true;
         for (const auto& task : tasks) {
@@ -283,8 +298,14 @@ private:
         }
         tbb::parallel_for(std::size_t{0}, blocks.size(), [&](std::size_t b) { blocks[b] = compressed_numbers(blocks[b]); });
         for (const std::string& block : blocks) head.number(block.size());
-        file_.write(head.all());
-        for (const std::string& block : blocks) file_.write(block);
+        ByteHash hash;
+        const auto put = [&](const std::string& bytes) {
+            hash.add(bytes);
+            file_.write(bytes);
+        };
+        put(head.all());
+        for (const std::string& block : blocks) put(block);
+        return hash.value();
     }
 
     /// The first three tasks have the coordinates.
@@ -304,8 +325,7 @@ private:
         Bytes out;
         out.number(index_.meshes.size());
         for (const SeriesMesh& mesh : index_.meshes) {
-            out.number(mesh.place.place);
-            out.number(mesh.place.length);
+            put_place(mesh.place, out);
             out.number(mesh.unpacked);
         }
         out.number(index_.arrays.size());
@@ -321,17 +341,33 @@ private:
             out.real(step.time);
             out.number(step.mesh);
             out.number(step.key ? 1 : 0);
-            out.number(step.place.place);
-            out.number(step.place.length);
+            put_place(step.place, out);
         }
         const std::string packed = compressed_numbers(out.all());
-        std::string head;
-        for (const std::uint64_t n : {file_.position(), std::uint64_t{packed.size()}, std::uint64_t{out.all().size()}}) {
+        pad_to(memory_ <= kSeriesMemory ? 0 : memory_ / kMostGrowth + 1, packed.size());
+        std::string head(kSeriesMagic);
+        const auto put_number = [&](std::uint64_t n) {
             for (int k = 0; k < 8; ++k) head += static_cast<char>(n >> 8 * k & 255);
+        };
+        for (const std::uint64_t n : {file_.position(), std::uint64_t{packed.size()}, std::uint64_t{out.all().size()}}) {
+            put_number(n);
         }
+        put_number(hash_of(head + packed));
         file_.write(packed);
         report_.bytes = file_.position();
-        file_.overwrite(kSeriesMagic.size(), head);
+        file_.overwrite(kSeriesMagic.size(), std::string_view(head).substr(kSeriesMagic.size()));
+    }
+
+    static void put_place(const SeriesPlace& place, Bytes& out) {
+        out.number(place.place);
+        out.number(place.length);
+        out.number(place.hash.value_or(0));
+    }
+
+    /// Zeros, so that the file has at least so many bytes with those that follow.
+    void pad_to(std::uint64_t bytes, std::uint64_t follow) {
+        const std::uint64_t there = file_.position() + follow;
+        if (there < bytes) file_.write(std::string(bytes - there, '\0'));
     }
 
     /// The numbers of an array's channels in the step before, and in the one before that.
@@ -346,6 +382,7 @@ private:
     HexMesh cells_;
     std::vector<History> before_;
     std::size_t since_key_ = 0;
+    std::uint64_t memory_ = 0;  // that reading a step takes
     SeriesFileReport report_;
 };
 
@@ -380,7 +417,7 @@ std::vector<Option> options_of(SeriesFileOptions& options) {
                 "the same for the coordinates of points, in parts of the mesh's longest side (default: a tenth of --max-error, "
                 "and less where cells would be inverted)"),
         Option("key-steps", options.key_steps)
-            .between(1, 1000)
+            .between(1, kMostKeySteps)
             .help("K", "every K steps one that does not depend on others: no more are decoded to read one")};
 }
 

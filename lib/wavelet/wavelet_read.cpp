@@ -27,8 +27,8 @@ int read_levels(Contents& in) {
     return static_cast<int>(levels);
 }
 
-/// Refuses levels with more points than there are bytes, before memory is taken for them.
-void check_size(const Topology& topology, int levels, const Contents& in) {
+/// Refuses levels with more points than there are bytes, or than the file may stand for, before memory is taken for them.
+void check_size(const Topology& topology, int levels, std::size_t most_points, const Contents& in) {
     EntityCounts counts{topology.point_count, topology.edges.size(), topology.faces.size(), topology.cells.size()};
     for (int l = 0; l < levels; ++l) {
         check_child(counts);
@@ -36,6 +36,10 @@ void check_size(const Topology& topology, int levels, const Contents& in) {
         if (counts.points - topology.point_count > in.left()) {
             in.fail(std::to_string(levels) + " levels of " + std::to_string(topology.cells.size()) +
                     " cells have more points than the file has details");
+        }
+        if (counts.points > most_points) {
+            in.fail(std::to_string(counts.points) + " points are more than so few bytes stand for",
+                    "at most " + std::to_string(most_points));
         }
     }
 }
@@ -89,14 +93,14 @@ HexMesh read_arrays(const WaveletBasis& basis, Contents& in) {
     return mesh;
 }
 
-HexMesh read_contents(Contents& in, const std::string& file) {
+HexMesh read_contents(Contents& in, const std::string& file, std::size_t most_points) {
     const SchemeOptions scheme = read_scheme(in);
     const int levels = read_levels(in);
     try {
         const HexMesh control = read_cells(in, 3);
         validate(control);
         const Topology topology = build_topology(control);
-        check_size(topology, levels, in);
+        check_size(topology, levels, most_points, in);
         std::size_t fine_cells = topology.cells.size();
         for (int l = 0; l < levels; ++l) fine_cells *= 8;
         std::vector<std::uint8_t> there;
@@ -116,7 +120,6 @@ HexMesh read_contents(Contents& in, const std::string& file) {
                 if (there[c / 8] >> c % 8 & 1) mesh.cells.push_back(basis.cells[c]);
             }
         }
-        validate(mesh);
         return without_unused_points(std::move(mesh));
     } catch (const Error& error) {
         if (error.where() == file) throw;
@@ -128,7 +131,7 @@ HexMesh read_contents(Contents& in, const std::string& file) {
 
 HexMesh mesh_of_wavelets(std::string_view contents, const std::string& file) {
     Contents in(contents, file);
-    return read_contents(in, file);
+    return read_contents(in, file, contents.size());
 }
 
 HexMesh read_wavelet_mesh(std::string_view text, const std::string& file) {
@@ -144,6 +147,8 @@ HexMesh read_wavelet_mesh(std::string_view text, const std::string& file) {
     // mesh with so many details never packs this well.
     constexpr std::uint64_t kAtOnce = std::uint64_t{64} << 20, kMostGrowth = 8192;  // LZMA packs zeros 6,800 : 1
     const std::string_view packed = text.substr(head);
+    // A point takes some 500 bytes of memory while it is read, and in smooth meshes far less than one byte of the file.
+    const std::size_t most_points = std::max(std::size_t{1} << 21, 128 * packed.size());
     if (length > 4 * kAtOnce && length / kMostGrowth > packed.size()) {
         throw Error(ErrorCode::InvalidInput,
                     std::string(Contents::kDamaged) + ": " + std::to_string(packed.size()) + " bytes say that they are " +
@@ -153,11 +158,12 @@ HexMesh read_wavelet_mesh(std::string_view text, const std::string& file) {
     if (length > kAtOnce) {
         LzmaReader more(packed);
         Contents in({}, file, &more, length);
-        return read_contents(in, file);
+        return read_contents(in, file, most_points);
     }
     const auto contents = decompressed(Compressor::Lzma, packed, length);
     if (!contents) throw Error(ErrorCode::InvalidInput, Contents::kDamaged, file);
-    return mesh_of_wavelets(*contents, file);
+    Contents in(*contents, file);
+    return read_contents(in, file, most_points);
 }
 
 }  // namespace subvol::detail

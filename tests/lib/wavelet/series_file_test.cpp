@@ -359,6 +359,195 @@ TEST_F(SeriesFile, TagsPatchesAndSetsAreKept) {
     }
 }
 
+/// The first step is a key step and the last one depends on all, so that each byte of the file is read.
+TEST_F(SeriesFile, NoBitOfASmallFileIsTurnedSilently) {
+    const auto step = [](std::size_t k) {
+        HexMesh mesh = test::make_box(1, 1, 1);
+        mesh.attributes = {{"f", 1, {}, {{0, 9}}}};
+        for (std::size_t p = 0; p < 8; ++p) mesh.attributes[0].values.push_back(static_cast<double>((p * p + k) % 7));
+        return mesh;
+    };
+    write_series_file(path("a.svw"), steps_of(2, step), {.tolerance = 1e-2});
+    const std::string good = test::read_bytes(path("a.svw"));
+    EXPECT_EQ(read_mesh(path("a.svw")).mesh.points.size(), 8u);
+    std::size_t silent = 0;
+    for (std::size_t bit = 0; bit < 8 * good.size(); ++bit) {
+        std::string bad = good;
+        bad[bit / 8] = static_cast<char>(bad[bit / 8] ^ (1 << bit % 8));
+        std::ofstream(path("b.svw"), std::ios::binary) << bad;
+        try {
+            (void)read_mesh(path("b.svw"));
+            ++silent;
+        } catch (const Error& error) {
+            ASSERT_EQ(error.code(), ErrorCode::InvalidInput) << error.what();
+        }
+    }
+    EXPECT_EQ(silent, 0u) << "of " << 8 * good.size();
+}
+
+/// What no hash finds: files that are packed as a writer would, but that say what is not so.
+class SeriesLies : public SeriesFile {
+protected:
+    void SetUp() override {
+        SeriesFile::SetUp();
+        const auto step = [](std::size_t k) {
+            HexMesh mesh = test::make_box(2, 2, 2);
+            mesh.attributes.clear();
+            test::add_field(mesh, "T", [&](const Vec3& p) { return p.x + p.y * static_cast<double>(k); });
+            mesh.attributes[0].bounds = {{0, 9}};
+            return mesh;
+        };
+        MeshSteps steps = steps_of(3, step);
+        steps.sets = [] { return MeshSets{{{"inlet", {{0, 1}, {3, 5}}}}, {{"core", {1, 2, 4}}}}; };
+        write_series_file(path("a.svw"), steps, {.tolerance = 1e-2});
+        parts_ = test::SeriesParts::of(test::read_bytes(path("a.svw")), 27);
+        index_ = test::SeriesParts::index_of(parts_.index_of_packed());
+    }
+
+    /// The sentence with which the file is refused.
+    [[nodiscard]] std::string wrong() const {
+        std::ofstream(path("b.svw"), std::ios::binary) << parts_.packed();
+        return test::error_of([&] { (void)read_mesh(path("b.svw")); });
+    }
+    [[nodiscard]] std::string wrong_index() {
+        parts_.index_text = test::SeriesParts::text_of(index_);
+        return wrong();
+    }
+    /// A mesh part: so many levels of a box of 4 x 2 x 2 cells.
+    static std::string box_part(std::uint64_t levels, const MeshSets& sets) {
+        HexMesh box = test::make_box(4, 2, 2);
+        box.points.assign(box.points.size(), Vec3(0));
+        detail::Bytes out;
+        out.number(levels);
+        detail::put_mesh(box, out);
+        out.number(sets.patches.size());
+        for (const Patch& patch : sets.patches) {
+            out.text(patch.name);
+            out.number(patch.sides.size());
+            std::int64_t last = 0;
+            for (const CellSide& side : patch.sides) {
+                const std::int64_t number = 6 * std::int64_t{side.cell} + side.side;
+                out.number(detail::folded(number - last));
+                last = number;
+            }
+        }
+        out.number(0);
+        return out.all();
+    }
+
+    test::SeriesParts parts_;
+    detail::SeriesIndex index_;
+};
+
+TEST_F(SeriesLies, FilesOfTheFirstVersionAreRead) {
+    std::ofstream(path("b.svw"), std::ios::binary) << parts_.packed_as_first();
+    EXPECT_LT(std::filesystem::file_size(path("b.svw")), std::filesystem::file_size(path("a.svw")));
+    for (const std::size_t k : {0u, 1u, 2u}) {
+        const ReadResult first = read_mesh(path("b.svw"), {.step = k}), now = read_mesh(path("a.svw"), {.step = k});
+        EXPECT_EQ(first.mesh.points, now.mesh.points);
+        EXPECT_EQ(first.mesh.attributes[0].values, now.mesh.attributes[0].values);
+        EXPECT_EQ(first.sets.patches[0].sides, now.sets.patches[0].sides);
+    }
+}
+
+TEST_F(SeriesLies, StepsThatNameTheSameBytes) {
+    index_.steps[2].place = index_.steps[1].place;
+    EXPECT_NE(wrong_index().find("where another one is"), std::string::npos) << wrong_index();
+    SetUp();
+    index_.steps[1].place.length -= 1;  // leaves a byte to none
+    EXPECT_NE(wrong_index().find("where none does"), std::string::npos) << wrong_index();
+}
+
+TEST_F(SeriesLies, BytesBetweenTheStepsAndTheIndexAreZeros) {
+    std::string file = parts_.packed();
+    // The index moves by a byte, so that its hash is that of another head.
+    EXPECT_NE(test::error_of([&] {
+                  std::ofstream(path("b.svw"), std::ios::binary) << file << 'x';
+                  (void)read_mesh(path("b.svw"));
+              }).find("not the end of the file"),
+              std::string::npos);
+}
+
+TEST_F(SeriesLies, StepsFarFromAKeyStep) {
+    for (std::size_t k = 3; k < 1100; ++k) {
+        index_.steps.push_back(index_.steps[2]);
+        index_.steps.back().time = static_cast<double>(k);
+        parts_.steps.push_back(parts_.steps[2]);
+    }
+    parts_.index = index_;
+    EXPECT_NE(wrong().find("step 1000 depends on 1000 others"), std::string::npos) << wrong();
+    parts_.index.steps[1].key = false;
+    parts_.index.steps[999].key = true;
+    parts_.steps[999] = parts_.steps[0];
+    EXPECT_EQ(wrong(), "no error");
+}
+
+TEST_F(SeriesLies, AKeyIsOneOrNone) {
+    std::string text = parts_.index_of_packed();
+    // The flag of the first step is before its place, which is the end of the mesh.
+    detail::Bytes place;
+    place.number(index_.steps[0].place.place);
+    const std::size_t at = text.find(place.all(), text.size() - 100);
+    ASSERT_EQ(text.at(at - 1), '\1');
+    text[at - 1] = '\2';
+    parts_.index_text = text;
+    EXPECT_NE(wrong().find("key step 2"), std::string::npos) << wrong();
+}
+
+/// 16 cells refined 6 times are 4,194,304: more than two gigabytes, of some hundred bytes.
+TEST_F(SeriesLies, RefinedCellsCountAgainstTheBytesOfTheFile) {
+    parts_.meshes[0] = box_part(6, {});
+    EXPECT_NE(wrong().find("a step of 4194304 cells takes 1"), std::string::npos) << wrong();
+    parts_.meshes[0] = box_part(7, {});
+    EXPECT_NE(wrong().find("the number of levels is 7"), std::string::npos) << wrong();
+}
+
+/// An array of 900 channels, all 0, at half a million points.
+TEST_F(SeriesLies, ChannelsCountAgainstTheBytesOfTheFile) {
+    parts_.meshes[0] = box_part(5, {});
+    parts_.index.arrays.push_back({"many", std::vector<detail::Quantization>(900, {0, 1, 0, 1})});
+    EXPECT_NE(wrong().find("a step of 524288 cells takes 1"), std::string::npos) << wrong();
+}
+
+TEST_F(SeriesLies, SidesAndNamesThatAreThereTwice) {
+    const std::string box = parts_.meshes[0];
+    const auto with_sets = [&](const MeshSets& sets) {
+        const std::string of_mesh = box_part(0, sets);
+        // The sets alone, after the cells of the good mesh.
+        parts_.meshes[0] = box.substr(0, box.find("inlet") - 2) + of_mesh.substr(box_part(0, {}).size() - 2);
+        return wrong();
+    };
+    EXPECT_EQ(with_sets({{{"p", {{0, 1}, {3, 5}}}}, {}}), "no error");
+    EXPECT_NE(with_sets({{{"p", {{0, 1}, {3, 5}, {0, 1}}}}, {}}).find("patch \"p\" has side 1 of cell 0 more than once"),
+              std::string::npos);
+    EXPECT_EQ(with_sets({{{"p", {{0, 1}}}, {"p", {{3, 5}}}}, {}}), "no error");
+    const ReadResult read = read_mesh(path("b.svw"));
+    EXPECT_EQ(read.sets.patches[1].name, "p_2");
+    EXPECT_NE(read.warnings.back().find("more than one patch \"p\""), std::string::npos);
+}
+
+TEST_F(SeriesLies, FieldsOfOneNameAndNamesThatAreNotPrintable) {
+    parts_.index.arrays[1].name = "a\x1b[31m\n\u202e";
+    EXPECT_EQ(wrong(), "no error");
+    EXPECT_EQ(read_mesh(path("b.svw")).mesh.attributes[0].name, "a\\x1b[31m\\x0a\\xe2\\x80\\xae");
+}
+
+TEST_F(SeriesLies, BoundsThatExcludeAllValues) {
+    // The values of the last step are 0 to 6, in bounds of 0 to 9.
+    detail::Bytes good, bad, narrow;
+    for (const double x : {0.0, 9.0}) good.real(x);
+    for (const double x : {100.0, 200.0}) bad.real(x);
+    for (const double x : {0.0, 3.0}) narrow.real(x);
+    std::string& head = parts_.steps[2].head;
+    const std::size_t at = head.find(good.all());
+    ASSERT_NE(at, std::string::npos);
+    head.replace(at, 16, bad.all());
+    EXPECT_NE(wrong().find("no value lies within them"), std::string::npos) << wrong();
+    head.replace(at, 16, narrow.all());
+    EXPECT_EQ(wrong(), "no error");
+    EXPECT_NE(read_mesh(path("b.svw")).warnings.back().find("outside of the bounds"), std::string::npos);
+}
+
 /// The same for what checksums do not find: parts that are damaged before they are compressed.
 TEST_F(SeriesFile, DamagedPartsAreRefused) {
     HexMesh control = make_model("ball", 2);

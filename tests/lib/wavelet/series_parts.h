@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "series_format.h"
+#include "subvol/detail/byte_hash.h"
 #include "vtu_bytes.h"
 #include "wavelet_bytes.h"
 
@@ -20,8 +21,8 @@ struct SeriesStepParts {
     std::string head, block;
 };
 
-/// A file of steps in parts, before compression: to damage what is in it and pack it again, so that the damage is not found by
-/// a checksum. Steps have one block each, as those of small meshes have.
+/// A file of steps in parts, before compression: to damage what is in it and pack it again with the right hashes, so that the
+/// damage is not found by these. Steps have one block each, as those of small meshes have.
 ///
 /// index:      what `packed` writes, but for the places of parts, which it finds itself
 /// index_text: contents of the index instead
@@ -50,44 +51,36 @@ struct SeriesParts {
     }
 
     /// The file. The index says where its parts are, unless it is given as text.
-    [[nodiscard]] std::string packed() const { return pack().file; }
+    [[nodiscard]] std::string packed() const { return pack(true).file; }
+    /// The same as a file of the first version, which has no hashes.
+    [[nodiscard]] std::string packed_as_first() const { return pack(false).file; }
     /// What the index of that file is.
-    [[nodiscard]] std::string index_of_packed() const { return pack().index; }
+    [[nodiscard]] std::string index_of_packed() const { return pack(true).index; }
 
-private:
-    struct Packed {
-        std::string file, index;
-    };
-
-    [[nodiscard]] Packed pack() const {
-        std::string file(detail::kSeriesHead, '\0');
-        detail::SeriesIndex at = index;
-        for (std::size_t k = 0; k < meshes.size(); ++k) {
-            const std::string bytes = detail::compressed_numbers(meshes[k]);
-            at.meshes[k] = {{file.size(), bytes.size()}, meshes[k].size()};
-            file += bytes;
+    /// The contents of an index, and what they say.
+    static std::string text_of(const detail::SeriesIndex& index) {
+        detail::Bytes out;
+        out.number(index.meshes.size());
+        for (const detail::SeriesMesh& mesh : index.meshes) {
+            put_place(mesh.place, out);
+            out.number(mesh.unpacked);
         }
-        for (std::size_t k = 0; k < steps.size(); ++k) {
-            const std::string block = steps[k].block.empty() ? "" : detail::compressed_numbers(steps[k].block);
-            detail::Bytes sizes;
-            if (!block.empty()) sizes.number(block.size());
-            const std::string bytes = steps[k].head + sizes.all() + block;
-            at.steps[k].place = {file.size(), bytes.size()};
-            file += bytes;
+        out.number(index.arrays.size());
+        for (const detail::SeriesArray& array : index.arrays) {
+            out.text(array.name);
+            out.number(array.channels.size());
+            for (const detail::Quantization& q : array.channels) {
+                for (const double x : {q.origin, q.step, q.min, q.max}) out.real(x);
+            }
         }
-        const std::string text = index_text ? *index_text : text_of(at), bytes = detail::compressed_numbers(text);
-        const std::array<std::uint64_t, 3> numbers{file.size(), bytes.size(), text.size()};
-        std::string head(detail::kSeriesMagic);
-        for (const std::uint64_t n : numbers) {
-            for (int b = 0; b < 8; ++b) head += static_cast<char>(n >> 8 * b & 255);
+        out.number(index.steps.size());
+        for (const detail::SeriesStep& step : index.steps) {
+            out.real(step.time);
+            out.number(step.mesh);
+            out.number(step.key ? 1 : 0);
+            put_place(step.place, out);
         }
-        return {head + file.substr(head.size()) + bytes, text};
-    }
-
-    static std::string plain(std::string_view bytes, std::uint64_t length) {
-        auto text = detail::decompressed(detail::Compressor::Lzma, bytes, length);
-        if (!text) throw std::runtime_error("the file is not one of steps");
-        return *text;
+        return out.all();
     }
 
     static detail::SeriesIndex index_of(const std::string& text) {
@@ -96,8 +89,7 @@ private:
         detail::SeriesIndex index;
         index.meshes.resize(in.number());
         for (detail::SeriesMesh& mesh : index.meshes) {
-            mesh.place.place = in.number();
-            mesh.place.length = in.number();
+            mesh.place = place_of(in);
             mesh.unpacked = in.number();
         }
         index.arrays.resize(in.number());
@@ -113,34 +105,62 @@ private:
             step.time = in.real();
             step.mesh = in.number();
             step.key = in.number() != 0;
-            step.place.place = in.number();
-            step.place.length = in.number();
+            step.place = place_of(in);
         }
         return index;
     }
 
-    static std::string text_of(const detail::SeriesIndex& index) {
-        detail::Bytes out;
-        out.number(index.meshes.size());
-        for (const detail::SeriesMesh& mesh : index.meshes) {
-            for (const std::uint64_t n : {mesh.place.place, mesh.place.length, mesh.unpacked}) out.number(n);
+private:
+    struct Packed {
+        std::string file, index;
+    };
+
+    [[nodiscard]] Packed pack(bool with_hashes) const {
+        std::string file(with_hashes ? detail::kSeriesHead : detail::kFirstSeriesHead, '\0');
+        const std::size_t head_size = file.size();
+        const auto put = [&](const std::string& bytes) {
+            detail::SeriesPlace place{file.size(), bytes.size()};
+            if (with_hashes) place.hash = detail::hash_of(bytes);
+            file += bytes;
+            return place;
+        };
+        detail::SeriesIndex at = index;
+        for (std::size_t k = 0; k < meshes.size(); ++k)
+            at.meshes[k] = {put(detail::compressed_numbers(meshes[k])), meshes[k].size()};
+        for (std::size_t k = 0; k < steps.size(); ++k) {
+            const std::string block = steps[k].block.empty() ? "" : detail::compressed_numbers(steps[k].block);
+            detail::Bytes sizes;
+            if (!block.empty()) sizes.number(block.size());
+            at.steps[k].place = put(steps[k].head + sizes.all() + block);
         }
-        out.number(index.arrays.size());
-        for (const detail::SeriesArray& array : index.arrays) {
-            out.text(array.name);
-            out.number(array.channels.size());
-            for (const detail::Quantization& q : array.channels) {
-                for (const double x : {q.origin, q.step, q.min, q.max}) out.real(x);
-            }
-        }
-        out.number(index.steps.size());
-        for (const detail::SeriesStep& step : index.steps) {
-            out.real(step.time);
-            for (const std::uint64_t n :
-                 {std::uint64_t{step.mesh}, std::uint64_t{step.key}, step.place.place, step.place.length})
-                out.number(n);
-        }
-        return out.all();
+        const std::string text = index_text ? *index_text : text_of(at), bytes = detail::compressed_numbers(text);
+        std::string head(with_hashes ? detail::kSeriesMagic : detail::kFirstSeriesMagic);
+        const auto put_number = [&](std::uint64_t n) {
+            for (int b = 0; b < 8; ++b) head += static_cast<char>(n >> 8 * b & 255);
+        };
+        for (const std::uint64_t n : {std::uint64_t{file.size()}, std::uint64_t{bytes.size()}, std::uint64_t{text.size()}})
+            put_number(n);
+        if (with_hashes) put_number(detail::hash_of(head + bytes));
+        return {head + file.substr(head_size) + bytes, text};
+    }
+
+    static std::string plain(std::string_view bytes, std::uint64_t length) {
+        auto text = detail::decompressed(detail::Compressor::Lzma, bytes, length);
+        if (!text) throw std::runtime_error("the file is not one of steps");
+        return *text;
+    }
+
+    static detail::SeriesPlace place_of(detail::Contents& in) {
+        detail::SeriesPlace place;
+        place.place = in.number();
+        place.length = in.number();
+        place.hash = in.number();
+        return place;
+    }
+    static void put_place(const detail::SeriesPlace& place, detail::Bytes& out) {
+        out.number(place.place);
+        out.number(place.length);
+        if (place.hash) out.number(*place.hash);
     }
 
     static SeriesStepParts step_of(const std::string& text, const detail::SeriesIndex& index, std::size_t points) {

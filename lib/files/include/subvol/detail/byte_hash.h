@@ -23,6 +23,12 @@ private:
     std::string rest_;  // fewer than 8 bytes
 };
 
+[[nodiscard]] inline std::uint64_t hash_of(std::string_view bytes) {
+    ByteHash hash;
+    hash.add(bytes);
+    return hash.value();
+}
+
 /// 16 hexadecimal digits.
 [[nodiscard]] std::string hex_digits(std::uint64_t number);
 
