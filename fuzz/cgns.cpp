@@ -10,8 +10,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     using namespace subvol;
     return fuzz::run([&] {
         const detail::Hdf5File file(std::make_unique<fuzz::Lines>(fuzz::text_of(data, size), "/", "/ data"), "file");
-        const ReadResult result = detail::read_cgns(file, {});
-        validate(result.mesh);
+        ReadResult result = detail::read_cgns(file, {});
+        detail::check_read(result, "file");
         static_cast<void>(inspect(result.mesh));
     });
 }

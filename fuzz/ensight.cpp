@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The reader of EnSight cases: the first byte says which of the files the rest is.
 
-#include "formats.h"
-
 #include "case_folder.h"
+#include "subvol/mesh_io.h"
 #include "subvol/mesh_report.h"
 
 namespace subvol::fuzz {
@@ -27,8 +26,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
                                    {{'g', "geo", fuzz::kGeometry}, {'v', "val", fuzz::kValues}, {'c', "a.case", fuzz::kCase}});
     folder.put(data, size);
     return fuzz::run([&] {
-        const ReadResult result = detail::read_ensight(folder.path("a.case"), {});
-        validate(result.mesh);
+        const ReadResult result = read_mesh(folder.path("a.case"));
         static_cast<void>(inspect(result.mesh));
     });
 }

@@ -206,11 +206,11 @@ void add_wavelets(Seeds& seeds, const HexMesh& mesh) {
 
 /// Each part as it is in a good file.
 void add_steps(Seeds& seeds) {
-    SeriesParts parts = fuzz::good_steps();
-    const std::string index = parts.index_of_packed();
+    SeriesParts small = fuzz::good_steps(), refined = fuzz::refined_steps();
+    const std::string index = small.index_of_packed(), index_of_refined = refined.index_of_packed();
     for (const char letter : fuzz::kSeriesParts) {
-        const std::string* const part = fuzz::part_of(parts, letter);
-        seeds.add("svw", letter + (letter == 'i' ? index : *part));
+        const std::string* const part = fuzz::part_of(fuzz::is_of_refined(letter) ? refined : small, letter);
+        seeds.add("svw", letter + (letter == 'i' ? index : letter == 'I' ? index_of_refined : *part));
     }
 }
 

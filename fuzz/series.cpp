@@ -2,8 +2,8 @@
 // The readers of files that list others, beside two good pieces: the first byte says which of the lists the rest is.
 
 #include "case_folder.h"
-#include "formats.h"
 #include "lib/mesh_io/vtu_texts.h"
+#include "subvol/mesh_io.h"
 #include "subvol/mesh_report.h"
 
 namespace subvol::fuzz {
@@ -34,8 +34,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const char letter = size == 0 ? 'd' : static_cast<char>(data[0]);
     return fuzz::run([&] {
         const char* name = letter == 's' ? "a.series" : letter == 'p' ? "a.pvtu" : letter == 'm' ? "a.vtm" : "a.pvd";
-        const ReadResult result = detail::read_collection(folder.path(name), {});
-        validate(result.mesh);
+        const ReadResult result = read_mesh(folder.path(name));
         static_cast<void>(inspect(result.mesh));
     });
 }

@@ -68,6 +68,12 @@ struct MeshFormat {
 /// Refuses options that a format has no use for.
 void check_options(const MeshFormat& format, const std::filesystem::path& path, const ReadOptions& options);
 
+/// What `read_mesh` does with whatever a reader has read: makes all names printable and those of fields, patches and sets of
+/// cells distinct, with a warning, and validates mesh, shells, sets and the bounds of fields.
+///
+/// throws: Error(InvalidInput) that names the file
+void check_read(ReadResult& result, const std::string& file);
+
 // The readers and writers in the rows of the table. Each `NAME_times` gives the times of the steps of a file.
 
 /// Reads MEDIT ASCII.

@@ -61,12 +61,15 @@ ReadResult read_wavelets(const std::filesystem::path& path, const ReadOptions& o
     for (const Attribute& a : result.mesh.attributes) {
         const auto channels = static_cast<std::size_t>(a.channels);
         FieldInfo& field = result.fields.emplace_back(FieldInfo{a.name, "point", a.channels});
+        bool first = true;
         for (std::size_t i = 0; i < a.values.size(); i += channels) {
             double square = 0;
             for (std::size_t k = i; k < i + channels; ++k) square += a.values[k] * a.values[k];
             const double value = channels == 1 ? a.values[i] : std::sqrt(square);
-            field.min = i == 0 ? value : std::min(field.min, value);
-            field.max = i == 0 ? value : std::max(field.max, value);
+            if (!std::isfinite(value)) continue;  // at a point that no cell uses
+            field.min = first ? value : std::min(field.min, value);
+            field.max = first ? value : std::max(field.max, value);
+            first = false;
         }
     }
     return result;
@@ -363,6 +366,7 @@ ReadResult read_mesh(const std::filesystem::path& path, const ReadOptions& optio
     resolved.cell_values = resolved_cell_values(format, options.cell_values);
     if (options.time && !options.step && format.times) resolved.step = nearest_step(open_series(path), *options.time);
     ReadResult result = format.read(path, resolved);
+    check_read(result, path.string());
     if (const MeshFormat* named = format_with(path.extension().string()); named && named != &format) {
         result.warnings.insert(result.warnings.begin(), "the contents are those of " + std::string(format.name) +
                                                             ", which decides, not the ending " + path.extension().string() +
