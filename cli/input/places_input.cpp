@@ -61,6 +61,11 @@ Table read_table(const std::string& path) {
             table.names = std::move(words);
             continue;
         }
+        if (!table.names.empty() && words.size() > table.names.size()) {
+            throw Error(ErrorCode::InvalidInput, "there are " + std::to_string(words.size()) + " words here",
+                        path + ":" + std::to_string(number),
+                        "as many as columns are named: " + std::to_string(table.names.size()));
+        }
         table.rows.push_back(std::move(words));
         table.lines.push_back(number);
     }

@@ -50,6 +50,7 @@ public:
                 std::ignore = read_ply_element(in_, header_, element, {});
             }
         }
+        expect_ply_end(in_);
         if (!found) in_.fail("there is no element vertex");
         if (volume_.boundary.triangles.empty()) volume_.boundary = read_boundary(path_, triangles_beside_);
         return std::move(volume_);
@@ -156,11 +157,9 @@ private:
         const bool all_three = std::all_of(lengths.begin(), lengths.end(), [](std::size_t length) { return length == 3; });
         if (!all_three || corners.size() != 3 * element.count) in_.fail("a boundary triangle does not have 3 corners");
         volume_.boundary.triangles.resize(element.count);
+        const std::size_t points = volume_.boundary.points.empty() ? kNone : volume_.boundary.points.size();
         for (std::size_t i = 0; i < corners.size(); ++i) {
-            if (!(corners[i] >= 0 && corners[i] < static_cast<double>(kNone))) {
-                in_.fail("boundary triangle " + std::to_string(i / 3) + ": a corner is out of range");
-            }
-            volume_.boundary.triangles[i / 3][i % 3] = static_cast<Index>(corners[i]);
+            volume_.boundary.triangles[i / 3][i % 3] = ply_corner(in_, corners[i], points, "boundary triangle", i / 3);
         }
     }
 

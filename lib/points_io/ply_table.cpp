@@ -2,8 +2,10 @@
 #include "ply_table.h"
 
 #include <algorithm>
+#include <cmath>
 #include <string_view>
 
+#include "subvol/detail/number_text.h"
 #include "subvol/error.h"
 
 namespace subvol::detail {
@@ -107,23 +109,54 @@ public:
     RowNumbers(TextScanner& in, const PlyHeader& header, const PlyElement& element)
         : in_(in), header_(header), name_(in_quotes(element.name)), rows_(element.count) {}
 
+    /// Before the numbers of a row: in text it has a line.
+    void begin() {
+        if (!header_.ascii || in_.at_end()) return;
+        line_ = line_at_hand();
+    }
+
+    /// After them.
+    void end(std::size_t row) {
+        if (!header_.ascii) return;
+        const std::string_view rest = line_at_hand();
+        const bool same_line = rest.data() + rest.size() == line_.data() + line_.size();
+        if (same_line && trimmed(rest).empty()) return;
+        in_.fail(
+            name_ + " " + std::to_string(row) + ": its line has " + (same_line ? "more" : "fewer") + " numbers than it should",
+            "one line for each, as the header says");
+    }
+
     double real(NumberType type, std::size_t row) {
         const Place place{name_, static_cast<std::int64_t>(row), rows_};
-        if (header_.ascii) return in_.real(place);
-        return real_from(in_.bytes(size_of(type), place), type, header_.order);
+        if (!header_.ascii) return real_from(in_.bytes(size_of(type), place), type, header_.order);
+        const double number = in_.real(place);
+        if (!is_real(type) && number != std::floor(number)) {
+            in_.fail(name_ + " " + std::to_string(row) + " has the number " + number_text(number) + ", which is not whole",
+                     "whole numbers, as the header says");
+        }
+        return number;
     }
 
     std::size_t length(NumberType type, std::size_t row) {
         const double length = real(type, row);
-        if (length >= 0 && length <= static_cast<double>(in_.bytes_left())) return static_cast<std::size_t>(length);
+        if (length >= 0 && length <= static_cast<double>(in_.bytes_left()) && length == std::floor(length))
+            return static_cast<std::size_t>(length);
         in_.fail(name_ + " " + std::to_string(row) + ": a list goes beyond the end of the file");
     }
 
 private:
+    [[nodiscard]] static bool is_real(NumberType type) { return type == NumberType::Float32 || type == NumberType::Float64; }
+
+    [[nodiscard]] std::string_view line_at_hand() const {
+        TextScanner ahead = in_;
+        return ahead.line();
+    }
+
     TextScanner& in_;
     const PlyHeader& header_;
     std::string name_;
     std::size_t rows_;
+    std::string_view line_;
 };
 
 }  // namespace
@@ -169,6 +202,7 @@ PlyTable read_ply_element(TextScanner& in, const PlyHeader& header, const PlyEle
     }
     RowNumbers numbers(in, header, element);
     for (std::size_t row = 0; row < element.count; ++row) {
+        numbers.begin();
         for (std::size_t k = 0; k < columns.size(); ++k) {
             const PlyProperty& property = element.properties[k];
             const std::size_t length = property.counts ? numbers.length(*property.counts, row) : 1;
@@ -178,8 +212,23 @@ PlyTable read_ply_element(TextScanner& in, const PlyHeader& header, const PlyEle
                 if (columns[k]) columns[k]->values.push_back(number);
             }
         }
+        numbers.end(row);
     }
     return table;
+}
+
+void expect_ply_end(TextScanner& in) {
+    TextScanner ahead = in;
+    const std::string_view rest = ahead.bytes(in.bytes_left(), {"the end"});
+    if (trimmed(rest).empty()) return;
+    in.fail("there is more after the last element than the header says: " + std::to_string(rest.size()) + " bytes",
+            "counts of elements that are those of the file");
+}
+
+Index ply_corner(const TextScanner& in, double number, std::size_t points, std::string_view of, std::size_t row) {
+    if (number >= 0 && number < static_cast<double>(points) && number == std::floor(number)) return static_cast<Index>(number);
+    in.fail(std::string(of) + " " + std::to_string(row) + " has the corner " + number_text(number) + ", which is not a vertex",
+            points == 0 ? "there are none" : "0 to " + std::to_string(points - 1));
 }
 
 }  // namespace subvol::detail

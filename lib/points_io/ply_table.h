@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "number_type.h"
+#include "subvol/index.h"
 #include "text_scanner.h"
 
 namespace subvol::detail {
@@ -49,10 +50,21 @@ using PlyTable = std::map<std::string, PlyColumn, std::less<>>;
 /// throws: Error(InvalidInput)
 [[nodiscard]] PlyHeader read_ply_header(TextScanner& in);
 
-/// Reads the rows of the next element and keeps the properties with the names in `wanted`.
+/// Reads the rows of the next element and keeps the properties with the names in `wanted`. In text each row is a line.
 ///
 /// throws: Error(InvalidInput)
 [[nodiscard]] PlyTable read_ply_element(TextScanner& in, const PlyHeader& header, const PlyElement& element,
                                         const std::set<std::string, std::less<>>& wanted);
+
+/// Refuses what follows the last element, but for white space.
+///
+/// throws: Error(InvalidInput)
+void expect_ply_end(TextScanner& in);
+
+/// A number of a list as that of a vertex.
+///
+/// of, row: what the list belongs to, for messages
+/// throws: Error(InvalidInput) if it is not a whole number below `points`
+[[nodiscard]] Index ply_corner(const TextScanner& in, double number, std::size_t points, std::string_view of, std::size_t row);
 
 }  // namespace subvol::detail

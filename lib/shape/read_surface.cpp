@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "ply_table.h"
+#include "subvol/detail/number_text.h"
 #include "subvol/detail/point_welder.h"
 #include "subvol/detail/printable.h"
 #include "subvol/detail/read_file.h"
@@ -83,20 +84,36 @@ Vec3 read_point(TextScanner& in, const Place& place) {
 
 Surface read_text_stl(TextScanner& in) {
     std::vector<Vec3> corners;
+    std::size_t facets = 0;
+    bool in_facet = false, in_solid = false;
     while (!in.at_end()) {
         const std::string_view key = in.word();
+        const auto expect_facet = [&] {
+            if (in_facet || corners.size() != 3 * facets) in.fail("a facet does not have 3 vertices");
+        };
         if (key == "vertex") {
+            if (!in_facet) in.fail("a vertex is in no facet");
             corners.push_back(read_point(in, {"vertex", static_cast<std::int64_t>(corners.size())}));
-        } else if (key == "endfacet" && corners.size() % 3 != 0) {
-            in.fail("a facet does not have 3 vertices");
+        } else if (key == "facet" || key == "endfacet") {
+            if (in_facet == (key == "facet")) in.fail("a facet " + std::string(in_facet ? "does not end" : "ends twice"));
+            in_facet = !in_facet;
+            if (in_facet) {
+                ++facets;
+            } else {
+                expect_facet();
+            }
         } else if (key == "solid" || key == "endsolid") {
+            expect_facet();
+            if (in_solid == (key == "solid")) in.fail("a solid " + std::string(in_solid ? "does not end" : "ends twice"));
+            in_solid = !in_solid;
             std::ignore = in.line();
         } else if (key == "normal") {
             std::ignore = read_point(in, {"normal"});
-        } else if (key != "facet" && key != "outer" && key != "loop" && key != "endloop" && key != "endfacet") {
+        } else if (key != "outer" && key != "loop" && key != "endloop") {
             in.fail(in_quotes(key) + " is not a word of an .stl file", "facet, vertex, endsolid");
         }
     }
+    if (in_solid || in_facet) in.fail("the file ends within a solid", "its last line is endsolid");
     return welded(corners);
 }
 
@@ -136,6 +153,26 @@ Index obj_corner(std::string_view word, std::size_t points, TextScanner& in) {
     return static_cast<Index>(at);
 }
 
+/// The line of an .obj vertex: three coordinates; a weight or a colour may follow.
+Vec3 obj_point(TextScanner& in, std::size_t number) {
+    std::string_view rest = in.line();
+    rest = rest.substr(0, rest.find('#'));
+    Vec3 x;
+    int numbers = 0;
+    for (rest = trimmed(rest); !rest.empty(); rest = trimmed(rest), ++numbers) {
+        const std::size_t end = std::min(rest.find_first_of(" \t"), rest.size());
+        const auto value = number_from(rest.substr(0, end));
+        if (!value)
+            in.fail("vertex " + std::to_string(number) + ": a number is expected, not " + in_quotes(rest.substr(0, end)));
+        if (numbers < 3) x[numbers] = *value;
+        rest.remove_prefix(end);
+    }
+    if (numbers < 3 || numbers > 8)
+        in.fail("vertex " + std::to_string(number) + " has " + counted(static_cast<std::size_t>(numbers), "number", "numbers"),
+                "x, y and z; a weight or a colour may follow");
+    return x;
+}
+
 Surface read_obj(std::string_view text, std::string_view name) {
     TextScanner in(text, name, TextScanner::Comments::Hash);
     Surface surface;
@@ -143,8 +180,7 @@ Surface read_obj(std::string_view text, std::string_view name) {
     while (!in.at_end()) {
         const std::string_view key = in.word();
         if (key == "v") {
-            surface.points.push_back(read_point(in, {"vertex", static_cast<std::int64_t>(surface.points.size())}));
-            std::ignore = in.line();
+            surface.points.push_back(obj_point(in, surface.points.size()));
         } else if (key == "f") {
             polygon.clear();
             std::string_view rest = in.line();
@@ -165,20 +201,19 @@ Surface read_obj(std::string_view text, std::string_view name) {
 
 /// Strips of triangles, each with two corners of the last; -1 ends a strip. Every other one is turned round.
 void add_strips(std::span<const double> corners, Surface& surface, const TextScanner& in) {
-    std::size_t first = 0;
-    for (std::size_t k = 0; k < corners.size(); ++k) {
-        if (corners[k] == -1) {
-            first = k + 1;
+    std::vector<Index> strip;
+    std::size_t number = 0;
+    for (const double corner : corners) {
+        if (corner == -1) {
+            strip.clear();
+            ++number;
             continue;
         }
-        if (!(corners[k] >= 0 && corners[k] < static_cast<double>(surface.points.size()))) {
-            in.fail("a strip has a corner that is not a vertex",
-                    "0 to " + std::to_string(surface.points.size() - 1) + ", or -1");
-        }
-        if (k < first + 2) continue;
-        std::array<Index, 3> t{static_cast<Index>(corners[k - 2]), static_cast<Index>(corners[k - 1]),
-                               static_cast<Index>(corners[k])};
-        if ((k - first) % 2 == 1) std::swap(t[0], t[1]);
+        strip.push_back(ply_corner(in, corner, surface.points.size(), "strips: number", number++));
+        const std::size_t k = strip.size() - 1;
+        if (k < 2) continue;
+        std::array<Index, 3> t{strip[k - 2], strip[k - 1], strip[k]};
+        if (k % 2 == 1) std::swap(t[0], t[1]);
         add_polygon(t, surface);
     }
 }
@@ -216,12 +251,10 @@ Surface read_ply_surface(std::string_view text, std::string_view name) {
             for (std::size_t f = 0; f < element.count; ++f) {
                 polygon.clear();
                 for (std::size_t k = 0; k < corners.lengths[f]; ++k) {
-                    const double corner = corners.values[next++];
-                    if (!(corner >= 0 && corner < static_cast<double>(surface.points.size()))) {
-                        in.fail("face " + std::to_string(f) + " has a corner that is not a vertex",
-                                "0 to " + std::to_string(surface.points.size() - 1));
-                    }
-                    polygon.push_back(static_cast<Index>(corner));
+                    polygon.push_back(ply_corner(in, corners.values[next++], surface.points.size(), "face", f));
+                }
+                if (polygon.size() < 3) {
+                    in.fail("face " + std::to_string(f) + " has " + counted(polygon.size(), "corner", "corners"), "at least 3");
                 }
                 add_polygon(polygon, surface);
             }
@@ -234,6 +267,7 @@ Surface read_ply_surface(std::string_view text, std::string_view name) {
             std::ignore = read_ply_element(in, header, element, {});
         }
     }
+    expect_ply_end(in);
     return surface;
 }
 

@@ -108,8 +108,8 @@ TEST_F(PointsText, PlyThatIsWrong) {
         {first_number, "1e999", "point 0: a coordinate is not finite"},
         {"end_header\n", "end_header\nx ", "\"vertex\" 0 of 3: a number is expected, not \"x\""},
         {"3 0 2 1", "4 0 2 1 1", "does not have 3 corners"},
-        {"3 0 2 1", "3 0 4 1", "the boundary surface has no point 4"},
-        {"3 0 2 1", "3 0 -1 1", "triangle 0: a corner is out of range"},
+        {"3 0 2 1", "3 0 4 1", "triangle 0 has the corner 4"},
+        {"3 0 2 1", "3 0 -1 1", "triangle 0 has the corner -1"},
         {"3 0 2 1", "1e18 0 2 1", "a list goes beyond the end of the file"},
     };
     for (const auto& [from, to, message] : mistakes) {

@@ -87,11 +87,73 @@ TEST_F(ReadSurface, SaysWhatIsWrongAndWhere) {
     EXPECT_THAT(wrong("a.ply",
                       "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\n"
                       "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n3 0 0 7\n"),
-                HasSubstr("face 0 has a corner that is not a vertex"));
+                HasSubstr("face 0 has the corner 7, which is not a vertex (0 to 0)"));
     EXPECT_THAT(wrong("a.ply",
                       "ply\nformat binary_little_endian 1.0\nelement vertex 1000000\nproperty float x\nproperty float y\n"
                       "property float z\nend_header\nabc"),
                 HasSubstr("goes beyond the end of the file"));
+}
+
+std::string ply(const std::string& vertices, const std::string& faces, const std::string& rows,
+                const std::string& corner = "int") {
+    return "ply\nformat ascii 1.0\nelement vertex " + vertices +
+           "\nproperty float x\nproperty float y\nproperty float z\nelement face " + faces + "\nproperty list uchar " + corner +
+           " vertex_indices\nend_header\n" + rows;
+}
+
+TEST_F(ReadSurface, PlyThatLies) {
+    const std::string points = "0 0 0\n1 0 0\n0 1 0\n0 0 1\n";
+    EXPECT_EQ(wrong("a.ply", ply("4", "2", points + "3 0 1 2\n\n 3 0 1 3 \n\n")), "no error") << "empty lines say nothing";
+    EXPECT_THAT(wrong("a.ply", ply("4", "1", points + "3 0 1 2\n3 0 1 3\n")), HasSubstr("more after the last element"));
+    EXPECT_THAT(wrong("a.ply", ply("3", "2", points + "3 0 1 2\n3 0 1 3\n")), HasSubstr("a.ply, line 13"));
+    EXPECT_THAT(wrong("a.ply", ply("4", "2", points + "3 0 1 1.5\n3 0 1 3\n")), HasSubstr("1.5, which is not whole"));
+    EXPECT_THAT(wrong("a.ply", ply("4", "2", points + "3 0 1 1.5\n3 0 1 3\n", "float")), HasSubstr("corner 1.5"));
+    EXPECT_THAT(wrong("a.ply", ply("4", "2", points + "0\n3 0 1 3\n")), HasSubstr("face 0 has 0 corners (at least 3)"));
+    EXPECT_THAT(wrong("a.ply", ply("4", "2", points + "2 0 1\n3 0 1 3\n")), HasSubstr("face 0 has 2 corners"));
+    EXPECT_THAT(wrong("a.ply", ply("4", "2", points + "3 0 1 2 3\n3 0 1 3\n")), HasSubstr("more numbers than it should"));
+    EXPECT_THAT(wrong("a.ply", ply("4", "2", "0 0 0\n1 0\n0 0 1 0\n0 0 1\n3 0 1 2\n3 0 1 3\n")),
+                HasSubstr("\"vertex\" 1: its line has fewer numbers than it should"));
+    EXPECT_THAT(wrong("a.ply", ply("4", "2", points + "3 0 1 2\n3 0 1 -1\n")), HasSubstr("corner -1"));
+}
+
+TEST_F(ReadSurface, BinaryPlyThatLies) {
+    std::string text =
+        "ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+        "element face 1\nproperty list uchar float vertex_indices\nend_header\n";
+    const std::array<float, 9> points{0, 0, 0, 1, 0, 0, 0, 1, 0};
+    const auto with_corners = [&](const std::array<float, 3>& corners) {
+        std::string all = text + std::string(reinterpret_cast<const char*>(points.data()), sizeof points) + '\3';
+        return all.append(reinterpret_cast<const char*>(corners.data()), sizeof corners);
+    };
+    EXPECT_EQ(read_surface(write("a.ply", with_corners({0, 1, 2}))).triangles.size(), 1U);
+    EXPECT_EQ(read_surface(write("a.ply", with_corners({0, 1, 2}) + "\r\n")).triangles.size(), 1U);
+    EXPECT_THAT(wrong("a.ply", with_corners({0, 1, 1.5F})), HasSubstr("face 0 has the corner 1.5"));
+    EXPECT_THAT(wrong("a.ply", with_corners({0, 1, 2}) + with_corners({0, 1, 2}).substr(text.size() + 36)),
+                HasSubstr("more after the last element than the header says: 13 bytes"));
+}
+
+TEST_F(ReadSurface, ObjThatLies) {
+    const std::string rest = "v 0 1 0\nf 1 2 3\n";
+    EXPECT_EQ(wrong("a.obj", "v 0 0 0\nv 1 0 0 1 # a weight\n" + rest), "no error");
+    EXPECT_THAT(wrong("a.obj", "v 0 0 0\nv 1 0\n" + rest), HasSubstr("a.obj, line 2: vertex 1 has 2 numbers (x, y and z"));
+    EXPECT_THAT(wrong("a.obj", "v\n0 0 0\nv 1 0 0\n" + rest), HasSubstr("vertex 0 has 0 numbers"));
+    EXPECT_THAT(wrong("a.obj", "v 0 0 0\nv 1 0 0 x\n" + rest), HasSubstr("not \"x\""));
+    EXPECT_THAT(wrong("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 1.5\n"), HasSubstr("\"1.5\" is not a corner"));
+}
+
+TEST_F(ReadSurface, TextStlThatLies) {
+    const std::string one = facet("0 0 0", "1 0 0", "0 1 0");
+    const auto vertices = [](int count) {
+        std::string text = "facet normal 0 0 0\nouter loop\n";
+        for (int k = 0; k < count; ++k) text += "vertex " + std::to_string(k) + " 0 " + std::to_string(k * k) + "\n";
+        return text + "endloop\nendfacet\n";
+    };
+    EXPECT_EQ(wrong("a.stl", "solid a\n" + one + "endsolid a\nsolid b\n" + one + "endsolid b\n"), "no error");
+    for (const int count : {0, 2, 4, 6})
+        EXPECT_THAT(wrong("a.stl", "solid\n" + one + vertices(count) + "endsolid\n"), HasSubstr("does not have 3 vertices"));
+    EXPECT_THAT(wrong("a.stl", "solid\n" + one), HasSubstr("the file ends within a solid"));
+    EXPECT_THAT(wrong("a.stl", "solid\n" + one.substr(0, one.rfind("endfacet")) + one + "endsolid\n"), HasSubstr("facet"));
+    EXPECT_THAT(wrong("a.stl", "solid\nvertex 0 0 0\n" + one + "endsolid\n"), HasSubstr("a vertex is in no facet"));
 }
 
 }  // namespace read_surface_test
