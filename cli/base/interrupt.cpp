@@ -72,6 +72,13 @@ void on_interrupt(int signal) {
     start_timer();
 }
 
+/// Nobody reads any more what is written, as after "| head": the program ends without a word, as it would without this, but
+/// leaves no unfinished file.
+void on_closed_pipe(int signal) {
+    interrupted = signal;
+    end_now();
+}
+
 }  // namespace
 
 void catch_interrupts(bool silent) {
@@ -80,6 +87,7 @@ void catch_interrupts(bool silent) {
     for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
         if (std::signal(signal, on_interrupt) == SIG_IGN) std::signal(signal, SIG_IGN);
     }
+    if (std::signal(SIGPIPE, on_closed_pipe) == SIG_IGN) std::signal(SIGPIPE, SIG_IGN);
 }
 
 void say_when_interrupted(const std::function<std::string(int code)>& json) {

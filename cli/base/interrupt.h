@@ -7,8 +7,8 @@
 namespace subvol::cli {
 
 /// After this call SIGINT (Ctrl-C), SIGTERM and SIGHUP ask the running work to stop; a second signal of the same kind ends the
-/// program at once. A signal that was ignored, as under nohup, stays ignored. A `silent` process
-/// says nothing when it ends so: another one speaks for all.
+/// program at once. A signal that was ignored, as under nohup, stays ignored. SIGPIPE ends the program at once,
+/// without its unfinished files. A `silent` process says nothing when it ends so: another one speaks for all.
 void catch_interrupts(bool silent);
 
 /// After an interrupt the work has this long to stop by itself. Then the program ends in the midst of it, without its

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <iomanip>
 #include <limits>
 #include <set>
@@ -189,6 +190,7 @@ void add_parts(const ReadResult& read, Lines& lines) {
 
 std::string verdict(const MeshReport& report, std::span<const std::size_t> inverted) {
     std::vector<std::string> faults;
+    if (!std::isfinite(report.volume)) faults.emplace_back("coordinates too large: the volume is beyond what can be computed");
     if (report.inverted_cells > 0) {
         std::vector<std::string> numbers;
         for (const std::size_t c : inverted) numbers.push_back(std::to_string(c));
@@ -237,7 +239,7 @@ std::string mesh_lines(const ReadResult& read, const detail::MeshShare& joined, 
         lines.emplace_back(text("xyz"[axis]),
                            range(mesh.bounds.lower[axis], mesh.bounds.upper[axis]) + "  (" + number(size[axis]) + ")");
     }
-    lines.emplace_back("volume", number(mesh.volume));
+    lines.emplace_back("volume", std::isfinite(mesh.volume) ? number(mesh.volume) : "beyond what can be computed");
     lines.emplace_back("worst corner", text(std::setprecision(3), mesh.min_scaled_jacobian,
                                             " (scaled Jacobian: 1 a cube's, below 0 inverted)"));
     add_fields(read, lines);

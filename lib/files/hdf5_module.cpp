@@ -377,6 +377,10 @@ const char subvol_module_version[] = SUBVOL_VERSION;
 
 const subvol::detail::Hdf5Functions* subvol_hdf5() {
     namespace own = subvol::detail;
+    // When the program ends, the library would close what a full disk has kept it from closing, and crash. All files are closed
+    // where they are written, so nothing is lost. This has to come before the first other call.
+    static const herr_t leaves_exit_alone = H5dont_atexit();
+    static_cast<void>(leaves_exit_alone);
     static const own::Hdf5Functions functions{.open = &own::open,
                                               .close = &own::close,
                                               .each_name = &own::each_name,

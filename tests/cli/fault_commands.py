@@ -29,7 +29,24 @@ exec cat > "${last#file:}"
 """
 
 # The same input gives the same bytes.
-SAME_BYTES = {".vtu", ".mesh", ".ply", ".vtp", ".png", ".exr", ".svg", ".mp4"}
+SAME_BYTES = {".vtu", ".vtkhdf", ".mesh", ".ply", ".vtp", ".svk", ".svw", ".usda", ".png", ".exr", ".svg", ".mp4"}
+
+# The surface of a cube, as `mesh` reads it.
+CUBE = """v 0 0 0
+v 1 0 0
+v 1 1 0
+v 0 1 0
+v 0 0 1
+v 1 0 1
+v 1 1 1
+v 0 1 1
+f 4 3 2 1
+f 5 6 7 8
+f 1 2 6 5
+f 2 3 7 6
+f 3 4 8 7
+f 4 1 5 8
+"""
 
 
 class Command:
@@ -75,10 +92,12 @@ def is_json(content):
 def prepare(inputs):
     (inputs / "study.json").write_text(json.dumps(STUDY))
     (inputs / "actions.json").write_text('[{"orbit": [20, 5]}, {"wait": true}]')
+    (inputs / "cube.obj").write_text(CUBE)
     (inputs / "ffmpeg").write_text(FFMPEG)
     (inputs / "ffmpeg").chmod(0o755)
     for words in ("render model:ball:3 -o a.png --size 256 --backend cpu", "render model:ball:4 -o b.png --size 256 --backend cpu",
                   "points model:ball:4 -o a.ply", "vdb model:ball:3 -o a.vdb --resolution 40", "model ball --resolution 4 -o a.vtu",
+                  "subdivide model:ball:3 -o fine.vtu --levels 1",
                   "split model:ball:4 -o b.bricks --bricks 3", "surface model:ball:8 -o 1.svshare --part 1/2",
                   "surface model:ball:8 -o 2.svshare --part 2/2"):
         subprocess.run([COMMAND, *words.split()], cwd=inputs, check=True, capture_output=True)
@@ -90,12 +109,23 @@ def commands(inputs):
     return [
         Command("model .vtu", "model twist --resolution 24 -o a.vtu"),
         Command("model .mesh", "model twist --resolution 16 -o a.mesh"),
+        Command("model .vtkhdf", "model twist --resolution 12 -o a.vtkhdf", quick=True),
+        Command("mesh", f"mesh {inputs}/cube.obj -o a.vtu --cells 2 --keep-folds --rounds 1"),
+        Command("mesh .vtkhdf", f"mesh {inputs}/cube.obj -o a.vtkhdf --cells 2 --keep-folds --rounds 1"),
+        Command("approximate", f"approximate {inputs}/a.vtu --onto model:ball:3 -o a.vtu"),
+        Command("check --mend", "check model:ball:3 --mend -o a.vtkhdf"),
         Command("info", "info model:ball:8"),
         Command("subdivide", "subdivide model:ball:4 -o a.vtu --levels 1"),
+        Command("subdivide .vtkhdf", "subdivide model:ball:4 -o a.vtkhdf --levels 1"),
         Command("fit", "fit --kernel gaussian --level 3"),
         Command("points .ply", "points model:ball:8 -o a.ply"),
         Command("points .vtp", "points model:ball:8 -o a.vtp"),
         Command("points .vdb", "points model:ball:8 -o a.vdb", quick=True),
+        Command("points .svk", "points model:ball:8 -o a.svk"),
+        Command("points .svw", "points model:ball:8 -o a.svw --max-error 1e-3", quick=True),
+        Command("points .svw, wavelets", f"points {inputs}/fine.vtu -o a.svw --wavelet-tolerance 1e-3"),
+        Command("usd", "usd model:ball:4 -o a.usda --resolution 24"),
+        Command("usd of points", f"usd {inputs}/a.ply -o a.usda"),
         Command("vdb", "vdb model:ball:4 -o a.vdb --resolution 80"),
         Command("vdb --memory", "vdb model:ball:4 -o a.vdb --resolution 80 --memory 1M"),
         Command("surface", "surface model:ball:6 -o a.ply --iso 0.3 --cap"),

@@ -225,7 +225,7 @@ class Faults:
 
     def signals(self, command, times, seed):
         luck = random.Random(f"{seed}{command.name}")
-        codes = {signal.SIGINT: 130, signal.SIGTERM: 143, signal.SIGKILL: None}
+        codes = {signal.SIGINT: 130, signal.SIGTERM: 143, signal.SIGPIPE: 141, signal.SIGKILL: None}
         for turn in range(times):
             sent = list(codes)[turn % len(codes)]
             def attempt():
@@ -257,6 +257,10 @@ class Faults:
         if ended.code == -sent:  # before it catches signals
             ended.sentence()
             return "ended (137)" if killed else f"ended ({128 + sent})"
+        if sent == signal.SIGPIPE:  # nobody reads what it says, so it says nothing
+            if ended.code != code or ended.sentence():
+                raise Problem(f"exit code {ended.code}, said {ended.err[-300:]!r}")
+            return f"ended ({code})"
         judge(ended, {code: ""})
         return f"ended ({code})"
 

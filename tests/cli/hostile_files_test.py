@@ -69,6 +69,26 @@ class HostileFiles(InFolder):
         self.write("map.json", json.dumps([{"Name": 500 * '[{\\"', "RGBPoints": [0, 0, 0, 0, 1, 1, 1, 1]}]))
         self.run_ok("render", "model:ball:2", "-o", "r.png", "--size", "8x8", "--tf", "map.json", "--quiet")
 
+    def test_a_volume_that_overflows(self):
+        for scale, words in ((1e300, True), (1e110, True), (1e90, False)):  # the cube of the last one is a number
+            self.write("a.vtk", block((scale, scale, scale)))
+            text = self.run_ok("info", "a.vtk").out
+            self.assertEqual("beyond what can be computed" in text, words, text)
+            self.assertEqual(self.run_ok("info", "a.vtk", "--json").json()["verdict"] == "sound", not words)
+
+    def test_messages_are_short(self):
+        corners = [[0, 1, 2, 3, 4 * k + 4, 4 * k + 5, 4 * k + 6, 4 * k + 7] for k in range(2000)]  # of one face
+        points = "0 0 0 1 0 0 1 1 0 0 1 0 " + " ".join(f"0 0 {k} 1 0 {k} 1 1 {k} 0 1 {k}" for k in range(1, 2001))
+        cells = "\n".join("8 " + " ".join(map(str, cell)) for cell in corners)
+        self.write("fan.vtk", HEAD + f"POINTS 8004 double\n{points}\nCELLS 2000 18000\n{cells}\nCELL_TYPES 2000\n" + "12\n" * 2000)
+        self.assert_refused("info", "fan.vtk", naming="and 1,990 more (points and cells")
+        name = 30 * ("d" * 200 + "/") + "a.vtu"
+        for words in (["info", name], ["model", "ball", "-o", name], ["points", "model:ball:2", "-o", "x." + "y" * 5000],
+                      ["render", "model:ball:2", "-o", "a.png", "--field", "f" * 5000], ["x" * 5000]):
+            done = subvol(*words, folder=self.folder)
+            self.assertEqual(done.code, 2)
+            self.assertLess(len(done.err), 600, done.err)
+
     def test_voxels_that_cannot_be(self):
         # Before a level of the limit is looked for that fits them, which takes gigabytes.
         for words in (["--voxel-size", "1e-9"], ["--voxel-size", "1e-99"], ["--resolution", "1048576"], ["--budget", "1000P"],

@@ -145,7 +145,10 @@ void load_state(Session& session, const Json& file) {
     try {
         if (json.contains("log")) session.state.look.shape = {};  // else it would have to fit what is read before it
         restore(session, json, known, path);
-        if (json.contains("mesh")) take_edits(session, std::filesystem::path(path).parent_path() / word(json["mesh"]));
+        if (json.contains("mesh")) {
+            const std::filesystem::path folder = std::filesystem::path(path).parent_path();
+            take_edits(session, named_file(folder, word(json["mesh"]), [&] { return path + ", mesh"; }));
+        }
     } catch (...) {
         session.restore(before);
         throw;

@@ -2,10 +2,13 @@
 #include "subvol/view_session.h"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 
 #include "seen_view.h"
 #include "small_sessions.h"
@@ -113,6 +116,23 @@ TEST_F(Session, StateGoesToAFileAndBack) {
     EXPECT_EQ(session.state_json(), saved);
     EXPECT_EQ(session.wait()->image.rgba, picture->image.rgba);
     std::filesystem::remove(path);
+}
+
+/// A pipe has no end that anything here would wait for; the session stays as it is.
+TEST_F(Session, AStateNamesNoPipe) {
+    const auto folder = std::filesystem::temp_directory_path() / ("subvol_view_pipe_" + std::to_string(::getpid()));
+    std::filesystem::create_directories(folder);
+    ASSERT_EQ(::mkfifo((folder / "f.vtu").c_str(), 0600), 0);
+    const auto state = (folder / "s.json").string();
+    const std::string saved = session.state_json();
+    for (const std::string name : {"f.vtu", "/dev/zero", "nothing.vtu"}) {
+        std::ofstream(state) << R"({"mesh": ")" << name << "\"}";
+        const std::string said = refusal(R"({"load_state": ")" + state + "\"}");
+        EXPECT_NE(said.find("s.json, mesh: "), std::string::npos) << said;
+        EXPECT_NE(said.find(name == "nothing.vtu" ? "there is no file" : "is not a regular file"), std::string::npos) << said;
+    }
+    EXPECT_EQ(session.state_json(), saved);
+    std::filesystem::remove_all(folder);
 }
 
 TEST_F(Session, TheCommandNamesWhatIsShown) {
