@@ -2,6 +2,7 @@
 // What read_mesh does with whatever a reader has read.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 
 #include "formats.h"
