@@ -306,8 +306,9 @@ void add_surfaces(Seeds& seeds) {
     const std::array<std::array<std::uint32_t, 3>, 4> triangles{{{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}}};
     const std::array<std::array<float, 3>, 4> points{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
     std::string stl(80, ' '), ascii = "solid t\n";
-    std::string ply = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
-                      "element face 4\nproperty list uchar int vertex_indices\nend_header\n";
+    std::string ply =
+        "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
+        "element face 4\nproperty list uchar int vertex_indices\nend_header\n";
     std::string binary = ply, obj, faces;
     binary.replace(binary.find("ascii"), 5, "binary_little_endian");
     stl += little<std::uint32_t>({4});
@@ -388,7 +389,8 @@ void add_texts(Seeds& seeds) {
                                      "set:core", "box:0,0,0,1,1,1\nfold:folded,open"}) {
         seeds.add("region", region);
     }
-    for (const std::string text : {"at:0,0,0", "line:0,0,0,1,1,1", "disk:0,0,0,0,0,1,.5", "sphere:0,0,0,1", "box:0,0,0,1,1,1"}) {
+    for (const std::string text :
+         {"at:0,0,0", "line:0,0,0,1,1,1", "disk:0,0,0,0,0,1,.5", "sphere:0,0,0,1", "box:0,0,0,1,1,1"}) {
         seeds.add("region", "s" + text);
     }
     seeds.add("study",
@@ -401,7 +403,8 @@ void add_texts(Seeds& seeds) {
               R"("plots":[{"x":"seconds","y":"rmse","series":"label","panels":"input","fit":true}],)"
               R"("demands":[{"metric":"psnr","least":40,"where":{"method":"splat"}}]})");
     seeds.add("session", R"([{"orbit":[30,-10]},{"zoom":1.2},{"field":"height"},{"tf":"viridis"},{"pick":[20,20]}])");
-    seeds.add("session", R"([{"select":[3,4]},{"drag":[1,0,0]},{"undo":true},{"save_state":"a.json"},{"load_state":"a.json"}])");
+    seeds.add("session",
+              R"([{"select":[3,4]},{"drag":[1,0,0]},{"undo":true},{"save_state":"a.json"},{"load_state":"a.json"}])");
     seeds.add("session", R"(s{"field":"height","camera":"1,2,3,0,0,0,0,0,1,40","range":[0,1],"size":[48,40],"step":0})");
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Scripts of actions, and states (what follows the letter s), run on a small mesh; in a folder of their own, as actions write files.
+// Scripts of actions, and states (what follows the letter s), run on a small mesh; in a folder of their own, as actions write
+// files.
 
 #include "input.h"
 #include "view/session/small_sessions.h"

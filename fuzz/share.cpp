@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Shares of a surface: a file of one (what follows the letter f), else the bytes that are in it, joined alone and after a good one.
+// Shares of a surface: a file of one (what follows the letter f), else the bytes that are in it, joined alone and after a good
+// one.
 
 #include <array>
 

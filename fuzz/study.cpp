@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Studies; the methods are two with an option each.
 
-#include "input.h"
 #include "subvol/study.h"
+#include "input.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     using namespace subvol;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Files of kernels with levels of detail: as they are, and with their lengths and hashes set again, so that what is in them is read.
+// Files of kernels with levels of detail: as they are, and with their lengths and hashes set again, so that what is in them is
+// read.
 
 #include <cstring>
 

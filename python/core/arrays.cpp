@@ -159,12 +159,13 @@ template std::vector<std::array<Index, 2>> index_rows<2>(const py::handle&, std:
 void for_each_named(const py::handle& given, const std::string& what,
                     const std::function<void(const std::string& name, const py::handle& array)>& use) {
     if (!py::hasattr(given, "items")) refuse_type(what, "a dictionary of arrays by name", given);
-    for (const py::handle item : py::list(given.attr("items")())) {  // a list: making arrays may run code that changes the mapping
+    for (const py::handle item :
+         py::list(given.attr("items")())) {  // a list: making arrays may run code that changes the mapping
         const py::sequence pair(py::reinterpret_borrow<py::object>(item));
         const py::object name = pair[0];
         if (!py::isinstance<py::str>(name)) {
-            throw Error(ErrorCode::InvalidInput, "has the name " + py::repr(name).cast<std::string>() + ", which is not text", what,
-                        "names such as '" + py::str(name).cast<std::string>() + "'");
+            throw Error(ErrorCode::InvalidInput, "has the name " + py::repr(name).cast<std::string>() + ", which is not text",
+                        what, "names such as '" + py::str(name).cast<std::string>() + "'");
         }
         const std::string text = py::str(name);
         use(text, pair[1]);

@@ -434,15 +434,16 @@ py::tuple approximate_of(const HexMesh& onto, const py::object& points, const py
     return py::make_tuple(std::move(made.mesh), dict_of(facts_of(made.report)));
 }
 
-/// An Approximator keeps what it found for the next step, so that its steps come one after the other: a second thread, or a call
-/// from within its own progress, is refused.
+/// An Approximator keeps what it found for the next step, so that its steps come one after the other: a second thread, or a
+/// call from within its own progress, is refused.
 class StepFitter {
 public:
-    StepFitter(const HexMesh& onto, const py::kwargs& keywords) : approximator_([&] {
-        ApproximateOptions options;
-        set_options(series_keywords_of(options), keywords);
-        return Approximator(onto, options);
-    }()) {}
+    StepFitter(const HexMesh& onto, const py::kwargs& keywords)
+        : approximator_([&] {
+              ApproximateOptions options;
+              set_options(series_keywords_of(options), keywords);
+              return Approximator(onto, options);
+          }()) {}
 
     [[nodiscard]] py::tuple fit(const py::object& points, const py::object& given, const py::object& progress) {
         const HexMesh samples = samples_of(points, given);

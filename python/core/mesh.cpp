@@ -142,7 +142,8 @@ py::tuple from_vtk(const py::object& points, const py::object& types, const py::
     VtkUnstructuredGrid grid;
     grid.points = vectors(points, "points");
     for (const std::int64_t type : whole(types, "types")) {
-        if (type < 0 || type > 255) throw Error(ErrorCode::InvalidInput, "there is no type " + std::to_string(type), "types", "0 to 255");
+        if (type < 0 || type > 255)
+            throw Error(ErrorCode::InvalidInput, "there is no type " + std::to_string(type), "types", "0 to 255");
         grid.types.push_back(static_cast<std::uint8_t>(type));
     }
     grid.ends = whole(ends, "offsets");
@@ -271,7 +272,8 @@ py::dict write_series(const std::string& path, const std::vector<double>& times,
                           [&](std::size_t step) {
                               const py::gil_scoped_acquire gil;
                               const py::object mesh = read(step);
-                              const HexMesh& given = object_of<HexMesh>(mesh, "steps[" + std::to_string(step) + "]", "a HexMesh");
+                              const HexMesh& given =
+                                  object_of<HexMesh>(mesh, "steps[" + std::to_string(step) + "]", "a HexMesh");
                               sets = sets_of(mesh);
                               return given;
                           },
@@ -348,10 +350,9 @@ void bind_mesh(py::module_& module) {
                  SurfaceArrays surface = boundary_of(mesh);
                  return py::make_tuple(surface.points, surface.triangles);
              })
-        .def("without_unused_points",
-             [](const py::object& self) {
-                 return with_sets(without_unused_points(self.cast<const HexMesh&>()), sets_of(self));
-             })
+        .def(
+            "without_unused_points",
+            [](const py::object& self) { return with_sets(without_unused_points(self.cast<const HexMesh&>()), sets_of(self)); })
         .def(
             "with_creases",
             [](const py::object& self, double angle_deg) {

@@ -170,7 +170,8 @@ std::optional<ShellScene> flow_scene(const DrawnBody& drawn, const HexMesh* show
     const LimitOptions limit{.scheme = refine.scheme};
     std::vector<Vec3> seeds;
     if (!given.flow.streamlines.empty()) seeds = seeds_in(*shown, drawn.seeds, given.flow.seed_count, limit);
-    if (drawn.source == nullptr) throw Error(ErrorCode::InvalidInput, "has no mesh of its own", "streamlines", "source with them");
+    if (drawn.source == nullptr)
+        throw Error(ErrorCode::InvalidInput, "has no mesh of its own", "streamlines", "source with them");
     return result_of(progress, [&](Progress* listener) {
         Flow flow = flow_in(*drawn.source, given.flow, OptionNames::Keywords, listener);
         flow.limit = limit;

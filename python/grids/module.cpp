@@ -147,8 +147,7 @@ PYBIND11_MODULE(_grids, module) {
     py::module_::import("subvol._core");
     py::class_<VdbGrid, Grid>(module, "Grid", "An OpenVDB grid: voxels with centres at world = h ijk.")
         .def_property_readonly("name", [](const VdbGrid& grid) { return grid.report().name; })
-        .def_property_readonly("report",
-                               [](const VdbGrid& grid) { return read_only(report_of(grid), "the report of a grid"); })
+        .def_property_readonly("report", [](const VdbGrid& grid) { return read_only(report_of(grid), "the report of a grid"); })
         .def_property_readonly("bounds",
                                [](const VdbGrid& grid) {
                                    const Box& box = grid.report().bounds;

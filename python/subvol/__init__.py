@@ -2,7 +2,7 @@
 """Subdivision volumes: hexahedral meshes refined, drawn as splats, turned into OpenVDB grids, and measured.
 
 Arrays go in as they are: any real type, any strides. Arrays that come out of objects are read-only views that keep their object alive;
-those that calls return are yours. Long calls release the GIL, stop at Ctrl-C, and take `progress`: True, or a function of a stage and a
+those that calls return are yours; dictionaries of objects refuse changes. Long calls release the GIL, stop at Ctrl-C, and take `progress`: True, or a function of a stage and a
 fraction. Errors are `subvol.Error`; what was chosen or left out is warned about (`SubvolWarning`). docs/python.md says more.
 """
 from . import _core

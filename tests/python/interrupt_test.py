@@ -35,6 +35,44 @@ def test_an_exception_in_progress_cancels_and_is_raised():
         subvol.render(subvol.sample(subvol.model("pawn")), size=(1024, 1024), progress=stop, samples=4)
 
 
+def calls(ball):
+    """Each long call, by its name."""
+    volume, fine = subvol.sample(ball), subvol.subdivide(ball)
+    around = subvol.surface(ball, boundary=True)
+    grid = subvol.rasterize(ball, resolution=16)[0]
+    flow = ball.with_fields({**ball.fields, "U": ball.points})
+    return {"subdivide": lambda p: subvol.subdivide(ball, 2, progress=p), "Refinement": lambda p: subvol.Refinement(ball, 2, progress=p),
+            "tets": lambda p: subvol.subdivide(ball, 1, "tetoct", progress=p), "evaluate": lambda p: subvol.evaluate(ball, "density", [[0, 0, 0]], progress=p),
+            "as_field": lambda p: subvol.as_field(ball, "density", progress=p), "levels": lambda p: subvol.as_field(ball, "density", levels=2, progress=p),
+            "evaluate_limit": lambda p: subvol.evaluate_limit(ball, [0], [[.5, .5, .5]], progress=p), "probe": lambda p: subvol.probe(ball, [[0, 0, 0]], progress=p),
+            "measure": lambda p: subvol.measure(ball, progress=p), "part": lambda p: subvol.measure(ball, only="half:0,0,0,1,0,0", progress=p),
+            "slice": lambda p: subvol.slice(ball, (0, 0, 0), (0, 0, 1), progress=p), "surface": lambda p: subvol.surface(ball, .3, progress=p),
+            "streamlines": lambda p: subvol.streamlines(flow, "U", progress=p), "check_folds": lambda p: subvol.check_folds(ball, progress=p),
+            "mend_folds": lambda p: subvol.mend_folds(ball, progress=p), "approximate": lambda p: subvol.approximate(ball, fine, progress=p),
+            "series": lambda p: list(subvol.approximate_series(ball, [fine], progress=p)),
+            "control_mesh": lambda p: subvol.control_mesh(around.points, around.triangles, cells=4, progress=p),
+            "fit_shape": lambda p: subvol.fit_shape(ball, around.points, around.triangles, progress=p), "sample": lambda p: subvol.sample(ball, per_edge=2, progress=p),
+            "reduce": lambda p: subvol.reduce(ball, progress=p), "points_error": lambda p: subvol.points_error(volume, ball, progress=p),
+            "rasterize": lambda p: subvol.rasterize(ball, resolution=20, progress=p), "sample_grid": lambda p: subvol.sample_grid(grid, progress=p),
+            "compare": lambda p: subvol.compare(ball, volume, samples=1000, progress=p),
+            **{method: lambda p, method=method: subvol.render(ball, size=(32, 32), method=method, progress=p) for method in ("tets", "dense")}}
+
+
+def test_each_long_call_ends_when_it_is_told_to(ball):
+    class Enough(Exception):
+        pass
+
+    def stop(stage, part):
+        raise Enough(stage)
+
+    for name, call in calls(ball).items():
+        try:
+            call(stop)
+        except Enough:
+            continue
+        pytest.fail(f"{name} went on")
+
+
 def test_progress_must_be_callable(cube):
     for wrong in (3, "yes", [1]):
         with pytest.raises((subvol.InvalidInput, TypeError)):

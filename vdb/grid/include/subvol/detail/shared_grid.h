@@ -5,8 +5,8 @@
 
 namespace subvol::detail {
 
-/// Another object for the same grid: the voxels are shared, the report is copied. For those who need grids side by side that lie
-/// elsewhere, and that others use meanwhile.
+/// Another object for the same grid: the voxels are shared, the report is copied. For those who need grids side by side that
+/// lie elsewhere, and that others use meanwhile.
 [[nodiscard]] VdbGrid shared_grid(const VdbGrid& grid);
 
 }  // namespace subvol::detail
