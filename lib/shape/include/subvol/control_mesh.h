@@ -49,7 +49,7 @@ struct SharpEdgeReport {
 /// turned:     triangles with another orientation than most of those that they are joined with
 /// one_sided:  edges at which no orientation of the triangles agrees
 /// many_edges: edges of more than two triangles
-struct SurfaceReport {
+struct EnclosureReport {
     std::size_t walls = 0, united = 0, cavities = 0, cavities_alike = 0, copies = 0, sheets = 0, turned = 0, one_sided = 0,
                 many_edges = 0;
 };
@@ -63,7 +63,7 @@ struct SurfaceReport {
 struct ControlMeshReport {
     FitShapeReport shape;
     SharpEdgeReport sharp;
-    SurfaceReport surface;
+    EnclosureReport surface;
     std::size_t parts = 0, added = 0;
     int refined = 0;
     std::size_t divided = 0;
@@ -87,8 +87,7 @@ struct ControlMesh {
 /// too far away, cubes are divided and all is done again. Chains of sharp edges become creases, with a layer of cells on both
 /// sides. Where that cannot be, as in chains nearer to each other than a cell, edges become round, by a part of a cell.
 ///
-/// surface: closed; holes are spanned where most of the surface winds about a place, with a warning. Either side may be
-/// outside.
+/// surface: closed; holes are spanned where most of the surface winds about a place, with a warning. Either side may be outside.
 ///          A wall within another is that of a cavity, whatever its orientation; walls that cross are united
 /// throws:  Error(InvalidInput) if the surface is not valid, if it is a sheet without volume, if no cube has its middle inside,
 ///          if it is more than 1e9 cubes away from the origin, if there would be too many cells, or if an option is out of
