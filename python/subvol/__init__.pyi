@@ -206,7 +206,7 @@ def measure(
 
     only:        a region, or several of which all hold, as of `only`; parts of space are cut exactly out of the limit
     patch:       a patch of the boundary, of `mesh.patches`: returns name, faces, area, normal (its integral), error, and fields: by name
-                 integral, mean, min, max. Several: a list of these. Regions choose whole cells then
+                 integral, mean, min, max, extreme_error. Several: a list of these. Regions choose whole cells then
     flux:        with `patch`, a vector such as "U" or "grad(T)": also flux, its flow out through the patch, and throughput, without sign
     scheme:      mcq (smooth, through the control points), cc (Catmull-Clark), bsxw (Bajaj-Schaefer-Warren-Xu), linear [mcq,
                  cc, bsxw, linear]
