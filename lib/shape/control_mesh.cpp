@@ -180,7 +180,7 @@ std::vector<double> sides_of(const LayeredMesh& mesh, const std::vector<double>&
 }
 
 /// What is odd about a surface, and what was done about it.
-void warn_of(const SurfaceReport& found, std::vector<std::string>& warnings) {
+void warn_of(const EnclosureReport& found, std::vector<std::string>& warnings) {
     const auto warn = [&](std::size_t count, const char* one, const char* many, const std::string& rest) {
         if (count > 0) warnings.push_back(counted(count, one, many) + rest);
     };

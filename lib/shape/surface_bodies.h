@@ -35,7 +35,7 @@ public:
 
     /// The triangles that were not left out.
     [[nodiscard]] const Surface& surface() const { return surface_; }
-    [[nodiscard]] const SurfaceReport& report() const { return report_; }
+    [[nodiscard]] const EnclosureReport& report() const { return report_; }
 
     /// 1 inside, 0 outside, between near holes; above .5 is inside.
     [[nodiscard]] float likeness(const Vec3& x) const;
@@ -85,7 +85,7 @@ private:
 
     Surface surface_;
     double same_;
-    SurfaceReport report_;
+    EnclosureReport report_;
     std::vector<Wall> walls_;
     std::optional<MedianTree<Box>> boxes_;  // of the walls
 };

@@ -49,7 +49,7 @@ struct SharpEdgeReport {
 /// turned:     triangles with another orientation than most of those that they are joined with
 /// one_sided:  edges at which no orientation of the triangles agrees
 /// many_edges: edges of more than two triangles
-struct SurfaceReport {
+struct EnclosureReport {
     std::size_t walls = 0, united = 0, cavities = 0, cavities_alike = 0, copies = 0, sheets = 0, turned = 0, one_sided = 0,
                 many_edges = 0;
 };
@@ -63,7 +63,7 @@ struct SurfaceReport {
 struct ControlMeshReport {
     FitShapeReport shape;
     SharpEdgeReport sharp;
-    SurfaceReport surface;
+    EnclosureReport surface;
     std::size_t parts = 0, added = 0;
     int refined = 0;
     std::size_t divided = 0;
