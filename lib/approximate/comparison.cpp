@@ -77,7 +77,7 @@ std::vector<LimitQuery> places_of_extremes(const Topology& topology, const Attri
                 for (const Index p : topology.cells[cell])
                     most[cell] = std::max(most[cell], sign * field.values[p * channels + c]);
             });
-            constexpr std::size_t kCells = 8;
+            constexpr std::size_t kCells = 16;
             const auto end = order.begin() + static_cast<std::ptrdiff_t>(std::min(kCells, order.size()));
             std::ranges::partial_sort(order, end, {}, [&](Index cell) { return std::pair(-most[cell], cell); });
             for (auto cell = order.begin(); cell != end; ++cell) chosen[*cell] = 1;

@@ -313,16 +313,17 @@ struct Fitter::Parts {
         return x;
     }
 
-    /// Evaluates the limit itself where its matrix may not be exact enough for what is said: at the worst samples, between the
-    /// samples, and at extremes.
+    /// Evaluates the limit itself where its matrix may not be exact enough for what is said: at the worst samples, or all if
+    /// they are not many, between the samples, and at extremes.
     ///
     /// field:   the fitted one; wanted: at the samples, channel by channel
     /// between: at the places of the comparison, if the data has values there
     void compare(const Attribute& field, const std::vector<Vector>& wanted, const Vector& between, ErrorSum& errors,
                  FieldError& error) const {
         const auto channels = static_cast<std::size_t>(field.channels);
-        constexpr std::size_t kWorst = 64;
-        const std::vector<Index> worst = errors.worst(kWorst);
+        constexpr std::size_t kEvaluated = 8192, kWorst = 64;
+        const std::size_t count = located.places.size();
+        const std::vector<Index> worst = errors.worst(count <= kEvaluated ? count : kWorst);
         std::vector<LimitQuery> places;
         for (const Index k : worst) places.push_back(located.places[k]);
         places.insert(places.end(), comparison.places.begin(), comparison.places.end());
@@ -332,13 +333,20 @@ struct Fitter::Parts {
         fitted.attributes = {field};
         const LimitSamples limit_there = limit_at(fitted, places, options.scheme);
         const Vector& found = limit_there.attributes[0].values;
+        ErrorSum exact(located, at_boundary);  // of all samples, if all were evaluated
+        for (std::size_t c = 0; c < channels && worst.size() == count; ++c) {
+            Vector values(count);
+            for (std::size_t i = 0; i < count; ++i) values[worst[i]] = found[i * channels + c];
+            exact.add(wanted[c], values);
+        }
+        ErrorSum& known = worst.size() == count ? exact : errors;
         for (std::size_t i = 0; i < worst.size(); ++i) {
             double most = 0;
             for (std::size_t c = 0; c < channels; ++c)
                 most = std::max(most, std::abs(found[i * channels + c] - wanted[c][worst[i]]));
-            errors.note_max(most, located.positions[worst[i]]);
+            known.note_max(most, located.positions[worst[i]]);
         }
-        error = errors.result(field.name);
+        error = known.result(field.name);
         double squares = 0;
         for (std::size_t i = 0; i < comparison.places.size(); ++i) {
             for (std::size_t c = 0; c < channels; ++c) {
