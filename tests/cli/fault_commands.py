@@ -116,7 +116,7 @@ def commands(inputs):
         Command("check --mend", "check model:ball:3 --mend -o a.vtkhdf"),
         Command("info", "info model:ball:8"),
         Command("subdivide", "subdivide model:ball:4 -o a.vtu --levels 1"),
-        Command("subdivide .vtkhdf", "subdivide model:ball:4 -o a.vtkhdf --levels 1"),
+        Command("subdivide .vtkhdf", "subdivide model:ball:4 -o a.vtkhdf --levels 1 --clamp"),
         Command("fit", "fit --kernel gaussian --level 3"),
         Command("points .ply", "points model:ball:8 -o a.ply"),
         Command("points .vtp", "points model:ball:8 -o a.vtp"),

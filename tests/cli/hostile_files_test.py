@@ -81,7 +81,7 @@ class HostileFiles(InFolder):
         points = "0 0 0 1 0 0 1 1 0 0 1 0 " + " ".join(f"0 0 {k} 1 0 {k} 1 1 {k} 0 1 {k}" for k in range(1, 2001))
         cells = "\n".join("8 " + " ".join(map(str, cell)) for cell in corners)
         self.write("fan.vtk", HEAD + f"POINTS 8004 double\n{points}\nCELLS 2000 18000\n{cells}\nCELL_TYPES 2000\n" + "12\n" * 2000)
-        self.assert_refused("info", "fan.vtk", naming="and 1,990 more (points and cells")
+        self.assert_refused("info", "fan.vtk", "--quiet", naming="and 1,990 more (points and cells")
         name = 30 * ("d" * 200 + "/") + "a.vtu"
         for words in (["info", name], ["model", "ball", "-o", name], ["points", "model:ball:2", "-o", "x." + "y" * 5000],
                       ["render", "model:ball:2", "-o", "a.png", "--field", "f" * 5000], ["x" * 5000]):
