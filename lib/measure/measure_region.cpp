@@ -420,8 +420,9 @@ private:
     /// slope: of the value (value / world)
     [[nodiscard]] double of_pieces(std::size_t channel, double slope) const {
         constexpr auto kRounding = static_cast<double>(std::numeric_limits<float>::epsilon());
-        const double position = limit_.position_world + kRounding * bounds(mesh_).diagonal();
-        return limit_.value_of_range * ranges_[channel] + rounding(channel) + slope * position;
+        constexpr double kKinks = 2;  // more than what the last level shows is left where the limit is least smooth
+        const double position = kKinks * limit_.position_world + kRounding * bounds(mesh_).diagonal();
+        return kKinks * limit_.value_of_range * ranges_[channel] + rounding(channel) + slope * position;
     }
 
     /// Those with a part in the region.

@@ -173,7 +173,7 @@ private:
         if (depth(regions_, place) < -near) return;
         const auto& lowest = pieces_.lowest[box.piece];
         const Vec3 uvw = (Vec3(lowest[0], lowest[1], lowest[2]) + at) * std::ldexp(1, -pieces_.levels[box.piece]);
-        extreme_.best = {extreme_.sign * found, place, pieces_.cells[box.piece], uvw};
+        extreme_.best = {extreme_.sign * found + 0.0, place, pieces_.cells[box.piece], uvw};
     }
 
     /// Looks for better values in a box, lowers its bound, and returns the halves that may have one.
