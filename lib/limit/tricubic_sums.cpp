@@ -75,7 +75,7 @@ void sum_numbered(const double* points, const GridPoints& grid, std::size_t stri
 void sum_block(const GridRows& grid, const std::array<WideWeights, 3>& weights, double scale, double* HWY_RESTRICT jet) {
     const hn::CappedTag<double, 4> d;
     const std::size_t step = hn::Lanes(d), stride = grid.stride, along_v = grid.side * stride, along_w = grid.side * along_v;
-    const auto& [u, v, w] = weights;
+    const WideWeights &u = weights[0], &v = weights[1], &w = weights[2];
     for (std::size_t block = 0; block < stride; block += step) {
         const double* const rows = grid.rows + block;
         const auto value_on_line = [&](std::size_t j, std::size_t k) HWY_ATTR {

@@ -172,7 +172,7 @@ void Measurer::calibrate(std::span<const Index> cells, int level, Changes& chang
     order.resize(count);
     std::vector<Index> sample(count);
     for (std::size_t i = 0; i < count; ++i) sample[i] = cells[order[i]];
-    sample_.emplace(std::move(order), Changes(1 + channels_.size(), sample.size(), 0), stride == 1);
+    sample_ = SampleOfChanges{std::move(order), Changes(1 + channels_.size(), sample.size(), 0), stride == 1};
     Changes& next = sample_->next;
     each_block(
         sample, level + 1, "measure",

@@ -67,7 +67,7 @@ Attribute limit_gradient(const HexMesh& mesh, const Attribute& attribute, Progre
     constexpr double kInset = 0.05;
     HexMesh alone{mesh.points, mesh.cells, {attribute}, mesh.creases, mesh.sharp_faces};
     alone.attributes[0].bounds.clear();
-    const LimitEvaluator limit(alone, {.tolerance = 1e-4});
+    const LimitEvaluator limit(alone);
     GradientSum sum(mesh, attribute);
     for (std::size_t begin = 0; begin < mesh.cells.size(); begin += kCellsAtOnce) {
         const std::size_t end = std::min(begin + kCellsAtOnce, mesh.cells.size());

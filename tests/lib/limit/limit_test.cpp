@@ -100,6 +100,91 @@ TEST(LimitMcq, ReproducesCubicsWithTheirGradients) {
     EXPECT_EQ(samples.report.unconverged, 0u);
 }
 
+/// A box of 4³ unit cells with random values in [-1, 1] at its points.
+HexMesh random_values() {
+    HexMesh mesh = test::make_box(4, 4, 4);
+    std::mt19937 random(66);
+    std::uniform_real_distribution<double> value(-1, 1);
+    test::add_field(mesh, "f", [&](const Vec3&) { return value(random); });
+    return mesh;
+}
+
+/// A place in all cells around it, moved into each by a part of the cell.
+std::vector<LimitQuery> from_all_cells(const Vec3& place, double inwards) {
+    std::vector<LimitQuery> queries;
+    for (Index cell = 0; cell < 64; ++cell) {
+        const Vec3 uvw = place - Vec3(cell % 4, cell / 4 % 4, cell / 16);
+        if (uvw != glm::clamp(uvw, Vec3(0.0), Vec3(1.0))) continue;
+        queries.push_back({cell, uvw + inwards * (Vec3(0.5) - uvw)});
+    }
+    return queries;
+}
+
+// The limit is C1: one gradient at a point, on an edge and on a face, that of the fine vertices around it.
+TEST(LimitMcq, HasOneGradientOnAllSidesOfAPlace) {
+    const HexMesh mesh = random_values(), fine = refine(mesh, {.levels = 4});
+    constexpr int kSide = 65;
+    std::vector<double> values(kSide * kSide * kSide);
+    const auto at = [&](const Vec3& p) -> double& {
+        const auto n = [](double x) { return static_cast<std::size_t>(std::lround(16 * x)); };
+        return values[n(p.x) + kSide * (n(p.y) + kSide * n(p.z))];
+    };
+    for (std::size_t i = 0; i < fine.points.size(); ++i) at(fine.points[i]) = fine.attributes[0].values[i];
+    // Central differences are of second order, so that those of levels 3 and 4 together leave some 1e-4.
+    const auto exact = [&](const Vec3& p) {
+        Vec3 gradient;
+        for (int axis = 0; axis < 3; ++axis) {
+            const auto central = [&](double h) {
+                Vec3 step(0.0);
+                step[axis] = h;
+                return (at(p + step) - at(p - step)) / (2 * h);
+            };
+            gradient[axis] = (4 * central(1. / 16) - central(1. / 8)) / 3;
+        }
+        return gradient;
+    };
+    // Two levels differ by 1e-3 of the range, 2, at most; what is left is less than that. With the small tolerance it is what
+    // the differences leave.
+    for (const auto& [tolerance, inwards, off] :
+         std::vector<std::array<double, 3>>{{1e-6, 0, 1e-3}, {1e-6, 2e-6, 1e-3}, {1e-9, 0, 3e-4}}) {
+        std::vector<LimitQuery> queries;
+        std::vector<Vec3> gradients;
+        for (int n = 0; n < 5 * 5 * 5; ++n) {
+            const Vec3 place = 0.5 * Vec3(2 + n % 5, 2 + n / 5 % 5, 2 + n / 25);
+            for (const LimitQuery& query : from_all_cells(place, inwards)) {
+                queries.push_back(query);
+                gradients.push_back(exact(place));
+            }
+        }
+        const LimitSamples found = evaluate_limit(mesh, queries, {.tolerance = tolerance, .max_levels = 12});
+        for (std::size_t q = 0; q < queries.size(); ++q) {
+            EXPECT_NEAR(glm::distance(found.attributes[0].derivatives[q], gradients[q]), 0, off)
+                << q << ' ' << tolerance << ' ' << inwards;
+        }
+    }
+}
+
+TEST(LimitMcq, HasOneGradientAnywhereOnASideOfACell) {
+    const HexMesh mesh = random_values();
+    std::mt19937 random(7);
+    std::uniform_real_distribution<double> anywhere(0, 4);
+    std::vector<LimitQuery> queries;
+    std::vector<std::size_t> firsts;  // of the queries of the same place
+    for (int n = 0; n < 60; ++n) {
+        Vec3 place(anywhere(random), anywhere(random), anywhere(random));
+        for (int axis = 0; axis <= n % 2; ++axis) place[(n + axis) % 3] = n / 2 % 5;  // some of them on the boundary
+        const auto of_place = from_all_cells(place, 0);
+        firsts.insert(firsts.end(), of_place.size(), queries.size());
+        queries.insert(queries.end(), of_place.begin(), of_place.end());
+    }
+    const LimitSamples found = evaluate_limit(mesh, queries);
+    for (std::size_t q = 0; q < queries.size(); ++q) {
+        const auto& gradients = found.attributes[0].derivatives;
+        // Cells may end at different levels, whose derivatives are within the tolerance of each other.
+        EXPECT_NEAR(glm::distance(gradients[q], gradients[firsts[q]]), 0, 2e-3) << q;
+    }
+}
+
 /// Errors against a much deeper refinement, from level 2 on.
 std::vector<double> errors_by_level(const HexMesh& mesh, Scheme scheme, int deepest) {
     const auto queries = random_queries(mesh, 300, 3);

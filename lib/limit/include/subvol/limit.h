@@ -21,7 +21,8 @@ struct LimitQuery {
 };
 
 /// tolerance:  relative to the diagonal of the mesh's box and to each attribute's range. What is not exact is refined until two
-///             levels differ by less, and their derivatives (per cell) by less than its square root
+///             levels differ by less, and their derivatives (per cell) by less than its square root; beside extraordinary edges
+///             and vertices that of the derivatives is given up after level 6
 /// max_levels: ≥ 2; refinement ends there in any case
 struct LimitOptions {
     SchemeOptions scheme{};
@@ -63,8 +64,13 @@ struct LimitSamples {
 /// Catmull-Clark and BSXW are evaluated as tricubic B-splines where the cell's surroundings are a grid (the boundary of a box
 /// included). Elsewhere, and everywhere for MCQ, the surroundings of the place are refined: the vertices of MCQ lie on the
 /// limit, which is interpolated tricubically between them. The error falls with the second power of the cell size, as the
-/// smoothness of the scheme allows, that of the Jacobian with the first. At an extraordinary vertex or edge the Jacobian is
-/// that of the last level.
+/// smoothness of the scheme allows, that of the Jacobian with the first.
+///
+/// Where the limit of MCQ is C1, cells that meet have one gradient, to the tolerance: derivatives at the ends of an edge are
+/// taken from the points on both sides of it, and converge there with the second power. On the boundary that holds along it. At
+/// extraordinary vertices and edges, and at interior creases, derivatives are those of the cell that is asked, from its side
+/// alone: they differ from cell to cell by up to some tenths of what the field changes in a cell, and a tighter tolerance does
+/// not help. At an extraordinary vertex or edge the Jacobian is that of the last level.
 ///
 /// throws: Error(InvalidInput) as `refine`, or if a query names a cell that does not exist or lies outside [0,1]³
 /// cost:   parallel; queries in one cell share the work: best are many queries in one call. Bitwise the same for any number of
