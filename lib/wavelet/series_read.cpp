@@ -42,21 +42,16 @@ public:
     }
 
     /// Refuses memory that so few bytes do not stand for.
-    void expect_growth(std::uint64_t packed, std::uint64_t unpacked) const {
-        constexpr std::uint64_t kAlways = kSeriesMemory / 2;
-        if (unpacked <= kAlways || unpacked / kMostGrowth <= packed) return;
+    void expect_growth(std::uint64_t packed, std::uint64_t unpacked, std::uint64_t always = kSeriesMemory / 2) const {
+        if (unpacked <= always || unpacked / kMostGrowth <= packed) return;
         fail(std::to_string(packed) + " bytes say that they are " + std::to_string(unpacked),
-             "at most " + std::to_string(kMostGrowth) + " times as many, or " + std::to_string(kAlways >> 20) + " MiB");
+             "at most " + std::to_string(kMostGrowth) + " times as many, or " + std::to_string(always >> 20) + " MiB");
     }
 
     /// Refuses what reading a step would take, if the file is too small for it. counts: of the refined mesh
     void expect_memory(std::uint64_t cells, std::uint64_t points, std::uint64_t channels, std::uint64_t set_bytes) const {
         if (std::max(cells, points) >= kNone) fail(std::to_string(cells) + " cells are too many");
-        const std::uint64_t memory = series_memory(cells, points, channels, set_bytes);
-        if (memory <= kSeriesMemory || memory / kMostGrowth <= size_) return;
-        fail("a step of " + std::to_string(cells) + " cells takes " + std::to_string(memory >> 20) +
-                 " MiB of memory, and the file has " + std::to_string(size_) + " bytes",
-             "at most " + std::to_string(kMostGrowth) + " times as many, or " + std::to_string(kSeriesMemory >> 20) + " MiB");
+        expect_growth(size_, series_memory(cells, points, channels, set_bytes), kSeriesMemory);
     }
 
     [[nodiscard]] std::string unpacked(const std::string& packed, std::uint64_t length) const {

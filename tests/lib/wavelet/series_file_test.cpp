@@ -495,7 +495,7 @@ TEST_F(SeriesLies, AKeyIsOneOrNone) {
 /// 16 cells refined 6 times are 4,194,304: more than two gigabytes, of some hundred bytes.
 TEST_F(SeriesLies, RefinedCellsCountAgainstTheBytesOfTheFile) {
     parts_.meshes[0] = box_part(6, {});
-    EXPECT_NE(wrong().find("a step of 4194304 cells takes 1"), std::string::npos) << wrong();
+    EXPECT_NE(wrong().find("bytes say that they are"), std::string::npos) << wrong();
     parts_.meshes[0] = box_part(7, {});
     EXPECT_NE(wrong().find("the number of levels is 7"), std::string::npos) << wrong();
 }
@@ -504,7 +504,7 @@ TEST_F(SeriesLies, RefinedCellsCountAgainstTheBytesOfTheFile) {
 TEST_F(SeriesLies, ChannelsCountAgainstTheBytesOfTheFile) {
     parts_.meshes[0] = box_part(5, {});
     parts_.index.arrays.push_back({"many", std::vector<detail::Quantization>(900, {0, 1, 0, 1})});
-    EXPECT_NE(wrong().find("a step of 524288 cells takes 1"), std::string::npos) << wrong();
+    EXPECT_NE(wrong().find("bytes say that they are"), std::string::npos) << wrong();
 }
 
 TEST_F(SeriesLies, SidesAndNamesThatAreThereTwice) {

@@ -42,7 +42,9 @@ struct MeshSets {
     [[nodiscard]] bool empty() const { return patches.empty() && sets.empty(); }
 };
 
-/// Checks that all sides and cells exist. throws: Error(InvalidInput)
+/// Checks that all sides and cells exist, each once in a patch or set, and that no two patches or sets have one name.
+///
+/// throws: Error(InvalidInput)
 void validate(const MeshSets& sets, const HexMesh& mesh);
 
 /// "2 patches (in, out) and 1 set of cells (rotor)"; empty if there are none
