@@ -20,24 +20,6 @@ constexpr const char* kNote = "subvolPart";
 
 using Outcome = std::optional<PictureFault>;
 
-/// The first channels of a picture, some rows at a time: a short file whose header says that it is large ends it early.
-bool read_rows(OIIO::ImageInput& input, const OIIO::ImageSpec& spec, int channels, std::vector<float>& values) {
-    constexpr std::size_t kBlockBytes = std::size_t{16} << 20;
-    const std::size_t in_row = static_cast<std::size_t>(channels) * static_cast<std::size_t>(spec.width);
-    const bool tiled = spec.tile_width > 0;
-    const auto rows = tiled ? spec.height : static_cast<int>(std::max(std::size_t{1}, kBlockBytes / (in_row * sizeof(float))));
-    for (int y = 0; y < spec.height; y += rows) {
-        const int end = y + std::min(rows, spec.height - y);
-        const std::size_t before = values.size();
-        values.resize(in_row * static_cast<std::size_t>(end));
-        const bool read = tiled ? input.read_image(0, 0, 0, channels, OIIO::TypeDesc::FLOAT, values.data())
-                                : input.read_scanlines(0, 0, spec.y + y, spec.y + end, spec.z, 0, channels,
-                                                       OIIO::TypeDesc::FLOAT, values.data() + before);
-        if (!read) return false;
-    }
-    return true;
-}
-
 Outcome read(const std::string& path, DecodedPicture& picture) {
     // Otherwise OpenImageIO premultiplies encoded values; alpha applies to linear light, after decoding.
     OIIO::ImageSpec wish;
@@ -54,7 +36,9 @@ Outcome read(const std::string& path, DecodedPicture& picture) {
     picture.alpha = spec.alpha_channel < picture.channels ? spec.alpha_channel : -1;
     picture.integers = !spec.format.is_floating_point();
     picture.unassociated = spec.get_int_attribute("oiio:UnassociatedAlpha") != 0;
-    if (!read_rows(*input, spec, picture.channels, picture.values)) {
+    picture.values.resize(static_cast<std::size_t>(picture.channels) * static_cast<std::size_t>(spec.width) *
+                          static_cast<std::size_t>(spec.height));
+    if (!input->read_image(0, 0, 0, picture.channels, OIIO::TypeDesc::FLOAT, picture.values.data())) {
         return PictureFault{ErrorCode::InvalidInput, "is not a complete image: " + input->geterror()};
     }
     picture.data = {spec.x, spec.y, spec.width, spec.height};

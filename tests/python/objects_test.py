@@ -2,11 +2,9 @@
 """Lists of our objects, objects that are used by several threads or during a call, and properties that are made anew."""
 import copy
 import pickle
-import struct
 import subprocess
 import sys
 import textwrap
-import zlib
 
 import numpy as np
 import pytest
@@ -330,28 +328,5 @@ def test_errors_of_large_values_are_numbers(cube):
     rng = np.random.default_rng(6)
     places, values = rng.random((400, 3)), 1e300 * rng.random(400)
     _, report = subvol.approximate(cube, places, {"T": values})
-    _, small = subvol.approximate(cube, places, {"T": values / 2.0 ** 700})
     error = report["fields"]["T"]
     assert 0 < error["max"] / 20 <= error["rms"] <= error["max"] < 1e300
-    assert error["rms"] / 2.0 ** 700 == pytest.approx(small["fields"]["T"]["rms"], rel=1e-6)  # the solver's tolerance
-
-
-def test_a_short_picture_that_says_it_is_large_takes_no_memory(tmp_path):
-    """16,384 squared pixels of 4 floats are 4.3 GB; the file has some hundred bytes. What there is of it ends in the first rows."""
-    rows = zlib.compress(b"\0" + bytes(16384 * 3))
-
-    def chunk(name, data):
-        return struct.pack(">I", len(data)) + name + data + struct.pack(">I", zlib.crc32(name + data))
-
-    head = struct.pack(">IIBBBBB", 16384, 16384, 8, 2, 0, 0, 0)
-    (tmp_path / "large.png").write_bytes(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", head) + chunk(b"IDAT", rows) + chunk(b"IEND", b""))
-    assert run(f"""
-        import resource, subvol
-        before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
-        try:
-            subvol.read_image({str(tmp_path / "large.png")!r})
-        except subvol.InvalidInput as error:
-            assert "complete" in str(error), error
-        grown = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before  # in kB
-        print(grown < 400_000, grown if grown >= 400_000 else "")
-        """).startswith("True")
