@@ -10,6 +10,7 @@
 #include "render/constant_optics.h"
 #include "render/hex_meshes.h"
 #include "render/image_differences.h"
+#include "subvol/color_scale.h"
 #include "subvol/error.h"
 #include "subvol/limit.h"
 #include "subvol/model.h"
