@@ -147,7 +147,7 @@ private:
         int height = slice.height + margins.top + margins.bottom;
         if (png && !no_legend_) {
             height = std::max(height, kLeastLegend_px);
-            extra = legend_width_px(function, legend, height, width);
+            extra = legend_extent_px(function, legend, {.width = width}, height);
             Facts facts;
             warn_of_boxes(std::array{legend.title}, facts);
             report.merge(facts);
@@ -181,7 +181,7 @@ private:
         if (extremes_) mark_extremes(image, slice, Vec2(0.5 + left, 0.5 + top), letter, report);
         if (extra > 0) {
             image = padded(image, 0, 0, width + extra, height);
-            draw_legend(image, function, legend, ink, width);
+            draw_legend(image, function, legend, {.ink = ink, .width = width}, height);
         }
         report.timed("write", [&] { write_image(output_, image, background); });
     }

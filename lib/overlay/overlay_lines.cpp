@@ -224,6 +224,10 @@ void draw_axes(Image& image, const View& view, const Vec3& ink) {
     }
 }
 
+void draw_scale_bar(Image& image, const View& view, const Vec3& at, const Vec3& ink) {
+    draw_scale_bar(image, view, at, ink, 0);
+}
+
 void draw_scale_bar(Image& image, const View& view, const Vec3& at, const Vec3& ink, double above_px) {
     const double depth = view.perspective() ? view.to_eye(at).z : 1;
     const double world_per_px = view.pixel() * depth;

@@ -34,7 +34,7 @@ void widen(DrawnPicture& picture, int width) {
 namespace {
 
 int legend_columns_of(const ViewState& state, const ViewBody& body, const Optics& optics) {
-    return legend_width_px(optics.function(), legend_of(state, body), state.height, state.width);
+    return legend_extent_px(optics.function(), legend_of(state, body), {.width = state.width}, state.height);
 }
 
 }  // namespace
@@ -101,7 +101,7 @@ void draw_overlays(DrawnPicture& picture, const View& view, const ViewBody& body
     if (state.axes) draw_axes(picture.image, view, ink);
     if (state.legend) {
         widen(picture, state.width);
-        draw_legend(picture.image, optics.function(), legend_of(state, body), ink, state.width);
+        draw_legend(picture.image, optics.function(), legend_of(state, body), {.ink = ink, .width = state.width}, state.height);
     }
 }
 

@@ -84,10 +84,12 @@ TEST(Overlay, TextsAreCutWithDotsAtWholeLetters) {
 TEST(Overlay, LegendsOfTallPicturesHaveTheLettersOfTheirWidth) {
     const TransferFunction f = transfer_function_preset("viridis", 0, 1);
     const LegendOptions options{.title = "T"};
-    EXPECT_EQ(legend_width_px(f, options, 800, 800), legend_width_px(f, options, 800)) << "a square";
-    EXPECT_EQ(legend_width_px(f, options, 400, 1200), legend_width_px(f, options, 400)) << "a wide picture";
-    EXPECT_EQ(legend_width_px(f, options, 800, 400), legend_width_px(f, options, 400)) << "a tall one: as of its width";
-    EXPECT_EQ(legend_width_px(f, options, 80, 80), legend_width_px(f, options, 320)) << "letters of 8 pixels at least";
+    EXPECT_EQ(legend_extent_px(f, options, {.width = 800}, 800), legend_width_px(f, options, 800)) << "a square";
+    EXPECT_EQ(legend_extent_px(f, options, {.width = 1200}, 400), legend_width_px(f, options, 400)) << "a wide picture";
+    EXPECT_EQ(legend_extent_px(f, options, {.width = 400}, 800), legend_width_px(f, options, 400))
+        << "a tall one: as of its width";
+    EXPECT_EQ(legend_extent_px(f, options, {.width = 80}, 80), legend_width_px(f, options, 320))
+        << "letters of 8 pixels at least";
 }
 
 TEST(Overlay, PaddedPicturesAreWhereTheyBelong) {

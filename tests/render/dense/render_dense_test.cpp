@@ -10,6 +10,7 @@
 #include "render/constant_optics.h"
 #include "render/hex_meshes.h"
 #include "render/image_differences.h"
+#include "subvol/color_scale.h"
 #include "subvol/error.h"
 #include "subvol/limit.h"
 #include "subvol/model.h"
@@ -272,7 +273,7 @@ TEST(RenderDense, ColoursLieWithinTheErrorThatIsSaid) {
 }
 
 TEST(RenderDense, WhereColoursJumpTheLevelIsNoFinerAndThePictureNear) {
-    const HexMesh mesh = with_field(test::box(6), waves);
+    const HexMesh mesh = with_field(test::box(4), waves);
     const View view = slanted_view(64);
     const auto optics = [](const ColorShape& shape) {
         TransferFunction ramp = transfer_function_preset("viridis", .1, .9);
@@ -288,7 +289,7 @@ TEST(RenderDense, WhereColoursJumpTheLevelIsNoFinerAndThePictureNear) {
         EXPECT_LE(found.report.levels, smooth + 1);  // each level costs eight times as much
         // A line a quarter of a pixel beside its place changes a quarter of the pixels along it, by less than the whole colour;
         // lines go through at most a tenth of these 64² pixels each: √(.25 · .1) · .2 of 1 for bands, and opacity takes half.
-        const Image finer = render_dense(mesh, {}, view, optics(shape), {.levels = found.report.levels + 2}).image;
+        const Image finer = render_dense(mesh, {}, view, optics(shape), {.levels = found.report.levels + 1}).image;
         EXPECT_LT(rms(found.image, finer), .015) << shape.bands;
     }
 }

@@ -134,8 +134,9 @@ void draw_axes(Image& image, const View& view, const Vec3& ink);
 ///
 /// at:       the point at whose depth lengths are those of the bar; of an orthographic view it does not matter
 /// ink:      of bar and text
-/// above_px: the height above the lower edge at which the corner begins
-void draw_scale_bar(Image& image, const View& view, const Vec3& at, const Vec3& ink, double above_px = 0);
+/// above_px: the height above the lower edge at which the corner begins; 0 if it is left out
+void draw_scale_bar(Image& image, const View& view, const Vec3& at, const Vec3& ink);
+void draw_scale_bar(Image& image, const View& view, const Vec3& at, const Vec3& ink, double above_px);
 
 /// Where a legend stands: at the right edge of the picture, upright, or along its lower edge.
 enum class LegendSide { Right, Bottom };
@@ -168,14 +169,12 @@ struct LegendStyle {
 void draw_legend(Image& image, const TransferFunction& function, const LegendOptions& options, const LegendStyle& style,
                  int height);
 
-/// The same at the right edge, in the usual size. width: as `LegendStyle::width`
-[[nodiscard]] inline int legend_width_px(const TransferFunction& function, const LegendOptions& options, int height,
-                                         int width = 0) {
-    return legend_extent_px(function, options, {.width = width}, height);
+/// The same at the right edge, in the usual size.
+[[nodiscard]] inline int legend_width_px(const TransferFunction& function, const LegendOptions& options, int height) {
+    return legend_extent_px(function, options, {}, height);
 }
-inline void draw_legend(Image& image, const TransferFunction& function, const LegendOptions& options, const Vec3& ink,
-                        int width = 0) {
-    draw_legend(image, function, options, {.ink = ink, .width = width}, image.height);
+inline void draw_legend(Image& image, const TransferFunction& function, const LegendOptions& options, const Vec3& ink) {
+    draw_legend(image, function, options, {.ink = ink}, image.height);
 }
 
 /// Returns a larger picture with the given one in it; the new pixels are transparent.
