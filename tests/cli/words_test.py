@@ -42,9 +42,8 @@ SLIPS = [
     (["slice", "model:ball:4", "-o", "a.png", "--legend"], "--legend: slice has no such option; it is on, and --no-legend turns it off"),
     (["render", "model:ball", "-o", "a.png", "--no-legend"], "--no-legend: render has no such option; it is off unless --legend is given"),
     (["render", "model:ball", "-o", "a.png", "--levels", "1", "--levels", "2"], "--levels: is given twice, but has one value"),
-    (["vdb", "model:ball", "-o", "a.vdb", "--fields", "a", "--fields", "b", "--fields", "c"], "--fields: is given 3 times, but has one value"),
+    (["vdb", "model:ball", "-o", "a.vdb", *3 * ["--resolution", "8"]], "--resolution: is given 3 times, but has one value"),
     (["render", "model:ball", "-o"], "--output: needs a value: -o IMAGE"),
-    (["info", "model:ball", "--json=3"], "--json: is a switch, which has no value"),
     ([], "a verb is needed: model, info"),
     (["--verson"], "did you mean --version?"),
 ]

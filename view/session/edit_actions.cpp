@@ -202,7 +202,7 @@ void save_mesh(Session& session, const Json& value) {
     if (const std::size_t count = session.inverted_cells().size(); count > 0) {
         session.warnings.push_back(file + ": " + std::to_string(count) + " of its " +
                                    std::to_string(session.body->mesh.cells.size()) + " cells " + (count == 1 ? "is" : "are") +
-                                   " inverted (subvol check --mend moves points until they are not)");
+                                   " inverted (subvol check --mend moves points to mend them)");
     }
 }
 

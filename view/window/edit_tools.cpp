@@ -154,6 +154,7 @@ void draw_sculpt(WindowHost& host, WindowMemory& memory) {
     ImGui::SameLine();
     button("select none", "select", "null");
     const std::string inverted = inverted_text(host);
+    ImGui::AlignTextToFramePadding();
     if (inverted.empty())
         ImGui::TextDisabled("no inverted cells");
     else
