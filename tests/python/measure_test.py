@@ -167,9 +167,9 @@ def test_surfaces_become_meshes(tmp_path):
     shaped, fit = subvol.fit_shape(moved, points, triangles, keep_folds=True)
     assert fit["after"]["rms"] < .2 * fit["before"]["rms"]
     assert shaped.cells.shape == mesh.cells.shape
-    with pytest.raises(subvol.InvalidInput, match=r"triangles: must be an array of shape \(n,3\)"):
+    with pytest.raises(subvol.InvalidInput, match=r"triangles: has the shape \(\d+, 2\) \(\(n, 3\)\)"):
         subvol.control_mesh(points, triangles[:, :2])
-    with pytest.raises(subvol.InvalidInput, match="triangle 0 has the corner -1"):
+    with pytest.raises(subvol.InvalidInput, match="triangles: row 0 has the number -1; there are"):
         subvol.control_mesh(points, triangles * 0 - 1)
     with pytest.raises(subvol.InvalidInput, match="cells: 1 is out of range"):
         subvol.control_mesh(points, triangles, cells=1)
