@@ -480,7 +480,7 @@ class Captions(Pictures):
             self.assertEqual(done.code, 0, done.err)
             colors, ink = self.colored("a.png")
             self.assertGreaterEqual(min(colors), 0 if "--legend" in words else self.TITLE_ROWS, words)
-            self.assertGreater(len(ink), 20)
+            self.assertGreater(len(ink), 4)  # strokes that fill a pixel
         self.assertEqual((min(colors), max(colors)), (self.TITLE_ROWS, 159), "the last camera's body fills what is left")
 
     def test_a_long_title_is_cut_with_dots(self):
@@ -517,7 +517,7 @@ class Captions(Pictures):
 
     def test_an_xray_of_a_body_without_a_field_shows_how_thick_it_is(self):
         (self.folder / "cube.vtk").write_text(TWO_FIELDS)
-        subprocess.run([COMMAND, "render", "cube.vtk", "-o", "a.png", "--density", "1", "--look", "xray", "--size", "60x60", "--ortho", "--view", "1,-1,0",
+        subprocess.run([COMMAND, "render", "cube.vtk", "-o", "a.png", "--density", "1", "--look", "xray", "--size", "60x60", "--camera", "3.5,-2.5,.5,.5,.5,.5,0,0,1,20",
                         "--json"], cwd=self.folder, capture_output=True, text=True, check=True)
         channels, width, rows = self.pixels("a.png")
         line = [row for row in zip(*[iter(rows[30])] * channels)]
