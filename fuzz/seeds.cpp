@@ -345,7 +345,7 @@ void add_surfaces(Seeds& seeds) {
 
 void add_shares(Seeds& seeds) {
     const HexMesh mesh = make_model("ball", 2);
-    for (const std::size_t number : {std::size_t{1}, std::size_t{2}}) {
+    for (const int number : {1, 2}) {
         const std::string bytes =
             detail::share_of_surface(mesh, "density", {.isos = {.5}}, {.number = number, .count = 2}).bytes;
         seeds.add("share", bytes);
