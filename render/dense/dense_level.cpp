@@ -6,8 +6,8 @@
 //      ────┴────      makes the step four times shorter, so level L lies (4/3) step / 4^L from the limit.
 //
 // Only the part of a node's step δx across the boundary is seen, in pixels. Inside, a step moves the point and its value
-// together: what is wrong at a fixed place is δ = δv − ∇v·δx, and is seen as a change of colour, by the steepness of the transfer
-// function there. Means are taken over the rectangles that cells, or their open sides, have in the picture.
+// together: what is wrong at a fixed place is δ = δv − ∇v·δx, and is seen as a change of colour, by the steepness of the
+// transfer function there. Means are taken over the rectangles that cells, or their open sides, have in the picture.
 //
 // Where colours jump (bands, categories, colours beyond the range), the steepness times δ says nothing: the colour changes by
 // no more than it does within ±δ. What is seen there is a line, like the outline of the body, that lies beside its place: in a

@@ -4,10 +4,12 @@
 //
 //     sign         +1      +1      −1      −1          +1 where the ray enters a shell, −1 where it leaves one
 //     ray   -------|-------|-------|-------|------->   sorted by depth
-//     sum      0       1       2       1       0       how often the surface goes round the place; it is inside where this is not 0
+//     sum      0       1       2       1       0       how often the surface goes round the place; it is inside where this is
+//     not 0
 //
-// Where a surface folds, a ray may leave it before it has entered it: the sum is −1 in the part that is turned inside out, which
-// is inside like the rest. It must not be counted as 0 there, or the ray would be one shell further in for the rest of its way.
+// Where a surface folds, a ray may leave it before it has entered it: the sum is −1 in the part that is turned inside out,
+// which is inside like the rest. It must not be counted as 0 there, or the ray would be one shell further in for the rest of
+// its way.
 //
 // A missed or doubled crossing would exchange inside and outside for the rest of a ray, so coverage has to be exact: vertices
 // are snapped to 1/4096 of a pixel, and the edge functions E(p) = (b − a) × (p − a) [pineda1988] are 64-bit integers. A pixel

@@ -31,8 +31,8 @@ inline constexpr double kNearest = 1e-4;
 }
 
 /// Rasterizes a closed surface without gaps: vertices are snapped to 1/4096 px, and a pixel centre on a shared edge counts
-/// once. A ray is inside where the surface goes round it, however often and in whichever direction: shells may be nested, overlap,
-/// enclose the eye, and fold.
+/// once. A ray is inside where the surface goes round it, however often and in whichever direction: shells may be nested,
+/// overlap, enclose the eye, and fold.
 ///
 /// near:   depth below which nothing is seen
 /// middle: the depth that all depths of the result are relative to

@@ -194,8 +194,8 @@ public:
     [[nodiscard]] const BoundaryValues& skin(Progress* progress, Facts& facts);
     /// The boundary of a mesh: that of its kernels where these are drawn, else that of `skin`.
     [[nodiscard]] const Surface& boundary(const Optics& optics, Progress* progress, Facts& facts);
-    /// Whether the kernels made before serve these optics, too. If not, the next call with these optics makes others: their values
-    /// are relative to the middle of a range that is narrow for 32-bit floats.
+    /// Whether the kernels made before serve these optics, too. If not, the next call with these optics makes others: their
+    /// values are relative to the middle of a range that is narrow for 32-bit floats.
     [[nodiscard]] bool keeps_kernels(const Optics& optics) const;
     /// The kernels of a mesh or of points, made by the first call.
     [[nodiscard]] const RbfVolume& kernels(const Optics& optics, Progress* progress, Facts& facts);
