@@ -145,11 +145,11 @@ HexMesh read_wavelet_mesh(std::string_view text, const std::string& file) {
     }
     // Longer contents are read while they are decompressed, so that bytes that do not describe a mesh end the reading early. A
     // mesh with so many details never packs this well.
-    constexpr std::uint64_t kAtOnce = std::uint64_t{64} << 20, kMostGrowth = 8192;  // LZMA packs zeros 6,800 : 1
+    constexpr std::uint64_t kAtOnce = std::uint64_t{64} << 20, kMostPacked = 8192;  // LZMA packs zeros 6,800 : 1
     const std::string_view packed = text.substr(head);
     // A point takes some 500 bytes of memory while it is read, and in smooth meshes far less than one byte of the file.
     const std::size_t most_points = std::max(std::size_t{1} << 21, 128 * packed.size());
-    if (length > 4 * kAtOnce && length / kMostGrowth > packed.size()) {
+    if (length > 4 * kAtOnce && length / kMostPacked > packed.size()) {
         throw Error(ErrorCode::InvalidInput,
                     std::string(Contents::kDamaged) + ": " + std::to_string(packed.size()) + " bytes say that they are " +
                         std::to_string(length),

@@ -4,8 +4,7 @@
 //
 //     sign         +1      +1      −1      −1          +1 where the ray enters a shell, −1 where it leaves one
 //     ray   -------|-------|-------|-------|------->   sorted by depth
-//     sum      0       1       2       1       0       how often the surface goes round the place; it is inside where this is
-//     not 0
+//     sum      0       1       2       1       0       how often the surface goes round; not 0: inside
 //
 // Where a surface folds, a ray may leave it before it has entered it: the sum is −1 in the part that is turned inside out,
 // which is inside like the rest. It must not be counted as 0 there, or the ray would be one shell further in for the rest of

@@ -87,8 +87,7 @@ struct ControlMesh {
 /// too far away, cubes are divided and all is done again. Chains of sharp edges become creases, with a layer of cells on both
 /// sides. Where that cannot be, as in chains nearer to each other than a cell, edges become round, by a part of a cell.
 ///
-/// surface: closed; holes are spanned where most of the surface winds about a place, with a warning. Either side may be
-/// outside.
+/// surface: closed; holes are spanned where most of the surface winds about a place, with a warning. Either side may be out.
 ///          A wall within another is that of a cavity, whatever its orientation; walls that cross are united
 /// throws:  Error(InvalidInput) if the surface is not valid, if it is a sheet without volume, if no cube has its middle inside,
 ///          if it is more than 1e9 cubes away from the origin, if there would be too many cells, or if an option is out of
