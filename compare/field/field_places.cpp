@@ -127,7 +127,8 @@ FieldSamples new_vertices_of(HexMesh coarse, const std::vector<Index>& cells, Sc
     constexpr int kLayers = 2;
     const std::size_t count = kNew * cells.size();
     FieldSamples places{std::vector<Vec3>(count), std::vector<double>(count), std::vector<double>(count)};
-    MeshPiece all{.mesh = std::move(coarse)};
+    MeshPiece all;
+    all.mesh = std::move(coarse);
     all.owned_cells.assign(all.mesh.cells.size(), 1);
     all.owned_points.assign(all.mesh.points.size(), 1);
     all.cell_numbers.resize(all.owned_cells.size());
