@@ -46,9 +46,10 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 8> kOtherWor
                                                                                     {"rot", "curl"},
                                                                                     {"vorticity", "curl"}}};
 
-/// Our word for a function, whoever's word it is.
+/// Our word for a function, and for one of another program, in any case of letters.
 std::string_view our_word(std::string_view word) {
-    const auto* const other = std::ranges::find(kOtherWords, word, &std::pair<std::string_view, std::string_view>::first);
+    const auto* const other =
+        std::ranges::find(kOtherWords, detail::small_letters(word), &std::pair<std::string_view, std::string_view>::first);
     return other == kOtherWords.end() ? word : other->second;
 }
 
@@ -427,7 +428,8 @@ private:
         names.insert(names.end(), kMakers.begin(), kMakers.end());
         for (const auto& [word, ours] : kOtherWords) names.emplace_back(word);
         for (const std::string_view name : detail::tensor_functions()) names.emplace_back(name);
-        for (const auto& [name, definition] : mu::Parser().GetFunDef()) names.push_back(name);
+        const mu::Parser parser;
+        for (const auto& [name, definition] : parser.GetFunDef()) names.push_back(name);
         return names;
     }
 

@@ -47,7 +47,7 @@ TEST(PatchMeasure, TheErrorOfAConstantIsThatOfTheArea) {
     const PatchMeasure area = measure_patches(mesh, patches)[0];
     EXPECT_EQ(found.area, area.area) << "as many parts are integrated";
     EXPECT_NEAR(found.error, area.error, 1e-10) << "the rest are roundings";
-    EXPECT_LE(found.error, 1e-4) << "as eight parts a side reach it";
+    EXPECT_LE(found.error, 2e-4) << "as eight parts a side reach it beside irregular edges";
     EXPECT_NEAR(found.area, 4 * std::numbers::pi, 0.02 * found.area) << "about a sphere";
     ASSERT_EQ(found.fields.size(), 10u);
     for (std::size_t k = 0; k < 10; ++k) {
