@@ -51,8 +51,9 @@ public:
             const std::string path = at(in(root_, "demands"), i);
             Cases cases;
             const bool chosen_well = mistakes.none_in([&] { cases = chosen(study_.demands[i].where, in(path, "where")); });
-            mistakes.none_in([&] { check_key(study_.demands[i].metric, in(path, "metric")); });
-            if (chosen_well) mistakes.none_in([&] { check_measured(study_.demands[i].metric, cases, in(path, "metric")); });
+            const bool known = mistakes.none_in([&] { check_key(study_.demands[i].metric, in(path, "metric")); });
+            if (chosen_well && known)
+                mistakes.none_in([&] { check_measured(study_.demands[i].metric, cases, in(path, "metric")); });
         }
         mistakes.none_in([&] { (void)chosen(study_.pictures_where, in(root_, "pictures")); });
         mistakes.check();

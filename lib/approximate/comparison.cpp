@@ -35,7 +35,7 @@ Comparison comparison_with_samples(const HexMesh& mesh, const Topology& topology
         for (const Index p : topology.cells[c]) cells_at[p].push_back(c);
     }
     const std::vector<LimitQuery> all = spread_places(topology.cells.size(), kCompared);
-    const std::vector<Vec3> positions = limit_at(mesh, all, scheme).positions;
+    const std::vector<Vec3> positions = limit_at(mesh, all, {.scheme = scheme}).positions;
     std::vector<Index> nearest(all.size(), kNone);
     parallel_each(all.size(), [&](std::size_t k) {
         double least = INFINITY;

@@ -36,7 +36,7 @@ std::vector<LimitQuery> DataField::spread(std::size_t count) const {
 }
 
 std::vector<Vec3> DataField::positions(std::span<const LimitQuery> places) const {
-    return limit_at(mesh_, places, options_.scheme).positions;
+    return limit_at(mesh_, places, {.scheme = options_.scheme}).positions;
 }
 
 std::vector<std::vector<double>> DataField::values(std::span<const Attribute> fields,
@@ -45,23 +45,23 @@ std::vector<std::vector<double>> DataField::values(std::span<const Attribute> fi
     if (places.empty()) return values;
     HexMesh with_fields = mesh_;
     with_fields.attributes.assign(fields.begin(), fields.end());
-    LimitSamples found = limit_at(with_fields, places, options_.scheme);
+    LimitSamples found = limit_at(with_fields, places, {.scheme = options_.scheme});
     for (std::size_t f = 0; f < values.size(); ++f) values[f] = std::move(found.attributes[f].values);
     return values;
 }
 
-LimitSamples limit_at(const HexMesh& mesh, std::span<const LimitQuery> places, const SchemeOptions& scheme) {
+LimitSamples limit_at(const HexMesh& mesh, std::span<const LimitQuery> places, const LimitOptions& options) {
     std::vector<std::uint8_t> kept(mesh.cells.size(), 0);
     for (const LimitQuery& place : places) kept[place.cell] = 1;
     constexpr std::ptrdiff_t kCellsAbout = 343;  // of a cell in a grid, with the halo
     if (std::ranges::count(kept, 1) * kCellsAbout > static_cast<std::ptrdiff_t>(mesh.cells.size()))
-        return evaluate_limit(mesh, places, {.scheme = scheme});
+        return evaluate_limit(mesh, places, options);
     grow(mesh, kept, kHaloOfLimit);
     const MeshSubset part = subset(mesh, kept);
     std::vector<LimitQuery> in_part(places.begin(), places.end());
     for (LimitQuery& place : in_part)
         place.cell = static_cast<Index>(std::ranges::lower_bound(part.cells, place.cell) - part.cells.begin());
-    return LimitEvaluator(part.mesh, {.scheme = scheme}, limit_extent(mesh)).at(in_part);
+    return LimitEvaluator(part.mesh, options, limit_extent(mesh)).at(in_part);
 }
 
 std::vector<LimitQuery> spread_places(std::size_t cells, std::size_t count) {

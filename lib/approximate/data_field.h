@@ -41,7 +41,7 @@ private:
 };
 
 /// `evaluate_limit`, which takes the cells about the places alone where these are few.
-[[nodiscard]] LimitSamples limit_at(const HexMesh& mesh, std::span<const LimitQuery> places, const SchemeOptions& scheme);
+[[nodiscard]] LimitSamples limit_at(const HexMesh& mesh, std::span<const LimitQuery> places, const LimitOptions& options);
 
 /// About `count` places in cells, as many in each of them. Of very many cells they are in a part, so that `limit_at` needs few.
 [[nodiscard]] std::vector<LimitQuery> spread_places(std::size_t cells, std::size_t count);

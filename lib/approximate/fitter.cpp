@@ -331,7 +331,8 @@ struct Fitter::Parts {
         places.insert(places.end(), extremes.begin(), extremes.end());
         HexMesh fitted = mesh;
         fitted.attributes = {field};
-        const LimitSamples limit_there = limit_at(fitted, places, options.scheme);
+        constexpr double kTolerance = 1e-10;  // a field that can be met has errors of rounding alone
+        const LimitSamples limit_there = limit_at(fitted, places, {.scheme = options.scheme, .tolerance = kTolerance});
         const Vector& found = limit_there.attributes[0].values;
         ErrorSum exact(located, at_boundary);  // of all samples, if all were evaluated
         for (std::size_t c = 0; c < channels && worst.size() == count; ++c) {

@@ -127,7 +127,7 @@ LeastSquares::Found LeastSquares::search(const Search& how, const Vector& wanted
 }
 
 int LeastSquares::solve(const Vector& wanted, Vector& x, int most, Progress* progress) const {
-    constexpr double kEnough = 1e-10, kHalved = 1, kMet = 1e-20;
+    constexpr double kEnough = 1e-10, kHalved = 0.1, kMet = 1e-20;
     const bool weak = !first_ && row_count(differences_) > 0;
     int steps = 0;
     if (weak) {

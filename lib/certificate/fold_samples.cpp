@@ -25,7 +25,7 @@ Vec3 spread(std::size_t k) {
 std::vector<Vec3> first_places() {
     std::vector<Vec3> places;
     for (int i = 0; i < 27; ++i) places.push_back(0.5 * Vec3(i % 3, i / 3 % 3, i / 9));
-    constexpr std::size_t kBetween = 37;
+    constexpr std::size_t kBetween = 101;
     for (std::size_t k = 0; k < kBetween; ++k) places.push_back(spread(k));
     return places;
 }
@@ -55,7 +55,7 @@ std::vector<CellSamples> sample_folds(const HexMesh& mesh, std::span<const Index
                     queries.push_back({cells[k], round == 0 ? first[n] : glm::clamp(near, Vec3(0.0), Vec3(1.0))});
                 }
             }
-            const LimitSamples at = limit.at(queries);
+            LimitSamples at = limit.at(queries);
             std::vector<double> determinants;
             determinants.reserve(queries.size());
             for (const Mat3& jacobian : at.jacobians) determinants.push_back(glm::determinant(jacobian));
@@ -70,6 +70,7 @@ std::vector<CellSamples> sample_folds(const HexMesh& mesh, std::span<const Index
             const LimitSamples again = doubted.empty() ? LimitSamples{} : fine->at(doubted);
             for (std::size_t n = 0; n < numbers.size(); ++n) {
                 determinants[numbers[n]] = std::max(determinants[numbers[n]], glm::determinant(again.jacobians[n]));
+                at.positions[numbers[n]] = again.positions[n];
             }
             for (std::size_t n = 0; n < queries.size(); ++n) {
                 CellSamples& cell = found[begin + n / each];

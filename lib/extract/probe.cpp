@@ -75,8 +75,8 @@ struct LimitProbe::State {
     [[nodiscard]] std::vector<Open> find(std::span<const Vec3> places, std::vector<NearPlace>& candidates) const;
     void settle(Open& open, std::size_t query, const LimitSamples& samples, const Vec3& place, std::span<const std::size_t> to,
                 std::span<const NearPlace> candidates, ProbeResult& result) const;
-    static void write(const Open& open, std::size_t query, const LimitSamples& samples, const detail::LimitStep& step,
-                      double distance, std::size_t to, ProbeResult& result);
+    void write(const Open& open, std::size_t query, const LimitSamples& samples, const detail::LimitStep& step, double distance,
+               std::size_t to, ProbeResult& result) const;
 
     HexMesh mesh;
     ProbeOptions options;
@@ -188,16 +188,19 @@ void LimitProbe::State::settle(Open& open, std::size_t query, const LimitSamples
 }
 
 void LimitProbe::State::write(const Open& open, std::size_t query, const LimitSamples& samples, const detail::LimitStep& step,
-                              double distance, std::size_t to, ProbeResult& result) {
+                              double distance, std::size_t to, ProbeResult& result) const {
     result.cells[to] = open.at.cell;
     result.parameters[to] = glm::clamp(open.at.uvw + step.by, Vec3(0.0), Vec3(1.0));
     result.distances[to] = distance;
     for (std::size_t f = 0; f < result.fields.size(); ++f) {
         ProbedField& field = result.fields[f];
         const LimitAttribute& from = samples.attributes[f];
+        const auto& bounds = mesh.attributes[f].bounds;
         for (std::size_t c = 0; c < field.channels; ++c) {
             const Vec3& derivatives = from.derivatives[query * field.channels + c];
-            field.values[to * field.channels + c] = from.values[query * field.channels + c] + glm::dot(derivatives, step.by);
+            double value = from.values[query * field.channels + c] + glm::dot(derivatives, step.by);
+            if (!bounds.empty()) value = std::min(std::max(value, bounds[c][0]), bounds[c][1]);  // the step may leave them
+            field.values[to * field.channels + c] = value;
             field.gradients[to * field.channels + c] = detail::world_gradient(samples.jacobians[query], derivatives);
         }
     }

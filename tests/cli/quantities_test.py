@@ -78,7 +78,8 @@ class Quantities(InFolder):
                 self.assertAlmostEqual(grid, probed, delta=1e-3 * max(1, abs(probed)))
                 self.run_ok("slice", "a.vtk", "-o", "a.csv", "--field", field, "--plane", "1,1,2,0,0,1", "--resolution", 9)
                 self.run_ok("points", "a.vtk", "-o", "a.ply", "--field", field)
-                self.run_ok("surface", "a.vtk", "-o", "a.stl", "--field", field, "--iso", "50%")
+                if field != "grad(T).y":  # which is one value
+                    self.run_ok("surface", "a.vtk", "-o", "a.stl", "--field", field, "--iso", "50%")
                 self.run_ok("render", "a.vtk", "-o", "a.png", "--field", field, "--size", 32)
                 self.run_ok("page", "a.vtk", "-o", "a.html", "--field", field, "--no-reference")
                 same = self.run_ok("compare", "a.vtk", "a.vtk", "--field", field, "--samples", 100, "--json").json()

@@ -15,7 +15,10 @@ void for_each_voxel(const VdbGrid& grid, const Visit& visit) {
         for (int y = lower[1]; y <= upper[1]; ++y) {
             for (int z = lower[2]; z <= upper[2]; ++z) {
                 const VoxelCorners corners = cursor->corners({x, y, z});
-                if (corners.active & 1) visit(Voxel{x, y, z}, corners.values[0]);
+                // Inactive voxels inside a level set have the background, below zero, as their value.
+                const double outside = grid.report().outside;
+                const bool filled = outside > 0 && corners.values[0] <= -outside;
+                if ((corners.active & 1) != 0 && !filled) visit(Voxel{x, y, z}, corners.values[0]);
             }
         }
     }

@@ -290,7 +290,7 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"[64, 48]", "64, \"transfer_functions\": [\"no.json\"]", "transfer_functions[0]: 'no.json' cannot be read"},
         Mistake{"[64, 48]", "64, \"tables\": [{\"columns\": [\"rmse\"]}]", "tables[0].rows: this key is missing"},
         Mistake{"[64, 48]", "64, \"tables\": [{\"rows\": \"input\", \"values\": \"rmse\"}]", "tables[0].across: "},
-        Mistake{"[64, 48]", "64, \"plots\": [{\"x\": \"a\", \"y\": \"b\"}]", "plots[0].series: this key is missing"},
+        Mistake{"[64, 48]", "64, \"plots\": [{\"x\": \"kernels\", \"y\": \"psnr\"}]", "plots[0].series: this key is missing"},
         Mistake{"[64, 48]", "64, \"demands\": [{\"metric\": \"psnr\"}]", "demands[0]: a demand needs 'least' or 'most'"}));
 
 TEST(StudyFile, TooManyCasesAreRefusedBeforeTheyAreMade) {

@@ -65,9 +65,10 @@ TEST(GridSurface, IsRoundFarFromTheOrigin) {
     const auto radii = [&](const Vec3& center) {
         HexMesh moved = ball;
         for (Vec3& x : moved.points) x += center;
-        const std::vector<std::string> none;
+        moved.attributes = {{"one", 1, std::vector<double>(moved.points.size(), 1)}};
+        const std::vector<std::string> fields{"one"};
         std::pair<double, double> least_and_most(10, 0);
-        for (const Vec3& x : grid_surface(rasterize(moved, none, options).back()).points) {
+        for (const Vec3& x : grid_surface(rasterize(moved, fields, options).back()).points) {
             least_and_most.first = std::min(least_and_most.first, glm::distance(x, center));
             least_and_most.second = std::max(least_and_most.second, glm::distance(x, center));
         }
