@@ -19,7 +19,8 @@ PICTURE = ["--size", f"{WIDTH}x{HEIGHT}", "--backend", "cpu", "--quiet"]
 
 
 def picture(options):
-    return [*PICTURE[:2], *on_cpu(options), "--quiet", *options]
+    size = [] if "--size" in options else PICTURE[:2]
+    return [*size, *on_cpu(options), "--quiet", *options]
 
 
 SURFACES = [[*options, "--tolerance", "1e-2"] for options in (

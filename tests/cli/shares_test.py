@@ -42,7 +42,7 @@ class Parts(Shared):
         self.assertEqual(self.bytes_of("joined.exr"), self.bytes_of("one.exr"))
 
     def test_rows_of_shares_are_the_picture_of_one_process(self):
-        for options in ([], ["--look", "volume"], ["--samples", "2", "--edges"], ["--legend"], ["--title", "A b", "--legend", "--legend-side", "bottom"], ["--method", "tets"],
+        for options in ([], ["--look", "volume"], ["--samples", "2", "--edges"], ["--legend"], ["--title", "A b", "--legend", "--legend-side", "bottom", "--size", "160x128"], ["--method", "tets"],
                         ["--method", "tets", "--levels", "0", "--samples", "2", "--clip", "0,0,0,1,1,0"]):
             self.run_ok("render", "model:ball:4", "-o", "one.exr", *picture(options))
             self.run_ok("render", "model:ball:4", "-o", "one.png", *picture(options))
