@@ -10,6 +10,7 @@
 #include "data_field.h"
 #include "differences.h"
 #include "least_squares.h"
+#include "limit_place.h"
 #include "located.h"
 #include "subvol/detail/parallel_each.h"
 #include "subvol/error.h"
@@ -333,7 +334,17 @@ struct Fitter::Parts {
         fitted.attributes = {field};
         constexpr double kTolerance = 1e-10;  // a field that can be met has errors of rounding alone
         const LimitSamples limit_there = limit_at(fitted, places, {.scheme = options.scheme, .tolerance = kTolerance});
-        const Vector& found = limit_there.attributes[0].values;
+        const LimitAttribute& values_there = limit_there.attributes[0];
+        Vector found = values_there.values;
+        // Samples lie beside the places where they were found, as far as the search for them may be off.
+        for (std::size_t i = 0; i < worst.size(); ++i) {
+            const Vec3 off = located.positions[worst[i]] - limit_there.positions[i];
+            if (located.is_snapped[worst[i]] != 0) continue;
+            for (std::size_t c = 0; c < channels; ++c) {
+                const std::size_t k = i * channels + c;
+                found[k] += glm::dot(world_gradient(limit_there.jacobians[i], values_there.derivatives[k]), off);
+            }
+        }
         ErrorSum exact(located, at_boundary);  // of all samples, if all were evaluated
         for (std::size_t c = 0; c < channels && worst.size() == count; ++c) {
             Vector values(count);

@@ -259,8 +259,8 @@ def page(
                  or a ParaView colour-map JSON file (FILE.json:NAME for one of several in it) [viridis, plasma, inferno,
                  cividis, turbo, coolwarm, grey, bone, jet, rainbow, desaturated, blackbody, xray, isosurface, surface,
                  constant, categories]
-    opacity_unit: the world distance over which an opacity acts (default: 1/100 of the bounding box's diagonal) [more than
-                 0]
+    opacity_unit: the world distance over which an opacity acts (default: 1/100 of the bounding box's diagonal; 1/4 for xray
+                 of a body without a field) [more than 0]
     clamp:       show values beyond the field's range, where interpolating schemes overshoot, as its ends
     range:       the range that the colour map and the percentages of opacity cover: MIN,MAX, per cents of the field's range
                  such as 10%,90%, or field (default: the field's range; a map from a file keeps its own values)
@@ -476,8 +476,8 @@ def render(
                  or a ParaView colour-map JSON file (FILE.json:NAME for one of several in it) [viridis, plasma, inferno,
                  cividis, turbo, coolwarm, grey, bone, jet, rainbow, desaturated, blackbody, xray, isosurface, surface,
                  constant, categories]
-    opacity_unit: the world distance over which an opacity acts (default: 1/100 of the bounding box's diagonal) [more than
-                 0]
+    opacity_unit: the world distance over which an opacity acts (default: 1/100 of the bounding box's diagonal; 1/4 for xray
+                 of a body without a field) [more than 0]
     clamp:       show values beyond the field's range, where interpolating schemes overshoot, as its ends
     range:       the range that the colour map and the percentages of opacity cover: MIN,MAX, per cents of the field's range
                  such as 10%,90%, or field (default: the field's range; a map from a file keeps its own values)

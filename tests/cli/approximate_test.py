@@ -16,8 +16,7 @@ class Approximate(InFolder):
         self.run_ok("subdivide", "model:twist:4", "--density", FIELD, "-o", "fine.vtu", "--levels", "2")
         found = self.fit("fine.vtu", "--onto", "model:twist:4", "-o", "fitted.vtu")
         self.assertEqual((found["points"], found["cells"], found["outside"], found["unseen"]), (125, 64, 0, 0))
-        # Samples are found to a millionth of the diagonal, and the limit is evaluated there.
-        self.assertLess(found["fields"]["density"]["max"], 1e-6)
+        self.assertLess(found["fields"]["density"]["max"], 1e-10)
         self.assertGreater(found["fields"]["density"]["range"], 1)
         self.run_ok("subdivide", "model:twist:4", "--density", FIELD, "-o", "same.vtu", "--levels", "0")
         same = self.run_ok("compare", "fitted.vtu", "same.vtu", "--field", "density", "--json").json()

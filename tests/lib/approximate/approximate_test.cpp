@@ -44,8 +44,9 @@ TEST(Approximate, FindsALimitAgain) {
         const Approximation made = approximate(control, fine);
         EXPECT_EQ(made.report.samples, fine.points.size());
         EXPECT_LT(difference(made.mesh.attributes[0].values, control.attributes[0].values), 1e-10);
-        // What is said is evaluated where the samples were found, which is to a millionth of the diagonal.
-        EXPECT_LT(made.report.fields[0].max, 1e-6);
+        // Samples are found to a millionth of the diagonal, and the rest of the way goes along derivatives, which are known to
+        // 1e-3 at irregular edges.
+        EXPECT_LT(made.report.fields[0].max, 1e-9);
     }
 }
 
@@ -221,8 +222,7 @@ TEST(Approximate, LinearFunctionsAreMetEverywhereByWhateverSamples) {
                 // Rounding of sums over 200 samples, continued over a few cells
                 EXPECT_NEAR(made.mesh.attributes[0].values[p], linear(mesh.points[p]), 1e-8) << name_of(scheme);
             }
-            // Samples are found to a millionth of the diagonal, which is below 10 here, and the slope is below 3.
-            EXPECT_LT(made.report.fields[0].max, 3e-5);
+            EXPECT_LT(made.report.fields[0].max, 1e-8);
         }
     }
 }
