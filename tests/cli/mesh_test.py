@@ -91,7 +91,7 @@ class Mesh(InFolder):
         fitted = subvol("approximate", "ball.stl", "--shape", "--onto", "model:twist:3", "-o", "fitted.vtu", "--keep-folds", "--json", folder=self.folder)
         found = fitted.json()
         self.assertEqual(fitted.code, 1)
-        self.assertGreater(found["folds"]["folded"], 0)
+        self.assertGreater(found["shape"]["folds"]["cells"]["folded"], 0)
         self.assertLess(found["shape"]["after"]["missed_rms"], .5 * found["shape"]["before"]["missed_rms"])
         self.assertNotIn("fields", found)
         # A mesh gives its shape and then its fields.
