@@ -97,6 +97,7 @@ public:
             made.sides.push_back(all.sides[c]);
         }
         check_count(made.sides.size());
+        if (made.sides.empty()) refuse_sheet();
         made.mesh.points = std::move(all.mesh.points);
         made.mesh = without_unused_points(std::move(made.mesh));
         return made;

@@ -105,10 +105,12 @@ class Mesh(InFolder):
         (self.folder / "flat.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
         (self.folder / "sheet.obj").write_text("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n")
         (self.folder / "cube.obj").write_text(cube(0))
+        # a box without height: closed, and without volume
+        (self.folder / "flatbox.obj").write_text("\n".join(line if line[0] == "f" else line.rsplit(" ", 1)[0] + " 0" for line in cube(0).splitlines()))
         (self.folder / "far.obj").write_text(cube(1e12))
         (self.folder / "bad.obj").write_text("v 0 0 0\nf 1 2 3\n")
         self.run_ok("vdb", "model:ball:2", "-o", "fog.vdb", "--resolution", "16", "--quiet")
-        for words, part in ((["none.stl"], "none.stl"), (["none.glb"], "none.glb: cannot be read: No such file"), (["sheet.obj"], "it is a sheet, which encloses no volume"),
+        for words, part in ((["none.stl"], "none.stl"), (["none.glb"], "none.glb: cannot be read: No such file"), (["sheet.obj"], "it is a sheet, which encloses no volume"), (["flatbox.obj"], "no cell has its middle inside the surface"),
                             (["cube.obj", "--cells", "490"], "--cells: there would be 117649000 or more cells"), (["far.obj"], "cells away from the origin"), (["flat.obj"], "no cell has its middle inside the surface"),
                             (["bad.obj"], "bad.obj, line 2: a face has the corner 2"), (["model:ball"], "is not a surface"),
                             (["ball.stl", "--iso", "1"], "--iso: needs a grid"), (["ball.stl", "--field", "T"], "--field: needs a grid"),
