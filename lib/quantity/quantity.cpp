@@ -291,16 +291,26 @@ private:
         return channel_of(field, *channel, field.name);
     }
 
-    [[nodiscard]] std::size_t closing(std::string_view text, std::size_t open, std::size_t begin) const {
+    /// The first sign that is wanted, in no quotes; npos if there is none.
+    ///
+    /// wanted: of a sign and the number of parentheses that are open behind it
+    template <class Wanted>
+    [[nodiscard]] static std::size_t find_sign(std::string_view text, std::size_t from, const Wanted& wanted) {
         int depth = 0;
         char quote = 0;
-        for (std::size_t at = open; at < text.size(); ++at) {
+        for (std::size_t at = from; at < text.size(); ++at) {
             if (quote == 0 ? is_quote(text[at]) : text[at] == quote) quote = quote == 0 ? text[at] : '\0';
             if (quote != 0) continue;
             depth += text[at] == '(' ? 1 : text[at] == ')' ? -1 : 0;
-            if (depth == 0) return at;
+            if (wanted(text[at], depth)) return at;
         }
-        refuse("has no closing parenthesis", begin + open);
+        return std::string_view::npos;
+    }
+
+    [[nodiscard]] std::size_t closing(std::string_view text, std::size_t open, std::size_t begin) const {
+        const std::size_t close = find_sign(text, open, [](char, int depth) { return depth == 0; });
+        if (close == std::string_view::npos) refuse("has no closing parenthesis", begin + open);
+        return close;
     }
 
     /// The vector or the tensor of scalars.
@@ -308,9 +318,20 @@ private:
     /// inside: the scalars, with commas between
     [[nodiscard]] Attribute made(std::string_view word, std::string_view inside, std::size_t position, std::size_t begin,
                                  int depth) const {
+        std::vector<std::size_t> ends;
+        for (std::size_t from = 0; from <= inside.size(); from = ends.back() + 1) {
+            ends.push_back(
+                std::min(inside.size(), find_sign(inside, from, [](char c, int open) { return c == ',' && open == 0; })));
+        }
+        const bool right = word == "vector" ? ends.size() == 3 : ends.size() == 6 || ends.size() == 9;
+        if (!right) {
+            refuse(std::string(word) + " takes " +
+                       (word == "vector" ? "x, y, z" : "xx, yy, zz, xy, yz, xz, or all nine: xx, xy, xz, yx, …") + ", not " +
+                       std::to_string(ends.size()) + (ends.size() == 1 ? " scalar" : " scalars"),
+                   position);
+        }
         std::vector<Attribute> scalars;
-        for (std::size_t from = 0; from <= inside.size();) {
-            const std::size_t end = next_comma(inside, from);
+        for (std::size_t from = 0; const std::size_t end : ends) {
             scalars.push_back(value(inside.substr(from, end - from), begin + from, depth));
             if (scalars.back().channels != 1) {
                 refuse(std::string(word) + " takes scalars, not one with " + std::to_string(scalars.back().channels) +
@@ -319,29 +340,9 @@ private:
             }
             from = end + 1;
         }
-        const bool right = word == "vector" ? scalars.size() == 3 : scalars.size() == 6 || scalars.size() == 9;
-        if (!right) {
-            refuse(std::string(word) + " takes " +
-                       (word == "vector" ? "x, y, z" : "xx, yy, zz, xy, yz, xz, or all nine: xx, xy, xz, yx, …") + ", not " +
-                       std::to_string(scalars.size()) + (scalars.size() == 1 ? " scalar" : " scalars"),
-                   position);
-        }
         std::vector<const Attribute*> members;
         for (const Attribute& scalar : scalars) members.push_back(&scalar);
         return joined(members, std::string(word));
-    }
-
-    /// Where the next comma is that is in no parentheses and no quotes; else the end.
-    [[nodiscard]] static std::size_t next_comma(std::string_view text, std::size_t from) {
-        int depth = 0;
-        char quote = 0;
-        for (std::size_t at = from; at < text.size(); ++at) {
-            if (quote == 0 ? is_quote(text[at]) : text[at] == quote) quote = quote == 0 ? text[at] : '\0';
-            if (quote != 0) continue;
-            depth += text[at] == '(' ? 1 : text[at] == ')' ? -1 : 0;
-            if (depth == 0 && text[at] == ',') return at;
-        }
-        return text.size();
     }
 
     [[nodiscard]] Attribute call(std::string_view word, const Attribute& argument, std::size_t position) const {
