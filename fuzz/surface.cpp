@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Surfaces of triangles, .stl, .obj or .ply: all corners of what is read are points of it.
+// Surfaces of triangles, .stl, .obj, .ply or .glb: all corners of what is read are points of it.
 
 #include "input.h"
 #include "subvol/read_surface.h"

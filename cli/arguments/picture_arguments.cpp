@@ -82,8 +82,8 @@ void PictureArguments::add_light_to(CLI::App& app) {
         "as far as what is before them is opaque");
     app.add_flag(
         "--extremes", extremes,
-        "mark the places of the least and the largest value, with the values: of a solid's boundary, else of the control "
-        "points, as far as --clip leaves them");
+        "mark the places of the least and the largest value, with the values: of the limit, as probe --stats finds them, as "
+        "far as --clip leaves it");
     app.add_option(
            "--background", background,
            "the background: linear red, green, blue in 0..1, #rrggbb (sRGB), a name, or none (.png with alpha); default: light "
@@ -93,6 +93,12 @@ void PictureArguments::add_light_to(CLI::App& app) {
 
 void PictureArguments::settle_look(bool has_boundary) {
     look = chosen_look(choices, has_boundary, OptionNames::Flags);
+}
+
+void PictureArguments::refuse_isosurfaces_of_level_set() const {
+    if (look != Look::Isosurface) return;
+    throw Error(ErrorCode::InvalidInput, "a level set is drawn as the surface where its distance is 0",
+                choices.iso.empty() ? "--look isosurface" : "--iso", "without it; --method grid with it draws other distances");
 }
 
 Vec3 PictureArguments::background_color() const {

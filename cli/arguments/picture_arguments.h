@@ -64,6 +64,8 @@ struct PictureArguments {
 
     /// Decides on the look, as `chosen_look`.
     void settle_look(bool has_boundary);
+    /// throws: Error(InvalidInput) for isosurfaces, of which kernels of the body of a level set have none
+    void refuse_isosurfaces_of_level_set() const;
     [[nodiscard]] bool lit() const { return is_lit(look); }
     [[nodiscard]] Vec3 background_color() const;
     /// Whether nothing is behind the picture.

@@ -10,6 +10,7 @@
 #include "subvol/detail/refined_memory.h"
 #include "subvol/error.h"
 #include "subvol/mesh_kernels.h"
+#include "subvol/part_of_limit.h"
 #include "subvol/refine_mixed.h"
 
 namespace subvol::cli {
@@ -64,15 +65,20 @@ void RefineArguments::add_to(CLI::App& app, const std::string& levels_help) {
 RefineOptions RefineArguments::options(int default_levels, Progress* progress) const {
     RefineOptions options{.scheme = rules, .levels = levels.value_or(default_levels), .progress = progress};
     options.scheme.kind = scheme_named(scheme);
+    if (options.scheme.crease_angle_deg == 180) options.scheme.crease_angle_deg.reset();  // no edge bends by more
     return options;
 }
 
-WithFacts<HexMesh> refine_reported(const HexMesh& mesh, const RefineOptions& options, Vertices vertices) {
-    if (vertices == Vertices::OnTheLimit) return refined_on_limit(mesh, options, "--levels");
-    check_memory(options.levels, static_cast<double>(mesh.cells.size()) * std::pow(8.0, options.levels),
-                 detail::kBytesOfRefinedCell);
+WithFacts<HexMesh> refine_reported(const HexMesh& mesh, const RefineOptions& options, Vertices vertices,
+                                   std::span<const std::uint8_t> part) {
+    const bool on_limit = vertices == Vertices::OnTheLimit;
+    if (on_limit && part.empty()) return refined_on_limit(mesh, options, "--levels");
+    const auto cells = part.empty() ? static_cast<std::ptrdiff_t>(mesh.cells.size()) : std::ranges::count(part, 1);
+    check_memory(options.levels, static_cast<double>(cells) * std::pow(8.0, options.levels), detail::kBytesOfRefinedCell);
     Facts facts;
-    HexMesh fine = facts.timed(options.progress, "refine", [&] { return refine(mesh, options); });
+    HexMesh fine = facts.timed(options.progress, "refine", [&] {
+        return part.empty() ? refine(mesh, options) : refined_part(mesh, part, options, on_limit);
+    });
     facts["levels"] = options.levels;
     facts["cells"] = fine.cells.size();
     return {std::move(fine), std::move(facts)};

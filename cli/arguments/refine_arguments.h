@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -46,7 +48,9 @@ enum class Vertices { OfTheLevel, OnTheLimit };
 /// `refine`, timed and with the number of cells in the facts. The vertices are those of the level, or moved to the limit
 /// (which is the same for schemes that interpolate).
 ///
+/// part:   a flag for each cell: only these are refined, as `refined_part`; empty: all
 /// throws: Error(MissingCapability) if the machine does not have the memory for so many levels
-[[nodiscard]] WithFacts<HexMesh> refine_reported(const HexMesh& mesh, const RefineOptions& options, Vertices vertices);
+[[nodiscard]] WithFacts<HexMesh> refine_reported(const HexMesh& mesh, const RefineOptions& options, Vertices vertices,
+                                                 std::span<const std::uint8_t> part = {});
 
 }  // namespace subvol::cli

@@ -36,13 +36,14 @@ std::vector<Option> RenderArguments::described() {
     return all;
 }
 
-void RenderArguments::settle(BodyKind input, const CLI::App& app) {
+void RenderArguments::settle(BodyKind input, bool level_set, const CLI::App& app) {
     method = named<Method>(method_name_, "--method");
     body = input;
     const bool is_mesh = body == BodyKind::Mesh;
     if (is_mesh) tets = TetRefinement(refine);
     if (tets.asked()) body = BodyKind::Tets;
-    picture.settle_look((is_mesh || body == BodyKind::Bricks) && !splat.shade);
+    picture.settle_look((is_mesh || body == BodyKind::Bricks || level_set) && !splat.shade);
+    if (level_set && draws_kernels(method)) picture.refuse_isosurfaces_of_level_set();
     check_method(method, body);
     check_options(bit(method), body, given_options(app));
     validate(method_options({{0, 0, 0}, {1, 1, 1}}, {0, 1}, nullptr));

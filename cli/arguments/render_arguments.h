@@ -38,9 +38,10 @@ struct RenderArguments {
 
     /// Decides what the options leave open, and refuses those that do not go together or have no effect.
     ///
-    /// input:  the kind of body that the input has; a scheme of tetrahedra makes a mesh one of tetrahedra
-    /// throws: Error(InvalidInput)
-    void settle(BodyKind input, const CLI::App& app);
+    /// input:     the kind of body that the input has; a scheme of tetrahedra makes a mesh one of tetrahedra
+    /// level_set: the input is a grid of distances, whose body ends at a surface
+    /// throws:    Error(InvalidInput)
+    void settle(BodyKind input, bool level_set, const CLI::App& app);
 
     /// The options of the library.
     ///

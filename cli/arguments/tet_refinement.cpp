@@ -36,6 +36,8 @@ void TetRefinement::refuse_bricks(const std::string& bricks) const {
 WithFacts<MixedMesh> TetRefinement::refined(const HexMesh& mesh, int default_levels, Vertices vertices, Progress* progress,
                                             std::vector<Index>* parents) const {
     Facts facts;
+    if (!mesh.sharp_faces.empty())
+        facts.warn(text(mesh.sharp_faces.size(), " sharp faces inside the mesh left out: ", name(), " has none"));
     const MixedRefineOptions options{.scheme = *scheme_,
                                      .levels = levels_.value_or(default_levels),
                                      .crease_angle_deg = crease_angle_deg_,

@@ -74,7 +74,9 @@ ChildResult run_self(const std::vector<std::string>& arguments) {
     if (child < 0) throw Error(ErrorCode::MissingCapability, std::generic_category().message(errno), "study");
     if (child == 0) {   // only calls that are safe between fork and exec
         setpgid(0, 0);  // so that Ctrl-C reaches it only once, through us
-        prctl(PR_SET_PDEATHSIG, SIGKILL);
+        // A child ends with its parent and leaves no unfinished file either. Not SIGTERM, which `drain` may just have passed
+        // on: a second one would end it at once.
+        prctl(PR_SET_PDEATHSIG, SIGPIPE);
         if (getppid() != parent) _exit(127);  // the parent has ended meanwhile
         dup2(out.ends[1], STDOUT_FILENO);
         dup2(err.ends[1], STDERR_FILENO);

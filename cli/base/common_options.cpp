@@ -37,6 +37,7 @@ void add_mesh_options(CLI::App& app, CommonOptions& options) {
         ->needs("--time");
     add("blocks")->delimiter(',');
     add("sharp")->allow_extra_args(false);
+    add("mesh");
 }
 
 }  // namespace
@@ -65,6 +66,10 @@ void add_common_options(CLI::App& app, CommonOptions& options, Reads reads) {
             ->group(of_meshes)
             ->type_name("REGION")
             ->allow_extra_args(false);
+        app.add_flag("--clamp-file", options.clamp_file,
+                     "keep the fields between the points within the range that they have in the file, of cells in that of the "
+                     "cells; --clamp file is the same")
+            ->group(of_meshes);
         add_mesh_options(app, options);
     }
     options.app = &app;
@@ -81,6 +86,11 @@ void add_common_options(CLI::App& app, CommonOptions& options, Reads reads) {
     add_option(app, Option("seed", options.seed).help("N", "seed of the random numbers that place samples"))->group(group);
 }
 
+void add_crease_angle(CLI::App& app, CommonOptions& options) {
+    const std::vector<Option> described = options_of(options.read);
+    add_option(app, *std::ranges::find(described, "crease-angle", &Option::name));
+}
+
 void refuse_options(const CLI::App& app, std::initializer_list<const char*> names, const std::string& reason) {
     for (const char* name : names) {
         const CLI::Option* option = app.get_option_no_throw(name);
@@ -89,7 +99,7 @@ void refuse_options(const CLI::App& app, std::initializer_list<const char*> name
 }
 
 void refuse_mesh_options(const CLI::App& app, const std::string& reason) {
-    refuse_options(app, {"--density", "--warp", "--only"}, reason);
+    refuse_options(app, {"--density", "--warp", "--only", "--clamp-file"}, reason);
     refuse_file_options(&app, reason);
 }
 
@@ -97,7 +107,7 @@ void refuse_file_options(const CLI::App* app, const std::string& reason) {
     if (app == nullptr) return;
     refuse_options(*app,
                    {"--other-cells", "--curved", "--cell-values", "--patch-values", "--step", "--time", "--interpolate-time",
-                    "--blocks", "--weld", "--weld-distance", "--sharp"},
+                    "--blocks", "--weld", "--weld-distance", "--sharp", "--mesh"},
                    reason);
 }
 

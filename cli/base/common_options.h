@@ -29,6 +29,7 @@ struct CommonOptions {
     std::vector<std::string> part_opacities;  // of parts of a solid
     std::vector<std::string> at_rest;         // quantities that are computed before --warp and --only, besides that of --field
     ReadOptions read{};                       // what the library describes of them
+    bool clamp_file = false;                  // fields stay within the range that they have in the file
     bool weld = false;                        // join points at the same place
     std::optional<std::string> step;          // a number from 0, "last", "all" or a range
     bool interpolate_time = false;            // between the two steps around read.time
@@ -37,6 +38,9 @@ struct CommonOptions {
     bool quiet = false;
     std::string progress = "auto";
     std::uint64_t seed = 0;
+    bool parts_in_whole = false;  // the verb takes what --only leaves out of the limit of the whole mesh itself
+    std::optional<int>
+        part_levels{};              // the verb works on the limit of what --only leaves, which `part_of_limit` refines so often
     bool draws = false;             // the verb makes pictures, which messages say
     Progress* listener = nullptr;   // of what is computed from fields
     const CLI::App* app = nullptr;  // which knows what was given
@@ -45,6 +49,9 @@ struct CommonOptions {
 /// Adds the options of every verb. A verb that reads no mesh accepts --field and --density, too, because scripts may give them
 /// to any verb, but its help does not show them; it refuses the other options for reading meshes.
 void add_common_options(CLI::App& app, CommonOptions& options, Reads reads);
+
+/// Adds --crease-angle to a verb that reads meshes and has no scheme, whose options contain it.
+void add_crease_angle(CLI::App& app, CommonOptions& options);
 
 /// Refuses options that do not apply to an input.
 ///

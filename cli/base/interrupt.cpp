@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "interrupt.h"
 
+#include <dirent.h>
+#include <fcntl.h>
 #include <sys/time.h>
 #include <unistd.h>
 
@@ -8,6 +10,7 @@
 #include <array>
 #include <atomic>
 #include <csignal>
+#include <cstdlib>
 #include <string_view>
 
 #include "subvol/detail/atomic_file.h"
@@ -38,8 +41,58 @@ void write_all(int stream, std::string_view words) {
     (void)!write(stream, words.data(), words.size());
 }
 
-/// The files are removed last: other threads still run, and may open one.
+#ifdef __linux__
+std::atomic<int> held_threads = 0;
+
+void hold_thread(int /*signal*/) {
+    ++held_threads;
+    for (;;) pause();
+}
+
+/// The number of other threads, each of which gets the signal. Nothing here allocates: a thread may be held in an allocation.
+int signal_other_threads(int signal) {
+    const int folder = open("/proc/self/task", O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (folder < 0) return 0;
+    const pid_t self = gettid();
+    int others = 0;
+    alignas(dirent64) std::array<char, 4096> entries;
+    for (ssize_t bytes = 0; (bytes = getdents64(folder, entries.data(), entries.size())) > 0;) {
+        for (ssize_t at = 0; at < bytes;) {
+            const auto& entry = *reinterpret_cast<const dirent64*>(&entries[static_cast<std::size_t>(at)]);
+            at += entry.d_reclen;
+            const pid_t thread = std::atoi(&entry.d_name[0]);  // 0: "." and ".."
+            if (thread != 0 && thread != self && tgkill(getpid(), thread, signal) == 0) ++others;
+        }
+    }
+    close(folder);
+    return others;
+}
+
+/// All other threads stand still from here on, but for one that waits for a disk: none makes a file, or makes again by its
+/// name what is being removed. Of threads that come here at once, one goes on.
+void hold_other_threads() {
+    constexpr int kTries = 200;
+    constexpr useconds_t kPause_us = 500;
+    const int signal = SIGRTMIN + 5;
+    struct sigaction hold {};
+    hold.sa_handler = hold_thread;
+    sigfillset(&hold.sa_mask);
+    sigset_t others = hold.sa_mask;
+    sigdelset(&others, signal);
+    sigaction(signal, &hold, nullptr);
+    pthread_sigmask(SIG_BLOCK, &others, nullptr);  // another signal here would wait for what this thread does
+    static std::atomic<bool> ends = false;
+    while (ends.exchange(true)) pause();
+    for (int k = 0; k < kTries && signal_other_threads(signal) > held_threads; ++k) usleep(kPause_us);
+}
+#else
+void hold_other_threads() {
+}
+#endif
+
+/// The files are removed last, when no other thread can make one any more.
 [[noreturn]] void end_now() {
+    hold_other_threads();
     detail::remove_unfinished_files();
     _exit(kBySignal + interrupted);
 }

@@ -155,7 +155,7 @@ void Report::merge(const Facts& facts) {
 void Report::note(const std::string& note) {
     if (note.empty() || print_json_ || quiet_) return;
     progress_.clear();
-    std::cerr << "subvol: " << detail::printable_message(note) << '\n';
+    std::cerr << "subvol: note: " << detail::printable_message(note) << '\n';
 }
 
 void Report::add_seconds(const std::string& stage, double seconds) {
@@ -165,7 +165,7 @@ void Report::add_seconds(const std::string& stage, double seconds) {
 
 void Report::if_long(const std::string& quicker) {
     if (print_json_ || quiet_) return;
-    progress_.hint_at(quicker, [](const std::string& words) { std::cerr << "subvol: " << words << std::endl; });
+    progress_.hint_at(quicker, [](const std::string& words) { std::cerr << "subvol: note: " << words << std::endl; });
 }
 
 void Report::say(const std::string& line) {

@@ -107,6 +107,8 @@ WithFacts<BodyInput> open_body(const std::string& input, const CommonOptions& op
     body.value.of_file = std::move(fields);
     body.value.shells = std::move(taken);
     body.value.moved = std::move(reshaped.moved);
+    body.value.in_part = std::move(reshaped.in_part);
+    body.value.whole = std::move(reshaped.whole);
     body.value.opacities = std::move(reshaped.opacities);
     return body;
 }

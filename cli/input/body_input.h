@@ -55,7 +55,10 @@ public:
     MeshSets sets{};                   // of a mesh in memory
     std::vector<FieldInfo> of_file{};  // of its file
     std::optional<Warp> moved{};       // by --warp, with its factor
-    std::vector<float> opacities{};    // of the shells' quads, which are translucent parts; empty: shells are opaque
+    std::optional<HexMesh> whole{};    // that the shells are sides of, if these are patches or translucent parts
+    std::vector<std::uint8_t>
+        in_part{};                   // a flag for each cell that --only leaves, if the verb asked for the whole; empty: all
+    std::vector<float> opacities{};  // of the shells' quads, which are translucent parts; empty: shells are opaque
 
 private:
     std::string input_;

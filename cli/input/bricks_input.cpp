@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bricks_input.h"
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <limits>
 
@@ -21,6 +22,10 @@ const BrickField* find(const Bricks& bricks, const std::string& name) {
 
 WithFacts<Bricks> open_bricks_input(const std::string& input, const CLI::App& app) {
     refuse_mesh_options(app, "is settled when a mesh is split; this is a folder of bricks");
+    const CLI::Option* const angle = app.get_option_no_throw("--crease-angle");
+    if (angle != nullptr && angle->count() > 0 && angle->results().front() == "none")
+        throw Error(ErrorCode::InvalidInput, "bricks have the creases that their mesh was split with", "--crease-angle none",
+                    "subvol split --crease-angle none");
     WithFacts<Bricks> opened{open_bricks(input)};
     opened.facts["input"] = input;
     opened.facts["cells"] = opened.value.cells;

@@ -7,6 +7,7 @@
 
 #include "numbers.h"
 #include "subvol/detail/near_name.h"
+#include "subvol/detail/place_function.h"
 #include "subvol/error.h"
 #include "text.h"
 
@@ -91,7 +92,7 @@ void apply(const Remap& remap, HexMesh& mesh) {
         throw Error(ErrorCode::InvalidInput, "is a vector", "--remap " + field->name,
                     "its length or a component: --fields NAME=length(V)");
     const double factor = (remap.to_high - remap.to_low) / (remap.high - remap.low);
-    for (double& value : field->values) value = remap.to_low + (value - remap.low) * factor;
+    detail::change_values(*field, [remap, factor](double value) { return remap.to_low + (value - remap.low) * factor; });
 }
 
 std::string beyond(const std::string& field, const Range& given, const Range& found) {

@@ -3,18 +3,28 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 
 #include "grid_input.h"
+#include "limit_warning.h"
+#include "options.h"
 #include "points_input.h"
 #include "quantities.h"
+#include "refine_arguments.h"
 #include "steps.h"
 #include "subvol/bricks.h"
+#include "subvol/detail/refuse_surface.h"
 #include "subvol/error.h"
 #include "subvol/expression.h"
+#include "subvol/field_bounds.h"
+#include "subvol/field_range.h"
+#include "subvol/limit_body.h"
 #include "subvol/mesh_motion.h"
 #include "subvol/model.h"
+#include "subvol/part_of_limit.h"
 #include "subvol/quantity.h"
 #include "subvol/read_surface.h"
+#include "subvol/topology.h"
 #include "subvol/warp.h"
 #include "text.h"
 
@@ -50,6 +60,16 @@ ReadResult generate(const std::string& description) {
     return result;
 }
 
+/// A model has the creases that it was made with, unless an angle is given.
+ReadResult with_creases(ReadResult model, const ReadOptions& options) {
+    if (options.crease_angle_deg.value_or(0) > 0) {
+        const std::size_t before = model.mesh.creases.size();
+        tag_creases(model.mesh, *options.crease_angle_deg);
+        model.sharp_edges = {model.mesh.creases.size() - before, false};
+    }
+    return model;
+}
+
 /// For what is not done brick by brick.
 HexMesh mesh_of_bricks(const std::string& input, const CommonOptions& options, Progress* progress, Facts& facts) {
     refuse_file_options(options.app, "is settled when a mesh is split; this is a folder of bricks");
@@ -60,23 +80,6 @@ HexMesh mesh_of_bricks(const std::string& input, const CommonOptions& options, P
 }
 
 constexpr std::string_view kBlockPrefix = "block:";
-
-/// The names of --only block:A,B.
-std::vector<std::string> blocks_of(const CommonOptions& options) {
-    std::vector<std::string> names;
-    for (const std::string& region : options.only) {
-        if (!region.starts_with(kBlockPrefix)) continue;
-        if (!names.empty() || !options.read.blocks.empty()) {
-            throw Error(ErrorCode::InvalidInput, "no cell is in two blocks", "--only " + region, "--only block:A,B for both");
-        }
-        for (std::size_t at = kBlockPrefix.size(); at <= region.size();) {
-            const std::size_t comma = std::min(region.find(',', at), region.size());
-            names.push_back(region.substr(at, comma - at));
-            at = comma + 1;
-        }
-    }
-    return names;
-}
 
 /// What lies between two steps: points and values linearly, the rest as in the step before.
 ReadResult read_between(const std::string& input, const BetweenSteps& between, double time, ReadOptions options, Facts& facts) {
@@ -96,15 +99,66 @@ ReadResult read_between(const std::string& input, const BetweenSteps& between, d
         const Attribute* values = read.mesh.find_attribute(field.name);
         if (values == nullptr) continue;
         const Attribute lengths = select_field(read.mesh, "length(`" + field.name + "`)").scalar;
-        const auto [least, greatest] = std::ranges::minmax(values->channels == 1 ? values->values : lengths.values);
+        const auto [least, greatest] = std::ranges::minmax(own_values(values->channels == 1 ? *values : lengths));
         field.min = least;
         field.max = greatest;
     }
     return read;
 }
 
+/// The sets without what is not of a part. cells: a flag for each cell, which keep their numbers
+MeshSets sets_in_part(MeshSets sets, std::span<const std::uint8_t> cells) {
+    for (Patch& patch : sets.patches) std::erase_if(patch.sides, [&](const CellSide& side) { return cells[side.cell] == 0; });
+    for (CellSet& set : sets.sets) std::erase_if(set.cells, [&](Index cell) { return cells[cell] == 0; });
+    return sets;
+}
+
+/// What --only or --part-opacity leave of a mesh, as a mesh of its own. If the verb works on its limit, that is near to where
+/// it lies in the whole, and what is left of the difference is said.
+PartOfLimit taken_out(const HexMesh& mesh, std::span<const std::uint8_t> cells, const CommonOptions& options, bool of_file,
+                      Facts& facts) {
+    RefineArguments refinement;
+    if (options.part_levels && options.app != nullptr) {
+        const GivenOptions given = given_options(*options.app);
+        for (const Option& option : refinement.described()) {
+            if (const auto text = given(option.name)) option.read(*text, "--" + option.name);
+        }
+    }
+    if (!options.part_levels || is_tet_scheme(refinement.scheme)) return {only_cells(mesh, cells)};
+    const PartOptions wanted{.scheme = refinement.options(0, nullptr).scheme,
+                             // --levels are those of the cells as they were given
+                             .max_levels = refinement.levels ? 0 : *options.part_levels,
+                             .progress = options.listener};
+    PartOfLimit part = part_of_limit(mesh, cells, wanted);
+    Facts& said = facts.group("part");
+    said["levels"] = part.levels;
+    said["distance"] = part.distance_world;
+    said["field_change"] = part.field_change;
+    said["volume_change"] = part.volume_change;
+    if (part.levels > 0) {
+        facts.note(text("the part is refined ", part.levels == 1 ? "once" : "twice", " to lie as in the whole (",
+                        counted(part.mesh.cells.size(), "cell"), ")"));
+        const HexMesh control = only_cells(mesh, cells);
+        LimitBody body = limit_body(part.mesh, wanted.scheme, 1, options.listener);
+        const LimitBody given = limit_body(control, wanted.scheme, 1, options.listener);
+        body.given_volume = given.given_volume;
+        body.given_bounds = given.given_bounds;
+        if (of_file && wanted.scheme.kind != Scheme::Linear) facts.warn(limit_warning(body));
+    }
+    const std::string warning = detail::part_warning(part, OptionNames::Flags);
+    if (!warning.empty()) {
+        facts.warn(warning);
+    } else if (part.distance_world > wanted.tolerance * bounds(part.mesh).diagonal() ||
+               part.field_change > wanted.field_tolerance) {
+        facts.note(detail::part_words(part));
+    }
+    return part;
+}
+
 /// What --only, --warp, --patch and --part-opacity make of a mesh. Quantities are computed before, in the whole mesh at rest.
-Reshaped reshape(ReadResult& read, const CommonOptions& options, Facts& facts) {
+///
+/// of_file: it was read from a file, whose cells are what is meant
+Reshaped reshape(ReadResult& read, const CommonOptions& options, bool of_file, Facts& facts) {
     const std::vector<Region> regions = regions_of(options);
     if (regions.empty() && !options.warp && options.patches.empty() && options.part_opacities.empty()) return {};
     Reshaped reshaped;
@@ -125,10 +179,17 @@ Reshaped reshape(ReadResult& read, const CommonOptions& options, Facts& facts) {
     if (!regions.empty()) {
         const std::size_t before = mesh.cells.size();
         const auto cells = of_option("--only", [&] { return cells_in(mesh, regions, read.sets); });
-        mesh = only_cells(mesh, cells);
-        read.sets = sets_of_cells(std::move(read.sets), cells);
-        facts["only_cells"] = mesh.cells.size();
-        facts.note(text(count_text(mesh.cells.size()), " of ", counted(before, "cell"), " lie in the region"));
+        const auto left = static_cast<std::size_t>(std::ranges::count(cells, 1));
+        if (options.parts_in_whole) {
+            read.sets = sets_in_part(std::move(read.sets), cells);
+            reshaped.in_part = cells;
+        } else {
+            PartOfLimit part = taken_out(mesh, cells, options, of_file, facts);
+            mesh = std::move(part.mesh);
+            read.sets = sets_of_children(sets_of_cells(std::move(read.sets), cells), part.levels);
+        }
+        facts["only_cells"] = left;
+        facts.note(text(count_text(left), " of ", counted(before, "cell"), " lie in the region"));
         read.cell_means.clear();
         read.cell_parts.clear();
     }
@@ -140,6 +201,7 @@ Reshaped reshape(ReadResult& read, const CommonOptions& options, Facts& facts) {
         said["factor"] = *moved->factor;
         facts.note(text("moved by ", *moved->factor, " × ", moved->field));
     }
+    if (!options.patches.empty() || !options.part_opacities.empty()) reshaped.whole = mesh;
     if (!options.patches.empty()) {
         std::vector<Patch> patches = patches_of_option(mesh, read.sets, options.patches);
         read.shells = patch_shells(mesh, patches);
@@ -156,8 +218,15 @@ Reshaped reshape(ReadResult& read, const CommonOptions& options, Facts& facts) {
             return translucent_parts(mesh, asked, read.sets);
         });
         facts["opaque_cells"] = parts.rest.cells.size();
-        mesh = std::move(parts.rest);
-        read.sets = sets_of_cells(std::move(read.sets), parts.cells);
+        int levels = 0;
+        if (parts.rest.cells.empty()) {
+            mesh = std::move(parts.rest);
+        } else {
+            PartOfLimit rest = taken_out(mesh, parts.cells, options, of_file, facts);
+            mesh = std::move(rest.mesh);
+            levels = rest.levels;
+        }
+        read.sets = sets_of_children(sets_of_cells(std::move(read.sets), parts.cells), levels);
         read.shells = std::move(parts.shells);
         read.cell_means.clear();
         read.cell_parts.clear();
@@ -173,7 +242,8 @@ std::vector<Region> regions_of(const CommonOptions& options) {
     return of_option("--only", [&] {
         std::vector<Region> regions;
         for (const std::string& region : options.only) {
-            if (!region.starts_with(kBlockPrefix)) regions.emplace_back(region);
+            const bool is_block = region.starts_with(kBlockPrefix);  // a set of cells, as all blocks are
+            regions.emplace_back(is_block ? "set:" + region.substr(kBlockPrefix.size()) : region);
         }
         return regions;
     });
@@ -196,7 +266,8 @@ InputKind kind_of(const std::string& input) {
     if (is_model(input) || std::ranges::find(meshes, extension_of(input)) != meshes.end()) return InputKind::Mesh;
     if (holds_points(input)) return InputKind::Points;
     if (is_vdb_file(input)) return InputKind::Grid;
-    return is_mesh_file(input) || is_surface_file(input) ? InputKind::Mesh : InputKind::Picture;  // the way to a mesh is said
+    const bool surface = is_surface_file(input) || detail::names_foreign_surface(input);  // the way to a mesh is said
+    return is_mesh_file(input) || surface ? InputKind::Mesh : InputKind::Picture;
 }
 
 bool is_model(const std::string& input) {
@@ -205,10 +276,12 @@ bool is_model(const std::string& input) {
 
 ReadOptions read_options(const std::string& input, const CommonOptions& options) {
     ReadOptions read = options.read;
-    const std::vector<std::string> blocks = blocks_of(options);
-    read.blocks.insert(read.blocks.end(), blocks.begin(), blocks.end());
     if (options.weld && !read.weld) read.weld = 0;
     read.step = one_step(input, options);
+    // One option of the command says which edges are sharp, when a file is read and for the scheme.
+    const auto angle = options.app == nullptr ? std::nullopt : given_options(*options.app)("crease-angle");
+    const std::vector<Option> described = options_of(read);
+    if (angle) std::ranges::find(described, "crease-angle", &Option::name)->read(*angle, "--crease-angle");
     return read;
 }
 
@@ -226,11 +299,12 @@ WithFacts<ReadResult> read_input(const std::string& input, const CommonOptions& 
     if (model && !options.read.sharp.empty()) throw Error(ErrorCode::InvalidInput, "a model has no groups", "--sharp");
     if (model && (options.step || options.read.time))
         throw Error(ErrorCode::InvalidInput, "a model has no steps", "--step, --time");
-    if (model && !(options.read.blocks.empty() && blocks_of(options).empty()))
+    const auto of_block = [](const std::string& region) { return region.starts_with(kBlockPrefix); };
+    if (model && (!options.read.blocks.empty() || std::ranges::any_of(options.only, of_block)))
         throw Error(ErrorCode::InvalidInput, "a model has no blocks", "--blocks");
     ReadResult read = facts.timed(progress, "read", [&] {
-        if (model) return generate(input.substr(kModelPrefix.size()));
         ReadOptions file_options = read_options(input, options);
+        if (model) return with_creases(generate(input.substr(kModelPrefix.size())), file_options);
         file_options.shells_alone = alone == ShellsAlone::Take;
         const auto between = between_steps(input, options);
         if (!between) return read_mesh(input, file_options);
@@ -242,6 +316,12 @@ WithFacts<ReadResult> read_input(const std::string& input, const CommonOptions& 
             throw Error(ErrorCode::InvalidInput, field.why, text(input, ", field '", field.name, "'"));
     }
     say_step(read, facts);
+    if (read.sharp_edges) {
+        const std::size_t edges = read.sharp_edges->edges;
+        facts["sharp_edges"] = edges;
+        const double angle = read_options(input, options).crease_angle_deg.value_or(kSharpAngleDeg);
+        if (edges > 0) facts.note(text(counted(edges, "sharp edge"), " kept (more than ", angle, "°)"));
+    }
     if (read.cell_values) {
         Facts& means = facts.group("cell_values");
         means["method"] = std::string(name_of(read.cell_values->method));
@@ -266,7 +346,8 @@ WithFacts<ReadResult> read_input(const std::string& input, const CommonOptions& 
         curved["fields_error"] = read.curved->fields_error;
         curved["limited"] = read.curved->limited;
     }
-    Reshaped made = reshape(read, options, facts);
+    if (options.clamp_file) bound_as_given(read.mesh, read.cell_means);
+    Reshaped made = reshape(read, options, !model, facts);
     if (reshaped != nullptr) *reshaped = std::move(made);
     return {std::move(read), std::move(facts)};
 }
@@ -328,8 +409,8 @@ std::vector<FieldInfo> chosen_fields(const ReadResult& read, const CommonOptions
     const auto found = std::ranges::find(fields, name, &FieldInfo::name);
     if (found != fields.end()) return {*found};
     const SelectedField selected = select_field(mesh, name);  // a component; or there is none of that name
-    const auto [min, max] = range(selected.scalar.values);
-    return {{name, "point", 1, min, max}};
+    const auto [min, max] = range(own_values(selected.scalar));
+    return {{name, selected.scalar.constant ? "cell" : "point", 1, min, max}};
 }
 
 std::string shells_left_out(const Shells& shells) {
@@ -385,12 +466,14 @@ WithFacts<HexMesh> with_selected_field(HexMesh mesh, const CommonOptions& option
     std::vector<Attribute> chosen{std::move(selected.scalar)};
     if (second && *second != chosen.front().name) chosen.push_back(select_field(mesh, second, options.listener).scalar);
     mesh.attributes = std::move(chosen);
+    if (options.clamp_file) bound_as_given(mesh);
     return {std::move(mesh), std::move(facts)};
 }
 
 Range field_range(const HexMesh& mesh, std::size_t attribute) {
-    const auto [min, max] = std::ranges::minmax(mesh.attributes[attribute].values);
-    return {min, max, !mesh.attributes[attribute].bounds.empty()};
+    const auto [min, max] = std::ranges::minmax(own_values(mesh.attributes[attribute]));
+    const auto& bounds = mesh.attributes[attribute].bounds;
+    return {min, max, !bounds.empty() && std::isfinite(bounds[0][0]) && std::isfinite(bounds[0][1])};
 }
 
 }  // namespace subvol::cli

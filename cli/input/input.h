@@ -33,7 +33,7 @@ enum class InputKind { Picture, Mesh, Bricks, Points, Grid };
 /// How a mesh file is to be read.
 [[nodiscard]] ReadOptions read_options(const std::string& input, const CommonOptions& options);
 
-/// The regions of --only but for blocks, which are read alone.
+/// The regions of --only; blocks are sets of cells.
 [[nodiscard]] std::vector<Region> regions_of(const CommonOptions& options);
 
 /// The options with those of --only that choose whole cells, blocks among them, for reading. The parts of space go to `space`:
@@ -46,9 +46,13 @@ enum class ShellsAlone { Refuse, Take };
 /// What --warp and --part-opacity have made of a mesh.
 ///
 /// moved:     the displacement with its factor
+/// whole:     the mesh that the shells are sides of
+/// in_part:   a flag for each cell of the mesh that --only leaves, if the verb takes these out of the whole; empty: all
 /// opacities: of the quads of the shells, which are the translucent parts
 struct Reshaped {
     std::optional<Warp> moved{};
+    std::optional<HexMesh> whole{};
+    std::vector<std::uint8_t> in_part{};
     std::vector<float> opacities{};
 };
 

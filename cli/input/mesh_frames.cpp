@@ -67,7 +67,7 @@ MeshFrames::MeshFrames(std::string input, const std::optional<std::string>& to, 
     }
     from_ = load(input);
     to_ = load(*to);
-    if (!same_cells(*from_, *to_)) {
+    if (!moved_cells(*from_, *to_)) {
         throw Error(ErrorCode::InvalidInput, "does not have the same cells as " + input, *to,
                     "two meshes that differ in points and values");
     }
@@ -93,7 +93,7 @@ Attribute MeshFrames::velocity(int frame) {
     if (range_.count() < 2) throw Error(ErrorCode::InvalidInput, "needs at least two frames", "--velocity");
     const int before = std::max(frame - 1, range_.first), after = std::min(frame + 1, range_.last);
     const HexMesh &a = mesh(before), &here = mesh(frame), &b = mesh(after);
-    if (!same_cells(a, here) || !same_cells(here, b)) {
+    if (!moved_cells(a, here) || !moved_cells(here, b)) {
         throw Error(ErrorCode::InvalidInput, text("the cells change between the frames ", before, " and ", after), "--velocity",
                     "meshes of the same cells");
     }

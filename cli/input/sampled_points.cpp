@@ -6,6 +6,7 @@
 #include "subvol/error.h"
 #include "subvol/vdb_sample.h"
 #include "subvol/visible_points.h"
+#include "text.h"
 #include "vdb_functions.h"
 
 namespace subvol::cli {
@@ -53,6 +54,8 @@ WithFacts<RbfVolume> sample_reported(const VdbGrid& grid, const SampleArguments&
                                               .kernel = options.kernel,
                                               .progress = progress});
     });
+    if (grid.report().level_set)
+        facts.note(text(grid.report().name, " is a level set: the body within its surface is taken, of density 1"));
     facts["spacing"] = sampled.report.spacing_world;
     facts["voxels_a_side"] = sampled.report.voxels_a_side;
     if (sampled.report.left_out > 0) facts["left_out_voxels"] = sampled.report.left_out;

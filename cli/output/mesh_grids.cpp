@@ -15,6 +15,8 @@
 #include "subvol/grid_error.h"
 #include "subvol/mesh_motion.h"
 #include "subvol/mesh_report.h"
+#include "subvol/part_of_limit.h"
+#include "subvol/region.h"
 #include "subvol/vdb_contents.h"
 #include "subvol/version.h"
 #include "text.h"
@@ -37,7 +39,7 @@ Facts facts_of(const LimitCells& limit, const HexMesh& mesh, double voxel_size) 
     deviation["voxels"] = limit.position_world / voxel_size;
     double rounding = 0;  // where floats lose more than the origin of their values keeps
     for (const Attribute& field : mesh.attributes) {
-        const auto [low, high] = std::ranges::minmax(field.values);
+        const auto [low, high] = std::ranges::minmax(own_values(field));
         if (value_origin(low, high) != 0) rounding = std::max(rounding, float_rounding(field));
     }
     deviation["of_range"] = limit.value_of_range + rounding;
@@ -68,16 +70,33 @@ WithFacts<LimitCells> reported_limit(const HexMesh& mesh, const RefineOptions& r
     return {std::move(limit), std::move(facts)};
 }
 
+HexMesh rasterized_cells(const HexMesh& mesh, std::span<const Index> cells) {
+    if (cells.empty()) return mesh;
+    std::vector<std::uint8_t> flags;
+    for (const Index number : cells) flags.push_back(number != kNone);
+    return only_cells(mesh, flags);
+}
+
 MeshGrids::MeshGrids(std::string input, const VdbArguments& asked, RefineArguments& refine)
     : input_(std::move(input)), asked_(asked), refine_(refine), fields_(asked), tets_(refine) {
     if (!asked.like.empty()) like_grids_ = vdb().read_vdb(asked.like);
 }
 
-WithFacts<HexMesh> MeshGrids::load(const std::string& input, const CommonOptions& options, Progress* progress) const {
+WithFacts<HexMesh> MeshGrids::load(const std::string& input, const CommonOptions& options, Progress* progress,
+                                   std::vector<Index>* numbers) const {
     Facts facts;
     CommonOptions reading = options;
     for (const GridField& field : fields_.asked()) reading.at_rest.push_back(field.source);
-    HexMesh mesh = facts.unpack(load_mesh(input, reading, progress));
+    reading.parts_in_whole = numbers != nullptr && !tets_.asked() && asked_.from != "points";
+    if (numbers == nullptr) reading.part_levels = 0;  // meshes of a sequence have the same cells
+    Reshaped reshaped;
+    ReadResult read = facts.unpack(read_input(input, reading, progress, ShellsAlone::Refuse, &reshaped));
+    HexMesh mesh = facts.unpack(mesh_of(std::move(read), reading, nullptr));
+    if (!reshaped.in_part.empty()) {
+        PartWithHalo part = part_with_halo(mesh, reshaped.in_part);
+        mesh = std::move(part.mesh);
+        *numbers = std::move(part.numbers);
+    }
     mesh = facts.unpack(tets_.hexes(std::move(mesh), 2, progress));
     std::optional<Attribute> flow;
     if (asked_.velocity) flow = flow_of(mesh);
@@ -103,22 +122,24 @@ RasterizeOptions MeshGrids::options(Progress* progress) const {
             .progress = progress};
 }
 
-double MeshGrids::voxel_size_world(const HexMesh& mesh) const {
+double MeshGrids::voxel_size_world(const HexMesh& mesh, const RasterizeOptions& options) const {
     if (!like_grids_.empty()) return like_grids_.front().report().voxel_size_world;
     if (asked_.grids.voxel_size_world > 0) return asked_.grids.voxel_size_world;
     if (asked_.budget_bytes > 0) {
         double channels = asked_.grids.cell_numbers ? 1 : 0;
         for (const Attribute& attribute : mesh.attributes) channels += attribute.channels;
-        return std::cbrt(std::abs(measure_cells(mesh).volume) * kBytesOfChannel * channels /
+        return std::cbrt(std::abs(measure_cells(rasterized_cells(mesh, options.cells)).volume) * kBytesOfChannel * channels /
                          static_cast<double>(asked_.budget_bytes));
     }
-    return voxel_size_of(bounds(mesh), asked_.grids);
+    return voxel_size_of(rasterized_box(mesh, options), asked_.grids);
 }
 
-WithFacts<RasterizeOptions> MeshGrids::set_up(const HexMesh& mesh, Progress* progress, bool once) {
+WithFacts<RasterizeOptions> MeshGrids::set_up(const HexMesh& mesh, Progress* progress, bool once,
+                                              std::span<const Index> cells) {
     Facts facts;
-    const double voxel_size = voxel_size_world(mesh);
     RasterizeOptions options = this->options(progress);
+    options.cells = cells;
+    const double voxel_size = voxel_size_world(mesh, options);
     options.voxel_size_world = voxel_size;
     options.level_set = asked_.level_set();
     vdb().check_voxels(mesh, options);

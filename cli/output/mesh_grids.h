@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,9 @@ namespace subvol::cli {
 /// The limit of a mesh for voxels of a size. The fact "levels" is the finest level, "cells" the number of curved pieces, 27
 /// vertices each.
 [[nodiscard]] WithFacts<LimitCells> reported_limit(const HexMesh& mesh, const RefineOptions& refinement, double voxel_size);
+
+/// The cells that are rasterized, as a mesh of their own. cells: as of `RasterizeOptions`
+[[nodiscard]] HexMesh rasterized_cells(const HexMesh& mesh, std::span<const Index> cells);
 
 /// The greatest and the mean error of a grid. grid: its number
 struct GridErrorFigures {
@@ -38,7 +42,11 @@ public:
     [[nodiscard]] const TetRefinement& tets() const { return tets_; }
 
     /// Reads a mesh, with the fields that are written, turned and scaled.
-    [[nodiscard]] WithFacts<HexMesh> load(const std::string& input, const CommonOptions& options, Progress* progress) const;
+    ///
+    /// numbers: none: what --only leaves becomes a mesh of its own, whose cells are not refined. Else it stays as
+    ///          `part_with_halo` has it, whose numbers these become, for `RasterizeOptions::cells`; all cells: empty
+    [[nodiscard]] WithFacts<HexMesh> load(const std::string& input, const CommonOptions& options, Progress* progress,
+                                          std::vector<Index>* numbers = nullptr) const;
 
     /// The options that do not depend on the mesh.
     [[nodiscard]] RasterizeOptions options(Progress* progress) const;
@@ -46,9 +54,11 @@ public:
     /// The options for a mesh, which depend on its box and its fields. They refer to the limit of the mesh, which is kept until
     /// the next call.
     ///
+    /// cells:  as of the options; referred to
     /// once:   the options are for one call of `make`, which then finds the limit of a mesh of many cells itself
     /// throws: Error(InvalidInput) if the mesh has a field with the name of the level set
-    [[nodiscard]] WithFacts<RasterizeOptions> set_up(const HexMesh& mesh, Progress* progress, bool once = false);
+    [[nodiscard]] WithFacts<RasterizeOptions> set_up(const HexMesh& mesh, Progress* progress, bool once = false,
+                                                     std::span<const Index> cells = {});
 
     [[nodiscard]] WithFacts<std::vector<VdbGrid>> make(const HexMesh& mesh, const RasterizeOptions& options) const;
 
@@ -57,7 +67,7 @@ public:
                                                                       std::vector<VdbGrid>& grids) const;
 
 private:
-    [[nodiscard]] double voxel_size_world(const HexMesh& mesh) const;
+    [[nodiscard]] double voxel_size_world(const HexMesh& mesh, const RasterizeOptions& options) const;
 
     std::string input_;
     const VdbArguments& asked_;

@@ -4,6 +4,8 @@
 #include <algorithm>
 
 #include "input.h"
+#include "limit_warning.h"
+#include "subvol/field_bounds.h"
 #include "subvol/field_range.h"
 #include "subvol/quantity.h"
 #include "subvol/vdb_contents.h"
@@ -37,13 +39,7 @@ WithFacts<HexMesh> WrittenFields::chosen(HexMesh mesh, const CommonOptions& opti
         mesh.attributes = std::move(chosen);
     }
     for (const Remap& remap : remaps_) apply(remap, mesh);
-    if (clamp_) {
-        for (Attribute& field : mesh.attributes) {
-            const FieldRange range = range_of(field);
-            field.bounds.clear();
-            for (std::size_t c = 0; c < range.min.size(); ++c) field.bounds.push_back({range.min[c], range.max[c]});
-        }
-    }
+    if (clamp_ || options.clamp_file) bound_as_given(mesh);
     return {std::move(mesh), std::move(facts)};
 }
 
@@ -55,7 +51,7 @@ void WrittenFields::clamp(const HexMesh& mesh, std::vector<VdbGrid>& grids) cons
     for (VdbGrid& grid : grids) {
         const Attribute* field = mesh.find_attribute(grid.report().name);
         if (field == nullptr || field->name == kVelocity) continue;
-        if (clamp_) vdb().clamp_voxels(grid, range_of(*field));
+        if (const auto bounds = bounds_of(*field)) vdb().clamp_voxels(grid, *bounds);
         for (const Remap& remap : remaps_) {
             if (maps(remap, *field, mesh))
                 vdb().clamp_voxels(grid, {{std::min(remap.to_low, remap.to_high)}, {std::max(remap.to_low, remap.to_high)}});
@@ -63,14 +59,15 @@ void WrittenFields::clamp(const HexMesh& mesh, std::vector<VdbGrid>& grids) cons
     }
 }
 
-Facts WrittenFields::overshoot(const HexMesh& mesh, const std::vector<VdbGrid>& grids) const {
+Facts WrittenFields::overshoot(const HexMesh& mesh, const std::vector<VdbGrid>& grids, bool of_file) const {
     Facts facts;
     for (const VdbGrid& grid : grids) {
         const Attribute* field = mesh.find_attribute(grid.report().name);
-        if (field == nullptr || field->channels != 1 || clamp_) continue;
+        if (field == nullptr || field->channels != 1) continue;
         if (std::ranges::any_of(remaps_, [&](const Remap& remap) { return maps(remap, *field, mesh); })) continue;
         const FieldRange range = range_of(*field);
-        facts.note(beyond(field->name, {range.min[0], range.max[0]}, {grid.report().min, grid.report().max}));
+        say_beyond(facts, field->name, {range.min[0], range.max[0]}, {grid.report().min, grid.report().max},
+                   of_file && !field->derived);
     }
     return facts;
 }

@@ -32,8 +32,9 @@ public:
     /// Keeps the grids of fields within what --clamp and --remap say.
     void clamp(const HexMesh& mesh, std::vector<VdbGrid>& grids) const;
 
-    /// Notes on the fields that have voxels beyond the values of the mesh.
-    [[nodiscard]] Facts overshoot(const HexMesh& mesh, const std::vector<VdbGrid>& grids) const;
+    /// Notes on the fields that have voxels beyond the values of the mesh; warnings, if it is of a file, where they are far
+    /// beyond.
+    [[nodiscard]] Facts overshoot(const HexMesh& mesh, const std::vector<VdbGrid>& grids, bool of_file) const;
 
 private:
     [[nodiscard]] static bool maps(const Remap& remap, const Attribute& field, const HexMesh& mesh);

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <execinfo.h>
 #include <fcntl.h>
 #include <tbb/global_control.h>
 #include <unistd.h>
@@ -170,9 +171,14 @@ std::size_t default_threads(const std::optional<subvol::cli::RankInEnvironment>&
     return std::max(1U, std::thread::hardware_concurrency() / static_cast<unsigned>(rank->on_host));
 }
 
-/// "help VERB" is "VERB --help", "help" alone "--help".
+/// "help VERB" is "VERB --help", "help" alone "--help"; "--clamp file" is "--clamp-file", as --clamp alone has no value.
 std::vector<std::string> asked(int argc, char** argv) {
     std::vector<std::string> arguments(argv + std::min(argc, 1), argv + argc);
+    for (std::size_t i = 0; i + 1 < arguments.size(); ++i) {
+        if (arguments[i] != "--clamp" || arguments[i + 1] != "file") continue;
+        arguments[i] = "--clamp-file";
+        arguments.erase(arguments.begin() + static_cast<std::ptrdiff_t>(i) + 1);
+    }
     if (arguments.empty() || arguments.front() != "help") return arguments;
     arguments.erase(arguments.begin());
     arguments.emplace_back("--help");
@@ -259,6 +265,9 @@ int main(int argc, char** argv) {
     std::setlocale(LC_ALL, "C");          // a library that is loaded before us may have chosen another: numbers have a point
     setenv("EGL_LOG_LEVEL", "fatal", 0);  // we report a lack of OpenGL ourselves, in one sentence
     std::signal(SIGXFSZ, SIG_IGN);        // when a file gets too long, the write fails
+    // What unwinds std::call_once is loaded by glibc when it is first needed, too late where memory has run out.
+    void* frame = nullptr;
+    (void)backtrace(&frame, 1);
     CLI::App program(kDescription, "subvol");
     const std::vector<std::string> arguments = asked(argc, argv);
     const bool json = std::ranges::find(arguments, "--json") != arguments.end();

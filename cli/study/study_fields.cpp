@@ -14,6 +14,7 @@
 #include "subvol/error.h"
 #include "subvol/field_metrics.h"
 #include "subvol/field_places.h"
+#include "subvol/field_range.h"
 #include "subvol/hierarchy.h"
 #include "subvol/limit.h"
 #include "subvol/limit_field.h"
@@ -103,7 +104,7 @@ CaseResult volume_case(const StudyCase& item, const HexMesh& mesh) {
     const FieldDifference errors = compare_fields(
         kernels.view(), limit.view(),
         {.samples = static_cast<std::size_t>(item.number("places")), .seed = static_cast<std::uint64_t>(item.number("seed"))});
-    const auto [low, high] = std::ranges::minmax(mesh.attributes.front().values);
+    const auto [low, high] = std::ranges::minmax(own_values(mesh.attributes.front()));
     const double iso = item.has("iso") ? item.number("iso") : .5 * (low + high);
     const int cubes = item.whole("resolution");
     result.metrics = {{"kernels", static_cast<double>(volume.size())},

@@ -43,7 +43,13 @@ std::vector<double> smooth_density(const HexMesh& mesh) {
 /// sets: of the file's cells
 HexMesh load(const StudyCase& item, MeshSets& sets) {
     if (item.has("input.file")) {
-        ReadResult read = read_mesh(item.text("input.file"));
+        ReadOptions options;
+        if (item.has("crease_angle")) options.crease_angle_deg = 0;  // the method says which edges are sharp
+        if (item.has("input.crease_angle")) {
+            const std::vector<Option> described = options_of(options);
+            std::ranges::find(described, "crease-angle", &Option::name)->read(item.text("input.crease_angle"), "crease_angle");
+        }
+        ReadResult read = read_mesh(item.text("input.file"), options);
         sets = std::move(read.sets);
         return without_unused_points(std::move(read.mesh));
     }

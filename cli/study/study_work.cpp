@@ -7,6 +7,7 @@
 
 #include "report.h"
 #include "sample_arguments.h"
+#include "subvol/detail/number_text.h"
 #include "subvol/detail/stopwatch.h"
 #include "subvol/picture_maker.h"
 
@@ -34,7 +35,11 @@ void set_options(const StudyCase& item, const std::vector<Option>& options) {
         if (const auto* on = std::get_if<bool>(&found->second)) {
             *std::get<bool*>(option.value) = *on;
         } else if (const auto* number = std::get_if<double>(&found->second)) {
-            option.set(*number, option.key());
+            if (std::holds_alternative<WordValue>(option.value)) {
+                option.read(detail::exact_text(*number), option.key());
+            } else {
+                option.set(*number, option.key());
+            }
         } else {
             option.read(std::get<std::string>(found->second), option.key());
         }

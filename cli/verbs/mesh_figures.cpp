@@ -6,12 +6,14 @@
 #include <cmath>
 #include <iomanip>
 #include <limits>
+#include <optional>
 #include <set>
 
 #include "quantities.h"
 #include "subvol/detail/json_depth.h"
 #include "subvol/detail/read_file.h"
 #include "subvol/error.h"
+#include "subvol/measure.h"
 #include "text.h"
 
 namespace subvol::cli {
@@ -53,6 +55,10 @@ constexpr std::array<Count, 12> kCounts{Count{"points", &MeshReport::points},
 
 Json json_of(const Vec3& point) {
     return Json::array({point.x, point.y, point.z});
+}
+
+Json place_of(const LimitExtreme& extreme) {
+    return std::isfinite(extreme.value) ? json_of(extreme.place) : Json();
 }
 
 Json json_of(const Box& box) {
@@ -150,12 +156,13 @@ void add_fields(const ReadResult& read, Lines& lines) {
     if (read.fields.empty()) lines.emplace_back("fields", "none");
 }
 
-/// The names of parts with the number of their cells or faces; of many the first.
+/// The names of parts with the number of their cells or faces, and the volume of cells; of many the first.
 class PartNames {
 public:
-    void add(const std::string& name, std::size_t count) {
+    void add(const std::string& name, std::size_t count, std::optional<double> volume = {}) {
         constexpr std::size_t kMostNamed = 12;
-        if (words_.size() < kMostNamed) words_.push_back(name + " (" + count_text(count) + ")");
+        const std::string more = volume ? ", volume " + number(*volume) : "";
+        if (words_.size() < kMostNamed) words_.push_back(name + " (" + count_text(count) + more + ")");
         ++count_;
     }
     void add_to(Lines& lines, const std::string& kind) {
@@ -173,13 +180,11 @@ private:
 void add_parts(const ReadResult& read, Lines& lines) {
     PartNames blocks, patches, sets;
     std::set<std::string_view> known;
-    for (const MeshBlock& block : read.blocks) {
-        if (read.blocks.size() > 1) blocks.add(block.name, block.cells);
-        known.insert(block.name);
-    }
+    for (const MeshBlock& block : read.blocks) known.insert(block.name);
     for (const Patch& patch : read.sets.patches) patches.add(patch.name, patch.sides.size());
     for (const CellSet& set : read.sets.sets) {
-        if (!known.contains(set.name)) sets.add(set.name, set.cells.size());
+        PartNames& names = known.contains(set.name) ? blocks : sets;
+        if (&names == &sets || read.blocks.size() > 1) names.add(set.name, set.cells.size(), volume_of(read.mesh, set));
     }
     blocks.add_to(lines, "blocks");
     patches.add_to(lines, "patches");
@@ -187,6 +192,16 @@ void add_parts(const ReadResult& read, Lines& lines) {
 }
 
 }  // namespace
+
+double volume_of(const HexMesh& mesh, const CellSet& set) {
+    double volume = 0;
+    for (const Index cell : set.cells) {
+        std::array<Vec3, 8> corners;
+        for (std::size_t k = 0; k < corners.size(); ++k) corners[k] = mesh.points[mesh.cells[cell][k]];
+        volume += cell_volume(corners);
+    }
+    return volume;
+}
 
 std::string verdict(const MeshReport& report, std::span<const std::size_t> inverted) {
     std::vector<std::string> faults;

@@ -13,10 +13,16 @@
 #include "subvol/mesh_report.h"
 #include "transport.h"
 
+namespace subvol {
+struct LimitExtreme;
+}
+
 namespace subvol::cli {
 
 /// [x, y, z]
 [[nodiscard]] Json json_of(const Vec3& point);
+/// Where an extreme is; null if there is none.
+[[nodiscard]] Json place_of(const LimitExtreme& extreme);
 
 /// [lower corner, upper corner]
 [[nodiscard]] Json json_of(const Box& box);
@@ -53,6 +59,9 @@ struct FigureParts {
 /// steps:   a line about the steps of the file, if it has several
 [[nodiscard]] std::string mesh_lines(const ReadResult& read, const detail::MeshShare& joined, const Json& seconds,
                                      const std::string& steps);
+
+/// The volume of a set's cells as they are, trilinear, as of the whole in `inspect`.
+[[nodiscard]] double volume_of(const HexMesh& mesh, const CellSet& set);
 
 /// The number of inverted cells that a verdict names.
 inline constexpr std::size_t kCellsNamed = 8;

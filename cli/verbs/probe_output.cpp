@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "limit_warning.h"
 #include "mesh_figures.h"
 #include "outputs.h"
+#include "quantities.h"
 #include "subvol/detail/atomic_file.h"
 #include "subvol/detail/number_text.h"
 #include "subvol/detail/printable.h"
@@ -133,49 +135,100 @@ std::string within(double extreme_error) {
     return "  within " + detail::number_text(extreme_error, 2);
 }
 
+Json cell_of(const LimitExtreme& extreme) {
+    return extreme.cell == kNone ? Json() : Json(extreme.cell);
+}
+
+/// field: a FieldMeasure or a PatchField
+template <class Field>
+Json json_of_field(const Field& field) {
+    return {{"name", field.name},
+            {"integral", field.integral},
+            {"mean", field.mean},
+            {"min", field.min.value},
+            {"min_at", place_of(field.min)},
+            {"min_cell", cell_of(field.min)},
+            {"max", field.max.value},
+            {"max_at", place_of(field.max)},
+            {"max_cell", cell_of(field.max)},
+            {"extreme_error", field.extreme_error},
+            {"file_integral", field.given.integral},
+            {"file_mean", field.given.mean},
+            {"file_min", field.given.min.value},
+            {"file_min_at", place_of(field.given.min)},
+            {"file_max", field.given.max.value},
+            {"file_max_at", place_of(field.given.max)}};
+}
+
 Json as_json(const PartMeasure& part) {
     Json one;
     if (!part.name.empty()) one["name"] = part.name;
     one["cells"] = part.cells;
     one["volume"] = part.volume;
     one["error"] = part.error;
+    one["file_volume"] = part.given_volume;
     one["fields"] = Json::array();
     for (const FieldMeasure& field : part.fields) {
-        one["fields"].push_back({{"name", field.name},
-                                 {"integral", field.integral},
-                                 {"mean", field.mean},
-                                 {"min", field.min.value},
-                                 {"min_at", json_of(field.min.place)},
-                                 {"min_cell", field.min.cell},
-                                 {"max", field.max.value},
-                                 {"max_at", json_of(field.max.place)},
-                                 {"max_cell", field.max.cell},
-                                 {"extreme_error", field.extreme_error},
-                                 {"histogram", field.histogram}});
+        one["fields"].push_back(json_of_field(field));
+        one["fields"].back()["histogram"] = field.histogram;
     }
     return one;
 }
 
-void say(const PartMeasure& part, const std::string& name, Report& report) {
+/// The figure of the cells as the file has them, for the end of a figure of the limit.
+std::string beside(double of_file) {
+    return std::isfinite(of_file) ? " · file " + detail::number_text(of_file) : "";
+}
+
+/// mesh: null if the cells are not in memory
+std::string beside(const LimitExtreme& of_file, const HexMesh* mesh) {
+    if (!std::isfinite(of_file.value)) return "";
+    std::string words = beside(of_file.value);
+    if (of_file.cell == kNone) return words;
+    const auto corner = of_file.corner();
+    if (corner && mesh != nullptr) return words + text(" at point ", mesh->cells[of_file.cell][*corner]);
+    return words + text(" in cell ", of_file.cell);
+}
+
+/// The value and where it is.
+std::string at_place(const LimitExtreme& extreme) {
     using detail::number_text;
-    Lines lines{{"volume", number_text(part.volume) + "  within " + number_text(part.error, 2) + " of it"}};
-    if (!name.empty()) lines.insert(lines.begin(), {"block", text(name, " (", counted(part.cells, "cell"), ")")});
+    const Vec3& x = extreme.place;
+    return number_text(extreme.value) + " at " + number_text(x.x, 4) + "," + number_text(x.y, 4) + "," + number_text(x.z, 4);
+}
+
+void say(const PartMeasure& part, const std::string& name, const HexMesh* mesh, Report& report) {
+    using detail::number_text;
+    Lines lines{
+        {"volume", number_text(part.volume) + "  within " + number_text(part.error, 2) + " of it" + beside(part.given_volume)}};
+    if (!name.empty()) lines.insert(lines.begin(), {"part", text(name, " (", counted(part.cells, "cell"), ")")});
     for (const FieldMeasure& field : part.fields) {
-        const auto at = [](const LimitExtreme& extreme) {
-            const Vec3& x = extreme.place;
-            return number_text(extreme.value) + " at " + number_text(x.x, 4) + "," + number_text(x.y, 4) + "," +
-                   number_text(x.z, 4);
-        };
-        lines.emplace_back(field.name, "mean " + number_text(field.mean) + "  integral " + number_text(field.integral));
-        lines.emplace_back("", "min " + at(field.min) + "  max " + at(field.max) + within(field.extreme_error));
+        if (part.volume == 0) continue;  // without means and extremes
+        const GivenFigures& given = field.given;
+        lines.emplace_back(field.name, "mean " + number_text(field.mean) + beside(given.mean) + "  integral " +
+                                           number_text(field.integral) + beside(given.integral));
+        lines.emplace_back("", "min " + at_place(field.min) + within(field.extreme_error) + beside(given.min, mesh));
+        lines.emplace_back("", "max " + at_place(field.max) + within(field.extreme_error) + beside(given.max, mesh));
     }
     report.answer(aligned(lines));
+}
+
+/// What a user of the file's cells must know: the limit is another body, or has other values.
+void warn_of_difference(const PartMeasure& part, Report& report) {
+    LimitBody body;
+    body.volume = part.volume;
+    body.given_volume = part.given_volume;
+    report.warn(limit_warning(body));
+    for (const FieldMeasure& field : part.fields) {
+        report.warn(
+            range_warning(field.name, {field.given.min.value, field.given.max.value}, {field.min.value, field.max.value}));
+    }
 }
 
 /// NaN is null in JSON, so it is said.
 void warn_of_overflow(const PartMeasure& part, Report& report) {
     for (const FieldMeasure& field : part.fields) {
-        if (std::isfinite(field.integral) && std::isfinite(field.mean)) continue;
+        if (std::isfinite(field.integral) && (std::isfinite(field.mean) || part.volume == 0)) continue;
         report.warn(text("the integral of ", field.name, " is larger than a number can be"));
     }
 }
@@ -190,6 +243,7 @@ Json json_of(const ProbeResult& found, const std::vector<Vec3>& places) {
 
 Json json_of(const LimitMeasure& found) {
     Json stats{{"whole", as_json(found.whole)}, {"parts", Json::array()}, {"pieces", found.pieces}};
+    stats["folded_cells"] = found.folds.cells;
     for (const PartMeasure& part : found.parts) stats["parts"].push_back(as_json(part));
     return stats;
 }
@@ -233,39 +287,46 @@ void show_probed(const ProbeResult& found, const std::vector<Vec3>& places, cons
 Json json_of(const std::vector<PatchMeasure>& found) {
     Json patches = Json::array();
     for (const PatchMeasure& patch : found) {
-        Json one{{"name", patch.name}, {"faces", patch.sides}, {"area", patch.area}, {"error", patch.error}};
+        Json one{{"name", patch.name},
+                 {"faces", patch.sides},
+                 {"area", patch.area},
+                 {"error", patch.error},
+                 {"file_area", patch.given_area}};
         one["normal"] = json_of(patch.normal);
         if (patch.flux) {
             one["flux"] = *patch.flux;
             one["throughput"] = *patch.throughput;
+            one["file_flux"] = patch.given_flux.value_or(std::nan(""));
+            one["file_throughput"] = patch.given_throughput.value_or(std::nan(""));
         }
         one["fields"] = Json::array();
-        for (const PatchField& field : patch.fields) {
-            one["fields"].push_back({{"name", field.name},
-                                     {"integral", field.integral},
-                                     {"mean", field.mean},
-                                     {"min", field.min},
-                                     {"max", field.max},
-                                     {"extreme_error", field.extreme_error}});
-        }
+        for (const PatchField& field : patch.fields) one["fields"].push_back(json_of_field(field));
         patches.push_back(std::move(one));
     }
     return patches;
 }
 
-void show_patches(const std::vector<PatchMeasure>& found, Report& report) {
+void show_patches(const std::vector<PatchMeasure>& found, const HexMesh& mesh, bool of_file, Report& report) {
     using detail::number_text;
     report["patches"] = json_of(found);
     double flux = 0, throughput = 0;
     for (const PatchMeasure& patch : found) {
         Lines lines{{"patch", text(patch.name, " (", counted(patch.sides, "face"), ")")},
-                    {"area", number_text(patch.area) + "  within " + number_text(patch.error, 2) + " of it"}};
+                    {"area", number_text(patch.area) + "  within " + number_text(patch.error, 2) + " of it" +
+                                 beside(patch.given_area)}};
         for (const PatchField& field : patch.fields) {
-            lines.emplace_back(field.name, "mean " + number_text(field.mean) + "  min " + number_text(field.min) + "  max " +
-                                               number_text(field.max) + within(field.extreme_error));
+            const GivenFigures& given = field.given;
+            lines.emplace_back(field.name, "mean " + number_text(field.mean) + beside(given.mean) + "  integral " +
+                                               number_text(field.integral) + beside(given.integral));
+            lines.emplace_back("", "min " + at_place(field.min) + within(field.extreme_error) + beside(given.min, &mesh));
+            lines.emplace_back("", "max " + at_place(field.max) + within(field.extreme_error) + beside(given.max, &mesh));
+            if (!of_file) continue;
+            std::string warning =
+                range_warning(field.name, {given.min.value, given.max.value}, {field.min.value, field.max.value});
+            if (!warning.empty()) report.warn("patch " + patch.name + ": " + warning);
         }
         if (patch.flux) {
-            lines.emplace_back("flow out", number_text(*patch.flux));
+            lines.emplace_back("flow out", number_text(*patch.flux) + beside(patch.given_flux.value_or(std::nan(""))));
             flux += *patch.flux;
             throughput += *patch.throughput;
         }
@@ -278,11 +339,13 @@ void show_patches(const std::vector<PatchMeasure>& found, Report& report) {
     report.all_said();
 }
 
-void show_measured(const LimitMeasure& found, Report& report) {
+void show_measured(const LimitMeasure& found, const HexMesh* mesh, bool of_file, Report& report) {
     report["stats"] = json_of(found);
     warn_of_overflow(found.whole, report);
-    say(found.whole, "", report);
-    for (const PartMeasure& part : found.parts) say(part, part.name, report);
+    if (of_file) warn_of_difference(found.whole, report);
+    if (of_file) report.warn(fold_warning(found.folds));
+    say(found.whole, "", mesh, report);
+    for (const PartMeasure& part : found.parts) say(part, part.name, mesh, report);
     report.all_said();
 }
 

@@ -31,10 +31,15 @@ void show_probed(const ProbeResult& found, const std::vector<Vec3>& places, cons
 [[nodiscard]] std::string csv_text(const std::string& text);
 
 /// Patches of the boundary: into the report, and as lines for people, with the sum of the flows of several.
-void show_patches(const std::vector<PatchMeasure>& found, Report& report);
+///
+/// mesh, of_file: as of `show_measured`
+void show_patches(const std::vector<PatchMeasure>& found, const HexMesh& mesh, bool of_file, Report& report);
 [[nodiscard]] Json json_of(const std::vector<PatchMeasure>& found);
 
 /// Integrals and extremes, into the report.
-void show_measured(const LimitMeasure& found, Report& report);
+///
+/// mesh:    whose points are named; may be null
+/// of_file: a file has the cells, so that a limit that differs from them is worth a warning
+void show_measured(const LimitMeasure& found, const HexMesh* mesh, bool of_file, Report& report);
 
 }  // namespace subvol::cli

@@ -95,7 +95,7 @@ SeriesTable table_of_patches(const std::vector<ProbedStep>& steps) {
             SeriesTable::Row row{step.step, step.time, patch.name, {patch.area}};
             if (patch.flux) row.numbers.insert(row.numbers.begin(), *patch.flux);
             for (const PatchField& field : patch.fields)
-                row.numbers.insert(row.numbers.end(), {field.mean, field.integral, field.min, field.max});
+                row.numbers.insert(row.numbers.end(), {field.mean, field.integral, field.min.value, field.max.value});
             table.rows.push_back(std::move(row));
         }
     }
@@ -141,7 +141,8 @@ void write_plot(const SeriesTable& table, bool places, const std::string& file) 
         if (places) {
             add(row.label, row.time, row.numbers[0]);
         } else if (row.label == "whole") {
-            for (const std::size_t c : {1, 3, 4}) add(table.columns[c], row.time, row.numbers[c]);
+            for (const std::size_t c : {std::size_t{1}, std::size_t{3}, std::size_t{4}})
+                add(table.columns[c], row.time, row.numbers[c]);
         }
     }
     std::erase_if(lines, [](const PlotLine& line) { return line.x.empty(); });

@@ -11,6 +11,7 @@
 #include "ranks.h"
 #include "report.h"
 #include "share.h"
+#include "subvol/part_of_limit.h"
 #include "transport.h"
 
 namespace CLI {
@@ -52,6 +53,10 @@ protected:
     void add_patches(const std::string& help);
     /// Adds --part-opacity, which takes translucent parts out of the mesh.
     void add_part_opacities(const std::string& help);
+    /// For a verb that works on the limit of what --only leaves: `part_of_limit`.
+    void show_limit_of_parts() { common_.part_levels = PartOptions{}.max_levels; }
+    /// Adds --crease-angle to a verb that reads meshes and has no scheme, whose options contain it.
+    void add_crease_angle() { cli::add_crease_angle(app_, common_); }
 
     /// Null: this process is alone.
     [[nodiscard]] Ranks* ranks() const { return ranks_; }

@@ -12,16 +12,20 @@
 #include "options.h"
 #include "outputs.h"
 #include "places_input.h"
+#include "points_input.h"
 #include "quantities.h"
 #include "refine_arguments.h"
 #include "steps.h"
 #include "subvol/approximate.h"
 #include "subvol/approximator.h"
+#include "subvol/detail/missing_file.h"
+#include "subvol/detail/refuse_surface.h"
 #include "subvol/error.h"
 #include "subvol/fit_shape.h"
 #include "subvol/mesh_io.h"
 #include "subvol/read_surface.h"
 #include "text.h"
+#include "vdb_functions.h"
 #include "verb.h"
 
 namespace subvol::cli {
@@ -29,6 +33,9 @@ namespace {
 
 /// In each cell of the control mesh a grid is sampled at so many places along each edge.
 constexpr int kPlacesPerEdge = 4;
+
+constexpr std::initializer_list<const char*> kOfFields{"--levels", "--reach",  "--smoothing", "--iterations",
+                                                       "--clamp",  "--refine", "--tolerance"};
 
 class ApproximateVerb : public Verb {
 public:
@@ -53,7 +60,7 @@ public:
             .add_option("DATA", input_,
                         "a mesh, a .vdb grid of floats (where it is not active 0, or the background of a level set), a table "
                         "(.csv, .txt) of x, y, z and values, or "
-                        "with --shape a surface (.stl, .obj, .ply)")
+                        "with --shape a surface (.stl, .obj, .ply, .glb, or a .vdb level set, where its distance is 0)")
             ->required();
         app().add_option("--onto", onto_, "the control mesh: a file or model:NAME:RESOLUTION")->type_name("MESH")->required();
         app()
@@ -186,16 +193,36 @@ private:
         report.all_said();
     }
 
-    /// A .ply file has kernels, unless its shape is asked for.
-    [[nodiscard]] bool is_surface() const { return is_surface_file(input_) && (shape_ || extension_of(input_) != ".ply"); }
+    /// A .ply file has kernels, unless its shape is asked for; so has a grid fields.
+    [[nodiscard]] bool is_surface() const {
+        return shape_ ? is_surface_file(input_) || is_vdb_file(input_)
+                      : is_surface_file(input_) && extension_of(input_) != ".ply";
+    }
 
     [[nodiscard]] Surface read_surface_data(Report& report) {
-        if (!shape_) throw Error(ErrorCode::InvalidInput, "has no fields, only a shape", input_, "--shape with it");
+        if (!shape_) {
+            detail::refuse_missing(input_);
+            throw Error(ErrorCode::InvalidInput, "is a surface, which has a shape but no fields", input_,
+                        "--shape with it; `" + detail::command_for_surface(input_) + "` makes a control mesh of it");
+        }
+        if (is_vdb_file(input_)) return level_set_surface(report);
         refuse_mesh_options(app(), "needs a mesh; this is a surface");
-        refuse_options(app(),
-                       {"--field", "--levels", "--reach", "--smoothing", "--iterations", "--clamp", "--refine", "--tolerance"},
-                       "is about fields; a surface has none");
+        refuse_options(app(), {"--field"}, "is about fields; a surface has none");
+        refuse_options(app(), kOfFields, "is about fields; a surface has none");
         return report.timed("read", [&] { return read_surface(input_); });
+    }
+
+    /// The surface where the distances of a level set are 0.
+    [[nodiscard]] Surface level_set_surface(Report& report) {
+        refuse_mesh_options(app(), "needs a mesh; this is a grid of voxels");
+        refuse_options(app(), kOfFields, "is about fields; of a level set the shape is taken");
+        const VdbGrid grid = report.unpack(load_grid(input_, common(), report.progress()));
+        if (!grid.report().level_set) {
+            throw Error(ErrorCode::InvalidInput, "is fog, which has no surface of its own",
+                        text(input_, ", grid ", grid.report().name),
+                        "a level set; `" + detail::command_for_surface(input_, "--iso VALUE") + "` makes a control mesh of it");
+        }
+        return report.timed("read", [&] { return vdb().grid_surface(grid, std::nullopt); });
     }
 
     [[nodiscard]] HexMesh shaped(HexMesh onto, const Surface& surface, Report& report) {
@@ -221,10 +248,8 @@ private:
     [[nodiscard]] HexMesh read_data(const std::string& input, const CommonOptions& reading, const HexMesh& onto,
                                     const ApproximateOptions& options, Report& report) {
         const std::string extension = extension_of(input);
-        if (shape_ && (extension == ".csv" || extension == ".txt" || is_vdb_file(input))) {
-            throw Error(ErrorCode::InvalidInput, "has no shape", "--shape",
-                        "a mesh or a surface; of a grid subvol mesh makes one");
-        }
+        if (shape_ && (extension == ".csv" || extension == ".txt"))
+            throw Error(ErrorCode::InvalidInput, "has no shape", "--shape", "a mesh, a surface or a level set");
         if (extension == ".csv" || extension == ".txt") {
             refuse_mesh_options(app(), "needs a mesh; this is a table");
             refuse_options(app(), {"--field"}, "needs a mesh or a grid; of a table all columns are taken");
@@ -232,6 +257,7 @@ private:
         }
         if (is_vdb_file(input)) return read_grid(input, reading, onto, options, report);
         if (const InputKind kind = kind_of(input); kind == InputKind::Points || kind == InputKind::Bricks) {
+            if (kind == InputKind::Points) (void)read_points_input(input, report.progress());  // a .ply file may be a surface
             throw Error(ErrorCode::InvalidInput, kind == InputKind::Points ? "has kernels" : "is a folder of bricks", input,
                         "a mesh, a .vdb grid of floats, or a table (.csv, .txt)");
         }

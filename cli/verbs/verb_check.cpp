@@ -48,6 +48,7 @@ public:
     }
 
     int run(Report& report) override {
+        refuse_options(app(), {"--field"}, "has no effect: folds are those of the shape, whatever its fields");
         FoldOptions options = options_;
         options.scheme = scheme_.options(0, report.progress()).scheme;
         options.progress = report.progress();

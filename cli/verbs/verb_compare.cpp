@@ -144,6 +144,7 @@ public:
                "overlap. Exit code 1 if a --fail-under is not met, or one is given and the first field has values at less of "
                "the second's "
                "domain than --coverage.") {
+        show_limit_of_parts();
         app().add_option("A", a_, "a picture or a field")->required();
         app().add_option("B", b_, "the reference: a picture of the same size or a part of one, or a field")->required();
         app()

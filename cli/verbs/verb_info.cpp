@@ -8,6 +8,7 @@
 #include "choices.h"
 #include "grid_input.h"
 #include "input.h"
+#include "limit_warning.h"
 #include "mesh_figures.h"
 #include "numbers.h"
 #include "options.h"
@@ -17,6 +18,7 @@
 #include "steps.h"
 #include "subvol/certificate.h"
 #include "subvol/detail/byte_hash.h"
+#include "subvol/detail/number_text.h"
 #include "subvol/error.h"
 #include "subvol/join_grids.h"
 #include "subvol/mesh_report.h"
@@ -49,11 +51,14 @@ public:
                "  subvol info part.vtu --folds\n"
                "  subvol info --gl\n"
                "\n"
-               "JSON with --folds: folds, with verdict, cells {proved, folded, undecided, irregular} and open_volume, as of "
+               "JSON: blocks and sets, each with name, cells (those that it consists of after the splitting; blocks also "
+               "elements, as the file counts them) and volume, as of the whole. With --folds: folds, with verdict, cells "
+               "{proved, folded, undecided, irregular} and open_volume, as of "
                "check.") {
         app().add_option("FILE", input_, text(input_help(), ", or a .vdb file, or points (.ply, .vtp, .svk)"));
         app().add_flag("--list-fields", list_fields_, "print the names of a mesh's fields only, one a line");
         app().add_flag("--folds", folds_, "how many cells are proved not to fold in the limit of MCQ (check: where they fold)");
+        app().add_flag("--limit", limit_, "volume and box of the limit of MCQ, too");
         app().add_flag("--gl", gl_, "list the OpenGL devices that can splat");
         app()
             .add_option("--at", points_,
@@ -68,10 +73,7 @@ public:
             ->check(offered(tet_schemes()));
         add_option(app(),
                    Option("levels", refine_.levels).between(0, 8).help("L", "of --scheme (default 2)").only_with("scheme"));
-        add_option(app(), Option("crease-angle", refine_.rules.crease_angle_deg)
-                              .between(0, 180)
-                              .help("DEG", "of --scheme: boundary edges that bend by more are sharp (default 60)")
-                              .only_with("scheme"));
+        add_option(app(), refine_.described()[2]);  // --crease-angle
         share_.add_to(app(), "the figures of some cells of a mesh, with --json");
     }
 
@@ -86,6 +88,9 @@ public:
         set_refinement();
         if (folds_ && (list_fields_ || input_.empty() || shares(share_) || kind_ == InputKind::Bricks || is_no_mesh())) {
             throw Error(ErrorCode::InvalidInput, "needs a mesh in one piece, and one process", "--folds", "no --folds");
+        }
+        if (limit_ && (list_fields_ || input_.empty() || shares(share_) || kind_ == InputKind::Bricks || is_no_mesh())) {
+            throw Error(ErrorCode::InvalidInput, "needs a mesh in one piece, and one process", "--limit", "no --limit");
         }
         if (is_no_mesh()) refuse_mesh_options(app(), "needs a mesh; these are points or grids");
         if (list_fields_) return list_fields(report);
@@ -187,10 +192,12 @@ private:
             about = joined(share, report, [&] { return detail::inspect_share(read.mesh, share, kCellsNamed); });
             if (!speaks()) return;
         } else {
-            about.counts = report.timed("inspect", [&] { return figures_of(read); });
+            about.counts = report.timed("inspect", [&] { return figures_of(read, report.progress()); });
             if (about.counts.inverted_cells > 0) about.inverted = inverted_cells(read.mesh, kCellsNamed);
         }
         report.merge(facts_of(about.counts));
+        if (read.sharp_edges && read.sharp_edges->steps)
+            report.note("its sharp edges are steps, as voxels have them: --crease-angle none makes them smooth");
         if (!read.shells.empty()) {
             const ShellReport shells = inspect(read.shells);
             report["sheets"] = {{"quads", shells.quads},           {"lines", shells.lines},
@@ -215,6 +222,13 @@ private:
             found["folds"] = facts_of(*folds);
             report.merge(found);
         }
+        std::optional<LimitBody> limit;
+        if (limit_) {
+            limit = report.timed("limit", [&] { return limit_body(read.mesh, {}, 2, report.progress()); });
+            report["limit_volume"] = limit->volume;
+            report["limit_bounds"] = json_of(limit->bounds);
+            if (!is_model(input_)) report.warn(limit_warning(*limit));
+        }
         if (tets_.asked()) {
             report["refined"] = json_of(report.unpack(tets_.figures(used_mesh(read.mesh, {}), 2, report.progress())));
         }
@@ -223,14 +237,24 @@ private:
         std::string lines = mesh_lines(read, about, report.json().at("seconds"), steps_text(report.json()));
         lines.pop_back();
         report.say(lines);
+        if (limit) report.say(limit_lines(*limit));
         if (folds) report.say(text("folds        ", fold_text(*folds, read.mesh.cells.size()), "; of the limit of MCQ"));
         if (tets_.asked()) report.say(refined_lines(report.json().at("refined")));
         report.all_said();
     }
 
+    [[nodiscard]] static std::string limit_lines(const LimitBody& limit) {
+        using detail::number_text;
+        std::string lines = "limit        volume " + number_text(limit.volume);
+        for (int axis = 0; axis < 3; ++axis)
+            lines += text("  ", "xyz"[axis], " ", number_text(limit.bounds.lower[axis]), " … ",
+                          number_text(limit.bounds.upper[axis]));
+        return lines + "; of MCQ";
+    }
+
     /// The figures of a mesh; shells without cells have only points and a box.
-    [[nodiscard]] static MeshReport figures_of(const ReadResult& read) {
-        if (!read.mesh.cells.empty()) return inspect(read.mesh);
+    [[nodiscard]] static MeshReport figures_of(const ReadResult& read, Progress* progress) {
+        if (!read.mesh.cells.empty()) return inspect(read.mesh, progress);
         MeshReport report;
         report.points = read.mesh.points.size();
         for (const Vec3& p : read.shells.points) report.bounds.add(p);
@@ -288,12 +312,21 @@ private:
         report["times"] = series.times;
         report["step"] = step;
         report["blocks"] = Json::array();
-        for (const MeshBlock& block : read.blocks) report["blocks"].push_back({{"name", block.name}, {"cells", block.cells}});
+        for (const MeshBlock& block : read.blocks) {
+            const auto set = std::ranges::find(read.sets.sets, block.name, &CellSet::name);
+            Json one{{"name", block.name}, {"cells", block.cells}, {"elements", block.cells}};
+            if (set != read.sets.sets.end()) {
+                one["cells"] = set->cells.size();
+                one["volume"] = volume_of(read.mesh, *set);
+            }
+            report["blocks"].push_back(std::move(one));
+        }
         report["patches"] = Json::array();
         for (const Patch& patch : read.sets.patches)
             report["patches"].push_back({{"name", patch.name}, {"faces", patch.sides.size()}});
         report["sets"] = Json::array();
-        for (const CellSet& set : read.sets.sets) report["sets"].push_back({{"name", set.name}, {"cells", set.cells.size()}});
+        for (const CellSet& set : read.sets.sets)
+            report["sets"].push_back({{"name", set.name}, {"cells", set.cells.size()}, {"volume", volume_of(read.mesh, set)}});
     }
 
     /// "0 to 4, times 0 … 0.4; this is step 4"; empty if there is one step.
@@ -394,6 +427,7 @@ private:
     std::string input_;
     bool gl_ = false;
     bool folds_ = false;
+    bool limit_ = false;
     bool list_fields_ = false;
     InputKind kind_ = InputKind::Mesh;
     std::vector<std::string> points_;

@@ -9,9 +9,11 @@
 #include "mesh_output.h"
 #include "options.h"
 #include "outputs.h"
+#include "quantities.h"
 #include "refine_arguments.h"
 #include "subvol/control_mesh.h"
 #include "subvol/detail/missing_file.h"
+#include "subvol/detail/refuse_surface.h"
 #include "subvol/error.h"
 #include "subvol/read_surface.h"
 #include "text.h"
@@ -42,7 +44,7 @@ public:
                "min_scaled_jacobian, folded_cells, inverted_cells, open_edges, open_length (of edges of one triangle), surface "
                "{walls, "
                "united, cavities, cavities_alike, copies, sheets, turned, one_sided, many_edges}.") {
-        app().add_option("FILE", input_, "a closed surface (.stl, .obj, .ply), or a .vdb grid of floats")->required();
+        app().add_option("FILE", input_, "a closed surface (.stl, .obj, .ply, .glb), or a .vdb grid of floats")->required();
         app().add_option("-o,--output", output_, "the control mesh (.vtu, .vtkhdf)")->type_name("FILE")->required();
         app()
             .add_option("--iso", iso_,
@@ -78,8 +80,9 @@ private:
         }
         if (!is_surface_file(input_)) {
             if (!is_model(input_)) detail::refuse_missing(input_);
+            if (detail::names_foreign_surface(input_)) detail::refuse_surface(input_);
             throw Error(ErrorCode::InvalidInput, "is not a surface", input_,
-                        "an .stl, .obj or .ply file of triangles, or a .vdb grid");
+                        "an .stl, .obj, .ply or .glb file of triangles, or a .vdb grid");
         }
         refuse_mesh_options(app(), "needs a grid; this is a surface");
         refuse_options(app(), {"--field", "--iso"}, "needs a grid; this is a surface");

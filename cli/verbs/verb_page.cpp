@@ -4,16 +4,20 @@
 #include <filesystem>
 
 #include "grid_fields.h"
+#include "grid_input.h"
 #include "input.h"
+#include "limit_warning.h"
 #include "numbers.h"
 #include "outputs.h"
 #include "picture_arguments.h"
+#include "points_input.h"
 #include "refine_arguments.h"
 #include "sample_arguments.h"
 #include "sampled_points.h"
 #include "steps.h"
 #include "subvol/boundary_values.h"
 #include "subvol/detail/atomic_file.h"
+#include "subvol/detail/refuse_surface.h"
 #include "subvol/error.h"
 #include "subvol/page.h"
 #include "subvol/quantity.h"
@@ -36,7 +40,8 @@ public:
                "One file that needs no network: kernels, drawn by WebGL2 as `render` draws them. The reader can turn the "
                "volume, change the transfer function, clip, choose fields and steps, and pick values. JSON: bytes, points, "
                "kept (kernels in the page), bits, fields [{name, rmse, max_error, range}].") {
-        app().add_option("FILE", input_, input_help())->required();
+        show_limit_of_parts();
+        app().add_option("FILE", input_, text(input_help(), "; or a .vdb level set"))->required();
         app().add_option("-o,--output", output_, "the page to write (.html)")->type_name("FILE")->required();
         app()
             .add_option("--fields", fields_, "the fields to choose from: names, or all (default: the one of --field)")
@@ -77,7 +82,9 @@ public:
         report.if_long("--max-bytes that fits without merging, or a larger --spacing");
         tets_ = TetRefinement(refine_);
         PageOptions options{.title = title_.empty() ? title_of_file() : title_, .source = source_name()};
-        const std::vector<PageStep> steps = make_steps(options, report);
+        const bool voxels = kind_of(input_) == InputKind::Grid;
+        const std::vector<PageStep> steps =
+            voxels ? std::vector<PageStep>{step_of_level_set(options, report)} : make_steps(options, report);
         finish_options(options, steps.back(), report);
         const PageResult page = report.timed("page", [&] { return make_page(steps, options); });
         report.timed("write", [&] { detail::write_text_file(output_, page.html); });
@@ -122,6 +129,8 @@ private:
             ReadResult read = report.unpack(read_input(input_, common, report.progress()));
             const std::vector<FieldInfo> of_file = std::move(read.fields);
             mesh_ = shown_mesh(report.unpack(mesh_of(std::move(read), common, nullptr)), common, report);
+            if (!tets_.asked() && steps.empty())
+                report.warn(limit_warning(input_, mesh_, refine_.options(0, nullptr).scheme, report.progress()));
             mesh_ = report.unpack(tets_.hexes(std::move(mesh_), 1, report.progress()));
             const HexMesh& mesh = mesh_;
             box_.add(bounds(mesh));
@@ -145,6 +154,12 @@ private:
             RefineOptions refine = refine_.options(0, report.progress());
             refine.levels = picture_levels(mesh, tets_.asked() ? std::optional(0) : refine_.levels);
             step.boundary = report.timed("boundary", [&] { return boundary_values(mesh, refine); });
+            for (std::size_t f = 0; f < mesh.attributes.size() && !is_model(input_); ++f) {
+                const auto [low, high] = std::ranges::minmax(step.boundary.values[f]);
+                const Range inside = channel_range(step.volume, f);
+                report.warn(range_warning(mesh.attributes[f], field_range(mesh, f),
+                                          {.min = std::min(low, inside.min), .max = std::max(high, inside.max)}, true));
+            }
             steps.push_back(std::move(step));
         };
         if (asks_for_steps(common())) {
@@ -162,6 +177,24 @@ private:
             options.fields[f].max = ranges[f].max;
         }
         return steps;
+    }
+
+    /// The body within the surface of a level set.
+    [[nodiscard]] PageStep step_of_level_set(PageOptions& options, Report& report) {
+        refuse_options(app(), {"--fields"}, "needs a mesh; this is a grid of voxels");
+        const VdbGrid grid = report.unpack(load_grid(input_, common(), report.progress()));
+        if (!grid.report().level_set) {
+            throw Error(
+                ErrorCode::InvalidInput, "is fog, which has no boundary", text(input_, ", grid ", grid.report().name),
+                text("a level set; `", detail::command_for_surface(input_, "--iso VALUE"), "` makes a control mesh of it"));
+        }
+        PageStep step{.label = {},
+                      .volume = report.unpack(sample_reported(grid, sample_, std::nullopt, app(), report.progress())),
+                      .boundary = {}};
+        step.boundary = {step.volume.boundary, {std::vector<double>(step.volume.boundary.points.size(), 1)}};
+        options.fields.push_back({.name = step.volume.channels.front().name, .min = 1, .max = 1});
+        box_ = grid.report().frame;
+        return step;
     }
 
     void finish_options(PageOptions& options, const PageStep& step, Report& report) const {
@@ -189,7 +222,8 @@ private:
         const PageField& first = options.fields.front();
         const Range range{first.min, first.max};
         const Optics optics = picture_.make_optics(box_, range, range);
-        const std::vector<View> views = picture_.make_views(box_, framed_points(mesh_, picture_.look, optics));
+        const std::vector<View> views = picture_.make_views(
+            box_, mesh_.cells.empty() ? step.boundary.surface.points : framed_points(mesh_, picture_.look, optics));
         options.camera = views.front().camera();
         if (no_reference_) return;
         SplatOptions splat{.samples = solid ? 2 : 1, .progress = report.progress()};
@@ -224,7 +258,7 @@ private:
 
     std::string input_, output_, title_, unit_;
     std::vector<std::string> fields_;
-    HexMesh mesh_;  // of the last step
+    HexMesh mesh_;  // of the last step; empty of a level set
     Box box_;       // of all steps
     double max_bytes_ = 24e6;
     bool no_reference_ = false;

@@ -2,11 +2,13 @@
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include "body_input.h"
 #include "grid_fields.h"
 #include "grid_input.h"
 #include "input.h"
+#include "limit_warning.h"
 #include "mesh_frames.h"
 #include "numbers.h"
 #include "options.h"
@@ -22,6 +24,7 @@
 #include "subvol/clamp_channel.h"
 #include "subvol/detail/points_range.h"
 #include "subvol/error.h"
+#include "subvol/field_range.h"
 #include "subvol/kernel_file.h"
 #include "subvol/kernel_hierarchy.h"
 #include "subvol/points_error.h"
@@ -121,6 +124,7 @@ public:
                "  subvol points run.foam -o run.svw --step all --max-error 1e-3\n"
                "\n"
                "The boundary of NAME.vtp, of NAME.vdb and of a .ply with --splats is in NAME.boundary.vtp.") {
+        show_limit_of_parts();
         app().add_option("FILE", input_, text(input_help(), "; or a .vdb grid of floats"))->required();
         app()
             .add_option("-o,--output", output_,
@@ -328,7 +332,7 @@ private:
                        : write_points_of_bricks(output_, source, options, share_.given() ? &brick_share : nullptr);
         });
         if (!speaks()) return;
-        if (written.points > 0) report.note(beyond(field, body.range(field), {written.min, written.max}));
+        if (written.points > 0) say_beyond(report, field, body.range(field), {written.min, written.max}, true);
         report["points"] = written.points;
         report["boundary_triangles"] = written.triangles;
         report["output"] = output_;
@@ -358,17 +362,21 @@ private:
         report["input"] = input_;
         HexMesh mesh = report.unpack(load_mesh(input_, options, report.progress()));
         mesh = report.unpack(with_selected_field(std::move(mesh), options));
+        if (!tets_.asked() && !std::exchange(said_limit_, true))  // once for all steps
+            report.warn(limit_warning(input_, mesh, refine_.options(0, nullptr).scheme, report.progress()));
         const Range given = field_range(mesh);
+        const std::optional<FieldRange> bounds = bounds_of(mesh.attributes.front());
+        const bool of_file = !is_model(input_) && !mesh.attributes.front().derived;
         mesh = report.unpack(tets_.hexes(std::move(mesh), 1, report.progress()));
         const HexMesh compared = error_ ? mesh : HexMesh{};
         RbfVolume volume =
             report.unpack(tets_.asked() ? sample_tets_reported(mesh, sample_, seen(given), report.progress())
                                         : sample_reported(std::move(mesh), sample_, refine_, seen(given), report.progress()));
         merge(volume, report);
-        if (clamp_ || given.bounded) {
+        if (clamp_) {
             report["clamped"] = clamp_channel(volume.channels.front(), given.min, given.max);
-        } else {
-            report.note(beyond(volume.channels.front().name, given, channel_range(volume, 0)));
+        } else if (!bounds) {
+            say_beyond(report, volume.channels.front().name, given, channel_range(volume, 0), of_file);
         }
         if (error_) add_error(compared, volume, report);
         return volume;
@@ -419,7 +427,7 @@ private:
     std::string input_;
     std::string output_;
     PointsWriteOptions written_;
-    bool clamp_ = false, error_ = false;
+    bool clamp_ = false, error_ = false, said_limit_ = false;
     std::optional<double> merge_error_, wavelet_tolerance_, max_error_;
     WaveletFileOptions wavelets_;
     SeriesFileOptions series_;

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <array>
-#include <map>
 #include <string>
 #include <vector>
 
@@ -18,12 +16,12 @@
 #include "quantities.h"
 #include "refine_arguments.h"
 #include "steps.h"
-#include "subvol/detail/number_text.h"
 #include "subvol/error.h"
 #include "subvol/hex_mesh.h"
 #include "subvol/measure.h"
 #include "subvol/mesh_io.h"
 #include "subvol/mixed_probe.h"
+#include "subvol/part_places.h"
 #include "subvol/patch_measure.h"
 #include "subvol/probe.h"
 #include "subvol/quantity.h"
@@ -34,50 +32,31 @@
 namespace subvol::cli {
 namespace {
 
-/// The block of each cell of a mesh, as a number among `names`. Both are empty if the mesh has fewer than two blocks.
-struct BlockCells {
-    std::vector<Index> groups;
-    std::vector<std::string> names;
-};
-
-/// The sum of a cell's corners and one corner, which are the same wherever the cell is read.
-using Key = std::array<double, 6>;
-
-Key key_of(const HexMesh& mesh, const std::array<Index, 8>& cell) {
-    Vec3 sum(0.0);
-    for (const Index p : cell) sum += mesh.points[p];
-    const Vec3& first = mesh.points[cell[0]];
-    return {sum.x, sum.y, sum.z, first.x, first.y, first.z};
-}
-
-/// Reads the blocks of the input one by one, and looks for their cells in the mesh. Cells that are in no block, such as curved
-/// ones that are split in another way alone, belong to one more part, "(others)", with a warning.
-WithFacts<BlockCells> cells_of_blocks(const std::string& input, const std::vector<MeshBlock>& blocks, const HexMesh& mesh,
-                                      const CommonOptions& options) {
-    WithFacts<BlockCells> result;
-    BlockCells& found = result.value;
-    if (blocks.size() < 2) return result;
-    std::map<Key, Index> cells;
-    for (Index c = 0; c < mesh.cells.size(); ++c) cells.emplace(key_of(mesh, mesh.cells[c]), c);
-    const auto others = static_cast<Index>(blocks.size());
-    found.groups.assign(mesh.cells.size(), others);
-    for (Index b = 0; b < blocks.size(); ++b) {
-        found.names.push_back(blocks[b].name);
-        CommonOptions one = options;  // as it was read, but for what was left out
-        one.only.clear();
-        one.read.blocks = {blocks[b].name};
-        const HexMesh part = read_input(input, one, nullptr).value.mesh;
-        for (const auto& cell : part.cells) {
-            const auto at = cells.find(key_of(part, cell));
-            if (at != cells.end()) found.groups[at->second] = b;
-        }
+/// The parts of a mesh that are measured beside the whole: its blocks in the order of the file, its other sets, and "(others)"
+/// where cells are in none of them. None if a block or set is the whole.
+///
+/// chosen: a flag for each cell that is measured; empty: all
+std::vector<CellSet> parts_of(const std::vector<MeshBlock>& blocks, const std::vector<CellSet>& sets,
+                              const std::vector<std::uint8_t>& chosen, std::size_t cells) {
+    std::vector<CellSet> parts;
+    std::vector<std::uint8_t> in_part(cells, 0);
+    const auto all = chosen.empty() ? cells : static_cast<std::size_t>(std::ranges::count(chosen, 1));
+    for (const CellSet& set : sets) {
+        if (set.cells.empty()) continue;
+        parts.push_back(set);
+        for (const Index cell : set.cells) in_part[cell] = 1;
     }
-    const auto lost = static_cast<std::size_t>(std::count(found.groups.begin(), found.groups.end(), others));
-    if (lost > 0) {
-        found.names.emplace_back("(others)");
-        result.facts.warn(text(counted(lost, "cell"), " could not be assigned to a block"));
+    const auto place = [&](const CellSet& set) {
+        return std::ranges::find(blocks, set.name, &MeshBlock::name) - blocks.begin();
+    };
+    std::ranges::stable_sort(parts, {}, place);
+    if (parts.empty() || (parts.size() == 1 && parts.front().cells.size() == all)) return {};
+    CellSet others{"(others)", {}};
+    for (Index cell = 0; cell < cells; ++cell) {
+        if (in_part[cell] == 0 && (chosen.empty() || chosen[cell] != 0)) others.cells.push_back(cell);
     }
-    return result;
+    if (!others.cells.empty()) parts.push_back(std::move(others));
+    return parts;
 }
 
 class ProbeVerb : public Verb {
@@ -92,9 +71,11 @@ public:
                "  subvol probe case --patch inlet --patch outlet --flux U\n"
                "\n"
                "JSON: values, one for each place: at, inside, value and gradient of the chosen field, cell, parameters, "
-               "fields with value and gradient of each. Outside there is nothing: null. stats: whole and parts, with "
+               "fields with value and gradient of each. Outside there is nothing: null. stats: folded_cells as far as seen, "
+               "whole and parts, with "
                "volume, error (of the volume and of means, in parts of them and of ranges), and for each field, or for "
-               "the one that --field names, integral, mean, min, max, their places, extreme_error, and a histogram. With "
+               "the one that --field names, integral, mean, min, max, their places, extreme_error, and a histogram; with file_ "
+               "before the name the same of the cells as the file has them. With "
                "--step all or A-B: steps, each with step, time and values, stats or patches. patches: name, faces, area, "
                "error, normal (its integral), flux and throughput (of --flux, outward and without sign), fields with "
                "integral, mean, min, max, extreme_error; flux_sum of several.") {
@@ -111,7 +92,7 @@ public:
         add_option(app(),
                    Option("count", count_).between(2, 10000000).help("N", "how many places on the line").only_with("line"));
         app().add_option("--points", points_, "a table of places: three numbers a line, or columns x, y, z")->type_name("FILE");
-        app().add_flag("--stats", stats_, "integral, mean, extremes with their places, histogram; by block too");
+        app().add_flag("--stats", stats_, "integral, mean, extremes with their places, histogram; of each block and set, too");
         add_option(app(), options_of(measured_).back().only_with("stats"));
         app()
             .add_option("--patch", patches_,
@@ -144,6 +125,7 @@ public:
         const LimitOptions limit{.scheme = scheme_.options(0, report.progress()).scheme, .progress = report.progress()};
         report["input"] = input_;
         CommonOptions reading = with_whole_cells(common(), regions_);
+        reading.parts_in_whole = !tets.asked();
         if (!patches_.empty() && (tets.asked() || !regions_.empty())) {
             throw Error(ErrorCode::InvalidInput, "patches are those of the limit of hexahedra, of whole cells", "--patch",
                         "--only block:, set:, fold: or where:, and no scheme of tetrahedra");
@@ -155,18 +137,22 @@ public:
             probe_steps(reading, places, limit, report);
         } else {
             const BodyInput body = open(reading, places, report);
-            report["cells"] = body.source().cells();
+            report["cells"] =
+                body.in_part.empty() ? body.source().cells() : static_cast<std::uint64_t>(std::ranges::count(body.in_part, 1));
             if (tets.asked()) {
                 if (!regions_.empty()) {
                     throw Error(ErrorCode::InvalidInput, "is cut from the limit of hexahedra",
                                 "--only " + regions_.front().text(), "block:, set:, fold: or where:, which choose whole cells");
                 }
                 probe_tets(tets, body.mesh_for(tets), places, report);
-                if (stats_ && body.blocks.size() > 1) report.warn("tetoct and boxspline measure the whole, not its blocks");
+                if (stats_ && body.sets.sets.size() > 1) report.warn("tetoct and boxspline measure the whole, not its parts");
             } else {
                 if (!places.empty()) show_probed(probe(body, places, limit, report), places, output_, common(), report);
-                if (stats_) show_measured(measure(body, reading, limit.scheme, report), report);
-                if (!patches_.empty()) show_patches(patches_of(body, limit.scheme, report), report);
+                if (stats_) show_measured(measure(body, limit.scheme, report), body.source().mesh(), !is_model(input_), report);
+                if (!patches_.empty()) {
+                    const std::vector<PatchMeasure> found = patches_of(body, limit.scheme, report);
+                    show_patches(found, *body.source().mesh(), !is_model(input_), report);
+                }
             }
         }
         if (!output_.empty()) report["output"] = output_;
@@ -227,7 +213,7 @@ private:
             const BodyInput body = open(one, places, report);
             ProbedStep& found = steps.emplace_back(ProbedStep{number, series.times[number], {}, {}});
             if (stats_) {
-                found.measure = measure(body, one, limit.scheme, report);
+                found.measure = measure(body, limit.scheme, report);
             } else if (!patches_.empty()) {
                 found.patches = patches_of(body, limit.scheme, report);
             } else {
@@ -239,10 +225,10 @@ private:
     }
 
     /// The field whose flow is asked for, before others take its name.
-    [[nodiscard]] std::vector<double> flow_of(const BodyInput& body) const {
+    [[nodiscard]] Attribute flow_of(const BodyInput& body) const {
         const HexMesh* mesh = body.source().mesh();
         if (mesh == nullptr) throw Error(ErrorCode::InvalidInput, "bricks have no patches", "--flux", "the mesh itself");
-        return of_option("--flux", [&] { return vectors_of(*mesh, flux_, common().listener); });
+        return of_option("--flux", [&] { return vector_field_of(*mesh, flux_, common().listener); });
     }
 
     [[nodiscard]] std::vector<PatchMeasure> patches_of(const BodyInput& body, const SchemeOptions& scheme,
@@ -251,7 +237,8 @@ private:
         if (mesh == nullptr) throw Error(ErrorCode::InvalidInput, "bricks have no patches", "--patch", "the mesh itself");
         const std::vector<Patch> patches = patches_of_option(*mesh, body.sets, patches_);
         return report.timed("patches", [&] {
-            return measure_patches(*mesh, patches, {.scheme = scheme, .flux = flux_vectors_, .progress = report.progress()});
+            return measure_patches(*mesh, patches,
+                                   {.scheme = scheme, .flux_field = flux_vectors_, .progress = report.progress()});
         });
     }
 
@@ -262,6 +249,7 @@ private:
         for (std::size_t p = 0; p < places.size(); ++p) {
             if (depth(regions_, places[p]) < 0) found.cells[p] = kNone;
         }
+        if (!body.in_part.empty()) keep_places_in(*body.source().mesh(), body.in_part, found);
         return found;
     }
 
@@ -277,32 +265,19 @@ private:
             show_probed(found, places, output_, common(), report);
         }
         if (!stats_) return;
-        show_measured(
-            report.timed("measure",
-                         [&] { return measure_limit(fine, cells, {.bins = measured_.bins, .progress = report.progress()}); }),
-            report);
+        const LimitMeasure measured = report.timed(
+            "measure", [&] { return measure_limit(fine, cells, {.bins = measured_.bins, .progress = report.progress()}); });
+        show_measured(measured, nullptr, false, report);
     }
 
-    /// The options that read the mesh as it was read: with the factor that --warp FIELD*auto has found.
-    [[nodiscard]] static CommonOptions reading_again(const CommonOptions& options, const BodyInput& body) {
-        CommonOptions again = options;
-        if (body.moved) again.warp = body.moved->field + "*" + detail::exact_text(*body.moved->factor);
-        return again;
-    }
-
-    [[nodiscard]] LimitMeasure measure(const BodyInput& body, const CommonOptions& options, const SchemeOptions& scheme,
-                                       Report& report) const {
+    [[nodiscard]] LimitMeasure measure(const BodyInput& body, const SchemeOptions& scheme, Report& report) const {
         const MeshSource source = body.source();
-        BlockCells parts;
-        if (source.mesh() != nullptr) {
-            parts = report.unpack(report.timed(
-                "blocks", [&] { return cells_of_blocks(input_, body.blocks, *source.mesh(), reading_again(options, body)); }));
-        }
-        const MeasureOptions asked{.scheme = scheme,
-                                   .bins = measured_.bins,
-                                   .groups = parts.groups,
-                                   .names = parts.names,
-                                   .progress = report.progress()};
+        std::vector<CellSet> parts;
+        if (source.mesh() != nullptr)
+            parts = report.timed(
+                "blocks", [&] { return parts_of(body.blocks, body.sets.sets, body.in_part, source.mesh()->cells.size()); });
+        const MeasureOptions asked{
+            .scheme = scheme, .bins = measured_.bins, .sets = parts, .cells = body.in_part, .progress = report.progress()};
         return report.timed("measure", [&] {
             return regions_.empty() ? measure_limit(source, asked) : measure_limit_in(*source.mesh(), regions_, asked);
         });
@@ -310,8 +285,8 @@ private:
 
     std::string input_, line_, points_, output_, flux_;
     std::vector<std::string> at_, patches_;
-    std::vector<double> flux_vectors_;  // at the points
-    std::vector<Region> regions_;       // of --only: the parts of space
+    std::optional<Attribute> flux_vectors_;
+    std::vector<Region> regions_;  // of --only: the parts of space
     std::size_t count_ = 200;
     MeasureOptions measured_;
     bool stats_ = false;

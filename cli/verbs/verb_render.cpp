@@ -13,6 +13,8 @@
 #include "body_input.h"
 #include "grid_input.h"
 #include "input.h"
+#include "limit_warning.h"
+#include "mesh_figures.h"
 #include "options.h"
 #include "part_note.h"
 #include "picture_notes.h"
@@ -28,6 +30,8 @@
 #include "subvol/detail/points_frame.h"
 #include "subvol/error.h"
 #include "subvol/flow_surface.h"
+#include "subvol/limit.h"
+#include "subvol/measure.h"
 #include "subvol/method.h"
 #include "subvol/quantity.h"
 #include "subvol/shell_scene.h"
@@ -158,9 +162,13 @@ PictureNotes make_notes(const ShownBody& shown, const ShownColors& colors, Rende
     }
     if (!shown.body.shells.empty()) {
         notes.shells = facts.timed(progress, "sheets", [&] {
-            ShellScene scene =
-                make_shell_scene(*source.mesh(), shown.body.shells, arguments.refine.options(0, progress),
-                                 arguments.refine.levels, colors.optics, samples, arguments.clip, shown.body.opacities);
+            const BodyInput& body = shown.body;
+            const RefineOptions refine = arguments.refine.options(0, progress);
+            const std::optional<int>& most = arguments.refine.levels;
+            ShellScene scene = body.whole ? make_side_scene(*source.mesh(), *body.whole, body.shells, refine, most,
+                                                            colors.optics, samples, arguments.clip, body.opacities)
+                                          : make_shell_scene(*source.mesh(), body.shells, refine, most, colors.optics, samples,
+                                                             arguments.clip);
             scene.ended = ends_rays && transparent && shown.body.opacities.empty();
             return std::make_shared<const ShellScene>(std::move(scene));
         });
@@ -187,8 +195,9 @@ public:
                "  subvol render run.pvd -o run.mp4 --step all             a film\n"
                "  subvol render smoke.vdb -o smoke.png --method grid\n"
                "  subvol render smoke.vdb -o smoke.png                   the voxels as kernels") {
+        show_limit_of_parts();
         app()
-            .add_option("FILE", input_, text(input_help(), "; or points (.ply, .vtp, .svk, .vdb), or a .vdb grid of floats"))
+            .add_option("FILE", input_, text(input_help(), "; or points (.ply, .vtp, .svk, .vdb), or a .vdb grid or level set"))
             ->required();
         app()
             .add_option("-o,--output", output_,
@@ -216,7 +225,9 @@ public:
 
     int run(Report& report) override {
         if (streams_.chosen.any()) veil_body(picture_.choices, arguments_.clip);
-        arguments_.settle(kind_of_input(), app());
+        const BodyKind kind = kind_of_input();
+        if (kind == BodyKind::Voxels) grid_ = report.unpack(load_grid(input_, common(), report.progress()));
+        arguments_.settle(kind, grid_ && grid_->report().level_set, app());
         check_flow(streams_.chosen, arguments_.method, arguments_.body,
                    common().patches.empty() && common().part_opacities.empty(), OptionNames::Flags);
         refuse_frames_per_second();
@@ -398,37 +409,53 @@ private:
         Facts facts;
         PictureNotes notes = make_notes(mesh, shown, arguments_, streams_, report.progress(), facts);
         report.merge(facts);
-        if (picture_.extremes) {
-            PictureMaker maker = maker_of(body_of(mesh), report);
-            notes.marks = extremes_of(mesh, maker, report);
-        }
+        if (picture_.extremes) notes.marks = extremes_of(mesh, report);
         set_notes(std::move(notes), output);
     }
 
-    /// The least and the largest value of what gives the colours, with their places.
-    [[nodiscard]] std::vector<PictureMark> extremes_of(const ShownBody& shown, PictureMaker& maker, Report& report) const {
+    /// The least and the largest value of what gives the colours in what the picture shows of the body, with their places.
+    [[nodiscard]] std::vector<PictureMark> extremes_of(const ShownBody& shown, Report& report) const {
         const HexMesh* mesh = shown.body.source().mesh();
         if (mesh == nullptr || mesh->cells.empty())
             throw Error(ErrorCode::InvalidInput, "needs a mesh with opaque cells in memory", "--extremes");
-        Facts facts;
-        const bool solid = maker.paints_boundary();
-        const std::vector<Vec3>& points = solid ? maker.skin(report.progress(), facts).surface.points : mesh->points;
-        const std::vector<double>& values =
-            solid ? maker.skin(report.progress(), facts).values.back() : mesh->attributes.back().values;
-        std::optional<std::size_t> least, largest;
-        for (std::size_t p = 0; p < points.size(); ++p) {
-            if (arguments_.clip.removes(points[p])) continue;
-            if (!least || values[p] < values[*least]) least = p;
-            if (!largest || values[p] > values[*largest]) largest = p;
+        std::vector<Region> left;
+        for (const CutPlane& plane : arguments_.clip.planes) left.push_back(half_space(plane.point, -plane.normal));
+        if (arguments_.clip.box) left.push_back(box_region(*arguments_.clip.box));
+        HexMesh colored = *mesh;
+        colored.attributes = {mesh->attributes.back()};
+        const RefineOptions refine = arguments_.refine.options(0, report.progress());
+        MeasureOptions options{.scheme = refine.scheme, .progress = report.progress()};
+        if (arguments_.refine.levels) {
+            colored = on_limit(subvol::refine(colored, refine), refine.scheme.kind);
+            options.scheme = {.kind = Scheme::Linear};
         }
-        if (!least) throw Error(ErrorCode::InvalidInput, "nothing is left of the body", "--extremes", "a smaller cut");
+        const FieldMeasure found = report.timed("extremes", [&] {
+            try {
+                const LimitMeasure all =
+                    left.empty() ? measure_limit(colored, options) : measure_limit_in(colored, left, options);
+                if (!is_model(input_)) report.warn(fold_warning(all.folds));
+                return all.whole.fields.front();
+            } catch (const Error& error) {
+                if (left.empty() || error.code() != ErrorCode::InvalidInput) throw;
+                throw Error(ErrorCode::InvalidInput, "nothing is left of the body", "--extremes", "a smaller cut");
+            }
+        });
         std::vector<PictureMark> marks;
         Json said;
-        for (const auto& [name, p] : {std::pair{"min", *least}, {"max", *largest}}) {
-            marks.push_back({points[p], text(name, " ", detail::number_text(values[p], 4))});
-            said[name] = values[p];
-            said[text(name, "_at")] = {points[p].x, points[p].y, points[p].z};
+        for (const auto& [name, one] : {std::pair{"min", found.min}, {"max", found.max}}) {
+            marks.push_back({one.place, text(name, " ", detail::number_text(one.value, 4))});
+            said[name] = one.value;
+            said[text(name, "_at")] = place_of(one);
         }
+        if (!arguments_.refine.levels) {  // else the cells are those of the level
+            for (const auto& [name, one] : {std::pair{"file_min", found.given.min}, {"file_max", found.given.max}}) {
+                said[name] = one.value;
+                said[text(name, "_at")] = place_of(one);
+            }
+        }
+        if (!is_model(input_))
+            report.warn(range_warning(colored.attributes.front(), field_range(*mesh, mesh->attributes.size() - 1),
+                                      {.min = found.min.value, .max = found.max.value}));
         report["extremes"] = std::move(said);
         return marks;
     }
@@ -438,11 +465,18 @@ private:
         ShownBody shown =
             report.unpack(load_shown_body(input_, options, arguments_, streams_, app(), report.progress(), alone));
         moved_ = shown.body.moved;
+        if (!arguments_.tets.asked() && !said_limit_) {
+            const SchemeOptions scheme = arguments_.refine.options(0, report.progress()).scheme;
+            report.warn(limit_warning(input_, shown.body.source(), scheme, report.progress()));
+            said_limit_ = true;  // once for all steps
+        }
         return shown;
     }
 
     [[nodiscard]] PictureBody body_of(const ShownBody& shown) const {
-        return {.mesh = shown.body.source(), .tets = arguments_.tets.asked()};
+        PictureBody body{.mesh = shown.body.source(), .tets = arguments_.tets.asked()};
+        body.of_file = !is_model(input_) && !picture_.extremes;  // which are searched for, and say it
+        return body;
     }
 
     /// A picture of each step, in one box and with one range of colours: all are read once for these.
@@ -516,9 +550,10 @@ private:
     /// Rays through voxels, or the voxels as kernels.
     void draw_voxels(PictureOutput& output, Report& report) {
         refuse_mesh_options(app(), "needs a mesh; this is a grid of voxels");
-        report["input"] = input_;
-        const VdbGrid grid = report.unpack(load_grid(input_, common(), report.progress()));
-        const ShownField field{grid.report().name, {grid.report().min, grid.report().max}};
+        const VdbGrid& grid = *grid_;
+        const bool body = grid.report().level_set && draws_kernels(arguments_.method);  // of density 1
+        const ShownField field =
+            body ? ShownField{"density", {1, 1}} : ShownField{grid.report().name, {grid.report().min, grid.report().max}};
         show(grid.report().frame, field, field, output, report, [&](const ShownColors& shown) {
             if (arguments_.method == Method::Grid) {
                 const auto voxels = grid.voxels();
@@ -566,8 +601,10 @@ private:
     PictureArguments& picture_ = arguments_.picture;
     ShareArgument share_;
     std::optional<PictureShares> rows_{};  // this process draws some rows only
+    std::optional<VdbGrid> grid_{};        // of voxels
     Box box_{};                            // of what is shown, with its range
     std::optional<Warp> moved_;            // by --warp
+    bool said_limit_ = false;
     Range range_{};
 };
 

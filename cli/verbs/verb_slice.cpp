@@ -4,9 +4,12 @@
 #include <array>
 #include <cmath>
 #include <string_view>
+#include <tuple>
 
 #include "body_input.h"
 #include "input.h"
+#include "limit_warning.h"
+#include "mesh_figures.h"
 #include "numbers.h"
 #include "options.h"
 #include "outputs.h"
@@ -19,6 +22,7 @@
 #include "subvol/error.h"
 #include "subvol/image_io.h"
 #include "subvol/limit_slice.h"
+#include "subvol/measure.h"
 #include "subvol/overlay.h"
 #include "tet_refinement.h"
 #include "text.h"
@@ -27,17 +31,32 @@
 namespace subvol::cli {
 namespace {
 
+/// The box of the points of some cells. cells: a flag for each
+Box box_of(const HexMesh& mesh, std::span<const std::uint8_t> cells) {
+    Box box;
+    for (std::size_t c = 0; c < cells.size(); ++c) {
+        for (const Index p : mesh.cells[c]) {
+            if (cells[c] != 0) box.add(mesh.points[p]);
+        }
+    }
+    return box;
+}
+
 class SliceVerb : public Verb {
 public:
     explicit SliceVerb(CLI::App& program)
-        : Verb(program, "slice", "Sample a field on a plane and write an image, a surface or a table.",
-               "  subvol slice part.vtu -o slice.png --plane 0,0,0,0,0,1\n"
-               "  subvol slice part.vtu -o slice.png --plane 0,0,0,1,1,0 --contours 10\n"
-               "  subvol slice part.vtu -o slice.vtp --plane 0,0,0,0,1,0 --field Temp\n"
-               "\n"
-               "The picture is seen from where the normal points, with z up (y in planes of constant z). .png: coloured by "
-               "value, with a legend. .exr: the same in linear light, without one. .csv: a row for each place inside. .vtp: "
-               "squares, and the contour lines.") {
+        : Verb(
+              program, "slice", "Sample a field on a plane and write an image, a surface or a table.",
+              "  subvol slice part.vtu -o slice.png --plane 0,0,0,0,0,1\n"
+              "  subvol slice part.vtu -o slice.png --plane 0,0,0,1,1,0 --contours 10\n"
+              "  subvol slice part.vtu -o slice.vtp --plane 0,0,0,0,1,0 --field Temp\n"
+              "\n"
+              "The picture is seen from where the normal points, with z up (y in planes of constant z). .png: coloured by "
+              "value, with a legend. .exr: the same in linear light, without one. .csv: a row for each place inside. .vtp: "
+              "squares, and the contour lines. JSON: plane, width, height, step, inside, contours, area, mean, min, min_at, "
+              "max, "
+              "max_at of the limit on the plane, and file_area, file_mean, file_min, file_min_at, file_max, file_max_at of the "
+              "cells as the file has them.") {
         app().add_option("FILE", input_, input_help())->required();
         app().add_option("-o,--output", output_, "the file to write (.png, .exr, .vtp, .csv)")->type_name("FILE")->required();
         app()
@@ -96,13 +115,36 @@ public:
         report["height"] = slice.height;
         report["step"] = glm::length(slice.right);
         report["inside"] = slice.inside;
-        report["min"] = slice.min;
-        report["max"] = slice.max;
+        say_figures(slice, report);
         if (contours_ > 0) report["contours"] = values;
         return 0;
     }
 
 private:
+    /// The figures of the limit on the plane, and beside them those of the cells as they were given.
+    void say_figures(const LimitSlice& slice, Report& report) const {
+        using detail::number_text;
+        const SliceFigures& limit = limit_figures_;
+        report["area"] = limit.area;
+        report["mean"] = limit.mean;
+        report["min"] = slice.min;
+        report["min_at"] = json_of(slice.min_at);
+        report["max"] = slice.max;
+        report["max_at"] = json_of(slice.max_at);
+        report["file_area"] = file_.area;
+        report["file_mean"] = file_.mean;
+        report["file_min"] = file_.min.value;
+        report["file_min_at"] = place_of(file_.min);
+        report["file_max"] = file_.max.value;
+        report["file_max_at"] = place_of(file_.max);
+        const auto both = [](double of_limit, double of_file) {
+            return number_text(of_limit, 5) + (std::isfinite(of_file) ? " · file " + number_text(of_file, 5) : "");
+        };
+        report.say(text("area ", both(limit.area, file_.area), "  ", slice.field, " mean ", both(limit.mean, file_.mean),
+                        "  min ", both(slice.min, file_.min.value), "  max ", both(slice.max, file_.max.value)));
+        report.all_said();
+    }
+
     [[nodiscard]] SliceOptions options(Report& report) const {
         SliceOptions options = options_;
         options.limit = {.scheme = scheme_.options(0, report.progress()).scheme, .progress = report.progress()};
@@ -114,16 +156,39 @@ private:
     [[nodiscard]] LimitSlice slice(std::vector<double>& plane, Report& report) {
         const TetRefinement tets(scheme_);
         report["input"] = input_;
-        BodyInput body = report.unpack(open_body(input_, common(), app(), report.progress()));
+        CommonOptions reading = common();
+        reading.parts_in_whole = !tets.asked();
+        BodyInput body = report.unpack(open_body(input_, reading, app(), report.progress()));
         const std::string field = report.unpack(body.select(common(), OtherFields::Drop));
         known_unit_ = unit_of(body.of_file, field);
         report.merge(body.refine(tets, 2, report.progress()));
         const MeshSource source = body.source();
-        const Vec3 center = source.bounds().center();
+        if (!tets.asked()) report.warn(limit_warning(input_, source, options(report).limit.scheme, report.progress()));
+        SliceOptions asked = options(report);
+        asked.cells = body.in_part;
+        const Vec3 center = asked.cells.empty() ? source.bounds().center() : box_of(*source.mesh(), asked.cells).center();
         if (plane.empty()) plane = {center.x, center.y, center.z, 0, 0, 1};
-        return report.timed("slice", [&] {
-            return slice_limit(source, {}, {plane[0], plane[1], plane[2]}, {plane[3], plane[4], plane[5]}, options(report));
+        LimitSlice slice = report.timed("slice", [&] {
+            return slice_limit(source, {}, {plane[0], plane[1], plane[2]}, {plane[3], plane[4], plane[5]}, asked);
         });
+        limit_figures_ = report.timed("figures", [&] { return figures_of(source, slice, asked.limit, asked.cells); });
+        file_ = report.timed("file", [&] { return given_figures_of(source, slice, asked.cells, report.progress()); });
+        // Of bricks the extremes are those of the places.
+        const Range range = body.range(field);
+        if (const HexMesh* mesh = source.mesh()) {
+            const SliceExtremes found =
+                report.timed("extremes", [&] { return find_slice_extremes(*mesh, slice, asked.limit, asked.cells); });
+            file_.min = found.min;
+            file_.max = found.max;
+            const Attribute* const shown = mesh->find_attribute(field);
+            if (shown != nullptr && !is_model(input_))
+                report.warn(range_warning(*shown, range, {.min = slice.min, .max = slice.max}));
+        } else {
+            report.warn(range_warning(field, range, {.min = slice.min, .max = slice.max}, true));
+            report.note(
+                "of bricks the extremes are those of the places, and volumes are not compared: probe --stats does both");
+        }
+        return slice;
     }
 
     void write_picture(const LimitSlice& slice, const std::vector<ContourLine>& lines, const Range& range,
@@ -238,20 +303,12 @@ private:
     }
 
     static void mark_extremes(Image& image, const LimitSlice& slice, const Vec2& middle, double letter, Report& report) {
-        std::size_t least = slice.values.size(), largest = least;
-        for (std::size_t p = 0; p < slice.values.size(); ++p) {
-            if (slice.cells[p] == kNone) continue;
-            if (least == slice.values.size()) least = largest = p;
-            if (slice.values[p] < slice.values[least]) least = p;
-            if (slice.values[p] > slice.values[largest]) largest = p;
-        }
-        const auto width = static_cast<std::size_t>(slice.width);
+        const double step = glm::dot(slice.right, slice.right);
         Json said;
-        for (const auto& [name, p] : {std::pair{"min", least}, {"max", largest}}) {
-            const Vec2 place(static_cast<double>(p % width), static_cast<double>(p / width));
-            draw_mark(image, place + middle, text(name, " ", detail::number_text(slice.values[p], 4)), letter, Vec3(0.0),
-                      Vec3(1.0));
-            const Vec3 at = slice.place(place.x, place.y);
+        for (const auto& [name, value, at] : {std::tuple{"min", slice.min, slice.min_at}, {"max", slice.max, slice.max_at}}) {
+            const Vec3 from = at - slice.origin;
+            const Vec2 place(glm::dot(from, slice.right) / step, glm::dot(from, slice.down) / step);
+            draw_mark(image, place + middle, text(name, " ", detail::number_text(value, 4)), letter, Vec3(0.0), Vec3(1.0));
             said[text(name, "_at")] = {at.x, at.y, at.z};
         }
         report["extremes"] = std::move(said);
@@ -260,6 +317,7 @@ private:
     static constexpr int kLeastLegend_px = 200;
     std::string input_, output_, plane_, function_ = "viridis", background_ = "white", unit_, known_unit_;
     std::optional<std::string> range_;
+    SliceFigures limit_figures_, file_;  // file_: of the cells as they were given
     SliceOptions options_;
     LookChoices choices_;  // the shape of the colours alone
     int contours_ = 0;

@@ -6,6 +6,7 @@
 #include "input.h"
 #include "options.h"
 #include "quantities.h"
+#include "subvol/detail/place_function.h"
 #include "subvol/error.h"
 #include "subvol/expression.h"
 #include "subvol/split.h"
@@ -32,6 +33,7 @@ public:
         app().add_option("FILE", input_, input_help())->required();
         app().add_option("-o,--output", output_, "the folder to write, for example big.bricks")->type_name("DIR")->required();
         add_options(app(), options_of(options_));
+        add_crease_angle();
     }
 
     int run(Report& report) override {
@@ -65,14 +67,18 @@ private:
             }
             return report.timed("split", [&] { return split_twist(output_, resolution, options_); });
         }
-        if (!is_model(input_) && kind_of(input_) != InputKind::Bricks) {
+        if (!is_model(input_) && kind_of(input_) != InputKind::Bricks && common().only.empty()) {
             report["input"] = input_;  // for errors
             if (common().density) std::ignore = evaluate_expression(*common().density, {});
             const ReadOptions read = read_options(input_, common());
             PiecesOptions pieces{.read = read, .change = {}, .about_change = common().density.value_or("")};
             if (common().density) pieces.change = [&](HexMesh mesh) { return used_mesh(std::move(mesh), common()); };
             if (common().field) {  // never together with --density
-                pieces.change = [&](HexMesh mesh) { return with_written_field(std::move(mesh), common()); };
+                pieces.change = [&](HexMesh mesh) {
+                    mesh = with_written_field(std::move(mesh), common());
+                    mesh.attributes = detail::without_functions(std::move(mesh.attributes));
+                    return mesh;
+                };
                 pieces.about_change = "field " + *common().field;
             }
             PiecesSplit split = report.timed("split", [&] { return split_pieces(output_, input_, pieces, options_); });
@@ -82,6 +88,10 @@ private:
         }
         report["input"] = input_;
         HexMesh mesh = with_written_field(report.unpack(load_mesh(input_, common(), report.progress())), common());
+        for (const Attribute& field : mesh.attributes) {
+            if (field.constant)
+                report.warn(text(field.name, " becomes means of the cells at each point: bricks hold no values at cells"));
+        }
         return report.timed("split", [&] { return split_mesh(output_, std::move(mesh), options_); });
     }
 

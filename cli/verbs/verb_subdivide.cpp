@@ -11,6 +11,7 @@
 #include "subvol/limit_shells.h"
 #include "subvol/mesh_report.h"
 #include "subvol/mixed_file.h"
+#include "subvol/region.h"
 #include "tet_refinement.h"
 #include "text.h"
 #include "verb.h"
@@ -47,17 +48,23 @@ public:
         report.if_long("fewer --levels");
         Shells shells;
         report["input"] = input_;
-        MeshSets sets;
-        const HexMesh mesh =
-            with_written_field(report.unpack(load_mesh(input_, common(), report.progress(), sets, &shells)), common());
+        CommonOptions reading = common();
+        reading.parts_in_whole = true;
+        Reshaped reshaped;
+        ReadResult read = report.unpack(read_input(input_, reading, report.progress(), ShellsAlone::Refuse, &reshaped));
+        const std::vector<std::uint8_t>& part = reshaped.in_part;
+        MeshSets sets = part.empty() ? std::move(read.sets) : sets_of_cells(std::move(read.sets), part);
+        const HexMesh mesh = with_written_field(report.unpack(mesh_of(std::move(read), reading, &shells)), common());
         if (common().field && !shells.empty()) {
             HexMesh of_shells;
             of_shells.points = shells.points;
             of_shells.attributes = std::move(shells.attributes);
             shells.attributes = with_written_field(std::move(of_shells), common()).attributes;
         }
-        HexMesh fine = report.unpack(refine_reported(mesh, options, on_limit_ ? Vertices::OnTheLimit : Vertices::OfTheLevel));
+        HexMesh fine =
+            report.unpack(refine_reported(mesh, options, on_limit_ ? Vertices::OnTheLimit : Vertices::OfTheLevel, part));
         keep_in_range(mesh, fine, report);
+        say_cells(fine, report);
         if (!shells.empty() && !output_.ends_with(".vtu")) {
             report.warn("shells and beams are written to .vtu only");
             shells = {};
@@ -65,7 +72,7 @@ public:
         shells = report.timed("sheets", [&] { return refined(mesh, shells, options, report); });
         report.merge(
             write_reported(output_, fine, shells, sets_of_children(std::move(sets), options.levels), report.progress()));
-        put_shape(mesh, fine, report);
+        put_shape(part.empty() ? mesh : only_cells(mesh, part), fine, report);
         report["output"] = output_;
         report["points"] = fine.points.size();
         report["peak_bytes_per_point"] = static_cast<double>(peak_memory_bytes()) / static_cast<double>(fine.points.size());
@@ -101,8 +108,20 @@ private:
         return fine;
     }
 
+    /// What is at cells stays there.
+    static void say_cells(const HexMesh& fine, Report& report) {
+        std::vector<std::string> at_cells;
+        for (const Attribute& field : fine.attributes) {
+            if (!field.cells.empty()) at_cells.push_back(field.name);
+        }
+        if (at_cells.empty()) return;
+        report.note(text(join(at_cells), at_cells.size() == 1 ? " is" : " are",
+                         " at cells: a refined cell has the value of the cell that it is a part of"));
+    }
+
     void keep_in_range(const HexMesh& control, HexMesh& fine, Report& report) const {
         for (std::size_t f = 0; f < fine.attributes.size(); ++f) {
+            if (!fine.attributes[f].cells.empty()) continue;
             const FieldRange given = range_of(control.attributes[f]);
             if (clamp_) {
                 clamp_to(fine.attributes[f], given);

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <array>
 #include <optional>
 
 #include "body_input.h"
 #include "input.h"
+#include "limit_warning.h"
 #include "numbers.h"
 #include "options.h"
 #include "outputs.h"
@@ -15,6 +17,7 @@
 #include "stream_arguments.h"
 #include "subvol/detail/surface_share.h"
 #include "subvol/error.h"
+#include "subvol/field_range.h"
 #include "subvol/limit_shells.h"
 #include "subvol/limit_surface.h"
 #include "subvol/quantity.h"
@@ -43,6 +46,7 @@ public:
                "until the triangles are within the tolerance. JSON: points, triangles, area, volume (of what a watertight "
                "surface encloses), watertight, euler, components, min_angle (degrees), deviation (world), level. streamlines: "
                "count, points, length, outside (seeds), ends (how many for which reason).") {
+        show_limit_of_parts();
         app().add_option("FILE", input_, input_help())->required();
         app()
             .add_option("-o,--output", output_,
@@ -109,6 +113,8 @@ public:
         const bool with_shells = options.boundary && !tets.asked() && patches_.empty();
         CommonOptions reading = common();
         if (!color_field_.empty()) reading.at_rest.push_back(color_field_);
+        // Shares cut the cells that are left as a mesh of their own, and so do isosurfaces.
+        reading.parts_in_whole = !tets.asked() && !shares(share_) && isos_.empty();
         BodyInput body = report.unpack(open_body(input_, reading, app(), report.progress(), with_shells));
         report.merge(body.refine(tets, 2, report.progress()));
         const std::string field = report.unpack(body.select(common(), OtherFields::Keep));
@@ -125,6 +131,7 @@ public:
             output.file.function = find_transfer_function(function_, body.range(color_field_));
         }
         const MeshSource source = body.source();
+        if (!tets.asked()) report.warn(limit_warning(input_, source, options.scheme, report.progress()));
         std::vector<CellSide> sides;
         if (!patches_.empty()) {
             const HexMesh* mesh = source.mesh();
@@ -137,11 +144,13 @@ public:
             }
         }
         options.sides = sides;
+        options.cells = body.in_part;
         std::optional<LimitSurface> surface =
             made([&] { return limit_surface(source, field, options); },
                  [&](const auto& share) { return detail::share_of_surface(source, field, options, share); }, output, report);
         if (!surface) return 0;
         check_not_empty(*surface, output);
+        if (!tets.asked() && !is_model(input_)) warn_of_ranges(*surface, source, {field, color_field_}, report);
         const std::size_t of_volume = surface->surface.triangles.size();
         if (!body.shells.empty()) {
             const HexMesh& mesh = *source.mesh();
@@ -158,6 +167,19 @@ public:
     }
 
 private:
+    /// Says which of the fields leave their range in the file at the points of the surface.
+    static void warn_of_ranges(const LimitSurface& surface, const MeshSource& source, const std::array<std::string, 2>& names,
+                               Report& report) {
+        for (const ProbedField& field : surface.fields) {
+            if (std::ranges::find(names, field.name) == names.end()) continue;
+            const Attribute* const given = source.mesh() != nullptr ? source.mesh()->find_attribute(field.name) : nullptr;
+            if (given == nullptr || given->derived || given->channels != 1 || field.values.empty()) continue;
+            const auto [low, high] = std::ranges::minmax(field.values);
+            const FieldRange range = range_of(*given);
+            report.warn(range_warning(field.name, {range.min[0], range.max[0]}, {low, high}, true));
+        }
+    }
+
     /// Streamlines instead of a surface.
     int run_streams(Report& report) {
         if (share_.given()) throw Error(ErrorCode::InvalidInput, "has no effect with --streamlines", "--part");
@@ -173,14 +195,14 @@ private:
         if (body.source().mesh() == nullptr)
             throw Error(ErrorCode::InvalidInput, "needs a mesh in memory", "--streamlines", "the mesh itself");
         HexMesh mesh = *body.source().mesh();
-        std::vector<double> vectors =
-            of_option("--streamlines", [&] { return vectors_of(mesh, streams_.chosen.streamlines, report.progress()); });
+        Attribute vectors =
+            of_option("--streamlines", [&] { return vector_field_of(mesh, streams_.chosen.streamlines, report.progress()); });
         if (common().field) {
             const Attribute shown = select_field(mesh, common().field, report.progress()).scalar;
             mesh.attributes = {shown};
         }
         std::erase_if(mesh.attributes, [&](const Attribute& a) { return a.name == streams_.chosen.streamlines; });
-        mesh.attributes.push_back({streams_.chosen.streamlines, 3, std::move(vectors)});
+        mesh.attributes.push_back(std::move(vectors));
         const LimitOptions limit{.scheme = scheme_.options(0, report.progress()).scheme, .progress = report.progress()};
         StreamlineOptions options = streams_.chosen.lines;
         options.limit = limit;

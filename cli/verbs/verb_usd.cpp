@@ -31,6 +31,7 @@ public:
                "  subvol points part.vtk -o part.svk && subvol usd part.svk -o splats.usda\n"
                "\n"
                "JSON: output, files, codes; grids of volumes, points (of each time sample) and channels of splats.") {
+        show_limit_of_parts();
         app()
             .add_option("FILE", inputs_,
                         text(input_help(), "; or .vdb files of grids, or points (.ply, .vtp, .svk, .vdb), one for each time"))
@@ -43,6 +44,7 @@ public:
             if (option.name == "tf" || option.name == "range" || option.name == "opacity" || option.name == "opacity-unit")
                 add_option(app(), option);
         }
+        add_crease_angle();
         set_essentials({"--output", "--resolution", "--field", "--step", "--tf", "--json"});
     }
 

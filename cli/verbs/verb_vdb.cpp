@@ -6,6 +6,7 @@
 #include "bricks_input.h"
 #include "choices.h"
 #include "input.h"
+#include "limit_warning.h"
 #include "mesh_frames.h"
 #include "mesh_grids.h"
 #include "outputs.h"
@@ -42,6 +43,7 @@ public:
                "  subvol vdb kernels.ply -o kernels.vdb --voxel-size 0.01\n"
                "  subvol vdb model:pawn -o pawn.vdb --resolution 1600 --memory 2G\n"
                "  subvol vdb big.vtu -o part2.vdb --part 2/4           a share, for join") {
+        show_limit_of_parts();
         app().add_option("FILE", input_, text(input_help(), "; or points (.ply, .vtp, .svk, .vdb)"))->required();
         app().add_option("-o,--output", output_.path, "the file to write (.vdb)")->type_name("FILE")->required();
         asked_.add_sizes_to(app());
@@ -100,13 +102,15 @@ public:
 private:
     void run_one(MeshGrids& maker, Report& report) {
         report["input"] = input_;
-        const HexMesh mesh = report.unpack(maker.load(input_, common(), report.progress()));
+        std::vector<Index> cells;
+        const HexMesh mesh = report.unpack(maker.load(input_, common(), report.progress(), &cells));
         if (asked_.velocity && mesh.find_attribute(kVelocity) == nullptr) {
             throw Error(ErrorCode::InvalidInput, "needs a sequence, or a vector field that is called U, V or velocity",
                         "--velocity", "--frames A-B, or --fields vel=FIELD");
         }
         const bool once = output_.memory_bytes == 0;
-        const RasterizeOptions options = report.unpack(maker.set_up(mesh, report.progress(), once));
+        const RasterizeOptions options = report.unpack(maker.set_up(mesh, report.progress(), once, cells));
+        report.warn(limit_warning(input_, rasterized_cells(mesh, cells), options.refine.scheme, report.progress()));
         if (output_.memory_bytes > 0) {
             if (asked_.error) throw Error(ErrorCode::InvalidInput, "works with one file only, not with parts", "--error");
             refuse_with_memory();
@@ -116,7 +120,7 @@ private:
         }
         std::vector<VdbGrid> grids = report.unpack(maker.make(mesh, options));
         if (!has_voxels(grids)) throw no_voxels(input_, finer_voxels(mesh));
-        report.merge(maker.fields().overshoot(mesh, grids));
+        report.merge(maker.fields().overshoot(mesh, grids, !is_model(input_)));
         std::vector<GridErrorFigures> errors;
         if (asked_.error) errors = report.unpack(maker.add_errors(mesh, options, grids));
         report.merge(write_reported(grids, output_, report.progress()));
@@ -183,14 +187,15 @@ private:
                        ranks() != nullptr ? "does not work in several processes of MPI" : "does not work with --part");
         if (asked_.from == "points") throw Error(ErrorCode::InvalidInput, "is not done in shares", "--from points");
         report["input"] = input_;
-        const HexMesh mesh = report.unpack(maker.load(input_, common(), report.progress()));
-        const RasterizeOptions options = report.unpack(maker.set_up(mesh, report.progress()));
+        std::vector<Index> cells;
+        const HexMesh mesh = report.unpack(maker.load(input_, common(), report.progress(), &cells));
+        const RasterizeOptions options = report.unpack(maker.set_up(mesh, report.progress(), false, cells));
         GridShare made = report.timed("rasterize", [&] { return vdb().rasterize_share(mesh, names_of(mesh), options, share); });
         maker.fields().clamp(mesh, made.grids);
         const auto all = whole_of(std::move(made), report);
         if (!all) return;
         if (!has_voxels(*all)) throw no_voxels(input_, finer_voxels(mesh));
-        report.merge(maker.fields().overshoot(mesh, *all));
+        report.merge(maker.fields().overshoot(mesh, *all, !is_model(input_)));
         report.merge(write_reported(*all, output_, report.progress()));
     }
 

@@ -11,6 +11,7 @@
 #include "choices.h"
 #include "grid_input.h"
 #include "input.h"
+#include "limit_warning.h"
 #include "numbers.h"
 #include "options.h"
 #include "outputs.h"
@@ -66,10 +67,12 @@ public:
                "  subvol view\n"
                "  subvol view run.pvd --field T --tf coolwarm\n"
                "  subvol view model:pawn --script turn.json --screenshot pawn.png") {
-        app().add_option("FILE", input_,
-                         text(input_help(),
-                              "; or points (.ply, .vtp, .svk, .vdb), or a .vdb grid of floats. Without a "
-                              "file the window begins with a page that opens one"));
+        show_limit_of_parts();
+        app().add_option(
+            "FILE", input_,
+            text(input_help(),
+                 "; or points (.ply, .vtp, .svk, .vdb), or a .vdb grid of floats (a level set: its surface). Without a "
+                 "file the window begins with a page that opens one"));
         app().add_option("--script", script_, "run a script of actions without a window, then quit")->type_name("FILE.json");
         app().add_option("--screenshot", screenshot_, "write the last picture (.png or .exr), then quit")->type_name("FILE");
         app().add_flag("--window", window_, "play the --script in the window; --screenshot is then of the whole window");
@@ -145,7 +148,11 @@ private:
         const bool voxels = !holds_points(input.file) && is_vdb_file(input.file);
         const bool points = voxels || holds_points(input.file);
         if (streams_.chosen.any()) veil_body(picture_.choices, clip_);
-        picture_.settle_look(!points);
+        std::optional<VdbGrid> grid;
+        if (voxels) grid = report.unpack(load_grid(input.file, input.options, progress));
+        const bool level_set = grid && grid->report().level_set;
+        picture_.settle_look(!points || level_set);
+        if (level_set) picture_.refuse_isosurfaces_of_level_set();
         picture_.check();
         const std::size_t warnings_before = report.json().value("warnings", Json::array()).size();
         ViewSource from = source(input, report);
@@ -160,12 +167,13 @@ private:
                                           : BodyKind::Mesh;
         check_flow(streams_.chosen, method_, kind, true, OptionNames::Flags);
         check_options(method_may_change ? methods_of(kind) : bit(method_), kind, given_options(app()));
-        if (points) from.points = voxels ? voxels_of_file(input, report, progress) : points_of_file(input, report, progress);
+        if (points) from.points = voxels ? points_of_grid(*grid, report, progress) : points_of_file(input, report, progress);
         HexMesh mesh =
             points ? mesh_of_points(*from.points.volume) : report.unpack(load_mesh(input.file, input.options, progress));
+        if (!points && !from.tets) report.warn(limit_warning(input.file, mesh, refine_.options(0, nullptr).scheme, progress));
         std::optional<std::string> field = input.options.density ? std::optional<std::string>("density") : input.options.field;
         if (streams_.chosen.any() && !field) field = streams_.chosen.length_of(mesh);
-        if (points && !field) field = from.points.volume->channels.front().name;
+        if (voxels || (points && !field)) field = from.points.volume->channels.front().name;
         ViewBody body = points ? view_body(mesh, from.points, field) : view_body(mesh, field);
         if (from.tets) {
             const std::string name = body.field();
@@ -191,9 +199,11 @@ private:
         return {.volume = volume, .box = detail::frame_of(*volume)};
     }
 
-    [[nodiscard]] ViewPoints voxels_of_file(const Input& input, Report& report, Progress* progress) {
-        const VdbGrid grid = report.unpack(load_grid(input.file, input.options, progress));
+    /// The voxels with kernels of them; of a level set the kernels of the body within its surface.
+    [[nodiscard]] ViewPoints points_of_grid(const VdbGrid& grid, Report& report, Progress* progress) {
         RbfVolume volume = report.unpack(sample_reported(grid, sample_, std::nullopt, app(), progress));
+        if (grid.report().level_set)
+            return {.volume = std::make_shared<const RbfVolume>(std::move(volume)), .box = grid.report().frame};
         volume.channels.front().name = grid.report().name;
         return {.volume = std::make_shared<const RbfVolume>(std::move(volume)),
                 .voxels = grid.voxels(),

@@ -6,6 +6,9 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <filesystem>
+#include <string>
+#include <system_error>
 
 #include "picture_modules.h"
 #include "subvol/detail/picture_size.h"
@@ -20,6 +23,14 @@ constexpr const char* kNote = "subvolPart";
 
 using Outcome = std::optional<PictureFault>;
 
+/// Whether so few bytes can be a picture of that size: those of a plain colour, packed, are about a thousandth.
+bool can_hold(const std::string& path, const OIIO::ImageSpec& spec) {
+    constexpr std::uint64_t kAnyway = std::uint64_t{1} << 26, kMostTimes = 2000;
+    std::error_code error;
+    const std::uint64_t bytes = spec.image_bytes(true), of_file = std::filesystem::file_size(path, error);
+    return error || bytes <= kAnyway || bytes / kMostTimes <= of_file;  // an error: of a stream
+}
+
 Outcome read(const std::string& path, DecodedPicture& picture) {
     // Otherwise OpenImageIO premultiplies encoded values; alpha applies to linear light, after decoding.
     OIIO::ImageSpec wish;
@@ -32,6 +43,10 @@ Outcome read(const std::string& path, DecodedPicture& picture) {
     if (!proper) return PictureFault{ErrorCode::InvalidInput, "is not a flat picture of at most 2^28 pixels"};
     const bool small = static_cast<std::int64_t>(std::max(spec.width, spec.full_width)) * spec.full_height <= kMostPixels;
     if (!small) return PictureFault{ErrorCode::InvalidInput, "is part of a picture of more than 2^28 pixels"};
+    if (!can_hold(path, spec)) {
+        return PictureFault{ErrorCode::InvalidInput, "is said to have " + std::to_string(spec.width) + " × " +
+                                                         std::to_string(spec.height) + " pixels, too many for its few bytes"};
+    }
     picture.channels = std::min(spec.nchannels, 4);
     picture.alpha = spec.alpha_channel < picture.channels ? spec.alpha_channel : -1;
     picture.integers = !spec.format.is_floating_point();

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "subvol/detail/near_name.h"
+#include "subvol/detail/number_text.h"
 #include "subvol/detail/printable.h"
 #include "subvol/detail/several_errors.h"
 #include "subvol/error.h"
@@ -102,6 +103,14 @@ StudyValue read_value(const Json& json, const Key& key, const std::string& path)
         case KeyKind::Number:
             return read_number(json, key, path);
         case KeyKind::Described:
+            if (const auto* word = std::get_if<WordValue>(&key.option->value)) {
+                const bool is_text =
+                    json.is_string() && std::ranges::find(key.choices, json.get<std::string>()) != key.choices.end();
+                if (is_text) return json.get<std::string>();
+                if (!json.is_number()) refuse(path, must_be("a number", json), "a number or " + joined(key.choices));
+                word->set(exact_text(json.get<double>()), printable(path));
+                return json.get<double>();
+            }
             if (!json.is_number()) refuse(path, must_be("a number", json), key.option->range_text());
             key.option->set(json.get<double>(), printable(path));
             return json.get<double>();
@@ -119,9 +128,11 @@ StudyValue read_value(const Json& json, const Key& key, const std::string& path)
 
 Key key_of(const Option& option, std::optional<StudyValue> fallback) {
     using enum KeyKind;
-    const bool kernel = std::holds_alternative<WordValue>(option.value) && option.words.empty();
+    const auto* const word = std::get_if<WordValue>(&option.value);
+    const bool kernel = word != nullptr && option.words.empty();
     const KeyKind kind = std::holds_alternative<bool*>(option.value) ? Switch
                          : option.is_number()                        ? Described
+                         : word != nullptr && word->numbers          ? Described
                          : kernel                                    ? KernelShape
                                                                      : Text;
     return {option.key(), kind, 0, 0, std::move(fallback), option.words, option};

@@ -14,7 +14,8 @@ namespace subvol::detail {
 using Json = nlohmann::ordered_json;
 
 /// The type of a key's value. Whole: a whole number in [least, most]. Number: in (least, most]. KernelShape: a kernel's name or
-/// JSON. Described: a number that the option's description allows
+/// JSON. Described: a number that the option's description allows, or one of
+/// its words
 enum class KeyKind { Switch, Whole, Number, Text, KernelShape, Described };
 
 /// fallback: the value where the key is missing; none: the key stays absent

@@ -31,6 +31,7 @@ std::vector<Key> input_keys() {
             {"refine", Whole, 0, 4},
             {"field"},
             {"density"},
+            {"crease_angle"},
             {"only"},
             {"warp"}};
 }
@@ -71,6 +72,8 @@ public:
             for (const StudyValues& read : read_values(item, keys, besides, path)) {
                 if (read.contains("model") == read.contains("file")) refuse(path, "an input has either a model or a file");
                 if (read.contains("file") && read.contains("resolution")) refuse(path, "a file has no resolution");
+                if (read.contains("model") && read.contains("crease_angle"))
+                    refuse(path, "crease_angle says how a file is read; this is a model");
                 if (read.contains("field") && read.contains("density"))
                     refuse(path, "an input has either a field or a density");
                 StudyValues values;

@@ -17,6 +17,7 @@
 #include <tuple>
 
 #include "piece_tree.h"
+#include "subvol/detail/counted_rows.h"
 #include "subvol/detail/parallel_each.h"
 #include "subvol/detail/parallel_sums.h"
 
@@ -49,25 +50,6 @@ void drop_small_classes(std::vector<Member>& members) {
         const auto [first, last] = std::equal_range(keys.begin(), keys.end(), member.key);
         return static_cast<std::size_t>(last - first) < kFew;
     });
-}
-
-WeightTable transposed_of(const WeightTable& table) {
-    WeightTable result{.points = table.rows(),
-                       .used = {},
-                       .offsets = std::vector<std::uint32_t>(table.points + 1, 0),
-                       .columns = std::vector<std::uint16_t>(table.columns.size()),
-                       .weights = std::vector<double>(table.weights.size())};
-    for (const std::uint16_t column : table.columns) ++result.offsets[column + 1u];
-    for (std::size_t p = 0; p < table.points; ++p) result.offsets[p + 1] += result.offsets[p];
-    std::vector<std::uint32_t> next(result.offsets.begin(), result.offsets.end() - 1);
-    for (std::size_t row = 0; row < table.rows(); ++row) {
-        for (std::size_t i = table.offsets[row]; i < table.offsets[row + 1]; ++i) {
-            const std::uint32_t to = next[table.columns[i]]++;
-            result.columns[to] = static_cast<std::uint16_t>(row);
-            result.weights[to] = table.weights[i];
-        }
-    }
-    return result;
 }
 
 }  // namespace
@@ -110,8 +92,7 @@ ClassRows::ClassRows(const HexMesh& mesh, const RefineOptions& options, std::spa
     : levels_(static_cast<std::size_t>(options.levels)),
       side_((std::size_t{1} << options.levels) + 1),
       columns_(mesh.points.size()),
-      rest_(mesh.cells.size(), 0),
-      first_places_(mesh.cells.size() + 1, 0) {
+      rest_(mesh.cells.size(), 0) {
     for (const LimitQuery& place : places) rest_[place.cell] = 1;
     Finding finding(mesh, options);
     const auto wanted = numbers_where<std::vector<Index>>(rest_.size(), [&](std::size_t c) { return rest_[c] != 0; });
@@ -125,14 +106,16 @@ ClassRows::ClassRows(const HexMesh& mesh, const RefineOptions& options, std::spa
         turns[member.cell] = member.turn;
     }
 
-    for (const LimitQuery& place : places) first_places_[place.cell + std::size_t{1}] += rest_[place.cell] == 0 ? 1 : 0;
-    for (std::size_t c = 0; c < mesh.cells.size(); ++c) first_places_[c + 1] += first_places_[c];
-    places_.resize(first_places_.back());
-    std::vector<std::size_t> next(first_places_.begin(), first_places_.end() - 1);
+    const auto numbers = counted_rows<Index>(mesh.cells.size(), [&](const auto& put) {
+        for (std::size_t k = 0; k < places.size(); ++k) {
+            if (rest_[places[k].cell] == 0) put(places[k].cell, static_cast<Index>(k));
+        }
+    });
+    places_.offsets = numbers.offsets;
+    places_.values.resize(numbers.values.size());
     const std::size_t half = std::size_t{1} << (levels_ - 1);
-    for (std::size_t k = 0; k < places.size(); ++k) {
-        const auto& [cell, uvw] = places[k];
-        if (rest_[cell] != 0) continue;
+    parallel_each(numbers.values.size(), [&](std::size_t i) {
+        const auto& [cell, uvw] = places[numbers.values[i]];
         const Vec3 at = along_walk(glm::clamp(uvw, 0.0, 1.0), turns[cell]) * static_cast<double>(half);
         std::size_t node = 0;
         Vec3 lowest;
@@ -141,15 +124,14 @@ ClassRows::ClassRows(const HexMesh& mesh, const RefineOptions& options, std::spa
             lowest[a] = static_cast<double>(part);
             node = side_ * node + 2 * part;
         }
-        places_[next[cell]++] = {at - lowest, static_cast<Index>(k), static_cast<std::uint16_t>(node)};
-    }
+        places_.values[i] = {at - lowest, numbers.values[i], static_cast<std::uint16_t>(node)};
+    });
     if (!settling.positions.empty()) settle(finding, settling);
     choose_tables(finding);
 }
 
 std::span<const ClassRows::Place> ClassRows::places_in(std::size_t member) const {
-    const Index cell = cells_.members[member].cell;
-    return std::span(places_).subspan(first_places_[cell], first_places_[cell + std::size_t{1}] - first_places_[cell]);
+    return places_[cells_.members[member].cell];
 }
 
 void ClassRows::settle(Finding& finding, const Settling& settling) {
@@ -171,8 +153,8 @@ void ClassRows::settle(Finding& finding, const Settling& settling) {
         values.apply(*table);
         for (std::size_t lane = 0; lane < in_chunk.size(); ++lane) {
             const Index cell = in_chunk[lane].cell;
-            for (std::size_t k = first_places_[cell]; k < first_places_[cell + std::size_t{1}]; ++k) {
-                Place& place = places_[k];
+            for (std::size_t k = places_.offsets[cell]; k < places_.offsets[cell + std::size_t{1}]; ++k) {
+                Place& place = places_.values[k];
                 const Vec3 nearest = glm::round(place.at * 2.0);
                 const auto steps = glm::dvec3(1, static_cast<double>(side_), static_cast<double>(side_ * side_));
                 const std::size_t node = place.node + static_cast<std::size_t>(glm::dot(nearest, steps));
@@ -222,7 +204,6 @@ ClassRows::Table ClassRows::table_of(const WeightTable& whole, Need need) const 
         table.used.push_back(static_cast<std::uint16_t>(p));
     }
     table.values.points = table.used.size();
-    table.values.offsets = {0};
     for (const std::uint16_t node : nodes) {
         for (std::size_t i = whole.offsets[node]; i < whole.offsets[node + std::size_t{1}]; ++i) {
             table.values.columns.push_back(numbers[whole.columns[i]]);
@@ -230,7 +211,8 @@ ClassRows::Table ClassRows::table_of(const WeightTable& whole, Need need) const 
         }
         table.values.offsets.push_back(static_cast<std::uint32_t>(table.values.columns.size()));
     }
-    table.transposed = transposed_of(table.values);
+    table.transposed = transpose_of(table.values, table.values.points);
+    table.transposed.points = row_count(table.values);
     return table;
 }
 

@@ -68,8 +68,7 @@ private:
     std::size_t columns_;
     std::vector<std::uint8_t> rest_;
     Classified cells_;
-    std::vector<std::size_t> first_places_;  // of each member, and the end
-    std::vector<Place> places_;
+    Rows<Place> places_;  // of each cell
     std::vector<Table> tables_;
     std::vector<Chunk> chunks_;
 };

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <numeric>
+#include <tuple>
 
 #include "comparison.h"
 #include "data_field.h"
@@ -24,6 +25,12 @@ namespace subvol::detail {
 namespace {
 
 using Vector = std::vector<double>;
+
+// Times 2^exponent.
+Vector scaled(Vector values, int exponent) {
+    for (double& value : values) value = std::ldexp(value, exponent);
+    return values;
+}
 
 /// Second differences continue what is around a value as far as the samples leave it open. With these weights errors of samples
 /// are blown up by two or three at most where values alternate from point to point: a tenth of the second weight leaves more of
@@ -150,7 +157,7 @@ public:
     }
 
     void note_max(double error, const Vec3& at) {
-        if (error > error_.max) {
+        if (error > error_.max || std::isnan(error_.max_at.x)) {  // the first, even if nothing is off there
             error_.max = error;
             error_.max_at = at;
         }
@@ -291,6 +298,16 @@ struct Fitter::Parts {
     /// wanted: at the samples
     /// found:  becomes the limit there
     [[nodiscard]] Vector control_values(const Vector& wanted, Vector& found, int& iterations, Progress* progress) const {
+        // Squares of values are doubles for values of this size alone; powers of two change no digit.
+        constexpr int kLargestExponent = 300;
+        int exponent = 0;
+        const auto [smallest, largest] = std::ranges::minmax(wanted);
+        std::ignore = std::frexp(std::max(std::abs(smallest), std::abs(largest)), &exponent);
+        if (std::abs(exponent) > kLargestExponent) {
+            Vector values = control_values(scaled(wanted, -exponent), found, iterations, progress);
+            found = scaled(std::move(found), exponent);
+            return scaled(std::move(values), exponent);
+        }
         // Smoothing that somebody asked for is that of the values themselves.
         const Trend trend = options.smoothing > 0 ? Trend() : trend_of(positions, wanted);
         Vector rest = wanted;
@@ -365,7 +382,7 @@ struct Fitter::Parts {
                 const double value = comparison.nearest.empty() ? between[i * channels + c] : wanted[c][comparison.nearest[i]];
                 const double off = std::abs(found[(worst.size() + i) * channels + c] - value);
                 squares += off * off;
-                if (off > error.max_between) {
+                if (off > error.max_between || std::isnan(error.max_between_at.x)) {
                     error.max_between = off;
                     error.max_between_at = limit_there.positions[worst.size() + i];
                 }

@@ -15,6 +15,7 @@
 #include "subvol/detail/parallel_each.h"
 #include "subvol/detail/parallel_sums.h"
 #include "subvol/detail/refined_memory.h"
+#include "subvol/detail/sparse_rows.h"
 #include "subvol/topology.h"
 #include "transposed_table.h"
 
@@ -70,18 +71,7 @@ CsrMatrix matrix_of(std::size_t rows, std::size_t columns, const EachTerm& each_
             sums.finish(runs[r]);
         }
     });
-    CsrMatrix matrix;
-    std::size_t terms = 0;
-    for (const CsrMatrix& run : runs) terms += run.columns.size();
-    matrix.columns.reserve(terms);
-    matrix.weights.reserve(terms);
-    for (CsrMatrix& run : runs) {
-        for (std::size_t k = 1; k < run.offsets.size(); ++k) matrix.offsets.push_back(matrix.columns.size() + run.offsets[k]);
-        matrix.columns.insert(matrix.columns.end(), run.columns.begin(), run.columns.end());
-        matrix.weights.insert(matrix.weights.end(), run.weights.begin(), run.weights.end());
-        run = {};
-    }
-    return matrix;
+    return joined_rows(std::move(runs));
 }
 
 }  // namespace
@@ -185,13 +175,7 @@ void TableRows::apply(std::span<const double> control, std::span<double> values)
     std::vector<double> level(points_.size());
     parallel_each(level.size(), [&](std::size_t p) { level[p] = control[points_[p]]; });
     if (tables_.empty()) {
-        parallel_each(places_.size(), [&](std::size_t k) {
-            double sum = 0;
-            for (std::size_t i = formed_.offsets[k]; i < formed_.offsets[k + 1]; ++i) {
-                sum += formed_.weights[i] * level[formed_.columns[i]];
-            }
-            values[places_[k].row] = sum;
-        });
+        parallel_each(places_.size(), [&](std::size_t k) { values[places_[k].row] = row_times(formed_, k, level); });
         return;
     }
     const std::vector<double> points = finest(std::move(level), 1);

@@ -78,9 +78,14 @@ public:
     }
 
 private:
-    [[nodiscard]] static std::string why_whole(const MeshFile& piece) {
+    [[nodiscard]] std::string why_whole(const MeshFile& piece) const {
         // Curved cells are split by a tolerance that is a part of the diagonal of the whole mesh, which is not known yet.
         if (piece.curved.size() > 0) return "it has curved cells";
+        const bool is_split =
+            piece.cut || !piece.tets.corners.empty() || !piece.prisms.corners.empty() || !piece.pyramids.corners.empty();
+        const ReadOptions& read = stream_.options();
+        if (is_split && read.other_cells == OtherCells::Split && read.crease_angle_deg != 0)
+            return "sharp edges are those of its cells before they are split (--crease-angle none: piece by piece)";
         const FileArray* ghosts = find_array(piece, kGhostArray, false, 1);
         if (ghosts && std::ranges::any_of(ghosts->values, hides_point)) return "it has hidden points";
         return {};

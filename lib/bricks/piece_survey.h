@@ -28,6 +28,7 @@ public:
 
     /// part: of the progress that is done before, in halves
     void begin(double part);
+    [[nodiscard]] const ReadOptions& options() const { return options_; }
     /// The next piece that is not empty; nothing after the last one.
     [[nodiscard]] std::optional<MeshFile> next();
     /// The file of the last piece.

@@ -6,6 +6,8 @@
 #include "mesh_pieces.h"
 #include "subvol/detail/bucket_sort.h"
 #include "subvol/detail/byte_hash.h"
+#include "subvol/detail/counted_rows.h"
+#include "subvol/detail/place_function.h"
 #include "subvol/error.h"
 
 // A mesh in memory is cut by numbers alone: the brick of each cell is given, a point belongs to the brick of the first cell
@@ -47,19 +49,10 @@ public:
           owners_(mesh.points.size(), ~0U),
           of_brick_(count),
           places_(mesh.points.size(), kNone),
+          at_points_(lists_at_points(mesh.cells, mesh.points.size())),
           seen_(mesh.cells.size(), 0) {
-        // The cells at each point as one list with offsets (a counting sort): the halo grows over it without a topology of the
-        // mesh.
-        first_.assign(mesh.points.size() + 1, 0);
-        for (const auto& cell : mesh.cells) {
-            for (const Index p : cell) ++first_[p + 1];
-        }
-        for (std::size_t p = 0; p < mesh.points.size(); ++p) first_[p + 1] += first_[p];
-        cells_at_.resize(8 * mesh.cells.size());
-        std::vector<std::size_t> next(first_.begin(), first_.end() - 1);
         for (Index c = 0; c < mesh.cells.size(); ++c) {
             for (const Index p : mesh.cells[c]) {
-                cells_at_[next[p]++] = c;
                 if (owners_[p] == ~0U) owners_[p] = brick_of_cell[c];
             }
             of_brick_[brick_of_cell[c]].push_back(c);
@@ -76,10 +69,10 @@ public:
             const std::size_t end = cells.size();
             for (std::size_t i = from; i < end; ++i) {
                 for (const Index p : mesh_.cells[cells[i]]) {
-                    for (std::size_t n = first_[p]; n < first_[p + 1]; ++n) {
-                        if (seen_[cells_at_[n]]) continue;
-                        seen_[cells_at_[n]] = 1;
-                        cells.push_back(cells_at_[n]);
+                    for (const Index c : at_points_[p]) {
+                        if (seen_[c]) continue;
+                        seen_[c] = 1;
+                        cells.push_back(c);
                     }
                 }
             }
@@ -144,10 +137,9 @@ private:
     std::span<const std::uint32_t> brick_of_cell_;
     std::vector<std::uint32_t> owners_;         // of points: the brick of the first cell
     std::vector<std::vector<Index>> of_brick_;  // cells
-    std::vector<std::size_t> first_;            // of each point in cells_at_
-    std::vector<Index> cells_at_;
-    std::vector<Index> places_;       // of points in the brick that is being taken
-    std::vector<std::uint8_t> seen_;  // cells of it
+    std::vector<Index> places_;                 // of points in the brick that is being taken
+    IndexRows at_points_;                       // cells
+    std::vector<std::uint8_t> seen_;            // cells of it
 };
 
 }  // namespace
@@ -157,6 +149,7 @@ SplitResult split_mesh(const std::filesystem::path& folder, HexMesh mesh, std::s
     check_options(options);
     validate(mesh);
     mesh = without_unused_points(std::move(mesh));
+    mesh.attributes = detail::without_functions(std::move(mesh.attributes));
     std::erase_if(mesh.attributes, [](const Attribute& field) { return field.name == kNodeNumbers || field.name == kGhosts; });
     if (brick_of_cell.size() != mesh.cells.size()) {
         throw Error(ErrorCode::InvalidInput, "there are bricks for " + std::to_string(brick_of_cell.size()) + " cells", {},

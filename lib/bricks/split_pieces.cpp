@@ -84,6 +84,14 @@ std::unique_ptr<CellCenters> centers_of(const PieceTables& tables, const std::fi
 
 constexpr std::size_t kRecordsOfChunk = std::size_t{1} << 16;  // records that are taken apart together
 
+/// How many layers of cells a brick needs about its halo. Values at cells become the mean of the cells at each point, and a
+/// point of the outermost layer lacks some of its cells. Which edges are sharp depends on the faces behind those at the edge,
+/// and the outermost cells have faces that are not on the boundary of the whole.
+int layers_more(const PieceTables& tables, const ReadOptions& read) {
+    if (read.crease_angle_deg != 0) return 2;
+    return tables.cell_values ? 1 : 0;
+}
+
 /// Makes bricks of the tables, one at a time.
 class BrickMaker {
 public:
@@ -102,9 +110,8 @@ public:
             brick.owned_cells.push_back(owned);
         }
         brick.mesh = mesh_of(stored, brick, b);
-        // Values at cells become the mean of the cells at each point. A point of the outermost layer lacks some of its cells,
-        // so one layer more was gathered, which is dropped here.
-        if (tables_.cell_values) {  // the last layer was for the values at the points of the others
+        // More layers were gathered than the halo has, and are dropped here: the outermost cells lack neighbours.
+        if (layers_more(tables_, pieces_.read) > 0) {
             std::vector<std::uint8_t> kept = brick.owned_cells;
             grow(brick.mesh, kept, layers_);
             brick = subset(brick, kept);
@@ -141,9 +148,12 @@ private:
         if (tables_.cell_values) {
             for (Index c = 0; c < stored.size(); ++c) part.hexes.numbers.push_back(c);
         }
-        HexMesh mesh = assemble(std::move(part), list_, names_in_parts(), {.cell_values = CellValues::Mean}).mesh;
+        HexMesh mesh = assemble(std::move(part), list_, names_in_parts(),
+                                {.cell_values = CellValues::Mean, .crease_angle_deg = pieces_.read.crease_angle_deg})
+                           .mesh;
         std::erase_if(mesh.attributes,
                       [](const Attribute& field) { return field.name == kNodeNumbers || field.name == kGhosts; });
+        for (Attribute& field : mesh.attributes) field.cells.clear();  // bricks hold values at points
         return mesh;
     }
 
@@ -204,11 +214,12 @@ PiecesSplit split_pieces(const std::filesystem::path& folder, const std::filesys
     // The id stands for all that the bricks depend on, so that an interrupted split is continued only if it would make the same
     // bricks.
     id.add_text(pieces.about_change);
+    if (pieces.read.crease_angle_deg) id.add_text(std::to_string(*pieces.read.crease_angle_deg));
     id.add({reinterpret_cast<const char*>(brick_of_cell.data()), brick_of_cell.size() * sizeof brick_of_cell[0]});
     BricksWriter writer(folder, id.value(), options.halo_layers);
     report_progress(options.progress, "halos", 0);
     const BrickCells cells = cells_of_bricks(tables->corners, tables->points, std::move(brick_of_cell),
-                                             options.halo_layers + (tables->cell_values ? 1 : 0));
+                                             options.halo_layers + layers_more(*tables, pieces.read));
     const std::size_t count = cells.first.size() - 1;
     const BrickMaker maker(*tables, cells, list, pieces, options.halo_layers);
     for (std::size_t b = 0; b < count; ++b) {

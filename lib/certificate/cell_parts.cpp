@@ -6,7 +6,8 @@
 #include <mutex>
 #include <numeric>
 
-#include "csr_products.h"
+#include "subvol/detail/sparse_rows.h"
+#include "subvol/stencil_table.h"
 
 namespace subvol::detail {
 
@@ -36,7 +37,7 @@ const std::array<CsrMatrix, 8>& rules_of(const BoxType& type) {
 
 // A part is too small to share its rows.
 std::vector<Vec3> product_of(const CsrMatrix& matrix, const std::vector<Vec3>& values) {
-    std::vector<Vec3> sums(matrix.offsets.size() - 1);
+    std::vector<Vec3> sums(row_count(matrix));
     for (std::size_t row = 0; row < sums.size(); ++row) sums[row] = row_times(matrix, row, values);
     return sums;
 }

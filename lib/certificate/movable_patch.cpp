@@ -5,8 +5,9 @@
 #include <cmath>
 #include <utility>
 
-#include "csr_products.h"
 #include "subvol/cell.h"
+#include "subvol/detail/conjugate_gradients.h"
+#include "subvol/detail/sparse_rows.h"
 #include "subvol/topology.h"
 
 namespace subvol::detail {
@@ -23,13 +24,6 @@ double determinant_at(const std::vector<Vec3>& x, const std::array<Index, 4>& p)
 double product(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
     double sum = 0;
     for (std::size_t k = 0; k < a.size(); ++k) sum += dot(a[k], b[k]);
-    return sum;
-}
-
-/// a + t b
-std::vector<Vec3> along(const std::vector<Vec3>& a, double t, const std::vector<Vec3>& b) {
-    std::vector<Vec3> sum = a;
-    for (std::size_t k = 0; k < a.size(); ++k) sum[k] += t * b[k];
     return sum;
 }
 
@@ -171,7 +165,7 @@ MovablePatch::ActiveMatrix MovablePatch::matrix_of(const std::vector<Active>& la
 std::vector<Vec3> MovablePatch::step(const std::vector<Vec3>& points, const std::vector<Active>& lacks, double weight) {
     const ActiveMatrix active = matrix_of(lacks);
     const auto pulled = [&](const auto& by) {  // Aᵀ y
-        std::vector<Vec3> forces(active.matrix.offsets.size() - 1, Vec3(0.0));
+        std::vector<Vec3> forces(row_count(active.matrix), Vec3(0.0));
         for (std::size_t k = 0; k < lacks.size(); ++k) {
             const double pull = weight * by(k);
             for (std::size_t i = 0; i < 4; ++i) forces[active.corners[k][i]] += pull * lacks[k].gradient[i];
@@ -192,23 +186,28 @@ std::vector<Vec3> MovablePatch::step(const std::vector<Vec3>& points, const std:
         for (std::size_t p = 0; p < to.size(); ++p) sums[p] += freedom_[p].weight * to[p];
         return sums;
     };
-    std::vector<Vec3> found(points.size(), Vec3(0.0)), way = rest;
-    double left = product(rest, rest);
+    std::vector<Vec3> found(points.size(), Vec3(0.0));
     constexpr int kSteps = 40;
     constexpr double kEnough = 1e-4;
-    const double enough = kEnough * left;
+    double enough = 0;
     const auto entries = static_cast<double>(active.matrix.columns.size());
     constexpr double kOfMatrix = 8;  // products that take as long as to make it
     tests_ += kOfMatrix * entries / kProducts;
-    for (int k = 0; k < kSteps && left > enough; ++k) {
-        tests_ += (2 * entries + static_cast<double>(points.size())) / kProducts;
-        const std::vector<Vec3> image = applied(way);
-        const double length = left / product(way, image);
-        found = along(found, length, way);
-        rest = along(rest, -length, image);
-        const double before = std::exchange(left, product(rest, rest));
-        way = along(rest, left / before, way);
-    }
+    conjugate_gradients(
+        found, rest,
+        [&](std::vector<Vec3>& gradient) {
+            gradient = rest;
+            return product(rest, rest);
+        },
+        [&](const std::vector<Vec3>& way, std::vector<Vec3>& image) {
+            tests_ += (2 * entries + static_cast<double>(points.size())) / kProducts;
+            image = applied(way);
+        },
+        product,
+        [&](int step, double left) {
+            if (step == 0) enough = kEnough * left;
+            return step < kSteps && left > enough;
+        });
     return found;
 }
 

@@ -231,8 +231,13 @@ bool is_tagged(const std::vector<std::array<Index, N>>& tags, const std::array<I
 void mark_tags(const HexMesh& mesh, CellLinks& links) {
     if (!mesh.creases.empty()) {
         const auto creases = sorted_tags(mesh.creases);
+        std::vector<std::uint8_t> at_crease(mesh.points.size(), 0);
+        for (const auto& crease : creases) {
+            for (const Index p : crease) at_crease[p] = 1;
+        }
         links.creases.resize(mesh.cells.size());
         parallel_each(mesh.cells.size(), [&](std::size_t c) {
+            if (std::ranges::none_of(mesh.cells[c], [&](Index p) { return at_crease[p] != 0; })) return;
             for (std::size_t k = 0; k < 12; ++k) {
                 if (is_tagged(creases, mesh.cells[c], kCellEdges[k])) links.creases[c] |= static_cast<std::uint16_t>(1U << k);
             }

@@ -41,7 +41,8 @@ WeightTable make_table(const Neighborhood& neighborhood, const SchemeOptions& sc
 
     std::vector<Index> nodes;
     DenseBlock(level).nodes(patch.mesh, 0, nodes);
-    WeightTable table{.points = points, .used = {}, .offsets = {0}, .columns = {}, .weights = {}};
+    WeightTable table;
+    table.points = points;
     for (const Index node : nodes) {
         const double* row = &patch.mesh.attributes.front().values[node * points];
         for (std::size_t p = 0; p < points; ++p) {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "neighborhood.h"
+#include "subvol/detail/sparse_rows.h"
 #include "subvol/scheme.h"
 
 namespace subvol::detail {
@@ -16,16 +17,12 @@ namespace subvol::detail {
 /// The vertices of a cell's refinement as sums over the points of its neighbourhood: row i is the vertex at (u, v, w) of the
 /// grid of side³, side = 2^level + 1, i = u + side·(v + side·w).
 ///
-/// points:  of the neighbourhood; used: those that have weights, ascending
-/// offsets: row i has columns[offsets[i] .. offsets[i+1]), ascending, with weights beside them
-struct WeightTable {
+/// points: of the neighbourhood; used: those that have weights, ascending; columns of a row ascend, too
+struct WeightTable : SparseRows<double, std::uint16_t, std::uint32_t> {
     std::size_t points = 0;
     std::vector<std::uint16_t> used;
-    std::vector<std::uint32_t> offsets;
-    std::vector<std::uint16_t> columns;
-    std::vector<double> weights;
 
-    [[nodiscard]] std::size_t rows() const { return offsets.size() - 1; }
+    [[nodiscard]] std::size_t rows() const { return row_count(*this); }
     [[nodiscard]] std::size_t bytes() const {
         return offsets.size() * sizeof(offsets[0]) + columns.size() * (sizeof(columns[0]) + sizeof(weights[0]));
     }

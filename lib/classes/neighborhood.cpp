@@ -11,7 +11,7 @@
 //           ├───┼───┼───┤
 //           │ 5 │ 3 │ 7 │        code = number of cells of the first layer,
 //           └───┴───┴───┘               eight points of each cell, by octants of the walk,
-//                                       0xffff and for each cell its tagged edges and sides, if the mesh has tags
+//                                       0xffff and for each cell its tagged edges and sides, if one has any
 //
 // Two cells whose surroundings meet in the same way get the same code if they start with the same turn. Where colours are equal
 // by symmetry any of these turns gives the same code; where they are equal by chance, the class is made twice, which costs a
@@ -142,31 +142,46 @@ bool NeighborhoodWalk::is_complete(std::size_t points, const Neighborhood& found
     return true;
 }
 
-/// After the cells: for each tagged edge or face its points.
+/// The edge of kCellEdges between two corners.
+constexpr auto kEdgesBetween = [] {
+    std::array<std::array<std::uint8_t, 8>, 8> edges{};
+    for (std::size_t k = 0; k < 12; ++k) {
+        const auto [a, b] = kCellEdges[k];
+        edges[a][b] = edges[b][a] = static_cast<std::uint8_t>(k);
+    }
+    return edges;
+}();
+
+/// The tagged edges of a cell as those of the walk.
+std::uint16_t turned_edges(std::uint16_t own, const CellTurn& turn) {
+    std::uint16_t edges = 0;
+    for (std::size_t k = 0; k < 12 && own != 0; ++k) {
+        // The walk's edge k is the cell's edge between the corners at which its ends lie.
+        const auto corner = [&](std::size_t c) { return kCornerOctants[turn.octants[kCornerOctants[c]]]; };
+        const std::uint8_t e = kEdgesBetween[corner(kCellEdges[k][0])][corner(kCellEdges[k][1])];
+        edges |= static_cast<std::uint16_t>((own >> e & 1U) << k);
+    }
+    return edges;
+}
+
+/// After the cells: the tagged edges and sides of each, if one of them has any.
 void NeighborhoodWalk::add_tags(Neighborhood& found) const {
     if (links_.creases.empty() && mesh_.sharp_faces.empty()) return;
-    const std::size_t cells = visited_.size();
+    const std::size_t untagged = found.code.size();
+    bool tagged = false;
     found.code.push_back(0xffff);
-    for (std::size_t i = 0; i < cells; ++i) {
-        const CellTurn& turn = cell_turns()[visited_[i].turn];
-        std::uint16_t edges = 0, sides = 0;
-        for (std::size_t k = 0; k < 12 && !links_.creases.empty(); ++k) {
-            const auto [a, b] = kCellEdges[k];
-            // The walk's edge k is the cell's edge between the corners at which its ends lie.
-            const std::size_t own_a = kCornerOctants[turn.octants[kCornerOctants[a]]];
-            const std::size_t own_b = kCornerOctants[turn.octants[kCornerOctants[b]]];
-            for (std::size_t e = 0; e < 12; ++e) {
-                const std::size_t c = kCellEdges[e][0], d = kCellEdges[e][1];
-                const bool same = (c == own_a && d == own_b) || (c == own_b && d == own_a);
-                if (same && (links_.creases[visited_[i].cell] >> e & 1) != 0) edges |= static_cast<std::uint16_t>(1U << k);
-            }
-        }
+    for (const auto& [cell, turned] : visited_) {
+        const CellTurn& turn = cell_turns()[turned];
+        const std::uint16_t edges = links_.creases.empty() ? std::uint16_t{0} : turned_edges(links_.creases[cell], turn);
+        std::uint16_t sides = 0;
         for (std::size_t side = 0; side < 6; ++side) {
-            if (links_.is_sharp(visited_[i].cell, turn.sides[side])) sides |= static_cast<std::uint16_t>(1U << side);
+            if (links_.is_sharp(cell, turn.sides[side])) sides |= static_cast<std::uint16_t>(1U << side);
         }
         found.code.push_back(edges);
         found.code.push_back(sides);
+        tagged |= (edges | sides) != 0;
     }
+    if (!tagged) found.code.resize(untagged);
 }
 
 /// The first layer are the cells around the eight corners, the second those around all points of the first.

@@ -5,11 +5,14 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <tuple>
+#include <utility>
 
 #include "output_file.h"
 #include "subvol/detail/number_text.h"
 #include "subvol/detail/printable.h"
 #include "subvol/error.h"
+#include "subvol/part_places.h"
 #include "subvol/raster.h"
 #include "vtk_xml_writer.h"
 
@@ -261,8 +264,10 @@ void take_found(LimitSlice& slice, ProbeResult found) {
             continue;
         }
         ++slice.inside;
-        slice.min = std::min(slice.min, slice.values[p]);
-        slice.max = std::max(slice.max, slice.values[p]);
+        const auto width = static_cast<std::size_t>(slice.width);
+        const Vec3 at = slice.place(static_cast<double>(p % width), static_cast<double>(p / width));
+        if (slice.values[p] < slice.min) std::tie(slice.min, slice.min_at) = std::pair(slice.values[p], at);
+        if (slice.values[p] > slice.max) std::tie(slice.max, slice.max_at) = std::pair(slice.values[p], at);
     }
     if (slice.inside == 0) {
         throw Error(ErrorCode::InvalidInput, "no place on the plane is in the volume", "slice",
@@ -280,7 +285,21 @@ LimitSlice slice_limit(const MeshSource& source, std::string_view field, const V
         HexMesh chosen = with_scalar_field(*mesh, field);
         const std::string name = chosen.attributes.front().name;
         LimitSlice slice;
-        if (chosen.cells.size() > kMostCellsOfAProbe) {
+        if (!options.cells.empty()) {
+            if (options.cells.size() != chosen.cells.size())
+                throw Error(ErrorCode::InvalidInput, "there are " + std::to_string(options.cells.size()) + " flags of cells",
+                            "slice", "one for each of the cells");
+            Box box;
+            for (std::size_t c = 0; c < chosen.cells.size(); ++c) {
+                for (const Index p : chosen.cells[c]) {
+                    if (options.cells[c] != 0) box.add(chosen.points[p]);
+                }
+            }
+            slice = empty_slice(box, point, normal, options);
+            ProbeResult found = probe_limit(chosen, places_of(slice), {.limit = options.limit}, options.progress);
+            keep_places_in(chosen, options.cells, found);
+            take_found(slice, std::move(found));
+        } else if (chosen.cells.size() > kMostCellsOfAProbe) {
             slice = empty_slice(bounds(chosen), point, normal, options);
             take_found(slice, probe_limit(chosen, places_of(slice), {.limit = options.limit}, options.progress));
         } else {

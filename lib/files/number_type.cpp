@@ -3,7 +3,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <concepts>
 #include <cstring>
+#include <limits>
 
 namespace subvol::detail {
 
@@ -64,12 +67,32 @@ std::vector<Result> numbers_from(std::string_view bytes, NumberType type, std::e
 
 }  // namespace
 
+std::string_view name_of(NumberType type) {
+    constexpr std::array<std::string_view, 10> kNames{"Int8",   "UInt8", "Int16",  "UInt16",  "Int32",
+                                                      "UInt32", "Int64", "UInt64", "Float32", "Float64"};
+    return kNames[static_cast<std::size_t>(type)];
+}
+
 std::size_t size_of(NumberType type) {
     return with_type(type, [](auto number) { return sizeof number; });
 }
 
 bool is_integer(NumberType type) {
     return type != NumberType::Float32 && type != NumberType::Float64;
+}
+
+bool can_be(double number, NumberType type) {
+    return with_type(type, [&]<class T>(T) {
+        using Limits = std::numeric_limits<T>;
+        if constexpr (std::integral<T>) {
+            // The largest integers of 64 bits are read as the nearest doubles.
+            const double beyond = std::ldexp(1.0, Limits::digits);
+            const bool low = Limits::digits > std::numeric_limits<double>::digits ? number <= beyond : number < beyond;
+            return low && number == std::trunc(number) && number >= (Limits::is_signed ? -beyond : 0.0);
+        } else {
+            return !std::isfinite(number) || std::abs(number) < std::ldexp(1.0, Limits::max_exponent);
+        }
+    });
 }
 
 double real_from(std::string_view bytes, NumberType type, std::endian order) {

@@ -12,8 +12,12 @@ namespace subvol::detail {
 /// The type of a number in a binary file.
 enum class NumberType { Int8, UInt8, Int16, UInt16, Int32, UInt32, Int64, UInt64, Float32, Float64 };
 
+/// "UInt8"
+[[nodiscard]] std::string_view name_of(NumberType type);
 [[nodiscard]] std::size_t size_of(NumberType type);
 [[nodiscard]] bool is_integer(NumberType type);
+/// Whether a number that is written as text may belong to the type: 300 and 1.5 are no UInt8, 1e300 is no Float32.
+[[nodiscard]] bool can_be(double number, NumberType type);
 
 /// The number that `bytes` begins with.
 [[nodiscard]] double real_from(std::string_view bytes, NumberType type, std::endian order);

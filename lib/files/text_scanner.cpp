@@ -155,6 +155,11 @@ void TextScanner::fail_at(std::size_t position, const std::string& message, cons
     throw Error(ErrorCode::InvalidInput, printable(message), place_of(position), printable(allowed));
 }
 
+void TextScanner::expect_type(double number, NumberType type, const Place& place) const {
+    if (!can_be(number, type))
+        fail_word(place, "a number of the type " + std::string(name_of(type)), text_.substr(start_, next_ - start_));
+}
+
 void TextScanner::fail_word(const Place& place, std::string_view expected, std::string_view found) const {
     if (found.empty()) fail(describe(place) + ": unexpected end of file");
     fail(describe(place) + ": " + std::string(expected) + " is expected, not " + in_quotes(found));

@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 
+#include "number_type.h"
 #include "subvol/detail/printable.h"
 #include "subvol/detail/read_file.h"
 
@@ -52,6 +53,9 @@ public:
     std::size_t count(const Place& place);
     /// The last number that was read, checked as `count` does.
     [[nodiscard]] std::size_t as_count(std::int64_t value, const Place& place) const;
+
+    /// Fails unless the last number that was read may be of the type.
+    void expect_type(double number, NumberType type, const Place& place) const;
 
     /// The size of the text in bytes.
     [[nodiscard]] std::size_t size() const { return text_.size(); }

@@ -10,12 +10,16 @@
 #include <tbb/enumerable_thread_specific.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "boundary_rings.h"
 #include "child_topology.h"
+#include "mesh_subset.h"
 #include "refine_steps.h"
 #include "scheme_rows.h"
 #include "subvol/boundary_values.h"
+#include "subvol/detail/all_cells.h"
+#include "subvol/detail/place_function.h"
 #include "subvol/error.h"
 #include "subvol/limit.h"
 #include "surface_builder.h"
@@ -27,13 +31,25 @@ namespace {
 
 using HullFlags = std::vector<std::uint8_t>;  // for each point: whether it is on the hull
 
-HullFlags hull_points(const HexMesh& mesh) {
-    HullFlags on_hull(mesh.points.size(), 0);
-    for (const auto& quad : hull_quads(mesh)) {
-        for (const Index p : quad) on_hull[p] = 1;
+HullFlags points_of(std::span<const std::array<Index, 4>> quads, std::size_t points) {
+    HullFlags flags(points, 0);
+    for (const auto& quad : quads) {
+        for (const Index p : quad) flags[p] = 1;
     }
-    return on_hull;
+    return flags;
 }
+
+HullFlags hull_points(const HexMesh& mesh) {
+    return points_of(hull_quads(mesh), mesh.points.size());
+}
+
+/// Whether a face of these cells may be one of the hull.
+struct OnHull {
+    std::span<const std::uint8_t> flags;
+    bool operator()(const std::array<Index, 4>& face) const {
+        return std::ranges::all_of(face, [&](Index p) { return flags[p] != 0; });
+    }
+};
 
 /// The cells that have a point on the boundary, and the flags of their points. They are a mesh of their own: creases and sharp
 /// faces come along, unused points are left out, and the order of cells and points stays.
@@ -55,6 +71,16 @@ struct HullCells {
         }
         mesh.points = whole.points;
         if (with_attributes) mesh.attributes = whole.attributes;
+        std::vector<Index> kept;
+        for (Attribute& field : mesh.attributes) {
+            if (!is_at_cells(whole, field)) field.cells.clear();
+            if (kept.empty() && !field.cells.empty()) {
+                for (Index c = 0; c < whole.cells.size(); ++c) {
+                    if (at_hull(whole.cells[c])) kept.push_back(c);
+                }
+            }
+            field.cells = of_cells(field.cells, field.channels, kept);
+        }
         mesh = without_unused_points(std::move(mesh));
     }
 };
@@ -131,10 +157,32 @@ Surface boundary_of_child(const HexMesh& mesh, std::span<const std::uint8_t> on_
     return boundary_of_child(near.mesh, build_topology(near.mesh), near.on_hull, scheme);
 }
 
-namespace {
+void each_part_of_child(const HexMesh& mesh, std::span<const std::uint8_t> on_hull, const SchemeOptions& scheme,
+                        const std::function<void(const Surface&)>& visit) {
+    constexpr std::size_t kCells = 250'000, kMostParts = 16;
+    const std::size_t parts = std::clamp<std::size_t>(mesh.cells.size() / kCells, 1, kMostParts), points = mesh.points.size();
+    for (std::size_t part = 0; part < parts; ++part) {
+        // A face belongs to the part of its first point. The rules of its points look at the cells at its four corners.
+        const std::size_t begin = points * part / parts, end = points * (part + 1) / parts;
+        const auto quads = hull_quads(mesh, [&](const std::array<Index, 4>& face) {
+            return begin <= face[0] && face[0] < end && (on_hull.empty() || OnHull{on_hull}(face));
+        });
+        if (quads.empty()) continue;
+        const HullFlags corners = points_of(quads, points);
+        std::vector<std::uint8_t> near(mesh.cells.size(), 0);
+        parallel_each(near.size(), [&](std::size_t c) {
+            near[c] = std::ranges::any_of(mesh.cells[c], [&](Index p) { return corners[p] != 0; });
+        });
+        MeshSubset some = subset(mesh, near);
+        HullFlags own(some.points.size(), 0);
+        for (const auto& quad : quads)
+            own[static_cast<std::size_t>(std::ranges::lower_bound(some.points, quad[0]) - some.points.begin())] = 1;
+        visit(boundary_of_child(some.mesh, build_topology(some.mesh, InteriorCreases::Ignore), own, scheme));
+    }
+}
 
-/// Refines the cells at the boundary, with their attributes. on_hull: of the mesh's points; becomes that of the last level's
-HexMesh hull_at_level(HexMesh mesh, const RefineOptions& options, HullFlags& on_hull) {
+HexMesh hull_before_limit(HexMesh mesh, const RefineOptions& options, std::vector<std::uint8_t>& on_hull) {
+    if (on_hull.empty()) on_hull = hull_points(mesh);
     RefineOptions once = options;
     once.levels = 1;
     for (int level = 0; level < options.levels; ++level) {
@@ -142,23 +190,23 @@ HexMesh hull_at_level(HexMesh mesh, const RefineOptions& options, HullFlags& on_
         Topology topology = build_topology(near.mesh);
         on_hull = hull_points_of_child(topology, near.on_hull);
         // Fields are refined with the points, since the cut mesh keeps the attributes.
+        const HexMesh at_cells = take_cell_fields(near.mesh);
         RefinedPoints child = refine_points(std::move(near.mesh), std::move(topology), once);
         mesh = std::move(child.mesh);
         mesh.cells = child_cells(child.parent);
+        if (!at_cells.cells.empty()) inherit_cells(at_cells, all_cells(at_cells), 1, mesh);
     }
     HullCells last(mesh, on_hull, true);
     on_hull = std::move(last.on_hull);
-    mesh = {};
-    return on_limit(std::move(last.mesh), options.scheme.kind);
+    return std::move(last.mesh);
 }
 
-/// Whether a face of these cells may be one of the hull.
-struct OnHull {
-    const HullFlags& flags;
-    bool operator()(const std::array<Index, 4>& face) const {
-        return std::ranges::all_of(face, [&](Index p) { return flags[p] != 0; });
-    }
-};
+namespace {
+
+/// Refines the cells at the boundary, with their attributes. on_hull: of the mesh's points; becomes that of the last level's
+HexMesh hull_at_level(HexMesh mesh, const RefineOptions& options, HullFlags& on_hull) {
+    return on_limit(hull_before_limit(std::move(mesh), options, on_hull), options.scheme.kind);
+}
 
 }  // namespace
 
@@ -224,7 +272,9 @@ BoundaryValues boundary_values(MeshHull hull, const RefineOptions& options) {
     for (const Index p : used) boundary.surface.points.push_back(points[p]);
     for (const Attribute& field : fields) {
         std::vector<double>& of_field = boundary.values.emplace_back();
-        for (const Index p : used) of_field.push_back(field.values[p]);
+        const double low = field.bounds.empty() ? -HUGE_VAL : field.bounds[0][0],
+                     high = field.bounds.empty() ? HUGE_VAL : field.bounds[0][1];
+        for (const Index p : used) of_field.push_back(std::min(std::max(field.values[p], low), high));
     }
     return boundary;
 }
@@ -242,7 +292,17 @@ struct BoundaryTables::State {
     std::vector<Index> on_surface;  // the points of the last level that the surface uses
     std::vector<std::array<Index, 3>> triangles;
 
-    /// One channel, or three: from the control mesh to the surface.
+    /// A field of one channel, from the control mesh to the surface.
+    [[nodiscard]] std::vector<double> to_surface(const Attribute& field) const {
+        const bool plain = field.function == nullptr;
+        const std::vector<double> refined =
+            to_surface(plain ? field.values : field.arguments, plain ? 1 : field.function->arguments);
+        std::vector<double> memory;
+        const std::span<const double> values = values_at_places(field, refined, memory);
+        return {values.begin(), values.end()};
+    }
+
+    /// Some channels, from the control mesh to the surface.
     [[nodiscard]] std::vector<double> to_surface(std::span<const double> control, std::size_t channels) const {
         std::vector<double> values = gathered(control, used, channels);
         for (const Level& level : levels) {
@@ -315,7 +375,7 @@ BoundaryValues BoundaryTables::apply(const HexMesh& mesh) const {
         boundary.surface.points.emplace_back(moved[p], moved[p + 1], moved[p + 2]);
     for (const Attribute& field : mesh.attributes) {
         if (field.channels != 1) throw Error(ErrorCode::InvalidInput, "has more than one component", "field " + field.name);
-        boundary.values.push_back(state_->to_surface(field.values, 1));
+        boundary.values.push_back(state_->to_surface(field));
     }
     return boundary;
 }
@@ -337,7 +397,15 @@ int picture_levels(std::size_t triangles) {
 }  // namespace
 
 int picture_levels(const HexMesh& mesh, std::optional<int> most) {
-    return most ? std::min(2, *most) : picture_levels(boundary_surface(mesh).triangles.size());
+    if (most) return std::min(2, *most);
+    const std::size_t triangles = boundary_surface(mesh).triangles.size();
+    if (std::ranges::none_of(mesh.attributes, &Attribute::constant)) return picture_levels(triangles);
+    // Colours mix where cells meet, within a cell of the last level.
+    constexpr std::size_t kMostTriangles = 1'000'000;
+    constexpr int kMostLevels = 4;
+    int levels = picture_levels(triangles);
+    while (levels < kMostLevels && triangles <= kMostTriangles >> (2 * (levels + 1))) ++levels;
+    return levels;
 }
 
 int picture_levels(const MeshHull& hull, std::optional<int> most) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <vector>
@@ -18,6 +19,17 @@ namespace subvol::detail {
 /// The same; builds the topology of the cells at the boundary only. on_hull: a flag for each point of the mesh
 [[nodiscard]] Surface boundary_of_child(const HexMesh& mesh, std::span<const std::uint8_t> on_hull,
                                         const SchemeOptions& scheme);
+
+/// The boundary of the mesh's first refinement in parts, each face in one of them, so that a large mesh takes some 25 bytes a
+/// cell. on_hull: as above, or empty: of the whole mesh
+///
+/// visit: called with one part after the other
+void each_part_of_child(const HexMesh& mesh, std::span<const std::uint8_t> on_hull, const SchemeOptions& scheme,
+                        const std::function<void(const Surface&)>& visit);
+
+/// The cells at the boundary refined options.levels times, with their attributes, not moved to the limit. on_hull: of the
+/// mesh's points, or empty; becomes that of the result's
+[[nodiscard]] HexMesh hull_before_limit(HexMesh mesh, const RefineOptions& options, std::vector<std::uint8_t>& on_hull);
 
 /// The boundary of the mesh refined options.levels times, on the limit; refines only the cells at the boundary.
 ///

@@ -30,11 +30,13 @@
 
 #include "cell_tables.h"
 #include "class_tables.h"
+#include "constant_fields.h"
 #include "dense_block.h"
 #include "run_nested.h"
 #include "space_order.h"
 #include "subvol/cell.h"
 #include "subvol/detail/bucket_sort.h"
+#include "subvol/detail/place_function.h"
 #include "subvol/limit.h"
 
 namespace subvol::detail {
@@ -47,6 +49,22 @@ constexpr std::size_t kGroupBytes = 8U << 20;  // of the grids that wait for the
 
 using Sink = std::function<void(Index cell, const CellGrid& grid)>;
 
+/// A grid as visitors get it: with the values of the fields.
+class ShownGrid {
+public:
+    ShownGrid(const CellGrid& grid, Index cell, int levels, std::span<const Attribute> fields)
+        : cell_(grid.dense_cell(cell, levels)), memory_(fields.size()) {
+        for (std::size_t a = 0; a < fields.size(); ++a) {
+            cell_.values[a] = values_at_places(fields[a], cell_.values[a], memory_[a]);
+        }
+    }
+    [[nodiscard]] const DenseCell& get() const { return cell_; }
+
+private:
+    DenseCell cell_;
+    std::vector<std::vector<double>> memory_;
+};
+
 struct Scratch {
     Neighborhood found;
     LaneValues lanes;
@@ -57,7 +75,9 @@ struct Scratch {
 
 struct CellRefiner::State {
     State(const HexMesh& mesh, const SchemeOptions& wanted, bool on_limit)
-        : control(mesh),
+        : fields(mesh.attributes),
+          arguments(has_functions(mesh) ? std::make_unique<const HexMesh>(with_arguments(HexMesh(mesh))) : nullptr),
+          control(arguments ? *arguments : mesh),
           scheme(wanted),
           moves(on_limit && !interpolates(wanted.kind)),
           regular{regular_neighborhood(1), regular_neighborhood(2)},
@@ -65,6 +85,8 @@ struct CellRefiner::State {
           tables(wanted, moves ? [kind = wanted.kind](HexMesh m) { return subvol::on_limit(std::move(m), kind); }
                                : std::function<HexMesh(HexMesh)>()),
           top(control) {}
+
+    [[nodiscard]] ShownGrid shown(const CellGrid& grid, Index cell, int levels) const { return {grid, cell, levels, fields}; }
 
     /// Cuts a patch for some cells of a level.
     using Cut = std::function<Patch(std::span<const Index> cells, int layers)>;
@@ -234,7 +256,7 @@ struct CellRefiner::State {
         std::vector<std::uint8_t> goes_on(children.size());
         parallel_each(open.size(), [&](std::size_t i) {
             const std::uint8_t wanted =
-                wanted_of(i) != 0 ? wanted_of(i) : visitor.whole(grids[i].dense_cell(cells[open[i]], 2));
+                wanted_of(i) != 0 ? wanted_of(i) : visitor.whole(shown(grids[i], cells[open[i]], 2).get());
             for (std::size_t k = 0; k < 8; ++k) goes_on[8 * i + k] = wanted >> k & 1;
         });
         grids.clear();
@@ -255,7 +277,7 @@ struct CellRefiner::State {
                 drop_rare(classified.members, levels);
             }
             evaluate(level, cut_patch, classified, levels, [&](Index child, const CellGrid& part) {
-                goes_on[child] = visitor.part(part.dense_cell(parent(child), levels), child % 8, levels) ? 1 : 0;
+                goes_on[child] = visitor.part(shown(part, parent(child), levels).get(), child % 8, levels) ? 1 : 0;
             });
         }
     }
@@ -280,7 +302,7 @@ struct CellRefiner::State {
                 }
                 block.nodes(mesh, 8 * i, nodes);
                 for (std::size_t n = 0; n < nodes.size(); ++n) grid.take(mesh, n, nodes[n]);
-                wanted[i] = visitor.cell(grid.dense_cell(cells[i], 1)) ? 1 : 0;
+                wanted[i] = visitor.cell(shown(grid, cells[i], 1).get()) ? 1 : 0;
             }
         });
         std::vector<Index> open;
@@ -298,7 +320,7 @@ struct CellRefiner::State {
             Classified regulars = classes_of(top, run, 1);
             const std::vector<Index> rest = take_rare(regulars);
             const Sink show_first = [&](Index cell, const CellGrid& grid) {
-                if (!visitor.cell(grid.dense_cell(cell, 1))) is_done[cell] = 1;
+                if (!visitor.cell(shown(grid, cell, 1).get())) is_done[cell] = 1;
             };
             evaluate(top, {}, regulars, 1, show_first);
             // Level 1 depends on fewer cells than level 2: there cells near the boundary are of a few classes only. To find
@@ -316,7 +338,7 @@ struct CellRefiner::State {
             regulars = classes_of(top, open, 2);
             (void)take_rare(regulars);
             evaluate(top, {}, regulars, 2, [&](Index cell, const CellGrid& grid) {
-                seen[cell] = visitor.whole(grid.dense_cell(cell, 2));
+                seen[cell] = visitor.whole(shown(grid, cell, 2).get());
                 if (seen[cell] == 0) is_done[cell] = 1;
             });
         }
@@ -366,7 +388,10 @@ struct CellRefiner::State {
         };
     }
 
+    std::span<const Attribute> fields;         // of the mesh that was given
+    std::unique_ptr<const HexMesh> arguments;  // that mesh as it is refined, if it differs
     const HexMesh& control;
+    ConstantFields constants{control};
     SchemeOptions scheme;
     bool moves;
     std::array<Neighborhood, 2> regular;  // of one layer and of two
@@ -389,7 +414,9 @@ void CellRefiner::for_each(std::span<const Index> cells, int levels, Progress* p
                            const std::function<void(const DenseCell&)>& visit, Tables tables) const {
     State& state = *state_;
     const State::Cut cut = state.cut_of_control();
-    const Sink sink = [&](Index cell, const CellGrid& grid) { visit(grid.dense_cell(cell, levels)); };
+    const Sink sink = [&](Index cell, const CellGrid& grid) {
+        state.constants.with_own_values(state.shown(grid, cell, levels).get(), visit);
+    };
     std::vector<Index> ordered;
     if (cells.size() > kClassified) {
         ordered = in_space_order(state.control, cells);
@@ -413,7 +440,16 @@ const CellLinks& CellRefiner::links() const {
 
 void CellRefiner::descend(std::span<const Index> cells, int most_levels, Progress* progress, const Descent& visitor) const {
     report_progress(progress, "limit", 0);
-    state_->descend({cells.begin(), cells.end()}, most_levels, progress, visitor);
+    const ConstantFields& constants = state_->constants;
+    if (constants.fields().empty()) return state_->descend({cells.begin(), cells.end()}, most_levels, progress, visitor);
+    const Descent own{.cell = [&](const DenseCell& grid) { return constants.with_own_values(grid, visitor.cell); },
+                      .whole = [&](const DenseCell& grid) { return constants.with_own_values(grid, visitor.whole); },
+                      .part =
+                          [&](const DenseCell& grid, std::size_t child, int levels) {
+                              return constants.with_own_values(
+                                  grid, [&](const DenseCell& of_cell) { return visitor.part(of_cell, child, levels); });
+                          }};
+    state_->descend({cells.begin(), cells.end()}, most_levels, progress, own);
 }
 
 }  // namespace subvol::detail

@@ -10,16 +10,19 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <memory>
 #include <numeric>
 #include <optional>
 
 #include "cell_refiner.h"
+#include "constant_fields.h"
 #include "dense_block.h"
 #include "patch.h"
 #include "refine_steps.h"
 #include "run_nested.h"
 #include "space_order.h"
 #include "subvol/detail/all_cells.h"
+#include "subvol/detail/place_function.h"
 #include "subvol/error.h"
 #include "subvol/limit.h"
 
@@ -71,7 +74,10 @@ struct DenseCells::State {
           options(refinement),
           move(on_limit && !interpolates(refinement.scheme.kind)) {
         if (bits == DenseBits::OfRefine) {
-            source.emplace(control);
+            if (detail::has_functions(control)) {
+                arguments = std::make_unique<const HexMesh>(detail::with_arguments(HexMesh(control)));
+            }
+            source.emplace(arguments ? *arguments : control);
         } else {
             refiner.emplace(control, refinement.scheme, on_limit);
         }
@@ -82,16 +88,19 @@ struct DenseCells::State {
         const int last_layers = move ? 1 : 0;  // the limit of a vertex depends on the cells around it, so they must be there
         detail::Patch patch = detail::refine_patch(*source, cells, options.scheme, levels, last_layers);
         if (move) patch.mesh = on_limit(std::move(patch.mesh), options.scheme.kind);
+        detail::restore_functions(patch.mesh, control.attributes);
         Gather& gather = gathers.local();
         for (std::size_t i = 0; i < cells.size(); ++i) {
             DenseCell cell{.cell = cells[i], .side = 0, .points = {}, .values = {}};
             gather.run(patch.mesh, i << (3 * levels), block, cell);
-            visit(cell);
+            constants.with_own_values(cell, visit);
         }
     }
 
     HexMesh control;
-    std::optional<detail::PatchSource> source;   // of DenseBits::OfRefine
+    detail::ConstantFields constants{control};
+    std::unique_ptr<const HexMesh> arguments;    // the same with arguments of functions, if it has some; of DenseBits::OfRefine
+    std::optional<detail::PatchSource> source;   // of these bits
     std::optional<detail::CellRefiner> refiner;  // of DenseBits::ToRounding
     RefineOptions options;
     bool move;

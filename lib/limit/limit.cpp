@@ -21,11 +21,15 @@
 // cell's eight children all but those at the contact have one.
 #include "subvol/limit.h"
 
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <vector>
 
+#include "constant_fields.h"
 #include "jets.h"
 #include "limit_descents.h"
 #include "mesh_subset.h"
@@ -33,6 +37,7 @@
 #include "refine_steps.h"
 #include "subvol/cell.h"
 #include "subvol/detail/limit_of_part.h"
+#include "subvol/detail/place_function.h"
 #include "subvol/detail/tolerance_length.h"
 #include "subvol/error.h"
 #include "topology_parts.h"
@@ -66,6 +71,10 @@ void check(const HexMesh& mesh, std::span<const LimitQuery> queries) {
 std::vector<double> channel_scales(const HexMesh& mesh, const LimitExtent& extent) {
     std::vector<double> scales(3, std::max(extent.length(), 1e-6 * glm::length(extent.box.center())));
     for (std::size_t a = 0; a < mesh.attributes.size(); ++a) {
+        if (const PlaceFunction* function = mesh.attributes[a].function.get()) {
+            scales.insert(scales.end(), function->scales.begin(), function->scales.end());
+            continue;
+        }
         const auto& [low, high] = extent.ranges[a];
         const double scale = std::max(high - low, 1e-6 * std::max(std::abs(low), std::abs(high)));
         scales.insert(scales.end(), static_cast<std::size_t>(mesh.attributes[a].channels), scale);
@@ -83,6 +92,57 @@ LimitSamples make_samples(const HexMesh& mesh, std::size_t count) {
             {attribute.name, channels, std::vector<double>(count * channels), std::vector<Vec3>(count * channels)});
     }
     return samples;
+}
+
+/// The values of a function, and by the chain rule its derivatives: differences of the function along those of its arguments.
+/// Steps are so small that a square is exact to rounding, and the roundings of a difference are 1e-11 of the value.
+void evaluate(const PlaceFunction& function, std::size_t first, std::size_t count, const LimitAttribute& arguments,
+              LimitAttribute& samples) {
+    constexpr double kStep = 1e-5;  // as a part of the range of the argument that changes most
+    const std::size_t width = function.arguments, channels = function.channels;
+    function.evaluate(std::span(arguments.values).subspan(first * width, count * width),
+                      std::span(samples.values).subspan(first * channels, count * channels));
+    std::vector<double> beside(6 * count * width), found(6 * count * channels), steps(3 * count, 0);
+    for (std::size_t q = 0; q < count; ++q) {
+        const double* const at = &arguments.values[(first + q) * width];
+        const Vec3* const slopes = &arguments.derivatives[(first + q) * width];
+        for (int d = 0; d < 3; ++d) {
+            const std::size_t k = 3 * q + static_cast<std::size_t>(d);
+            double most = 0;
+            for (std::size_t c = 0; c < width; ++c) most = std::max(most, std::abs(slopes[c][d]) / function.scales[c]);
+            steps[k] = most > 0 ? kStep / most : 0;
+            for (std::size_t c = 0; c < width; ++c) {
+                beside[2 * k * width + c] = at[c] - steps[k] * slopes[c][d];
+                beside[(2 * k + 1) * width + c] = at[c] + steps[k] * slopes[c][d];
+            }
+        }
+    }
+    function.evaluate(beside, found);
+    for (std::size_t q = 0; q < count; ++q) {
+        for (int d = 0; d < 3; ++d) {
+            const std::size_t k = 3 * q + static_cast<std::size_t>(d);
+            for (std::size_t c = 0; steps[k] > 0 && c < channels; ++c) {
+                samples.derivatives[(first + q) * channels + c][d] =
+                    (found[(2 * k + 1) * channels + c] - found[2 * k * channels + c]) / (2 * steps[k]);
+            }
+        }
+    }
+}
+
+/// From the samples of the arguments to those of the fields.
+void evaluate(std::span<const Attribute> fields, LimitSamples& samples) {
+    constexpr std::size_t kGrain = 64;
+    for (std::size_t a = 0; a < fields.size(); ++a) {
+        if (fields[a].function == nullptr) continue;
+        const PlaceFunction& function = *fields[a].function;
+        const LimitAttribute arguments = std::move(samples.attributes[a]);
+        const std::size_t count = samples.positions.size(), channels = function.channels;
+        samples.attributes[a] = {arguments.name, channels, std::vector<double>(count * channels),
+                                 std::vector<Vec3>(count * channels, Vec3(0.0))};
+        tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, kGrain), [&](const auto& range) {
+            evaluate(function, range.begin(), range.end() - range.begin(), arguments, samples.attributes[a]);
+        });
+    }
 }
 
 /// Moves values beyond their bounds to these; there the field is constant.
@@ -117,6 +177,14 @@ std::vector<CellPlaces> places_of_cells(std::span<const LimitQuery> queries, std
     return cells;
 }
 
+/// The fields of a mesh without their values; in the mesh the arguments of functions take their place.
+std::vector<Attribute> take_fields(HexMesh& mesh) {
+    std::vector<Attribute> fields;
+    for (const Attribute& field : mesh.attributes) fields.push_back(without_values(field));
+    mesh = with_arguments(std::move(mesh));
+    return fields;
+}
+
 /// What all calls for one mesh share: the control mesh with its automatic creases, the scales of the tolerances, the classes.
 struct Evaluation {
     /// whole: the extent of the mesh that this is a part of, or none
@@ -124,6 +192,7 @@ struct Evaluation {
         : options((check(with), with)),
           control(detail::control_mesh(mesh, options.scheme)),
           scales(channel_scales(control, whole != nullptr ? *whole : detail::limit_extent(control))),
+          fields(take_fields(control)),
           descents(control, options.scheme, /*by_frequency=*/whole == nullptr),
           patches(control, options.scheme) {}
 
@@ -138,15 +207,22 @@ struct Evaluation {
         auto rest = descents.run({control, queries, order, options, scales, samples, targets, moved}, cells, keep);
         const DescentTask task{control, queries, order, options, scales, samples};
         while (!rest.empty()) rest = patches.run(task, rest, *descents.classes());
-        for (std::size_t a = 0; a < control.attributes.size(); ++a) {
-            keep_within(control.attributes[a].bounds, samples.attributes[a]);
+        evaluate(fields, samples);
+        for (std::size_t a = 0; a < fields.size(); ++a) keep_within(fields[a].bounds, samples.attributes[a]);
+        for (const std::size_t a : constants.fields()) {
+            LimitAttribute& field = samples.attributes[a];
+            for (std::size_t q = 0; q < queries.size(); ++q)
+                std::ranges::copy(constants.values(a, queries[q].cell), &field.values[q * field.channels]);
+            std::ranges::fill(field.derivatives, Vec3(0.0));
         }
         return samples;
     }
 
     LimitOptions options;
-    HexMesh control;
-    std::vector<double> scales;  // of the channels
+    HexMesh control;  // with the arguments of its functions
+    ConstantFields constants{control};
+    std::vector<double> scales;     // of the channels
+    std::vector<Attribute> fields;  // of the mesh that was given, without values
     detail::LimitDescents descents;
     mutable detail::PatchTree patches;  // has a lock of its own
 };
@@ -190,6 +266,10 @@ LimitExtent detail::limit_extent(const HexMesh& mesh) {
     for (const Attribute& attribute : mesh.attributes) {
         const auto channels = static_cast<std::size_t>(attribute.channels);
         auto& [low, high] = extent.ranges.emplace_back(std::array{HUGE_VAL, -HUGE_VAL});
+        if (is_constant_in_cells(mesh, attribute)) {
+            for (const double value : attribute.cells) low = std::min(low, value), high = std::max(high, value);
+            continue;
+        }
         for (std::size_t i = 0; i < attribute.values.size(); ++i) {
             if (used[i / channels] == 0) continue;
             low = std::min(low, attribute.values[i]);

@@ -30,6 +30,7 @@
 #include "subvol/detail/limit_of_part.h"
 #include "subvol/detail/parallel_each.h"
 #include "subvol/detail/part_of_progress.h"
+#include "subvol/detail/place_function.h"
 #include "subvol/field_range.h"
 #include "subvol/limit_level.h"
 
@@ -64,8 +65,9 @@ struct PieceList {
 ///     |  child  | child |           is small enough; if it is not, its children are looked at in the same way
 class PieceCutter {
 public:
-    /// scales: as `value_scales`
-    PieceCutter(std::vector<double> scales, const LimitCellsOptions& options);
+    /// scales:    as `value_scales`
+    /// functions: there are fields that are functions
+    PieceCutter(std::vector<double> scales, bool functions, const LimitCellsOptions& options);
 
     /// Whether a whole cell is fine enough, from its nodes of level 1, or there will be no other; if so, it is added to the
     /// list.
@@ -84,7 +86,7 @@ private:
         std::array<std::size_t, 3> first;  // node of the grid
         std::size_t width;                 // steps of the grid
     };
-    [[nodiscard]] bool is_near(const Step& left) const;
+    [[nodiscard]] bool is_near(const Step& left, int level) const;
     void gather(const DenseCell& grid, const Part& part, std::size_t side);
     void add(const DenseCell& grid, const Part& part, const Step& left, PieceList& list);
     /// The same with the part's 27 nodes gathered. step: of their positions, from trilinear predictions
@@ -92,6 +94,7 @@ private:
     std::uint8_t cut_part(const DenseCell& grid, const Part& part, Step left, bool last, PieceList& list);
 
     std::vector<double> scales_;
+    bool functions_;
     double position_, value_;
     NodeBlock nodes_;  // scratch memory
 };
@@ -138,12 +141,15 @@ void PieceList::drop_nodes() {
     nodes = {};
 }
 
-PieceCutter::PieceCutter(std::vector<double> scales, const LimitCellsOptions& options)
-    : scales_(std::move(scales)), position_(options.position_world), value_(options.value_of_range) {
+PieceCutter::PieceCutter(std::vector<double> scales, bool functions, const LimitCellsOptions& options)
+    : scales_(std::move(scales)), functions_(functions), position_(options.position_world), value_(options.value_of_range) {
 }
 
-bool PieceCutter::is_near(const Step& left) const {
-    return left.position <= position_ && left.value <= value_;
+/// A function may have kinks, as a length where it is 0, or jumps. There the steps shrink by two or not at all, so that its
+/// values end the search after some levels.
+bool PieceCutter::is_near(const Step& left, int level) const {
+    constexpr int kMostLevels = 3;
+    return left.position <= position_ && (left.value <= value_ || (functions_ && level >= kMostLevels));
 }
 
 void PieceCutter::gather(const DenseCell& grid, const Part& part, std::size_t side) {
@@ -175,7 +181,7 @@ bool PieceCutter::cut_cell(const DenseCell& grid, bool last, PieceList& list) {
     const Part whole{.level = 0, .lowest = {}, .first = {}, .width = 2};
     gather(grid, whole, 3);
     const Step step = nodes_.largest_step(Prediction::Trilinear, scales_);
-    if (!last && !is_near(quarter(step))) return false;
+    if (!last && !is_near(quarter(step), 0)) return false;
     add_gathered(grid, whole, quarter(step), step.position, list);
     return true;
 }
@@ -202,7 +208,7 @@ std::uint8_t PieceCutter::cut_part(const DenseCell& grid, const Part& part, Step
     for (const Step& step : steps) most = larger(most, step);
     // Both bounds hold, so the smaller one does.
     left = smaller(left, most);
-    if (is_near(left)) {
+    if (is_near(left, part.level)) {
         add(grid, part, left, list);
         return 0;
     }
@@ -216,7 +222,7 @@ std::uint8_t PieceCutter::cut_part(const DenseCell& grid, const Part& part, Step
         }
         gather(grid, of_child, 3);
         const Step of_next = quarter(smaller(largest_in(child, steps), nodes_.largest_step(Prediction::Trilinear, scales_)));
-        if (is_near(of_next)) {
+        if (is_near(of_next, of_child.level)) {
             add(grid, of_child, of_next, list);
         } else if (cut_part(grid, of_child, of_next, last, list) != 0) {
             open |= static_cast<std::uint8_t>(1U << child);
@@ -250,7 +256,9 @@ std::uint64_t hash_of(const HexMesh& mesh) {
 
 std::uint64_t hash_of(const Attribute& attribute) {
     auto hash = static_cast<std::uint64_t>(attribute.channels);
-    for (const double value : attribute.values) hash = mixed(hash, std::bit_cast<std::uint64_t>(value));
+    for (const auto* numbers : {&own_values(attribute), &attribute.arguments}) {
+        for (const double number : *numbers) hash = mixed(hash, std::bit_cast<std::uint64_t>(number));
+    }
     return hash;
 }
 
@@ -294,7 +302,8 @@ struct FloatValues {
             const double origin = origins[first], unit = units[first];
             first += static_cast<std::size_t>(attribute.channels);
             if (origin == 0 && unit == 1) continue;
-            for (double& value : attribute.values) value = (value - origin) / unit;
+            change_values(attribute, [origin, unit](double value) { return (value - origin) / unit; });
+            for (double& value : attribute.cells) value = (value - origin) / unit;
         }
         return mesh;
     }
@@ -330,7 +339,7 @@ public:
           refiner_(control_, refinement.scheme, true),
           options_(options),
           found_([this] {
-              return Found{PieceCutter(floats_.scales, options_), {}, 0};
+              return Found{PieceCutter(floats_.scales, has_functions(control_), options_), {}, 0};
           }) {
         for (const Attribute& attribute : control_.attributes) node_size_ += static_cast<std::size_t>(attribute.channels);
         result_.cell_levels.assign(control_.cells.size(), 1);
@@ -417,7 +426,7 @@ public:
     /// Makes room for so many pieces in each list. What a thread does not find takes no memory, as it is never touched.
     void reserve(std::size_t pieces) {
         found_ = FoundByThreads([this, pieces] {
-            Found found{PieceCutter(floats_.scales, options_), {}, 0};
+            Found found{PieceCutter(floats_.scales, has_functions(control_), options_), {}, 0};
             found.list.nodes.reserve(pieces * LimitPieces::kNodes * node_size_);
             return found;
         });

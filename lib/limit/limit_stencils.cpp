@@ -15,12 +15,14 @@
 
 #include "child_topology.h"
 #include "incident.h"
+#include "mesh_subset.h"
 #include "patch.h"
 #include "refine_steps.h"
 #include "regular_grid.h"
 #include "run_nested.h"
 #include "scheme_rows.h"
 #include "subvol/detail/limit_of_part.h"
+#include "subvol/detail/place_function.h"
 #include "subvol/limit.h"
 #include "topology_parts.h"
 
@@ -194,11 +196,19 @@ HexMesh moved_to_limit(HexMesh mesh, Scheme scheme, detail::InteriorCreases inte
     table.apply(std::span<const double>(&mesh.points[0].x, 3 * points.size()), 3,
                 std::span<double>(&points[0].x, 3 * points.size()));
     mesh.points = std::move(points);
+    const auto move = [&](std::vector<double>& values, std::size_t channels) {
+        std::vector<double> moved(values.size());
+        table.apply(std::span<const double>(values), channels, std::span<double>(moved));
+        values = std::move(moved);
+    };
     for (auto& attribute : mesh.attributes) {
-        std::vector<double> values(attribute.values.size());
-        table.apply(std::span<const double>(attribute.values), static_cast<std::size_t>(attribute.channels),
-                    std::span<double>(values));
-        attribute.values = std::move(values);
+        if (detail::is_constant_in_cells(mesh, attribute)) continue;
+        if (attribute.function == nullptr) {
+            move(attribute.values, static_cast<std::size_t>(attribute.channels));
+        } else {
+            move(attribute.arguments, attribute.function->arguments);
+            detail::evaluate_at_points(attribute);
+        }
     }
     return mesh;
 }
@@ -243,10 +253,11 @@ HexMesh detail::on_limit_of_part(HexMesh part, Scheme scheme) {
 HexMesh detail::limit_of_cells(const HexMesh& mesh, std::span<const Index> cells, const RefineOptions& options) {
     if (interpolates(options.scheme.kind)) return refine_cells(mesh, cells, options);
     if (cells.empty()) return {};
-    const HexMesh control = control_mesh(mesh, options.scheme, options.levels);
+    const HexMesh control = with_arguments(control_mesh(mesh, options.scheme, options.levels));
     // The limit of a vertex depends on the cells around it, so a layer of these is refined, too.
     Patch patch = refine_patch(PatchSource(control), cells, options.scheme, options.levels, 1);
     HexMesh fine = on_limit_of_part(std::move(patch.mesh), options.scheme.kind);
+    restore_functions(fine, mesh.attributes);
     fine.cells.resize(patch.wanted);
     fine.creases.clear();
     fine.sharp_faces.clear();

@@ -90,7 +90,7 @@ Batch first_batch(const HexMesh& mesh, const Topology& topology, const MeanRows&
             batch.highest[p][l] = high + guess.beyond[p];
         }
     }
-    means.matrix.apply(batch.values, found);
+    multiply(means.matrix, batch.values, found);
     for (std::size_t w = 0; w < found.size(); ++w) {
         for (std::size_t l = 0; l < kLanes; ++l) batch.off[w][l] -= found[w][l];
     }
@@ -129,7 +129,7 @@ int fit(const LaneMatrix& rows, const LaneMatrix& columns, Batch& batch, const E
             for (std::size_t l = 0; l < kLanes; ++l) before[p][l] -= batch.values[p][l];
         }
         std::vector<Lanes> lost(batch.off.size());
-        rows.apply(before, lost);
+        multiply(rows, before, lost);
         for (std::size_t w = 0; w < lost.size(); ++w) {
             for (std::size_t l = 0; l < kLanes; ++l) batch.off[w][l] += lost[w][l];
         }
@@ -160,7 +160,7 @@ ExactMeansFit fit_exact_cell_means(const HexMesh& mesh, std::span<const Attribut
     const Topology topology = build_topology(mesh);
     const Wholes wholes = detail::wholes_of(mesh.cells.size(), parts);
     const MeanRows means = detail::mean_rows(mesh, topology, wholes, options.scheme, options.progress);
-    const LaneMatrix columns = means.matrix.transposed(mesh.points.size());
+    const LaneMatrix columns = transpose_of(means.matrix, mesh.points.size());
     ExactMeansFit result;
     result.fields = detail::empty_fields(mesh, fields);
     const std::vector<detail::MeanChannel> channels = detail::mean_channels(fields);

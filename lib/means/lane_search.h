@@ -4,7 +4,7 @@
 #include <array>
 #include <vector>
 
-#include "subvol/index.h"
+#include "subvol/detail/sparse_rows.h"
 
 namespace subvol::detail {
 
@@ -12,16 +12,7 @@ namespace subvol::detail {
 constexpr std::size_t kLanes = 4;
 using Lanes = std::array<double, kLanes>;
 
-/// A sparse matrix, row by row, that is applied to lanes. Parallel; bitwise the same for any number of threads.
-struct LaneMatrix {
-    std::vector<std::size_t> offsets{0};
-    std::vector<Index> columns;
-    std::vector<float> weights;
-
-    [[nodiscard]] std::size_t rows() const { return offsets.size() - 1; }
-    void apply(const std::vector<Lanes>& in, std::vector<Lanes>& out) const;
-    [[nodiscard]] LaneMatrix transposed(std::size_t count) const;
-};
+using LaneMatrix = SparseRows<float>;
 
 [[nodiscard]] Lanes dot(const std::vector<Lanes>& a, const std::vector<Lanes>& b);
 [[nodiscard]] Lanes largest(const std::vector<Lanes>& values);

@@ -147,20 +147,7 @@ public:
                 add_row(w, touched, parts[part]);
             }
         });
-        LaneMatrix matrix;
-        std::size_t entries = 0;
-        for (const LaneMatrix& part : parts) entries += part.columns.size();
-        matrix.columns.reserve(entries);
-        matrix.weights.reserve(entries);
-        matrix.offsets.reserve(wholes_.size() + 1);
-        for (LaneMatrix& part : parts) {
-            const std::size_t before = matrix.columns.size();
-            for (std::size_t r = 1; r < part.offsets.size(); ++r) matrix.offsets.push_back(before + part.offsets[r]);
-            matrix.columns.insert(matrix.columns.end(), part.columns.begin(), part.columns.end());
-            matrix.weights.insert(matrix.weights.end(), part.weights.begin(), part.weights.end());
-            part = {};
-        }
-        return matrix;
+        return joined_rows(std::move(parts));
     }
 
 private:
@@ -223,12 +210,7 @@ Wholes wholes_of(std::size_t count, std::span<const Index> parts) {
 MeanRows mean_rows(const HexMesh& mesh, const Topology& topology, const Wholes& wholes, const SchemeOptions& scheme,
                    Progress* progress) {
     const RefinedRows refined(topology, scheme, progress);
-    const CsrMatrix& rows = refined.rows;
-    std::vector<Vec3> points(rows.offsets.size() - 1, Vec3(0.0));
-    parallel_each(points.size(), [&](std::size_t r) {
-        for (std::size_t k = rows.offsets[r]; k < rows.offsets[r + 1]; ++k)
-            points[r] += rows.weights[k] * mesh.points[rows.columns[k]];
-    });
+    const std::vector<Vec3> points = product_with(refined.rows, mesh.points);
     MeanRows means;
     const std::size_t cells = mesh.cells.size();
     means.volumes.resize(cells);

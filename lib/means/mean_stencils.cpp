@@ -14,9 +14,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <tuple>
+#include <utility>
 
 #include "subvol/cell.h"
+#include "subvol/detail/counted_rows.h"
 #include "subvol/detail/parallel_each.h"
 
 namespace subvol::detail {
@@ -49,22 +52,6 @@ Rows<Term> rows_of_terms(std::size_t count, const Row& row) {
     return rows;
 }
 
-/// The cells at each point, ascending.
-IndexRows cells_at_points(const HexMesh& mesh) {
-    IndexRows cells;
-    cells.offsets.assign(mesh.points.size() + 1, 0);
-    for (const auto& cell : mesh.cells) {
-        for (const Index p : cell) ++cells.offsets[p + 1];
-    }
-    for (std::size_t p = 0; p < mesh.points.size(); ++p) cells.offsets[p + 1] += cells.offsets[p];
-    cells.values.resize(cells.offsets.back());
-    std::vector<std::size_t> next(cells.offsets.begin(), cells.offsets.end() - 1);
-    for (std::size_t c = 0; c < mesh.cells.size(); ++c) {
-        for (const Index p : mesh.cells[c]) cells.values[next[p]++] = static_cast<Index>(c);
-    }
-    return cells;
-}
-
 std::size_t corner_of(const std::array<Index, 8>& cell, Index point) {
     return static_cast<std::size_t>(std::ranges::find(cell, point) - cell.begin());
 }
@@ -89,7 +76,7 @@ Vec3 product(const Mat3& m, const Vec3& v) {
 class StencilMaker {
 public:
     StencilMaker(const HexMesh& mesh, const Topology& topology, MeanStencils& stencils)
-        : mesh_(mesh), topology_(topology), stencils_(stencils), at_points_(cells_at_points(mesh)) {}
+        : mesh_(mesh), topology_(topology), stencils_(stencils), at_points_(lists_at_points(mesh.cells, mesh.points.size())) {}
 
     void integrate_cells() {
         const std::size_t count = mesh_.cells.size();
@@ -99,9 +86,10 @@ public:
         parallel_each(count, [&](std::size_t c) {
             std::array<Vec3, 8> x;
             for (std::size_t k = 0; k < 8; ++k) x[k] = mesh_.points[mesh_.cells[c][k]];
-            integrate(x, stencils_.corners[c], cell_volumes_[c]);
-            for (std::size_t k = 0; k < 8; ++k) moments[c] += stencils_.corners[c][k] * (x[k] - x[0]);
-            moments[c] += cell_volumes_[c] * x[0];
+            const CellIntegrals integrals = integrate(x);
+            stencils_.corners[c] = integrals.corners;
+            cell_volumes_[c] = integrals.volume;
+            moments[c] = integrals.moment;
         });
         const Wholes& wholes = stencils_.wholes;
         stencils_.volumes.resize(wholes.size());
@@ -175,6 +163,42 @@ public:
         });
     }
 
+    void make_reaches(const ValuesOnPatches* on_patches) {
+        std::vector<std::pair<std::uint64_t, Index>> faces;  // of sides: 6 cell + side, and the face there
+        std::vector<std::array<Index, 2>> at_points;
+        if (on_patches != nullptr) {
+            for (const auto& [side, face] : on_patches->sides) {
+                faces.emplace_back(6 * std::uint64_t{side.cell} + side.side, face);
+                for (const std::size_t k : kCellFaces[side.side]) at_points.push_back({mesh_.cells[side.cell][k], face});
+            }
+        }
+        std::ranges::sort(faces);
+        std::ranges::sort(at_points);
+        IndexRows& rows = stencils_.faces;
+        rows = {};
+        for (Index p = 0; p < mesh_.points.size(); ++p) {
+            while (rows.values.size() < at_points.size() && at_points[rows.values.size()][0] == p)
+                rows.values.push_back(at_points[rows.values.size()][1]);
+            rows.offsets.push_back(rows.values.size());
+        }
+        const auto face_of = [&](Index c, std::size_t side) {
+            const std::uint64_t key = 6 * std::uint64_t{c} + side;
+            const auto found = std::ranges::lower_bound(faces, key, {}, &std::pair<std::uint64_t, Index>::first);
+            return found != faces.end() && found->first == key ? found->second : kNone;
+        };
+        stencils_.reaches = rows_of_terms<MeanReach>(mesh_.points.size(), [&](std::size_t p, const auto& sink) {
+            for (const Index c : at_points_[p]) {
+                if (!is_alone(c)) continue;
+                each_end(static_cast<Index>(p), c, [&](std::size_t, std::size_t side, Index second, Index third) {
+                    const double way = glm::length(centre(c) - middle_of(c, side)),
+                                 step = glm::length(centre(second) - centre(c));
+                    if (!(way > 0 && step > 0)) return;
+                    sink({whole(c), whole(second), third == kNone ? kNone : whole(third), way / step, face_of(c, side)});
+                });
+            }
+        });
+    }
+
     void make_bends() {
         stencils_.bends = rows_of_terms<MeanTerm<double>>(
             mesh_.points.size(), [&](std::size_t p, const auto& sink) { add_bends(static_cast<Index>(p), sink); });
@@ -192,37 +216,6 @@ private:
         Index near, far;
         bool forked = false;  // leads to several others
     };
-
-    /// Two points of Gauss along each axis are exact.
-    static void integrate(const std::array<Vec3, 8>& x, std::array<double, 8>& corners, double& volume) {
-        const double h = .5 / std::sqrt(3.);
-        corners = {};
-        volume = 0;
-        double size = 0;
-        for (int g = 0; g < 8; ++g) {
-            const Vec3 at(.5 + (g & 1 ? h : -h), .5 + (g & 2 ? h : -h), .5 + (g & 4 ? h : -h));
-            std::array<double, 8> values{};
-            Mat3 jacobian(0.0);
-            for (std::size_t k = 0; k < 8; ++k) {
-                std::array<double, 3> f{}, df{};
-                for (int a = 0; a < 3; ++a) {
-                    const bool upper = kCornerParameters[k][static_cast<std::size_t>(a)] == 1;
-                    f[static_cast<std::size_t>(a)] = upper ? at[a] : 1 - at[a];
-                    df[static_cast<std::size_t>(a)] = upper ? 1 : -1;
-                }
-                values[k] = f[0] * f[1] * f[2];
-                const Vec3 slope(df[0] * f[1] * f[2], f[0] * df[1] * f[2], f[0] * f[1] * df[2]);
-                jacobian += glm::outerProduct(x[k] - x[0], slope);
-            }
-            const double determinant = glm::determinant(jacobian) / 8;
-            volume += determinant;
-            size += std::abs(determinant);
-            for (std::size_t k = 0; k < 8; ++k) corners[k] += determinant * values[k];
-        }
-        if (volume > .05 * size) return;
-        volume = std::max(std::abs(volume), 1e-300);  // an inverted cell counts as a box
-        corners.fill(volume / 8);
-    }
 
     /// The cell beyond a side, none at the boundary.
     [[nodiscard]] Index beyond(Index cell, std::size_t side) const {
@@ -259,16 +252,11 @@ private:
     template <class Sink>
     void add_ends(Index p, Index c, double weight, const Sink& sink) const {
         if (!is_alone(c)) return;
-        const std::size_t corner = corner_of(mesh_.cells[c], p);
         std::array<Index, 3> behind{kNone, kNone, kNone};
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            const std::size_t side = side_at(corner, axis);
-            if (!topology_.face_on_boundary(topology_.cell_faces[c][side])) continue;
-            const Index second = beyond(c, side ^ 1U), third = next_but_one(c, side ^ 1U);
-            if (!is_alone(second)) continue;
+        each_end(p, c, [&](std::size_t axis, std::size_t side, Index second, Index third) {
             behind[axis] = second;
-            if (is_alone(third) && third != c) add_face(c, side, second, third, weight, sink);
-        }
+            if (third != kNone) add_face(c, side, second, third, weight, sink);
+        });
         for (std::size_t axis = 0; axis < 3; ++axis) {
             const Index a = behind[axis], b = behind[(axis + 1) % 3], d = beside(a, b, c);
             if (a == kNone || b == kNone || !is_alone(d)) continue;
@@ -279,11 +267,29 @@ private:
         }
     }
 
+    /// Calls call(axis, side, second, third) for each side of a cell at a point that lies on the boundary, with the cells
+    /// behind it; third: kNone if there is none.
+    template <class Call>
+    void each_end(Index p, Index c, const Call& call) const {
+        const std::size_t corner = corner_of(mesh_.cells[c], p);
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const std::size_t side = side_at(corner, axis);
+            if (!topology_.face_on_boundary(topology_.cell_faces[c][side])) continue;
+            const Index second = beyond(c, side ^ 1U), third = next_but_one(c, side ^ 1U);
+            if (is_alone(second)) call(axis, side, second, is_alone(third) && third != c ? third : kNone);
+        }
+    }
+
+    [[nodiscard]] const Vec3& centre(Index cell) const { return stencils_.centres[whole(cell)]; }
+    [[nodiscard]] Vec3 middle_of(Index cell, std::size_t side) const {
+        Vec3 middle(0.0);
+        for (const std::size_t k : kCellFaces[side]) middle += mesh_.points[mesh_.cells[cell][k]] / 4.0;
+        return middle;
+    }
+
     template <class Sink>
     void add_face(Index first, std::size_t side, Index second, Index third, double weight, const Sink& sink) const {
-        Vec3 middle(0.0);
-        for (const std::size_t k : kCellFaces[side]) middle += mesh_.points[mesh_.cells[first][k]] / 4.0;
-        const auto centre = [&](Index cell) { return stencils_.centres[whole(cell)]; };
+        const Vec3 middle = middle_of(first, side);
         const double t1 = glm::length(centre(first) - middle), t2 = t1 + glm::length(centre(second) - centre(first)),
                      t3 = t2 + glm::length(centre(third) - centre(second));
         if (!(t1 > 0 && t2 > t1 && t3 > t2)) return;
@@ -389,7 +395,43 @@ private:
 
 }  // namespace
 
-MeanStencils mean_stencils(const HexMesh& mesh, const Topology& topology, std::span<const Index> parts) {
+// Two points of Gauss along each axis are exact.
+CellIntegrals integrate(const std::array<Vec3, 8>& x) {
+    CellIntegrals integrals;
+    auto& [corners, volume, moment] = integrals;
+    const double h = .5 / std::sqrt(3.);
+    double size = 0;
+    for (int g = 0; g < 8; ++g) {
+        const Vec3 at(.5 + (g & 1 ? h : -h), .5 + (g & 2 ? h : -h), .5 + (g & 4 ? h : -h));
+        std::array<double, 8> values{};
+        Mat3 jacobian(0.0);
+        for (std::size_t k = 0; k < 8; ++k) {
+            std::array<double, 3> f{}, df{};
+            for (int a = 0; a < 3; ++a) {
+                const bool upper = kCornerParameters[k][static_cast<std::size_t>(a)] == 1;
+                f[static_cast<std::size_t>(a)] = upper ? at[a] : 1 - at[a];
+                df[static_cast<std::size_t>(a)] = upper ? 1 : -1;
+            }
+            values[k] = f[0] * f[1] * f[2];
+            const Vec3 slope(df[0] * f[1] * f[2], f[0] * df[1] * f[2], f[0] * f[1] * df[2]);
+            jacobian += glm::outerProduct(x[k] - x[0], slope);
+        }
+        const double determinant = glm::determinant(jacobian) / 8;
+        volume += determinant;
+        size += std::abs(determinant);
+        for (std::size_t k = 0; k < 8; ++k) corners[k] += determinant * values[k];
+    }
+    if (!(volume > .05 * size)) {
+        volume = std::max(std::abs(volume), 1e-300);  // an inverted cell counts as a box
+        corners.fill(volume / 8);
+    }
+    for (std::size_t k = 0; k < 8; ++k) moment += corners[k] * (x[k] - x[0]);
+    moment += volume * x[0];
+    return integrals;
+}
+
+MeanStencils mean_stencils(const HexMesh& mesh, const Topology& topology, std::span<const Index> parts,
+                           const ValuesOnPatches* on_patches) {
     MeanStencils stencils;
     stencils.wholes = wholes_of(mesh.cells.size(), parts);
     StencilMaker maker(mesh, topology, stencils);
@@ -397,6 +439,7 @@ MeanStencils mean_stencils(const HexMesh& mesh, const Topology& topology, std::s
     maker.make_slopes();
     maker.make_around();
     maker.make_ends();
+    maker.make_reaches(on_patches);
     maker.make_bends();
     return stencils;
 }

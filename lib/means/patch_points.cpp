@@ -21,6 +21,7 @@
 #include <span>
 #include <string_view>
 
+#include "mean_stencils.h"
 #include "mesh_subset.h"
 #include "subvol/cell.h"
 #include "subvol/cell_means.h"
@@ -144,6 +145,35 @@ public:
         : mesh_(mesh), on_patches_(on_patches), use_(use), means_(mesh, on_patches) {
         measure_faces();
         sort_sides();
+    }
+
+    /// The gradients of one field at points, by its means over the cells that the faces belong to.
+    ///
+    /// centres: of these cells, for each face
+    /// means:   `channels` for each face
+    [[nodiscard]] GradientsAtPoints gradients(const FieldOnPatches& field, std::span<const Vec3> centres,
+                                              std::span<const double> means) {
+        field_ = &field;
+        channels_ = static_cast<std::size_t>(field.channels);
+        find_gradients(field.values);
+        GradientsAtPoints found;
+        std::vector<Index> faces;
+        for (std::size_t k = 0; k < points_.size(); ++k) {
+            faces.clear();
+            for (const PatchRole role : {PatchRole::Wall, PatchRole::Open, PatchRole::Plane}) {
+                if (!faces.empty() && role == PatchRole::Open) break;
+                for (const Index s : sides_at_[k]) {
+                    const Index f = face_of(s);
+                    const Vec3 way = faces_[f].centre - centres[f];
+                    const bool lies_behind = std::abs(glm::dot(way, faces_[f].area)) > 1e-6 * glm::length(way) * faces_[f].size;
+                    if (role_of(s) == role && is_known(f) && faces_[f].size > 0 && lies_behind) faces.push_back(f);
+                }
+            }
+            if (faces.empty()) continue;
+            found.points.push_back(points_[k]);
+            add_gradients(faces, centres, means, found.gradients);
+        }
+        return found;
     }
 
     /// Sets the values of one field. Returns how many points got one.
@@ -308,7 +338,8 @@ private:
     void start(std::size_t k, std::vector<double>& values) const {
         for (std::size_t c = 0; c < channels_; ++c) {
             const auto [mean, beyond] = at_point(k, c, field_->values);
-            values[points_[k] * channels_ + c] = mean + beyond;
+            const auto [low, high] = limits_at(k, c);
+            values[points_[k] * channels_ + c] = std::clamp(mean + beyond, low, high);
         }
     }
 
@@ -349,8 +380,58 @@ private:
             low = std::min(low, field_->values[f * channels_ + c]);
             high = std::max(high, field_->values[f * channels_ + c]);
         }
-        const double more = 2 * std::abs(at_point(k, c, field_->values).beyond) + (high - low) / 4;
+        // Beside a face across which nothing changes, the values on the patch lead no farther.
+        const bool level = std::ranges::any_of(sides_at_[k], [&](Index s) { return field_->is_level(face_of(s)); });
+        const double more = level ? 0 : 2 * std::abs(at_point(k, c, field_->values).beyond) + (high - low) / 4;
         return {low - more, high + more};
+    }
+
+    /// The gradient of a channel at a face.
+    [[nodiscard]] Vec3 gradient_at(Index f, std::size_t c, const Vec3& cell_centre, double mean) const {
+        const Vec3 n = faces_[f].area / glm::length(faces_[f].area), way = faces_[f].centre - cell_centre;
+        const Vec3 along = gradients_[f * channels_ + c] - glm::dot(gradients_[f * channels_ + c], n) * n;
+        const double step = field_->values[f * channels_ + c] - mean - glm::dot(along, way);
+        return along + step / glm::dot(n, way) * n;
+    }
+
+    // The mean of the faces' gradients, changed so that its step across each face is nearly the face's own:
+    // the least Σ w (n · (g + c) − n · g_f)² + few |c|². Where walls meet at an edge, the mean alone would have half of each
+    // step. Then it is longer than the gradients of the faces, up to √2 times: of the two lengths it gets the geometric mean,
+    // so that neither what flows through the walls nor the mean of lengths on them is far off.
+    void add_gradients(std::span<const Index> faces, std::span<const Vec3> centres, std::span<const double> means,
+                       std::vector<Vec3>& gradients) const {
+        constexpr double kFew = .02, kRounding = 1e-6;
+        double area = 0, length = 0, square = 0;
+        Mat3 normals(0.0);
+        for (const Index f : faces) {
+            const Vec3 n = faces_[f].area / glm::length(faces_[f].area);
+            normals += faces_[f].size * glm::outerProduct(n, n);
+            area += faces_[f].size;
+            double of_face = 0;
+            for (std::size_t c = 0; c < channels_; ++c) {
+                const Vec3 g = gradient_at(f, c, centres[f], means[f * channels_ + c]);
+                of_face += glm::dot(g, g);
+            }
+            length += faces_[f].size * std::sqrt(of_face);
+        }
+        normals /= area;
+        for (int a = 0; a < 3; ++a) normals[a][a] += kFew;
+        const Mat3 inverse = glm::inverse(normals);
+        for (std::size_t c = 0; c < channels_; ++c) {
+            Vec3 mean(0.0), lacks(0.0);
+            for (const Index f : faces) mean += faces_[f].size / area * gradient_at(f, c, centres[f], means[f * channels_ + c]);
+            for (const Index f : faces) {
+                const Vec3 n = faces_[f].area / glm::length(faces_[f].area);
+                const Vec3 g = gradient_at(f, c, centres[f], means[f * channels_ + c]);
+                lacks += faces_[f].size / area * glm::dot(n, g - mean) * n;
+            }
+            gradients.push_back(mean + inverse * lacks);
+            square += glm::dot(gradients.back(), gradients.back());
+        }
+        length /= area;
+        if (!(std::sqrt(square) > length * (1 + kRounding))) return;
+        const double factor = std::sqrt(length / std::sqrt(square));
+        for (std::size_t c = 0; c < channels_; ++c) gradients[gradients.size() - channels_ + c] *= factor;
     }
 
     /// Gives all faces of a patch the mean of their values.
@@ -407,6 +488,35 @@ private:
     std::vector<Vec3> gradients_;
 };
 
+/// The centre of the cell of the file behind each face, and a cell of the mesh that is a part of it.
+struct CellsBehind {
+    std::vector<Vec3> centres;
+    std::vector<Index> cells;
+};
+
+CellsBehind cells_behind(const HexMesh& mesh, const ValuesOnPatches& on_patches, std::span<const Index> parts) {
+    const auto whole = [&](Index cell) { return parts.empty() ? cell : parts[cell]; };
+    std::map<Index, std::pair<Vec3, double>> sums;  // moment and volume of the wholes at patches
+    for (const auto& [side, face] : on_patches.sides) sums.try_emplace(whole(side.cell), Vec3(0.0), 0.);
+    for (Index c = 0; c < mesh.cells.size(); ++c) {
+        const auto found = sums.find(whole(c));
+        if (found == sums.end()) continue;
+        std::array<Vec3, 8> x;
+        for (std::size_t k = 0; k < 8; ++k) x[k] = mesh.points[mesh.cells[c][k]];
+        const detail::CellIntegrals integrals = detail::integrate(x);
+        found->second.first += integrals.moment;
+        found->second.second += integrals.volume;
+    }
+    CellsBehind behind{std::vector<Vec3>(on_patches.patches.size(), Vec3(0.0)),
+                       std::vector<Index>(on_patches.patches.size(), 0)};
+    for (const auto& [side, face] : on_patches.sides) {
+        const auto& [moment, volume] = sums.at(whole(side.cell));
+        behind.centres[face] = moment / std::max(volume, 1e-300);
+        behind.cells[face] = side.cell;
+    }
+    return behind;
+}
+
 /// Returns for each point an eighth of the volumes of its cells.
 std::vector<double> volumes_at(const HexMesh& mesh) {
     std::vector<double> volumes(mesh.points.size(), 0);
@@ -449,6 +559,17 @@ PatchValuesReport meet_patch_values(HexMesh& mesh, const ValuesOnPatches& on_pat
         }
     }
     return report;
+}
+
+void set_wall_gradients(HexMesh& mesh, const ValuesOnPatches& on_patches, std::span<const Index> cell_parts) {
+    PatchPoints points(mesh, on_patches, PatchValuesUse::Meet);
+    const CellsBehind behind = cells_behind(mesh, on_patches, cell_parts);
+    for (const FieldOnPatches& field : on_patches.fields) {
+        const auto found = std::ranges::find(mesh.attributes, field.name, &Attribute::name);
+        if (found == mesh.attributes.end() || found->channels != field.channels || !detail::is_at_cells(mesh, *found)) continue;
+        const std::vector<double> means = detail::of_cells(found->cells, field.channels, behind.cells);
+        found->walls = points.gradients(field, behind.centres, means);
+    }
 }
 
 }  // namespace subvol

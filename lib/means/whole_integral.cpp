@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // The last step of fit_means.cpp: u += f k with k = (u − L)(H − u) / (H − L), where f is chosen for the integral over all
-// cells. While |f| ≤ 1 values stay between L and H, which are the field's bounds or lie beyond all values. The integral is that
-// over the limit volume, where it fills the same space as the straight cells: has the same volume and the same centre. Where
-// its boundary is rounder, the means say nothing of what is between, and a linear function would be changed: there it is the
-// integral over the straight cells, by A (fit_means.cpp).
+// cells. While |f| ≤ 1 values stay between L and H, what they are kept between by the means around each point. The integral is
+// that over the limit volume, where it fills the same space as the straight cells: has the same volume and the same centre.
+// Where its boundary is rounder, the means say nothing of what is between, and a linear function would be changed: there it is
+// the integral over the straight cells, by A (fit_means.cpp).
+//
+// Where a field has bounds, its limit is kept within them, which takes away what overshoots: its integral is that of the kept
+// values, and no longer linear in f, so that rounds follow until it is met.
 #include "whole_integral.h"
 
 #include <algorithm>
@@ -17,7 +20,9 @@ namespace subvol::detail {
 namespace {
 
 /// Integrals over the limit volume of 1, x, y, z and each attribute of a mesh, by the 27 nodes of each cell.
-std::vector<double> limit_integrals(const HexMesh& mesh, Progress* progress) {
+///
+/// bounds: what the limit of each attribute is kept within
+std::vector<double> limit_integrals(const HexMesh& mesh, std::span<const std::array<double, 2>> bounds, Progress* progress) {
     const DenseCells dense(mesh, {.levels = 1, .progress = progress}, true, DenseBits::ToRounding);
     const std::vector<Index> cells = all_cells(mesh);
     const std::size_t width = 4 + mesh.attributes.size();
@@ -34,7 +39,8 @@ std::vector<double> limit_integrals(const HexMesh& mesh, Progress* progress) {
             for (std::size_t n = 0; n < kMeanNodes; ++n) {
                 sum[0] += weights[n];
                 for (int a = 0; a < 3; ++a) sum[1 + a] += weights[n] * x[n][a];
-                for (std::size_t a = 4; a < width; ++a) sum[a] += weights[n] * cell.values[a - 4][n];
+                for (std::size_t a = 4; a < width; ++a)
+                    sum[a] += weights[n] * std::clamp(cell.values[a - 4][n], bounds[a - 4][0], bounds[a - 4][1]);
             }
         });
         for (std::size_t i = 0; i < sums.size(); ++i) totals[i % width] += sums[i];
@@ -53,13 +59,12 @@ bool fills_the_same(const HexMesh& mesh, const StraightVolume& straight, std::sp
 
 /// k of a channel.
 std::vector<double> room_of(const FittedChannel& channel) {
-    const auto [low, high] = std::ranges::minmax(channel.values);
-    const double from = std::min(low, 0.), to = std::max(high, channel.high - channel.low), width = to - from;
-    const double lower = std::max(channel.least, from - width), upper = std::min(channel.most, to + width);
     std::vector<double> room(channel.values.size());
-    if (channel.is_constant() || !(upper > lower)) return room;
-    std::ranges::transform(channel.values, room.begin(),
-                           [&](double u) { return std::max(0., (u - lower) * ((upper - u) / (upper - lower))); });
+    if (channel.is_constant()) return room;
+    for (std::size_t p = 0; p < room.size(); ++p) {
+        const double u = channel.values[p], from = channel.from[p], to = channel.to[p];
+        if (to > from) room[p] = std::max(0., (u - from) * ((to - u) / (to - from)));
+    }
     return room;
 }
 
@@ -95,15 +100,20 @@ StraightVolume straight_volume(const HexMesh& mesh, const MeanStencils& stencils
 
 void correct_integrals(const HexMesh& mesh, const StraightVolume& straight, std::vector<FittedChannel>& channels,
                        Progress* progress) {
-    constexpr int kRounds = 3;  // the second has work only where |f| would have been above 1
+    constexpr int kRounds = 3;         // the second has work only where |f| would have been above 1, or a field has bounds
+    constexpr double kBounded = 1e-5;  // of the volume times the range
+    constexpr std::array kNoBounds{-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
     bool done = channels.empty();
     for (int round = 0; round < kRounds && !done; ++round) {
         HexMesh both{mesh.points, mesh.cells, {}, mesh.creases, mesh.sharp_faces};
+        std::vector<std::array<double, 2>> kept;
         for (const FittedChannel& channel : channels) {
             both.attributes.push_back({"u", 1, channel.values});
             both.attributes.push_back({"k", 1, room_of(channel)});
+            kept.push_back({channel.least, channel.most});
+            kept.push_back(kNoBounds);
         }
-        const std::vector<double> limit = limit_integrals(both, progress);
+        const std::vector<double> limit = limit_integrals(both, kept, progress);
         const bool same = fills_the_same(mesh, straight, limit);
         done = true;
         for (std::size_t i = 0; i < channels.size(); ++i) {
@@ -116,7 +126,9 @@ void correct_integrals(const HexMesh& mesh, const StraightVolume& straight, std:
             }
             if (!(room > 0) || !std::isfinite(lacks)) continue;
             const double factor = std::clamp(lacks / room, -1., 1.);
-            done = done && std::abs(factor) < 1;
+            const bool bounded = std::isfinite(channel.least) || std::isfinite(channel.most);
+            done = done && std::abs(factor) < 1 &&
+                   (!same || !bounded || std::abs(lacks) <= kBounded * straight.volume * (channel.high - channel.low));
             channel.lacks = lacks - factor * room;
             for (std::size_t p = 0; p < k.size(); ++p) channel.values[p] += factor * k[p];
         }

@@ -17,6 +17,7 @@ namespace subvol::detail {
 ///
 /// low, high:   of the means
 /// least, most: what values are kept within, relative; or infinite
+/// from, to:    what each value is kept between, by the means around it
 /// integral:    of the relative means over the straight cells
 /// lacks:       what the integral of the values' limit over the straight cells lacks of that
 struct FittedChannel {
@@ -25,7 +26,7 @@ struct FittedChannel {
     double low = 0, high = 0;
     double least = 0, most = 0;
     double integral = 0, lacks = 0;
-    std::vector<double> values{};
+    std::vector<double> values{}, from{}, to{};
 
     [[nodiscard]] bool is_constant() const { return !(high > low); }
     /// What the field is kept within.

@@ -95,8 +95,9 @@ void take(const Climb& from, PartMeasure& part) {
 
 }  // namespace
 
-ExtremeSearch::ExtremeSearch(std::size_t parts, std::vector<double> scales, double tolerance)
-    : scales_(std::move(scales)), tolerance_(tolerance) {
+ExtremeSearch::ExtremeSearch(std::size_t parts, std::vector<double> scales, std::vector<std::array<double, 2>> bounds,
+                             double tolerance)
+    : scales_(std::move(scales)), bounds_(std::move(bounds)), tolerance_(tolerance) {
     for (std::size_t i = 0; i < parts * scales_.size(); ++i) {
         for (const double sign : {-1.0, 1.0}) sides_.push_back({sign});
     }
@@ -117,8 +118,9 @@ void ExtremeSearch::Side::add(const Start& start) {
 
 void ExtremeSearch::know(std::size_t part, std::size_t channel, double value) {
     for (const bool high : {false, true}) {
-        Side& side = sides_[side_of(part, channel, high)];
-        side.best = std::max(side.best, side.sign * value);
+        const std::size_t number = side_of(part, channel, high);
+        Side& side = sides_[number];
+        side.best = std::max(side.best, within(number, side.sign * value));
     }
 }
 
@@ -133,8 +135,9 @@ void ExtremeSearch::look(std::size_t part, Index cell, std::size_t number, const
                          std::span<const GridMeasure::Extreme> found) {
     for (const GridMeasure::Extreme& one : found) {
         const std::size_t side = side_of(part, one.channel, one.sign > 0);
-        sides_[side].add({one.sign * one.value, one.bound, cell, one.uvw, one.peak, step});
-        const Candidate candidate{static_cast<std::uint32_t>(number), static_cast<std::uint32_t>(side), one.bound, one.alike};
+        const double bound = within(side, one.bound);
+        sides_[side].add({one.sign * one.value, bound, cell, one.uvw, one.peak, step});
+        const Candidate candidate{static_cast<std::uint32_t>(number), static_cast<std::uint32_t>(side), bound, one.alike};
         is_open(candidate) ? candidates_.push_back(candidate) : leave(candidate);
     }
     if (candidates_.size() > 2 * kept_ + kEnough) keep_open();
@@ -330,7 +333,7 @@ void ExtremeSearch::halve(const CellBox& box, std::span<const double, 125> grid)
         for (std::size_t n = 0; n < 8; ++n) {
             if ((n & ~whole) == k) part.bound = std::max(part.bound, octants.bounds[n]);
         }
-        part.bound = std::min(part.bound, box.bound);
+        part.bound = within(box.side, std::min(part.bound, box.bound));
         for (std::size_t axis = 0; axis < 3; ++axis) {
             if ((whole >> axis & 1) != 0) continue;
             const auto a = static_cast<int>(axis);
@@ -368,6 +371,19 @@ void ExtremeSearch::climb_sides(const Surroundings& around, Progress* progress, 
             field.extreme_error = std::max(field.extreme_error, sides_[s].open - known);
         });
     }
+}
+
+std::vector<std::array<double, 2>> channel_bounds(const HexMesh& mesh) {
+    std::vector<std::array<double, 2>> bounds;
+    for (const Attribute& field : mesh.attributes) {
+        const auto channels = static_cast<std::size_t>(field.channels);
+        if (field.bounds.empty()) {
+            bounds.resize(bounds.size() + channels, {-HUGE_VAL, HUGE_VAL});
+        } else {
+            bounds.insert(bounds.end(), field.bounds.begin(), field.bounds.end());
+        }
+    }
+    return bounds;
 }
 
 SideBox box_of_side(std::uint8_t side) {

@@ -21,8 +21,9 @@ namespace subvol::detail {
 class ExtremeSearch {
 public:
     /// scales:    of each channel, 1/range; 0 for a constant
+    /// bounds:    of each channel: no value is beyond them
     /// tolerance: as a part of the range
-    ExtremeSearch(std::size_t parts, std::vector<double> scales, double tolerance);
+    ExtremeSearch(std::size_t parts, std::vector<double> scales, std::vector<std::array<double, 2>> bounds, double tolerance);
 
     /// Takes a value that the limit has somewhere.
     void know(std::size_t part, std::size_t channel, double value);
@@ -139,13 +140,23 @@ private:
     void halve(const CellBox& box, std::span<const double, 125> grid);
     void climb_sides(const Surroundings& around, Progress* progress, std::vector<PartMeasure>& found) const;
 
+    /// What a side's values may reach at most, times its sign.
+    [[nodiscard]] double within(std::size_t side, double bound) const {
+        const std::array<double, 2>& bounds = bounds_[channel_of(side)];
+        return std::min(bound, sides_[side].sign > 0 ? bounds[1] : -bounds[0]);
+    }
+
     std::vector<double> scales_;
+    std::vector<std::array<double, 2>> bounds_;
     double tolerance_;
     std::vector<Side> sides_;
     std::vector<Candidate> candidates_;
     std::vector<CellBox> boxes_;
     std::size_t kept_ = 0;
 };
+
+/// The bounds of each channel of a mesh, infinite where there are none.
+[[nodiscard]] std::vector<std::array<double, 2>> channel_bounds(const HexMesh& mesh);
 
 /// A side of a cell as a box in its parameters, without width along one axis.
 struct SideBox {

@@ -16,6 +16,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "extreme_bounds.h"
 #include "piece_tree.h"
@@ -121,6 +122,7 @@ void GridMeasure::load(const DenseCell& grid, const Nodes& nodes) {
 }
 
 void GridMeasure::weigh() {
+    double least = least_;
     std::array<std::array<Piece, 3>, 3> slopes;
     for (std::size_t d = 0; d < 3; ++d) slopes_at_gauss_points(positions_[d], slopes[d]);
     const auto& [x, y, z] = slopes;
@@ -129,7 +131,9 @@ void GridMeasure::weigh() {
                                    x[1][g] * (y[0][g] * z[2][g] - y[2][g] * z[0][g]) +
                                    x[2][g] * (y[0][g] * z[1][g] - y[1][g] * z[0][g]);
         weights_[g] = kGaussWeights[g % 3] * kGaussWeights[g / 3 % 3] * kGaussWeights[g / 9] * determinant;
+        least = std::min(least, determinant);
     }
+    least_ = least;
     if (!origins_.empty()) pass_thrice(kPasses.transposed, weights_, node_weights_);
 }
 
@@ -164,6 +168,7 @@ void GridMeasure::find_values(const DenseCell& grid, const Nodes& nodes) {
 }
 
 void GridMeasure::add_sums(const DenseCell& grid, std::size_t step, std::span<double> sums) {
+    least_ = std::numeric_limits<double>::infinity();
     each_piece(grid, step, [&](const Nodes& nodes) {
         load(grid, nodes);
         weigh();

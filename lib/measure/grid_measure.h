@@ -30,6 +30,8 @@ public:
     /// Adds the sums of a grid, made of pieces whose nodes are `step` apart, to `sums`: one number for the volume and one for
     /// each channel.
     void add_sums(const DenseCell& grid, std::size_t step, std::span<double> sums);
+    /// The least determinant of the Jacobian at the Gauss points of the last `add_sums`.
+    [[nodiscard]] double least_determinant() const { return least_; }
     /// The same of the cell that is trilinear between the grid's corners.
     void add_trilinear_sums(const DenseCell& grid, std::span<double> sums);
 
@@ -107,6 +109,7 @@ private:
     std::array<Piece, 3> positions_{};  // of the piece's nodes
     std::vector<Piece> at_gauss_;       // of each channel at the Gauss points
     Piece weights_{};                   // of the Gauss points
+    double least_ = 0;                  // determinant
     Piece node_weights_{};              // of the nodes: of the integral of a quadratic over the piece
     std::vector<double> channel_;       // at all nodes of a grid, times the sign
 };

@@ -7,7 +7,10 @@
 #include <cmath>
 #include <iterator>
 
+#include "given_figures.h"
 #include "measurer.h"
+#include "overlapping_sets.h"
+#include "subvol/cell.h"
 #include "subvol/error.h"
 
 namespace subvol {
@@ -22,12 +25,27 @@ LimitMeasure measure(const HexMesh& mesh, const MeasureOptions& options) {
                     "measure", "one for each of the cells");
     }
     const detail::LimitExtent extent = detail::limit_extent(mesh);
-    Measurer measurer(mesh, {}, extent, options);
+    Measurer measurer(mesh, options.cells, extent, options);
     std::vector<PartMeasure> found = measurer.measure();
     measurer.add_histograms(found);
     for (PartMeasure& part : found) Measurer::scale_histograms(part);
-    LimitMeasure result{std::move(found.front()), {}, measurer.pieces()};
+    LimitMeasure result{std::move(found.front()), {}, measurer.pieces(), measurer.folds()};
     result.parts.assign(std::make_move_iterator(found.begin() + 1), std::make_move_iterator(found.end()));
+    return result;
+}
+
+/// Of trilinear cells, with the points or cells where the extremes are.
+LimitMeasure measure_given(const HexMesh& mesh, const MeasureOptions& options) {
+    LimitMeasure result = measure(mesh, options);
+    const auto move = [&](PartMeasure& part) {
+        std::size_t next = 0;
+        for (const Attribute& attribute : mesh.attributes) {
+            for (int c = 0; c < attribute.channels; ++c, ++next)
+                detail::move_to_own_places(mesh, attribute, part.fields[next].min, part.fields[next].max);
+        }
+    };
+    move(result.whole);
+    std::ranges::for_each(result.parts, move);
     return result;
 }
 
@@ -35,6 +53,16 @@ LimitExtreme in_whole(LimitExtreme extreme, const MeshPiece& piece) {
     const std::uint64_t number = extreme.cell == kNone ? kNone : piece.cell_numbers[extreme.cell];
     extreme.cell = number < kNone ? static_cast<Index>(number) : kNone;
     return extreme;
+}
+
+void add(SeenFolds measured, const MeshPiece& piece, SeenFolds& all) {
+    if (measured.cells == 0) return;
+    const std::uint64_t number = piece.cell_numbers[measured.first];
+    if (number < all.first) {  // kNone if there are none before it
+        all.first = static_cast<Index>(number);
+        all.place = measured.place;
+    }
+    all.cells += measured.cells;
 }
 
 /// Adds the measure of a piece to those before it. first: there are none
@@ -47,6 +75,7 @@ void add(const PartMeasure& measured, const MeshPiece& piece, bool first, PartMe
         const FieldMeasure& from = measured.fields[f];
         FieldMeasure& to = all.fields[f];
         to.name = from.name;
+        to.derived = from.derived;
         to.integral += from.integral;
         to.extreme_error = std::max(to.extreme_error, from.extreme_error);
         if (first || from.min.value < to.min.value) to.min = in_whole(from.min, piece);
@@ -89,11 +118,12 @@ LimitMeasure measure_pieces(const MeshSource& source, const MeasureOptions& opti
     };
     each_piece("measure", [&](std::size_t number, const MeshPiece& piece, Measurer& measurer) {
         add(measurer.measure().front(), piece, number == 0, all.whole);
+        add(measurer.folds(), piece, all.folds);
         all.pieces += measurer.pieces();
     });
     if (all.whole.volume != 0) all.whole.error /= std::abs(all.whole.volume);
     for (FieldMeasure& field : all.whole.fields) {
-        field.mean = all.whole.volume != 0 ? field.integral / all.whole.volume : 0;
+        if (all.whole.volume != 0) field.mean = field.integral / all.whole.volume;
         field.histogram.assign(static_cast<std::size_t>(options.bins), 0);
     }
     each_piece("histogram", [&](std::size_t, const MeshPiece&, Measurer& measurer) { add_to_histograms(measurer, all.whole); });
@@ -103,9 +133,35 @@ LimitMeasure measure_pieces(const MeshSource& source, const MeasureOptions& opti
 
 }  // namespace
 
+std::optional<std::size_t> LimitExtreme::corner() const {
+    std::size_t octant = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+        if (uvw[axis] != 0 && uvw[axis] != 1) return {};
+        octant += uvw[axis] == 1 ? std::size_t{1} << axis : 0;
+    }
+    return kCornerOctants[octant];
+}
+
+namespace {
+
+LimitMeasure measured(const MeshSource& source, const MeasureOptions& options) {
+    if (!options.sets.empty()) {
+        return detail::measured_by_sets(options, source.mesh()->cells.size(),
+                                        [&](const MeasureOptions& by) { return measured(source, by); });
+    }
+    return *detail::with_given_figures(options, [&](const MeasureOptions& by, bool given) -> std::optional<LimitMeasure> {
+        if (source.mesh() == nullptr) return measure_pieces(source, by);
+        return given ? measure_given(detail::as_given(*source.mesh()), by) : measure(*source.mesh(), by);
+    });
+}
+
+}  // namespace
+
 LimitMeasure measure_limit(const MeshSource& source, const MeasureOptions& options) {
     check_options(options);
-    return source.mesh() != nullptr ? measure(*source.mesh(), options) : measure_pieces(source, options);
+    if (source.mesh() == nullptr && !(options.sets.empty() && options.cells.empty()))
+        throw Error(ErrorCode::InvalidInput, "bricks have no sets of cells", "measure");
+    return detail::measured_in_cells(source, options, measured);
 }
 
 std::vector<Option> options_of(MeasureOptions& options) {

@@ -23,11 +23,16 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <optional>
 
 #include "cut_piece.h"
+#include "given_figures.h"
+#include "overlapping_sets.h"
 #include "piece_tree.h"
 #include "region_extremes.h"
+#include "seen_folds.h"
 #include "subvol/error.h"
+#include "subvol/field_range.h"
 #include "subvol/measure.h"
 
 namespace subvol {
@@ -39,7 +44,8 @@ using detail::PieceNode;
 using detail::QuadraticWeights;
 
 constexpr int kMostHalvings = 5;
-constexpr std::size_t kGrain = 64;  // pieces: fixed, so that sums do not depend on the number of threads
+constexpr std::uint8_t kMet = 1, kTurned = 2;  // of a piece: a part of it lies in the region; its determinant is negative there
+constexpr std::size_t kGrain = 64;             // pieces: fixed, so that sums do not depend on the number of threads
 
 /// The place, the volume element and the values at a place of a piece.
 struct PieceSample {
@@ -152,6 +158,7 @@ private:
 
     void add(const PieceNode& node) {
         evaluate(node.at);
+        if (sample_.element < 0) met_[piece_] |= kTurned;
         const double volume = sample_.element * node.weight;
         each_part([&](std::size_t part) {
             std::vector<double>& sums = sums_.sums[part];
@@ -191,7 +198,7 @@ private:
                 }
             }
         }
-        met_[piece_] = 1;
+        met_[piece_] |= kMet;
     }
 
     /// A box that may be cut, after some halvings.
@@ -205,7 +212,7 @@ private:
             const double met = cutter_.add_nodes(box, nodes_);
             if (met >= kFewLines || room_ == 0) {
                 for (const PieceNode& node : nodes_) add(node);
-                if (met > 0) met_[piece_] = 1;
+                if (met > 0) met_[piece_] |= kMet;
                 if (met > 0) return;
                 evaluate(box.at(Vec3(0.5)));
                 sums_.missed += std::abs(sample_.element) * box.volume();
@@ -268,7 +275,7 @@ public:
           coarse_(within(8, 2)),
           met_(pieces_.cells.size(), 0) {
         for (const Attribute& field : mesh.attributes) {
-            const auto [min, max] = std::ranges::minmax(field.values);
+            const auto [min, max] = std::ranges::minmax(own_values(field));
             constexpr double kInfinity = std::numeric_limits<double>::infinity();
             for (std::size_t c = 0; c < static_cast<std::size_t>(field.channels); ++c) {
                 const double origin = pieces_.value_origins[ranges_.size()];
@@ -279,17 +286,18 @@ public:
         }
     }
 
-    [[nodiscard]] LimitMeasure measure() {
+    /// Nothing if no part of the volume was found in the region.
+    ///
+    /// missed: becomes the volume of boxes in which nothing was found, although they may not be empty
+    [[nodiscard]] std::optional<LimitMeasure> measure(double& missed) {
         int halvings = 1;
         RegionSums before = sums_at(pieces_, 0, {}), sums = sums_at(pieces_, 1, {});
         const RegionSums same = sums, rough = sums_at(*coarse_.pieces, 1, {});
         while (halvings < kMostHalvings && halving_error(sums, before, 0) / 3 > options_.tolerance) {
             before = std::exchange(sums, sums_at(pieces_, ++halvings, {}));
         }
-        if (!(sums.sums[0][0] > 0)) {
-            throw Error(ErrorCode::InvalidInput, sums.missed > 0 ? "too little of the volume lies in the region to be found"
-                                                                 : "no part of the volume lies in the region");
-        }
+        missed = sums.missed;
+        if (!(sums.sums[0][0] > 0)) return {};
         LimitMeasure result;
         result.pieces = pieces_.cells.size();
         for (std::size_t part = 0; part < sums.sums.size(); ++part) {
@@ -309,6 +317,7 @@ public:
         for (const FieldMeasure& field : result.whole.fields) range.push_back({field.min.value, field.max.value});
         sums = sums_at(pieces_, halvings, range);
         for (std::size_t c = 0; c < range.size(); ++c) result.whole.fields[c].histogram = std::move(sums.histograms[c]);
+        result.folds = folds();
         return result;
     }
 
@@ -316,9 +325,11 @@ private:
     [[nodiscard]] LimitCells within(double coarser, int levels) const {
         const RefineOptions refinement{.scheme = options_.scheme, .progress = options_.progress};
         const double tolerance = coarser * options_.tolerance;
-        return detail::pieces_within(
+        LimitCells found = detail::pieces_within(
             mesh_, refinement,
             {.position_world = tolerance * bounds(mesh_).diagonal(), .value_of_range = tolerance, .max_levels = levels});
+        if (!options_.cells.empty()) found.pieces = detail::pieces_of(*found.pieces, options_.cells);
+        return found;
     }
 
     [[nodiscard]] RegionSums sums_at(const LimitPieces& pieces, int halvings, std::span<const std::array<double, 2>> range) {
@@ -371,11 +382,13 @@ private:
         std::size_t channel = 0;
         for (const Attribute& field : mesh_.attributes) {
             for (int k = 0; k < field.channels; ++k, ++channel) {
-                const double mean = pieces_.value_origins[channel] + means[1 + channel];
+                const double mean = means[0] > 0 ? pieces_.value_origins[channel] + means[1 + channel]
+                                                 : std::numeric_limits<double>::quiet_NaN();
                 const std::string suffix = field.channels > 1 ? "." + std::to_string(k) : "";
                 FieldMeasure& one = result.fields.emplace_back();
                 one.name = field.name + suffix;
-                one.integral = mean * means[0];
+                one.derived = field.derived;
+                one.integral = means[0] > 0 ? mean * means[0] : 0;
                 one.mean = mean;
             }
         }
@@ -409,6 +422,7 @@ private:
             const std::size_t part = i / 2 / ranges_.size();
             const detail::RegionExtreme& one = all[i];
             FieldMeasure& field = (part == 0 ? result.whole : result.parts[part - 1]).fields[one.channel];
+            if (!(sums.sums[part][0] > 0)) continue;  // no cell of the part lies in the region
             (one.sign > 0 ? field.max : field.min) = one.best;
             const double gap = one.open - one.sign * one.best.value;
             field.extreme_error = std::max(field.extreme_error, gap + of_pieces(one.channel, one.slope));
@@ -425,13 +439,21 @@ private:
         return kKinks * limit_.value_of_range * ranges_[channel] + rounding(channel) + slope * position;
     }
 
+    [[nodiscard]] SeenFolds folds() const {
+        std::vector<Index> turned;
+        for (std::size_t piece = 0; piece < pieces_.cells.size(); ++piece) {
+            if ((met_[piece] & kTurned) != 0) turned.push_back(pieces_.cells[piece]);
+        }
+        return detail::seen_folds(mesh_, std::move(turned), options_.scheme, options_.progress);
+    }
+
     /// Those with a part in the region.
     [[nodiscard]] std::size_t cells_of(std::size_t part) const {
         std::vector<std::uint8_t> seen(mesh_.cells.size(), 0);
         for (std::size_t piece = 0; piece < pieces_.cells.size(); ++piece) {
             const Index cell = pieces_.cells[piece];
             const bool of_part = part == 0 || static_cast<std::size_t>(options_.groups[cell]) + 1 == part;
-            if (of_part && met_[piece] != 0) seen[cell] = 1;
+            if (of_part && (met_[piece] & kMet) != 0) seen[cell] = 1;
         }
         return static_cast<std::size_t>(std::count(seen.begin(), seen.end(), 1));
     }
@@ -442,23 +464,47 @@ private:
     const LimitCells limit_;
     const LimitPieces& pieces_;
     const LimitCells coarse_;
-    std::vector<std::uint8_t> met_;              // a flag for each piece
+    std::vector<std::uint8_t> met_;              // flags of each piece: kMet, kTurned
     std::vector<double> ranges_, largest_;       // of the channels; the largest value without the origin
     std::vector<std::array<double, 2>> bounds_;  // of the channels
 };
+
+/// regions: parts of space
+LimitMeasure measured_in(const HexMesh& mesh, std::span<const Region> regions, const MeasureOptions& options) {
+    if (!options.sets.empty()) {
+        return detail::measured_by_sets(options, mesh.cells.size(),
+                                        [&](const MeasureOptions& by) { return measured_in(mesh, regions, by); });
+    }
+    double missed = 0;
+    std::optional<LimitMeasure> found = detail::with_given_figures(options, [&](const MeasureOptions& by, bool given) {
+        if (!given) return RegionMeasurer(mesh, regions, by).measure(missed);
+        const HexMesh of_file = detail::as_given(mesh);
+        return RegionMeasurer(of_file, regions, by).measure(missed);
+    });
+    if (!found)
+        throw Error(ErrorCode::InvalidInput, missed > 0 ? "too little of the volume lies in the region to be found"
+                                                        : "no part of the volume lies in the region");
+    return std::move(*found);
+}
 
 }  // namespace
 
 LimitMeasure measure_limit_in(const HexMesh& mesh, std::span<const Region> regions, const MeasureOptions& options) {
     check_options(options);
     const auto [space, cells] = space_and_cells(regions);
-    if (cells.empty()) return RegionMeasurer(mesh, space, options).measure();
-    if (!options.groups.empty()) {
-        throw Error(ErrorCode::InvalidInput, "chooses cells, which have no groups then", cells.front().text(),
-                    "parts of space");
+    if (!cells.empty()) {
+        if (!options.groups.empty() || !options.cells.empty()) {
+            throw Error(ErrorCode::InvalidInput, "chooses cells, which have no groups and flags then", cells.front().text(),
+                        "parts of space");
+        }
+        MeasureOptions in_cells = options;
+        const std::vector<std::uint8_t> chosen = cells_in(mesh, cells);
+        in_cells.cells = chosen;
+        return space.empty() ? measure_limit(mesh, in_cells) : measure_limit_in(mesh, space, in_cells);
     }
-    const HexMesh part = only_in(mesh, cells);
-    return space.empty() ? measure_limit(part, options) : RegionMeasurer(part, space, options).measure();
+    const std::span<const Region> parts = space;  // clang 14 cannot capture a structured binding
+    return detail::measured_in_cells(
+        mesh, options, [&](const MeshSource& part, const MeasureOptions& by) { return measured_in(*part.mesh(), parts, by); });
 }
 
 }  // namespace subvol

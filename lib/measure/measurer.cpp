@@ -21,8 +21,10 @@
 #include <numeric>
 #include <utility>
 
+#include "mesh_subset.h"
 #include "node_steps.h"
 #include "refine_steps.h"
+#include "seen_folds.h"
 #include "space_order.h"
 #include "subvol/cell.h"
 
@@ -47,7 +49,8 @@ std::vector<Measurer::Channel> Measurer::channels_of(const HexMesh& mesh, const 
         const auto& [low, high] = extent.ranges[a];
         for (int k = 0; k < mesh.attributes[a].channels; ++k) {
             const std::string suffix = mesh.attributes[a].channels > 1 ? "." + std::to_string(k) : "";
-            channels.push_back({mesh.attributes[a].name + suffix, low + (high - low) / 2, value_scale(low, high)});
+            channels.push_back(
+                {mesh.attributes[a].name + suffix, low + (high - low) / 2, value_scale(low, high), mesh.attributes[a].derived});
         }
     }
     return channels;
@@ -82,7 +85,7 @@ Measurer::Measurer(const HexMesh& mesh, std::span<const std::uint8_t> owned, con
       coarsest_(control_.points.size(), 1),
       is_candidate_(control_.cells.size(), 0),
       parts_(part_count(options), PartSums{std::vector<double>(1 + channels_.size(), 0)}),
-      extremes_(parts_.size(), {scales_.begin() + 1, scales_.end()}, options.tolerance) {
+      extremes_(parts_.size(), {scales_.begin() + 1, scales_.end()}, channel_bounds(control_), options.tolerance) {
     list_cells(owned);
 }
 
@@ -106,9 +109,25 @@ std::vector<PartMeasure> Measurer::measure() {
     return found;
 }
 
+SeenFolds Measurer::folds() const {
+    return seen_folds(control_, turned_, options_.scheme, options_.progress);
+}
+
+/// Whether the first level changes no part's sum, though it changes that of cells: they only exchange what they have, as inside
+/// a body with flat sides and a linear field. The levels to come do the same, and what they would add is rounding and guesses.
+bool Measurer::is_settled(std::size_t sum) const {
+    constexpr double kRounding = 1e-12;
+    return std::ranges::all_of(parts_, [&](const PartSums& part) {
+        const double size = std::abs(part.sums[0]) / (sum > 0 && scales_[sum] > 0 ? scales_[sum] : 1);  // a field's: its range
+        return !part.trilinear.empty() && std::abs(part.sums[sum] - part.trilinear[sum]) <= kRounding * size;
+    });
+}
+
 void Measurer::refine_for(std::size_t first, std::size_t last, Changes changes) {
     const std::vector<double> scales = scales_;
-    const auto is_meant = [&](std::size_t sum) { return sum >= first && sum < last; };
+    std::vector<std::uint8_t> settled(scales_.size(), 0);
+    for (std::size_t i = first; i < last; ++i) settled[i] = is_settled(i);
+    const auto is_meant = [&](std::size_t sum) { return sum >= first && sum < last && settled[sum] == 0; };
     for (std::size_t i = 0; i < scales_.size(); ++i) scales_[i] = is_meant(i) ? scales[i] : 0;
     changes.keep(is_meant);
     std::ranges::fill(levels_, 1);
@@ -152,9 +171,11 @@ void Measurer::start() {
             const auto count = static_cast<std::size_t>(attribute.channels);
             for (std::size_t k = 0; k < count; ++k, ++c) {
                 const auto value = [&](Index p) { return attribute.values[p * count + k]; };
+                const bool in_cells = is_constant_in_cells(control_, attribute);
                 if (channels_[c].scale == 0) {
-                    extremes_.know_constant(part_of(cell), c, value(control_.cells[cell][0]), cell);
-                } else if (is_known) {
+                    const double constant = in_cells ? attribute.cells[cell * count + k] : value(control_.cells[cell][0]);
+                    extremes_.know_constant(part_of(cell), c, constant, cell);
+                } else if (is_known && !in_cells) {
                     for (const Index p : control_.cells[cell]) extremes_.know(part_of(cell), c, value(p));
                 }
             }
@@ -243,6 +264,8 @@ void Measurer::compare_with_neighbors(std::span<const Index> cells, Changes& cha
 void Measurer::note_cell(const DenseCell& grid, int level, CellNote& note) {
     GridMeasure& measure = scratch_.local().measure;
     note.sums.clear();
+    note.trilinear.clear();
+    note.turned = false;
     note.changes.assign(1 + channels_.size(), 0);
     if (levels_[grid.cell] == level) note_sums(grid, level, note);
     note.extremes.clear();
@@ -258,12 +281,14 @@ void Measurer::note_sums(DenseCell grid, int level, CellNote& note) {
     note.sums = note.changes;
     if (level == 1) {
         scratch.measure.add_trilinear_sums(grid, note.changes);
+        note.trilinear = note.changes;
     } else {
         close_gaps(grid, level, levels_beside(grid.cell, level), scratch.points);
         grid.points = scratch.points;
         scratch.measure.add_sums(grid, 2, note.changes);
     }
     scratch.measure.add_sums(grid, 1, note.sums);
+    note.turned = scratch.measure.least_determinant() < 0;
     for (std::size_t i = 0; i < note.sums.size(); ++i) note.changes[i] = note.sums[i] - note.changes[i];
     if (level > 1) note.sums = note.changes;
     leave_out_shared(grid, note.changes);
@@ -273,7 +298,8 @@ void Measurer::leave_out_shared(const DenseCell& grid, std::vector<double>& chan
     Scratch& scratch = scratch_.local();
     changes[0] = 0;
     for (std::size_t side = 0; side < 6; ++side) {
-        const bool is_hull = refiner_.links().neighbors[grid.cell][side] == kNone;
+        const Index beside = refiner_.links().neighbors[grid.cell][side];
+        const bool is_hull = beside == kNone || !(options_.cells.empty() || options_.cells[beside] != 0);
         if (!is_hull && !has_fields_) continue;
         const double swept = GridMeasure::swept(grid, side);
         if (is_hull) {
@@ -312,6 +338,9 @@ void Measurer::note_levels(std::span<const Index> cells, int level) {
 void Measurer::collect(Index cell, std::size_t number, double step, const CellNote& note) {
     const std::size_t p = part_of(cell);
     for (std::size_t i = 0; i < note.sums.size(); ++i) parts_[p].sums[i] += note.sums[i];
+    parts_[p].trilinear.resize(scales_.size());
+    for (std::size_t i = 0; i < note.trilinear.size(); ++i) parts_[p].trilinear[i] += note.trilinear[i];
+    if (note.turned) turned_.push_back(cell);
     extremes_.look(p, cell, number, Vec3(step), note.extremes);
 }
 
@@ -393,7 +422,7 @@ std::vector<PartMeasure> Measurer::results() const {
     if (options_.groups.empty()) return found;
     for (const PartSums& part : parts_) found.push_back(result(part));
     for (std::size_t p = 0; p < parts_.size(); ++p) found[p + 1].name = p < options_.names.size() ? options_.names[p] : "";
-    for (const Index group : options_.groups) ++found[group + 1].cells;
+    for (const Index cell : cells_) ++found[options_.groups[cell] + 1].cells;
     return found;
 }
 
@@ -406,8 +435,9 @@ PartMeasure Measurer::result(const PartSums& part) const {
         FieldMeasure field;
         const double sum = part.sums[1 + c], origin = channels_[c].origin;
         field.name = channels_[c].name;
+        field.derived = channels_[c].derived;
         field.integral = sum + origin * volume;
-        field.mean = volume != 0 ? origin + sum / volume : 0;
+        if (volume != 0) field.mean = origin + sum / volume;
         measure.fields.push_back(std::move(field));
     }
     return measure;

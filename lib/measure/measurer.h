@@ -34,6 +34,9 @@ public:
 
     [[nodiscard]] std::size_t pieces() const { return pieces_; }
 
+    /// Of what was measured.
+    [[nodiscard]] SeenFolds folds() const;
+
     /// found: the whole, whose extremes are those of the histograms, and then the parts
     void add_histograms(std::vector<PartMeasure>& found);
 
@@ -47,6 +50,7 @@ private:
     struct Channel {
         std::string name;
         double origin, scale;
+        bool derived;
     };
 
     /// What the cells of a part sum up to.
@@ -56,13 +60,15 @@ private:
     struct PartSums {
         std::vector<double> sums;
         double left = 0;
+        std::vector<double> trilinear{};  // the sums of the cells before the first level
     };
 
     /// The notes of one cell of a block: what it adds to the sums, and by how much its own sums differ from those of the level
-    /// before.
+    /// before. trilinear: its sums before the first level; empty at later ones. turned: the determinant is negative somewhere
     struct CellNote {
-        std::vector<double> sums, changes;
+        std::vector<double> sums, changes, trilinear;
         std::vector<GridMeasure::Extreme> extremes;
+        bool turned = false;
     };
 
     /// Memory of one thread.
@@ -110,6 +116,7 @@ private:
     /// Measures cells at a level: adds their sums. Returns by how much these differ from those of the level before.
     [[nodiscard]] Changes run(std::span<const Index> cells, int level);
 
+    [[nodiscard]] bool is_settled(std::size_t sum) const;
     /// Refines cells until some of the sums, from `first` to before `last`, are known well enough; the others are left alone.
     /// So the volume is the same whatever fields there are.
     ///
@@ -181,6 +188,7 @@ private:
     std::optional<Rest> gone_on_;                  // the changes of the cells that were refined further for their sums
     std::vector<PartSums> parts_;
     std::vector<CellNote> notes_;
+    std::vector<Index> turned_;  // cells whose pieces have a negative determinant, perhaps several times
     ExtremeSearch extremes_;
     std::size_t pieces_ = 0;
 };

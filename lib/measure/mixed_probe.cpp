@@ -96,8 +96,8 @@ LimitMeasure measure_limit(const MixedMesh& mesh, const std::vector<Index>& numb
     };
     found.whole.cells = numbers.empty() ? mesh.cells() : std::size_t{*std::ranges::max_element(numbers)} + 1;
     for (FieldMeasure& field : found.whole.fields) {
-        for (LimitExtreme* extreme : {&field.min, &field.max}) {
-            name(extreme->cell);
+        for (LimitExtreme* extreme : {&field.min, &field.max, &field.given.min, &field.given.max}) {
+            if (extreme->cell != kNone) name(extreme->cell);
             extreme->uvw = Vec3(0.0);
         }
     }

@@ -13,10 +13,12 @@
 
 #include "extreme_bounds.h"
 #include "extreme_search.h"
+#include "given_figures.h"
 #include "mesh_subset.h"
 #include "node_steps.h"
 #include "refine_steps.h"
 #include "subvol/detail/limit_of_part.h"
+#include "subvol/detail/place_function.h"
 #include "subvol/error.h"
 #include "subvol/progress.h"
 
@@ -62,11 +64,14 @@ struct PatchSums {
 /// The limit near some patches, at places of their sides.
 class PatchLimit {
 public:
-    PatchLimit(const HexMesh& mesh, std::span<const Patch> patches, const PatchOptions& options)
-        : part_(near(mesh, patches, options.flux)),
-          extent_(extent(mesh, options.flux)),
+    /// flux: the field whose flow is wanted; with a potential, as one channel: its gradient
+    PatchLimit(const HexMesh& mesh, std::span<const Patch> patches, const PatchOptions& options,
+               const std::optional<Attribute>& flux)
+        : part_(near(mesh, patches, flux)),
+          extent_(extent(mesh, flux)),
           limit_(part_.mesh, {.scheme = options.scheme, .tolerance = 1e-5}, extent_),
-          has_flux_(!options.flux.empty()) {
+          has_flux_(flux.has_value()),
+          of_potential_(flux && flux->channels == 1) {
         for (std::size_t a = 0; a < mesh.attributes.size(); ++a) {
             const Attribute& attribute = mesh.attributes[a];
             const auto& [least, largest] = extent_.ranges[a];
@@ -77,8 +82,9 @@ public:
                 origins_.push_back(least + (largest - least) / 2);
             }
         }
-        for (std::size_t i = 0; i < options.flux.size(); i += 3) {
-            longest_ = std::max(longest_, glm::length(Vec3(options.flux[i], options.flux[i + 1], options.flux[i + 2])));
+        for (std::size_t i = 0; has_flux_ && !of_potential_ && i < flux->values.size(); i += 3) {
+            const double* const v = &flux->values[i];
+            longest_ = std::max(longest_, glm::length(Vec3(v[0], v[1], v[2])));
         }
     }
 
@@ -113,7 +119,7 @@ public:
     void find_extremes(std::span<const Patch> patches, const PatchOptions& options, std::vector<PatchMeasure>& all) const {
         constexpr double kTolerance = 1e-4;  // of a range
         if (channels_.empty()) return;
-        detail::ExtremeSearch search(patches.size(), scales_, kTolerance);
+        detail::ExtremeSearch search(patches.size(), scales_, detail::channel_bounds(part_.mesh), kTolerance);
         for (std::size_t p = 0; p < patches.size(); ++p) look(search, p, patches[p]);
         HexMesh mesh = part_.mesh;
         detail::LimitExtent extent = extent_;
@@ -128,27 +134,24 @@ public:
             for (std::size_t k = 0; k < channels_.size(); ++k) {
                 const FieldMeasure& from = found[p + 1].fields[k];
                 PatchField& to = all[p].fields[k];
-                to.min = from.min.value;
-                to.max = from.max.value;
+                to.min = in_whole(from.min);
+                to.max = in_whole(from.max);
                 to.extreme_error = from.extreme_error;
             }
         }
     }
 
 private:
-    static detail::LimitExtent extent(const HexMesh& mesh, std::span<const double> flux) {
+    static detail::LimitExtent extent(const HexMesh& mesh, const std::optional<Attribute>& flux) {
         detail::LimitExtent extent = detail::limit_extent(mesh);
-        if (flux.empty()) return extent;
-        const auto [least, greatest] = std::ranges::minmax(flux);
+        if (!flux) return extent;
+        const auto [least, greatest] = std::ranges::minmax(flux->values);
         extent.ranges.push_back({least, greatest});
         return extent;
     }
 
     /// The cells near the patches; the vectors of the flow become the last attribute.
-    static detail::MeshSubset near(const HexMesh& mesh, std::span<const Patch> patches, std::span<const double> flux) {
-        if (!flux.empty() && flux.size() != 3 * mesh.points.size())
-            throw Error(ErrorCode::InvalidInput, "has " + std::to_string(flux.size()) + " numbers", "flux",
-                        "three for each of the " + std::to_string(mesh.points.size()) + " points");
+    static detail::MeshSubset near(const HexMesh& mesh, std::span<const Patch> patches, const std::optional<Attribute>& flux) {
         std::vector<std::uint8_t> cells(mesh.cells.size(), 0);
         for (const Patch& patch : patches) {
             if (patch.sides.empty()) throw Error(ErrorCode::InvalidInput, "has no sides", "patch \"" + patch.name + "\"");
@@ -160,12 +163,9 @@ private:
         }
         detail::grow(mesh, cells, detail::kHaloOfLimit);
         detail::MeshSubset part = detail::subset(mesh, cells);
-        if (flux.empty()) return part;
-        Attribute& vectors = part.mesh.attributes.emplace_back(Attribute{"", 3, {}});
-        for (const Index p : part.points) {
-            const auto of_point = flux.subspan(3 * std::size_t{p}, 3);
-            vectors.values.insert(vectors.values.end(), of_point.begin(), of_point.end());
-        }
+        if (!flux) return part;
+        Attribute& vectors = part.mesh.attributes.emplace_back(detail::without_values(*flux));
+        for (const Index p : part.points) detail::add_point(*flux, p, vectors);
         return part;
     }
 
@@ -202,6 +202,11 @@ private:
         search.end_sides(sides);
     }
 
+    [[nodiscard]] LimitExtreme in_whole(LimitExtreme extreme) const {
+        if (extreme.cell != kNone) extreme.cell = part_.cells[extreme.cell];
+        return extreme;
+    }
+
     [[nodiscard]] Index number_of(Index cell) const {
         return static_cast<Index>(std::ranges::lower_bound(part_.cells, cell) - part_.cells.begin());
     }
@@ -234,6 +239,10 @@ private:
                     for (std::size_t c = 0; c < attribute.channels; ++c)
                         values[next++] = attribute.values[q * attribute.channels + c];
                 }
+                if (of_potential_) {
+                    const Vec3 gradient = samples.attributes.back().derivatives[q] * glm::inverse(samples.jacobians[q]);
+                    for (int k = 0; k < 3; ++k) values[channels_.size() + static_cast<std::size_t>(k)] = gradient[k];
+                }
                 const std::size_t k = q % of_side;
                 call(glm::cross(along_s, along_t), values, rule[k / rule.size()].weight * rule[k % rule.size()].weight);
             }
@@ -245,7 +254,7 @@ private:
     LimitEvaluator limit_;
     std::vector<std::string> channels_;
     std::vector<double> scales_, origins_;
-    bool has_flux_;
+    bool has_flux_, of_potential_;
     double longest_ = 0;
 };
 
@@ -279,10 +288,36 @@ PatchMeasure measure_patch(const PatchLimit& limit, const Patch& patch, const Pa
         result.throughput = sums.throughput;
     }
     for (std::size_t k = 0; k < limit.channels().size(); ++k) {
-        const double mean = limit.origins()[k] + (sums.area > 0 ? sums.fields[k] / sums.area : 0);
-        result.fields.push_back({.name = limit.channels()[k], .integral = mean * sums.area, .mean = mean});
+        PatchField& field = result.fields.emplace_back();
+        field.name = limit.channels()[k];
+        if (!(sums.area > 0)) continue;
+        field.mean = limit.origins()[k] + sums.fields[k] / sums.area;
+        field.integral = field.mean * sums.area;
     }
     return result;
+}
+
+}  // namespace
+
+namespace {
+
+/// given: of the cells as they were given
+std::vector<PatchMeasure> measured(const HexMesh& mesh, std::span<const Patch> patches, const PatchOptions& options,
+                                   bool given) {
+    std::optional<Attribute> flux = options.flux_field;
+    if (!flux && !options.flux.empty()) flux = Attribute{"", 3, {options.flux.begin(), options.flux.end()}};
+    if (flux && (flux->channels != 3 || flux->values.size() != 3 * mesh.points.size()))
+        throw Error(ErrorCode::InvalidInput, "has " + std::to_string(flux->values.size()) + " numbers", "flux",
+                    "three for each of the " + std::to_string(mesh.points.size()) + " points");
+    if (given && flux && flux->derived) flux = flux->potential ? std::optional(*flux->potential) : std::nullopt;
+    const PatchLimit limit(mesh, patches, options, flux);
+    std::vector<PatchMeasure> all;
+    for (const Patch& patch : patches) {
+        report_progress(options.progress, "patches", static_cast<double>(all.size()) / static_cast<double>(patches.size()));
+        all.push_back(measure_patch(limit, patch, options));
+    }
+    limit.find_extremes(patches, options, all);
+    return all;
 }
 
 }  // namespace
@@ -290,13 +325,25 @@ PatchMeasure measure_patch(const PatchLimit& limit, const Patch& patch, const Pa
 std::vector<PatchMeasure> measure_patches(const HexMesh& mesh, std::span<const Patch> patches, const PatchOptions& options) {
     validate(mesh);
     report_progress(options.progress, "patches", 0);
-    const PatchLimit limit(mesh, patches, options);
-    std::vector<PatchMeasure> all;
-    for (const Patch& patch : patches) {
-        report_progress(options.progress, "patches", static_cast<double>(all.size()) / static_cast<double>(patches.size()));
-        all.push_back(measure_patch(limit, patch, options));
+    std::vector<PatchMeasure> all = measured(mesh, patches, options, false);
+    PatchOptions linear = options;
+    linear.scheme = {.kind = Scheme::Linear};
+    const HexMesh cells = detail::as_given(mesh);
+    std::vector<PatchMeasure> given = measured(cells, patches, linear, true);
+    for (std::size_t p = 0; p < all.size(); ++p) {
+        all[p].given_area = given[p].area;
+        all[p].given_flux = given[p].flux;
+        all[p].given_throughput = given[p].throughput;
+        std::size_t k = 0;
+        for (const Attribute& attribute : cells.attributes) {
+            for (int c = 0; c < attribute.channels; ++c, ++k) {
+                if (attribute.derived) continue;
+                PatchField& from = given[p].fields[k];
+                detail::move_to_own_places(cells, attribute, from.min, from.max);
+                all[p].fields[k].given = {from.integral, from.mean, from.min, from.max};
+            }
+        }
     }
-    limit.find_extremes(patches, options, all);
     return all;
 }
 

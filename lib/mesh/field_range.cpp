@@ -5,19 +5,21 @@
 #include <cmath>
 
 #include "subvol/detail/number_text.h"
+#include "subvol/detail/place_function.h"
 #include "subvol/error.h"
 
 namespace subvol {
 
 FieldRange range_of(const Attribute& field) {
-    if (field.values.empty()) throw Error(ErrorCode::InvalidInput, "has no values", "field " + field.name);
+    const std::vector<double>& values = own_values(field);
+    if (values.empty()) throw Error(ErrorCode::InvalidInput, "has no values", "field " + field.name);
     const auto channels = static_cast<std::size_t>(field.channels);
     FieldRange range;
-    range.min.assign(field.values.begin(), field.values.begin() + field.channels);
+    range.min.assign(values.begin(), values.begin() + field.channels);
     range.max = range.min;
-    for (std::size_t i = channels; i < field.values.size(); ++i) {
-        range.min[i % channels] = std::min(range.min[i % channels], field.values[i]);
-        range.max[i % channels] = std::max(range.max[i % channels], field.values[i]);
+    for (std::size_t i = channels; i < values.size(); ++i) {
+        range.min[i % channels] = std::min(range.min[i % channels], values[i]);
+        range.max[i % channels] = std::max(range.max[i % channels], values[i]);
     }
     return range;
 }
@@ -51,8 +53,8 @@ double value_origin(double min, double max) {
 }
 
 double float_rounding(const Attribute& field, bool half) {
-    if (field.values.empty()) return 0;
-    const auto [min, max] = std::ranges::minmax(field.values);
+    if (own_values(field).empty()) return 0;
+    const auto [min, max] = std::ranges::minmax(own_values(field));
     const double ulp = half ? 0x1p-12 : 0x1p-25;  // half a unit of the last digit
     return max > min ? std::max(std::abs(min), std::abs(max)) / (max - min) * ulp : 0;
 }
@@ -61,7 +63,7 @@ std::string rounding_warning(const Attribute& field, bool half) {
     constexpr double kMuch = 1e-3;
     const double rounding = float_rounding(field, half);
     if (!(rounding > kMuch)) return {};
-    const auto [min, max] = std::ranges::minmax(field.values);
+    const auto [min, max] = std::ranges::minmax(own_values(field));
     const std::string relative = field.name + "-(" + detail::number_text(min + (max - min) / 2) + ")";
     return std::string(half ? "16" : "32") + "-bit floats round \"" + field.name + "\" by up to " +
            detail::number_text(100 * rounding, 2) + " % of its range; they keep the digits of the expression " + relative;
@@ -71,11 +73,15 @@ void turn_y_up(HexMesh& mesh) {
     for (Vec3& p : mesh.points) p = {p.x, p.z, -p.y};
     for (Attribute& field : mesh.attributes) {
         if (field.channels != 3) continue;
-        for (std::size_t i = 0; i + 2 < field.values.size(); i += 3) {
-            const double y = field.values[i + 1];
-            field.values[i + 1] = field.values[i + 2];
-            field.values[i + 2] = -y;
-        }
+        detail::change_places(field, [](std::span<double> values) {
+            for (std::size_t i = 0; i + 2 < values.size(); i += 3) {
+                const double y = values[i + 1];
+                values[i + 1] = values[i + 2];
+                values[i + 2] = -y;
+            }
+        });
+        if (field.bounds.size() == 3)
+            field.bounds = {field.bounds[0], field.bounds[2], {-field.bounds[1][1], -field.bounds[1][0]}};
     }
 }
 

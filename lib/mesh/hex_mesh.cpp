@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <cassert>
 #include <charconv>
 #include <cmath>
 #include <optional>
@@ -17,6 +18,7 @@
 #include "mesh_subset.h"
 #include "subvol/detail/error_text.h"
 #include "subvol/detail/near_name.h"
+#include "subvol/detail/place_function.h"
 #include "subvol/error.h"
 
 namespace subvol {
@@ -132,6 +134,8 @@ void validate(const HexMesh& mesh) {
                         "attribute \"" + attribute.name + "\"",
                         std::to_string(mesh.points.size()) + " points of " + std::to_string(attribute.channels) + " channels");
         }
+        assert(attribute.function == nullptr ||
+               attribute.arguments.size() == attribute.function->arguments * mesh.points.size());
         const auto wrong_value = first_where(
             attribute.values.size(), [&](std::size_t i) { return !std::isfinite(attribute.values[i]) && used[i / channels]; });
         if (wrong_value) {
@@ -154,15 +158,17 @@ HexMesh without_unused_points(HexMesh mesh) {
     HexMesh result;
     result.time = mesh.time;
     result.points.reserve(count);
-    for (const auto& attribute : mesh.attributes)
-        result.attributes.push_back({attribute.name, attribute.channels, {}, attribute.bounds});
+    for (const auto& attribute : mesh.attributes) {
+        Attribute& kept = result.attributes.emplace_back(detail::without_values(attribute));
+        kept.cells = attribute.cells;
+        kept.constant = attribute.constant;
+        kept.walls = detail::at_kept_points(attribute.walls, attribute.channels, renumbered);
+    }
     for (std::size_t p = 0; p < used.size(); ++p) {
         if (!used[p]) continue;
         result.points.push_back(mesh.points[p]);
         for (std::size_t a = 0; a < mesh.attributes.size(); ++a) {
-            const auto channels = static_cast<std::size_t>(mesh.attributes[a].channels);
-            const auto first = mesh.attributes[a].values.data() + p * channels;
-            result.attributes[a].values.insert(result.attributes[a].values.end(), first, first + channels);
+            detail::add_point(mesh.attributes[a], p, result.attributes[a]);
         }
     }
     result.cells = std::move(mesh.cells);

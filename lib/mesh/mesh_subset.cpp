@@ -6,6 +6,7 @@
 
 #include "subvol/cell.h"
 #include "subvol/detail/parallel_each.h"
+#include "subvol/detail/place_function.h"
 
 namespace subvol::detail {
 
@@ -42,19 +43,24 @@ MeshSubset subset(const HexMesh& mesh, std::span<const std::uint8_t> cells) {
         result.cells.push_back(c);
         for (const Index p : mesh.cells[c]) places[p] = 0;
     }
-    for (const Attribute& field : mesh.attributes)
-        result.mesh.attributes.push_back({field.name, field.channels, {}, field.bounds});
+    for (const Attribute& field : mesh.attributes) {
+        result.mesh.attributes.push_back(without_values(field));
+        if (!is_at_cells(mesh, field)) continue;
+        result.mesh.attributes.back().cells = of_cells(field.cells, field.channels, result.cells);
+        result.mesh.attributes.back().constant = field.constant;
+    }
     for (Index p = 0; p < places.size(); ++p) {
         if (places[p] == kNone) continue;
         places[p] = static_cast<Index>(result.mesh.points.size());
         result.mesh.points.push_back(mesh.points[p]);
         result.points.push_back(p);
         for (std::size_t a = 0; a < mesh.attributes.size(); ++a) {
-            const Attribute& from = mesh.attributes[a];
-            const auto first = from.values.begin() + static_cast<std::ptrdiff_t>(p) * from.channels;
-            auto& to = result.mesh.attributes[a].values;
-            to.insert(to.end(), first, first + from.channels);
+            add_point(mesh.attributes[a], p, result.mesh.attributes[a]);
         }
+    }
+    for (std::size_t a = 0; a < mesh.attributes.size(); ++a) {
+        const Attribute& from = mesh.attributes[a];
+        result.mesh.attributes[a].walls = at_kept_points(from.walls, from.channels, places);
     }
     const auto renumber = [&](auto& entity) {
         for (Index& p : entity) p = places[p];
@@ -71,6 +77,53 @@ MeshSubset subset(const HexMesh& mesh, std::span<const std::uint8_t> cells) {
     take(mesh.sharp_faces, result.mesh.sharp_faces);
     keep_own_tags(result.mesh);
     return result;
+}
+
+std::vector<double> of_cells(std::span<const double> cells, int channels, std::span<const Index> numbers) {
+    std::vector<double> some;
+    if (cells.empty()) return some;
+    const auto width = static_cast<std::size_t>(channels);
+    some.reserve(numbers.size() * width);
+    for (const Index c : numbers) {
+        const std::span<const double> of_cell = cells.subspan(c * width, width);
+        some.insert(some.end(), of_cell.begin(), of_cell.end());
+    }
+    return some;
+}
+
+GradientsAtPoints at_kept_points(const GradientsAtPoints& gradients, int channels, std::span<const Index> places) {
+    GradientsAtPoints kept;
+    const auto width = static_cast<std::size_t>(channels);
+    for (std::size_t i = 0; i < gradients.points.size(); ++i) {
+        const Index place = places[gradients.points[i]];
+        if (place == kNone) continue;
+        kept.points.push_back(place);
+        for (std::size_t c = 0; c < width; ++c) kept.gradients.push_back(gradients.gradients[i * width + c]);
+    }
+    return kept;
+}
+
+bool is_at_cells(const HexMesh& mesh, const Attribute& field) {
+    return !field.cells.empty() && field.cells.size() == static_cast<std::size_t>(field.channels) * mesh.cells.size();
+}
+
+bool is_constant_in_cells(const HexMesh& mesh, const Attribute& field) {
+    return field.constant && is_at_cells(mesh, field);
+}
+
+void set_means_at_points(const HexMesh& mesh, Attribute& field) {
+    const auto width = static_cast<std::size_t>(field.channels);
+    std::vector<double> sums(field.values.size(), 0);
+    std::vector<Index> counts(mesh.points.size(), 0);
+    for (std::size_t c = 0; c < mesh.cells.size(); ++c) {
+        for (const Index p : mesh.cells[c]) {
+            ++counts[p];
+            for (std::size_t k = 0; k < width; ++k) sums[p * width + k] += field.cells[c * width + k];
+        }
+    }
+    for (std::size_t i = 0; i < sums.size(); ++i) {
+        if (counts[i / width] > 0) field.values[i] = sums[i] / counts[i / width];
+    }
 }
 
 void keep_own_tags(HexMesh& mesh) {

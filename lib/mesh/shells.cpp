@@ -106,6 +106,7 @@ Shells patch_shells(const HexMesh& mesh, std::span<const Patch> patches) {
     for (const Attribute& attribute : mesh.attributes) points.attributes.push_back({attribute.name, attribute.channels, {}});
     points.attributes.push_back({"patch", 1, {}});
     std::vector<std::array<Index, 4>> quads;
+    std::vector<CellCorner> corners;
     for (std::size_t k = 0; k < patches.size(); ++k) {
         std::unordered_map<Index, Index> numbers;  // of this patch's points
         for (const CellSide& side : patches[k].sides) {
@@ -118,6 +119,7 @@ Shells patch_shells(const HexMesh& mesh, std::span<const Patch> patches) {
                 quad[c] = at->second;
                 if (!is_new) continue;
                 points.points.push_back(mesh.points[p]);
+                corners.push_back({side.cell, static_cast<std::uint8_t>(kCellFaces[side.side][c])});
                 for (std::size_t a = 0; a < mesh.attributes.size(); ++a) {
                     const auto channels = static_cast<std::size_t>(mesh.attributes[a].channels);
                     const auto of_point = std::span(mesh.attributes[a].values).subspan(p * channels, channels);
@@ -128,7 +130,9 @@ Shells patch_shells(const HexMesh& mesh, std::span<const Patch> patches) {
             }
         }
     }
-    return make_shells(points, quads, {});
+    Shells shells = make_shells(points, quads, {});
+    shells.solid = std::move(corners);  // each point is of a quad, so that all are there in their order
+    return shells;
 }
 
 void validate(const Shells& shells, const HexMesh& mesh) {

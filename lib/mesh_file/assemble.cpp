@@ -3,14 +3,20 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <optional>
+#include <unordered_map>
 #include <utility>
 
 #include "cell_splits.h"
+#include "facets.h"
 #include "file_sets.h"
+#include "mesh_arrays.h"
 #include "sharp_groups.h"
 #include "subvol/cell.h"
+#include "subvol/detail/small_letters.h"
 #include "subvol/error.h"
+#include "subvol/topology.h"
 
 namespace subvol::detail {
 
@@ -95,8 +101,9 @@ struct Origin {
 
 class ArrayConversion {
 public:
-    ArrayConversion(ReadResult& result, const Origin& origin, std::string_view file, const EntityNames& names, bool fits)
-        : result_(result), origin_(origin), file_(file), names_(names), fits_(fits) {}
+    ArrayConversion(ReadResult& result, const Origin& origin, std::string_view file, const EntityNames& names,
+                    CellValues cell_values)
+        : result_(result), origin_(origin), file_(file), names_(names), cell_values_(cell_values) {}
 
     void take(FileArray&& array) {
         // The names of all formats pass here: they appear in messages, JSON and files, and users write them to choose the
@@ -113,13 +120,14 @@ public:
         }
         Attribute attribute{distinct_.take(array.name), array.components, {}};
         if (array.at_cells && !array.on_patches.empty()) take_on_patches(attribute.name, array);
-        if (array.at_cells && fits_) {
-            attribute.values.assign(result_.mesh.points.size() * static_cast<std::size_t>(array.components), 0);
-            result_.cell_means.push_back({attribute.name, array.components, of_cells(array)});
-            result_.mesh.attributes.push_back(std::move(attribute));
-            return;
+        if (array.at_cells) {
+            attribute.cells = of_cells(array);
+            take_cells(array, attribute);
+        } else if (cell_values_ != CellValues::Mean && is_label_at_points(array)) {
+            take_labels(array, attribute);
+        } else {
+            attribute.values = from_points(std::move(array));
         }
-        attribute.values = array.at_cells ? from_cells(array) : from_points(std::move(array));
         result_.mesh.attributes.push_back(std::move(attribute));
     }
 
@@ -141,19 +149,98 @@ public:
         }
         left_out.report("field", "fields", result_.warnings);
         distinct_.report(result_.warnings);
+        if (!labels_.empty()) {
+            result_.warnings.push_back(
+                (labels_.size() == 1 ? "cell array " + listed(labels_) + " has"
+                                     : std::to_string(labels_.size()) + " cell arrays (" + listed(labels_) + ") have") +
+                " whole numbers, constant in each cell (--cell-values mean makes values at points of them)");
+        }
+        if (!point_labels_.empty()) {
+            result_.warnings.push_back((point_labels_.size() == 1
+                                            ? "point array " + listed(point_labels_) + " numbers things: each cell has"
+                                            : std::to_string(point_labels_.size()) + " point arrays (" + listed(point_labels_) +
+                                                  ") number things: each cell has") +
+                                       " the number of most of its points (--cell-values mean makes smooth values of them)");
+        }
         if (averaged_.empty()) return;
-        constexpr std::size_t kMostNamed = 6;
-        const bool one = averaged_.size() == 1;
-        std::string names;
-        for (std::size_t i = 0; i < std::min(averaged_.size(), kMostNamed); ++i) names += (i > 0 ? ", " : "") + averaged_[i];
-        if (averaged_.size() > kMostNamed) names += " and " + std::to_string(averaged_.size() - kMostNamed) + " more";
-        result_.warnings.push_back((one ? "cell array " + names + " became a point array: the volume-weighted mean"
-                                        : std::to_string(averaged_.size()) + " cell arrays became point arrays (" + names +
-                                              "): volume-weighted means") +
+        result_.warnings.push_back((averaged_.size() == 1
+                                        ? "cell array " + listed(averaged_) + " became a point array: the volume-weighted mean"
+                                        : std::to_string(averaged_.size()) + " cell arrays became point arrays (" +
+                                              listed(averaged_) + "): volume-weighted means") +
                                    " over the cells at each point");
     }
 
 private:
+    /// The first few of some names.
+    [[nodiscard]] static std::string listed(const std::vector<std::string>& all) {
+        constexpr std::size_t kMostNamed = 6;
+        std::string names;
+        for (std::size_t i = 0; i < std::min(all.size(), kMostNamed); ++i) names += (i > 0 ? ", " : "") + all[i];
+        if (all.size() > kMostNamed) names += " and " + std::to_string(all.size() - kMostNamed) + " more";
+        return names;
+    }
+
+    /// Whether an array numbers materials, blocks or cells: no mean of such numbers means anything. Some formats have nothing
+    /// but reals; there the name has to say so, too.
+    [[nodiscard]] static bool is_label(const FileArray& array, const std::vector<double>& of_hexes) {
+        const auto differs = [&](double value) { return value != of_hexes.front(); };
+        return array.components == 1 && (array.integers || names_label(array.name)) && are_whole(of_hexes) &&
+               std::ranges::any_of(of_hexes, differs);
+    }
+
+    /// The same at points, where many integers are measured, as grey values are: the name has to say so. What numbers the
+    /// points themselves, as "GlobalNodeId", is no label of cells.
+    [[nodiscard]] static bool is_label_at_points(const FileArray& array) {
+        constexpr std::array<std::string_view, 5> kOfPoints{"node", "point", "vert", "pedigree", "global"};
+        const std::string name = small_letters(array.name);
+        const auto differs = [&](double value) { return value != array.values.front(); };
+        const auto is_in_name = [&](std::string_view word) { return name.find(word) != std::string::npos; };
+        return array.components == 1 && names_label(array.name) && name != "id" && name != "ids" &&
+               std::ranges::none_of(kOfPoints, is_in_name) && are_whole(array.values) &&
+               std::ranges::any_of(array.values, differs);
+    }
+
+    [[nodiscard]] static bool names_label(const std::string& given) {
+        constexpr std::array<std::string_view, 8> kNumbered{"material", "block", "region", "zone",
+                                                            "domain",   "group", "part_",  "label"};
+        const std::string name = small_letters(given);
+        return std::ranges::any_of(kNumbered, [&](std::string_view word) { return name.starts_with(word); }) || name == "mat" ||
+               name == "part" || name == "id" || name.ends_with("_id") || name.ends_with("ids") || given.ends_with("Id") ||
+               given.ends_with("ID");
+    }
+
+    /// Gives each cell the label that most of its points have, of as many the least. Points that splitting has made have none
+    /// of their own, and in `values` that of the first point that they lie between.
+    void take_labels(const FileArray& array, Attribute& attribute) {
+        const auto& sources = origin_.sources;
+        const std::size_t count = result_.mesh.points.size();
+        for (std::size_t p = 0; p < count; ++p) attribute.values.push_back(array.values[sources ? (*sources)[p].front() : p]);
+        attribute.constant = true;
+        for (const auto& cell : result_.mesh.cells) {
+            std::map<double, int> votes;
+            for (const Index p : cell) {
+                if (!sources || (*sources)[p].size() == 1) ++votes[attribute.values[p]];
+            }
+            const auto fewer = [](const auto& a, const auto& b) { return a.second < b.second; };
+            attribute.cells.push_back(std::ranges::max_element(votes, fewer)->first);  // the first of those with as many
+        }
+        point_labels_.push_back(in_quotes(array.name));
+    }
+
+    /// Makes values at points of those at cells.
+    void take_cells(const FileArray& array, Attribute& attribute) {
+        if (are_means(cell_values_)) {  // fitted later
+            attribute.values.assign(result_.mesh.points.size() * static_cast<std::size_t>(array.components), 0);
+            result_.cell_means.push_back({attribute.name, array.components, attribute.cells});
+            return;
+        }
+        const bool label = cell_values_ == CellValues::Auto && is_label(array, attribute.cells);
+        attribute.constant = label || cell_values_ == CellValues::Constant;
+        attribute.values = mean_over_cells(result_.mesh, attribute.cells, static_cast<std::size_t>(array.components));
+        if (attribute.constant && !label) return;
+        (label ? labels_ : averaged_).push_back(in_quotes(array.name));
+    }
+
     // The first point that a cell uses, or the first cell, with a value that is not finite; empty if there is none.
     [[nodiscard]] std::string gap_at_points(const FileArray& array) const {
         const auto components = static_cast<std::size_t>(array.components);
@@ -195,17 +282,13 @@ private:
         return of_hexes;
     }
 
-    std::vector<double> from_cells(const FileArray& array) {
-        averaged_.push_back(in_quotes(array.name));
-        return mean_over_cells(result_.mesh, of_cells(array), static_cast<std::size_t>(array.components));
-    }
-
     void take_on_patches(const std::string& name, const FileArray& array) {
         ValuesOnPatches& faces = result_.on_patches;
         const auto components = static_cast<std::size_t>(array.components);
         FieldOnPatches& field = faces.fields.emplace_back(FieldOnPatches{name, array.components, {}, {}});
         field.values.assign(faces.patches.size() * components, std::nan(""));
         field.along.assign(faces.patches.size(), 0);
+        field.level.assign(faces.patches.size(), 0);
         for (const FileOnPatch& patch : array.on_patches) {
             const auto first = std::ranges::lower_bound(faces.patches, static_cast<Index>(patch.patch));
             const auto last = std::ranges::upper_bound(faces.patches, static_cast<Index>(patch.patch));
@@ -214,6 +297,7 @@ private:
             if (patch.values.size() > count * components) continue;  // the patches are of another file
             std::ranges::copy(patch.values, field.values.data() + begin * components);
             std::fill_n(field.along.data() + begin, count, patch.along);
+            std::fill_n(field.level.data() + begin, count, patch.level);
         }
     }
 
@@ -221,9 +305,9 @@ private:
     const Origin& origin_;
     std::string_view file_;
     const EntityNames& names_;
-    bool fits_;
+    CellValues cell_values_;
     NamesApart distinct_{"array"};
-    std::vector<std::string> averaged_;
+    std::vector<std::string> averaged_, labels_, point_labels_;
     std::vector<UnreadField> unread_;
 };
 
@@ -280,6 +364,49 @@ void split_all(ReadResult& result, MixedCells&& others, bool cut, Origin& origin
     }
     origin.sources = std::move(split.sources);
     result.warnings.push_back(split_report(counts, split.tets_cut, mesh.cells.size()));
+}
+
+/// A number for each cell: the place of its block or set among them, from 1, 0 for a cell in none. Empty if a cell is in two of
+/// them, since such sets are no parts of a body, or if there is one part alone.
+///
+/// cell_numbers: as in Origin; cells: how many there are
+std::vector<Index> parts_of_cells(const MeshFile& found, const std::vector<Index>& cell_numbers, std::size_t cells) {
+    std::unordered_map<Index, Index> part_of_number;
+    Index part = 0;
+    for (const FileSet& set : found.sets) {
+        const bool is_block = std::ranges::find(found.blocks, set.name, &MeshBlock::name) != found.blocks.end();
+        if (!found.blocks.empty() && !is_block) continue;
+        ++part;
+        for (const Index number : set.numbers) {
+            const auto [at, added] = part_of_number.try_emplace(number, part);
+            if (!added && at->second != part) return {};
+        }
+    }
+    std::vector<Index> parts(part == 0 ? 0 : cells, 0);
+    for (std::size_t c = 0; c < parts.size(); ++c) {
+        const auto at = part_of_number.find(cell_numbers.empty() ? static_cast<Index>(c) : cell_numbers[c]);
+        if (at != part_of_number.end()) parts[c] = at->second;
+    }
+    if (std::ranges::all_of(parts, [&](Index number) { return number == parts.front(); })) parts.clear();
+    return parts;
+}
+
+/// The halves of edges in a mesh whose cells were split. edges: ascending
+std::vector<std::array<Index, 2>> halves_of(const std::vector<std::array<Index, 2>>& edges, const IndexRows& sources) {
+    std::unordered_map<Index, Index> corners;
+    for (const auto& edge : edges) {
+        for (const Index p : edge) corners.emplace(p, kNone);
+    }
+    std::vector<std::array<Index, 2>> halves;
+    for (Index p = 0; p < sources.size(); ++p) {  // corners come before the middles of edges
+        const auto row = sources[p];
+        if (row.size() == 1) {
+            if (const auto corner = corners.find(row[0]); corner != corners.end()) corner->second = p;
+        } else if (row.size() == 2 && std::ranges::binary_search(edges, std::array{row[0], row[1]})) {
+            for (const Index end : row) halves.push_back({corners[end], p});
+        }
+    }
+    return halves;
 }
 
 /// Leaves out the quads or lines that repeat a point, or have one whose place or values are not finite.
@@ -428,6 +555,17 @@ ReadResult assemble(MeshFile&& found, std::string_view file, const EntityNames& 
     }
     origin.cell_numbers = take_numbers(found);
     if (!turned) turn_hexes(result);
+    FoundSharpEdges sharp;
+    const bool finds_sharp = !options.crease_angle_deg && found.sharp.empty() && !found.sharp.settled;
+    // Of the cells as the file has them: where they are split, all quads of a triangle lie in its plane.
+    if (finds_sharp) {
+        const std::size_t cells = result.mesh.cells.size() + others.tets.size() + others.prisms.size() + others.pyramids.size();
+        sharp =
+            find_sharp_edges(result.mesh.points, result.mesh.cells, others, parts_of_cells(found, origin.cell_numbers, cells),
+                             cut || !others.pyramids.empty() ? SingleCells::Tag : SingleCells::Leave);
+        found.sharp = {std::move(sharp.faces_between), std::move(sharp.edges_between)};
+    }
+    const std::size_t edges_between = finds_sharp ? found.sharp.edges.size() : 0;
     try {
         if (!others.empty()) split_all(result, std::move(others), cut, origin);
         warn_of_folded(result);
@@ -435,15 +573,24 @@ ReadResult assemble(MeshFile&& found, std::string_view file, const EntityNames& 
             sets_of_mesh(result.mesh, found, origin.cell_numbers, origin.sources ? &*origin.sources : nullptr, result.warnings);
         result.sets = std::move(sets.sets);
         take_faces(found, std::move(sets.sides), result.on_patches);
-        ArrayConversion conversion(result, origin, file, names, are_means(options.cell_values));
+        ArrayConversion conversion(result, origin, file, names, options.cell_values);
         for (auto& array : found.arrays) conversion.take(std::move(array));
         conversion.finish(std::move(found.unread));
-        if (!result.cell_means.empty()) result.cell_parts = std::move(origin.cell_numbers);
+        if (!result.cell_means.empty() || !result.on_patches.fields.empty()) result.cell_parts = std::move(origin.cell_numbers);
         take_shells(found, result, origin, moved);
         const bool alone = options.shells_alone && result.mesh.cells.empty() && !result.shells.empty();
         if (!alone) validate(result.mesh);
         if (!found.sharp.empty()) {
             add_sharp_tags(result.mesh, std::move(found.sharp), origin.sources ? &*origin.sources : nullptr, file, names);
+        }
+        if (finds_sharp) {
+            result.sharp_edges = {sharp.edges.size() + edges_between, sharp.steps};
+            if (origin.sources) sharp.edges = halves_of(sharp.edges, *origin.sources);
+            result.mesh.creases.insert(result.mesh.creases.end(), sharp.edges.begin(), sharp.edges.end());
+        } else if (options.crease_angle_deg.value_or(0) > 0) {
+            const std::size_t before = result.mesh.creases.size();
+            tag_creases(result.mesh, *options.crease_angle_deg);
+            result.sharp_edges = {result.mesh.creases.size() - before, false};
         }
     } catch (const Error& error) {
         const bool names_file = std::string_view(error.what()).starts_with(file);

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "subvol/cell.h"
+#include "subvol/detail/counted_rows.h"
 
 namespace subvol::detail {
 
@@ -64,28 +65,16 @@ double squared(std::size_t n) {
     return static_cast<double>(n) * static_cast<double>(n);
 }
 
-// The cells beside the edges of each class: those of class e are at starts[e] to starts[e + 1] - 1.
-struct CellsOfClasses {
-    std::vector<std::size_t> starts, cells;
-};
-
-CellsOfClasses cells_of_classes(const std::vector<std::array<std::size_t, 3>>& class_of, std::size_t class_count) {
-    CellsOfClasses result;
-    result.starts.resize(class_count + 1);
-    const auto each = [&](auto&& take) {
+// The cells beside the edges of each class.
+Rows<std::size_t> cells_of_classes(const std::vector<std::array<std::size_t, 3>>& class_of, std::size_t class_count) {
+    return counted_rows<std::size_t>(class_count, [&](const auto& put) {
         for (std::size_t c = 0; c < class_of.size(); ++c) {
             const auto& [a, b, d] = class_of[c];
-            take(a, c);
-            if (b != a) take(b, c);
-            if (d != a && d != b) take(d, c);
+            put(a, c);
+            if (b != a) put(b, c);
+            if (d != a && d != b) put(d, c);
         }
-    };
-    each([&](std::size_t e, std::size_t) { ++result.starts[e + 1]; });
-    std::partial_sum(result.starts.begin(), result.starts.end(), result.starts.begin());
-    result.cells.resize(result.starts.back());
-    auto next = result.starts;
-    each([&](std::size_t e, std::size_t c) { result.cells[next[e]++] = c; });
-    return result;
+    });
 }
 
 }  // namespace
@@ -111,7 +100,7 @@ CurvedPieces choose_pieces(std::span<const std::array<Index, 8>> cells, const Ed
             degrees[e] = std::max<std::size_t>(degrees[e], bends[c].degrees[axis]);
         }
     }
-    const CellsOfClasses beside = cells_of_classes(result.class_of, edges.size());
+    const Rows<std::size_t> beside = cells_of_classes(result.class_of, edges.size());
     const auto error_of = [&](std::size_t e) {
         const std::size_t n = result.of_class[e];
         return std::max(of_shape[e] / squared(n), fields_error(of_fields[e], degrees[e], n));
@@ -130,8 +119,8 @@ CurvedPieces choose_pieces(std::span<const std::array<Index, 8>> cells, const Ed
         steps.pop();
         const auto count = [&] {
             std::size_t sum = 0;
-            for (std::size_t k = beside.starts[e]; k < beside.starts[e + 1]; ++k) {
-                const auto n = result.of_cell(beside.cells[k]);
+            for (const std::size_t c : beside[e]) {
+                const auto n = result.of_cell(c);
                 sum += n[0] * n[1] * n[2];
             }
             return sum;

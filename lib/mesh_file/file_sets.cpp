@@ -16,6 +16,7 @@
 #include <numeric>
 
 #include "subvol/cell.h"
+#include "subvol/detail/counted_rows.h"
 
 namespace subvol::detail {
 
@@ -29,33 +30,28 @@ public:
             for (std::size_t f = 0; f < patches[k].size(); ++f) faces_.push_back({k, f});
             for (const Index p : patches[k].corners) file_points = std::max(file_points, std::size_t{p} + 1);
         }
-        std::vector<std::size_t> counts(file_points + 1, 0);
-        for (const Face& face : faces_) {
-            for (const Index p : points_of(face)) ++counts[p + 1];
-        }
-        for (std::size_t p = 0; p < file_points; ++p) counts[p + 1] += counts[p];
-        starts_ = counts;
-        at_point_.resize(counts.back());
-        for (std::size_t i = 0; i < faces_.size(); ++i) {
-            for (const Index p : points_of(faces_[i])) at_point_[counts[p]++] = i;
-        }
+        at_points_ = counted_rows<std::size_t>(file_points, [&](const auto& put) {
+            for (std::size_t i = 0; i < faces_.size(); ++i) {
+                for (const Index p : points_of(faces_[i])) put(p, i);
+            }
+        });
     }
 
-    [[nodiscard]] bool has(Index p) const { return p + std::size_t{1} < starts_.size() && starts_[p] < starts_[p + 1]; }
+    [[nodiscard]] bool has(Index p) const { return p < at_points_.size() && !at_points_[p].empty(); }
 
     /// Calls call(patch, number of the face among those of all patches) once for each patch with a face that has all these
     /// points. Looks at the faces of the point that has the fewest: thousands may meet on an axis.
     template <class Call>
     void each_patch_with(std::span<const Index> points, const Call& call) const {
-        const Index point = *std::ranges::min_element(points, {}, [&](Index p) { return starts_[p + 1] - starts_[p]; });
+        const Index point = *std::ranges::min_element(points, {}, [&](Index p) { return at_points_[p].size(); });
         std::size_t last = patches_.size();  // faces at a point come in the order of their patches
-        for (std::size_t i = starts_[point]; i < starts_[point + 1]; ++i) {
-            const Face& face = faces_[at_point_[i]];
+        for (const std::size_t i : at_points_[point]) {
+            const Face& face = faces_[i];
             if (face.patch == last) continue;
             const auto of_face = points_of(face);
             if (!std::ranges::all_of(points, [&](Index p) { return std::ranges::find(of_face, p) != of_face.end(); })) continue;
             last = face.patch;
-            call(face.patch, static_cast<Index>(at_point_[i]));
+            call(face.patch, static_cast<Index>(i));
         }
     }
 
@@ -67,7 +63,7 @@ private:
 
     const std::vector<FilePatch>& patches_;
     std::vector<Face> faces_;
-    std::vector<std::size_t> starts_, at_point_;
+    Rows<std::size_t> at_points_;  // faces
 };
 
 /// Which points of the file carry a point of the mesh.

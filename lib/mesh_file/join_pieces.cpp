@@ -339,7 +339,7 @@ private:
 
     [[nodiscard]] FileArray joined(const FileArray& like, const std::vector<const FileArray*>& parts) const {
         const auto components = static_cast<std::size_t>(like.components);
-        FileArray array{like.name, like.components, like.at_cells, {}, like.unit};
+        FileArray array{like.name, like.components, like.at_cells, {}, like.unit, {}, like.integers};
         if (!like.at_cells) {
             array.values.reserve(all_.points.size() * components);
             for (const auto& [piece, p] : sources_) {
@@ -368,6 +368,7 @@ private:
                 FileOnPatch& values = whole[patch];
                 values.patch = patch;
                 values.along = values.along || part.along;
+                values.level = values.level || part.level;
                 values.values.resize(all_.patches[patch].size() * components, std::nan(""));
                 std::ranges::copy(part.values, values.values.data() + first * components);
             }

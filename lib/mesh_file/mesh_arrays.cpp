@@ -47,13 +47,17 @@ void take_sharp(const NamedNumbers& array, const Mark& mark, MeshFile& found) {
     const auto ignore = [&](const std::string& why) {
         found.warnings.push_back("array " + in_quotes(array.name) + " of creases and sharp faces ignored: " + why);
     };
-    if (const std::string fault = fault_of(numbers, mark, kHead); !fault.empty()) return ignore(fault);
+    if (const std::string fault = fault_of(numbers, mark, kHead); !fault.empty()) {
+        // Another mesh without creases: nothing is lost.
+        return numbers.size() == kHead && numbers[kMarkLength] == 0 ? void() : ignore(fault);
+    }
     const auto points = numbers.subspan(kHead);
     const std::int64_t creases = numbers[kMarkLength];
     if (creases < 0 || static_cast<std::size_t>(creases) > points.size() / 2 ||
         (points.size() - 2 * static_cast<std::size_t>(creases)) % 4 != 0) {
         return ignore("it has the wrong length");
     }
+    found.sharp.settled = true;
     const auto point = [&](std::size_t k) { return static_cast<Index>(points[k]); };
     const std::size_t faces_at = 2 * static_cast<std::size_t>(creases);
     for (std::size_t k = 0; k < faces_at; k += 2) found.sharp.edges.push_back({point(k), point(k + 1)});
@@ -140,13 +144,12 @@ bool is_field_array(std::string_view name) {
 
 std::vector<NamedNumbers> field_arrays(const HexMesh& mesh, const MeshSets& sets) {
     std::vector<NamedNumbers> arrays;
-    const bool sharp = !mesh.creases.empty() || !mesh.sharp_faces.empty();
-    if (!sharp && sets.patches.empty()) return arrays;
+    if (mesh.creases.empty() && mesh.sharp_faces.empty() && sets.patches.empty()) return arrays;
     const Mark mark = mark_of(mesh.points.size(), mesh.cells);
     const auto begin = [&](std::string name) -> std::vector<std::int64_t>& {
         return arrays.emplace_back(NamedNumbers{std::move(name), {mark.begin(), mark.end()}}).numbers;
     };
-    if (sharp) {
+    if (!mesh.creases.empty() || !mesh.sharp_faces.empty()) {
         std::vector<std::int64_t>& numbers = begin(std::string(kSharpArray));
         numbers.push_back(static_cast<std::int64_t>(mesh.creases.size()));
         for (const auto& crease : mesh.creases) numbers.insert(numbers.end(), crease.begin(), crease.end());
@@ -159,6 +162,15 @@ std::vector<NamedNumbers> field_arrays(const HexMesh& mesh, const MeshSets& sets
             for (const auto k : kCellFaces[side.side]) numbers.push_back(mesh.cells[side.cell][k]);
         }
     }
+    return arrays;
+}
+
+std::vector<NamedNumbers> settled_arrays(const HexMesh& mesh, const MeshSets& sets) {
+    std::vector<NamedNumbers> arrays = field_arrays(mesh, sets);
+    if (!mesh.creases.empty() || !mesh.sharp_faces.empty()) return arrays;
+    const Mark mark = mark_of(mesh.points.size(), mesh.cells);
+    arrays.push_back({std::string(kSharpArray), {mark.begin(), mark.end()}});
+    arrays.back().numbers.push_back(0);
     return arrays;
 }
 
@@ -201,6 +213,11 @@ void take_set_arrays(MeshFile& found) {
         if (is_set(array)) add_to_set(sets, array.name, 0, array.values);
     }
     std::erase_if(found.arrays, is_set);
+}
+
+bool are_whole(std::span<const double> values) {
+    constexpr double kMost = 0x1p53;
+    return std::ranges::all_of(values, [](double value) { return std::abs(value) <= kMost && value == std::floor(value); });
 }
 
 }  // namespace subvol::detail

@@ -22,7 +22,9 @@ namespace subvol::detail {
 // numbers in the field data. An array begins with the mark of its mesh: the numbers of points and hexahedra, and a hash of the
 // corners. A program that changes the mesh keeps the array as it is, so an array with another mark is ignored.
 //
-//     SubvolSharp   the mark, the number of creases, two points for each, four for each sharp face
+//     SubvolSharp   the mark, the number of creases, two points for each, four for each sharp face. A file of a mesh without
+//     any
+//                   has it too, so that no sharp edges are looked for when it is read
 //     patch:NAME    the mark, four points for each face of the patch
 
 /// An array of field data. numbers: all components, one tuple after the other
@@ -36,6 +38,9 @@ struct NamedNumbers {
 
 /// The arrays of a mesh; patches without sides have none.
 [[nodiscard]] std::vector<NamedNumbers> field_arrays(const HexMesh& mesh, const MeshSets& sets);
+
+/// Those of a file: a mesh that has neither creases nor sharp faces says so.
+[[nodiscard]] std::vector<NamedNumbers> settled_arrays(const HexMesh& mesh, const MeshSets& sets);
 
 /// Adds what the arrays have to the file's mesh: `found.sharp` and `found.patches`. Warnings for those that are ignored: of
 /// another mesh, of the wrong length, with a point or a face that does not exist.
@@ -59,5 +64,8 @@ void add_to_set(ByName<FileSet>& sets, std::string_view array, std::size_t first
 
 /// Makes sets of the arrays that are such.
 void take_set_arrays(MeshFile& found);
+
+/// Whether all values are whole numbers that doubles hold exactly.
+[[nodiscard]] bool are_whole(std::span<const double> values);
 
 }  // namespace subvol::detail

@@ -266,6 +266,34 @@ namespace {
 
 constexpr const char* kCorners = "corners";
 
+constexpr const char* kAutoAngle = "auto";
+constexpr const char* kNoAngle = "none";
+
+/// Nothing is "auto", 0 is "none".
+WordValue crease_value(std::optional<double>& angle) {
+    return {.get =
+                [&angle] {
+                    return !angle ? std::string(kAutoAngle) : *angle == 0 ? std::string(kNoAngle) : detail::exact_text(*angle);
+                },
+            .set =
+                [&angle](const std::string& text, const std::string& where) {
+                    if (text == kAutoAngle) {
+                        angle.reset();
+                        return;
+                    }
+                    double degrees = 0;
+                    if (text != kNoAngle) {
+                        try {
+                            Option("crease-angle", degrees).between(0, 180).read(text, where);
+                        } catch (const Error& error) {
+                            throw Error(error.code(), error.message(), error.where(), error.allowed() + ", auto or none");
+                        }
+                    }
+                    angle = degrees;
+                },
+            .numbers = true};
+}
+
 /// The word "corners" stands for no tolerance.
 WordValue curved_value(std::optional<double>& tolerance) {
     return {.get = [&tolerance] { return tolerance ? detail::exact_text(*tolerance) : std::string(kCorners); },
@@ -306,9 +334,10 @@ std::vector<Option> options_of(ReadOptions& options) {
                 "400 T of the fields' ranges; corners: use nothing but their corners"),
         Option("cell-values", options.cell_values)
             .help("HOW",
-                  "values at cells become values at points: fit (the volume follows the cells' means without waves; the "
-                  "default for OpenFOAM), mean (of the cells around each point; the default for all others), exact (the "
-                  "volume has the cells' means), auto"),
+                  "what values at cells are: fit (the volume follows the cells' means without waves; the default for "
+                  "OpenFOAM), mean (values at points, of the cells around each; the default for all others), exact (the volume "
+                  "has the cells' means), constant (as they are, in each cell; the default for integers, such as materials), "
+                  "auto"),
         Option("patch-values", options.patch_values)
             .help("HOW",
                   "what OpenFOAM has on patches of the boundary: normal (points there get it, but of vectors at walls only the "
@@ -320,7 +349,17 @@ std::vector<Option> options_of(ReadOptions& options) {
         Option("sharp", options.sharp)
             .help("NAME",
                   "a group of the file whose faces inside the mesh and edges are kept sharp: a physical group of Gmsh by "
-                  "its name or number, a reference of MEDIT, or Ridges (repeatable)")};
+                  "its name or number, a reference of MEDIT, or Ridges (repeatable)"),
+        Option("mesh", options.deck)
+            .help("DECK.inp",
+                  "of a .frd file of CalculiX, the deck that it has the results of: its sets of elements and surfaces become "
+                  "sets and patches"),
+        Option("crease-angle", crease_value(options.crease_angle_deg))
+            .offer({kAutoAngle, kNoAngle})
+            .help(
+                "DEG|none",
+                "keep boundary edges sharp that bend by more than this, in degrees; none: none; auto: those that bend by more "
+                "than 40, and on round bodies of few cells by more than 60, unless the file has creases")};
 }
 
 }  // namespace subvol

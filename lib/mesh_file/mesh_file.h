@@ -25,13 +25,16 @@ namespace subvol::detail {
 ///
 /// along:  vectors have no component along the normal, and nothing else is known
 /// values: a tuple for each face; not a number: unknown
+/// level:  the array does not change across the faces
 struct FileOnPatch {
     std::size_t patch = 0;
     bool along = false;
     std::vector<double> values = {};
+    bool level = false;
 };
 
-/// An array of a file. at_cells: one tuple for each cell of the file, of any kind; else one for each point; unit: such as m/s
+/// An array of a file. at_cells: one tuple for each cell of the file, of any kind; else one for each point; unit: such as m/s;
+/// integers: the file has it in a type of integers
 struct FileArray {
     std::string name;
     int components = 1;
@@ -39,6 +42,7 @@ struct FileArray {
     std::vector<double> values;
     std::string unit = {};
     std::vector<FileOnPatch> on_patches = {};
+    bool integers = false;
 };
 
 /// Symmetric tensors have their components in the order xx, yy, zz, xy, yz, xz. The place of each in files that list the upper
@@ -79,9 +83,12 @@ struct CurvedHexes {
 };
 
 /// The faces and edges of the groups that ReadOptions::sharp names. A triangle repeats its last corner.
+///
+/// settled: the file says which edges and faces are sharp, even if there are none
 struct FileTags {
     std::vector<std::array<Index, 4>> faces;
     std::vector<std::array<Index, 2>> edges;
+    bool settled = false;
 
     [[nodiscard]] bool empty() const { return faces.empty() && edges.empty(); }
 };

@@ -52,6 +52,7 @@ struct MeshFormat {
     Collection (*files)(const std::filesystem::path& path) = nullptr;
     bool groups = false;
     bool blocks = false;
+    bool deck = false;  // whether the file has results of a deck
     bool finite_volumes = false;
 };
 
@@ -62,7 +63,7 @@ struct MeshFormat {
 /// The same; throws: Error(InvalidInput) that lists all formats if there is none.
 [[nodiscard]] const MeshFormat& readable_format(const std::filesystem::path& path);
 
-/// How values at cells are read from a format where the options leave it open.
+/// How values at cells are read from a format where the options leave it open; still Auto where each array decides.
 [[nodiscard]] CellValues resolved_cell_values(const MeshFormat& format, CellValues chosen);
 
 /// Refuses options that a format has no use for.

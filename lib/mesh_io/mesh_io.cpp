@@ -12,10 +12,12 @@
 #include "formats.h"
 #include "series_format.h"
 #include "subvol/cell_means.h"
+#include "subvol/detail/error_text.h"
 #include "subvol/detail/missing_file.h"
 #include "subvol/detail/number_text.h"
 #include "subvol/detail/refuse_surface.h"
 #include "subvol/error.h"
+#include "subvol/field_bounds.h"
 #include "subvol/mesh_series.h"
 #include "text_scanner.h"
 #include "vtk/collection.h"
@@ -112,7 +114,7 @@ constexpr std::array<MeshFormat, 22> kFormats{{
      .blocks = true},
     {.extensions = {".vtkhdf", ".hdf"}, .name = "VTKHDF", .read = read_vtkhdf, .write = write_vtkhdf, .times = vtkhdf_times},
     {.extensions = {".xdmf", ".xmf"}, .name = "XDMF", .read = read_file<read_xdmf>, .times = xdmf_times},
-    {.extensions = {".frd"}, .name = "CalculiX", .read = read_file<read_frd>, .times = frd_times},
+    {.extensions = {".frd"}, .name = "CalculiX", .read = read_file<read_frd>, .times = frd_times, .deck = true},
     {.extensions = {".cgns"}, .name = "CGNS", .read = read_cgns, .times = cgns_times, .blocks = true},
     {.extensions = {".case"}, .name = "EnSight Gold", .read = read_ensight, .times = ensight_times, .blocks = true},
     {.extensions = {".foam", ".openfoam"},
@@ -130,12 +132,12 @@ bool is_left_out(const MeshFormat& format, bool writable_only) {
     return writable_only && !format.write;
 }
 
-// ".mesh: MEDIT; .xyz, .p3d: Plot3D"; neighbouring formats of one name share an entry.
-std::string list_formats(bool writable_only) {
+// Those that are written: ".mesh: MEDIT; .vtkhdf, .hdf: VTKHDF"; neighbouring formats of one name share an entry.
+std::string list_written_formats() {
     std::string list;
     std::string_view name;
     for (const MeshFormat& format : kFormats) {
-        if (is_left_out(format, writable_only)) continue;
+        if (is_left_out(format, true)) continue;
         const bool new_entry = format.name != name;
         if (new_entry && !name.empty()) list += ": " + std::string(name) + "; ";
         name = format.name;
@@ -168,7 +170,7 @@ void fit_fields(ReadResult& result, CellValues method) {
         fields = std::move(fit.fields);
         report = fit.report.found;
     } else {
-        CellMeansFit fit = fit_cell_means(result.mesh, result.cell_means, result.cell_parts);
+        CellMeansFit fit = fit_cell_means(result.mesh, result.cell_means, result.on_patches, result.cell_parts);
         fields = std::move(fit.fields);
         report = fit.report;
     }
@@ -177,7 +179,9 @@ void fit_fields(ReadResult& result, CellValues method) {
     for (Attribute& field : fields) fitted.emplace(field.name, &field);
     for (Attribute& attribute : result.mesh.attributes) {
         const auto found = fitted.find(attribute.name);
-        if (found != fitted.end()) attribute = std::move(*found->second);
+        if (found == fitted.end()) continue;
+        attribute.values = std::move(found->second->values);
+        attribute.bounds = std::move(found->second->bounds);
     }
     const auto percent = [](double part) { return number_text(100 * part, 2) + " %"; };
     result.warnings.push_back(counted(fields.size(), "cell array", "cell arrays") +
@@ -282,28 +286,17 @@ std::string way_to(const std::filesystem::path& path) {
     if (extension == ".unv") return "; gmsh -save -format msh4 -o mesh.msh " + path.filename().string() + " converts it";
     constexpr std::array<std::string_view, 8> kUnknown{".k", ".key", ".cdb", ".ans", ".op2", ".neu", ".mphtxt", ".pf3"};
     if (std::ranges::find(kUnknown, extension) != kUnknown.end()) {
-        return "; neither does meshio: export one of these from the program that made it";
+        return "; meshio cannot read them either: export one of these from the program that made them";
     }
     return {};
 }
 
 // Files that are of something else than cells, of which the command makes a mesh.
 void refuse_others(const std::filesystem::path& path) {
-    const std::string extension = upper_case(path.extension().string());
-    const bool surface = extension == ".STL" || extension == ".OBJ" || extension == ".PLY";
-    const bool scene = extension == ".GLB" || extension == ".GLTF", grid = extension == ".VDB";
-    std::error_code none;
-    if ((surface || scene || grid) && !std::filesystem::exists(path, none))
-        throw Error(ErrorCode::Io, "cannot be read: No such file or directory", path.string());
-    if (surface) refuse_surface(path);
-    if (scene) {
-        throw Error(ErrorCode::InvalidInput, "is a surface, not a mesh of cells", path.string(),
-                    "`subvol mesh` makes a control mesh of an .stl, .obj or .ply file: export one of these");
-    }
-    if (grid) {
+    if (names_surface(path) || names_foreign_surface(path)) refuse_surface(path);
+    if (upper_case(path.extension().string()) == ".VDB") {
         throw Error(ErrorCode::InvalidInput, "is a grid, not a mesh of cells", path.string(),
-                    "`subvol mesh " + path.filename().string() + " --iso VALUE -o " + path.stem().string() +
-                        ".vtu` makes a control mesh of it");
+                    "`" + command_for_surface(path, "--iso VALUE") + "` makes a control mesh of it");
     }
 }
 
@@ -351,20 +344,24 @@ const MeshFormat& detail::readable_format(const std::filesystem::path& path) {
     if (!format) {
         refuse_missing(path);
         refuse_others(path);
-        refuse_format(path, "read", list_formats(false) + way_to(path));
+        refuse_format(path, "read", "docs/formats.md and `subvol info --help` list the formats that can" + way_to(path));
     }
     return *format;
 }
 
 CellValues detail::resolved_cell_values(const MeshFormat& format, CellValues chosen) {
     if (chosen != CellValues::Auto) return chosen;
-    return format.finite_volumes ? CellValues::Fit : CellValues::Mean;
+    return format.finite_volumes ? CellValues::Fit : CellValues::Auto;
 }
 
 void detail::check_options(const MeshFormat& format, const std::filesystem::path& path, const ReadOptions& options) {
     if (!options.sharp.empty() && !format.groups) {
         throw Error(ErrorCode::InvalidInput, "groups of faces and edges are not read from such files", path.string(),
                     "sharp faces come from Gmsh (.msh) and MEDIT (.mesh, .meshb) files");
+    }
+    if (!options.deck.empty() && !format.deck) {
+        throw Error(ErrorCode::InvalidInput, "such files have their own sets and patches", path.string(),
+                    "a deck is read beside a .frd file of CalculiX, which has none");
     }
     if (!options.blocks.empty() && !format.blocks) {
         throw Error(ErrorCode::InvalidInput, "such files have no named blocks", path.string(),
@@ -397,8 +394,16 @@ ReadResult read_mesh(const std::filesystem::path& path, const ReadOptions& optio
                                                             " (" + std::string(named->name) + ")");
     }
     if (!result.cell_means.empty()) fit_fields(result, resolved.cell_values);
-    const bool meets = resolved.patch_values != PatchValuesUse::Ignore && resolved.cell_values != CellValues::Exact;
-    if (meets && !result.on_patches.fields.empty()) take_patch_values(result, resolved.patch_values);
+    if (resolved.patch_values != PatchValuesUse::Ignore && !result.on_patches.fields.empty()) {
+        set_wall_gradients(result.mesh, result.on_patches, result.cell_parts);
+        const bool meets = resolved.cell_values != CellValues::Exact && resolved.cell_values != CellValues::Constant;
+        if (meets) take_patch_values(result, resolved.patch_values);
+    }
+    if (const auto fractions = bound_fractions(result.mesh, result.cell_means); !fractions.empty()) {
+        result.warnings.push_back(listed(fractions) +
+                                  (fractions.size() == 1 ? " is a fraction: it stays" : " are fractions: they stay") +
+                                  " within 0 and 1 between the points, too");
+    }
     if (format.times) {
         const std::vector<double> times = format.times(path);
         result.steps = std::max<std::size_t>(times.size(), 1);
@@ -417,7 +422,7 @@ std::vector<std::string> write_mesh(const std::filesystem::path& path, const Hex
         return format.write && std::ranges::find(format.extensions, path.extension().string()) != format.extensions.end();
     };
     const auto format = std::ranges::find_if(kFormats, writes);
-    if (path.extension().empty() || format == kFormats.end()) refuse_format(path, "written", list_formats(true));
+    if (path.extension().empty() || format == kFormats.end()) refuse_format(path, "written", list_written_formats());
     if (!shells.empty() && path.extension() != ".vtu") {
         throw Error(ErrorCode::InvalidInput, "shells and beams cannot be written to such files", path.string(), ".vtu");
     }

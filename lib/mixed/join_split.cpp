@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <optional>
+#include <string>
 
+#include "subvol/detail/place_function.h"
 #include "subvol/error.h"
 #include "subvol/mixed_mesh.h"
 
@@ -66,19 +68,51 @@ private:
     const std::vector<std::array<Index, 8>>& cells_;
 };
 
+std::array<Index, 2> in_order(Index a, Index b) {
+    return {std::min(a, b), std::max(a, b)};
+}
+
+/// The creases that are no edges of sharp faces.
+std::vector<std::array<Index, 2>> creases_outside(const HexMesh& mesh) {
+    std::vector<std::array<Index, 2>> inside, outside;
+    for (const auto& face : mesh.sharp_faces) {
+        for (std::size_t k = 0; k < 4; ++k) inside.push_back(in_order(face[k], face[(k + 1) % 4]));
+    }
+    std::sort(inside.begin(), inside.end());
+    for (const auto& [a, b] : mesh.creases) {
+        if (!std::binary_search(inside.begin(), inside.end(), in_order(a, b))) outside.push_back({a, b});
+    }
+    return outside;
+}
+
+/// The edges whose halves are creases. A half goes from a corner to a middle, which has the greater number.
+std::vector<std::array<Index, 2>> joined_creases(std::vector<std::array<Index, 2>> halves) {
+    for (auto& half : halves) half = {std::max(half[0], half[1]), std::min(half[0], half[1])};  // the middle first
+    std::sort(halves.begin(), halves.end());
+    halves.erase(std::unique(halves.begin(), halves.end()), halves.end());
+    std::vector<std::array<Index, 2>> edges;
+    for (std::size_t i = 0; i < halves.size(); i += 2) {
+        if (i + 1 == halves.size() || halves[i][0] != halves[i + 1][0]) {
+            throw Error(ErrorCode::InvalidInput, "a crease lies within a face of a cell that was split",
+                        "points " + std::to_string(halves[i][1]) + " and " + std::to_string(halves[i][0]),
+                        "creases along the edges of cells, or --scheme mcq");
+        }
+        edges.push_back({halves[i][1], halves[i + 1][1]});
+    }
+    return edges;
+}
+
 }  // namespace
 
 MixedMesh join_split_cells(const HexMesh& split) {
     HexMesh joined;
     const auto others = Joiner(split).join(joined.cells);
-    if (!others) return make_mixed_mesh(split, {});
-    if (!split.creases.empty() || !split.sharp_faces.empty()) {
-        throw Error(ErrorCode::InvalidInput, "sharp edges and faces of split cells are not kept by the schemes of tetrahedra",
-                    {}, "read the mesh without --sharp");
-    }
+    const auto creases = creases_outside(split);
     joined.points = split.points;
-    joined.attributes = split.attributes;
-    return make_mixed_mesh(joined, *others);
+    joined.attributes = detail::without_functions(split.attributes);
+    joined.creases = others ? joined_creases(creases) : creases;
+    if (!others) joined.cells = split.cells;
+    return make_mixed_mesh(joined, others.value_or(MixedCells{}));
 }
 
 }  // namespace subvol

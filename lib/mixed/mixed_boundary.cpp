@@ -154,9 +154,9 @@ std::vector<std::uint8_t> count_fans(std::size_t points, const std::vector<std::
 }  // namespace
 
 MixedBoundary find_boundary(const MixedMesh& mesh, std::optional<double> crease_angle_deg) {
-    if (crease_angle_deg && !(*crease_angle_deg > 0 && *crease_angle_deg < 180)) {
+    if (crease_angle_deg && !(*crease_angle_deg > 0 && *crease_angle_deg <= 180)) {
         throw Error(ErrorCode::InvalidInput, "the crease angle is " + number_text(*crease_angle_deg), {},
-                    "between 0 and 180 degrees");
+                    "more than 0, at most 180 degrees");
     }
     MixedBoundary result;
     result.faces = boundary_faces(mesh);
@@ -177,13 +177,14 @@ MixedBoundary find_boundary(const MixedMesh& mesh, std::optional<double> crease_
     const auto cells = cells_of_edges(mesh, unique);
     // An edge's records follow each other in `edges`: two for a smooth edge. Normals are compared without dividing by their
     // lengths, which may be 0.
-    const double least_cosine = crease_angle_deg ? std::cos(*crease_angle_deg * std::numbers::pi / 180) : -2;
+    const bool bent_is_sharp = crease_angle_deg.value_or(180) < 180;
+    const double least_cosine = bent_is_sharp ? std::cos(*crease_angle_deg * std::numbers::pi / 180) : -2;
     std::size_t i = 0;
     for (std::size_t e = 0; e < unique.size(); ++e) {
         std::size_t end = i + 1;
         while (end < edges.size() && edges[end].ends == unique[e]) ++end;
         bool sharp = cells[e] == 1 || end - i != 2 || std::binary_search(tagged.begin(), tagged.end(), unique[e]);
-        if (!sharp && crease_angle_deg) {
+        if (!sharp && bent_is_sharp) {
             const Vec3 n0 = normal_of(mesh.points, result.faces[edges[i].face]);
             const Vec3 n1 = normal_of(mesh.points, result.faces[edges[i + 1].face]);
             sharp = glm::dot(n0, n1) < least_cosine * glm::length(n0) * glm::length(n1);

@@ -8,6 +8,7 @@
 
 #include "cell_splits.h"
 #include "mixed_shapes.h"
+#include "subvol/detail/place_function.h"
 #include "subvol/error.h"
 
 namespace subvol {
@@ -148,7 +149,9 @@ MixedMesh make_mixed_mesh(const HexMesh& hexes, const MixedCells& others) {
         throw Error(ErrorCode::InvalidInput, "sharp faces inside the mesh are not supported by the schemes of tetrahedra", {},
                     "read it without --sharp, or use another scheme");
     }
-    MixedMesh mesh{hexes.points, others.tets, {}, others.prisms, others.pyramids, hexes.cells, hexes.attributes, hexes.creases};
+    MixedMesh mesh{
+        hexes.points, others.tets, {}, others.prisms, others.pyramids, hexes.cells, detail::without_functions(hexes.attributes),
+        hexes.creases};
     validate(mesh);
     MixedCells oriented{std::move(mesh.tets), std::move(mesh.prisms), std::move(mesh.pyramids)};
     orient_mixed(mesh.points, mesh.hexes, oriented);

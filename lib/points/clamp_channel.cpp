@@ -1,15 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "subvol/clamp_channel.h"
 
-#include <cmath>
-
 #include "subvol/error.h"
 
 namespace subvol {
 
 std::size_t clamp_channel(RbfChannel& channel, double min, double max) {
-    if (!std::isfinite(min) || !std::isfinite(max) || min > max)
-        throw Error(ErrorCode::InvalidInput, "the range is not finite, or its ends are exchanged", "clamp");
+    if (!(min <= max)) throw Error(ErrorCode::InvalidInput, "the ends of the range are exchanged, or no numbers", "clamp");
     const auto low = static_cast<float>(min), high = static_cast<float>(max);
     std::size_t moved = 0;
     for (std::size_t i = 0; i < channel.values.size(); ++i) {

@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "points_file.h"
+#include "subvol/detail/refuse_surface.h"
 #include "subvol/detail/surface_io.h"
 #include "subvol/error.h"
 #include "vtk_xml.h"
@@ -13,7 +14,8 @@ namespace {
 /// The one piece of a PolyData file, and its tuples.
 class VtpReader {
 public:
-    VtpReader(std::string_view text, std::string_view file, const std::string& needed) : xml_(text, file, "PolyData", needed) {
+    VtpReader(std::string_view text, std::string_view file, const std::string& needed)
+        : xml_(text, file, "PolyData", needed), file_(file) {
         const auto pieces = xml_.data_set().children("Piece");
         if (pieces.begin() == pieces.end()) xml_.fail_at(xml_.data_set(), "there is no Piece element");
         piece_ = *pieces.begin();
@@ -30,6 +32,8 @@ public:
     }
 
     [[nodiscard]] RbfVolume volume() const {
+        const pugi::xml_node kernel = xml_.data_set().child("FieldData").find_child_by_attribute("Name", kVtpKernel);
+        if (!kernel && piece_.attribute("NumberOfPolys").as_ullong() > 0) refuse_surface(file_);
         RbfVolume volume;
         volume.kernel = kernel_from_json(strings(kVtpKernel).at(0));
         volume.centers = points();
@@ -113,6 +117,7 @@ private:
     }
 
     VtkXml xml_;
+    std::string_view file_;
     pugi::xml_node piece_;
 };
 

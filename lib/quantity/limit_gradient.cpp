@@ -65,8 +65,10 @@ private:
 
 Attribute limit_gradient(const HexMesh& mesh, const Attribute& attribute, Progress* progress) {
     constexpr double kInset = 0.05;
+    const auto channels = static_cast<std::size_t>(attribute.channels);
     HexMesh alone{mesh.points, mesh.cells, {attribute}, mesh.creases, mesh.sharp_faces};
     alone.attributes[0].bounds.clear();
+    alone.attributes[0].constant = false;
     const LimitEvaluator limit(alone);
     GradientSum sum(mesh, attribute);
     for (std::size_t begin = 0; begin < mesh.cells.size(); begin += kCellsAtOnce) {
@@ -92,7 +94,18 @@ Attribute limit_gradient(const HexMesh& mesh, const Attribute& attribute, Progre
             if (has_volume(inside.jacobians[q])) sum.add(flat_points[q], inside, q);
         }
     }
-    return std::move(sum).mean();
+    Attribute gradient = std::move(sum).mean();
+    gradient.derived = true;
+    if (channels == 1 && attribute.cells.empty())
+        gradient.potential = std::make_shared<const Attribute>(std::move(alone.attributes[0]));
+    for (std::size_t i = 0; i < attribute.walls.points.size(); ++i) {
+        for (std::size_t c = 0; c < channels; ++c) {
+            const Vec3& known = attribute.walls.gradients[i * channels + c];
+            for (std::size_t k = 0; k < 3; ++k)
+                gradient.values[3 * (attribute.walls.points[i] * channels + c) + k] = known[static_cast<int>(k)];
+        }
+    }
+    return gradient;
 }
 
 }  // namespace subvol::detail

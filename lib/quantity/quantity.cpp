@@ -9,25 +9,30 @@
 #include "subvol/detail/small_letters.h"
 
 #include <muParser.h>
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <numbers>
 
+#include "arithmetic.h"
+#include "field_functions.h"
 #include "limit_gradient.h"
 #include "quantity_source.h"
 #include "subvol/detail/error_text.h"
 #include "subvol/detail/near_name.h"
+#include "subvol/detail/place_function.h"
 #include "subvol/detail/printable.h"
 #include "subvol/detail/scalar_groups.h"
 #include "subvol/error.h"
 #include "tensor_functions.h"
 
 namespace subvol {
+
+using detail::applied;
+using detail::channel_of;
+using detail::joined;
+using detail::Rule;
+
 namespace {
 
 constexpr std::array<std::string_view, 8> kDerivatives{"grad", "gradient", "div",       "divergence",
@@ -96,21 +101,6 @@ bool is_ours(std::string_view word) {
                 mesh.attributes.empty() ? "the mesh has no fields" : "the mesh has: " + detail::list_of(mesh));
 }
 
-/// Scalars as the channels of one field.
-Attribute joined(std::span<const Attribute* const> scalars, std::string name) {
-    Attribute result{std::move(name), static_cast<int>(scalars.size()), {}};
-    result.values.resize(scalars.size() * scalars[0]->values.size());
-    for (std::size_t c = 0; c < scalars.size(); ++c) {
-        for (std::size_t p = 0; p < scalars[c]->values.size(); ++p) {
-            result.values[p * scalars.size() + c] = scalars[c]->values[p];
-        }
-    }
-    if (std::ranges::none_of(scalars, [](const Attribute* scalar) { return scalar->bounds.empty(); })) {
-        for (const Attribute* scalar : scalars) result.bounds.push_back(scalar->bounds[0]);
-    }
-    return result;
-}
-
 /// The channel that a component's name or number means.
 std::optional<std::size_t> channel_named(int channels, std::string_view component) {
     std::size_t number = 0;
@@ -128,44 +118,27 @@ std::optional<std::size_t> channel_named(int channels, std::string_view componen
     return static_cast<std::size_t>(found - names.begin());
 }
 
-Attribute channel_of(const Attribute& field, std::size_t channel, const std::string& name) {
-    const auto channels = static_cast<std::size_t>(field.channels);
-    Attribute result{name, 1, std::vector<double>(field.values.size() / channels)};
-    for (std::size_t p = 0; p < result.values.size(); ++p) result.values[p] = field.values[p * channels + channel];
-    if (!field.bounds.empty()) result.bounds = {field.bounds[channel]};
-    return result;
-}
-
-/// function: of the channels at a point
-template <class Function>
-Attribute each_point(const Attribute& field, const Function& function) {
-    const auto channels = static_cast<std::size_t>(field.channels);
-    Attribute result{field.name, 1, std::vector<double>(field.values.size() / channels)};
-    tbb::parallel_for(std::size_t{0}, result.values.size(), [&](std::size_t p) {
-        result.values[p] = function(std::span<const double>(field.values.data() + p * channels, channels));
-    });
-    return result;
-}
+using Channels = std::span<const double>;
 
 /// The sum of the derivatives of each component by its own direction, of the gradient of a vector.
 Attribute divergence(const Attribute& gradient) {
-    return each_point(gradient, [](std::span<const double> g) { return g[0] + g[4] + g[8]; });
+    return applied(gradient, gradient.name, 1, Rule::Linear,
+                   [](Channels g, std::span<double> to) { to[0] = g[0] + g[4] + g[8]; });
 }
 
 /// Half of what the squared rotation has beyond the squared strain: −tr(G²)/2 of the gradient G.
 Attribute q_criterion(const Attribute& gradient) {
-    return each_point(gradient, [](std::span<const double> g) {
-        return -(g[0] * g[0] + g[4] * g[4] + g[8] * g[8]) / 2 - (g[1] * g[3] + g[2] * g[6] + g[5] * g[7]);
+    return applied(gradient, gradient.name, 1, Rule::Nonlinear, [](Channels g, std::span<double> to) {
+        to[0] = -(g[0] * g[0] + g[4] * g[4] + g[8] * g[8]) / 2 - (g[1] * g[3] + g[2] * g[6] + g[5] * g[7]);
     });
 }
 
 Attribute curl(const Attribute& gradient) {
-    Attribute result{gradient.name, 3, {}};
-    result.values.reserve(gradient.values.size() / 3);
-    for (const double* g = gradient.values.data(); g != gradient.values.data() + gradient.values.size(); g += 9) {
-        result.values.insert(result.values.end(), {g[7] - g[5], g[2] - g[6], g[3] - g[1]});
-    }
-    return result;
+    return applied(gradient, gradient.name, 3, Rule::Linear, [](Channels g, std::span<double> to) {
+        to[0] = g[7] - g[5];
+        to[1] = g[2] - g[6];
+        to[2] = g[3] - g[1];
+    });
 }
 
 /// Reads one quantity.
@@ -199,7 +172,7 @@ public:
         if (auto component = component_of_field(text)) return component;
         const detail::TensorFunction* function = detail::find_tensor_function(our_word(text));
         const Attribute* tensor = function != nullptr && !function->sizes.empty() ? only_tensor() : nullptr;
-        return tensor == nullptr ? std::nullopt : std::optional(each_point(*tensor, function->value));
+        return tensor == nullptr ? std::nullopt : std::optional(applied(*tensor, *function));
     }
 
 private:
@@ -232,7 +205,7 @@ private:
         }
         const auto* function = detail::find_tensor_function(our_word(detail::small_letters(text.substr(separator + 1))));
         if (function == nullptr || field->channels == 1 || !function->takes_channels(field->channels)) return std::nullopt;
-        return each_point(*field, function->value);
+        return applied(*field, *function);
     }
 
     /// The term at a place of the text, which moves behind it; nothing, and the place stays, if there is none.
@@ -352,7 +325,7 @@ private:
         };
         if (const detail::TensorFunction* function = detail::find_tensor_function(word)) {
             needs(function->takes_channels(argument.channels), std::string(function->takes));
-            return each_point(argument, function->value);
+            return applied(argument, *function);
         }
         if (mesh_.cells.empty()) refuse("there are no cells to take derivatives in", position);
         if (word == "grad") {
@@ -435,29 +408,13 @@ private:
     }
 
     [[nodiscard]] Attribute arithmetic(std::string_view text, std::size_t begin, int depth) const {
-        constexpr std::size_t kGrain = 16384;  // points per parser: enough to make the cost of building it negligible
         const Rest rest = without_terms(text, begin, depth);
-        Attribute result{std::string(text), 1, std::vector<double>(mesh_.points.size())};
-        const auto evaluate = [&](std::size_t from, std::size_t to) {
-            std::vector<double> at(rest.variables.size());
-            mu::Parser parser;
-            parser.DefineConst("pi", std::numbers::pi);
-            for (std::size_t v = 0; v < at.size(); ++v) parser.DefineVar("v" + std::to_string(v), &at[v]);
-            parser.SetExpr(rest.text);
-            for (std::size_t p = from; p < to; ++p) {
-                for (std::size_t v = 0; v < at.size(); ++v) at[v] = rest.variables[v].values[p];
-                result.values[p] = parser.Eval();
-            }
-        };
         try {
-            evaluate(0, std::min<std::size_t>(1, result.values.size()));  // refuses what is wrong before threads begin
-            tbb::parallel_for(tbb::blocked_range<std::size_t>(0, result.values.size(), kGrain),
-                              [&](const auto& range) { evaluate(range.begin(), range.end()); });
+            return detail::computed(rest.text, rest.variables, std::string(text), mesh_.points.size());
         } catch (const mu::ParserError& error) {
             const auto position = static_cast<std::size_t>(std::max(0, error.GetPos()));
             refuse(error.GetMsg(), position < rest.places.size() ? rest.places[position] : begin + text.size());
         }
-        return result;
     }
 
     const HexMesh& mesh_;
@@ -497,7 +454,7 @@ std::string detail::list_of(const HexMesh& mesh) {
 }
 
 Attribute detail::length_of(const Attribute& attribute) {
-    return each_point(attribute, find_tensor_function("length")->value);
+    return applied(attribute, *find_tensor_function("length"));
 }
 
 std::string detail::quoted_name(const std::string& name) {
@@ -535,21 +492,30 @@ Attribute field_of(const HexMesh& mesh, const std::string& name, const std::stri
     const Attribute* plain = mesh.find_attribute(source);
     Attribute result = plain != nullptr ? *plain : evaluation.value(source, 0);
     result.name = name;
-    for (std::size_t i = 0; i < result.values.size(); ++i) {
-        if (std::isfinite(result.values[i])) continue;
+    const auto check = [&](const std::vector<double>& numbers, std::size_t of_place, const char* place) {
+        const auto wrong = std::ranges::find_if_not(numbers, [](double number) { return std::isfinite(number); });
+        if (wrong == numbers.end()) return;
         throw Error(ErrorCode::InvalidInput,
-                    "is not finite at point " + std::to_string(i / static_cast<std::size_t>(result.channels)),
+                    std::string("is not finite ") + place +
+                        std::to_string(static_cast<std::size_t>(wrong - numbers.begin()) / of_place),
                     "expression '" + detail::shortened(source) + "'");
-    }
+    };
+    check(result.cells, static_cast<std::size_t>(result.channels), "in cell ");
+    check(result.values, static_cast<std::size_t>(result.channels), "at point ");
+    if (result.function != nullptr) check(result.arguments, result.function->arguments, "at point ");
     return result;
 }
 
-std::vector<double> vectors_of(const HexMesh& mesh, const std::string& source, Progress* progress) {
+Attribute vector_field_of(const HexMesh& mesh, const std::string& source, Progress* progress) {
     Attribute field = field_of(mesh, source, source, progress);
-    if (field.channels == 3) return std::move(field.values);
+    if (field.channels == 3) return field;
     throw Error(ErrorCode::InvalidInput,
                 "'" + source + "' has " + std::to_string(field.channels) + (field.channels == 1 ? " component" : " components"),
                 {}, "a vector, such as U or grad(T)");
+}
+
+std::vector<double> vectors_of(const HexMesh& mesh, const std::string& source, Progress* progress) {
+    return vector_field_of(mesh, source, progress).values;
 }
 
 }  // namespace subvol

@@ -10,7 +10,9 @@
 
 #include "mesh_subset.h"
 #include "region_cells.h"
+#include "subvol/detail/number_text.h"
 #include "subvol/detail/parallel_each.h"
+#include "subvol/detail/small_letters.h"
 #include "subvol/error.h"
 #include "subvol/option.h"
 #include "subvol/quantity.h"
@@ -92,6 +94,26 @@ Region::Region(const std::string& text) : text_(text) {
     }
 }
 
+namespace {
+
+Region region_of(const std::string& kind, const Vec3& a, const Vec3& b) {
+    std::string text = kind;
+    for (const double number : {a.x, a.y, a.z, b.x, b.y, b.z}) {
+        text += (text.size() > kind.size() ? "," : ":") + detail::exact_text(number);
+    }
+    return {text};
+}
+
+}  // namespace
+
+Region half_space(const Vec3& point, const Vec3& normal) {
+    return region_of("half", point, normal);
+}
+
+Region box_region(const Box& box) {
+    return region_of("box", box.lower, box.upper);
+}
+
 double Region::depth(const Vec3& place, std::size_t face) const {
     if (kind_ == Kind::Sphere) return radius_ - glm::distance(place, point_);
     if (kind_ == Kind::Half) return glm::dot(place - point_, normal_);
@@ -165,7 +187,12 @@ void RegionCells::add_sets(const std::string& names, std::vector<std::uint8_t>& 
     };
     const auto whole = std::ranges::find(sets_.sets, names, &CellSet::name);
     if (whole != sets_.sets.end()) return add(*whole);
-    each_name(names, [&](const std::string& name) { add(find_set(sets_, name)); });
+    each_name(names, [&](const std::string& name) {
+        const auto same = [&](const CellSet& set) { return small_letters(set.name) == small_letters(name); };
+        const bool is_there = std::ranges::find(sets_.sets, name, &CellSet::name) != sets_.sets.end();
+        const auto alike = std::ranges::find_if(sets_.sets, same);  // names may differ in the case of letters
+        add(is_there || alike == sets_.sets.end() ? find_set(sets_, name) : *alike);
+    });
 }
 
 }  // namespace detail
@@ -179,10 +206,6 @@ std::vector<std::uint8_t> cells_in(const HexMesh& mesh, std::span<const Region> 
     }
     detail::refuse_none(inside);
     return inside;
-}
-
-HexMesh only_cells(const HexMesh& mesh, std::span<const std::uint8_t> cells) {
-    return detail::subset(mesh, cells).mesh;
 }
 
 HexMesh only_in(const HexMesh& mesh, std::span<const Region> regions, const MeshSets& sets) {

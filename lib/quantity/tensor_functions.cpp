@@ -95,15 +95,15 @@ double tresca(std::span<const double> t) {
 constexpr std::array kTensors{6, 9};
 constexpr std::string_view kTensorWords = "a tensor with 6 or 9 components";
 
-constexpr std::array<TensorFunction, 10> kFunctions{{{"length", "a vector or tensor", {}, norm},
-                                                     {"norm", "a vector or tensor", {}, norm},
-                                                     {"mises", kTensorWords, kTensors, mises},
+constexpr std::array<TensorFunction, 10> kFunctions{{{"length", "a vector or tensor", {}, norm, false, true},
+                                                     {"norm", "a vector or tensor", {}, norm, false, true},
+                                                     {"mises", kTensorWords, kTensors, mises, false, true},
                                                      {"principal1", kTensorWords, kTensors, principal<0>},
                                                      {"principal2", kTensorWords, kTensors, principal<1>},
                                                      {"principal3", kTensorWords, kTensors, principal<2>},
-                                                     {"tresca", kTensorWords, kTensors, tresca},
-                                                     {"hydrostatic", kTensorWords, kTensors, hydrostatic},
-                                                     {"trace", kTensorWords, kTensors, trace},
+                                                     {"tresca", kTensorWords, kTensors, tresca, false, true},
+                                                     {"hydrostatic", kTensorWords, kTensors, hydrostatic, true},
+                                                     {"trace", kTensorWords, kTensors, trace, true},
                                                      {"det", kTensorWords, kTensors, determinant}}};
 
 }  // namespace

@@ -20,6 +20,8 @@
 
 #include "kernel_weight.h"
 #include "subvol/detail/bucket_sort.h"
+#include "subvol/detail/conjugate_gradients.h"
+#include "subvol/detail/counted_rows.h"
 #include "subvol/rbf_field.h"
 
 namespace subvol::detail {
@@ -128,15 +130,12 @@ void FieldFit::fill_rows(std::span<const Vec3> centers, std::span<const Symmetri
 }
 
 void FieldFit::fill_columns(std::size_t kernels) {
-    column_starts_.assign(kernels + 1, 0);
-    for (const Entry& entry : entries_) ++column_starts_[entry.kernel + 1];
-    for (std::size_t k = 0; k < kernels; ++k) column_starts_[k + 1] += column_starts_[k];
-    columns_.resize(entries_.size());
-    auto next = column_starts_;
-    for (std::size_t i = 0; i < samples_.size(); ++i) {
-        for (std::size_t k = row_starts_[i]; k < row_starts_[i + 1]; ++k)
-            columns_[next[entries_[k].kernel]++] = {static_cast<Index>(i), static_cast<std::uint32_t>(k - row_starts_[i])};
-    }
+    columns_ = counted_rows<Place>(kernels, [&](const auto& put) {
+        for (std::size_t i = 0; i < samples_.size(); ++i) {
+            for (std::size_t k = row_starts_[i]; k < row_starts_[i + 1]; ++k)
+                put(entries_[k].kernel, {static_cast<Index>(i), static_cast<std::uint32_t>(k - row_starts_[i])});
+        }
+    });
 }
 
 double FieldFit::row_value(std::size_t sample, std::span<const KernelTerms> terms) const {
@@ -154,11 +153,10 @@ std::vector<double> FieldFit::residuals(std::span<const KernelTerms> terms) cons
 }
 
 FieldFit::Vector FieldFit::transposed_times(std::span<const double> rows) const {
-    Vector result(column_starts_.size() - 1);
+    Vector result(columns_.size());
     parallel_each(result.size(), [&](std::size_t kernel) {
         KernelTerms sum{};
-        for (std::size_t c = column_starts_[kernel]; c < column_starts_[kernel + 1]; ++c) {
-            const Place p = columns_[c];
+        for (const Place& p : columns_[kernel]) {
             entries_[row_starts_[p.sample] + p.offset].add_to(sum, samples_.weights[p.sample] * rows[p.sample]);
         }
         result[kernel] = sum;
@@ -169,15 +167,14 @@ FieldFit::Vector FieldFit::transposed_times(std::span<const double> rows) const 
 double FieldFit::mean_weight() const {
     double total = 0;
     for (std::size_t i = 0; i < samples_.size(); ++i) total += samples_.weights[i];
-    return total / static_cast<double>(std::max<std::size_t>(column_starts_.size() - 1, 1));
+    return total / static_cast<double>(std::max<std::size_t>(columns_.size(), 1));
 }
 
 std::vector<std::array<double, 25>> FieldFit::inverse_blocks(double ridge) const {
-    std::vector<std::array<double, 25>> blocks(column_starts_.size() - 1);
+    std::vector<std::array<double, 25>> blocks(columns_.size());
     parallel_each(blocks.size(), [&](std::size_t kernel) {
         auto& block = blocks[kernel];
-        for (std::size_t c = column_starts_[kernel]; c < column_starts_[kernel + 1]; ++c) {
-            const Place p = columns_[c];
+        for (const Place& p : columns_[kernel]) {
             KernelTerms row{};
             entries_[row_starts_[p.sample] + p.offset].add_to(row, 1);
             for (std::size_t k = 0; k < 25; ++k) block[k] += samples_.weights[p.sample] * row[k / 5] * row[k % 5];
@@ -192,50 +189,40 @@ int FieldFit::solve(std::vector<KernelTerms>& terms, std::span<const KernelTerms
     const double pull = ridge * mean_weight();
     const auto blocks = inverse_blocks(pull);
     const std::size_t count = terms.size();
-    Vector direction(count), preconditioned(count);
     // gradient = −Jᵀ W residual − ridge (terms − prior)
     Vector gradient = transposed_times(residuals(terms));
     parallel_each(count, [&](std::size_t i) {
         for (std::size_t k = 0; k < 5; ++k) gradient[i][k] = -gradient[i][k] - pull * (terms[i][k] - prior[i][k]);
     });
     std::vector<double> rows(samples_.size());
-    double before = 0, first = 0;
-    int step = 0;
-    for (; step < steps; ++step) {
-        parallel_each(count, [&](std::size_t i) {
-            for (std::size_t k = 0; k < 5; ++k) {
-                double sum = 0;
-                for (std::size_t j = 0; j < 5; ++j) sum += blocks[i][5 * k + j] * gradient[i][j];
-                preconditioned[i][k] = sum;
-            }
+    double first = 0;
+    return conjugate_gradients(
+        terms, gradient,
+        [&](Vector& preconditioned) {
+            parallel_each(count, [&](std::size_t i) {
+                for (std::size_t k = 0; k < 5; ++k) {
+                    double sum = 0;
+                    for (std::size_t j = 0; j < 5; ++j) sum += blocks[i][5 * k + j] * gradient[i][j];
+                    preconditioned[i][k] = sum;
+                }
+            });
+            return dot(gradient, preconditioned);
+        },
+        [&](const Vector& direction, Vector& image) {
+            parallel_each(samples_.size(), [&](std::size_t i) { rows[i] = row_value(i, direction); });
+            image = transposed_times(rows);
+            parallel_each(count, [&](std::size_t i) { add_times(image[i], pull, direction[i]); });
+        },
+        dot,
+        [&](int step, double gain) {
+            if (step == 0) first = gain;
+            return step < steps && gain > kLeastGain * first;
         });
-        const double now = dot(gradient, preconditioned);
-        if (step == 0) first = now;
-        if (!(now > kLeastGain * first)) break;
-        const double keep = step == 0 ? 0 : now / before;
-        before = now;
-        parallel_each(count, [&](std::size_t i) {
-            for (std::size_t k = 0; k < 5; ++k) direction[i][k] = preconditioned[i][k] + keep * direction[i][k];
-        });
-        parallel_each(samples_.size(), [&](std::size_t i) { rows[i] = row_value(i, direction); });
-        Vector image = transposed_times(rows);
-        parallel_each(count, [&](std::size_t i) {
-            for (std::size_t k = 0; k < 5; ++k) image[i][k] += pull * direction[i][k];
-        });
-        const double length = now / dot(direction, image);
-        parallel_each(count, [&](std::size_t i) {
-            for (std::size_t k = 0; k < 5; ++k) {
-                terms[i][k] += length * direction[i][k];
-                gradient[i][k] -= length * image[i][k];
-            }
-        });
-    }
-    return step;
 }
 
 std::size_t FieldFit::bytes() const {
     return entries_.size() * (sizeof(Entry) + sizeof(Place)) +
-           (row_starts_.size() + column_starts_.size()) * sizeof(std::size_t);
+           (row_starts_.size() + columns_.offsets.size()) * sizeof(std::size_t);
 }
 
 }  // namespace subvol::detail

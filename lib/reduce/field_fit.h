@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "kernel_tree.h"
+#include "subvol/detail/flat_array.h"
 #include "subvol/kernel.h"
 #include "subvol/rbf_volume.h"
 #include "subvol/reduce.h"
@@ -67,12 +68,11 @@ private:
     const FieldSamples& samples_;
     std::vector<std::size_t> row_starts_;
     std::vector<Entry> entries_;
-    std::vector<std::size_t> column_starts_;  // of each kernel, in columns_
     struct Place {
         Index sample;
         std::uint32_t offset;  // of the entry in its row
     };
-    std::vector<Place> columns_;
+    Rows<Place> columns_;  // of each kernel
 };
 
 /// Fits centres, sizes and the terms of the volume's first channel to the samples: a nonlinear problem.

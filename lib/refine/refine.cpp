@@ -3,13 +3,18 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "child_topology.h"
+#include "mesh_subset.h"
 #include "patch.h"
 #include "refine_steps.h"
 #include "scheme_rows.h"
+#include "subvol/detail/all_cells.h"
 #include "subvol/detail/number_text.h"
+#include "subvol/detail/place_function.h"
 #include "subvol/detail/refined_memory.h"
 #include "subvol/error.h"
 
@@ -25,6 +30,11 @@ std::string stage_of(int level) {
 
 /// Points and attributes of the child. The stencils are applied block by block and not kept.
 HexMesh child_data(const HexMesh& parent, const SchemeRows& rows, Progress* progress, int level) {
+    if (detail::has_functions(parent)) {
+        HexMesh made = child_data(detail::with_arguments(HexMesh(parent)), rows, progress, level);
+        detail::restore_functions(made, parent.attributes);
+        return made;
+    }
     HexMesh child;
     child.points.resize(rows.rows());
     std::copy_n(parent.points.begin(), rows.kept(), child.points.begin());
@@ -99,6 +109,36 @@ void detail::check_memory(int level, double cells, double bytes_per_cell, const 
                 where);
 }
 
+HexMesh detail::take_cell_fields(HexMesh& mesh) {
+    HexMesh taken;
+    if (std::ranges::none_of(mesh.attributes, [&](const Attribute& field) { return is_at_cells(mesh, field); })) return taken;
+    taken.cells = mesh.cells;
+    for (Attribute& field : mesh.attributes)
+        taken.attributes.push_back({.name = field.name,
+                                    .channels = field.channels,
+                                    .values = {},
+                                    .cells = std::exchange(field.cells, {}),
+                                    .constant = field.constant});
+    return taken;
+}
+
+void detail::inherit_cells(const HexMesh& control, std::span<const Index> cells, int levels, HexMesh& fine) {
+    const std::size_t children = std::size_t{1} << (3 * levels);
+    for (std::size_t a = 0; a < control.attributes.size(); ++a) {
+        const Attribute& from = control.attributes[a];
+        if (!is_at_cells(control, from)) continue;
+        Attribute& to = fine.attributes[a];
+        const auto width = static_cast<std::size_t>(from.channels);
+        to.cells.reserve(width * cells.size() * children);
+        for (const Index c : cells) {
+            const std::span<const double> own(from.cells.data() + c * width, width);
+            for (std::size_t k = 0; k < children; ++k) to.cells.insert(to.cells.end(), own.begin(), own.end());
+        }
+        to.constant = from.constant;
+        if (to.constant) set_means_at_points(fine, to);
+    }
+}
+
 void detail::check_levels(int levels) {
     if (levels < 0 || levels > 10) {
         throw Error(ErrorCode::InvalidInput, "the number of levels is " + std::to_string(levels), {}, "0 to 10");
@@ -133,8 +173,10 @@ HexMesh refine(const HexMesh& mesh, const RefineOptions& options) {
                          detail::kBytesOfRefinedCell);
     report_progress(options.progress, "topology", 0);
     Topology topology = build_topology(control);
+    const HexMesh at_cells = detail::take_cell_fields(control);
     detail::RefinedPoints refined = detail::refine_points(std::move(control), std::move(topology), options);
     refined.mesh.cells = detail::child_cells(refined.parent);
+    if (!at_cells.cells.empty()) detail::inherit_cells(at_cells, detail::all_cells(at_cells), options.levels, refined.mesh);
     return std::move(refined.mesh);
 }
 
@@ -142,7 +184,13 @@ HexMesh refine_cells(const HexMesh& mesh, std::span<const Index> cells, const Re
     const HexMesh control = detail::control_mesh(mesh, options.scheme, options.levels);
     check_cells(mesh, cells);
     if (cells.empty()) return {};
-    return detail::refine_patch(detail::PatchSource(control), cells, options.scheme, options.levels, 0).mesh;
+    HexMesh arguments;
+    if (detail::has_functions(control)) arguments = detail::with_arguments(HexMesh(control));
+    const detail::PatchSource source(detail::has_functions(control) ? arguments : control);
+    HexMesh fine = detail::refine_patch(source, cells, options.scheme, options.levels, 0).mesh;
+    detail::restore_functions(fine, control.attributes);
+    detail::inherit_cells(control, cells, options.levels, fine);
+    return fine;
 }
 
 RefinementTables refinement_tables(const Topology& control, const RefineOptions& options) {

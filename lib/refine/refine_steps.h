@@ -27,4 +27,14 @@ struct RefinedPoints {
 /// used
 [[nodiscard]] RefinedPoints refine_points(HexMesh control, Topology topology, const RefineOptions& options);
 
+/// Takes the fields at cells out of a mesh, with a copy of its cells; no cells if there is none.
+[[nodiscard]] HexMesh take_cell_fields(HexMesh& mesh);
+
+/// Gives a refined mesh the fields at cells: all eight children of a cell have its value, so each cell keeps its mean, however
+/// large they are. The values at points of fields that are constant in cells become means over the children there.
+///
+/// control: as from `take_cell_fields`
+/// cells:   those that were refined, in order; their descendants follow each other in `fine`
+void inherit_cells(const HexMesh& control, std::span<const Index> cells, int levels, HexMesh& fine);
+
 }  // namespace subvol::detail

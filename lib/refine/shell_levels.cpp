@@ -9,6 +9,7 @@
 #include "refine_steps.h"
 #include "schemes.h"
 #include "subvol/cell.h"
+#include "subvol/detail/counted_rows.h"
 #include "subvol/error.h"
 
 namespace subvol {
@@ -32,16 +33,7 @@ void take_edges(Topology& t, std::vector<Edge> edges) {
     t.edge_offsets.assign(t.point_count + 1, 0);
     for (const Edge& e : edges) ++t.edge_offsets[e[0] + 1];
     for (std::size_t p = 0; p < t.point_count; ++p) t.edge_offsets[p + 1] += t.edge_offsets[p];
-    t.point_edges.offsets.assign(t.point_count + 1, 0);
-    for (const Edge& e : edges) {
-        for (const Index p : e) ++t.point_edges.offsets[p + 1];
-    }
-    for (std::size_t p = 0; p < t.point_count; ++p) t.point_edges.offsets[p + 1] += t.point_edges.offsets[p];
-    t.point_edges.values.resize(2 * count);
-    std::vector<std::size_t> next(t.point_edges.offsets.begin(), t.point_edges.offsets.end() - 1);
-    for (std::size_t e = 0; e < count; ++e) {
-        for (const Index p : edges[e]) t.point_edges.values[next[p]++] = static_cast<Index>(e);
-    }
+    t.point_edges = lists_at_points(edges, t.point_count);
     t.edge_faces.offsets.assign(count + 1, 0);
     t.edge_cells.offsets.assign(count + 1, 0);
     t.edge_on_boundary.assign(count, 1);
@@ -56,17 +48,10 @@ void take_faces(Topology& t, const std::vector<std::array<Index, 4>>& quads) {
     t.face_edges.resize(quads.size());
     for (std::size_t f = 0; f < quads.size(); ++f) {
         for (std::size_t k = 0; k < 4; ++k) {
-            const Index e = *t.find_edge(quads[f][k], quads[f][(k + 1) % 4]);
-            t.face_edges[f][k] = e;
-            ++t.edge_faces.offsets[e + 1];
+            t.face_edges[f][k] = *t.find_edge(quads[f][k], quads[f][(k + 1) % 4]);
         }
     }
-    for (std::size_t e = 0; e < t.edges.size(); ++e) t.edge_faces.offsets[e + 1] += t.edge_faces.offsets[e];
-    t.edge_faces.values.resize(4 * quads.size());
-    std::vector<std::size_t> next(t.edge_faces.offsets.begin(), t.edge_faces.offsets.end() - 1);
-    for (Index f = 0; f < quads.size(); ++f) {
-        for (const Index e : t.face_edges[f]) t.edge_faces.values[next[e]++] = f;
-    }
+    t.edge_faces = lists_at_points(t.face_edges, t.edges.size());
 }
 
 /// The edge of a face at a point that is not `edge`.

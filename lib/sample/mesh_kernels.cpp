@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "subvol/mesh_kernels.h"
 
+#include <algorithm>
 #include <cmath>
+#include <optional>
 #include <sstream>
 #include <utility>
 
+#include "subvol/clamp_channel.h"
 #include "subvol/detail/refined_memory.h"
 #include "subvol/error.h"
 #include "subvol/field_range.h"
@@ -111,17 +114,41 @@ WithFacts<HexMesh> refined_on_limit(const HexMesh& mesh, const RefineOptions& op
     return {std::move(fine), std::move(facts)};
 }
 
+namespace {
+
+/// Names and bounds alone.
+std::vector<Attribute> without_numbers(const std::vector<Attribute>& fields) {
+    std::vector<Attribute> bare;
+    for (const Attribute& field : fields)
+        bare.push_back({.name = field.name, .channels = field.channels, .values = {}, .bounds = field.bounds});
+    return bare;
+}
+
+/// Keeps the values of kernels within the bounds of their fields, as the limit is.
+void keep_within_bounds(RbfVolume& volume, const std::vector<Attribute>& fields, Facts& facts) {
+    for (RbfChannel& channel : volume.channels) {
+        const auto field = std::ranges::find(fields, channel.name, &Attribute::name);
+        if (field == fields.end() || field->channels != 1) continue;
+        if (const auto bounds = bounds_of(*field)) facts["clamped"] = clamp_channel(channel, bounds->min[0], bounds->max[0]);
+    }
+}
+
+}  // namespace
+
 WithFacts<RbfVolume> make_mesh_kernels(HexMesh mesh, const KernelOptions& options) {
     Facts facts;
     for (const Attribute& field : mesh.attributes) facts.warn(rounding_warning(field));
+    const std::vector<Attribute> fields = without_numbers(mesh.attributes);
     RbfVolume volume;
     SampleOptions sample = options.sample;
     sample.progress = options.progress;
     if (options.tets) {
         volume = sampled_tets(mesh, options, facts);
     } else {
-        if (options.levels) {
-            const RefineOptions refine{.scheme = sample.scheme, .levels = *options.levels, .progress = options.progress};
+        // A kernel at a control point would have the mean of the cells there. Those of the next level are inside of cells, too.
+        const bool constant = std::ranges::any_of(mesh.attributes, &Attribute::constant) && options.reduce_rmse == 0;
+        if (const std::optional<int> levels = constant && !options.levels ? std::optional(1) : options.levels) {
+            const RefineOptions refine{.scheme = sample.scheme, .levels = *levels, .progress = options.progress};
             mesh = facts.unpack(refined_on_limit(mesh, refine, options.levels_option));
             sample.scheme.kind = Scheme::Linear;
             sample.boundary_levels = 0;
@@ -129,6 +156,7 @@ WithFacts<RbfVolume> make_mesh_kernels(HexMesh mesh, const KernelOptions& option
         volume =
             options.reduce_rmse > 0 ? reduced(mesh, options, sample.scheme, facts) : sampled(std::move(mesh), sample, facts);
     }
+    keep_within_bounds(volume, fields, facts);
     if (options.visible) volume = facts.unpack(visible_kernels(volume, *options.visible, options.progress));
     facts["points"] = volume.size();
     return {std::move(volume), std::move(facts)};

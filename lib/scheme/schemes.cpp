@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "subvol/detail/number_text.h"
 #include "subvol/error.h"
 
 namespace subvol {
@@ -35,17 +36,46 @@ std::unique_ptr<SchemeRules> make_rules(const Topology& topology, const SchemeOp
 
 }  // namespace detail
 
+namespace {
+
+constexpr const char* kNoCreases = "none";
+
+/// The word "none" stands for 180 degrees: no edge bends by more.
+WordValue crease_value(std::optional<double>& angle) {
+    return {.get = [&angle] { return !angle          ? std::string()
+                                     : *angle == 180 ? kNoCreases
+                                                     : detail::exact_text(*angle); },
+            .set =
+                [&angle](const std::string& text, const std::string& where) {
+                    double degrees = 180;
+                    if (text != kNoCreases) {
+                        try {
+                            Option("crease-angle", degrees).between(0, 180).read(text, where);
+                        } catch (const Error& error) {
+                            throw Error(error.code(), error.message(), error.where(), error.allowed() + ", or none");
+                        }
+                    }
+                    angle = degrees;
+                },
+            .numbers = true};
+}
+
+}  // namespace
+
 std::vector<Option> options_of(SchemeOptions& options) {
-    return {Option("scheme", options.kind)
-                .help("NAME",
-                      "mcq (smooth, through the control points), cc (Catmull-Clark), bsxw (Bajaj-Schaefer-Warren-Xu), linear"),
-            Option("tension", options.tension)
-                .between(0, 0.125)
-                .help("W", "of mcq: 0 is linear; 1/16 reproduces cubics")
-                .only_with("scheme", {"mcq"}),
-            Option("crease-angle", options.crease_angle_deg)
-                .between(0, 180)
-                .help("DEG", "keep boundary edges sharp that bend by more than this, in degrees (tetoct, boxspline: 60)")};
+    return {
+        Option("scheme", options.kind)
+            .help("NAME",
+                  "mcq (smooth, through the control points), cc (Catmull-Clark), bsxw (Bajaj-Schaefer-Warren-Xu), linear"),
+        Option("tension", options.tension)
+            .between(0, 0.125)
+            .help("W", "of mcq: 0 is linear; 1/16 reproduces cubics")
+            .only_with("scheme", {"mcq"}),
+        Option("crease-angle", crease_value(options.crease_angle_deg))
+            .offer({kNoCreases})
+            .help("DEG|none",
+                  "keep boundary edges sharp that bend by more than this, in degrees; none: none (default: of a file without "
+                  "creases 40, on round bodies of few cells 60; of tetoct and boxspline always 60)")};
 }
 
 }  // namespace subvol

@@ -7,6 +7,7 @@
 #include <iterator>
 
 #include "shape_fitter.h"
+#include "subvol/detail/conjugate_gradients.h"
 #include "subvol/detail/number_text.h"
 #include "subvol/detail/parallel_each.h"
 #include "subvol/detail/parallel_sums.h"
@@ -138,28 +139,21 @@ Vectors ShapeFitter::solved(const std::vector<Pull>& pulls, double stiffness) co
     });
 
     Vectors rest = gathered(pulls, [](const Pull& pull) { return -pull.weight * pull.distance * pull.direction; });
-    const auto scaled = [&](Vectors x) {
-        parallel_each(x.size(), [&](std::size_t p) { x[p] /= diagonal[p]; });
-        return x;
-    };
-    Vectors found(rest.size(), Vec3(0.0)), eased = scaled(rest), way = eased;
-    double left = product_of(rest, eased);
+    Vectors found(rest.size(), Vec3(0.0));
     constexpr int kSteps = 300;
     constexpr double kEnough = 1e-8;
-    const double enough = kEnough * left;
-    for (int k = 0; k < kSteps && left > enough && !is_cancelled(progress_); ++k) {
-        const Vectors image = applied(way);
-        const double length = left / product_of(way, image);
-        parallel_each(found.size(), [&](std::size_t p) {
-            found[p] += length * way[p];
-            rest[p] -= length * image[p];
+    double enough = 0;
+    conjugate_gradients(
+        found, rest,
+        [&](Vectors& eased) {
+            parallel_each(eased.size(), [&](std::size_t p) { eased[p] = rest[p] / diagonal[p]; });
+            return product_of(rest, eased);
+        },
+        [&](const Vectors& way, Vectors& image) { image = applied(way); }, product_of,
+        [&](int step, double left) {
+            if (step == 0) enough = kEnough * left;
+            return step < kSteps && left > enough && !is_cancelled(progress_);
         });
-        eased = scaled(rest);
-        const double next = product_of(rest, eased);
-        const double ratio = next / left;
-        parallel_each(way.size(), [&](std::size_t p) { way[p] = eased[p] + ratio * way[p]; });
-        left = next;
-    }
     return found;
 }
 
@@ -258,6 +252,7 @@ ShapeError error_until(const HexMesh& mesh, const Surface& surface, const Scheme
     validate(mesh);
     validate(surface);
     const Surface boundary = fine_boundary(mesh, scheme);
+    if (is_cancelled(progress)) return {};
     return SurfaceDistances(surface, boundary.points.size(), progress).error(boundary);
 }
 
@@ -340,6 +335,7 @@ ShapedMesh fit_shape(HexMesh mesh, const Surface& surface, const FitShapeOptions
     options.scheme.crease_angle_deg.reset();
     FitShapeReport report;
     report.before = error_until(mesh, surface, options.scheme, options.progress);
+    report_progress(options.progress, "fit shape", 0);  // ends what was cancelled
     const ShapeFitter fitter(build_topology(mesh), surface, options.scheme, options.progress);
     const std::vector<Vec3> start = mesh.points;
     double best = std::numeric_limits<double>::infinity();

@@ -13,11 +13,13 @@
 #include <tuple>
 #include <utility>
 
+#include "glb_triangles.h"
 #include "ply_table.h"
 #include "subvol/detail/number_text.h"
 #include "subvol/detail/point_welder.h"
 #include "subvol/detail/printable.h"
 #include "subvol/detail/read_file.h"
+#include "subvol/detail/refuse_surface.h"
 #include "subvol/error.h"
 #include "subvol/fit_shape.h"
 #include "text_scanner.h"
@@ -274,19 +276,19 @@ Surface read_ply_surface(std::string_view text, std::string_view name) {
 }  // namespace
 
 bool is_surface_file(const std::filesystem::path& path) {
-    const std::string format = upper_case(path.extension().string());
-    return format == ".STL" || format == ".OBJ" || format == ".PLY";
+    return names_surface(path);
 }
 
 Surface read_surface(const std::filesystem::path& path) {
     const std::string format = upper_case(path.extension().string());
     if (!is_surface_file(path)) {
         throw Error(ErrorCode::InvalidInput, in_quotes(path.extension().string()) + " is not a format of surfaces",
-                    path.string(), ".stl, .obj, .ply");
+                    path.string(), ".stl, .obj, .ply, .glb");
     }
     const std::string text = read_text(path), name = path.string();
     Surface surface = format == ".STL"   ? read_stl(text, name)
                       : format == ".OBJ" ? read_obj(text, name)
+                      : format == ".GLB" ? welded(read_glb_triangles(text, name))
                                          : read_ply_surface(text, name);
     try {
         validate(surface);

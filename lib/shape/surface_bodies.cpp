@@ -7,6 +7,7 @@
 #include <numeric>
 #include <utility>
 
+#include "subvol/detail/counted_rows.h"
 #include "subvol/detail/disjoint_sets.h"
 #include "subvol/detail/parallel_each.h"
 #include "surface_sides.h"
@@ -166,21 +167,20 @@ bool SurfaceBodies::leave_out_fins() {
 // Triangles are turned where most of their patch have the other orientation.
 void SurfaceBodies::turn() {
     struct Neighbor {
-        Index triangle, next;
+        Index next;
         bool alike;
     };
-    std::vector<Neighbor> neighbors;
+    std::vector<std::array<TriangleSide, 2>> pairs;
     each_edge(sides_of(surface_, same_), [&](std::span<const TriangleSide> edge) {
         report_.many_edges += edge.size() > 2 ? 1 : 0;
-        if (edge.size() != 2) return;
-        const bool alike = edge[0].forward != edge[1].forward;
-        neighbors.push_back({edge[0].triangle, edge[1].triangle, alike});
-        neighbors.push_back({edge[1].triangle, edge[0].triangle, alike});
+        if (edge.size() == 2) pairs.push_back({edge[0], edge[1]});
     });
-    std::ranges::stable_sort(neighbors, {}, &Neighbor::triangle);
-    std::vector<std::size_t> begin(surface_.triangles.size() + 1, 0);
-    for (const Neighbor& at : neighbors) ++begin[at.triangle + 1];
-    std::partial_sum(begin.begin(), begin.end(), begin.begin());
+    const auto neighbors = counted_rows<Neighbor>(surface_.triangles.size(), [&](const auto& put) {
+        for (const auto& [a, b] : pairs) {
+            put(a.triangle, {b.triangle, a.forward != b.forward});
+            put(b.triangle, {a.triangle, a.forward != b.forward});
+        }
+    });
     constexpr std::uint8_t kUnknown = 2;
     std::vector<std::uint8_t> turned(surface_.triangles.size(), kUnknown);
     std::vector<Index> patch;
@@ -189,13 +189,13 @@ void SurfaceBodies::turn() {
         turned[start] = 0;
         patch.assign(1, start);
         for (std::size_t k = 0; k < patch.size(); ++k) {
-            for (std::size_t n = begin[patch[k]]; n < begin[patch[k] + 1]; ++n) {
-                const auto wanted = static_cast<std::uint8_t>(turned[patch[k]] ^ (neighbors[n].alike ? 0 : 1));
-                std::uint8_t& next = turned[neighbors[n].next];
+            for (const Neighbor& neighbor : neighbors[patch[k]]) {
+                const auto wanted = static_cast<std::uint8_t>(turned[patch[k]] ^ (neighbor.alike ? 0 : 1));
+                std::uint8_t& next = turned[neighbor.next];
                 if (next == kUnknown) {
                     next = wanted;
-                    patch.push_back(neighbors[n].next);
-                } else if (next != wanted && patch[k] < neighbors[n].next) {
+                    patch.push_back(neighbor.next);
+                } else if (next != wanted && patch[k] < neighbor.next) {
                     ++report_.one_sided;
                 }
             }

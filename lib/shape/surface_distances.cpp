@@ -105,9 +105,10 @@ ShapeError SurfaceDistances::error(const Surface& boundary) const {
         const bool missed = k >= first;
         (missed ? error.missed_rms : error.rms) += distance * distance;
         double& most = missed ? error.missed_max : error.max;
-        if (distance <= most) continue;
+        Vec3& at = missed ? error.missed_at : error.max_at;
+        if (distance <= most && !std::isnan(at.x)) continue;  // the first place counts, even if it is not off
         most = distance;
-        (missed ? error.missed_at : error.max_at) = missed ? places_[k - first] : boundary.points[k];
+        at = missed ? places_[k - first] : boundary.points[k];
     }
     const auto root = [](double sum, std::size_t count) {
         return std::sqrt(sum / static_cast<double>(std::max<std::size_t>(count, 1)));

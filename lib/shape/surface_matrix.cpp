@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
-#include "csr_products.h"
 #include "subvol/detail/parallel_each.h"
+#include "subvol/detail/sparse_rows.h"
 #include "subvol/limit.h"
 #include "subvol/refine.h"
 #include "surface_builder.h"

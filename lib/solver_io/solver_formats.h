@@ -50,4 +50,16 @@ struct MeshFile;
 /// Reads an Abaqus or CalculiX deck: nodes, elements of volumes, parts, instances, and sets of elements as blocks.
 [[nodiscard]] ReadResult read_inp(const std::filesystem::path& path, const ReadOptions& options);
 
+/// What a deck has, for a file of its results.
+///
+/// found:    its cells of volumes, sets, surfaces and blocks, with its points
+/// nodes:    the number of each point; elements: that of each cell, as cells are counted in `found`
+struct DeckContents {
+    MeshFile found;
+    std::vector<std::int64_t> nodes, elements;
+};
+
+/// throws: Error(InvalidInput) as `read_inp`, or if it has parts and instances, whose numbers are not those of the results
+[[nodiscard]] DeckContents read_inp_contents(const std::filesystem::path& path, const ReadOptions& options);
+
 }  // namespace subvol::detail

@@ -384,6 +384,53 @@ std::optional<LimitSurface> surface_of(const HexMesh& part, std::span<const std:
     return all;
 }
 
+/// Moves the points of the boundary of some cells to where they lie in the limit of the whole mesh.
+///
+/// cells: the number in the whole mesh of each cell that the surface was made of
+void settle_in_whole(const HexMesh& whole, std::span<const Index> cells, const SchemeOptions& scheme, LimitSurface& surface) {
+    std::vector<std::uint8_t> kept(whole.cells.size(), 0);
+    for (const Index cell : cells) kept[cell] = 1;
+    grow(whole, kept, kHaloOfLimit);
+    const MeshSubset near = subset(whole, kept);
+    std::vector<LimitQuery> queries = surface.places;
+    for (LimitQuery& query : queries) {
+        const auto at = std::ranges::lower_bound(near.cells, cells[query.cell]);
+        query.cell = static_cast<Index>(at - near.cells.begin());
+    }
+    const LimitSamples samples = evaluate_limit(near.mesh, queries, {.scheme = scheme});
+    surface.surface.points = samples.positions;
+    for (LimitQuery& place : surface.places) place.cell = cells[place.cell];
+    for (std::size_t f = 0; f < surface.fields.size(); ++f) {
+        ProbedField& to = surface.fields[f];
+        to.values = samples.attributes[f].values;
+        for (std::size_t i = 0; i < to.gradients.size(); ++i)
+            to.gradients[i] = world_gradient(samples.jacobians[i / to.channels], samples.attributes[f].derivatives[i]);
+    }
+    measure_surface(surface.surface, surface.report);
+}
+
+LimitSurface surface_of_cells(const MeshSource& source, std::string_view field, const SurfaceOptions& options) {
+    const HexMesh* const whole = source.mesh();
+    if (whole == nullptr || options.cells.size() != whole->cells.size()) {
+        throw Error(ErrorCode::InvalidInput, "there are " + std::to_string(options.cells.size()) + " flags of cells", "surface",
+                    "one for each cell of a mesh in memory");
+    }
+    validate(*whole);
+    const MeshSubset part = subset(*whole, options.cells);
+    SurfaceOptions of_part = options;
+    of_part.cells = {};
+    std::vector<CellSide> sides;
+    for (const auto& [cell, side] : options.sides) {
+        const auto at = std::ranges::lower_bound(part.cells, cell);
+        if (at != part.cells.end() && *at == cell) sides.push_back({static_cast<Index>(at - part.cells.begin()), side});
+    }
+    of_part.sides = sides;
+    LimitSurface surface = limit_surface(part.mesh, field, of_part);
+    if (!options.isos.empty() || surface.places.empty()) return surface;
+    settle_in_whole(*whole, part.cells, options.scheme, surface);
+    return surface;
+}
+
 LimitSurface no_surface(const HexMesh* mesh) {
     LimitSurface none;
     none.report.converged = true;
@@ -398,6 +445,7 @@ LimitSurface no_surface(const HexMesh* mesh) {
 
 LimitSurface limit_surface(const MeshSource& source, std::string_view field, const SurfaceOptions& options) {
     check_surface_options(options);
+    if (!options.cells.empty()) return surface_of_cells(source, field, options);
     if (!options.sides.empty()) {
         if (source.mesh() == nullptr)
             throw Error(ErrorCode::InvalidInput, "pieces of a mesh have no patches", source.stored().name, "the mesh itself");

@@ -330,7 +330,8 @@ std::vector<Index> SoupCutter::near_isovalue(const Cut& cut) const {
         double low = HUGE_VAL, high = -HUGE_VAL;
         std::size_t cells = 0;
     };
-    const bool bounded = interpolates(scheme_.kind);  // points of other schemes depend on two layers of cells
+    // Points of other schemes depend on two layers of cells, and a function on more than its values at the points.
+    const bool bounded = interpolates(scheme_.kind) && mesh_.attributes[0].function == nullptr;
     const double tension = scheme_.kind == Scheme::Mcq ? scheme_.tension : 0;
     std::vector<Around> points(bounded ? mesh_.points.size() : 0);
     const auto range_at = [&](Index cell, const auto& low_of, const auto& high_of) {

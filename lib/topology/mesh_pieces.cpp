@@ -8,6 +8,7 @@
 
 #include "subvol/cell.h"
 #include "subvol/detail/parallel_each.h"
+#include "subvol/detail/place_function.h"
 #include "subvol/error.h"
 #include "topology_parts.h"
 
@@ -74,8 +75,9 @@ MeshPiece merged(std::vector<MeshPiece> parts) {
     all.owned_points.assign(points, 0);
     all.owned_cells.assign(cells, 0);
     for (const Attribute& field : parts.front().mesh.attributes) {
-        all.mesh.attributes.push_back(
-            {field.name, field.channels, std::vector<double>(points * static_cast<std::size_t>(field.channels)), field.bounds});
+        Attribute& to = all.mesh.attributes.emplace_back(without_values(field));
+        to.values.resize(points * static_cast<std::size_t>(field.channels));
+        if (field.function != nullptr) to.arguments.resize(points * field.function->arguments);
     }
     std::set<std::array<Index, 2>> creases;
     std::set<std::array<Index, 4>> faces;
@@ -89,9 +91,7 @@ MeshPiece merged(std::vector<MeshPiece> parts) {
             all.mesh.points[at] = part.mesh.points[p];
             all.owned_points[at] |= part.owned_points[p];
             for (std::size_t a = 0; a < all.mesh.attributes.size(); ++a) {
-                Attribute& to = all.mesh.attributes[a];
-                std::copy_n(part.mesh.attributes[a].values.begin() + static_cast<std::ptrdiff_t>(p) * to.channels, to.channels,
-                            to.values.begin() + static_cast<std::ptrdiff_t>(at) * to.channels);
+                copy_point(part.mesh.attributes[a], p, all.mesh.attributes[a], at);
             }
         }
         at = 0;

@@ -209,19 +209,20 @@ void detail::add_part(const HexMesh& part, std::span<const std::uint8_t> owned_p
 
 namespace {
 
-MeshReport inspect_mesh(const HexMesh& mesh) {
+MeshReport inspect_mesh(const HexMesh& mesh, Progress* progress) {
     validate(mesh);
     if (!mesh.creases.empty() || !mesh.sharp_faces.empty()) {  // tags matter only to schemes
         HexMesh untagged;
         untagged.points = mesh.points;
         untagged.cells = mesh.cells;
-        return inspect_mesh(untagged);
+        return inspect_mesh(untagged, progress);
     }
     MeshReport report;
     report.points = mesh.points.size();
     report.cells = mesh.cells.size();
     report.bounds = bounds(mesh);
     detail::each_part(mesh, [&](const detail::MeshPart& part) {
+        report_progress(progress, "inspect", report.points_used, report.points);
         count_points(part, report);
         count_edges(part, report);
         count_faces(part, report);
@@ -301,7 +302,7 @@ detail::MeshShare share_of_pieces(const MeshSource::Stored& stored, std::size_t 
 }  // namespace
 
 MeshReport inspect(const MeshSource& source, Progress* progress) {
-    if (source.mesh() != nullptr) return inspect_mesh(*source.mesh());
+    if (source.mesh() != nullptr) return inspect_mesh(*source.mesh(), progress);
     const detail::MeshShare all = share_of_pieces(source.stored(), 0, source.stored().pieces.size(), 0, progress);
     return detail::join_shares(std::span(&all, 1), 0).counts;
 }

@@ -235,10 +235,11 @@ Vec3 quad_normal(const HexMesh& mesh, const std::array<Index, 4>& q) {
 }  // namespace
 
 void tag_creases(HexMesh& mesh, double angle_deg) {
-    if (!(angle_deg > 0 && angle_deg < 180)) {
+    if (!(angle_deg > 0 && angle_deg <= 180)) {
         throw Error(ErrorCode::InvalidInput, "the crease angle is " + detail::number_text(angle_deg), {},
-                    "between 0 and 180 degrees");
+                    "more than 0, at most 180 degrees");
     }
+    if (angle_deg == 180) return;
     const Topology topology = build_topology(mesh);
     const double limit = std::cos(angle_deg * std::numbers::pi / 180);
     for (Index e = 0; e < topology.edges.size(); ++e) {

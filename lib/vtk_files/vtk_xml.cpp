@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <concepts>
 #include <limits>
 #include <map>
 
@@ -25,13 +26,15 @@ std::string_view format_of(const pugi::xml_node& array) {
 }
 
 template <class T>
-void each_word(TextScanner in, const std::string& name, const std::function<void(std::span<const T>)>& take,
+void each_word(TextScanner in, const std::string& name, NumberType type, const std::function<void(std::span<const T>)>& take,
                T (TextScanner::*read)(const Place&)) {
     constexpr std::size_t kWordsAtOnce = 1 << 14;
     const std::string what = "array " + name + ": value";
     std::vector<T> values;
     for (std::int64_t number = 0; !in.at_end(); ++number) {
         values.push_back((in.*read)({what, number}));
+        // Integers are counts and indices, whose range is told by what they count.
+        if constexpr (std::floating_point<T>) in.expect_type(values.back(), type, {what, number});
         if (values.size() < kWordsAtOnce) continue;
         take(values);
         values.clear();
@@ -106,7 +109,7 @@ bool VtuArrays::has_integers(const pugi::xml_node& array) const {
 void VtuArrays::each_real(const pugi::xml_node& array, const std::function<void(std::span<const double>)>& take) const {
     const NumberType type = type_of(array);
     if (format_of(array) == "ascii") {
-        each_word<double>(words(array), name_of(array), take, &TextScanner::real);
+        each_word<double>(words(array), name_of(array), type, take, &TextScanner::real);
     } else {
         each_block(array, [&](std::string_view bytes) { take(reals_from(bytes, type, encoding_.order)); });
     }
@@ -117,7 +120,7 @@ void VtuArrays::each_integer(const pugi::xml_node& array,
     const NumberType type = type_of(array);
     if (!is_integer(type)) fail(array, "an integer type is needed");
     if (format_of(array) == "ascii") {
-        each_word<std::int64_t>(words(array), name_of(array), take, &TextScanner::integer);
+        each_word<std::int64_t>(words(array), name_of(array), type, take, &TextScanner::integer);
     } else {
         each_block(array, [&](std::string_view bytes) { take(integers_from(bytes, type, encoding_.order)); });
     }

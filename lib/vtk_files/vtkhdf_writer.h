@@ -30,10 +30,11 @@ public:
         out_.put("/VTKHDF/PointData/" + unique, values, components > 1 ? components : 0);
         return unique;
     }
-    /// An array of one component at the cells. returns: as `array`
-    std::string cell_array(const std::string& name, std::span<const std::uint8_t> values) {
+    /// An array at the cells. returns: as `array`
+    template <class T>
+    std::string cell_array(const std::string& name, std::span<const T> values, std::size_t components = 1) {
         std::string unique = unique_name(name, at_cells_);
-        out_.put("/VTKHDF/CellData/" + unique, values);
+        out_.put("/VTKHDF/CellData/" + unique, values, components > 1 ? components : 0);
         return unique;
     }
     /// An array of one component that belongs to the whole mesh. returns: as `array`

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "mesh_subset.h"
 #include "output_file.h"
 #include "subvol/error.h"
 #include "subvol/hierarchy.h"
@@ -53,6 +54,8 @@ void put_array(const QuantizedWavelets& numbers, std::string_view name, Bytes& o
         for (const std::uint64_t n : rest) out.number(n);
     }
 }
+
+constexpr double kMostWhole = 0x1p50;  // of the numbers of cells, so that differences are exact
 
 /// The longest side of the box of the values that count: of a scalar its range.
 double range_of(std::span<const double> values, std::size_t channels, std::span<const std::uint8_t> counted) {
@@ -152,6 +155,38 @@ public:
         put(attribute.name, values, numbers, synthesize(basis_, restore(basis_, numbers)), scale);
     }
 
+    /// The numbers of fields at cells, rounded to the tolerance, as differences in the order of the refined cells; nothing if
+    /// there are no such fields. Whole numbers, as those of labels, stay what they are.
+    void put_fields_at_cells() {
+        const auto at_cells = [&](const Attribute& field) { return is_at_cells(mesh_, field); };
+        const auto count = std::ranges::count_if(mesh_.attributes, at_cells);
+        if (count == 0) return;
+        out_.number(static_cast<std::uint64_t>(count));
+        for (std::size_t a = 0; a < mesh_.attributes.size(); ++a) {
+            const Attribute& field = mesh_.attributes[a];
+            if (!at_cells(field)) continue;
+            const auto channels = static_cast<std::size_t>(field.channels);
+            const auto [low, high] = std::ranges::minmax(field.cells);
+            const bool whole = std::ranges::all_of(
+                field.cells, [](double value) { return value == std::floor(value) && std::abs(value) < kMostWhole; });
+            const double wanted = whole || !(high > low) ? 1 : options_.tolerance * (high - low);
+            const double step = std::max(wanted, std::max(std::abs(low), std::abs(high)) / kMostWhole);
+            out_.number(a);
+            out_.number(field.constant ? 1 : 0);
+            out_.real(whole ? 0 : low);
+            out_.real(step);
+            for (std::size_t k = 0; k < channels; ++k) {
+                std::int64_t before = 0;
+                for (const Index cell : hierarchy_.cells) {
+                    if (cell == kNone) continue;
+                    const std::int64_t number = std::llround((field.cells[cell * channels + k] - (whole ? 0 : low)) / step);
+                    out_.number(folded(number - before));
+                    before = number;
+                }
+            }
+        }
+    }
+
     WaveletFileReport write(const std::filesystem::path& path) {
         const std::string packed = compressed_numbers(out_.all());
         std::string length;
@@ -198,6 +233,7 @@ WaveletFileReport write_wavelet_file(const std::filesystem::path& path, const He
     writer.put_head();
     writer.put_points();
     for (const Attribute& attribute : mesh.attributes) writer.put_attribute(attribute);
+    writer.put_fields_at_cells();
     return writer.write(path);
 }
 

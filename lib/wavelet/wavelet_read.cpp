@@ -89,8 +89,34 @@ HexMesh read_arrays(const WaveletBasis& basis, Contents& in) {
         }
         for (std::size_t i = 0; i < values.size(); i += 3) mesh.points.emplace_back(values[i], values[i + 1], values[i + 2]);
     }
-    in.expect_end();
     return mesh;
+}
+
+/// Fields at cells, if the file has some. cells: of the mesh
+void read_fields_at_cells(std::size_t cells, HexMesh& mesh, Contents& in) {
+    if (in.left() == 0) return;
+    const std::size_t fields = in.count("fields at cells", 1);
+    for (std::size_t f = 0; f < fields; ++f) {
+        const std::uint64_t a = in.number();
+        if (a >= mesh.attributes.size()) in.fail("field " + std::to_string(a) + " is at cells, but not at points");
+        Attribute& field = mesh.attributes[a];
+        field.constant = in.number() != 0;
+        const double low = in.real(), step = in.real();
+        if (!std::isfinite(low) || !(step > 0) || !std::isfinite(step))
+            in.fail("the step of a field at cells is no positive number");
+        const auto channels = static_cast<std::size_t>(field.channels);
+        if (cells > in.left() / channels) in.fail("a field at cells ends too early");
+        field.cells.assign(cells * channels, 0);
+        for (std::size_t k = 0; k < channels; ++k) {
+            std::uint64_t before = 0;  // without a sign, whose overflow is defined
+            for (std::size_t c = 0; c < cells; ++c) {
+                before += static_cast<std::uint64_t>(in.signed_number());
+                const double value = low + step * static_cast<double>(static_cast<std::int64_t>(before));
+                if (!std::isfinite(value)) in.fail("a value at a cell is not finite");
+                field.cells[c * channels + k] = value;
+            }
+        }
+    }
 }
 
 HexMesh read_contents(Contents& in, const std::string& file, std::size_t most_points) {
@@ -120,6 +146,8 @@ HexMesh read_contents(Contents& in, const std::string& file, std::size_t most_po
                 if (there[c / 8] >> c % 8 & 1) mesh.cells.push_back(basis.cells[c]);
             }
         }
+        read_fields_at_cells(mesh.cells.size(), mesh, in);
+        in.expect_end();
         return without_unused_points(std::move(mesh));
     } catch (const Error& error) {
         if (error.where() == file) throw;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <limits>
 #include <utility>
@@ -8,6 +9,7 @@
 #include "subvol/approximate.h"
 #include "subvol/approximator.h"
 #include "subvol/control_mesh.h"
+#include "subvol/detail/limit_words.h"
 #include "subvol/fit_shape.h"
 #include "subvol/flow_surface.h"
 #include "subvol/limit_slice.h"
@@ -152,17 +154,30 @@ py::tuple error_of_points(const RbfVolume& volume, const HexMesh& mesh, const st
     return py::make_tuple(owned(std::move(error.of_points), {count}), error.max, error.rms, error.gaps);
 }
 
+/// field: a FieldMeasure or a PatchField
+template <class Field>
+py::dict figures_of_field(const Field& field) {
+    py::dict one;
+    one["integral"] = field.integral;
+    one["mean"] = field.mean;
+    one["min"] = field.min.value;
+    one["min_at"] = as_tuple(field.min.place);
+    one["max"] = field.max.value;
+    one["max_at"] = as_tuple(field.max.place);
+    one["extreme_error"] = field.extreme_error;
+    one["file_integral"] = field.given.integral;
+    one["file_mean"] = field.given.mean;
+    one["file_min"] = field.given.min.value;
+    one["file_min_at"] = as_tuple(field.given.min.place);
+    one["file_max"] = field.given.max.value;
+    one["file_max_at"] = as_tuple(field.given.max.place);
+    return one;
+}
+
 py::dict as_dict(PartMeasure part) {
     py::dict result, fields;
     for (FieldMeasure& field : part.fields) {
-        py::dict one;
-        one["integral"] = field.integral;
-        one["mean"] = field.mean;
-        one["min"] = field.min.value;
-        one["min_at"] = as_tuple(field.min.place);
-        one["max"] = field.max.value;
-        one["max_at"] = as_tuple(field.max.place);
-        one["extreme_error"] = field.extreme_error;
+        py::dict one = figures_of_field(field);
         const py::ssize_t bins = length(field.histogram.size());
         one["histogram"] = owned(std::move(field.histogram), {bins});
         fields[py::str(field.name)] = one;
@@ -170,6 +185,7 @@ py::dict as_dict(PartMeasure part) {
     result["cells"] = part.cells;
     result["volume"] = part.volume;
     result["error"] = part.error;
+    result["file_volume"] = part.given_volume;
     result["fields"] = fields;
     return result;
 }
@@ -177,17 +193,35 @@ py::dict as_dict(PartMeasure part) {
 py::dict measure(const py::object& self, const std::vector<std::string>& only, const py::object& progress,
                  const py::kwargs& keywords) {
     const SpaceAndCells regions = space_and_cells(parse_regions(only));
-    HexMesh part;
-    const auto& whole = self.cast<const HexMesh&>();
-    if (!regions.cells.empty()) part = only_in(whole, regions.cells, sets_of(self));
-    const HexMesh& mesh = regions.cells.empty() ? whole : part;
+    const auto& mesh = self.cast<const HexMesh&>();
+    const MeshSets sets = sets_of(self);
+    std::vector<std::uint8_t> cells;
+    if (!regions.cells.empty()) cells = cells_in(mesh, regions.cells, sets);
     MeasureOptions options;
+    options.cells = cells;
+    options.sets = sets.sets;
     set_options(keywords_of(options), keywords);
     LimitMeasure found = result_of(progress, [&](Progress* listener) {
         options.progress = listener;
         return regions.space.empty() ? measure_limit(mesh, options) : measure_limit_in(mesh, regions.space, options);
     });
-    return as_dict(std::move(found.whole));
+    LimitBody body;
+    body.volume = found.whole.volume;
+    body.given_volume = found.whole.given_volume;
+    std::vector<std::string> warnings{detail::limit_words(body, OptionNames::Keywords)};
+    for (const FieldMeasure& field : found.whole.fields)
+        warnings.push_back(detail::range_words(field.name, field.given.min.value, field.given.max.value, field.min.value,
+                                               field.max.value, OptionNames::Keywords));
+    warnings.push_back(detail::fold_words(found.folds.cells, found.folds.first, found.folds.place, OptionNames::Keywords));
+    std::erase(warnings, "");
+    py::dict result = as_dict(std::move(found.whole)), parts;
+    for (PartMeasure& part : found.parts) {
+        const py::str name(part.name);
+        parts[name] = as_dict(std::move(part));
+    }
+    result["parts"] = parts;
+    result["warnings"] = warnings;
+    return result;
 }
 
 py::list measure_patches_of(const py::object& self, const std::vector<std::string>& names,
@@ -197,9 +231,7 @@ py::list measure_patches_of(const py::object& self, const std::vector<std::strin
     set_options(keywords_of(options), keywords);
     const std::vector<Patch> patches = chosen_patches(mesh, sets_of(self), names);
     const std::vector<PatchMeasure> found = result_of(progress, [&](Progress* listener) {
-        std::vector<double> vectors;
-        if (flux) vectors = vectors_of(mesh, *flux, listener);
-        options.flux = vectors;
+        if (flux) options.flux_field = vector_field_of(mesh, *flux, listener);
         options.progress = listener;
         return measure_patches(mesh, patches, options);
     });
@@ -210,20 +242,15 @@ py::list measure_patches_of(const py::object& self, const std::vector<std::strin
         one["faces"] = patch.sides;
         one["area"] = patch.area;
         one["error"] = patch.error;
+        one["file_area"] = patch.given_area;
         one["normal"] = as_tuple(patch.normal);
         if (patch.flux) {
             one["flux"] = *patch.flux;
             one["throughput"] = *patch.throughput;
+            one["file_flux"] = patch.given_flux.value_or(std::nan(""));
+            one["file_throughput"] = patch.given_throughput.value_or(std::nan(""));
         }
-        for (const PatchField& field : patch.fields) {
-            py::dict figures;
-            figures["integral"] = field.integral;
-            figures["mean"] = field.mean;
-            figures["min"] = field.min;
-            figures["max"] = field.max;
-            figures["extreme_error"] = field.extreme_error;
-            fields[py::str(field.name)] = figures;
-        }
+        for (const PatchField& field : patch.fields) fields[py::str(field.name)] = figures_of_field(field);
         one["fields"] = fields;
         list.append(one);
     }
@@ -234,19 +261,37 @@ py::dict slice(const HexMesh& mesh, const std::string& field, const std::array<d
                const std::array<double, 3>& normal, const py::object& progress, const py::kwargs& given) {
     SliceOptions options;
     set_options(keywords_of(options), given);
+    SliceExtremes file;
+    SliceFigures of_limit, of_file;
     LimitSlice found = result_of(progress, [&](Progress* listener) {
         options.progress = options.limit.progress = listener;
-        return slice_limit(mesh, field, {point[0], point[1], point[2]}, {normal[0], normal[1], normal[2]}, options);
+        LimitSlice slice = slice_limit(mesh, field, {point[0], point[1], point[2]}, {normal[0], normal[1], normal[2]}, options);
+        of_limit = figures_of(mesh, slice, options.limit);
+        of_file = given_figures_of(mesh, slice, {}, listener);
+        file = find_slice_extremes(mesh, slice, options.limit);
+        return slice;
     });
     const std::vector<py::ssize_t> shape{found.height, found.width};
     py::dict result;
     result["field"] = found.field;
+    result["area"] = of_limit.area;
+    result["mean"] = of_limit.mean;
+    result["file_area"] = of_file.area;
+    result["file_mean"] = of_file.mean;
     result["values"] = owned(std::move(found.values), shape);
     result["gradients"] = owned(std::move(found.gradients)).reshape({shape[0], shape[1], py::ssize_t(3)});
     result["cells"] = cells_of(found.cells, shape);
     result["origin"] = owned(std::vector{found.origin.x, found.origin.y, found.origin.z}, {3});
     result["right"] = owned(std::vector{found.right.x, found.right.y, found.right.z}, {3});
     result["down"] = owned(std::vector{found.down.x, found.down.y, found.down.z}, {3});
+    result["min"] = found.min;
+    result["min_at"] = as_tuple(found.min_at);
+    result["max"] = found.max;
+    result["max_at"] = as_tuple(found.max_at);
+    result["file_min"] = file.min.value;
+    result["file_min_at"] = as_tuple(file.min.place);
+    result["file_max"] = file.max.value;
+    result["file_max_at"] = as_tuple(file.max.place);
     return result;
 }
 
@@ -274,7 +319,7 @@ py::dict streamlines(const HexMesh& mesh, const std::string& vector, const py::o
     std::erase_if(traced.attributes, [&](const Attribute& a) { return a.name == vector; });
     const std::vector<Vec3> places = seeds_in(mesh, seeds, chosen.seed_count, chosen.lines.limit);
     Streamlines found = result_of(progress, [&](Progress* listener) {
-        traced.attributes.push_back({vector, 3, vectors_of(mesh, vector, listener)});
+        traced.attributes.push_back(vector_field_of(mesh, vector, listener));
         chosen.lines.progress = listener;
         Streamlines lines = trace_streamlines(traced, vector, places, chosen.lines);
         if (path) write_streamlines(*path, lines);

@@ -8,11 +8,13 @@
 #include "bind.h"
 #include "subvol/detail/printable.h"
 #include "subvol/expression.h"
+#include "subvol/field_bounds.h"
 #include "subvol/mesh_io.h"
 #include "subvol/mesh_motion.h"
 #include "subvol/mesh_report.h"
 #include "subvol/mesh_series.h"
 #include "subvol/model.h"
+#include "subvol/part_of_limit.h"
 #include "subvol/quantity.h"
 #include "subvol/region.h"
 #include "subvol/series_file.h"
@@ -42,6 +44,45 @@ py::object fields_of(const py::object& self) {
     return read_only(fields, "the fields of a mesh", "mesh.with_fields({...}) is a mesh with others");
 }
 
+py::object cell_fields_of(const py::object& self) {
+    py::dict fields;
+    const auto& mesh = self.cast<const HexMesh&>();
+    for (const Attribute& attribute : mesh.attributes) {
+        if (attribute.cells.empty()) continue;
+        const auto channels = length(static_cast<std::size_t>(attribute.channels));
+        std::vector<py::ssize_t> shape{length(attribute.cells.size()) / channels};
+        if (channels > 1) shape.push_back(channels);
+        fields[py::str(attribute.name)] = view(attribute.cells.data(), std::move(shape), self);
+    }
+    return read_only(fields, "the fields at cells of a mesh");
+}
+
+/// What fields have beside values at points, for pickles.
+py::dict rest_of_fields(const HexMesh& mesh) {
+    py::dict rest;
+    for (const Attribute& field : mesh.attributes) {
+        if (field.cells.empty() && field.bounds.empty()) continue;
+        py::list gradients;
+        for (const Vec3& g : field.walls.gradients) gradients.append(py::make_tuple(g.x, g.y, g.z));
+        rest[py::str(field.name)] =
+            py::make_tuple(field.bounds, field.cells, field.constant, field.walls.points, std::move(gradients));
+    }
+    return rest;
+}
+
+void put_rest_of_fields(const py::dict& rest, HexMesh& mesh) {
+    for (Attribute& field : mesh.attributes) {
+        if (!rest.contains(py::str(field.name))) continue;
+        const py::tuple of_field = rest[py::str(field.name)];
+        field.bounds = of_field[0].cast<std::vector<std::array<double, 2>>>();
+        field.cells = of_field[1].cast<std::vector<double>>();
+        field.constant = of_field[2].cast<bool>();
+        field.walls.points = of_field[3].cast<std::vector<Index>>();
+        for (const auto& [x, y, z] : of_field[4].cast<std::vector<std::array<double, 3>>>())
+            field.walls.gradients.emplace_back(x, y, z);
+    }
+}
+
 }  // namespace
 
 Attribute attribute_of(const std::string& name, const py::handle& given, std::size_t points) {
@@ -60,8 +101,16 @@ Attribute attribute_of(const std::string& name, const py::handle& given, std::si
 
 namespace {
 
+/// Creases by the rule by which files are read. settled: the mesh has its own
+void find_creases(HexMesh& mesh, const std::optional<double>& angle_deg, bool settled) {
+    if (!angle_deg && !settled) keep_sharp_edges(mesh);
+    if (angle_deg.value_or(0) > 0) tag_creases(mesh, *angle_deg);
+}
+
 HexMesh mesh_of(const py::object& points, const py::object& cells, const py::object& fields, const py::object& creases,
-                const py::object& sharp_faces) {
+                const py::object& sharp_faces, const py::object& crease_angle) {
+    ReadOptions options;
+    set_options(options_of(options), py::dict(py::arg("crease_angle") = crease_angle));
     HexMesh mesh;
     mesh.points = vectors(points, "points");
     const std::size_t count = mesh.points.size();
@@ -75,6 +124,7 @@ HexMesh mesh_of(const py::object& points, const py::object& cells, const py::obj
     }
     const py::gil_scoped_release without_gil;
     validate(mesh);
+    find_creases(mesh, options.crease_angle_deg, !creases.is_none() || !sharp_faces.is_none());
     return mesh;
 }
 
@@ -90,10 +140,7 @@ std::string mesh_text(const HexMesh& mesh) {
 }
 
 py::dict figures_of(const HexMesh& mesh) {
-    const MeshReport report = [&] {
-        const py::gil_scoped_release without_gil;
-        return inspect(mesh);
-    }();
+    const MeshReport report = result_of(py::none(), [&](Progress* listener) { return inspect(mesh, listener); });
     py::dict figures = dict_of(facts_of(report));
     figures["interior_edge_valence"] = report.interior_edge_valence;  // by number
     figures["bounds"] = as_array(report.bounds);
@@ -113,7 +160,7 @@ py::tuple read(const std::string& path, const py::kwargs& given) {
 
 /// Those that have an effect on a grid in memory.
 std::vector<Option> options_of_grids(ReadOptions& options) {
-    constexpr std::string_view kNames[]{"other-cells", "weld-distance", "curved", "cell-values"};
+    constexpr std::string_view kNames[]{"other-cells", "weld-distance", "curved", "cell-values", "crease-angle"};
     std::vector<Option> all = options_of(options);
     std::erase_if(all, [&](const Option& option) { return std::ranges::find(kNames, option.name) == std::end(kNames); });
     return all;
@@ -127,7 +174,8 @@ VtkGridArray vtk_array_of(const py::handle& given) {
     const int components = flat ? 1 : static_cast<int>(array.shape(1));
     const py::array_t<double> rows =
         flat ? subvol::python::numbers<double>(array, name) : rows_of<double>(array, components, name);
-    return {name, components, at_cells, {rows.data(), rows.data() + rows.size()}};
+    const char kind = array.dtype().kind();
+    return {name, components, at_cells, {rows.data(), rows.data() + rows.size()}, kind == 'i' || kind == 'u' || kind == 'b'};
 }
 
 py::tuple from_vtk(const py::object& points, const py::object& types, const py::object& ends, const py::object& connectivity,
@@ -162,16 +210,31 @@ py::tuple from_vtk(const py::object& points, const py::object& types, const py::
     return py::make_tuple(with_sets(std::move(result.mesh), std::move(result.sets)), result.warnings);
 }
 
-/// The mesh of some cells, with what is left of its patches and sets.
-py::object only_of(const py::object& self, const std::vector<std::string>& texts) {
+/// The mesh whose fields stay between the points within the range that they have in the file; of fields at cells, within that
+/// of the cells.
+py::object bounded(const py::object& self) {
+    HexMesh mesh = self.cast<const HexMesh&>();
+    std::vector<Attribute> at_cells;
+    for (const Attribute& field : mesh.attributes) {
+        if (!field.cells.empty()) at_cells.push_back({field.name, field.channels, field.cells});
+    }
+    bound_as_given(mesh, at_cells);
+    return with_sets(std::move(mesh), sets_of(self));
+}
+
+/// The mesh of some cells, with what is left of its patches and sets, and a warning.
+py::object only_of(const py::object& self, const std::vector<std::string>& texts, int levels) {
     const auto& mesh = self.cast<const HexMesh&>();
     const MeshSets sets = sets_of(self);
     auto [part, of_part] = [&] {
         const py::gil_scoped_release without_gil;
         const std::vector<std::uint8_t> cells = cells_in(mesh, parse_regions(texts), sets);
-        return std::pair(only_cells(mesh, cells), sets_of_cells(sets, cells));
+        PartOfLimit taken = part_of_limit(mesh, cells, {.max_levels = levels});
+        MeshSets left = sets_of_children(sets_of_cells(sets, cells), taken.levels);
+        return std::pair(std::move(taken), std::move(left));
     }();
-    return with_sets(std::move(part), std::move(of_part));
+    const std::string warning = detail::part_warning(part, OptionNames::Keywords);
+    return py::make_tuple(with_sets(std::move(part.mesh), std::move(of_part)), warning);
 }
 
 py::object warped(const py::object& self, const std::string& field, std::optional<double> factor) {
@@ -209,7 +272,10 @@ py::object with_fields(const py::object& self, const py::object& fields) {
     const auto& mesh = self.cast<const HexMesh&>();
     HexMesh changed{mesh.points, mesh.cells, {}, mesh.creases, mesh.sharp_faces};
     for_each_named(fields, "fields", [&](const std::string& name, const py::handle& values) {
-        changed.attributes.push_back(attribute_of(name, values, changed.points.size()));
+        Attribute field = attribute_of(name, values, changed.points.size());
+        const Attribute* const before = mesh.find_attribute(name);
+        const bool same = before != nullptr && before->channels == field.channels && before->values == field.values;
+        changed.attributes.push_back(same ? *before : std::move(field));
     });
     validate(changed);
     return with_sets(std::move(changed), sets_of(self));
@@ -327,7 +393,7 @@ void bind_mesh(py::module_& module) {
     py::class_<HexMesh>(module, "HexMesh", py::dynamic_attr(),
                         "A hexahedral mesh with fields at its points. It does not change: its arrays are read-only views.")
         .def(py::init(&mesh_of), py::arg("points"), py::arg("cells"), py::arg("fields") = py::none(),
-             py::arg("creases") = py::none(), py::arg("sharp_faces") = py::none())
+             py::arg("creases") = py::none(), py::arg("sharp_faces") = py::none(), py::arg("crease_angle") = "auto")
         .def_property_readonly(
             "points",
             [](const py::object& self) {
@@ -341,6 +407,7 @@ void bind_mesh(py::module_& module) {
         .def_property_readonly(
             "sharp_faces", [](const py::object& self) { return view_of_rows(self.cast<const HexMesh&>().sharp_faces, self); })
         .def_property_readonly("fields", &fields_of)
+        .def_property_readonly("cell_fields", &cell_fields_of)
         .def_property_readonly("patches", &patches_of)
         .def_property_readonly("sets", &cell_sets_of)
         .def_property_readonly("bounds", [](const HexMesh& mesh) { return read_only(as_array(bounds(mesh))); })
@@ -368,11 +435,13 @@ void bind_mesh(py::module_& module) {
         .def(py::pickle(
             [](const py::object& self) {
                 return py::make_tuple(self.attr("points"), self.attr("cells"), self.attr("fields"), self.attr("creases"),
-                                      self.attr("sharp_faces"), self.attr("patches"), self.attr("sets"));
+                                      self.attr("sharp_faces"), self.attr("patches"), self.attr("sets"),
+                                      rest_of_fields(self.cast<const HexMesh&>()));
             },
             [](const py::tuple& state) {
-                if (state.size() != 7) throw Error(ErrorCode::InvalidInput, "is not a mesh of this version", "pickle");
-                HexMesh mesh = mesh_of(state[0], state[1], state[2], state[3], state[4]);
+                if (state.size() != 8) throw Error(ErrorCode::InvalidInput, "is not a mesh of this version", "pickle");
+                HexMesh mesh = mesh_of(state[0], state[1], state[2], state[3], state[4], py::none());
+                put_rest_of_fields(state[7], mesh);
                 py::dict attributes;
                 if (MeshSets sets = sets_from(state[5], state[6], mesh); !sets.empty()) attributes[kSets] = std::move(sets);
                 return std::pair(std::move(mesh), attributes);
@@ -443,7 +512,8 @@ void bind_mesh(py::module_& module) {
         },
         py::arg("mesh"), py::arg("source"));
     module.def("warp", &warped, py::arg("mesh"), py::arg("field"), py::arg("factor"));
-    module.def("only", &only_of, py::arg("mesh"), py::arg("regions"));
+    module.def("bounded", &bounded, py::arg("mesh"));
+    module.def("only", &only_of, py::arg("mesh"), py::arg("regions"), py::arg("levels"));
     module.def("select_field", &selected, py::arg("mesh"), py::arg("name"));
     module.def(
         "make_model",

@@ -7,7 +7,9 @@
 
 #include "bind.h"
 #include "given_grids.h"
+#include "subvol/detail/error_text.h"
 #include "subvol/detail/most_threads.h"
+#include "subvol/detail/several_errors.h"
 #include "subvol/scheme.h"
 #include "subvol/version.h"
 #include "uninitialised.h"
@@ -36,7 +38,11 @@ void raise(const Error& error) {
         return "Error";
     }();
     const py::object type = py::module_::import("subvol._errors").attr(code);
-    const py::object value = type(text_of(error.what()), text_of(error.where()), text_of(error.allowed()));
+    // The places of several mistakes have lines of their own, which are cut already.
+    const bool several = dynamic_cast<const detail::SeveralErrors*>(&error) != nullptr;
+    const std::string sentence =
+        several ? error.what() : detail::error_sentence(error.where(), error.message(), error.allowed());
+    const py::object value = type(text_of(sentence), text_of(error.where()), text_of(error.allowed()));
     PyErr_SetObject(type.ptr(), value.ptr());
 }
 

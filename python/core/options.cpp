@@ -70,7 +70,8 @@ struct TypeName {
     std::string operator()(const std::vector<std::string>*) const { return "Sequence[str]"; }
     std::string operator()(const std::optional<std::string>*) const { return "Optional[str]"; }
     std::string operator()(const WordValue& word) const {
-        return word.numbers ? "Union[float, str]" : option.words.empty() ? "Kernel" : "str";
+        if (word.numbers) return option.text().empty() ? "Optional[Union[float, str]]" : "Union[float, str]";
+        return option.words.empty() ? "Kernel" : "str";
     }
     std::string operator()(const NumbersValue&) const { return "Optional[npt.ArrayLike]"; }
     template <class Number>
@@ -86,6 +87,8 @@ py::object default_of(const Option& option) {
     if (option.is_optional() || std::holds_alternative<NumbersValue>(option.value)) return py::none();
     if (option.is_whole()) return py::int_(py::str(option.text()));
     if (option.is_number()) return py::float_(py::str(option.text()));
+    const auto* const word = std::get_if<WordValue>(&option.value);
+    if (word != nullptr && word->numbers && option.text().empty()) return py::none();
     return py::str(option.text());
 }
 

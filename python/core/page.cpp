@@ -13,13 +13,22 @@
 namespace subvol::python {
 namespace {
 
-/// A page of one field. skin: the boundary with its values
-py::tuple page(const RbfVolume& volume, const BoundaryValues& skin, const TransferFunction& function, const std::string& unit,
+/// A page of one field.
+///
+/// skin: the boundary with its values; None: that of the volume, where the value is that of the first kernel
+py::tuple page(const RbfVolume& volume, const BoundaryValues* skin, const TransferFunction& function, const std::string& unit,
                double low, double high, const std::string& look, const Camera& camera, double opacity_unit,
                const std::array<double, 3>& background, const std::string& title, const std::string& source,
                std::size_t max_bytes, const py::object& progress) {
     if (volume.channels.empty()) throw Error(ErrorCode::InvalidInput, "has no channel", "volume", "one channel");
-    const std::vector<PageStep> steps{{.label = {}, .volume = volume, .boundary = skin}};
+    PageStep step{.label = {}, .volume = volume, .boundary = {}};
+    if (skin != nullptr) {
+        step.boundary = *skin;
+    } else {
+        const double value = volume.channels.front().values.empty() ? 0 : volume.channels.front().values.front();
+        step.boundary = {volume.boundary, {std::vector<double>(volume.boundary.points.size(), value)}};
+    }
+    const std::vector<PageStep> steps{std::move(step)};
     PageOptions options{.title = title, .source = source, .look = named<PageLook>(look, "look"), .camera = camera};
     options.fields.push_back(
         {.name = volume.channels.front().name, .unit = unit, .function = function, .min = low, .max = high});

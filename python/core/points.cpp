@@ -4,7 +4,9 @@
 
 #include "bind.h"
 #include "subvol/basis_function.h"
+#include "subvol/clamp_channel.h"
 #include "subvol/detail/printable.h"
+#include "subvol/field_range.h"
 #include "subvol/fit_kernel.h"
 #include "subvol/kernel_file.h"
 #include "subvol/points_io.h"
@@ -117,6 +119,10 @@ py::tuple sample(const HexMesh& mesh, const std::optional<Camera>& footprint, co
         options.progress = listener;
         return sample_rbf_points(mesh, options);
     });
+    for (std::size_t k = 0; k < std::min(mesh.attributes.size(), result.volume.channels.size()); ++k) {
+        const auto bounds = mesh.attributes[k].channels == 1 ? bounds_of(mesh.attributes[k]) : std::nullopt;
+        if (bounds) clamp_channel(result.volume.channels[k], bounds->min[0], bounds->max[0]);
+    }
     return py::make_tuple(std::move(result.volume), result.report.flat_frames, result.report.largest_error);
 }
 

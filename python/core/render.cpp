@@ -78,7 +78,7 @@ py::dict report_of(const Facts& facts) {
 /// patches:  shells to which the points of `mesh`, which has no cells, belong; null: a volume is drawn
 /// channels: of the points
 /// parts:    translucent parts of a solid, of which the mesh is the rest; null: there are none
-/// source:   of the mesh, with all of its fields; null: no streamlines are drawn
+/// source:   of the mesh, with all of its fields: the whole that patches and parts lie in; null: no streamlines are drawn
 /// seeds:    of streamlines, as for `seeds_in`
 struct DrawnBody {
     const HexMesh* mesh = nullptr;
@@ -102,6 +102,8 @@ DrawnBody checked(DrawnBody body) {
     }
     const bool of_mesh = body.colors != nullptr || body.patches != nullptr || body.parts != nullptr || body.source != nullptr;
     if (of_mesh && body.mesh == nullptr) refuse("colors, patches, parts and source are of a mesh", "mesh with them");
+    if ((body.patches != nullptr || body.parts != nullptr) && body.source == nullptr)
+        refuse("patches and parts are sides of a mesh", "source with them");
     if (body.colors != nullptr && body.colors->attributes.empty()) refuse("colors has no field", "a mesh with one");
     for (const std::size_t channel : body.channels) {
         if (body.points != nullptr && channel >= body.points->channels.size()) {
@@ -111,9 +113,9 @@ DrawnBody checked(DrawnBody body) {
     return body;
 }
 
-/// The patches of a mesh, alone.
-Picture render_patches(const HexMesh& mesh, const Shells& patches, const View& view, const PictureLight& light,
-                       const py::dict& given, const py::object& progress) {
+/// The patches of a mesh, alone. whole: the mesh that they are of
+Picture render_patches(const HexMesh& mesh, const Shells& patches, const HexMesh& whole, const View& view,
+                       const PictureLight& light, const py::dict& given, const py::object& progress) {
     check_options_of_shells([&](std::string_view name) { return text_of(given, name); }, OptionNames::Keywords);
     GivenPicture chosen;
     set_options(options_of(chosen), given);
@@ -123,7 +125,8 @@ Picture render_patches(const HexMesh& mesh, const Shells& patches, const View& v
     run(progress, [&](Progress* listener) {
         RefineOptions refine = chosen.refinement;
         refine.progress = listener;
-        make_shell_scene(mesh, patches, refine, chosen.levels, light.optics, style.sample_count(), chosen.options.style.clip)
+        make_side_scene(mesh, whole, patches, refine, chosen.levels, light.optics, style.sample_count(),
+                        chosen.options.style.clip)
             .draw_into(picture.image, picture.depth, view);
     });
     return picture;
@@ -194,7 +197,8 @@ Picture render(const DrawnBody& drawn, const std::string& method_name, const Vie
         body.mesh = two_fields;
     }
     if (drawn.patches != nullptr)
-        return render_patches(drawn.colors != nullptr ? two_fields : *drawn.mesh, *drawn.patches, view, light, given, progress);
+        return render_patches(drawn.colors != nullptr ? two_fields : *drawn.mesh, *drawn.patches, *drawn.source, view, light,
+                              given, progress);
     check_method(method, body.kind(), OptionNames::Keywords);
     check_options(
         bit(method), body.kind(), [&](std::string_view name) { return text_of(given, name); }, OptionNames::Keywords);
@@ -215,8 +219,8 @@ Picture render(const DrawnBody& drawn, const std::string& method_name, const Vie
         run(progress, [&](Progress* listener) {
             RefineOptions refine = chosen.refinement;
             refine.progress = listener;
-            make_shell_scene(*drawn.mesh, drawn.parts->shells, refine, chosen.levels, light.optics, style.sample_count(),
-                             chosen.options.style.clip, drawn.parts->opacities)
+            make_side_scene(*drawn.mesh, *drawn.source, drawn.parts->shells, refine, chosen.levels, light.optics,
+                            style.sample_count(), chosen.options.style.clip, drawn.parts->opacities)
                 .draw_into(picture.image, picture.depth, view);
         });
         picture.facts["opaque_cells"] = drawn.parts->rest.cells.size();

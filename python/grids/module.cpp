@@ -34,6 +34,7 @@ py::dict report_of(const VdbGrid& grid) {
     py::dict report;
     report["name"] = about.name;
     report["kind"] = about.kind;
+    report["level_set"] = about.level_set;
     report["active_voxels"] = about.active_voxels;
     report["voxel_size"] = about.voxel_size_world;
     report["bytes"] = about.bytes;

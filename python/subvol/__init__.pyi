@@ -25,7 +25,7 @@ __version__: str
 
 def approximate(
     onto: HexMesh, samples: Union[HexMesh, npt.ArrayLike], fields: Optional[Mapping[str, npt.ArrayLike]] = None, *,
-    scheme: str = 'mcq', tension: float = 0.0625, crease_angle: Optional[float] = None, levels: int = 2,
+    scheme: str = 'mcq', tension: float = 0.0625, crease_angle: Optional[Union[float, str]] = None, levels: int = 2,
     reach: float = 0.01, smoothing: float = 0.0, iterations: int = 200, clamp: bool = False, refine: int = 0,
     tolerance: float = 0.001, progress: Progress = None
 ) -> tuple[HexMesh, dict[str, Any]]:
@@ -42,7 +42,8 @@ def approximate(
     scheme:      mcq (smooth, through the control points), cc (Catmull-Clark), bsxw (Bajaj-Schaefer-Warren-Xu), linear [mcq,
                  cc, bsxw, linear]
     tension:     of mcq: 0 is linear; 1/16 reproduces cubics [0 to 0.125; with scheme='mcq']
-    crease_angle: keep boundary edges sharp that bend by more than this, in degrees (tetoct, boxspline: 60) [0 to 180]
+    crease_angle: keep boundary edges sharp that bend by more than this, in degrees; none: none (default: of a file without
+                 creases 40, on round bodies of few cells 60; of tetoct and boxspline always 60) [none]
     levels:      how finely the limit is interpolated where the samples are: between its points on level L [1 to 4]
     reach:       samples outside count at the nearest place up to R times the box's diagonal away [0 to 1]
     smoothing:   the weight of the differences along edges: for samples with noise [0 to 1e+06]
@@ -54,7 +55,7 @@ def approximate(
 
 def approximate_series(
     onto: HexMesh, steps: Iterable[Union[HexMesh, tuple[float, HexMesh]]], *, scheme: str = 'mcq',
-    tension: float = 0.0625, crease_angle: Optional[float] = None, levels: int = 2, reach: float = 0.01,
+    tension: float = 0.0625, crease_angle: Optional[Union[float, str]] = None, levels: int = 2, reach: float = 0.01,
     smoothing: float = 0.0, iterations: int = 200, clamp: bool = False, progress: Progress = None
 ) -> Iterator[tuple[HexMesh, dict[str, Any]]]:
     """Fits the steps of a series one after the other, as `approximate` does: for each the control mesh with its fields, and the report.
@@ -66,7 +67,8 @@ def approximate_series(
     scheme:      mcq (smooth, through the control points), cc (Catmull-Clark), bsxw (Bajaj-Schaefer-Warren-Xu), linear [mcq,
                  cc, bsxw, linear]
     tension:     of mcq: 0 is linear; 1/16 reproduces cubics [0 to 0.125; with scheme='mcq']
-    crease_angle: keep boundary edges sharp that bend by more than this, in degrees (tetoct, boxspline: 60) [0 to 180]
+    crease_angle: keep boundary edges sharp that bend by more than this, in degrees; none: none (default: of a file without
+                 creases 40, on round bodies of few cells 60; of tetoct and boxspline always 60) [none]
     levels:      how finely the limit is interpolated where the samples are: between its points on level L [1 to 4]
     reach:       samples outside count at the nearest place up to R times the box's diagonal away [0 to 1]
     smoothing:   the weight of the differences along edges: for samples with noise [0 to 1e+06]
@@ -75,7 +77,7 @@ def approximate_series(
     """
 
 def check_folds(
-    mesh: HexMesh, *, scheme: str = 'mcq', tension: float = 0.0625, crease_angle: Optional[float] = None,
+    mesh: HexMesh, *, scheme: str = 'mcq', tension: float = 0.0625, crease_angle: Optional[Union[float, str]] = None,
     levels: int = 5, irregular_levels: int = 2, tests: int = 1000, progress: Progress = None
 ) -> FoldCheck:
     """Decides for the limit of each cell whether it folds: with a proof that it does not, or a place where it does.
@@ -83,7 +85,8 @@ def check_folds(
     scheme:      mcq (smooth, through the control points), cc (Catmull-Clark), bsxw (Bajaj-Schaefer-Warren-Xu), linear [mcq,
                  cc, bsxw, linear]
     tension:     of mcq: 0 is linear; 1/16 reproduces cubics [0 to 0.125; with scheme='mcq']
-    crease_angle: keep boundary edges sharp that bend by more than this, in degrees (tetoct, boxspline: 60) [0 to 180]
+    crease_angle: keep boundary edges sharp that bend by more than this, in degrees; none: none (default: of a file without
+                 creases 40, on round bodies of few cells 60; of tetoct and boxspline always 60) [none]
     levels:      cut a cell into eight parts up to L times where a test does not decide [0 to 8]
     irregular_levels: refine cells near irregular edges up to L times [0 to 6]
     tests:       the most tests of a cell [1 to 1000000]
@@ -91,9 +94,9 @@ def check_folds(
 
 def control_mesh(
     points: npt.ArrayLike, triangles: npt.ArrayLike, *, scheme: str = 'mcq', tension: float = 0.0625,
-    crease_angle: Optional[float] = None, cells: int = 24, max_cells: int = 2000000, rounds: int = 15, refine: int = 0,
-    tolerance: float = 0.25, sharp_angle: float = 40.0, keep_folds: bool = False, boundary_move: float = 0.2,
-    progress: Progress = None
+    crease_angle: Optional[Union[float, str]] = None, cells: int = 24, max_cells: int = 2000000, rounds: int = 15,
+    refine: int = 0, tolerance: float = 0.25, sharp_angle: float = 40.0, keep_folds: bool = False,
+    boundary_move: float = 0.2, progress: Progress = None
 ) -> tuple[HexMesh, dict[str, Any]]:
     """A mesh of hexahedra whose limit fills a closed surface of triangles.
 
@@ -105,7 +108,8 @@ def control_mesh(
     scheme:      mcq (smooth, through the control points), cc (Catmull-Clark), bsxw (Bajaj-Schaefer-Warren-Xu), linear [mcq,
                  cc, bsxw, linear]
     tension:     of mcq: 0 is linear; 1/16 reproduces cubics [0 to 0.125; with scheme='mcq']
-    crease_angle: keep boundary edges sharp that bend by more than this, in degrees (tetoct, boxspline: 60) [0 to 180]
+    crease_angle: keep boundary edges sharp that bend by more than this, in degrees; none: none (default: of a file without
+                 creases 40, on round bodies of few cells 60; of tetoct and boxspline always 60) [none]
     cells:       cells along the longest side of the surface's box [2 to 1000]
     max_cells:   the most cells that may be made [1 to 1000000000]
     rounds:      how often the points are drawn to the nearest places of the surface [1 to 100]
@@ -119,7 +123,8 @@ def control_mesh(
 
 def evaluate_limit(
     mesh: HexMesh, cells: npt.ArrayLike, uvw: npt.ArrayLike, *, scheme: str = 'mcq', tension: float = 0.0625,
-    crease_angle: Optional[float] = None, tolerance: float = 1e-06, max_levels: int = 10, progress: Progress = None
+    crease_angle: Optional[Union[float, str]] = None, tolerance: float = 1e-06, max_levels: int = 10,
+    progress: Progress = None
 ) -> LimitSamples:
     """Positions, Jacobians and all fields of the limit at places in control cells.
 
@@ -128,7 +133,8 @@ def evaluate_limit(
     scheme:      mcq (smooth, through the control points), cc (Catmull-Clark), bsxw (Bajaj-Schaefer-Warren-Xu), linear [mcq,
                  cc, bsxw, linear]
     tension:     of mcq: 0 is linear; 1/16 reproduces cubics [0 to 0.125; with scheme='mcq']
-    crease_angle: keep boundary edges sharp that bend by more than this, in degrees (tetoct, boxspline: 60) [0 to 180]
+    crease_angle: keep boundary edges sharp that bend by more than this, in degrees; none: none (default: of a file without
+                 creases 40, on round bodies of few cells 60; of tetoct and boxspline always 60) [none]
     tolerance:   what is not exact is refined until two levels differ by less: of the diagonal and of each field's range [0
                  or more]
     max_levels:  refinement ends there in any case [2 to 20]
@@ -151,8 +157,8 @@ def fit(
 
 def fit_shape(
     mesh: HexMesh, points: npt.ArrayLike, triangles: npt.ArrayLike, *, scheme: str = 'mcq', tension: float = 0.0625,
-    crease_angle: Optional[float] = None, shape_rounds: int = 10, stiffness: float = 0.01, keep_folds: bool = False,
-    boundary_move: float = 0.2, progress: Progress = None
+    crease_angle: Optional[Union[float, str]] = None, shape_rounds: int = 10, stiffness: float = 0.01,
+    keep_folds: bool = False, boundary_move: float = 0.2, progress: Progress = None
 ) -> tuple[HexMesh, dict[str, Any]]:
     """Moves control points so that the boundary of the limit lies on a surface of triangles, by least squares.
 
@@ -165,7 +171,8 @@ def fit_shape(
     scheme:      mcq (smooth, through the control points), cc (Catmull-Clark), bsxw (Bajaj-Schaefer-Warren-Xu), linear [mcq,
                  cc, bsxw, linear]
     tension:     of mcq: 0 is linear; 1/16 reproduces cubics [0 to 0.125; with scheme='mcq']
-    crease_angle: keep boundary edges sharp that bend by more than this, in degrees (tetoct, boxspline: 60) [0 to 180]
+    crease_angle: keep boundary edges sharp that bend by more than this, in degrees; none: none (default: of a file without
+                 creases 40, on round bodies of few cells 60; of tetoct and boxspline always 60) [none]
     shape_rounds: look for the nearest places and move the points up to N times [1 to 1000]
     stiffness:   how much neighbours move together: more for surfaces with noise [1e-06 to 1e+06]
     keep_folds:  leave the points where they are if the limit folds
@@ -175,7 +182,7 @@ def fit_shape(
 
 def from_vtk(
     grid: Any, *, other_cells: str = 'split', weld: Optional[float] = None, curved: Union[float, str] = '5e-06',
-    cell_values: str = 'auto'
+    cell_values: str = 'auto', crease_angle: Union[float, str] = 'auto'
 ) -> HexMesh:
     """The mesh of a `vtkUnstructuredGrid`, as `read_mesh` makes it of a file with this grid: tetrahedra, prisms, pyramids and polyhedra
     are split, curved cells followed, ghost cells dropped, values at cells moved to the points, creases and sharp faces tagged, patches
@@ -186,39 +193,49 @@ def from_vtk(
     weld:        join points of a file whose distance is at most D; 0: those at the same place [0 or more]
     curved:      split curved hexahedra into smaller ones, to within this part T of the mesh's size from their true shape,
                  and 400 T of the fields' ranges; corners: use nothing but their corners [corners]
-    cell_values: values at cells become values at points: fit (the volume follows the cells' means without waves; the
-                 default for OpenFOAM), mean (of the cells around each point; the default for all others), exact (the volume
-                 has the cells' means), auto [auto, fit, mean, exact]
+    cell_values: what values at cells are: fit (the volume follows the cells' means without waves; the default for
+                 OpenFOAM), mean (values at points, of the cells around each; the default for all others), exact (the volume
+                 has the cells' means), constant (as they are, in each cell; the default for integers, such as materials),
+                 auto [auto, fit, mean, exact, constant]
+    crease_angle: keep boundary edges sharp that bend by more than this, in degrees; none: none; auto: those that bend by
+                 more than 40, and on round bodies of few cells by more than 60, unless the file has creases [auto, none]
 
     Warns (SubvolWarning) once for each thing left out, turned round or converted.
     """
 
 def measure(
     mesh: HexMesh, *, only: Union[str, Sequence[str]] = (), patch: Union[str, Sequence[str], None] = None,
-    flux: Optional[str] = None, scheme: str = 'mcq', tension: float = 0.0625, crease_angle: Optional[float] = None,
-    tolerance: float = 0.0001, bins: int = 32, progress: Progress = None
+    flux: Optional[str] = None, clamp: Optional[str] = None, scheme: str = 'mcq', tension: float = 0.0625,
+    crease_angle: Optional[Union[float, str]] = None, tolerance: float = 0.0001, bins: int = 32,
+    progress: Progress = None
 ) -> Any:
     """The volume of the limit, and of each field its integral, mean, extremes with their places, and histogram.
 
     Returns cells, volume, error (an estimate of how far off the volume is, as a part of it, and each mean, as a part of its field's
     range), and fields: a dictionary by name of integral, mean, min, min_at, max, max_at, extreme_error (how far beyond these the limit
-    may go), histogram (the volume in each of `bins` equal intervals from min to max).
+    may go), histogram (the volume in each of `bins` equal intervals from min to max); and parts: the same of each set of `mesh.sets`, which
+    may have cells in common. file_volume, file_mean, file_integral, file_min, file_min_at and so on are those of the cells as they were
+    given; a warning says where the limit has more than 1 % more or less volume, or leaves a field's range by more than 1 %.
 
-    only:        a region, or several of which all hold, as of `only`; parts of space are cut exactly out of the limit
+    only:        a region, or several of which all hold, as of `only`; parts of space are cut exactly out of the limit, and cells are
+                 measured where they lie in the limit of the whole mesh
     patch:       a patch of the boundary, of `mesh.patches`: returns name, faces, area, normal (its integral), error, and fields: by name
-                 integral, mean, min, max, extreme_error. Several: a list of these. Regions choose whole cells then
+                 integral, mean, min, min_at, max, max_at, extreme_error, and file_ figures. Several: a list of these. Regions choose whole
+                 cells then
     flux:        with `patch`, a vector such as "U" or "grad(T)": also flux, its flow out through the patch, and throughput, without sign
+    clamp:       "file": the fields stay in the range that they have in the file, also between its points
     scheme:      mcq (smooth, through the control points), cc (Catmull-Clark), bsxw (Bajaj-Schaefer-Warren-Xu), linear [mcq,
                  cc, bsxw, linear]
     tension:     of mcq: 0 is linear; 1/16 reproduces cubics [0 to 0.125; with scheme='mcq']
-    crease_angle: keep boundary edges sharp that bend by more than this, in degrees (tetoct, boxspline: 60) [0 to 180]
+    crease_angle: keep boundary edges sharp that bend by more than this, in degrees; none: none (default: of a file without
+                 creases 40, on round bodies of few cells 60; of tetoct and boxspline always 60) [none]
     tolerance:   of the volume as a part of it, of means and extremes as parts of each field's range [more than 0, at most
                  1]
     bins:        intervals of the histogram [1 to 100000]
     """
 
 def mend_folds(
-    mesh: HexMesh, *, scheme: str = 'mcq', tension: float = 0.0625, crease_angle: Optional[float] = None,
+    mesh: HexMesh, *, scheme: str = 'mcq', tension: float = 0.0625, crease_angle: Optional[Union[float, str]] = None,
     levels: int = 5, irregular_levels: int = 2, tests: int = 1000, boundary_move: float = 0.1, rounds: int = 10,
     progress: Progress = None
 ) -> tuple[HexMesh, FoldCheck, dict[str, Any]]:
@@ -230,7 +247,8 @@ def mend_folds(
     scheme:      mcq (smooth, through the control points), cc (Catmull-Clark), bsxw (Bajaj-Schaefer-Warren-Xu), linear [mcq,
                  cc, bsxw, linear]
     tension:     of mcq: 0 is linear; 1/16 reproduces cubics [0 to 0.125; with scheme='mcq']
-    crease_angle: keep boundary edges sharp that bend by more than this, in degrees (tetoct, boxspline: 60) [0 to 180]
+    crease_angle: keep boundary edges sharp that bend by more than this, in degrees; none: none (default: of a file without
+                 creases 40, on round bodies of few cells 60; of tetoct and boxspline always 60) [none]
     levels:      cut a cell into eight parts up to L times where a test does not decide [0 to 8]
     irregular_levels: refine cells near irregular edges up to L times [0 to 6]
     tests:       the most tests of a cell [1 to 1000000]
@@ -239,18 +257,20 @@ def mend_folds(
     """
 
 def page(
-    mesh: HexMesh, field: Optional[str] = None, *, per_edge: int = 1, camera: Union[None, str, Camera] = None,
-    tf: Union[None, str, TransferFunction] = None, title: str = '', unit: str = '', max_bytes: int = 24000000,
-    scheme: str = 'mcq', look: Optional[str] = None, opacity_unit: Optional[float] = None, clamp: bool = False,
-    range: Optional[str] = None, opacity: Optional[str] = None, iso: Union[float, str] = '', log: bool = False,
+    mesh: Union[HexMesh, Grid], field: Optional[str] = None, *, per_edge: int = 1,
+    camera: Union[None, str, Camera] = None, tf: Union[None, str, TransferFunction] = None, title: str = '',
+    unit: str = '', max_bytes: int = 24000000, scheme: str = 'mcq', clamp: Union[bool, str] = False,
+    look: Optional[str] = None, opacity_unit: Optional[float] = None, range: Optional[str] = None,
+    opacity: Optional[str] = None, iso: Optional[Union[float, str]] = None, log: bool = False,
     symlog: Optional[float] = None, bands: Optional[int] = None, below: Optional[str] = None,
     above: Optional[str] = None, view: str = 'iso', fit: bool = False, ortho: bool = False, progress: Progress = None
 ) -> Page:
-    """A page of a field of a mesh: as `subvol page`.
+    """A page of a field of a mesh, or of the body within the surface of a level set: as `subvol page`.
 
     unit:        of the field, for the legend
     max_bytes:   kernels are rounded, then merged, until the page fits
-    tf may also be a TransferFunction, camera a Camera. The look isosurface is not drawn in pages.
+    tf may also be a TransferFunction, camera a Camera, clamp "file": the field stays in the range that it has in the file, also between
+    its points. The look isosurface is not drawn in pages.
     look:        solid (opaque and lit; the default for meshes without opacity and opacity_unit), volume (opacity 0 to .5
                  over the range, black behind; otherwise the default), xray (on white) or isosurface (five lit surfaces)
                  [solid, volume, xray, isosurface]
@@ -283,7 +303,7 @@ def page(
 
 def points_error(
     volume: RbfVolume, mesh: HexMesh, field: Optional[str] = None, *, channel: int = 0, scheme: str = 'mcq',
-    tension: float = 0.0625, crease_angle: Optional[float] = None, progress: Progress = None
+    tension: float = 0.0625, crease_angle: Optional[Union[float, str]] = None, progress: Progress = None
 ) -> PointsError:
     """How far the sum of kernels is from the limit of a mesh near each kernel: an estimate, from nine places each.
 
@@ -292,12 +312,14 @@ def points_error(
     scheme:      mcq (smooth, through the control points), cc (Catmull-Clark), bsxw (Bajaj-Schaefer-Warren-Xu), linear [mcq,
                  cc, bsxw, linear]
     tension:     of mcq: 0 is linear; 1/16 reproduces cubics [0 to 0.125; with scheme='mcq']
-    crease_angle: keep boundary edges sharp that bend by more than this, in degrees (tetoct, boxspline: 60) [0 to 180]
+    crease_angle: keep boundary edges sharp that bend by more than this, in degrees; none: none (default: of a file without
+                 creases 40, on round bodies of few cells 60; of tetoct and boxspline always 60) [none]
     """
 
 def probe(
-    mesh: HexMesh, places: npt.ArrayLike, *, levels: Optional[int] = None, scheme: str = 'mcq', tension: float = 0.0625,
-    crease_angle: Optional[float] = None, reach: float = 0.0, progress: Progress = None
+    mesh: HexMesh, places: npt.ArrayLike, *, levels: Optional[int] = None, clamp: Optional[str] = None,
+    scheme: str = 'mcq', tension: float = 0.0625, crease_angle: Optional[Union[float, str]] = None, reach: float = 0.0,
+    progress: Progress = None
 ) -> ProbeSamples:
     """All fields of the limit, with their gradients, at places in the world, (n,3): exact, not interpolated in cells.
 
@@ -305,26 +327,31 @@ def probe(
     are those tetrahedra, and there are no parameters (nan).
 
     levels:      of "tetoct" and "boxspline", 0 to 8; None: 2
+    clamp:       "file": the fields stay in the range that they have in the file, also between its points
     scheme:      mcq (smooth, through the control points), cc (Catmull-Clark), bsxw (Bajaj-Schaefer-Warren-Xu), linear; of
                  tetrahedra as tetrahedra: tetoct, boxspline [mcq, cc, bsxw, linear, tetoct, boxspline]
     tension:     of mcq: 0 is linear; 1/16 reproduces cubics [0 to 0.125; with scheme='mcq']
-    crease_angle: keep boundary edges sharp that bend by more than this, in degrees (tetoct, boxspline: 60) [0 to 180]
+    crease_angle: keep boundary edges sharp that bend by more than this, in degrees; none: none (default: of a file without
+                 creases 40, on round bodies of few cells 60; of tetoct and boxspline always 60) [none]
     reach:       places outside, at most this far from the boundary, get the values of its nearest point [0 or more]
     """
 
 def rasterize(
-    what: Union[HexMesh, RbfVolume], *, fields: Optional[Sequence[str]] = None, scheme: str = 'mcq',
-    tension: float = 0.0625, crease_angle: Optional[float] = None, voxel_size: Optional[float] = None,
-    resolution: int = 200, half: bool = False, cell_ids: bool = False, mask: bool = False, coverage: bool = False,
-    levels: Optional[int] = None, sdf: Optional[str] = None, half_width: float = 3.0, progress: Progress = None
+    what: Union[HexMesh, RbfVolume], *, fields: Optional[Sequence[str]] = None, clamp: Optional[str] = None,
+    scheme: str = 'mcq', tension: float = 0.0625, crease_angle: Optional[Union[float, str]] = None,
+    voxel_size: Optional[float] = None, resolution: int = 200, half: bool = False, cell_ids: bool = False,
+    mask: bool = False, coverage: bool = False, levels: Optional[int] = None, sdf: Optional[str] = None,
+    half_width: float = 3.0, progress: Progress = None
 ) -> list[Grid]:
     """The grids that `write_vdb` writes, in memory.
 
     fields:      scalars become grids of floats, vectors grids of vectors; None: the most sensible scalar, said in a warning
+    clamp:       "file": the fields stay in the range that they have in the file, also between its points
     scheme:      mcq (smooth, through the control points), cc (Catmull-Clark), bsxw (Bajaj-Schaefer-Warren-Xu), linear [mcq,
                  cc, bsxw, linear]
     tension:     of mcq: 0 is linear; 1/16 reproduces cubics [0 to 0.125; with scheme='mcq']
-    crease_angle: keep boundary edges sharp that bend by more than this, in degrees (tetoct, boxspline: 60) [0 to 180]
+    crease_angle: keep boundary edges sharp that bend by more than this, in degrees; none: none (default: of a file without
+                 creases 40, on round bodies of few cells 60; of tetoct and boxspline always 60) [none]
     voxel_size:  edge of a voxel in world units [more than 0]
     resolution:  voxels along the longest side of the bounding box [1 to 1048576; not with voxel_size]
     half:        store floats in 16 bits
@@ -337,9 +364,10 @@ def rasterize(
     """
 
 def read_mesh(
-    path: Path, *, other_cells: str = 'split', weld: Optional[float] = None, curved: Union[float, str] = '5e-06',
-    cell_values: str = 'auto', patch_values: str = 'normal', step: Optional[int] = None, time: Optional[float] = None,
-    blocks: Sequence[str] = (), sharp: Sequence[str] = ()
+    path: Path, *, clamp: Optional[str] = None, other_cells: str = 'split', weld: Optional[float] = None,
+    curved: Union[float, str] = '5e-06', cell_values: str = 'auto', patch_values: str = 'normal',
+    step: Optional[int] = None, time: Optional[float] = None, blocks: Sequence[str] = (), sharp: Sequence[str] = (),
+    mesh: str = '', crease_angle: Union[float, str] = 'auto'
 ) -> HexMesh:
     """Reads a mesh. The contents and the extension decide the format; docs/formats.md has the list. Formats that the library does not
     read but meshio does (MED, Nastran, SU2, FLAC3D and others) are read by meshio, without their sets and steps.
@@ -347,14 +375,16 @@ def read_mesh(
     The names of the file are in `mesh.patches`, by name (n,2): a cell and its side, u=0, u=1, v=0, v=1, w=0 or w=1, and in
     `mesh.sets`, by name (n,): cells. `warp`, `only`, `subdivide` and `write_mesh` keep them.
 
+    clamp:       "file": the fields stay in the range that they have in the file, also between its points
     other_cells: what to do with tetrahedra, prisms and pyramids: split (all cells, into hexahedra), ignore, refuse [split,
                  ignore, refuse]
     weld:        join points of a file whose distance is at most D; 0: those at the same place [0 or more]
     curved:      split curved hexahedra into smaller ones, to within this part T of the mesh's size from their true shape,
                  and 400 T of the fields' ranges; corners: use nothing but their corners [corners]
-    cell_values: values at cells become values at points: fit (the volume follows the cells' means without waves; the
-                 default for OpenFOAM), mean (of the cells around each point; the default for all others), exact (the volume
-                 has the cells' means), auto [auto, fit, mean, exact]
+    cell_values: what values at cells are: fit (the volume follows the cells' means without waves; the default for
+                 OpenFOAM), mean (values at points, of the cells around each; the default for all others), exact (the volume
+                 has the cells' means), constant (as they are, in each cell; the default for integers, such as materials),
+                 auto [auto, fit, mean, exact, constant]
     patch_values: what OpenFOAM has on patches of the boundary: normal (points there get it, but of vectors at walls only
                  the component along the normal: integrals over the volume hardly change; not with cell_values exact), meet
                  (vectors at walls get all of it, such as a velocity of 0), ignore [meet, normal, ignore]
@@ -363,6 +393,10 @@ def read_mesh(
     blocks:      the named parts of the mesh to read (info lists them; default: all)
     sharp:       a group of the file whose faces inside the mesh and edges are kept sharp: a physical group of Gmsh by its
                  name or number, a reference of MEDIT, or Ridges (repeatable)
+    mesh:        of a .frd file of CalculiX, the deck that it has the results of: its sets of elements and surfaces become
+                 sets and patches
+    crease_angle: keep boundary edges sharp that bend by more than this, in degrees; none: none; auto: those that bend by
+                 more than 40, and on round bodies of few cells by more than 60, unless the file has creases [auto, none]
 
     Warns (SubvolWarning) once for each thing left out, turned round or converted.
     Raises FileError if the file cannot be opened; InvalidInput, with file and line, if it is malformed; MissingCapability if meshio is
@@ -391,16 +425,17 @@ def render(
     size: tuple[int, int] = (512, 512), field: Optional[str] = None, tf: Union[None, str, TransferFunction] = None,
     patch: Union[None, str, Sequence[str]] = None, part_opacity: Union[None, str, Sequence[str]] = None,
     ray_ends: Optional[npt.ArrayLike] = None, seeds: Union[None, str, Sequence[str], npt.ArrayLike] = None,
-    scheme: str = 'mcq', tension: float = 0.0625, crease_angle: Optional[float] = None, levels: Optional[int] = None,
-    per_edge: int = 1, spacing: float = 0.0, tolerance: float = 0.0, centers: bool = False, values: str = 'scheme',
+    clamp: Union[bool, str] = False, scheme: str = 'mcq', tension: float = 0.0625,
+    crease_angle: Optional[Union[float, str]] = None, levels: Optional[int] = None, per_edge: int = 1,
+    spacing: float = 0.0, tolerance: float = 0.0, centers: bool = False, values: str = 'scheme',
     kernel: Kernel = 'compact', value_kernel: Kernel = 'paper_bc', correction: str = 'second', backend: str = 'auto',
     device: Optional[int] = None, sheets: int = 0, shadows: bool = False, ambient_occlusion: float = 0.0,
     samples: Optional[int] = None, image_tolerance: Optional[float] = None, order: str = 'topological',
     kbuffer: int = 6, lod: Optional[float] = None, seconds: Optional[float] = None, shade: bool = False,
     color_field: Optional[str] = None, clip: Optional[npt.ArrayLike] = None, clip_box: Optional[npt.ArrayLike] = None,
     slice: Optional[npt.ArrayLike] = None, around: bool = False, look: Optional[str] = None,
-    opacity_unit: Optional[float] = None, clamp: bool = False, range: Optional[str] = None,
-    opacity: Optional[str] = None, iso: Union[float, str] = '', log: bool = False, symlog: Optional[float] = None,
+    opacity_unit: Optional[float] = None, range: Optional[str] = None, opacity: Optional[str] = None,
+    iso: Optional[Union[float, str]] = None, log: bool = False, symlog: Optional[float] = None,
     bands: Optional[int] = None, below: Optional[str] = None, above: Optional[str] = None, view: str = 'iso',
     fit: bool = False, ortho: bool = False, streamlines: str = '', seed_count: int = 30, stream_direction: str = 'both',
     stream_length: Optional[float] = None, stream_time: Optional[float] = None, stream_tolerance: float = 1e-06,
@@ -426,7 +461,8 @@ def render(
     scheme:      mcq (smooth, through the control points), cc (Catmull-Clark), bsxw (Bajaj-Schaefer-Warren-Xu), linear [mcq,
                  cc, bsxw, linear]
     tension:     of mcq: 0 is linear; 1/16 reproduces cubics [0 to 0.125; with scheme='mcq']
-    crease_angle: keep boundary edges sharp that bend by more than this, in degrees (tetoct, boxspline: 60) [0 to 180]
+    crease_angle: keep boundary edges sharp that bend by more than this, in degrees; none: none (default: of a file without
+                 creases 40, on round bodies of few cells 60; of tetoct and boxspline always 60) [none]
     levels:      draw the refined mesh of this level (default for tets and pt: 1, if large 0; others: the limit) [0 to 10]
     per_edge:    sample intervals per cell edge; 1 is one kernel per control point [1 to 64]
     spacing:     distance between samples in world units, instead of per_edge; for a grid, rounded to whole voxels (default:
@@ -513,16 +549,18 @@ def render(
     glyph_count: the number of arrows, at most one in each cell [1 to 1000000; with glyphs]
     glyph_size:  the length of the longest arrow, as a part of the diagonal [0.0001 to 1; with glyphs]
 
+    clamp may also be "file": the fields stay in the range that they have in the file, also between its points.
     Cuts are rows of six numbers, each a list or an array. Returns an Image: `numpy.asarray(image)` is (height, width, 4) float32,
     linear, premultiplied, without a copy. Its `report` has counts and seconds.
     """
 
 def sample(
     mesh: HexMesh, field: Optional[str] = None, per_edge: int = 1, *, footprint: Optional[Camera] = None,
-    footprint_size: tuple[int, int] = (512, 512), levels: Optional[int] = None, scheme: str = 'mcq',
-    tension: float = 0.0625, crease_angle: Optional[float] = None, spacing: float = 0.0, tolerance: float = 0.0,
-    centers: bool = False, values: str = 'scheme', kernel: Kernel = 'compact', value_kernel: Kernel = 'paper_bc',
-    correction: str = 'second', boundary_levels: Optional[int] = None, progress: Progress = None
+    footprint_size: tuple[int, int] = (512, 512), levels: Optional[int] = None, clamp: Optional[str] = None,
+    scheme: str = 'mcq', tension: float = 0.0625, crease_angle: Optional[Union[float, str]] = None,
+    spacing: float = 0.0, tolerance: float = 0.0, centers: bool = False, values: str = 'scheme',
+    kernel: Kernel = 'compact', value_kernel: Kernel = 'paper_bc', correction: str = 'second',
+    boundary_levels: Optional[int] = None, progress: Progress = None
 ) -> RbfVolume:
     """Samples the limit of a mesh into kernels: one for each control point, or more.
 
@@ -530,10 +568,12 @@ def sample(
     footprint:   instead of per_edge: at most 1.5 pixels apart as this camera sees them in a picture of `footprint_size`
     levels:      sample the trilinear cells of this level instead of the limit; with the schemes "tetoct" and "boxspline", which
                  have one kernel at each point of a level of tetrahedra, that level (None: 1)
+    clamp:       "file": the fields stay in the range that they have in the file, also between its points
     scheme:      mcq (smooth, through the control points), cc (Catmull-Clark), bsxw (Bajaj-Schaefer-Warren-Xu), linear [mcq,
                  cc, bsxw, linear]
     tension:     of mcq: 0 is linear; 1/16 reproduces cubics [0 to 0.125; with scheme='mcq']
-    crease_angle: keep boundary edges sharp that bend by more than this, in degrees (tetoct, boxspline: 60) [0 to 180]
+    crease_angle: keep boundary edges sharp that bend by more than this, in degrees; none: none (default: of a file without
+                 creases 40, on round bodies of few cells 60; of tetoct and boxspline always 60) [none]
     per_edge:    sample intervals per cell edge; 1 is one kernel per control point [1 to 64]
     spacing:     distance between samples in world units, instead of per_edge; for a grid, rounded to whole voxels (default:
                  one kernel per voxel) [more than 0; not with per_edge]
@@ -552,34 +592,39 @@ def sample(
     """
 
 def slice(
-    mesh: HexMesh, point: Sequence[float], normal: Sequence[float], field: Optional[str] = None, *, scheme: str = 'mcq',
-    tension: float = 0.0625, crease_angle: Optional[float] = None, resolution: int = 512, progress: Progress = None
+    mesh: HexMesh, point: Sequence[float], normal: Sequence[float], field: Optional[str] = None, *,
+    clamp: Optional[str] = None, scheme: str = 'mcq', tension: float = 0.0625,
+    crease_angle: Optional[Union[float, str]] = None, resolution: int = 512, progress: Progress = None
 ) -> Slice:
     """A field of the limit where a plane cuts it, seen from where the normal points.
 
+    clamp:       "file": the fields stay in the range that they have in the file, also between its points
     scheme:      mcq (smooth, through the control points), cc (Catmull-Clark), bsxw (Bajaj-Schaefer-Warren-Xu), linear [mcq,
                  cc, bsxw, linear]
     tension:     of mcq: 0 is linear; 1/16 reproduces cubics [0 to 0.125; with scheme='mcq']
-    crease_angle: keep boundary edges sharp that bend by more than this, in degrees (tetoct, boxspline: 60) [0 to 180]
+    crease_angle: keep boundary edges sharp that bend by more than this, in degrees; none: none (default: of a file without
+                 creases 40, on round bodies of few cells 60; of tetoct and boxspline always 60) [none]
     resolution:  places along the longer side [2 to 20000]
     """
 
 def streamlines(
     mesh: HexMesh, vector: str, seeds: Union[None, str, Sequence[str], npt.ArrayLike] = None, *,
-    path: Optional[Path] = None, scheme: str = 'mcq', tension: float = 0.0625, crease_angle: Optional[float] = None,
-    seed_count: int = 30, stream_direction: str = 'both', stream_length: Optional[float] = None,
-    stream_time: Optional[float] = None, stream_tolerance: float = 1e-06, stream_step: float = 0.01,
-    progress: Progress = None
+    path: Optional[Path] = None, clamp: Optional[str] = None, scheme: str = 'mcq', tension: float = 0.0625,
+    crease_angle: Optional[Union[float, str]] = None, seed_count: int = 30, stream_direction: str = 'both',
+    stream_length: Optional[float] = None, stream_time: Optional[float] = None, stream_tolerance: float = 1e-06,
+    stream_step: float = 0.01, progress: Progress = None
 ) -> StreamlineSet:
     """Streamlines of a vector field of the limit, such as "U" or "grad(T)", by Dormand and Prince's method.
 
     seeds:       places (n,3); or texts: "at:x,y,z", "line:x0,y0,z0,x1,y1,z1", "disk:x,y,z,nx,ny,nz,r", "sphere:x,y,z,r",
                  "box:x0,y0,z0,x1,y1,z1"; None: the middles of cells
     path:        also write them: .vtp, .csv
+    clamp:       "file": the fields stay in the range that they have in the file, also between its points
     scheme:      mcq (smooth, through the control points), cc (Catmull-Clark), bsxw (Bajaj-Schaefer-Warren-Xu), linear [mcq,
                  cc, bsxw, linear]
     tension:     of mcq: 0 is linear; 1/16 reproduces cubics [0 to 0.125; with scheme='mcq']
-    crease_angle: keep boundary edges sharp that bend by more than this, in degrees (tetoct, boxspline: 60) [0 to 180]
+    crease_angle: keep boundary edges sharp that bend by more than this, in degrees; none: none (default: of a file without
+                 creases 40, on round bodies of few cells 60; of tetoct and boxspline always 60) [none]
     seed_count:  how many seeds: of each text that says where they are, or of middles of cells [1 to 100000]
     stream_direction: follow the field both ways, forward or backward [both, forward, backward]
     stream_length: no streamline is longer to either side of its seed (default: two diagonals of the body) [more than 0]
@@ -590,7 +635,7 @@ def streamlines(
 
 def subdivide(
     mesh: HexMesh, levels: int = 1, scheme: str = 'mcq', *, on_limit: bool = False, tension: float = 0.0625,
-    crease_angle: Optional[float] = None, progress: Progress = None
+    crease_angle: Optional[Union[float, str]] = None, progress: Progress = None
 ) -> HexMesh:
     """Refines a mesh: each level splits a cell into eight. Points and fields follow the scheme.
 
@@ -602,25 +647,29 @@ def subdivide(
     scheme:      mcq (smooth, through the control points), cc (Catmull-Clark), bsxw (Bajaj-Schaefer-Warren-Xu), linear; of
                  tetrahedra as tetrahedra: tetoct, boxspline [mcq, cc, bsxw, linear, tetoct, boxspline]
     tension:     of mcq: 0 is linear; 1/16 reproduces cubics [0 to 0.125; with scheme='mcq']
-    crease_angle: keep boundary edges sharp that bend by more than this, in degrees (tetoct, boxspline: 60) [0 to 180]
+    crease_angle: keep boundary edges sharp that bend by more than this, in degrees; none: none (default: of a file without
+                 creases 40, on round bodies of few cells 60; of tetoct and boxspline always 60) [none]
     levels:      number of refinements [0 to 10]
     """
 
 def surface(
     mesh: HexMesh, iso: Union[float, Sequence[float], None] = None, field: Optional[str] = None, *,
     boundary: Optional[bool] = None, path: Optional[Path] = None, origin: Optional[npt.ArrayLike] = None,
-    scheme: str = 'mcq', tension: float = 0.0625, crease_angle: Optional[float] = None, cap: bool = False,
-    tolerance: float = 0.001, max_level: int = 6, progress: Progress = None
+    clamp: Optional[str] = None, scheme: str = 'mcq', tension: float = 0.0625,
+    crease_angle: Optional[Union[float, str]] = None, cap: bool = False, tolerance: float = 0.001, max_level: int = 6,
+    progress: Progress = None
 ) -> SurfaceMesh:
     """Isosurfaces of a field of the limit, and its boundary, as triangles.
 
     iso:         a value, or several; None: the boundary alone
     path:        also write it: .ply, .stl, .vtp, .obj, .glb, .vtkhdf
     origin:      the file's points are relative to this place (3,): .stl rounds to 32-bit floats; None: (0, 0, 0)
+    clamp:       "file": the fields stay in the range that they have in the file, also between its points
     scheme:      mcq (smooth, through the control points), cc (Catmull-Clark), bsxw (Bajaj-Schaefer-Warren-Xu), linear [mcq,
                  cc, bsxw, linear]
     tension:     of mcq: 0 is linear; 1/16 reproduces cubics [0 to 0.125; with scheme='mcq']
-    crease_angle: keep boundary edges sharp that bend by more than this, in degrees (tetoct, boxspline: 60) [0 to 180]
+    crease_angle: keep boundary edges sharp that bend by more than this, in degrees; none: none (default: of a file without
+                 creases 40, on round bodies of few cells 60; of tetoct and boxspline always 60) [none]
     boundary:    the boundary of the volume (the default without iso)
     cap:         close each isosurface with the part of the boundary where the field is at least its value [with iso]
     tolerance:   how far triangles may lie from the limit, as a part of the longest side of the box [more than 0, at most 1]
@@ -659,19 +708,21 @@ def write_series(
 
 def write_vdb(
     what: Union[HexMesh, RbfVolume, Grid, Sequence[Grid]], path: Path, *, fields: Optional[Sequence[str]] = None,
-    nano: bool = False, scheme: str = 'mcq', tension: float = 0.0625, crease_angle: Optional[float] = None,
-    voxel_size: Optional[float] = None, resolution: int = 200, half: bool = False, cell_ids: bool = False,
-    mask: bool = False, coverage: bool = False, levels: Optional[int] = None, sdf: Optional[str] = None,
-    half_width: float = 3.0, progress: Progress = None
+    nano: bool = False, clamp: Optional[str] = None, scheme: str = 'mcq', tension: float = 0.0625,
+    crease_angle: Optional[Union[float, str]] = None, voxel_size: Optional[float] = None, resolution: int = 200,
+    half: bool = False, cell_ids: bool = False, mask: bool = False, coverage: bool = False,
+    levels: Optional[int] = None, sdf: Optional[str] = None, half_width: float = 3.0, progress: Progress = None
 ) -> list[dict[str, Any]]:
     """Writes the limit of a mesh, sums of kernels, or grids as `.vdb`: cubic voxels, values at their centres, active inside the volume.
 
     fields:      scalars become grids of floats, vectors grids of vectors; None: the most sensible scalar, said in a warning
     nano:        also writes `.nvdb`
+    clamp:       "file": the fields stay in the range that they have in the file, also between its points
     scheme:      mcq (smooth, through the control points), cc (Catmull-Clark), bsxw (Bajaj-Schaefer-Warren-Xu), linear [mcq,
                  cc, bsxw, linear]
     tension:     of mcq: 0 is linear; 1/16 reproduces cubics [0 to 0.125; with scheme='mcq']
-    crease_angle: keep boundary edges sharp that bend by more than this, in degrees (tetoct, boxspline: 60) [0 to 180]
+    crease_angle: keep boundary edges sharp that bend by more than this, in degrees; none: none (default: of a file without
+                 creases 40, on round bodies of few cells 60; of tetoct and boxspline always 60) [none]
     voxel_size:  edge of a voxel in world units [more than 0]
     resolution:  voxels along the longest side of the bounding box [1 to 1048576; not with voxel_size]
     half:        store floats in 16 bits

@@ -37,6 +37,21 @@ def needed(given: Any, kinds: Union[type[Kind], tuple[type[Any], ...]], what: st
     return given  # type: ignore[no-any-return]
 
 
+def clamped(what: Kind, clamp: Union[None, bool, str]) -> Kind:
+    """A mesh whose fields stay in the range of the file if `clamp` is "file", as `--clamp file` of the command; others as they are."""
+    if clamp is None or isinstance(clamp, bool):
+        return what
+    if clamp != "file":
+        raise InvalidInput(f"clamp: '{clamp}' is unknown (file)", "clamp", "file")
+    from . import _core
+
+    if not isinstance(what, _core.HexMesh):
+        raise InvalidInput("clamp: 'file' is of the fields of a mesh", "clamp", "a mesh")
+    bounded: Any = _core.bounded(what)
+    bounded.clamped = True  # so that quantities of its fields stay in their range, too
+    return bounded  # type: ignore[no-any-return]
+
+
 def warn(text: str, level: int = 3) -> None:
     """Warns on behalf of the function that called ours."""
     if text:

@@ -43,10 +43,15 @@ def from_meshio(mesh: Any) -> HexMesh:
     return HexMesh(points, np.concatenate(blocks), _fields(mesh.point_data, len(points)))
 
 
+def _at_points(mesh: HexMesh) -> dict[str, Any]:
+    return {name: values for name, values in mesh.fields.items() if name not in mesh.cell_fields}
+
+
 def to_meshio(mesh: HexMesh) -> Any:
-    """A `meshio.Mesh` with all fields. The points are this mesh's memory, and read-only."""
+    """A `meshio.Mesh` with all fields, those at cells at the cells. The points are this mesh's memory, and read-only."""
     meshio = importlib.import_module("meshio")
-    return meshio.Mesh(mesh.points, [("hexahedron", mesh.cells)], point_data=dict(mesh.fields))
+    at_cells = {name: [values] for name, values in mesh.cell_fields.items()}
+    return meshio.Mesh(mesh.points, [("hexahedron", mesh.cells)], point_data=_at_points(mesh), cell_data=at_cells)
 
 
 def from_pyvista(grid: Any) -> HexMesh:
@@ -64,11 +69,13 @@ def from_pyvista(grid: Any) -> HexMesh:
 
 
 def to_pyvista(mesh: HexMesh) -> Any:
-    """A `pyvista.UnstructuredGrid` with all fields."""
+    """A `pyvista.UnstructuredGrid` with all fields, those at cells at the cells."""
     pyvista = importlib.import_module("pyvista")
     grid = pyvista.UnstructuredGrid({_VTK_HEXAHEDRON: mesh.cells.astype(np.int64)}, mesh.points)
-    for name, values in mesh.fields.items():
+    for name, values in _at_points(mesh).items():
         grid.point_data[name] = values
+    for name, values in mesh.cell_fields.items():
+        grid.cell_data[name] = values
     return grid
 
 
@@ -138,10 +145,11 @@ def to_vtk(mesh: HexMesh) -> Any:
     grid = model.vtkUnstructuredGrid()
     grid.SetPoints(points)
     grid.SetCells(_VTK_HEXAHEDRON, cells)
-    for name, values in mesh.fields.items():
-        array = support.numpy_to_vtk(values)
-        array.SetName(name)
-        grid.GetPointData().AddArray(array)
+    for data, fields in ((grid.GetPointData(), _at_points(mesh)), (grid.GetCellData(), mesh.cell_fields)):
+        for name, values in fields.items():
+            array = support.numpy_to_vtk(values)
+            array.SetName(name)
+            data.AddArray(array)
     named: dict[str, Any] = {**_core.vtk_field_arrays(mesh), **_core.vtk_set_arrays(mesh)}
     for name, numbers in named.items():
         array = support.numpy_to_vtk(numbers, deep=True)

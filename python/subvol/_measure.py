@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core
-from ._arguments import TET_SCHEMES, Path, needed, path_bytes, warn
+from ._arguments import TET_SCHEMES, Path, clamped, needed, path_bytes, warn
 from ._core import HexMesh, RbfVolume
 from ._errors import InvalidInput
 from ._options import described
@@ -61,15 +61,18 @@ def points_error(volume: RbfVolume, mesh: HexMesh, field: Optional[str] = None, 
 
 
 @described
-def probe(mesh: HexMesh, places: npt.ArrayLike, *, levels: Optional[int] = None, progress: Progress = None, **options: Any) -> ProbeSamples:
+def probe(mesh: HexMesh, places: npt.ArrayLike, *, levels: Optional[int] = None, clamp: Optional[str] = None, progress: Progress = None,
+          **options: Any) -> ProbeSamples:
     """All fields of the limit, with their gradients, at places in the world, (n,3): exact, not interpolated in cells.
 
     The volume of the schemes "tetoct" and "boxspline" is linear between the vertices of a level of tetrahedra (docs/schemes.md); cells
     are those tetrahedra, and there are no parameters (nan).
 
     levels:      of "tetoct" and "boxspline", 0 to 8; None: 2
+    clamp:       "file": the fields stay in the range that they have in the file, also between its points
     {keywords}
     """
+    mesh = clamped(mesh, clamp)
     places = np.asarray(places)
     if levels is not None and options.get("scheme") not in TET_SCHEMES:
         raise InvalidInput("levels: the limit is probed, not a level", "levels", "None, or the scheme tetoct or boxspline")
@@ -81,22 +84,29 @@ def probe(mesh: HexMesh, places: npt.ArrayLike, *, levels: Optional[int] = None,
 
 @described
 def measure(mesh: HexMesh, *, only: Union[str, Sequence[str]] = (), patch: Union[str, Sequence[str], None] = None,
-            flux: Optional[str] = None, progress: Progress = None, **options: Any) -> Any:
+            flux: Optional[str] = None, clamp: Optional[str] = None, progress: Progress = None, **options: Any) -> Any:
     """The volume of the limit, and of each field its integral, mean, extremes with their places, and histogram.
 
     Returns cells, volume, error (an estimate of how far off the volume is, as a part of it, and each mean, as a part of its field's
     range), and fields: a dictionary by name of integral, mean, min, min_at, max, max_at, extreme_error (how far beyond these the limit
-    may go), histogram (the volume in each of `bins` equal intervals from min to max).
+    may go), histogram (the volume in each of `bins` equal intervals from min to max); and parts: the same of each set of `mesh.sets`, which
+    may have cells in common. file_volume, file_mean, file_integral, file_min, file_min_at and so on are those of the cells as they were
+    given; a warning says where the limit has more than 1 % more or less volume, or leaves a field's range by more than 1 %.
 
-    only:        a region, or several of which all hold, as of `only`; parts of space are cut exactly out of the limit
+    only:        a region, or several of which all hold, as of `only`; parts of space are cut exactly out of the limit, and cells are
+                 measured where they lie in the limit of the whole mesh
     patch:       a patch of the boundary, of `mesh.patches`: returns name, faces, area, normal (its integral), error, and fields: by name
-                 integral, mean, min, max, extreme_error. Several: a list of these. Regions choose whole cells then
+                 integral, mean, min, min_at, max, max_at, extreme_error, and file_ figures. Several: a list of these. Regions choose whole
+                 cells then
     flux:        with `patch`, a vector such as "U" or "grad(T)": also flux, its flow out through the patch, and throughput, without sign
+    clamp:       "file": the fields stay in the range that they have in the file, also between its points
     {keywords}
     """
+    of_model = getattr(mesh, "is_model", False)
+    mesh = clamped(mesh, clamp)
     if patch is not None:
         names = [patch] if isinstance(patch, str) else list(patch)
-        left = mesh if not only else _core.only(mesh, [only] if isinstance(only, str) else list(only))
+        left = mesh if not only else _core.only(mesh, [only] if isinstance(only, str) else list(only), 2)[0]
         with listening(progress) as listener:
             patches = _core.measure_patches(left, names, flux, listener, **options)
         return patches[0] if isinstance(patch, str) else patches
@@ -104,6 +114,9 @@ def measure(mesh: HexMesh, *, only: Union[str, Sequence[str]] = (), patch: Union
         raise InvalidInput("flux: goes through a patch", "flux", "patch=NAME with it")
     with listening(progress) as listener:
         found: dict[str, Any] = _core.measure(mesh, [only] if isinstance(only, str) else list(only), listener, **options)
+    for said in found.pop("warnings"):
+        if not of_model:  # the limit of a model is what is meant
+            warn(said)
     return found
 
 
@@ -152,7 +165,7 @@ def approximate_series(onto: HexMesh, steps: Iterable[Union[HexMesh, tuple[float
 
 
 def read_surface(path: Path) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.int64]]:
-    """The points (n,3) and triangles (m,3) of an .stl, .obj or .ply file. Polygons become fans of triangles."""
+    """The points (n,3) and triangles (m,3) of an .stl, .obj, .ply or .glb file. Polygons become fans of triangles."""
     points, triangles = _core.read_surface(path_bytes(path))
     return points, triangles
 
@@ -242,7 +255,9 @@ def mend_folds(mesh: HexMesh, *, progress: Progress = None, **options: Any) -> t
 @dataclass(frozen=True)
 class Slice:
     """field: its name; values: (height,width), nan outside; gradients: (height,width,3); cells: (height,width), -1 outside; the place of
-    values[row, column] is origin + column * right + row * down"""
+    values[row, column] is origin + column * right + row * down; min, min_at, max, max_at: the extremes of the limit on the plane, also
+    between these places; area and mean: of what the plane cuts; file_area, file_mean, file_min,
+    file_min_at, file_max, file_max_at: those of the cells as they were given"""
 
     field: str
     values: npt.NDArray[np.float64]
@@ -251,16 +266,29 @@ class Slice:
     origin: npt.NDArray[np.float64]
     right: npt.NDArray[np.float64]
     down: npt.NDArray[np.float64]
+    min: float
+    min_at: tuple[float, float, float]
+    max: float
+    max_at: tuple[float, float, float]
+    file_min: float
+    file_min_at: tuple[float, float, float]
+    file_max: float
+    file_max_at: tuple[float, float, float]
+    area: float
+    mean: float
+    file_area: float
+    file_mean: float
 
 
 @described
-def slice(mesh: HexMesh, point: Sequence[float], normal: Sequence[float], field: Optional[str] = None, *, progress: Progress = None,
-          **options: Any) -> Slice:
+def slice(mesh: HexMesh, point: Sequence[float], normal: Sequence[float], field: Optional[str] = None, *, clamp: Optional[str] = None,
+          progress: Progress = None, **options: Any) -> Slice:
     """A field of the limit where a plane cuts it, seen from where the normal points.
 
+    clamp:       "file": the fields stay in the range that they have in the file, also between its points
     {keywords}
     """
-    chosen = _selected(mesh, field)
+    chosen = _selected(clamped(mesh, clamp), field)
     with listening(progress) as listener:
         found: dict[str, Any] = _core.slice(chosen, next(iter(chosen.fields)), [float(x) for x in point], [float(x) for x in normal], listener,
                                             **options)
@@ -300,14 +328,16 @@ class StreamlineSet:
 
 @described
 def streamlines(mesh: HexMesh, vector: str, seeds: Union[None, str, Sequence[str], npt.ArrayLike] = None, *, path: Optional[Path] = None,
-                progress: Progress = None, **options: Any) -> StreamlineSet:
+                clamp: Optional[str] = None, progress: Progress = None, **options: Any) -> StreamlineSet:
     """Streamlines of a vector field of the limit, such as "U" or "grad(T)", by Dormand and Prince's method.
 
     seeds:       places (n,3); or texts: "at:x,y,z", "line:x0,y0,z0,x1,y1,z1", "disk:x,y,z,nx,ny,nz,r", "sphere:x,y,z,r",
                  "box:x0,y0,z0,x1,y1,z1"; None: the middles of cells
     path:        also write them: .vtp, .csv
+    clamp:       "file": the fields stay in the range that they have in the file, also between its points
     {keywords}
     """
+    mesh = clamped(mesh, clamp)
     with listening(progress) as listener:
         found: dict[str, Any] = _core.streamlines(mesh, vector, seeds, None if path is None else os.fsdecode(path), listener, **options)
     for said in found["report"].pop("warnings", []):
@@ -317,12 +347,14 @@ def streamlines(mesh: HexMesh, vector: str, seeds: Union[None, str, Sequence[str
 
 @described
 def surface(mesh: HexMesh, iso: Union[float, Sequence[float], None] = None, field: Optional[str] = None, *, boundary: Optional[bool] = None,
-            path: Optional[Path] = None, origin: Optional[npt.ArrayLike] = None, progress: Progress = None, **options: Any) -> SurfaceMesh:
+            path: Optional[Path] = None, origin: Optional[npt.ArrayLike] = None, clamp: Optional[str] = None, progress: Progress = None,
+            **options: Any) -> SurfaceMesh:
     """Isosurfaces of a field of the limit, and its boundary, as triangles.
 
     iso:         a value, or several; None: the boundary alone
     path:        also write it: .ply, .stl, .vtp, .obj, .glb, .vtkhdf
     origin:      the file's points are relative to this place (3,): .stl rounds to 32-bit floats; None: (0, 0, 0)
+    clamp:       "file": the fields stay in the range that they have in the file, also between its points
     {keywords}
     """
     place = np.zeros(3) if origin is None else np.asarray(origin, dtype=float)
@@ -331,7 +363,7 @@ def surface(mesh: HexMesh, iso: Union[float, Sequence[float], None] = None, fiel
     if origin is not None and path is None:
         raise InvalidInput("origin: no file is written", "origin", "with path")
     isos = [] if iso is None else [float(value) for value in np.atleast_1d(np.asarray(iso, dtype=float))]
-    chosen = _selected(mesh, field)
+    chosen = _selected(clamped(mesh, clamp), field)
     with listening(progress) as listener:
         found: dict[str, Any] = _core.surface(chosen, next(iter(chosen.fields)), isos, None if path is None else os.fsdecode(path), list(place), listener,
                                               boundary=not isos if boundary is None else boundary, **options)

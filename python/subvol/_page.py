@@ -6,14 +6,17 @@ import html
 import os
 from typing import Any, Optional, Union
 
+import numpy as np
+
 from . import _core
-from ._arguments import Path
+from ._arguments import Path, clamped, needed
 from ._colors import TransferFunction, _camera_of, _light_of, _range_of
-from ._core import Camera, HexMesh
+from ._core import Camera, HexMesh, RbfVolume
 from ._errors import InvalidInput
 from ._options import described
 from ._points import _selected, sample
 from ._progress import Progress, listening
+from ._vdb import Grid, sample_grid
 
 
 class Page:
@@ -43,27 +46,40 @@ class Page:
 
 
 @described
-def page(mesh: HexMesh, field: Optional[str] = None, *, per_edge: int = 1, camera: Union[None, str, Camera] = None,
+def page(mesh: Union[HexMesh, Grid], field: Optional[str] = None, *, per_edge: int = 1, camera: Union[None, str, Camera] = None,
          tf: Union[None, str, TransferFunction] = None, title: str = "", unit: str = "", max_bytes: int = 24_000_000, scheme: str = "mcq",
-         progress: Progress = None, **options: Any) -> Page:
-    """A page of a field of a mesh: as `subvol page`.
+         clamp: Union[bool, str] = False, progress: Progress = None, **options: Any) -> Page:
+    """A page of a field of a mesh, or of the body within the surface of a level set: as `subvol page`.
 
     unit:        of the field, for the legend
     max_bytes:   kernels are rounded, then merged, until the page fits
-    tf may also be a TransferFunction, camera a Camera. The look isosurface is not drawn in pages.
+    tf may also be a TransferFunction, camera a Camera, clamp "file": the field stays in the range that it has in the file, also between
+    its points. The look isosurface is not drawn in pages.
     {keywords}
     """
-    chosen = _selected(mesh, field)
-    name = next(iter(chosen.fields))
-    low, high = shown = _range_of(chosen.fields[name])
-    bounds = chosen.bounds
+    needed(mesh, (HexMesh, Grid), "mesh")
+    mesh = clamped(mesh, clamp)
+    options["clamp"] = clamp is True
+    if isinstance(mesh, Grid):
+        if not mesh.report["level_set"]:
+            raise InvalidInput("mesh: the grid is fog, which has no boundary (a mesh or a level set)", "mesh", "a mesh or a level set")
+        volume, skin = sample_grid(mesh, 0, progress), None
+        chosen: Union[HexMesh, RbfVolume] = volume
+        name = next(iter(volume.values))
+        shown = _range_of(volume.values[name])
+        bounds = np.array(mesh.frame)
+    else:
+        chosen = _selected(mesh, field)
+        name = next(iter(chosen.fields))
+        shown = _range_of(chosen.fields[name])
+        bounds = chosen.bounds
+        volume, skin = sample(chosen, name, per_edge, scheme=scheme, progress=progress), _core.skin(chosen, scheme, 1 / 16, None, None)
+    low, high = shown
     light = of_volume = _light_of(options, tf, True, shown, shown, bounds)
     if light.look == "solid":  # opacities are those of the look volume, which readers can choose
         of_volume = _light_of({**options, "look": "volume"}, tf, True, shown, shown, bounds)
     knots = _core.Knots(light.knots.color, of_volume.knots.opacity)  # a body whose values are all the same is plain
     eye = _camera_of(light, options, camera, (512, 512), chosen, bounds)
-    volume = sample(chosen, name, per_edge, scheme=scheme, progress=progress)
-    skin = _core.skin(chosen, scheme, 1 / 16, None, None)
     with listening(progress) as listener:
         text, report = _core.page(volume, skin, knots, unit, low, high, light.look, eye, of_volume.opacity_unit, light.background,
                                   title or name, "a mesh in Python", max_bytes, listener)

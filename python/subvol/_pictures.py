@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core
-from ._arguments import TET_SCHEMES, Path, needed, path_bytes, warn
+from ._arguments import TET_SCHEMES, Path, clamped, needed, path_bytes, warn
 from ._colors import TransferFunction, _camera_of, _light_of, _range_of
 from ._core import Camera, Field, HexMesh, Image, RbfVolume
 from ._errors import InvalidInput
@@ -28,7 +28,8 @@ def render(what: Drawable, *, method: str = "splat", camera: Union[None, str, Ca
            field: Optional[str] = None, tf: Union[None, str, TransferFunction] = None,
            patch: Union[None, str, Sequence[str]] = None, part_opacity: Union[None, str, Sequence[str]] = None,
            ray_ends: Optional[npt.ArrayLike] = None,
-           seeds: Union[None, str, Sequence[str], npt.ArrayLike] = None, progress: Progress = None, **options: Any) -> Image:
+           seeds: Union[None, str, Sequence[str], npt.ArrayLike] = None, clamp: Union[bool, str] = False, progress: Progress = None,
+           **options: Any) -> Image:
     """Draws a mesh, points or a grid: the picture of `subvol render` with the same options, bit for bit.
 
     A keyword that has no effect with the method is refused; docs/pictures.md has the table. None leaves the default.
@@ -47,6 +48,7 @@ def render(what: Drawable, *, method: str = "splat", camera: Union[None, str, Ca
                  opacities are chosen or it is cut
     {keywords}
 
+    clamp may also be "file": the fields stay in the range that they have in the file, also between its points.
     Cuts are rows of six numbers, each a list or an array. Returns an Image: `numpy.asarray(image)` is (height, width, 4) float32,
     linear, premultiplied, without a copy. Its `report` has counts and seconds.
     """
@@ -54,25 +56,32 @@ def render(what: Drawable, *, method: str = "splat", camera: Union[None, str, Ca
         raise InvalidInput("what: a Field cannot be drawn; draw the mesh or the points that it is of", "what", "a mesh, points or a grid")
     if len(size) != 2 or not all(1 <= side <= _core.largest_side for side in size):
         raise InvalidInput(f"size: {size} is not a picture size", "size", f"width and height, 1 to {_core.largest_side}")
+    what = clamped(what, clamp)
+    options["clamp"] = clamp is True
     frame = np.array(what.frame) if isinstance(what, Grid) else None
+    level_set = isinstance(what, Grid) and what.report["level_set"]  # the body within its surface
+    if level_set and _core.draws_kernels(method) and (options.get("iso") or options.get("look") == "isosurface"):
+        raise InvalidInput("look: a level set is drawn as the surface where its distance is 0 (without iso and look='isosurface')",
+                           "look", "without iso and look='isosurface'")
     if isinstance(what, Grid) and _core.draws_kernels(method):
         what = sample_grid(what)
     needed(what, (HexMesh, RbfVolume, Grid), "what")
     given = {name: value for name, value in options.items() if value is not None and value is not False}
     color_field = options.get("color_field")
-    patches = None
+    patches = whole = None
     if patch is not None:
         if not isinstance(what, HexMesh):
             raise InvalidInput("patch: points and grids have no patches", "patch", "a mesh that was read from a file with patches")
+        whole = what
         patches = _core.choose_patches(what, [patch] if isinstance(patch, str) else list(patch))
         what = patches.mesh
         if field is None:
             field, tf = "patch", tf or "categories"
-    source = what.without_unused_points() if isinstance(what, HexMesh) and patches is None else None
+    source = whole if patches is not None else what.without_unused_points() if isinstance(what, HexMesh) else None
     if "streamlines" in given or "glyphs" in given:
         _core.check_flow(given, method, isinstance(what, HexMesh) and given.get("scheme") not in TET_SCHEMES,
                          patches is None and part_opacity is None)
-    if source is not None and ("streamlines" in given or "glyphs" in given):
+    if source is not None and patches is None and ("streamlines" in given or "glyphs" in given):
         length, thin = _core.flow_defaults(source, given)
         field, given = (length if field is None else field), {**given, **thin}
     mesh = _selected(what, field) if isinstance(what, HexMesh) else None
@@ -83,7 +92,7 @@ def render(what: Drawable, *, method: str = "splat", camera: Union[None, str, Ca
         body, shown, bounds, framed = _parts_of(what, mesh, [part_opacity] if isinstance(part_opacity, str) else list(part_opacity),
                                                 patches is not None, given)
     bounds = bounds if frame is None else frame
-    light = _light_of(given, tf, mesh is not None and not options.get("shade"), shown, colors or shown, bounds)
+    light = _light_of(given, tf, (mesh is not None or level_set) and not options.get("shade"), shown, colors or shown, bounds)
     eye = _camera_of(light, given, camera, size, framed, bounds)
     with listening(progress) as listener:
         image = _core.render(body, method, eye, (int(size[0]), int(size[1])), ray_ends, light, given, listener)
@@ -138,7 +147,7 @@ def _parts_of(what: Drawable, mesh: Optional[HexMesh], texts: list[str], patches
     if len(rest.cells):
         values = np.concatenate([next(iter(rest.fields.values())), values])
         points = np.concatenate([rest.points, points])
-    return _core.DrawnBody(mesh=rest, parts=parts), _range_of(values), np.stack([points.min(0), points.max(0)]), _core.only_points(points)
+    return _core.DrawnBody(mesh=rest, parts=parts, source=mesh), _range_of(values), np.stack([points.min(0), points.max(0)]), _core.only_points(points)
 
 
 def _channel(names: list[str], field: Optional[str]) -> int:

@@ -7,7 +7,7 @@ import math
 from typing import Any, Optional
 
 from . import _core
-from ._arguments import TET_SCHEMES, Path, extension, path_bytes, warn
+from ._arguments import TET_SCHEMES, Path, clamped, extension, path_bytes, warn
 from ._core import Camera, HexMesh, RbfVolume
 from ._errors import InvalidInput
 from ._options import described
@@ -18,22 +18,23 @@ def _selected(mesh: HexMesh, field: Optional[str]) -> HexMesh:
     """The mesh with the one field that is sampled or drawn, and without unused points: as the command has it."""
     chosen, said = _core.select_field(mesh.without_unused_points() if len(mesh.cells) else mesh, field)
     warn(said, 4)
-    return chosen
+    return clamped(chosen, "file") if getattr(mesh, "clamped", False) else chosen
 
 
 @described
 def sample(mesh: HexMesh, field: Optional[str] = None, per_edge: int = 1, *, footprint: Optional[Camera] = None,
-           footprint_size: tuple[int, int] = (512, 512), levels: Optional[int] = None, progress: Progress = None,
-           **options: Any) -> RbfVolume:
+           footprint_size: tuple[int, int] = (512, 512), levels: Optional[int] = None, clamp: Optional[str] = None,
+           progress: Progress = None, **options: Any) -> RbfVolume:
     """Samples the limit of a mesh into kernels: one for each control point, or more.
 
     field:       its name; a vector's length is taken, "name.k" is channel k; None: the most sensible scalar, said in a warning
     footprint:   instead of per_edge: at most 1.5 pixels apart as this camera sees them in a picture of `footprint_size`
     levels:      sample the trilinear cells of this level instead of the limit; with the schemes "tetoct" and "boxspline", which
                  have one kernel at each point of a level of tetrahedra, that level (None: 1)
+    clamp:       "file": the fields stay in the range that they have in the file, also between its points
     {keywords}
     """
-    chosen = _selected(mesh, field)
+    chosen = _selected(clamped(mesh, clamp), field)
     if options.get("scheme") in TET_SCHEMES:
         return _sample_tets(chosen, footprint, levels, progress, {"per_edge": per_edge, **options})
     if levels is not None:

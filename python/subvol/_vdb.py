@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, Optional, Union
 
 from . import _core
-from ._arguments import Path, extension, needed, path_bytes, warn
+from ._arguments import Path, clamped, extension, needed, path_bytes, warn
 from ._colors import TransferFunction
 from ._core import HexMesh, RbfVolume
 from ._errors import InvalidInput
@@ -54,17 +54,17 @@ _OF_POINTS = ("resolution", "voxel_size", "half")
 
 
 def _make(what: Union[HexMesh, RbfVolume], path: Optional[bytes], fields: Optional[Sequence[str]], nano: bool, progress: Progress,
-          options: dict[str, Any]) -> Any:
+          clamp: Optional[str], options: dict[str, Any]) -> Any:
     from . import _grids
 
-    needed(what, (HexMesh, RbfVolume), "what")
+    what = clamped(needed(what, (HexMesh, RbfVolume), "what"), clamp)
     with listening(progress) as listener:
         if isinstance(what, RbfVolume):
             of_meshes = [name for name, value in {**options, "fields": fields}.items() if value and name not in _OF_POINTS]
             if of_meshes:
                 raise InvalidInput(f"points: {', '.join(of_meshes)} are of meshes", "points", "all channels of points are summed")
             return _grids.rasterize_points(what, path, nano, listener, **options)
-        mesh = _with_fields(what, fields)
+        mesh = clamped(_with_fields(what, fields), clamp)
         made, change, converged = _grids.rasterize(mesh, list(mesh.fields), path, nano, listener, **options)
     if not converged:
         warn(f"the finest level within limits still changed values by {change:.2g} of their range", 4)
@@ -72,24 +72,26 @@ def _make(what: Union[HexMesh, RbfVolume], path: Optional[bytes], fields: Option
 
 
 @described
-def rasterize(what: Union[HexMesh, RbfVolume], *, fields: Optional[Sequence[str]] = None, progress: Progress = None,
-              **options: Any) -> list[Grid]:
+def rasterize(what: Union[HexMesh, RbfVolume], *, fields: Optional[Sequence[str]] = None, clamp: Optional[str] = None,
+              progress: Progress = None, **options: Any) -> list[Grid]:
     """The grids that `write_vdb` writes, in memory.
 
     fields:      scalars become grids of floats, vectors grids of vectors; None: the most sensible scalar, said in a warning
+    clamp:       "file": the fields stay in the range that they have in the file, also between its points
     {keywords}
     """
-    made: list[Grid] = _make(what, None, fields, False, progress, options)
+    made: list[Grid] = _make(what, None, fields, False, progress, clamp, options)
     return made
 
 
 @described
 def write_vdb(what: Union[HexMesh, RbfVolume, Grid, Sequence[Grid]], path: Path, *, fields: Optional[Sequence[str]] = None,
-              nano: bool = False, progress: Progress = None, **options: Any) -> list[dict[str, Any]]:
+              nano: bool = False, clamp: Optional[str] = None, progress: Progress = None, **options: Any) -> list[dict[str, Any]]:
     """Writes the limit of a mesh, sums of kernels, or grids as `.vdb`: cubic voxels, values at their centres, active inside the volume.
 
     fields:      scalars become grids of floats, vectors grids of vectors; None: the most sensible scalar, said in a warning
     nano:        also writes `.nvdb`
+    clamp:       "file": the fields stay in the range that they have in the file, also between its points
     {keywords}
 
     Returns the grids' reports: name, kind, active_voxels, voxel_size, min, max, bytes. The file appears whole or not at all.
@@ -99,12 +101,12 @@ def write_vdb(what: Union[HexMesh, RbfVolume, Grid, Sequence[Grid]], path: Path,
     if extension(path) != ".vdb":
         raise InvalidInput(f"{path!s}: has an unknown extension (.vdb)", str(path), ".vdb")
     if not isinstance(what, (HexMesh, RbfVolume)):
-        if options or fields is not None:
+        if options or fields is not None or clamp is not None:
             raise InvalidInput("what: grids are written as they are", "what", "a mesh or points")
         grids = [what] if isinstance(what, Grid) else list(what)
         _grids.write(path_bytes(path), grids, nano)
         return [grid.report for grid in grids]
-    made: list[dict[str, Any]] = _make(what, path_bytes(path), fields, nano, progress, options)
+    made: list[dict[str, Any]] = _make(what, path_bytes(path), fields, nano, progress, clamp, options)
     if made[0]["active_voxels"] == 0:
         warn(f'the grid "{made[0]["name"]}" is empty: no voxel centre lies inside')
     return made

@@ -11,10 +11,13 @@
 #include "kernel_levels.h"
 #include "picture_facts.h"
 #include "subvol/boundary_shading.h"
+#include "subvol/detail/limit_words.h"
 #include "subvol/detail/mesh_bodies.h"
+#include "subvol/detail/place_function.h"
 #include "subvol/detail/points_frame.h"
 #include "subvol/draw_shells.h"
 #include "subvol/error.h"
+#include "subvol/field_range.h"
 #include "subvol/limit.h"
 #include "subvol/progressive.h"
 #include "subvol/render_dense.h"
@@ -49,8 +52,7 @@ TransferFunction less(TransferFunction function, const std::array<double, 2>& or
 /// Moves the values of the opacities and those of the colours down.
 void move_down(HexMesh& mesh, const std::array<double, 2>& origins) {
     const auto move = [](Attribute& field, double origin) {
-        for (double& value : field.values) value -= origin;
-        for (auto& bounds : field.bounds) bounds = {bounds[0] - origin, bounds[1] - origin};
+        detail::change_values(field, [origin](double value) { return value - origin; });
     };
     move(mesh.attributes.front(), origins[0]);
     if (mesh.attributes.size() > 1) move(mesh.attributes.back(), origins[1]);
@@ -99,6 +101,7 @@ struct PictureMaker::State {
     std::array<double, 2> origins{};
     std::optional<HexMesh> relative_mesh{};
     std::optional<BoundaryValues> relative_skin{};
+    bool range_seen = false;   // whether the range of what is drawn was looked at
     bool bodies_seen = false;  // whether a picture was looked at for bodies that are too small in it
 
     /// A splatter for each way of drawing: method, samples, the part of the light at the eye (-1: not lit), and the kernels
@@ -128,6 +131,7 @@ struct PictureMaker::State {
         piece_tets.reset();
         relative_mesh.reset();
         relative_skin.reset();
+        range_seen = false;
         bodies_seen = body.moved;  // which bodies there are does not change, and moving has to be fast
     }
 
@@ -184,6 +188,25 @@ struct PictureMaker::State {
         facts.warn(std::to_string(tiny) + " of " + std::to_string(boxes.size()) +
                    " bodies in the picture are smaller than a pixel and may not be seen: a larger picture or a nearer camera "
                    "shows them");
+    }
+
+    /// Warns if the values on the boundary, or those of kernels at places of the limit, leave the range of the mesh.
+    void warn_of_range(Facts& facts) {
+        if (!body.of_file || mesh() == nullptr || mesh()->attributes.empty() || std::exchange(range_seen, true)) return;
+        const Attribute& field = mesh()->attributes.back();
+        if (field.derived || field.channels != 1 || own_values(field).empty()) return;
+        double least = std::numeric_limits<double>::infinity(), most = -least;
+        const auto look = [&](const auto& values, double origin) {
+            if (values.empty()) return;
+            const auto [low, high] = std::ranges::minmax(values);
+            least = std::min(least, low + origin);
+            most = std::max(most, high + origin);
+        };
+        if (skin) look(skin->values.back(), 0);
+        if (volume && options.kernels.are_plain() && !volume->channels.empty())
+            look(volume->channels.back().values, is_relative() ? origins[1] : 0);
+        const FieldRange range = range_of(field);
+        facts.warn(detail::range_words(field.name, range.min[0], range.max[0], least, most, options.names, true));
     }
 
     /// The mesh, if the body is one in memory; else null.
@@ -292,9 +315,15 @@ struct PictureMaker::State {
                 const RbfVolume& all = kernels(optics, progress, facts);
                 levels.emplace(all, options.lod.value_or(0), shown_channels().front(), progress, facts);
             }
-        } else if (method() != Method::Grid) {
+        } else if (method() == Method::Grid) {
+            if (is_solid() && body.voxels->is_level_set()) {
+                throw Error(ErrorCode::InvalidInput, "draws no surface, as which a level set is shown",
+                            option_name("method", options.names) + " grid", "method splat; look volume shows its distances");
+            }
+        } else {
             prepare_cells(progress, facts);
         }
+        warn_of_range(facts);
         return facts;
     }
 

@@ -24,6 +24,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <limits>
 #include <span>
 #include <string>
 
@@ -245,19 +246,28 @@ void sort_hits(std::vector<Hit>& hits, std::size_t pixels, std::vector<std::uint
     }
 }
 
+/// Whether an interval is one of a surface that folds, and not two sides of a silhouette in the wrong order, which only the
+/// roundings of their depths decide.
+bool is_long(float enter, float exit) {
+    constexpr float kRoundings = 16 * std::numeric_limits<float>::epsilon();
+    return exit - enter > kRoundings * std::max(std::abs(enter), std::abs(exit));
+}
+
 /// Turns the sorted hits of one pixel into intervals.
 void resolve(std::span<const Hit> hits, float near, std::vector<float>& depths, std::vector<std::uint32_t>& triangles) {
     int inside = 0;  // how often the surface goes round the eye, and then round the place behind each hit
     for (const Hit& hit : hits) inside -= hit.sign;
     float enter = near;
     std::uint32_t triangle = PixelIntervals::kNoTriangle;
+    bool is_turned = false;  // whether the interval begins where the ray leaves the surface
     for (const Hit& hit : hits) {
         if (inside == 0) {
             enter = hit.depth;
             triangle = hit.triangle;
+            is_turned = hit.sign < 0;
         }
         inside += hit.sign;
-        if (inside == 0 && hit.depth > enter) {
+        if (inside == 0 && hit.depth > enter && (!is_turned || is_long(enter, hit.depth))) {
             depths.push_back(enter);
             depths.push_back(hit.depth);
             triangles.push_back(triangle);

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "subvol/detail/counted_rows.h"
+
 namespace subvol::detail {
 
 namespace {
@@ -15,26 +17,12 @@ namespace {
 constexpr double kSmoothCosine = 0.766;  // of 40 degrees
 
 /// The corners around each point: corner 3i + k is corner k of triangle i.
-struct Fans {
-    std::vector<std::size_t> begin;
-    std::vector<std::uint32_t> corners;
-};
-
-Fans fans_of(const Surface& surface) {
-    Fans fans;
-    fans.begin.assign(surface.points.size() + 1, 0);
-    for (const auto& t : surface.triangles) {
-        for (const Index p : t) ++fans.begin[p + 1];
-    }
-    for (std::size_t p = 1; p < fans.begin.size(); ++p) fans.begin[p] += fans.begin[p - 1];
-    fans.corners.resize(fans.begin.back());
-    std::vector<std::size_t> next(fans.begin.begin(), fans.begin.end() - 1);
-    for (std::size_t i = 0; i < surface.triangles.size(); ++i) {
-        for (std::size_t k = 0; k < 3; ++k) {
-            fans.corners[next[surface.triangles[i][k]]++] = static_cast<std::uint32_t>(3 * i + k);
+Rows<std::uint32_t> fans_of(const Surface& surface) {
+    return counted_rows<std::uint32_t>(surface.points.size(), [&](const auto& put) {
+        for (std::size_t i = 0; i < surface.triangles.size(); ++i) {
+            for (std::size_t k = 0; k < 3; ++k) put(surface.triangles[i][k], static_cast<std::uint32_t>(3 * i + k));
         }
-    }
-    return fans;
+    });
 }
 
 /// A vector of unit length, or (0, 0, 0).
@@ -52,7 +40,7 @@ double angle_at(const Surface& surface, const std::array<Index, 3>& t, std::size
 }  // namespace
 
 std::vector<CornerNormals> corner_normals(const Surface& surface) {
-    const Fans fans = fans_of(surface);
+    const Rows<std::uint32_t> fans = fans_of(surface);
     const std::size_t count = surface.triangles.size();
     std::vector<Vec3> flat(count);
     std::vector<double> angles(3 * count);
@@ -66,8 +54,7 @@ std::vector<CornerNormals> corner_normals(const Surface& surface) {
         for (std::size_t k = 0; k < 3; ++k) {
             const Index point = surface.triangles[i][k];
             Vec3 sum(0.0);
-            for (std::size_t at = fans.begin[point]; at < fans.begin[point + 1]; ++at) {
-                const std::uint32_t corner = fans.corners[at];
+            for (const std::uint32_t corner : fans[point]) {
                 const Vec3& other = flat[corner / 3];
                 const bool smooth = flat[i] == Vec3(0.0) || glm::dot(flat[i], other) > kSmoothCosine;
                 if (smooth) sum += angles[corner] * other;

@@ -2,6 +2,7 @@
 #include "boundary_scene.h"
 
 #include "embree_line.h"
+#include "subvol/detail/counted_rows.h"
 
 namespace subvol::detail {
 
@@ -22,18 +23,11 @@ void record_hit(const RTCFilterFunctionNArguments* arguments) {
 }
 
 IndexRows faces_at_points(const TetMesh& mesh) {
-    IndexRows rows;
-    rows.offsets.assign(mesh.points.size() + 1, 0);
-    for (const TetFace face : mesh.boundary) {
-        for (const Index p : mesh.corners(face)) ++rows.offsets[p + 1];
-    }
-    for (std::size_t p = 0; p < mesh.points.size(); ++p) rows.offsets[p + 1] += rows.offsets[p];
-    rows.values.resize(rows.offsets.back());
-    auto next = rows.offsets;
-    for (const TetFace face : mesh.boundary) {
-        for (const Index p : mesh.corners(face)) rows.values[next[p]++] = face;
-    }
-    return rows;
+    return counted_rows<Index>(mesh.points.size(), [&](const auto& put) {
+        for (const TetFace face : mesh.boundary) {
+            for (const Index p : mesh.corners(face)) put(p, face);
+        }
+    });
 }
 
 }  // namespace

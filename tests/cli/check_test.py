@@ -95,7 +95,7 @@ class Check(InFolder):
 
     def test_what_has_no_proof_is_refused(self):
         for arguments, naming in ((["--tension", ".05"], "--tension: "), (["--levels", "9"], "levels"), (["--tests", "0"], "tests"),
-                                  (["--scheme", "tetoct"], "scheme")):
+                                  (["--scheme", "tetoct"], "scheme"), (["--field", "density"], "--field: has no effect")):
             done = subvol("check", "model:twist:2", *arguments, folder=self.folder)
             self.assertEqual(done.code, 2, done.err)
             self.assertIn(naming, done.err)

@@ -29,7 +29,7 @@ exec cat > "${last#file:}"
 """
 
 # The same input gives the same bytes.
-SAME_BYTES = {".vtu", ".vtkhdf", ".mesh", ".ply", ".vtp", ".svk", ".svw", ".usda", ".png", ".exr", ".svg", ".mp4"}
+SAME_BYTES = {".vtu", ".vtkhdf", ".mesh", ".ply", ".vtp", ".svk", ".svw", ".svshare", ".usda", ".png", ".exr", ".svg", ".mp4"}
 
 # The surface of a cube, as `mesh` reads it.
 CUBE = """v 0 0 0

@@ -39,8 +39,9 @@ class Ended:
         self.code, self.out, self.err, self.killed = process.returncode, out, err, killed
 
     def sentence(self):
-        """The error messages: without warnings, and without libpng's own messages, which cannot be suppressed."""
-        lines = [line for line in self.err.splitlines() if not line.startswith(("subvol: warning: ", "libpng error: "))]
+        """The error messages: without warnings and notes, and without libpng's own messages, which cannot be suppressed."""
+        others = ("subvol: warning: ", "subvol: note: ", "libpng error: ")
+        lines = [line for line in self.err.splitlines() if not line.startswith(others)]
         for word in DISASTERS:
             if word in self.err:
                 raise Problem(f"said {word!r}: {self.err[-300:]!r}")

@@ -69,6 +69,49 @@ class Probe(Refusing):
         self.assertAlmostEqual(sum(field["histogram"]), whole["volume"], delta=1e-6)
         self.assertEqual(found["parts"], [])
 
+    def test_the_cells_of_the_file_stand_beside_the_limit(self):
+        # Eight cells of a ball: a limit without its corners at the unit sphere has more volume than the cells.
+        self.run_ok("model", "ball", "--resolution", 2, "-o", "ball.vtu", "--quiet")
+        done = self.run_ok("probe", "ball.vtu", "--stats", "--density", "x*x", "--json")
+        found = done.json()["stats"]["whole"]
+        cells = self.run_ok("info", "model:ball:2", "--json").json()
+        self.assertAlmostEqual(found["file_volume"], cells["volume"], delta=1e-9)
+        self.assertGreater(found["volume"], 1.05 * found["file_volume"])
+        field = found["fields"][0]
+        self.assertAlmostEqual(field["file_max"], 1, delta=1e-6)
+        self.assertAlmostEqual(abs(field["file_max_at"][0]), 1, delta=1e-6)
+        self.assertEqual((field["file_min"], field["file_min_at"][0]), (0, 0))
+        self.assertAlmostEqual(field["file_mean"] * found["file_volume"], field["file_integral"], delta=1e-9)
+        self.assertTrue(any("more volume than the cells of the file" in line for line in done.json()["warnings"]), done.json()["warnings"])
+        said = subvol("probe", "ball.vtu", "--stats", "--density", "x*x", folder=self.folder)
+        self.assertRegex(said.out, r"volume +\S+  within \S+ of it · file \S+\n")
+        self.assertRegex(said.out, r"max \S+ at \S+  within \S+ · file 1 at point \d+\n")
+
+    def test_verbs_say_where_the_limit_is_another_body(self):
+        self.run_ok("model", "ball", "--resolution", 2, "-o", "ball.vtu", "--quiet")
+        corners = " ".join(f"{x} {y} {z}" for z in (0, 1) for x, y in ((0, 0), (1, 0), (1, 1), (0, 1)))
+        (self.folder / "cube.vtk").write_text(
+            f"# vtk DataFile Version 3.0\ncube\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 8 double\n{corners}\n"
+            "CELLS 1 9\n8 0 1 2 3 4 5 6 7\nCELL_TYPES 1\n12\nPOINT_DATA 8\nSCALARS f double 1\nLOOKUP_TABLE default\n0 1 2 3 4 5 6 7\n")
+        commands = (["vdb", "-o", "a.vdb", "--resolution", "16"], ["render", "-o", "a.png", "--size", "32x32"],
+                    ["slice", "-o", "s.png", "--resolution", "40"], ["surface", "-o", "a.ply", "--boundary"], ["info", "--limit"])
+        for command in commands:
+            for mesh, expected in (("ball.vtu", True), ("cube.vtk", False), ("model:ball:2", False)):
+                found = self.run_ok(command[0], mesh, *command[1:], "--json").json()["warnings"]
+                self.assertEqual(any("more volume than the cells of the file" in line for line in found), expected, (command, mesh, found))
+        limit = self.run_ok("info", "ball.vtu", "--limit", "--json").json()
+        whole = self.run_ok("probe", "ball.vtu", "--stats", "--json").json()["stats"]["whole"]
+        self.assertAlmostEqual(limit["limit_volume"], whole["volume"], delta=2e-3 * whole["volume"])
+        self.assertAlmostEqual(limit["volume"], whole["file_volume"], delta=1e-9)
+        self.assertAlmostEqual(limit["limit_bounds"][1][0], 1, delta=1e-9)
+
+    def test_a_body_whose_limit_is_itself_has_no_warning(self):
+        self.run_ok("model", "ball", "--resolution", 2, "-o", "ball.vtu", "--quiet")
+        done = self.run_ok("probe", "ball.vtu", "--stats", "--scheme", "linear", "--density", "x*y", "--json").json()
+        whole = done["stats"]["whole"]
+        self.assertEqual((whole["volume"], whole["fields"][0]["mean"]), (whole["file_volume"], whole["fields"][0]["file_mean"]))
+        self.assertEqual([line for line in done["warnings"] if "file" in line], [])
+
     def test_stats_of_a_named_field_are_its_alone(self):
         self.run_ok("model", "twist", "--resolution", 3, "-o", "a.vtu")
         every, alone, places = (self.run_ok("probe", "a.vtu", "--stats", *more, "--json").json()["stats"]["whole"] for more in
@@ -206,6 +249,89 @@ class Points(Refusing):
         done = subvol("points", "a.vdb", "-o", "a.ply", "--error", folder=self.folder)
         self.assertEqual(done.code, 2)
         self.assertIn("needs a mesh", done.err)
+
+
+class EveryVerb(InFolder):
+    """Where the limit is another body than the cells of the file, or leaves the range of a field, each verb says so once."""
+
+    VERBS = (["render", "-o", "a.png", "--size", "32x32"], ["view", "--screenshot", "a.png", "--size", "32x32"], ["page", "-o", "a.html", "--no-reference"],
+             ["points", "-o", "a.ply"], ["vdb", "-o", "a.vdb", "--resolution", "16"], ["slice", "-o", "a.png", "--resolution", "16"],
+             ["surface", "--boundary", "-o", "a.ply"], ["probe", "--stats"], ["info", "--limit"])
+
+    def test_another_volume(self):
+        self.run_ok("model", "ball", "--resolution", 2, "-o", "ball.vtu")
+        for verb, *more in self.VERBS:
+            with self.subTest(verb=verb):
+                said = self.run_ok(verb, "ball.vtu", *more, "--crease-angle", "none").err
+                self.assertEqual(said.count("more volume than the cells of the file: a smaller --crease-angle keeps more sharp edges, --scheme linear is the cells"), 1, said)
+                self.assertNotIn("volume than", self.run_ok(verb, "model:ball:2", *more).err)  # the limit is what is meant
+                if verb not in ("view", "info"):
+                    self.assertNotIn("volume than", self.run_ok(verb, "ball.vtu", *more, "--crease-angle", "none", "--scheme", "linear").err)
+
+    def test_values_beyond_the_range(self):
+        corners = [(x, y, z) for z in range(2) for y in range(2) for x in range(5)]
+        cells = "".join("8 " + " ".join(str(x + i + 5 * (j + 2 * k)) for i, j, k in
+                        ((0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1))) + "\n" for x in range(4))
+        (self.folder / "beam.vtk").write_text(
+            "# vtk DataFile Version 3.0\nb\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 20 double\n" + "".join("%g %g %g\n" % p for p in corners) +
+            "CELLS 4 36\n" + cells + "CELL_TYPES 4\n12\n12\n12\n12\nPOINT_DATA 20\nSCALARS T double 1\nLOOKUP_TABLE default\n" +
+            "".join("%g\n" % [0, 0, 10, 10, 0][x] for x, _, _ in corners))
+        for verb, *more in (["probe", "--stats"], ["slice", "-o", "a.png", "--resolution", "16"], ["points", "-o", "a.ply", "--per-edge", "2"],
+                            ["page", "-o", "a.html", "--no-reference"], ["vdb", "-o", "a.vdb", "--resolution", "40"],
+                            ["render", "-o", "a.png", "--size", "32x32", "--extremes"], ["render", "-o", "a.png", "--size", "32x32"],
+                            ["surface", "-o", "a.ply", "--boundary"]):
+            with self.subTest(verb=verb):
+                said = self.run_ok(verb, "beam.vtk", *more).err
+                # The cubic of MCQ between 0, 0, 10 and 10 goes down to -1.254: by 12.5 % of the range.
+                self.assertRegex(said, r"T is -1\.2\d* to 11\.[24]\d* in the limit, beyond its range in the file by (at least )?1[23] %: --clamp file keeps it within")
+                self.assertEqual(said.count("beyond its range"), 1)
+                self.assertNotIn("beyond its range", self.run_ok(verb, "beam.vtk", *more, "--clamp", "file").err)
+                # The file has no derivatives at its points, and so no range of theirs.
+                self.assertNotIn("range in the file", self.run_ok(verb, "beam.vtk", *more, "--field", "grad(T).x").err)
+        found = self.run_ok("slice", "beam.vtk", "-o", "a.png", "--resolution", "16", "--json").json()
+        self.assertAlmostEqual(found["file_min"], 0, 12)
+        self.assertAlmostEqual(found["file_max"], 10, 12)
+        self.assertLess(found["min"], -1.2)
+        self.assertTrue(2 - 1e-3 <= found["file_max_at"][0] <= 3 + 1e-3, found["file_max_at"])
+        # The plane z = 1/2 of a beam of 4: trapezoids of T have the means 0, 5, 10, 5.
+        self.assertAlmostEqual(found["file_area"], 4, 9)
+        self.assertAlmostEqual(found["file_mean"], 5, 9)
+        self.assertAlmostEqual(found["area"], 4, 9)
+        self.assertNotAlmostEqual(found["mean"], 5, 2)
+        kept = self.run_ok("points", "beam.vtk", "-o", "a.ply", "--per-edge", "2", "--clamp", "file", "--json").json()
+        self.assertGreater(kept["clamped"], 0)
+
+    def test_what_there_is_none_of_is_null(self):
+        """Derivatives have no figures of the file: nor have these a place."""
+        self.run_ok("model", "ball", "--resolution", 3, "-o", "ball.vtu", "--quiet")
+        words = ["--field", "grad(density).x", "--json"]
+        field = self.run_ok("probe", "ball.vtu", "--stats", *words).json()["stats"]["whole"]["fields"][0]
+        sliced = self.run_ok("slice", "ball.vtu", "-o", "a.png", "--resolution", "16", *words).json()
+        drawn = self.run_ok("render", "ball.vtu", "-o", "a.png", "--size", "32x32", "--extremes", *words).json()["extremes"]
+        for found in (field, sliced, drawn):
+            for name in ("min", "max"):
+                self.assertEqual((found["file_" + name], found["file_" + name + "_at"]), (None, None))
+                self.assertEqual(len(found[name + "_at"]), 3)
+        self.assertEqual((field["file_mean"], sliced["file_mean"]), (None, None))
+        self.assertGreater(sliced["file_area"], 1)
+
+    def test_folds_are_said(self):
+        """A box whose layers change their width at once: its cells are sound, and the limit overshoots."""
+        places = (0, 1, 2, 3, 3.05, 3.1, 4, 5)
+        number = lambda i, j, k: i + 8 * (j + 3 * k)
+        cells = [[number(i + a, j + b, k + c) for a, b, c in ((0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1))]
+                 for k in range(2) for j in range(2) for i in range(7)]
+        (self.folder / "jump.vtk").write_text(
+            "# vtk DataFile Version 3.0\nb\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 72 double\n"
+            + "".join(f"{x} {y} {z}\n" for z in range(3) for y in range(3) for x in places)
+            + f"CELLS {len(cells)} {9 * len(cells)}\n" + "".join("8 " + " ".join(map(str, c)) + "\n" for c in cells)
+            + f"CELL_TYPES {len(cells)}\n" + "12\n" * len(cells))
+        folded = subvol("check", "jump.vtk", "--json", folder=self.folder).json()["cells"]["folded"]
+        done = self.run_ok("probe", "jump.vtk", "--stats", "--json").json()
+        self.assertGreater(folded, 0)
+        self.assertTrue(0 < done["stats"]["folded_cells"] <= folded)
+        self.assertEqual(sum("the limit folds in at least" in line and "subvol check" in line for line in done["warnings"]), 1, done["warnings"])
+        self.assertEqual(self.run_ok("probe", "model:ball:3", "--stats", "--json").json()["stats"]["folded_cells"], 0)
 
 
 if __name__ == "__main__":

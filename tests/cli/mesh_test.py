@@ -123,13 +123,24 @@ class Mesh(InFolder):
             self.assertEqual(done.code, 2, (words, done.err))
             self.assertIn(part, done.err)
             self.assertNotIn("made.vtu", self.files())
-        for words, part in ((["ball.stl"], "ball.stl: has no fields, only a shape (--shape with it)"),
-                            (["ball.stl", "--shape", "--refine", "1"], "--refine"), (["fog.vdb", "--shape"], "--shape: has no shape"),
+        for words, part in ((["ball.stl"], "ball.stl: is a surface, which has a shape but no fields (--shape with it; `subvol mesh ball.stl -o ball.vtu` makes"),
+                            (["ball.stl", "--shape", "--refine", "1"], "--refine"), (["fog.vdb", "--shape"], "is fog, which has no surface of its own"),
                             (["model:ball:2", "--stiffness", "1"], "--stiffness")):
             done = subvol("approximate", *words, "--onto", "model:twist:2", "-o", "made.vtu", folder=self.folder)
             self.assertEqual(done.code, 2, (words, done.err))
             self.assertIn(part, done.err)
             self.assertNotIn("made.vtu", self.files())
+
+    def test_a_level_set_gives_its_shape_to_a_mesh(self):
+        self.run_ok("vdb", "model:ball:4", "-o", "ball.vdb", "--resolution", "40", "--sdf", "--quiet")
+        # the ball again, from a block of cells with other proportions
+        self.run_ok("subdivide", "model:ball:4", "-o", "egg.vtu", "--levels", "0", "--warp", "vector(0,0,.2*z)", "--quiet")
+        found = self.run_ok("approximate", "ball.vdb", "--field", "sdf", "--shape", "--onto", "egg.vtu", "-o", "round.vtu", "--json").json()
+        self.assertGreater(found["shape"]["before"]["max"], .1)
+        self.assertLess(found["shape"]["after"]["rms"], .01)
+        again = self.run_ok("probe", "round.vtu", "--stats", "--density", "1", "--json").json()["stats"]["whole"]
+        ball = self.run_ok("probe", "model:ball:4", "--stats", "--density", "1", "--json").json()["stats"]["whole"]
+        self.assertLess(abs(again["volume"] / ball["volume"] - 1), .01)
 
 
 if __name__ == "__main__":

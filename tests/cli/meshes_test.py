@@ -62,7 +62,7 @@ class Meshes(InFolder):
         (self.folder / "half.mesh").write_text(mesh(8, cells[:1]))
 
         def refined(name, *options):
-            self.run_ok("subdivide", name, "-o", "fine.mesh", "--levels", 2, "--scheme", "cc", "--quiet", *options)
+            self.run_ok("subdivide", name, "-o", "fine.mesh", "--levels", 2, "--scheme", "cc", "--crease-angle", "none", "--quiet", *options)
             return self.info("fine.mesh")
 
         def height(told):

@@ -341,6 +341,12 @@ class Patches(InFolder):
         self.assertAlmostEqual(left["flux"], -1, 9)
         self.assertAlmostEqual(left["fields"][0]["mean"], 1, 9)
         self.assertEqual((left["fields"][0]["min"], left["fields"][0]["max"]), (0, 2))
+        field = left["fields"][0]
+        for name, place in (("min", [0, 0]), ("max", [0, 1]), ("file_min", [0, 0]), ("file_max", [0, 1])):
+            self.assertEqual([round(x, 9) for x in field[name + "_at"][:2]], place)  # x + 2y on x = 0: the same along z
+        self.assertEqual((field["file_min"], field["file_max"], field["min_cell"]), (0, 2, 0))
+        said = self.run_ok("probe", "a.inp", "--patch", "left", "--density", "x+2*y").out
+        self.assertRegex(said, r"max 2 at 0,1,[\d.]+ .*· file 2 at point \d+")
         self.assertAlmostEqual(found["flux_sum"], -1, 9)
 
     def test_sets_choose_cells(self):

@@ -10,7 +10,7 @@ import zlib
 from pathlib import Path
 from xml.etree import ElementTree
 
-from command import COMMAND, HANGS_AFTER, TWO_FIELDS, InFolder, Run
+from command import COMMAND, HANGS_AFTER, TWO_FIELDS, InFolder, Run, subvol
 
 SMALL = ["--backend", "cpu", "--sheets", "20"]  # of splats
 CAMERA = ["--camera", "3,-4,2,0,0,0,0,0,1,35"]
@@ -86,6 +86,52 @@ class Pictures(InFolder):
         (tools / "ffmpeg").write_text(script)
         (tools / "ffmpeg").chmod(0o755)
         return f"{tools}:/usr/bin:/bin"
+
+
+class LevelSets(Pictures):
+    """Grids of distances are drawn as the body within their surface."""
+
+    def test_the_picture_is_that_of_the_body(self):
+        self.run_ok("vdb", "model:ball:4", "--density", "1", "-o", "ball.vdb", "--sdf", "--resolution", 64, "--quiet")
+        size = ["--size", "96x96", "--ortho", "--view", "-y", "--camera", "0,-5,0,0,0,0,0,0,1,30", "--background", "none"]
+        size.remove("--view"), size.remove("-y")
+        self.run_ok("render", "model:ball:4", "--density", "1", "-o", "mesh.png", *size)
+        self.run_ok("render", "ball.vdb", "--field", "sdf", "-o", "set.png", *size)
+        channels, _, mesh = self.pixels("mesh.png")
+        _, _, body = self.pixels("set.png")
+        self.assertEqual(channels, 4)
+        alpha = [[row[k + 3] for row in rows for k in range(0, len(row), 4)] for rows in (mesh, body)]
+        covered = sum(alpha[0])
+        # The surface is within a tenth of a voxel, of which the ball has 64 across: a fiftieth of a pixel on its rim.
+        self.assertLess(sum(abs(a - b) for a, b in zip(*alpha)), .01 * covered)
+        inside = [k for k in range(len(alpha[0])) if alpha[0][k] == alpha[1][k] == 255]
+        of = lambda rows: [row[k + c] for row in rows for k in range(0, len(row), 4) for c in range(3)]
+        shades = list(zip(of(mesh), of(body)))
+        # Light of both surfaces: normals of voxels are those of facets of one voxel.
+        self.assertLess(sum(abs(a - b) for k in inside for a, b in shades[3 * k:3 * k + 3]) / (3 * len(inside)), 3)
+        self.assertGreater(len(inside), .3 * 96 * 96)
+
+    def test_what_it_is_not(self):
+        self.run_ok("vdb", "model:ball:4", "-o", "ball.vdb", "--sdf", "--resolution", 24, "--quiet")
+        for words, part in ((["render", "--method", "grid"], "draws no surface"), (["render", "--iso", "0"], "--iso: a level set is drawn as the surface"),
+                            (["view", "--screenshot", "b.png", "--look", "isosurface"], "--look isosurface: a level set")):
+            if words[0] == "render":
+                words += ["-o", "b.png"]
+            done = subvol(words[0], "ball.vdb", "--field", "sdf", *words[1:], folder=self.folder)
+            self.assertEqual(done.code, 2, done.err)
+            self.assertIn(part, done.err)
+            self.assertNotIn("b.png", self.files())
+        self.run_ok("render", "ball.vdb", "--field", "sdf", "-o", "b.png", "--method", "grid", "--look", "volume", "--size", "32x32")
+
+    def test_the_window_and_the_page_have_it(self):
+        self.run_ok("vdb", "model:ball:4", "-o", "ball.vdb", "--sdf", "--resolution", 24, "--quiet")
+        same = ["--field", "sdf", "--size", "64x64", "--view", "iso"]
+        self.run_ok("render", "ball.vdb", "-o", "a.png", *same)
+        self.run_ok("view", "ball.vdb", "--screenshot", "b.png", *same)
+        self.assertEqual(self.pixels("a.png"), self.pixels("b.png"))
+        page = self.run_ok("page", "ball.vdb", "--field", "sdf", "-o", "ball.html", "--json").json()
+        self.assertGreater(page["triangles"], 1000)
+        self.assertEqual([(field["name"], field["range"]) for field in page["fields"]], [("density", [1, 1])])
 
 
 class Turntables(Pictures):

@@ -76,13 +76,16 @@ class FromPieces(InFolder):
 
     def test_tetrahedra_in_pieces_are_split_piece_by_piece(self):
         self.a_cell_beside_hexahedra([(9, 0, 0), (10, 0, 0), (9, 1, 0), (9, 0, 1)], range(4), 10)
-        done = self.run_ok("split", "all.pvtu", "-o", "b.bricks", "--bricks", 2)
-        self.assertNotIn("held in memory", done.err)
-        self.assertIn("8 hexahedra and 1 tetrahedron split into 68 hexahedra", done.err)
-        self.assertEqual(self.run_ok("info", "b.bricks", "--json").json()["cells"], 68)
-        for name in ("b.bricks", "all.pvtu"):
-            self.run_ok("points", name, "-o", name + ".ply", "--quiet")
-        self.assertEqual((self.folder / "b.bricks.ply").read_bytes(), (self.folder / "all.pvtu.ply").read_bytes())
+        # Sharp edges are those of the tetrahedron, which pieces that are split no longer have.
+        for held, angle in ((False, ("--crease-angle", "none")), (True, ())):
+            bricks = f"{held}.bricks"
+            done = self.run_ok("split", "all.pvtu", "-o", bricks, "--bricks", 2, *angle)
+            self.assertEqual("held in memory" in done.err, held, done.err)
+            self.assertIn("8 hexahedra and 1 tetrahedron split into 68 hexahedra", done.err)
+            self.assertEqual(self.run_ok("info", bricks, "--json").json()["cells"], 68)
+            self.run_ok("points", bricks, "-o", "bricks.ply", "--quiet")
+            self.run_ok("points", "all.pvtu", "-o", "all.ply", "--quiet", *angle)
+            self.assertEqual((self.folder / "bricks.ply").read_bytes(), (self.folder / "all.ply").read_bytes())
 
     def test_cells_that_repeat_points_are_held_whole(self):
         prism = [(9, 0, 0), (10, 0, 0), (9, 1, 0), (9, 0, 1), (10, 0, 1), (9, 1, 1)]

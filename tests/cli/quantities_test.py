@@ -8,8 +8,11 @@ import unittest
 from command import InFolder, subvol
 
 
-def write_beam(path, bend):
-    """A bar of 2 x 2 x 6 unit cells along z with a temperature, a displacement and a stress at its points."""
+def write_beam(path, bend, stress=lambda x, y, z: 10 * (x - 1), shear=3):
+    """A bar of 2 x 2 x 6 unit cells along z with a temperature, a displacement and a stress at its points.
+
+    stress: zz of the place; shear: yz
+    """
     points = [(x, y, z) for z in range(7) for y in range(3) for x in range(3)]
     number = {p: i for i, p in enumerate(points)}
     around = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1)]
@@ -35,10 +38,30 @@ T 1 {len(points)} double
 D 3 {len(points)} double
 {rows([(bend * z, 0, 0) for x, y, z in points])}
 STRESS 6 {len(points)} double
-{rows([(0, 0, 10 * (x - 1), 0, 3, 0) for x, y, z in points])}
+{rows([(0, 0, stress(x, y, z), 0, shear, 0) for x, y, z in points])}
 p%200 1 {len(points)} double
 {rows([(x,) for x, y, z in points])}
 """)
+
+
+def write_flow(path):
+    """A box of two unit cells along y with a density 1 + x + y, a speed y along x, and its side x = 1 as a group of faces; Gmsh 2.2."""
+    points = [(x, y, z) for z in (0, 1) for y in (0, 1, 2) for x in (0, 1)]
+    number = {p: i + 1 for i, p in enumerate(points)}
+    around = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1)]
+    elements = []
+    for y in (0, 1):
+        elements.append([5, 2, 2, 2] + [number[i, y + j, k] for i, j, k in around])
+        elements.append([3, 2, 1, 1] + [number[1, y + j, k] for j, k in ((0, 0), (1, 0), (1, 1), (0, 1))])
+
+    def data(name, value):
+        rows = "\n".join(f"{number[p]} {value(*p)}" for p in points)
+        return f'$NodeData\n1\n"{name}"\n1\n0.0\n3\n0\n1\n{len(points)}\n{rows}\n$EndNodeData\n'
+
+    path.write_text('$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n2\n2 1 "side"\n3 2 "body"\n$EndPhysicalNames\n'
+                    f"$Nodes\n{len(points)}\n" + "\n".join(" ".join(map(str, (i + 1, *p))) for i, p in enumerate(points)) + "\n$EndNodes\n"
+                    f"$Elements\n{len(elements)}\n" + "\n".join(" ".join(map(str, (i + 1, *e))) for i, e in enumerate(elements)) + "\n$EndElements\n"
+                    + data("rho", lambda x, y, z: 1 + x + y) + data("u", lambda x, y, z: y))
 
 
 class Quantities(InFolder):
@@ -87,6 +110,66 @@ class Quantities(InFolder):
 
     def test_info_says_what_fields_are(self):
         self.assertRegex(self.run_ok("info", "a.vtk").out, r"STRESS +at points symmetric tensors +\S")
+
+    def test_one_largest_stress_in_all_commands(self):
+        """A stress 100 - 10 |x - c|^2 along z, which the limit of mcq has exactly: the largest is 100 at c, on a side between the points."""
+        c = 0, .7, 2.4
+        write_beam(self.folder / "peak.vtk", 0, lambda *x: 100 - 10 * sum((a - b) ** 2 for a, b in zip(x, c)), 0)
+        field = "--field", "mises(STRESS)"
+        found = self.stats(field[1], mesh="peak.vtk")[1]
+        slices = [self.run_ok("slice", "peak.vtk", "-o", "a.png", *field, "--plane", "1,.7,2,0,1,0", "--extremes", "--resolution", n, "--json").json()
+                  for n in (5, 40)]
+        drawn = self.run_ok("render", "peak.vtk", "-o", "b.png", *field, "--extremes", "--size", "48x36", "--json").json()["extremes"]
+        for largest, at in [(found["max"], found["max_at"]), (drawn["max"], drawn["max_at"])] + [(s["max"], s["extremes"]["max_at"]) for s in slices]:
+            self.assertAlmostEqual(largest, 100, delta=.02)  # searches end within 1e-4 of the range, about 170
+            for a, b in zip(at, c):
+                self.assertAlmostEqual(a, b, delta=.05)  # where it is lower by 10 * .05^2 = .025
+        self.assertAlmostEqual(slices[0]["max"], slices[1]["max"], delta=1e-4)
+        grid = self.run_ok("vdb", "peak.vtk", "-o", "a.vdb", *field, "--voxel-size", .05, "--json").json()["grids"][0]
+        self.assertAlmostEqual(grid["max"], 100, delta=.03)  # 10 times the square of half a voxel's diagonal is .019
+        # The surface of 99 is half a sphere with a radius of the root of .1.
+        surface = self.run_ok("surface", "peak.vtk", "-o", "a.vtp", *field, "--iso", 99, "--tolerance", 1e-4, "--json").json()
+        self.assertAlmostEqual(surface["area"], 2 * math.pi * .1, delta=.002)
+
+    def test_lengths_are_those_of_the_place(self):
+        self.assertAlmostEqual(self.value("mag(vector(x,y,z))", ".1,.1,.1", mesh="model:twist:2"), math.sqrt(.03), delta=1e-9)
+        self.assertAlmostEqual(self.value("x^2+y^2", ".3,.2,.1", mesh="model:twist:2"), .13, delta=1e-9)
+        # |x - .9| of a bar with points at 0, 1 and 2: 0 between them in all commands.
+        field = "--field", "abs(x-.9)"
+        for scheme in "mcq", "cc", "linear":
+            found = self.stats(field[1], "--scheme", scheme)[1]
+            self.assertGreaterEqual(found["min"], 0)
+            self.assertLess(found["min"], 2e-3)
+            self.assertAlmostEqual(found["max"], 1.1, delta=1e-6)
+            self.assertAlmostEqual(found["mean"], (.81 + 1.21) / 4, delta=2e-3)  # a kink in the middle of cells
+        grid = self.run_ok("vdb", "a.vtk", "-o", "a.vdb", *field, "--voxel-size", .1, "--json").json()["grids"][0]
+        self.assertGreaterEqual(grid["min"], 0)
+        self.assertLess(grid["min"], .05)
+        cut = self.run_ok("slice", "a.vtk", "-o", "a.png", *field, "--resolution", 7, "--json").json()
+        self.assertGreaterEqual(cut["min"], 0)
+        self.assertLess(cut["min"], 1e-3)
+
+    def test_a_mass_flow_is_that_of_the_product(self):
+        """Through x = 1 of a box flows a density 1 + x + y with a speed y, each linear: the integral of (2 + y) y from 0 to 2 is 20/3."""
+        write_flow(self.folder / "flow.msh")
+        found = self.run_ok("probe", "flow.msh", "--patch", "side", "--flux", "vector(rho*u,0,0)", "--json").json()["patches"][0]
+        self.assertAlmostEqual(found["flux"], 20 / 3, delta=1e-6)
+
+    def test_fields_stay_in_the_range_of_the_file(self):
+        """A stress that jumps: the limit overshoots, but not with --clamp file."""
+        write_beam(self.folder / "jump.vtk", 0, lambda x, y, z: 50 if z < 3.5 else 90, 0)
+        field, clamp = ("--field", "STRESS.zz"), ("--clamp", "file")
+        for words, beyond in ((), True), (clamp, False):
+            with self.subTest(words):
+                whole = self.stats(field[1], *words, mesh="jump.vtk")[1]
+                cut = self.run_ok("slice", "jump.vtk", "-o", "a.png", *field, *words, "--plane", "1,1,3,1,0,0", "--json").json()
+                grid = self.run_ok("vdb", "jump.vtk", "-o", "a.vdb", *field, *words, "--resolution", 40, "--json").json()["grids"][0]
+                drawn = self.run_ok("render", "jump.vtk", "-o", "b.png", *field, *words, "--extremes", "--size", "32x24", "--json").json()["extremes"]
+                for found in whole, cut, grid, drawn:
+                    self.assertEqual((found["min"] < 49.9, found["max"] > 90.1), (beyond, beyond), found)
+                    self.assertAlmostEqual(max(found["min"], 50), 50, delta=1e-5)
+        self.assertEqual(self.stats("mises(STRESS)", *clamp, mesh="jump.vtk")[1]["max"], 90)
+        self.assertIn("--clamp file", self.run_ok("probe", "--help-all").out)
 
     def test_a_stress_is_shown_by_its_von_mises_stress(self):
         by_name = self.stats("STRESS")[1]
@@ -184,7 +267,9 @@ class Quantities(InFolder):
         for field in "mises(STRESS)", "T*2+x", "D.x", "length(D)":
             with self.subTest(field):
                 one, many = self.stats(field)[1], self.stats(field, mesh="a.bricks")[1]
-                self.assertAlmostEqual(one["mean"], many["mean"], delta=1e-9)
+                # Polynomials are integrated exactly, lengths and stresses to 1e-4 of their range.
+                exact = field in ("T*2+x", "D.x")
+                self.assertAlmostEqual(one["mean"], many["mean"], delta=1e-9 if exact else 1e-4 * (one["max"] - one["min"]) + 1e-9)
                 self.run_ok("render", "a.bricks", "-o", "a.png", "--field", field, "--size", 24)
         self.assertIn("derivatives", self.run_fails("probe", "a.bricks", "--stats", "--field", "grad(T).x").err)
         self.run_fails("probe", "a.bricks", "--stats", "--warp", "D")

@@ -2,6 +2,7 @@
 """What the command says: proposals for slips, help in 80 columns, units, verdicts, and errors that programs can read."""
 
 import re
+import shlex
 import unittest
 
 from command import CUBE, InFolder, subvol
@@ -52,27 +53,70 @@ SLIPS = [
 class OtherInputs(InFolder):
     """Surfaces and grids that are given to verbs of meshes."""
 
+    VERBS = (["info"], ["render", "-o", "a.png"], ["vdb", "-o", "a.vdb"], ["points", "-o", "a.ply"], ["page", "-o", "a.html"], ["check"],
+             ["probe", "--stats"], ["slice", "-o", "a.png"], ["surface", "-o", "a.stl", "--boundary"], ["subdivide", "-o", "a.vtu"],
+             ["split", "-o", "a.bricks"], ["view", "--screenshot", "a.png"], ["compare", "model:ball:2"], ["usd", "-o", "a.usda"])
+    # The surface is not the first argument.
+    SECOND = (["compare", "model:ball:2", "FILE"], ["approximate", "model:ball:2", "--onto", "FILE", "-o", "a.vtu"],
+              ["vdb", "model:ball:2", "--to", "FILE", "--frames", "1-2", "-o", "a_##.vdb"])
+
+    def refused(self, arguments, file, *words):
+        with self.subTest(arguments=arguments, file=file):
+            done = subvol(*arguments, folder=self.folder)
+            self.assertEqual(done.code, 2, done.err)
+            for part in words:
+                self.assertIn(part, done.err)
+            self.assertEqual(done.err.count("\n"), 1, done.err)
+            self.assertEqual([name for name in self.files() if name.startswith("a.") or name.startswith("a_")], [])
+
     def test_the_way_to_a_mesh_is_said(self):
         for name in ("torus.stl", "torus.ply"):
             self.run_ok("surface", "model:ball:2", "-o", name, "--boundary")
         (self.folder / "torus.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
-        (self.folder / "torus.glb").write_text("glTF")
+        self.run_ok("surface", "model:ball:2", "-o", "torus.glb", "--boundary")
+        (self.folder / "torus.gltf").write_text("{}")
+        (self.folder / "torus.step").write_text("ISO-10303-21;\n")
+        self.run_ok("surface", "model:ball:2", "-o", "torus.vtp", "--boundary")
+        (self.folder / "torus.vtk").write_text("# vtk DataFile Version 3.0\nt\nASCII\nDATASET POLYDATA\nPOINTS 3 float\n0 0 0 1 0 0 0 1 0\n")
         self.run_ok("vdb", "model:ball:2", "-o", "smoke.vdb", "--resolution", 8)
-        for arguments in (["info"], ["render", "-o", "a.png"], ["vdb", "-o", "a.vdb"], ["points", "-o", "a.ply"], ["page", "-o", "a.html"], ["check"],
-                          ["probe", "--stats"], ["slice", "-o", "a.png"], ["surface", "-o", "a.stl", "--boundary"], ["subdivide", "-o", "a.vtu"],
-                          ["split", "-o", "a.bricks"], ["view", "--screenshot", "a.png"], ["compare", "model:ball:2"]):
-            for file in ("torus.stl", "torus.obj", "torus.ply"):
-                with self.subTest(arguments=arguments, file=file):
-                    done = subvol(arguments[0], file, *arguments[1:], folder=self.folder)
-                    self.assertEqual(done.code, 2, done.err)
-                    self.assertIn(f"{file}: is a surface, not a mesh of cells (`subvol mesh {file} -o torus.vtu` makes a control mesh of it)", done.err)
-                    self.assertEqual(done.err.count("\n"), 1, done.err)
-        for verb, more in (("page", ["-o", "a.html"]), ("check", []), ("subdivide", ["-o", "a.vtu"])):
-            done = subvol(verb, "smoke.vdb", *more, folder=self.folder)
-            self.assertEqual(done.code, 2, done.err)
-            self.assertIn("smoke.vdb: is a grid, not a mesh of cells (`subvol mesh smoke.vdb --iso VALUE -o smoke.vtu` makes", done.err)
-        self.assertIn("is a surface", subvol("info", "torus.glb", folder=self.folder).err)
-        self.assertIn("gone.obj: cannot be read: No such file", subvol("info", "gone.obj", folder=self.folder).err)
+        read = {name: f"{name}: is a surface, not a mesh of cells (`subvol mesh {name} -o torus.vtu` makes a control mesh of it)"
+                for name in ("torus.stl", "torus.obj", "torus.ply", "torus.glb")}
+        exported = {name: f"{name}: is a surface, not a mesh of cells (exported as torus.stl, `subvol mesh torus.stl -o torus.vtu` makes a control mesh of it)"
+                    for name in ("torus.gltf", "torus.step")}
+        for file, sentence in {**read, **exported}.items():
+            for arguments in self.VERBS:
+                self.refused([arguments[0], file, *arguments[1:]], file, sentence)
+            for arguments in self.SECOND:
+                self.refused([file if word == "FILE" else word for word in arguments], file, sentence)
+        # Formats that may have other things than surfaces.
+        hint = "(exported as torus.stl, `subvol mesh torus.stl -o torus.vtu` makes a control mesh of it)"
+        for verb, more in (("info", []), ("render", ["-o", "a.png"]), ("probe", ["--stats"]), ("vdb", ["-o", "a.vdb"])):
+            self.refused([verb, "torus.vtk", *more], "torus.vtk", "POLYDATA is not a volume mesh, but a surface " + hint)
+            if verb != "probe":  # which never reads kernels
+                self.refused([verb, "torus.vtp", *more], "torus.vtp", hint)
+        # Verbs of surfaces: what they cannot read, and what else they need.
+        for file, sentence in exported.items():
+            self.refused(["mesh", file, "-o", "a.vtu"], file, sentence)
+            self.refused(["approximate", file, "--shape", "--onto", "model:ball:2", "-o", "a.vtu"], file, sentence)
+        for file in ("torus.stl", "torus.obj", "torus.glb"):
+            self.refused(["approximate", file, "--onto", "model:ball:2", "-o", "a.vtu"], file, "--shape with it; `subvol mesh " + file)
+        self.refused(["approximate", "torus.ply", "--onto", "model:ball:2", "-o", "a.vtu"], "torus.ply", read["torus.ply"])
+        for verb, more in (("check", []), ("subdivide", ["-o", "a.vtu"])):
+            self.refused([verb, "smoke.vdb", *more], "smoke.vdb", "smoke.vdb: is a grid, not a mesh of cells (`subvol mesh smoke.vdb --iso VALUE -o smoke.vtu` makes")
+        self.refused(["page", "smoke.vdb", "-o", "a.html"], "smoke.vdb", "is fog, which has no boundary", "`subvol mesh smoke.vdb --iso VALUE -o smoke.vtu` makes")
+        self.refused(["info", "gone.obj"], "gone.obj", "gone.obj: cannot be read: No such file")
+        self.refused(["info", "gone.glb"], "gone.glb", "gone.glb: cannot be read: No such file")
+
+    def test_the_command_can_be_typed_as_it_stands(self):
+        (self.folder / "my parts").mkdir()
+        (self.folder / "my parts" / "Bob's ball.STL").write_text("")
+        self.run_ok("surface", "model:ball:2", "-o", "ball.stl", "--boundary")
+        (self.folder / "ball.stl").rename(self.folder / "my parts" / "Bob's ball.STL")
+        error = subvol("info", "my parts/Bob's ball.STL", folder=self.folder).err
+        words = shlex.split(error.split("`")[1])
+        self.assertEqual(words, ["subvol", "mesh", "my parts/Bob's ball.STL", "-o", "Bob's ball.vtu"])
+        self.run_ok(*words[1:], "--cells", "4")
+        self.assertIn("Bob's ball.vtu", self.files())
 
 
 class Slips(InFolder):

@@ -7,6 +7,7 @@
 #include <optional>
 #include <random>
 
+#include "lib/random_vector.h"
 #include "subvol/hex_mesh.h"
 
 namespace subvol::test {
@@ -89,7 +90,7 @@ inline HexMesh make_nested_cubes(Index n) {
 inline void jitter(HexMesh& mesh, double amount, unsigned seed) {
     std::mt19937 random(seed);
     std::uniform_real_distribution<double> shift(-amount, amount);
-    for (auto& p : mesh.points) p += Vec3(shift(random), shift(random), shift(random));
+    for (auto& p : mesh.points) p += random_vector(shift, random);
 }
 
 /// Irregular edges and points inside, no two coordinates alike.

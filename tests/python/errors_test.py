@@ -121,3 +121,10 @@ def test_values_at_cells_are_fitted_or_averaged(tmp_path):
     assert np.ptp(mean) == 2 and np.ptp(fitted) > 2.5  # a line through the means goes on to the ends
     with pytest.raises(subvol.InvalidInput, match="auto, fit, mean"):
         subvol.read_mesh(name, cell_values="best")
+
+
+def test_a_long_name_is_cut_in_the_message():
+    with pytest.raises(subvol.InvalidInput) as caught:
+        subvol.model("x" * 5000)
+    assert "xxx…" in str(caught.value) and len(str(caught.value)) < 500
+    assert "pawn" in str(caught.value)

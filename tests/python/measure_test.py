@@ -1,8 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """Values at places, integrals, slices and surfaces of the limit."""
+import warnings
+
 import numpy as np
 import pytest
 import subvol
+from conftest import grid_of
 
 
 @pytest.fixture(scope="module")
@@ -247,3 +250,71 @@ def test_streamlines_are_arrays_of_points_and_times(ball, tmp_path):
         subvol.render(mesh, seeds="at:0,0,0", size=(8, 8))
     with pytest.raises(subvol.InvalidInput, match="streamlines: needs a mesh"):
         subvol.render(subvol.sample(ball), streamlines="U", size=(8, 8))
+
+
+def beam():
+    """A beam with a plateau of temperature: the limit overshoots by an eighth of its height."""
+    cube = grid_of(4)
+    points = np.asarray(cube.points) * [4, 1, 1]
+    heat = np.array([0, 0, 10, 10, 0])[np.rint(points[:, 0]).astype(int)]
+    return subvol.HexMesh(points, cube.cells, {"T": heat.astype(float)})
+
+
+def test_slices_have_their_extremes_and_those_of_the_cells():
+    cut = subvol.slice(beam(), (0, 0, .4), (0, 0, 1), resolution=16)
+    # The field depends on x alone: its extremes are those along a fine line.
+    line = np.stack([np.linspace(0, 4, 20001), np.full(20001, .4), np.full(20001, .4)], 1)
+    values = subvol.probe(beam(), line).fields["T"]
+    assert cut.min == pytest.approx(values.min(), abs=1e-5) and cut.max == pytest.approx(values.max(), abs=1e-5)
+    assert (cut.file_min, cut.file_max) == pytest.approx((0, 10), abs=1e-12) and cut.max > 11
+    assert subvol.probe(beam(), [cut.max_at]).fields["T"][0] == pytest.approx(cut.max, abs=1e-9)
+    assert cut.max_at[2] == pytest.approx(.4) and cut.file_max_at[0] == pytest.approx(2.5, abs=.501)
+
+
+def test_a_warning_says_where_the_limit_is_another_body_or_leaves_the_range():
+    with pytest.warns(subvol.SubvolWarning, match=r"T is -1\.\d+ to 11\.\d+ in the limit, beyond its range in the file by 13 %: clamp='file' keeps it within"):
+        subvol.measure(beam())
+    ball = subvol.model("ball", 2)
+    with pytest.warns(subvol.SubvolWarning, match="the limit has .* more volume than the cells of the file: a smaller crease_angle"):
+        subvol.measure(subvol.HexMesh(ball.points, ball.cells, {}, crease_angle="none"))
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        subvol.measure(ball)  # the limit of a model is what is meant
+        subvol.measure(beam(), clamp="file")
+
+
+def test_clamp_keeps_fields_in_the_range_of_the_file():
+    mesh, line = beam(), np.stack([np.linspace(0, 4, 401), np.full(401, .4), np.full(401, .3)], 1)
+    free, kept = subvol.probe(mesh, line).fields["T"], subvol.probe(mesh, line, clamp="file").fields["T"]
+    assert free.min() < -1 and free.max() > 11
+    assert np.array_equal(kept, np.clip(free, 0, 10))
+    whole = subvol.measure(mesh, clamp="file")["fields"]["T"]
+    assert (whole["min"], whole["max"]) == (0, 10)
+    cut = subvol.slice(mesh, (0, 0, .4), (0, 0, 1), resolution=16, clamp="file")
+    assert (cut.min, cut.max) == (0, 10)
+    values = subvol.sample(mesh, "T", 2, clamp="file").values["T"]
+    assert values.min() == 0 and values.max() == 10 and subvol.sample(mesh, "T", 2).values["T"].max() > 11
+    report = subvol.rasterize(mesh, fields=["T"], voxel_size=.1, clamp="file")[0].report
+    assert (report["min"], report["max"]) == (0, 10)
+    faces = subvol.surface(mesh, boundary=True, field="T", clamp="file").fields["T"]
+    assert faces.min() == 0 and faces.max() == 10
+    square = subvol.slice(mesh, (0, 0, .4), (0, 0, 1), "T*T", resolution=16, clamp="file")
+    assert (square.min, square.max) == (0, 100)
+    with pytest.raises(subvol.InvalidInput, match="clamp: 'points' is unknown"):
+        subvol.probe(mesh, line, clamp="points")
+
+
+def test_parts_lie_in_the_whole_and_may_overlap(tmp_path):
+    """Half of a ball, by cells: half of its volume, by symmetry. Sets of a deck, that have cells in common."""
+    ball = subvol.model("ball", 6)
+    whole, half = subvol.measure(ball), subvol.measure(ball, only="where:x>0")
+    assert half["volume"] == pytest.approx(whole["volume"] / 2, rel=4e-4)  # both are within 1e-4
+    deck = "*NODE\n" + "".join(f"{1 + x + 4 * y + 8 * z},{x},{y},{z}\n" for z in range(2) for y in range(2) for x in range(4))
+    corners = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1)]
+    deck += "*ELEMENT,TYPE=C3D8,ELSET=ALL\n" + "".join(
+        f"{n + 1}," + ",".join(str(1 + n + x + 4 * y + 8 * z) for x, y, z in corners) + "\n" for n in range(3))
+    (tmp_path / "bar.inp").write_text(deck + "*ELSET,ELSET=LEFT\n1,2\n*ELSET,ELSET=RIGHT\n2,3\n")
+    parts = subvol.measure(subvol.read_mesh(tmp_path / "bar.inp"))["parts"]
+    assert {name: part["volume"] for name, part in parts.items()} == pytest.approx({"ALL": 3, "LEFT": 2, "RIGHT": 2})
+    with pytest.raises(subvol.InvalidInput, match="their own sets"):
+        subvol.read_mesh(tmp_path / "bar.inp", mesh=str(tmp_path / "bar.inp"))

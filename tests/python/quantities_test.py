@@ -43,9 +43,18 @@ def test_derivatives_and_components(bar: subvol.HexMesh) -> None:
 
 
 def test_fields_of_calls_are_quantities(bar: subvol.HexMesh) -> None:
-    image = np.asarray(subvol.render(bar, field="mises(S)", size=(24, 24)))
-    with_field = subvol.HexMesh(bar.points, bar.cells, {"m": subvol.quantity(bar, "mises(S)")})
+    image = np.asarray(subvol.render(bar, field="S.xx + 2 * T", size=(24, 24)))
+    with_field = subvol.HexMesh(bar.points, bar.cells, {"m": subvol.quantity(bar, "S.xx + 2 * T")})
     np.testing.assert_array_equal(image, np.asarray(subvol.render(with_field, size=(24, 24))))
+
+
+def test_what_is_not_linear_is_that_of_the_place(bar: subvol.HexMesh) -> None:
+    place = [[.3, 1.7, 2.6]]
+    stress = subvol.probe(bar, place).fields["S"][0]
+    xx, yy, zz, xy, yz, xz = stress
+    expected = np.sqrt(((xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2) / 2 + 3 * (xy**2 + yz**2 + xz**2))
+    values, inside = subvol.evaluate(bar, "mises(S)", place)
+    assert inside.all() and values[0] == pytest.approx(expected, rel=1e-6)
 
 
 def test_warp_and_regions(bar: subvol.HexMesh) -> None:

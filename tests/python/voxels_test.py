@@ -108,3 +108,37 @@ def test_rasterize_takes_what_the_library_describes(ball, ball_points):
         subvol.rasterize(ball, resolution=8, voxel_size=.5)
     with pytest.raises(subvol.InvalidInput, match="scheme, mask are of meshes"):
         subvol.rasterize(ball_points, resolution=8, scheme="cc", mask=True)
+
+
+def test_level_sets_are_drawn_as_bodies():
+    """The picture of a ball's level set is that of the ball."""
+    ball = subvol.model("ball", 8)
+    sdf = {g.name: g for g in subvol.rasterize(ball, resolution=64, sdf="sdf")}["sdf"]
+    assert sdf.report["level_set"] and not subvol.rasterize(ball, resolution=16)[0].report["level_set"]
+    body = subvol.sample_grid(sdf)
+    assert set(body.values["density"]) == {1}
+    one = subvol.HexMesh(ball.points, ball.cells, {"density": np.ones(len(ball.points))}, crease_angle="none")
+    given = dict(camera="0,-5,0,0,0,0,0,0,1,30", size=(96, 96))
+    of_set, of_mesh = (np.asarray(subvol.render(what, **given)) for what in (sdf, one))
+    covered = of_mesh[..., 3].sum()
+    # The surface is within some tenths of a voxel, which is about a pixel here. A pixel has 2 x 2 rays: along the rim one of them changes.
+    rim = 2 * np.sqrt(np.pi * covered)
+    assert np.abs(of_set[..., 3] - of_mesh[..., 3]).sum() < rim / 4 and abs(of_set[..., 3].sum() / covered - 1) < .01
+    both = (of_set[..., 3] == 1) & (of_mesh[..., 3] == 1)
+    assert both.sum() > 1000 and np.abs(of_set - of_mesh)[both].mean() < .01
+    assert subvol.page(sdf).report["triangles"] > 1000
+    with pytest.raises(subvol.InvalidInput, match="fog, which has no boundary"):
+        subvol.page(subvol.rasterize(ball, resolution=16)[0])
+    with pytest.raises(subvol.InvalidInput, match="method grid: draws no surface"):
+        subvol.render(sdf, method="grid")
+    with pytest.raises(subvol.InvalidInput, match="surface where its distance is 0"):
+        subvol.render(sdf, iso="0")
+
+
+def test_surfaces_are_refused_with_the_command_that_helps(tmp_path):
+    (tmp_path / "a.stl").write_text("solid\nendsolid\n")
+    (tmp_path / "a.gltf").write_text("{}")
+    with pytest.raises(subvol.InvalidInput, match=r"`subvol mesh \S*a.stl -o a.vtu` makes a control mesh of it"):
+        subvol.read_mesh(tmp_path / "a.stl")
+    with pytest.raises(subvol.InvalidInput, match=r"exported as a.stl, `subvol mesh a.stl -o a.vtu` makes"):
+        subvol.read_mesh(tmp_path / "a.gltf")

@@ -11,6 +11,7 @@
 #include <tuple>
 #include <vector>
 
+#include "lib/random_vector.h"
 #include "subvol/hex_mesh.h"
 
 namespace subvol::test {
@@ -50,7 +51,7 @@ inline HexMesh jittered_box(Index n, double amount, unsigned seed) {
     std::uniform_real_distribution<double> move(-amount / double(n), amount / double(n));
     for (Vec3& p : mesh.points) {
         const bool inside = p.x > 0 && p.x < 1 && p.y > 0 && p.y < 1 && p.z > 0 && p.z < 1;
-        if (inside) p += Vec3(move(random), move(random), move(random));
+        if (inside) p += random_vector(move, random);
     }
     return mesh;
 }

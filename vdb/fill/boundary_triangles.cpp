@@ -80,14 +80,15 @@ struct BoundaryCell {
     std::vector<std::size_t> sides;
 };
 
-std::vector<BoundaryCell> boundary_cells(const Topology& topology, const std::function<bool(Index cell)>& wanted) {
+std::vector<BoundaryCell> boundary_cells(const CellRequest& request, const Topology& topology,
+                                         const std::function<bool(Index cell)>& wanted) {
     std::vector<BoundaryCell> cells;
     std::size_t first = 0;
     for (Index c = 0; c < topology.cells.size(); ++c) {
-        if (wanted && !wanted(c)) continue;
+        if (!request.fills(c) || (wanted && !wanted(c))) continue;
         BoundaryCell cell{c, first, {}};
         for (std::size_t side = 0; side < 6; ++side) {
-            if (topology.face_on_hull(topology.cell_faces[c][side])) cell.sides.push_back(side);
+            if (request.ends_at(topology.face_cells[topology.cell_faces[c][side]])) cell.sides.push_back(side);
         }
         first += cell.sides.size();
         if (!cell.sides.empty()) cells.push_back(std::move(cell));
@@ -157,8 +158,8 @@ public:
         points_.assign(topology.point_count, kNone);
         edges_.assign(topology.edges.size(), kNone);
         for (Index f = 0; f < topology.faces.size(); ++f) {
-            if (!topology.face_on_hull(f)) continue;
-            const Index cell = topology.face_cells[f][0];
+            if (!request.ends_at(topology.face_cells[f])) continue;
+            const Index cell = topology.face_cells[f][request.fills(topology.face_cells[f][0]) ? 0 : 1];
             for (const Index p : topology.faces[f]) points_[p] = std::min(points_[p], cell);
             for (const Index e : topology.face_edges[f]) edges_[e] = std::min(edges_[e], cell);
         }
@@ -237,7 +238,7 @@ std::vector<VoxelTriangle> boundary_triangles(const CellRequest& request, const 
     const HexMesh& mesh = *request.mesh;
     const Topology topology = build_topology(mesh);
     const std::vector<std::uint8_t> turned = turned_cells(topology);
-    const std::vector<BoundaryCell> cells = boundary_cells(topology, wanted);
+    const std::vector<BoundaryCell> cells = boundary_cells(request, topology, wanted);
     if (cells.empty()) return {};
     const std::size_t side_quads = std::size_t{1} << (2 * request.refine.levels);
     std::vector<VoxelTriangle> triangles(2 * side_quads * (cells.back().first + cells.back().sides.size()));

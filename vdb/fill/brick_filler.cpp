@@ -50,16 +50,32 @@ void drop_outside(const SurfaceColumns& surface, const VoxelBox& box, std::size_
     }
 }
 
-/// For each cell the sides on the hull: bit i is the side i of `kCellFaces`.
-std::vector<std::uint8_t> boundary_sides(const HexMesh& mesh) {
+/// For each cell the sides that are wanted: bit i is the side i of `kCellFaces`. wanted: by the cells of a face
+template <class Wanted>
+std::vector<std::uint8_t> sides_of(const HexMesh& mesh, const Wanted& wanted) {
     const Topology topology = build_topology(mesh);
     std::vector<std::uint8_t> sides(mesh.cells.size());
     for (std::size_t c = 0; c < sides.size(); ++c) {
         for (std::size_t i = 0; i < 6; ++i) {
-            if (topology.face_on_hull(topology.cell_faces[c][i])) sides[c] |= static_cast<std::uint8_t>(1 << i);
+            if (wanted(topology.face_cells[topology.cell_faces[c][i]])) sides[c] |= static_cast<std::uint8_t>(1 << i);
         }
     }
     return sides;
+}
+
+/// Removes the voxels of cells without a number.
+void drop_others(std::size_t channels, VoxelBrick& brick) {
+    for (auto& leaf : brick.leaves) {
+        if (!leaf) continue;
+        const float* numbers = &leaf->values[(channels - 1) * kLeafVoxels];
+        for (std::size_t i = 0; i < kLeafVoxels; ++i) {
+            const std::uint64_t bit = std::uint64_t{1} << i % 64;
+            if ((leaf->active[i / 64] & bit) == 0 || std::bit_cast<Index>(numbers[i]) != kNone) continue;
+            leaf->active[i / 64] &= ~bit;
+            for (std::size_t c = 0; c < channels; ++c) leaf->values[c * kLeafVoxels + i] = 0;
+        }
+        if (leaf->empty()) leaf.reset();
+    }
 }
 
 }  // namespace
@@ -67,17 +83,27 @@ std::vector<std::uint8_t> boundary_sides(const HexMesh& mesh) {
 BrickFiller::BrickFiller(CellRequest request)
     : request_(std::move(request)), refined_(request_, request_.curved ? DenseBits::ToRounding : DenseBits::OfRefine) {
     for (const Attribute* field : request_.fields) channels_ += static_cast<std::size_t>(field->channels);
-    orientation_ = check_voxel_count(*request_.mesh, request_.to_voxels) < 0 ? -1 : 1;
-    if (request_.curved && !request_.pieces && !request_.search) boundary_ = boundary_sides(*request_.mesh);
+    orientation_ = check_voxel_count(*request_.mesh, request_.to_voxels, request_.numbers) < 0 ? -1 : 1;
+    if (!request_.curved) return;
+    if (!request_.pieces && !request_.search) {
+        boundary_ = sides_of(*request_.mesh, [](const auto& cells) { return cells[1] == kNone; });
+    }
+    if (!request_.numbers.empty()) {
+        cut_ = sides_of(*request_.mesh, [&](const auto& cells) { return cells[1] != kNone && request_.ends_at(cells); });
+    }
 }
 
 VoxelBricks BrickFiller::run(const std::optional<VoxelBox>& part) {
-    VoxelBricks bricks(channels_ + (request_.cell_numbers ? 1 : 0));
+    VoxelBricks bricks(channels_ + (has_numbers() ? 1 : 0));
     if (request_.search) {
         fill_found(part, bricks);
     } else {
         std::vector<VoxelBox> boxes = fill_blocks(blocks_in(part), part, bricks);
         if (boxes_.empty()) boxes_ = std::move(boxes);
+    }
+    if (!cut_.empty()) {
+        const std::vector<VoxelBrick*> all = bricks.all();
+        tbb::parallel_for(std::size_t{0}, all.size(), [&](std::size_t b) { drop_others(bricks.channels(), *all[b]); });
     }
     drop_leaks(bricks.channels());
     report_progress(request_.progress, "rasterize", 1);
@@ -90,7 +116,7 @@ void BrickFiller::fill_found(const std::optional<VoxelBox>& part, VoxelBricks& b
         request_.pieces = &pieces;
         const std::vector<VoxelBox> boxes = fill_blocks(blocks_in({}), part, bricks);
         for (std::size_t b = 0; b < boxes.size(); ++b) {
-            if (pieces.hull_sides[b] == 0) continue;
+            if (pieces.hull_sides[b] == 0 && !touches_cut(static_cast<Index>(b))) continue;
             boxes_.push_back(boxes[b]);
             cells_of_boxes_.push_back(pieces.cells[b]);
         }
@@ -128,14 +154,32 @@ std::uint8_t BrickFiller::boundary_of(Index block) const {
     return request_.pieces ? request_.pieces->hull_sides[block] : boundary_[block];
 }
 
+/// Whether a block lies on one of its cell's sides where what is filled ends inside the mesh.
+bool BrickFiller::touches_cut(Index block) const {
+    const std::uint8_t sides = cut_.empty() ? 0 : cut_[request_.cell_of(block)];
+    if (sides == 0 || !request_.pieces) return sides != 0;
+    const auto& lowest = request_.pieces->lowest[block];
+    const int last = (1 << request_.pieces->levels[block]) - 1;
+    for (unsigned side = 0; side < 6; ++side) {
+        if ((sides >> side & 1U) != 0 && lowest[side / 2] == (side % 2 == 0 ? 0 : last)) return true;
+    }
+    return false;
+}
+
+/// Whether the voxels of a block are filled. Neighbours that are curved have slightly different ideas of their shared side, so
+/// that the first of them has a voxel: those beyond a cut are filled, too, and what they have is removed again.
+bool BrickFiller::is_filled(Index block) const {
+    return request_.fills(request_.cell_of(block)) || touches_cut(block);
+}
+
 CellBlock BrickFiller::block(const Batch& batch, std::size_t i) const {
     const std::size_t first = batch.first[i];
-    return {.cell = request_.cell_of(batch.numbers[i]),
+    return {.cell = request_.number_of(request_.cell_of(batch.numbers[i])),
             .side = request_.side(batch.numbers[i]),
             .step = 1,
             .curved = request_.curved,
             .channels = channels_,
-            .cell_numbers = request_.cell_numbers,
+            .cell_numbers = has_numbers(),
             .orientation = orientation_,
             .boundary = boundary_of(batch.numbers[i]),
             .slack = request_.curved ? request_.slack_voxels : 0,
@@ -165,6 +209,9 @@ void BrickFiller::load(std::span<const Index> blocks, Batch& batch) {
         load_cells(batch);
     }
     if (!request_.pieces) set_boxes(batch);
+    for (std::size_t i = 0; i < batch.numbers.size(); ++i) {
+        if (!is_filled(batch.numbers[i])) batch.boxes[i] = {{0, 0, 0}, {-1, -1, -1}};  // none
+    }
     check_brick_count(batch.boxes, request_.to_voxels.voxel_size);
 }
 

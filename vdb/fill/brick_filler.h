@@ -59,6 +59,10 @@ private:
     void load_pieces(Batch& batch) const;
     void set_boxes(Batch& batch) const;
     [[nodiscard]] std::uint8_t boundary_of(Index block) const;
+    [[nodiscard]] bool touches_cut(Index block) const;
+    [[nodiscard]] bool is_filled(Index block) const;
+    /// Whether voxels have the numbers of cells, at least until `drop_others`.
+    [[nodiscard]] bool has_numbers() const { return request_.cell_numbers || !cut_.empty(); }
     void fill_found(const std::optional<VoxelBox>& part, VoxelBricks& bricks);
     std::vector<VoxelBox> fill_blocks(std::span<const Index> blocks, const std::optional<VoxelBox>& part, VoxelBricks& bricks);
     void fill(const Batch& batch, const std::optional<VoxelBox>& part, VoxelBricks& bricks);
@@ -73,8 +77,9 @@ private:
     std::size_t channels_ = 0;            // of all fields
     double orientation_ = 1;              // -1 for a mesh of left-handed cells
     std::vector<std::uint8_t> boundary_;  // of curved cells without pieces: which sides
-    std::vector<VoxelBox> boxes_;         // of every block, after the first run; of found pieces, those on the hull
-    std::vector<Index> cells_of_boxes_;   // of found pieces
+    std::vector<std::uint8_t> cut_;      // of curved cells, some of which are filled: the sides where that ends inside the mesh
+    std::vector<VoxelBox> boxes_;        // of every block, after the first run; of found pieces, those on the hull
+    std::vector<Index> cells_of_boxes_;  // of found pieces
     LimitCells found_;
     Batch batch_;  // its memory serves one batch after the other
     bool folded_ = false;

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "subvol/hex_mesh.h"
@@ -31,6 +33,9 @@ struct ToVoxels {
 ///              is not used
 /// slack_voxels: of curved cells: what two neighbours' ideas of their shared side may differ by
 /// search:      null, or how fine the pieces are that are looked for while the voxels are filled; `pieces` is null then
+/// numbers:     of the cells, as voxels get them; kNone: the cell is not filled, and only shapes the limit of the others.
+/// Empty:
+///              all cells, by their places
 /// tables:      null, or tables that do to this mesh what `refine` (with one more level if curved) and `on_limit` do
 struct CellRequest {
     const HexMesh* mesh = nullptr;
@@ -46,7 +51,16 @@ struct CellRequest {
     const LimitCellsOptions* search = nullptr;
     const RefinementTables* tables = nullptr;
     bool cell_numbers = false;
+    std::span<const Index> numbers{};
     Progress* progress = nullptr;
+
+    /// Whether a cell is filled. cell: kNone: none
+    [[nodiscard]] bool fills(Index cell) const { return cell != kNone && (numbers.empty() || numbers[cell] != kNone); }
+    /// Whether a face is one where what is filled ends.
+    [[nodiscard]] bool ends_at(const std::array<Index, 2>& face_cells) const {
+        return fills(face_cells[0]) != fills(face_cells[1]);
+    }
+    [[nodiscard]] Index number_of(Index cell) const { return numbers.empty() ? cell : numbers[cell]; }
 
     [[nodiscard]] bool refines() const { return refine.levels > 0 || on_limit || curved; }
 

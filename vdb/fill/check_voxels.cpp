@@ -39,12 +39,14 @@ Volume volume_of(const HexMesh& mesh, std::size_t cell) {
     return {std::abs(volume), volume};
 }
 
-Volume volume_of(const HexMesh& mesh) {
+Volume volume_of(const HexMesh& mesh, std::span<const Index> numbers) {
     const auto add = [](const Volume& a, const Volume& b) { return Volume{a.all + b.all, a.oriented + b.oriented}; };
     return tbb::parallel_deterministic_reduce(
         tbb::blocked_range<std::size_t>(0, mesh.cells.size(), 4096), Volume{},
         [&](const auto& range, Volume sum) {
-            for (std::size_t c = range.begin(); c < range.end(); ++c) sum = add(sum, volume_of(mesh, c));
+            for (std::size_t c = range.begin(); c < range.end(); ++c) {
+                if (numbers.empty() || numbers[c] != kNone) sum = add(sum, volume_of(mesh, c));
+            }
             return sum;
         },
         add);
@@ -61,7 +63,7 @@ double brick_count(const VoxelBox& box) {
 
 }  // namespace
 
-double check_voxel_count(const HexMesh& mesh, const ToVoxels& to_voxels) {
+double check_voxel_count(const HexMesh& mesh, const ToVoxels& to_voxels, std::span<const Index> numbers) {
     const Box box = bounds(mesh);
     double farthest = 0;
     for (int k = 0; k < 8; ++k) {
@@ -75,7 +77,7 @@ double check_voxel_count(const HexMesh& mesh, const ToVoxels& to_voxels) {
                        1.01 * to_voxels.voxel_size * farthest / kMaxIndex);
     }
     const double in_voxels = glm::determinant(to_voxels.linear / to_voxels.voxel_size);
-    const Volume volume = volume_of(mesh);
+    const Volume volume = volume_of(mesh, numbers);
     const double voxels = volume.all * std::abs(in_voxels);
     if (!(voxels <= kMaxActiveVoxels)) {
         throw_too_fine(to_voxels.voxel_size, "the mesh would fill more than 2e9 voxels",

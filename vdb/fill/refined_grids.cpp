@@ -3,6 +3,7 @@
 
 #include <tbb/parallel_for.h>
 
+#include "subvol/detail/place_function.h"
 #include "subvol/error.h"
 #include "subvol/limit.h"
 
@@ -74,7 +75,11 @@ void RefinedGrids::refine_whole(const RefinementTables& tables) {
     for (std::size_t i = 0; i < mesh_.points.size(); ++i) {
         mesh_.points[i] = {points[3 * i], points[3 * i + 1], points[3 * i + 2]};
     }
+    std::vector<Attribute> fields;
+    for (const Attribute& field : mesh_.attributes) fields.push_back(without_values(field));
+    mesh_ = with_arguments(std::move(mesh_));
     for (Attribute& field : mesh_.attributes) field.values = applied(tables, field.values, field.channels);
+    restore_functions(mesh_, fields);
 
     const std::size_t cells = std::size_t{1} << levels_, side = cells + 1;
     nodes_.resize(side * side * side);
@@ -123,9 +128,11 @@ void RefinedGrids::gather(Index cell, DenseCell& dense, std::vector<Vec3>& point
         const Index point = tables_->cells[first + nodes_[n].cell][nodes_[n].corner];
         points[n] = mesh_.points[point];
         for (std::size_t a = 0; a < values.size(); ++a) {
-            const auto channels = static_cast<std::size_t>(mesh_.attributes[a].channels);
+            const Attribute& field = mesh_.attributes[a];
+            const auto channels = static_cast<std::size_t>(field.channels);
             for (std::size_t c = 0; c < channels; ++c) {
-                values[a][n * channels + c] = mesh_.attributes[a].values[point * channels + c];
+                values[a][n * channels + c] =
+                    field.constant ? field.cells[cell * channels + c] : field.values[point * channels + c];
             }
         }
     }

@@ -99,6 +99,12 @@ std::vector<VoxelBrick*> VoxelBricks::take_entered() {
     return std::exchange(entered_, {});
 }
 
+std::vector<VoxelBrick*> VoxelBricks::all() const {
+    std::vector<VoxelBrick*> bricks;
+    for (const auto& [origin, brick] : bricks_) bricks.push_back(brick.get());
+    return bricks;
+}
+
 std::vector<std::unique_ptr<VoxelBrick>> VoxelBricks::release() {
     std::vector<std::unique_ptr<VoxelBrick>> all;
     for (auto& [origin, brick] : bricks_) all.push_back(std::move(brick));

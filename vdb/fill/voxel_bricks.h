@@ -79,6 +79,9 @@ public:
     /// Stores a leaf. origin: its lowest voxel
     void put_leaf(const VoxelCoord& origin, std::unique_ptr<VoxelLeaf> leaf);
 
+    /// All bricks, in no order.
+    [[nodiscard]] std::vector<VoxelBrick*> all() const;
+
     /// Moves all bricks out, in the order of their origins.
     [[nodiscard]] std::vector<std::unique_ptr<VoxelBrick>> release();
 

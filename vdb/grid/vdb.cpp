@@ -80,6 +80,7 @@ detail::VdbData::VdbData(const openvdb::GridBase::Ptr& from)
       is_level_set(floats && floats->getGridClass() == openvdb::GRID_LEVEL_SET),
       report_{.name = printable(grid->getName()),
               .kind = {},
+              .level_set = is_level_set,
               .active_voxels = grid->activeVoxelCount(),
               .voxel_size_world = grid->voxelSize()[0],
               .bytes = grid->memUsage()} {

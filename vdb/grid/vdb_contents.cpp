@@ -78,6 +78,7 @@ void clamp_voxels(VdbGrid& grid, const FieldRange& range) {
     if (data.floats) {
         check(1);
         const auto low = static_cast<float>(range.min[0]), high = static_cast<float>(range.max[0]);
+        if (data.report().min >= double{low} && data.report().max <= double{high}) return;
         for (auto at = data.floats->beginValueOn(); at; ++at) at.setValue(std::min(std::max(*at, low), high));
     } else if (auto* vectors = dynamic_cast<openvdb::Vec3SGrid*>(data.grid.get())) {
         check(3);

@@ -79,8 +79,9 @@ public:
     Vec3 origin() const override { return vec_of(grid_->indexToWorld(openvdb::Vec3d(0.0))); }
     std::array<Voxel, 2> range() const override { return range_; }
     std::unique_ptr<VoxelCursor> cursor() const override {
-        return std::make_unique<Cursor>(grid_->constTree(), grid_->getGridClass() == openvdb::GRID_LEVEL_SET);
+        return std::make_unique<Cursor>(grid_->constTree(), is_level_set());
     }
+    bool is_level_set() const override { return grid_->getGridClass() == openvdb::GRID_LEVEL_SET; }
 
 private:
     Vec3 column(const openvdb::Vec3d& axis) const {

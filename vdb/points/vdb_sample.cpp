@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "level_set_body.h"
 #include "openvdb_grids.h"
 #include "subvol/error.h"
 #include "vdb_data.h"
@@ -291,6 +292,13 @@ VoxelSampleResult sample_rbf_points(const VdbGrid& grid, const VoxelSampleOption
     const double voxel_world = std::cbrt(std::abs(glm::determinant(to_world)));
     const int n = voxels_a_side(options.spacing_world, voxel_world);
     report_progress(options.progress, "sample voxels", 0);
+    if (grid.report().level_set) {
+        const detail::LevelSetBody body = detail::body_of_level_set(grid, options.spacing_world > 0 ? n : 0, options.kernel);
+        return {body.volume,
+                {.points = body.volume.size(),
+                 .voxels_a_side = body.voxels_a_side,
+                 .spacing_world = body.voxels_a_side * voxel_world}};
+    }
     const detail::CoarseVoxels coarse = detail::coarse_voxels(floats->constTreePtr(), n);
 
     std::vector<const Leaf*> leaves;

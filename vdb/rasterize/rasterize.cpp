@@ -101,12 +101,17 @@ CellRequest make_request(const HexMesh& mesh, std::span<const std::string> field
     if (fields.empty()) throw Error(ErrorCode::InvalidInput, "no field is named to be rasterized");
     std::vector<const Attribute*> attributes;
     for (const auto& name : fields) attributes.push_back(&field_of(mesh, name, options.half));
-    const ToVoxels to_voxels = to_voxels_of(bounds(mesh), options);
+    if (!options.cells.empty() && options.cells.size() != mesh.cells.size()) {
+        throw Error(ErrorCode::InvalidInput, "there are " + std::to_string(options.cells.size()) + " numbers of cells", "cells",
+                    "one for each of the " + std::to_string(mesh.cells.size()) + " cells");
+    }
+    const ToVoxels to_voxels = to_voxels_of(rasterized_box(mesh, options), options);
     CellRequest request = refinement_of(mesh, options, options.tables != nullptr);
     request.fields = std::move(attributes);
     if (options.limit && !options.tables) take_pieces(*options.limit, request);
     request.to_voxels = to_voxels;
     request.cell_numbers = options.cell_numbers;
+    request.numbers = options.cells;
     return request;
 }
 
@@ -142,7 +147,7 @@ public:
         if (samples_) grids.push_back(coverage(part));
         if (options_.level_set) grids.push_back(distances(*mask, part));
         std::vector<VdbGrid> result;
-        const Box frame = bounds(*request_.mesh);
+        const Box frame = rasterized_box(*request_.mesh, options_);
         for (std::size_t g = 0; g < grids.size(); ++g) {
             describe(*grids[g], request_.to_voxels, options_, frame);
             result.push_back(make_vdb_grid(grids[g]));
@@ -208,12 +213,15 @@ std::vector<double> bytes_of_layers(const CellRequest& request, std::size_t byte
     const ToVoxels& to_voxels = request.to_voxels;
     const auto layer = [](double x) { return static_cast<int>(std::floor(x / kBrickSide)); };
     Box box;
-    for (const auto& cell : mesh.cells) {
-        for (const Index p : cell) box.add(to_voxels(mesh.points[p]));
+    for (Index c = 0; c < mesh.cells.size(); ++c) {
+        if (!request.fills(c)) continue;
+        for (const Index p : mesh.cells[c]) box.add(to_voxels(mesh.points[p]));
     }
     first = layer(box.lower.x);
     std::vector<double> bytes(static_cast<std::size_t>(layer(box.upper.x) - first + 1));
-    for (const auto& cell : mesh.cells) {
+    for (Index c = 0; c < mesh.cells.size(); ++c) {
+        if (!request.fills(c)) continue;
+        const auto& cell = mesh.cells[c];
         std::array<Vec3, 8> corners;
         Box of_cell;
         for (std::size_t k = 0; k < 8; ++k) of_cell.add(corners[k] = to_voxels(mesh.points[cell[k]]));
@@ -263,8 +271,8 @@ std::vector<VoxelBox> slabs_of(const CellRequest& request, std::size_t bytes_per
 }  // namespace
 
 void check_voxels(const HexMesh& mesh, const RasterizeOptions& options) {
-    const ToVoxels to_voxels = to_voxels_of(bounds(mesh), options);
-    (void)check_voxel_count(mesh, to_voxels);
+    const ToVoxels to_voxels = to_voxels_of(rasterized_box(mesh, options), options);
+    (void)check_voxel_count(mesh, to_voxels, options.cells);
     check_representable(to_voxels.voxel_size);
     if (options.level_set) check_level_set(options);
 }

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "subvol/field_range.h"
 #include "subvol/quantity.h"
 #include "subvol/view_state.h"
 
@@ -22,7 +23,7 @@ std::vector<std::pair<std::string, std::string>> ViewFlow::words() const {
 ViewBody view_body(HexMesh mesh, const std::optional<std::string>& field) {
     SelectedField selected = select_field(mesh, field);
     mesh.attributes.assign(1, std::move(selected.scalar));
-    const auto [min, max] = std::ranges::minmax(mesh.attributes.front().values);
+    const auto [min, max] = std::ranges::minmax(own_values(mesh.attributes.front()));
     const Box box = bounds(mesh);
     return {.mesh = std::move(mesh), .box = box, .range = {min, max}};
 }

@@ -129,7 +129,8 @@ void take_edits(Session& session, const std::filesystem::path& file) {
                     "the mesh that was saved with the state");
     }
     next.points = std::move(read.points);
-    next.attributes.front().values = values->values;
+    Attribute& field = next.attributes.front();
+    field = {field.name, 1, values->values, field.bounds};
     session.replace(std::move(next));
 }
 

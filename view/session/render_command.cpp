@@ -3,6 +3,7 @@
 
 #include "session_state.h"
 #include "subvol/detail/number_text.h"
+#include "subvol/detail/refuse_surface.h"
 #include "subvol/view_options.h"
 
 namespace subvol::detail {
@@ -13,15 +14,6 @@ std::string comma_separated(std::initializer_list<double> numbers) {
     std::string text;
     for (const double number : numbers) text += (text.empty() ? "" : ",") + exact_text(number);
     return text;
-}
-
-/// A word as a shell reads it.
-std::string quoted(const std::string& word) {
-    constexpr const char* kPlain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789+-_.,:/=%@";
-    if (!word.empty() && word.find_first_not_of(kPlain) == std::string::npos) return word;
-    std::string text = "'";
-    for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
-    return text + "'";
 }
 
 std::string opacity_text(const std::vector<TransferFunction::OpacityKnot>& knots) {
@@ -95,7 +87,7 @@ std::string render_command(const ViewState& state, const ViewBody& body, const V
     const std::vector<std::string> more = words_of_method(source.more_words, method, kind_of(body));
     words.insert(words.end(), more.begin(), more.end());
     std::string line;
-    for (const std::string& word : words) line += (line.empty() ? "" : " ") + quoted(word);
+    for (const std::string& word : words) line += (line.empty() ? "" : " ") + shell_word(word);
     return line;
 }
 

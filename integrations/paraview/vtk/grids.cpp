@@ -80,6 +80,7 @@ VtkUnstructuredGrid cells_of(vtkDataSet& grid) {
 
 VtkGridArray whole_array(vtkDataArray& array, bool at_cells) {
     VtkGridArray made{array.GetName() != nullptr ? array.GetName() : "unnamed", array.GetNumberOfComponents(), at_cells, {}};
+    made.integers = array.GetDataType() != VTK_FLOAT && array.GetDataType() != VTK_DOUBLE;
     made.values.resize(static_cast<std::size_t>(array.GetNumberOfValues()));
     const auto tuple = static_cast<std::size_t>(made.components);
     for (vtkIdType i = 0; i < array.GetNumberOfTuples(); ++i)

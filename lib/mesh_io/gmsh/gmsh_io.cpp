@@ -125,6 +125,7 @@ void read_gmsh_data(TextScanner& in, GmshValues& values, const GmshEntities& ent
     const std::string entity = at_cells ? "element" : "node";
     const DataHeader header = read_header(in, at_cells ? "$ElementData" : "$NodeData");
     const std::string what = "array " + in_quotes(header.name) + ": line";
+    if (!std::isfinite(header.time)) in.fail("array " + in_quotes(header.name) + ": its time is not finite");
     FileArray array{header.name, static_cast<int>(header.components), at_cells, {}};
     array.values.assign(numbers.size() * header.components, std::numeric_limits<double>::quiet_NaN());
     std::vector<std::uint8_t> missing(needed.begin(), needed.end());
@@ -136,6 +137,10 @@ void read_gmsh_data(TextScanner& in, GmshValues& values, const GmshEntities& ent
         if (to == kNone) {
             // NOLINTNEXTLINE(performance-inefficient-string-concatenation): the loop ends here
             in.fail(what + " " + std::to_string(n + 1) + ": there is no " + entity + " " + std::to_string(number));
+        }
+        if (!std::isnan(array.values[to * header.components])) {
+            // NOLINTNEXTLINE(performance-inefficient-string-concatenation): the loop ends here
+            in.fail(what + " " + std::to_string(n + 1) + ": " + entity + " " + std::to_string(number) + " has a value already");
         }
         missing[to] = 0;
         for (std::size_t k = 0; k < header.components; ++k) array.values[to * header.components + k] = values.real(place);

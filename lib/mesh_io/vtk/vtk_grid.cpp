@@ -85,8 +85,10 @@ MeshFile contents_of(VtkUnstructuredGrid grid, bool alone, const TextScanner& no
     for (const Vec3& point : grid.points) add_point(found, point, 0);
     VtkCellSorter sorter(nowhere, found, options);
     take_cells(grid, sorter);
-    for (VtkGridArray& array : grid.arrays)
+    for (VtkGridArray& array : grid.arrays) {
         found.arrays.push_back({std::move(array.name), array.components, array.at_cells, std::move(array.values)});
+        found.arrays.back().integers = array.integers;
+    }
     take_set_arrays(found);
     if (alone) {
         std::vector<NamedNumbers> arrays;

@@ -7,6 +7,7 @@
 #include "formats.h"
 #include "mesh_arrays.h"
 #include "mesh_file.h"
+#include "subvol/detail/refuse_surface.h"
 #include "vtk_cells.h"
 #include "vtk_values.h"
 
@@ -179,7 +180,7 @@ private:
         if (upper_case(dataset) != "DATASET") in_.fail_word({"dataset"}, "DATASET", dataset);
         const std::string type = upper_case(in_.word());
         constexpr const char* kAllowed = "UNSTRUCTURED_GRID, STRUCTURED_GRID, RECTILINEAR_GRID and STRUCTURED_POINTS are";
-        if (type == "POLYDATA") in_.fail("POLYDATA is not a volume mesh", kAllowed);
+        if (type == "POLYDATA") in_.fail("POLYDATA is not a volume mesh, but a surface", way_to_cells(file_));
         block_ = VtkBlock::for_type(type);
         if (!block_ && type != "UNSTRUCTURED_GRID") in_.fail("DATASET " + in_quotes(type) + " is not supported", kAllowed);
     }

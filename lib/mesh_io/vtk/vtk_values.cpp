@@ -59,7 +59,11 @@ void VtkValues::begin_integers(VtkType type, const std::string& what) {
 }
 
 double VtkValues::real(const Place& place) {
-    if (!binary_) return in_.real(place);
+    if (!binary_) {
+        const double value = in_.real(place);
+        in_.expect_type(value, type_.number, place);
+        return value;
+    }
     if (type_.bits) return static_cast<double>(bit(place));
     return real_from(in_.bytes(size_of(type_.number), place), type_.number, kOrder);
 }
@@ -255,7 +259,8 @@ void VtkArrayReader::read_field_array() {
 }
 
 void VtkArrayReader::read_values(const std::string& name, VtkType type, std::size_t components) {
-    FileArray array{decoded(name), static_cast<int>(components), at_cells_, {}};
+    FileArray array{.name = decoded(name), .components = static_cast<int>(components), .at_cells = at_cells_, .values = {}};
+    array.integers = is_integer(type.number);
     const std::string what = "array " + in_quotes(name) + ": value";
     const std::size_t count = tuples_ * components;
     values_.begin(type);

@@ -9,6 +9,7 @@
 #include "join_pieces.h"
 #include "mesh_arrays.h"
 #include "mesh_file.h"
+#include "mesh_subset.h"
 #include "subvol/error.h"
 #include "vtk_cells.h"
 #include "vtkhdf_writer.h"
@@ -244,6 +245,8 @@ private:
                 add_to_set(sets, as_utf8(name), 0, values);
             } else {
                 found.arrays.push_back({as_utf8(name), static_cast<int>(components), at_cells, std::move(values)});
+                const auto there = file_.find(path);
+                found.arrays.back().integers = there && is_integer(there->type);
             }
         }
     }
@@ -288,9 +291,16 @@ std::vector<std::string> write_vtkhdf(const std::filesystem::path& path, const W
         if (name != in_file) warnings.push_back(std::string(kind) + " " + in_quotes(name) + " is called " + in_quotes(in_file));
     };
     for (const Attribute& attribute : mesh.attributes) {
-        warn(
-            "field", attribute.name,
-            out.array(attribute.name, std::span<const double>(attribute.values), static_cast<std::size_t>(attribute.channels)));
+        const auto channels = static_cast<std::size_t>(attribute.channels);
+        const bool at_cells = is_at_cells(mesh, attribute);
+        const std::span<const double> values = at_cells ? attribute.cells : attribute.values;
+        if (at_cells && attribute.constant && are_whole(values)) {  // labels, which readers take for such by their type
+            const std::vector<std::int64_t> labels(values.begin(), values.end());
+            warn("field", attribute.name, out.cell_array(attribute.name, std::span<const std::int64_t>(labels), channels));
+            continue;
+        }
+        warn("field", attribute.name,
+             at_cells ? out.cell_array(attribute.name, values, channels) : out.array(attribute.name, values, channels));
     }
     std::vector<std::uint8_t> in_set;
     for (const CellSet& set : written.sets.sets) {
@@ -298,9 +308,9 @@ std::vector<std::string> write_vtkhdf(const std::filesystem::path& path, const W
         in_set.assign(mesh.cells.size(), 0);
         for (const Index c : set.cells) in_set[c] = 1;
         const std::string name = set_array_name(set);
-        warn("array", name, out.cell_array(name, in_set));
+        warn("array", name, out.cell_array(name, std::span<const std::uint8_t>(in_set)));
     }
-    for (const NamedNumbers& array : field_arrays(mesh, written.sets))
+    for (const NamedNumbers& array : settled_arrays(mesh, written.sets))
         warn("array", array.name, out.field(array.name, array.numbers));
     out.commit();
     return warnings;

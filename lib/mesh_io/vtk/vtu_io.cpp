@@ -11,6 +11,7 @@
 #include "formats.h"
 #include "mesh_arrays.h"
 #include "mesh_file.h"
+#include "mesh_subset.h"
 #include "output_file.h"
 #include "subvol/hex_mesh.h"
 #include "text_scanner.h"
@@ -174,7 +175,8 @@ private:
             found_.warnings.push_back(std::to_string(pieces_) + " pieces put together" +
                                       (options_.weld ? "" : "; points where they touch stay apart without welding"));
         drop_partial_arrays();
-        read_field_data(grid.child("FieldData"));
+        // A program that adds arrays of its own may write a second list of them.
+        for (const auto& element : grid.children("FieldData")) read_field_data(element);
         sorter_.report(may_be_empty ? std::nullopt : std::optional(file_));
     }
 
@@ -342,10 +344,11 @@ private:
                 found_.warnings.push_back("array " + in_quotes(name) + " of type " + shortened(type) + " ignored");
                 continue;
             }
-            const std::size_t components = number_attribute(array, "NumberOfComponents").value_or(1);
-            if (components < 1 || components > kMostVtuComponents) {
-                arrays_.fail(array, "it cannot have " + std::to_string(components) + " components");
-            }
+            const bool integers = arrays_.has_integers(array);
+            const std::string_view said = array.attribute("NumberOfComponents").as_string("1");
+            const std::size_t components = number_attribute(array, "NumberOfComponents").value_or(said == "1" ? 1 : 0);
+            if (components < 1 || components > kMostVtuComponents)
+                arrays_.fail(array, "it cannot have " + in_quotes(said) + " components");
             xml_.expect_size(array, arrays_.size(array), tuples * components,
                              std::to_string(components) + " a " + (at_cells ? "cell" : "point"));
             if (at_cells && is_set_array(name, components)) {
@@ -356,7 +359,8 @@ private:
                 });
                 continue;
             }
-            std::vector<double>& values = values_of(name, at_cells, components, before);
+            std::vector<double>& values =
+                values_of({name, static_cast<int>(components), at_cells, {}, {}, {}, integers}, before);
             arrays_.each_real(array,
                               [&](std::span<const double> some) { values.insert(values.end(), some.begin(), some.end()); });
         }
@@ -364,8 +368,9 @@ private:
 
     // The values of a piece follow those of the piece before. An array that an earlier piece lacks is started anew, and removed
     // at the end.
-    std::vector<double>& values_of(const std::string& name, bool at_cells, std::size_t components, std::size_t before) {
-        Alike& alike = alike_[{name, at_cells, components}];
+    std::vector<double>& values_of(FileArray array, std::size_t before) {
+        const auto components = static_cast<std::size_t>(array.components);
+        Alike& alike = alike_[{array.name, array.at_cells, components}];
         if (std::exchange(alike.piece, pieces_) != pieces_) alike.next = 0;
         while (alike.next < alike.places.size()) {
             std::vector<double>& values = found_.arrays[alike.places[alike.next++]].values;
@@ -373,8 +378,7 @@ private:
         }
         alike.places.push_back(found_.arrays.size());
         alike.next = alike.places.size();
-        found_.arrays.push_back({name, static_cast<int>(components), at_cells, {}});
-        return found_.arrays.back().values;
+        return found_.arrays.emplace_back(std::move(array)).values;
     }
 
     void drop_partial_arrays() {
@@ -474,6 +478,24 @@ void write_cells(VtkXmlWriter& out, const Contents& contents) {
     out.line("</Cells>");
 }
 
+/// The values at all cells of a field at cells: quads and lines have the means of their corners.
+std::vector<double> values_at_cells(const Attribute& field, const Contents& contents) {
+    std::vector<double> values = field.cells;
+    const auto channels = static_cast<std::size_t>(field.channels);
+    const auto add = [&](const auto& cells) {
+        for (const auto& cell : cells) {
+            for (std::size_t c = 0; c < channels; ++c) {
+                double sum = 0;
+                for (const Index p : cell) sum += field.values[p * channels + c];
+                values.push_back(sum / static_cast<double>(cell.size()));
+            }
+        }
+    };
+    add(contents.quads);
+    add(contents.lines);
+    return values;
+}
+
 void write_piece(VtkXmlWriter& out, const Contents& contents) {
     const HexMesh& mesh = contents.mesh;
     const std::size_t points = mesh.points.size();
@@ -485,9 +507,20 @@ void write_piece(VtkXmlWriter& out, const Contents& contents) {
     write_cells(out, contents);
     out.line("<PointData>");
     for (const auto& attribute : mesh.attributes) {
+        if (is_at_cells(mesh, attribute)) continue;
         out.array<double>(attribute.name, static_cast<std::size_t>(attribute.channels), attribute.values);
     }
     out.line("</PointData>\n<CellData>");
+    for (const auto& attribute : mesh.attributes) {
+        if (!is_at_cells(mesh, attribute)) continue;
+        const std::vector<double> values = values_at_cells(attribute, contents);
+        const auto channels = static_cast<std::size_t>(attribute.channels);
+        if (attribute.constant && are_whole(values)) {  // labels, which readers take for such by their type
+            out.array<std::int64_t>(attribute.name, channels, std::vector<std::int64_t>(values.begin(), values.end()));
+        } else {
+            out.array<double>(attribute.name, channels, values);
+        }
+    }
     std::vector<std::uint8_t> in_set;
     for (const CellSet& set : contents.sets.sets) {
         if (set.cells.empty()) continue;
@@ -501,11 +534,10 @@ void write_piece(VtkXmlWriter& out, const Contents& contents) {
 std::vector<std::string> write(const std::filesystem::path& path, const Contents& contents) {
     OutputFile out(path);
     VtkXmlWriter xml(out, "UnstructuredGrid");
-    if (const std::vector<NamedNumbers> arrays = field_arrays(contents.mesh, contents.sets); !arrays.empty()) {
-        xml.line("<FieldData>");
-        for (const NamedNumbers& array : arrays) xml.field<std::int64_t>(array.name, array.numbers);
-        xml.line("</FieldData>");
-    }
+    xml.line("<FieldData>");
+    for (const NamedNumbers& array : settled_arrays(contents.mesh, contents.sets))
+        xml.field<std::int64_t>(array.name, array.numbers);
+    xml.line("</FieldData>");
     write_piece(xml, contents);
     xml.end();
     out.commit();

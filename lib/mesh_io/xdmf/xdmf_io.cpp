@@ -417,6 +417,8 @@ private:
         }
         if (kind == "TENSOR6" && components == kSymmetricByRows.size()) order_symmetric(values, kSymmetricByRows);
         found.arrays.push_back({name, static_cast<int>(components), at_cells, std::move(values)});
+        const std::string type = kind_of(attribute.child("DataItem"), {"NumberType", "DataType"});
+        found.arrays.back().integers = type == "INT" || type == "UINT" || type == "CHAR" || type == "UCHAR";
     }
 
     XdmfFile file_;

@@ -9,6 +9,7 @@
 #include "inp_deck.h"
 #include "mesh_file.h"
 #include "solver_formats.h"
+#include "subvol/detail/error_text.h"
 #include "subvol/error.h"
 
 namespace subvol::detail {
@@ -49,6 +50,22 @@ public:
         : deck_(deck), file_(std::move(file)), options_(options) {}
 
     ReadResult run() {
+        collect();
+        EntityNames names = kAbaqusNames;
+        names.point_numbers = numbers_;
+        return assemble(std::move(found_), file_, names, options_);
+    }
+
+    DeckContents contents() {
+        const bool numbered =
+            deck_.instances.size() == 1 && deck_.instances[0].part.empty() && deck_.instances[0].inside.empty();
+        if (!numbered) fail("it has parts and instances, whose elements have other numbers than in the results");
+        collect();
+        return {std::move(found_), std::move(numbers_), std::move(elements_)};
+    }
+
+private:
+    void collect() {
         const BlockChoice choice(options_.blocks, set_names(), file_);
         for (const InpInstance& instance : deck_.instances) {
             const auto part = deck_.parts.find(instance.part), inside = deck_.parts.find(instance.inside);
@@ -68,6 +85,11 @@ public:
                                       " more numbers than nodes: those after the last node are ignored");
         }
         deck_.sets_left_out.report("set of elements", "sets of elements", found_.warnings);
+        if (moved_ > 0) {
+            found_.warnings.push_back(counted(moved_, "node is", "nodes are") +
+                                      " listed again with other coordinates: the last ones are taken");
+        }
+        warn_of_unknown_names();
         if (curved_ > 0) {
             found_.warnings.push_back(counted(curved_, "element has", "elements have") +
                                       " more nodes than corners: only the corners are used");
@@ -83,12 +105,31 @@ public:
         for (const auto& [key, block] : blocks_) {
             if (block.cells > 0) found_.blocks.push_back(block);
         }
-        EntityNames names = kAbaqusNames;
-        names.point_numbers = numbers_;
-        return assemble(std::move(found_), file_, names, options_);
     }
 
-private:
+    void warn_of_unknown_names() {
+        std::vector<std::string> of_nothing, not_there;
+        for (const auto& [name, count] : unknown_) {
+            if (count > 0) of_nothing.push_back(in_quotes(name) + " (" + std::to_string(count) + ")");
+        }
+        for (const auto& [name, is_there] : sets_of_surfaces_) {
+            if (!is_there) not_there.push_back(in_quotes(name));
+        }
+        if (!of_nothing.empty())
+            found_.warnings.push_back("numbers in sets of elements that no element has: " + listed(of_nothing));
+        if (!not_there.empty()) found_.warnings.push_back("its surfaces name sets that it does not have: " + listed(not_there));
+    }
+
+    [[nodiscard]] std::unordered_set<std::int64_t> elements_of(const InpInstance& instance) const {
+        std::unordered_set<std::int64_t> numbers;
+        for (const std::string& name : {instance.part, instance.inside}) {
+            const auto part = deck_.parts.find(name);
+            if (part == deck_.parts.end()) continue;
+            for (const InpElement& element : part->second.elements) numbers.insert(element.number);
+        }
+        return numbers;
+    }
+
     [[noreturn]] void fail(const std::string& message) const { throw Error(ErrorCode::InvalidInput, message, file_); }
 
     // Sets of several parts whose names differ in the case of letters are one.
@@ -107,8 +148,11 @@ private:
              const BlockChoice& choice) {
         places_ = {};  // not cleared, which takes as long as the largest part did
         if (found_.points.size() + part.points.size() >= kNone) fail("there are too many nodes");
+        const std::size_t first = found_.points.size();
         for (std::size_t p = 0; p < part.points.size(); ++p) {
-            places_[part.numbers[p]] = static_cast<Index>(found_.points.size());
+            const auto [place, is_new] = places_.try_emplace(part.numbers[p], static_cast<Index>(first + p));
+            moved_ += !is_new && part.points[place->second - first] != part.points[p];
+            place->second = static_cast<Index>(first + p);
             found_.points.push_back(instance(part.points[p]));
             numbers_.push_back(part.numbers[p]);
         }
@@ -122,8 +166,10 @@ private:
         for (const InpElement& element : part.elements) {
             if (!options_.blocks.empty() && !chosen.contains(element.number)) continue;
             if (take(element)) cells[element.number] = {static_cast<Index>(next_), &element};
+            elements_.push_back(element.number);
             ++next_;
         }
+        const std::unordered_set<std::int64_t> elements = elements_of(instance);
         for (const Sets* sets : all_sets) {
             for (const auto& [key, set] : *sets) {
                 MeshBlock& block = blocks_.at(key);
@@ -131,6 +177,7 @@ private:
                 const std::unordered_set<std::int64_t> of_set(set.numbers.begin(), set.numbers.end());
                 FileSet& cells_of_set = sets_[block.name];
                 for (const std::int64_t number : of_set) {
+                    unknown_[block.name] += elements.contains(number) ? 0 : 1;
                     const auto cell = cells.find(number);
                     if (cell != cells.end()) cells_of_set.numbers.push_back(cell->second.first);
                 }
@@ -152,8 +199,11 @@ private:
                 const std::string prefix = instance.inside.empty() ? "" : instance.inside.substr(1) + ".";
                 const bool of_instance = !prefix.empty() && side.set.starts_with(prefix);
                 for (const Sets* sets : all_sets) {
+                    if (side.set.empty()) continue;
                     const auto set = sets->find(of_instance ? side.set.substr(prefix.size()) : side.set);
-                    if (side.set.empty() || set == sets->end()) continue;
+                    bool& is_there = sets_of_surfaces_[side.set];
+                    is_there |= set != sets->end();
+                    if (set == sets->end()) continue;
                     for (const std::int64_t number : set->second.numbers) add_sides(number, side.side);
                 }
             }
@@ -242,11 +292,13 @@ private:
     ReadOptions options_;
     MeshFile found_;
     std::unordered_map<std::int64_t, Index> places_;
-    std::vector<std::int64_t> numbers_;
-    std::map<std::string, MeshBlock> blocks_;  // by names in capitals
+    std::vector<std::int64_t> numbers_, elements_;  // of the points, and of all elements that were counted
+    std::map<std::string, MeshBlock> blocks_;       // by names in capitals
     std::map<std::string, std::size_t> left_out_;
     std::vector<std::pair<Index, std::string_view>> shells_;  // numbers and types
-    std::size_t next_ = 0, curved_ = 0, sides_ = 0;
+    std::map<std::string, std::size_t> unknown_;              // numbers of a set that no element has
+    std::map<std::string, bool> sets_of_surfaces_;            // whether they are there
+    std::size_t next_ = 0, curved_ = 0, sides_ = 0, moved_ = 0;
     ByName<FilePatch> patches_{found_.patches};
     ByName<FileSet> sets_{found_.sets};
 };
@@ -256,6 +308,11 @@ private:
 ReadResult read_inp(const std::filesystem::path& path, const ReadOptions& options) {
     const InpDeck deck = read_inp_deck(path);
     return DeckAssembly(deck, path.string(), options).run();
+}
+
+DeckContents read_inp_contents(const std::filesystem::path& path, const ReadOptions& options) {
+    const InpDeck deck = read_inp_deck(path);
+    return DeckAssembly(deck, path.string(), options).contents();
 }
 
 }  // namespace subvol::detail

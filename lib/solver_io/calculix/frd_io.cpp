@@ -17,6 +17,7 @@
 #include "mesh_file.h"
 #include "number_type.h"
 #include "solver_formats.h"
+#include "subvol/error.h"
 #include "text_scanner.h"
 
 namespace subvol::detail {
@@ -277,6 +278,7 @@ public:
             if (key == "9999") break;
         }
         if (numbers_.empty()) lines_.fail("not a file of CalculiX's results, or it has no nodes");
+        if (!options_.deck.empty()) take_deck();
         finish();
         EntityNames names = kFrdNames;
         names.point_numbers = numbers_;
@@ -321,6 +323,7 @@ private:
             nodes.clear();
             while (nodes.size() < kind.nodes) nodes.push_back(place(number, lines_.binary_integer("the number of a node")));
             take(kind, nodes);
+            element_numbers_.push_back(number);
             ++elements_;
         }
         if (head.binary) return;
@@ -340,6 +343,7 @@ private:
                             std::to_string(kind.nodes) + " are needed");
             }
             take(kind, nodes);
+            element_numbers_.push_back(number);
             ++elements_;
         }
         if (lines_.key() != "-3") lines_.fail("the list of elements does not end with -3");
@@ -417,6 +421,92 @@ private:
         return found->second;
     }
 
+    // The sets and surfaces of the deck, whose elements and nodes have the numbers that they have here.
+    void take_deck() {
+        const auto fail = [&](const std::string& message, const std::string& allowed) {
+            throw Error(ErrorCode::InvalidInput, message, options_.deck, allowed);
+        };
+        ReadOptions whole = options_;
+        whole.blocks.clear();
+        whole.deck.clear();
+        const DeckContents deck = read_inp_contents(options_.deck, whole);
+        const auto node_at = [&](Index point) {
+            const auto at = places_.find(deck.nodes[point]);
+            return at == places_.end() ? kNone : at->second;
+        };
+        Box box;
+        for (const Vec3& x : found_.points) box.add(x);
+        constexpr double kDigits = 1e-4;  // coordinates have six digits in the results
+        for (Index p = 0; p < deck.nodes.size(); ++p) {
+            const Index here = node_at(p);
+            if (here == kNone || glm::distance(found_.points[here], deck.found.points[p]) <= kDigits * box.diagonal()) continue;
+            fail("node " + std::to_string(deck.nodes[p]) + " lies elsewhere than in " + in_quotes(file_),
+                 "the deck that was computed");
+        }
+        std::unordered_map<std::int64_t, Index> cells;  // of the results
+        for (Index c = 0; c < element_numbers_.size(); ++c) cells.try_emplace(element_numbers_[c], c);
+        const std::map<Index, std::vector<Index>> here = corners_of(found_), there = corners_of(deck.found);
+        std::vector<Index> places(deck.elements.size(), kNone);
+        std::size_t missing = 0;
+        for (const auto& [cell, corners] : there) {
+            const auto at = cells.find(deck.elements[cell]);
+            const auto same = at == cells.end() ? here.end() : here.find(at->second);
+            if (same == here.end()) {
+                ++missing;
+                continue;
+            }
+            std::vector<Index> of_deck;
+            for (const Index p : corners) of_deck.push_back(node_at(p));
+            std::ranges::sort(of_deck);
+            if (of_deck != same->second) {
+                fail("element " + std::to_string(deck.elements[cell]) + " has other nodes than in " + in_quotes(file_),
+                     "the deck that was computed");
+            }
+            places[cell] = at->second;
+        }
+        if (missing == there.size()) fail("none of its elements is in " + in_quotes(file_), "the deck that was computed");
+        if (missing > 0) {
+            found_.warnings.push_back(std::to_string(missing) + " of " + counted(there.size(), "element", "elements") +
+                                      " of the deck are not in the results");
+        }
+        std::map<std::string_view, std::size_t> cells_of;
+        for (const FileSet& set : deck.found.sets) {
+            FileSet& taken = found_.sets.emplace_back(FileSet{set.name, {}});
+            for (const Index cell : set.numbers) {
+                if (places[cell] != kNone) taken.numbers.push_back(places[cell]);
+            }
+            cells_of[set.name] = taken.numbers.size();
+        }
+        for (MeshBlock block : deck.found.blocks) {
+            block.cells = cells_of[block.name];
+            if (block.cells > 0) found_.blocks.push_back(block);
+        }
+        std::vector<Index> corners;
+        for (const FilePatch& patch : deck.found.patches) {
+            FilePatch& taken = found_.patches.emplace_back();
+            taken.name = patch.name;
+            taken.role = patch.role;
+            for (std::size_t f = 0; f < patch.size(); ++f) {
+                corners.clear();
+                for (const Index p : patch.face(f)) corners.push_back(node_at(p));
+                if (std::ranges::find(corners, kNone) == corners.end()) taken.add(corners);
+            }
+        }
+    }
+
+    /// The corners of the cells by their numbers, ascending.
+    [[nodiscard]] static std::map<Index, std::vector<Index>> corners_of(const MeshFile& file) {
+        std::map<Index, std::vector<Index>> corners;
+        each_kind(file, [&](const auto& kind) {
+            for (std::size_t c = 0; c < kind.corners.size(); ++c) {
+                auto& of_cell = corners[kind.numbers[c]];
+                of_cell.assign(kind.corners[c].begin(), kind.corners[c].end());
+                std::ranges::sort(of_cell);
+            }
+        });
+        return corners;
+    }
+
     void finish() {
         if (curved_ > 0) {
             found_.warnings.push_back(counted(curved_, "element has", "elements have") +
@@ -447,7 +537,7 @@ private:
     ReadOptions options_;
     MeshFile found_;
     std::unordered_map<std::int64_t, Index> places_;
-    std::vector<std::int64_t> numbers_;
+    std::vector<std::int64_t> numbers_, element_numbers_;
     std::map<std::string_view, std::size_t> left_out_;
     std::size_t elements_ = 0, curved_ = 0, step_ = 0;
 };

@@ -3,7 +3,7 @@
 // a pattern in quotation marks, and a type. Solvers write a `value` for each face: what they compute with there. It counts
 // whatever the type, but for these:
 //
-//     zeroGradient, extrapolatedCalculated     only repeat the cell's value
+//     zeroGradient, extrapolatedCalculated     only repeat the cell's value: nothing changes across the face
 //     …WallFunction                            a number by which a model gets its stress, not what the field is there
 //     slip, symmetry, symmetryPlane            a vector has no component along the normal
 //     empty, wedge, cyclic…, processor…        no boundary of the body
@@ -193,6 +193,8 @@ std::vector<FoamOnPatch> FoamText::boundary_field(std::size_t components, std::s
         const PatchEntry* entry = entry_of(entries, patches[k]);
         if (entry == nullptr) continue;
         on_patches[k].along = is_along(entry->type) && components == 3;
+        on_patches[k].level = is_one_of(entry->type, {"zeroGradient", "extrapolatedCalculated", "kqRWallFunction"}) ||
+                              (is_along(entry->type) && components == 1);
         if (has_no_value(entry->type)) continue;
         const auto faces = static_cast<std::size_t>(patches[k].count);
         std::vector<double>& values = on_patches[k].values;

@@ -18,6 +18,7 @@
 #include "named_files.h"
 #include "polyhedra.h"
 #include "solver_formats.h"
+#include "subvol/detail/counted_rows.h"
 #include "subvol/error.h"
 #include "subvol/read_options.h"
 #include "text_scanner.h"
@@ -60,33 +61,27 @@ public:
 
 private:
     void sort_faces() {
-        starts_.assign(mesh_.cells + 1, 0);
-        const auto each = [&](const auto& call) {
-            for (std::size_t f = 0; f < mesh_.owner.size(); ++f) call(mesh_.owner[f], Side{f, false});
-            for (std::size_t f = 0; f < mesh_.neighbour.size(); ++f) call(mesh_.neighbour[f], Side{f, true});
-        };
-        each([&](std::int64_t cell, const Side&) { ++starts_[static_cast<std::size_t>(cell) + 1]; });
-        for (std::size_t c = 0; c < mesh_.cells; ++c) starts_[c + 1] += starts_[c];
-        sides_.resize(starts_.back());
-        std::vector<std::size_t> next(starts_.begin(), starts_.end() - 1);
-        each([&](std::int64_t cell, const Side& side) { sides_[next[static_cast<std::size_t>(cell)]++] = side; });
+        sides_ = counted_rows<Side>(mesh_.cells, [&](const auto& put) {
+            for (std::size_t f = 0; f < mesh_.owner.size(); ++f) put(static_cast<std::size_t>(mesh_.owner[f]), Side{f, false});
+            for (std::size_t f = 0; f < mesh_.neighbour.size(); ++f)
+                put(static_cast<std::size_t>(mesh_.neighbour[f]), Side{f, true});
+        });
     }
 
     // The faces of a cell with outward normals.
     void load(std::size_t c) {
         faces_.clear();
-        for (std::size_t k = starts_[c]; k < starts_[c + 1]; ++k) {
+        for (const Side& side : sides_[c]) {
             auto& face = faces_.emplace_back();
-            for (const std::int64_t p : mesh_.faces[sides_[k].face]) face.push_back(static_cast<Index>(p));
-            if (sides_[k].reversed) std::reverse(face.begin(), face.end());
+            for (const std::int64_t p : mesh_.faces[side.face]) face.push_back(static_cast<Index>(p));
+            if (side.reversed) std::reverse(face.begin(), face.end());
         }
     }
 
     const FoamMesh& mesh_;
     MeshFile& found_;
     PolyhedronTaker taker_;
-    std::vector<std::size_t> starts_;
-    std::vector<Side> sides_;
+    Rows<Side> sides_;
     CellFaces faces_;  // of the cell at hand
 };
 
@@ -332,8 +327,9 @@ private:
         try {
             const auto on_patches = text.boundary_field(static_cast<std::size_t>(array.components), patches_);
             for (std::size_t k = 0; k < on_patches.size(); ++k) {
-                if (!on_patches[k].along && on_patches[k].values.empty()) continue;
-                array.on_patches.push_back({k, on_patches[k].along, on_patches[k].values});
+                const FoamOnPatch& known = on_patches[k];
+                if (known.along || known.level || !known.values.empty())
+                    array.on_patches.push_back({k, known.along, known.values, known.level});
             }
         } catch (const Error& error) {
             without_values_.add(array.name, error.what());

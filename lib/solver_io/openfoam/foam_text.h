@@ -39,9 +39,11 @@ struct FoamPatch {
 ///
 /// along:  a vector has no component along the normal
 /// values: for each face; empty: unknown
+/// level:  the field does not change across the faces
 struct FoamOnPatch {
     bool along = false;
     std::vector<double> values = {};
+    bool level = false;
 };
 
 struct FoamZone {

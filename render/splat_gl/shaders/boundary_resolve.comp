@@ -19,17 +19,26 @@ void sort_hits(uint first, uint end) {
     }
 }
 
-// As resolve() of boundary_intervals.cpp.
+// As is_long() and resolve() of boundary_intervals.cpp.
+bool is_long(float enter, float leave) {
+    const float kRoundings = 16.0 * 1.1920929e-7;
+    return leave - enter > kRoundings * max(abs(enter), abs(leave));
+}
+
 uint resolve(uint first, uint end) {
     int inside = 0;  // how often the surface goes round the eye, and then round the place behind each hit
     for (uint i = first; i < end; ++i) inside -= int(hits[i].y);
     float enter = float(scale.z);
     uint to = first;
+    bool turned = false;  // whether the interval begins where the ray leaves the surface
     for (uint i = first; i < end; ++i) {
         vec2 hit = hits[i];
-        if (inside == 0) enter = hit.x;
+        if (inside == 0) {
+            enter = hit.x;
+            turned = hit.y < 0.0;
+        }
         inside += int(hit.y);
-        if (inside == 0 && hit.x > enter) hits[to++] = vec2(enter, hit.x);
+        if (inside == 0 && hit.x > enter && (!turned || is_long(enter, hit.x))) hits[to++] = vec2(enter, hit.x);
     }
     return to;
 }

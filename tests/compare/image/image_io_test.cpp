@@ -9,6 +9,7 @@
 #include <array>
 #include <cmath>
 #include <csignal>
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <limits>
@@ -266,6 +267,39 @@ TEST_F(ImageIo, RefusesWhatIsNoImage) {
         std::ofstream(folder_ / name) << "this is no image";
         EXPECT_EQ(code_of([&] { (void)read_image(folder_ / name); }), ErrorCode::InvalidInput) << name;
     }
+}
+
+/// The bytes of a chunk of a .png: its length, kind, content and checksum.
+std::string chunk(const std::string& kind, const std::string& content) {
+    const auto word = [](std::uint32_t value) {
+        std::string bytes;
+        for (int shift = 24; shift >= 0; shift -= 8) bytes += static_cast<char>(value >> shift & 0xff);
+        return bytes;
+    };
+    std::uint32_t sum = 0xffffffff;
+    for (const char c : kind + content) {
+        sum ^= static_cast<std::uint8_t>(c);
+        for (int k = 0; k < 8; ++k) sum = sum >> 1 ^ (0xedb88320 & (0 - (sum & 1)));
+    }
+    return word(static_cast<std::uint32_t>(content.size())) + kind + content + word(~sum);
+}
+
+TEST_F(ImageIo, AHeaderThatPromisesTooMuchTakesNoMemory) {
+    const std::string size("\0\0\x40\0", 4);  // 16384
+    std::ofstream(folder_ / "a.png", std::ios::binary)
+        << "\x89PNG\r\n\x1a\n"
+        << chunk("IHDR", size + size + std::string("\x08\x02\0\0\0", 5))
+        << chunk("IDAT", std::string("\x78\x9c\x03\0\0\0\0\x01", 8)) << chunk("IEND", "");
+    try {
+        (void)read_image(folder_ / "a.png");
+        ADD_FAILURE();
+    } catch (const Error& error) {
+        EXPECT_NE(std::string(error.what()).find("16384 × 16384 pixels, too many for its few bytes"), std::string::npos)
+            << error.what();
+    }
+    rusage used{};
+    getrusage(RUSAGE_SELF, &used);
+    EXPECT_LT(used.ru_maxrss, 1'000'000) << "kilobytes; the pixels would take three times as much";
 }
 
 TEST_F(ImageIo, CutOffFilesAreRefused) {

@@ -75,6 +75,39 @@ TEST(Approximate, FindsALimitOfASchemeThatDoesNotInterpolate) {
     }
 }
 
+/// Random places in a box, as samples of a function.
+template <class Function>
+HexMesh random_samples(std::size_t count, const Box& box, unsigned seed, const Function& function) {
+    std::mt19937 dice(seed);
+    std::uniform_real_distribution<double> part(0, 1);
+    HexMesh samples;
+    samples.attributes = {{.name = "f", .channels = 1, .values = {}}};
+    for (std::size_t k = 0; k < count; ++k) {
+        const double x = part(dice), y = part(dice), z = part(dice);
+        samples.points.push_back(glm::mix(box.lower, box.upper, Vec3(x, y, z)));
+        samples.attributes[0].values.push_back(function(samples.points.back()));
+    }
+    return samples;
+}
+
+TEST(Approximate, ScalesWithItsSamples) {
+    // Squares of the large values, and of the small ones, are no doubles.
+    const HexMesh control = with_noise(test::irregular(), 6);
+    HexMesh samples = random_samples(300, bounds(control), 5, [](const Vec3& x) { return std::sin(3 * x.x) + x.y; });
+    const Approximation usual = approximate(control, samples);
+    for (const int exponent : {900, -900}) {
+        HexMesh scaled = samples;
+        for (double& value : scaled.attributes[0].values) value = std::ldexp(value, exponent);
+        const Approximation made = approximate(control, scaled);
+        for (std::size_t p = 0; p < control.points.size(); ++p) {
+            const double value = std::ldexp(made.mesh.attributes[0].values[p], -exponent);
+            EXPECT_NEAR(value, usual.mesh.attributes[0].values[p], 1e-9) << exponent;
+        }
+        EXPECT_EQ(made.report.iterations, usual.report.iterations);
+        EXPECT_NEAR(std::ldexp(made.report.fields[0].rms, -exponent), usual.report.fields[0].rms, 1e-9);
+    }
+}
+
 /// Random places in the limit, with values that no limit has, and the matrix of the limit there by unit fields.
 struct Scattered {
     HexMesh samples;
@@ -191,21 +224,6 @@ TEST(Approximate, ValuesThatSamplesHardlyDecideFollowTheirNeighbors) {
     const auto [low, high] = std::ranges::minmax(made.mesh.attributes[0].values);
     EXPECT_GT(low, least - 0.3 * (most - least));
     EXPECT_LT(high, most + 0.3 * (most - least));
-}
-
-/// Random places in a box, as samples of a function.
-template <class Function>
-HexMesh random_samples(std::size_t count, const Box& box, unsigned seed, const Function& function) {
-    std::mt19937 dice(seed);
-    std::uniform_real_distribution<double> part(0, 1);
-    HexMesh samples;
-    samples.attributes = {{.name = "f", .channels = 1, .values = {}}};
-    for (std::size_t k = 0; k < count; ++k) {
-        const double x = part(dice), y = part(dice), z = part(dice);
-        samples.points.push_back(glm::mix(box.lower, box.upper, Vec3(x, y, z)));
-        samples.attributes[0].values.push_back(function(samples.points.back()));
-    }
-    return samples;
 }
 
 TEST(Approximate, LinearFunctionsAreMetEverywhereByWhateverSamples) {

@@ -77,7 +77,8 @@ TEST_F(SplitMixedPieces, TheBricksAreThoseOfTheWhole) {
                             .apart = (k & 1) != 0 ? 1e-8 : 0};
         const std::filesystem::path pieces = write_pieces(mesh, pieces_of(mesh, k % 3 == 0), extras);
         const BrickShape shape = k % 2 == 0 ? BrickShape::Blocks : BrickShape::Random;
-        expect_same_bricks(pieces, {.bricks = 5, .shape = shape, .halo_layers = 1 + k % 3}, "case " + std::to_string(k) + ": ");
+        expect_same_bricks(pieces, {.bricks = 5, .shape = shape, .halo_layers = 1 + k % 3}, "case " + std::to_string(k) + ": ",
+                           {.crease_angle_deg = 0});
     }
 }
 
@@ -87,13 +88,23 @@ TEST_F(SplitMixedPieces, MoreCellsThanAreSplitTogether) {
     const std::vector<Index> c = mesh.cells.back();
     mesh.cells.back() = {c[0], c[1], c[2], c[4], c[5], c[6]};
     mesh.cells.push_back({c[0], c[2], c[3], c[4], c[6], c[7]});
-    expect_same_bricks(write_pieces(mesh, std::vector<int>(mesh.cells.size(), 0), {.ghosts = false}), {.bricks = 2}, "");
+    expect_same_bricks(write_pieces(mesh, std::vector<int>(mesh.cells.size(), 0), {.ghosts = false}), {.bricks = 2}, "",
+                       {.crease_angle_deg = 0});
+}
+
+// Sharp edges are those of the cells before they are split.
+TEST_F(SplitMixedPieces, CellsWhoseSharpEdgesAreKeptAreHeldWhole) {
+    const PlainMesh mesh = house(true, true);
+    (void)write_pieces(mesh, pieces_of(mesh, false), {});
+    const PiecesSplit split = split_pieces(path("b.bricks"), path("all.pvtu"), {}, {.bricks = 2});
+    EXPECT_THAT(split.held_whole, HasSubstr("sharp edges are those of its cells before they are split"));
 }
 
 TEST_F(SplitMixedPieces, WhatHappenedToTheCellsIsSaid) {
     const PlainMesh mesh = house(true, true);
     (void)write_pieces(mesh, pieces_of(mesh, false), {});
-    const PiecesSplit split = split_pieces(path("b.bricks"), path("all.pvtu"), {}, {.bricks = 2});
+    const PiecesSplit split =
+        split_pieces(path("b.bricks"), path("all.pvtu"), {.read = {.crease_angle_deg = 0}}, {.bricks = 2});
     EXPECT_THAT(split.warnings,
                 Contains(HasSubstr("18 hexahedra, 6 tetrahedra, 18 prisms and 3 pyramids cut into 174 tetrahedra "
                                    "and split into 696 hexahedra, the hexahedra too")));
@@ -112,7 +123,8 @@ TEST_F(SplitMixedPieces, RefusedCellsAndTwinsAreSaidAsOfTheWhole) {
     const std::string whole = error_of([&] { (void)read_mesh(path("all.pvtu")); });
     EXPECT_THAT(whole, HasSubstr("two cells have the same corners: points"));
     const std::size_t files = file_count();
-    EXPECT_EQ(error_of([&] { (void)split_pieces(path("b.bricks"), path("all.pvtu"), {}, {.bricks = 2}); }), whole);
+    const PiecesOptions by_pieces{.read = {.crease_angle_deg = 0}};
+    EXPECT_EQ(error_of([&] { (void)split_pieces(path("b.bricks"), path("all.pvtu"), by_pieces, {.bricks = 2}); }), whole);
     EXPECT_EQ(file_count(), files);
 }
 

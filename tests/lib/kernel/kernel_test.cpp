@@ -10,6 +10,7 @@
 
 #include "lib/expect_error.h"
 #include "lib/kernel_samples.h"
+#include "lib/random_vector.h"
 #include "subvol/detail/kernel_code.h"
 
 namespace subvol {
@@ -109,7 +110,7 @@ TEST(Kernel, GradientIsThatOfTheValue) {
         int compared = 0;
         for (int i = 0; i < 500; ++i) {
             const double reach = support_radius(kernel);
-            const Vec3 x = reach * Vec3(anywhere(random), anywhere(random), anywhere(random));
+            const Vec3 x = reach * test::random_vector(anywhere, random);
             const Vec3 gradient = kernel_gradient(kernel, x);
             for (int axis = 0; axis < 3; ++axis) {
                 Vec3 d(0.0);

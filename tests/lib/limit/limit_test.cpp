@@ -9,6 +9,7 @@
 #include <random>
 
 #include "lib/expect_error.h"
+#include "lib/random_vector.h"
 #include "lib/test_meshes.h"
 #include "subvol/limit_level.h"
 
@@ -87,7 +88,7 @@ TEST(LimitMcq, ReproducesCubicsWithTheirGradients) {
     std::vector<LimitQuery> queries;
     std::vector<Vec3> places;
     for (int i = 0; i < 200; ++i) {
-        places.emplace_back(inside(random), inside(random), inside(random));
+        places.push_back(test::random_vector(inside, random));
         queries.push_back(in_box(n, places.back()));
     }
     const LimitSamples samples = evaluate_limit(mesh, queries);
@@ -171,7 +172,7 @@ TEST(LimitMcq, HasOneGradientAnywhereOnASideOfACell) {
     std::vector<LimitQuery> queries;
     std::vector<std::size_t> firsts;  // of the queries of the same place
     for (int n = 0; n < 60; ++n) {
-        Vec3 place(anywhere(random), anywhere(random), anywhere(random));
+        Vec3 place = test::random_vector(anywhere, random);
         for (int axis = 0; axis <= n % 2; ++axis) place[(n + axis) % 3] = n / 2 % 5;  // some of them on the boundary
         const auto of_place = from_all_cells(place, 0);
         firsts.insert(firsts.end(), of_place.size(), queries.size());

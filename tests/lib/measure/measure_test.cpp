@@ -121,6 +121,96 @@ TEST(Measure, PartsAddUpToTheWhole) {
     EXPECT_EQ(found.parts[1].name, "b");
 }
 
+/// Sets of cells of a box of 4×2×2 unit cubes with f = x, that overlap: what lies between two planes x = const.
+TEST(Measure, SetsWithCommonCellsHaveTheirOwnFigures) {
+    HexMesh mesh = test::make_box(4, 2, 2);
+    test::add_field(mesh, "f", [](const Vec3& p) { return p.x; });
+    const auto between = [&](const std::string& name, double from, double to) {
+        CellSet set{name, {}};
+        for (Index c = 0; c < mesh.cells.size(); ++c) {
+            const double x = mesh.points[mesh.cells[c][0]].x;
+            if (x >= from && x < to) set.cells.push_back(c);
+        }
+        return set;
+    };
+    const std::vector<std::array<double, 2>> ends{{0, 3}, {2, 4}, {0, 4}, {2, 3}};
+    std::vector<CellSet> sets;
+    for (const auto& [from, to] : ends) sets.push_back(between("from " + std::to_string(from), from, to));
+    const std::vector<Region> lower{Region("half:0,1,0,0,-1,0")};
+    const LimitMeasure whole = measure_limit(mesh, {.scheme = {.kind = Scheme::Linear}, .bins = 4, .sets = sets});
+    const LimitMeasure half = measure_limit_in(mesh, lower, {.scheme = {.kind = Scheme::Linear}, .sets = sets});
+    ASSERT_EQ(whole.parts.size(), sets.size());
+    ASSERT_EQ(half.parts.size(), sets.size());
+    for (std::size_t s = 0; s < sets.size(); ++s) {
+        const auto& [from, to] = ends[s];
+        for (const auto* found : {&whole, &half}) {
+            const PartMeasure& part = found->parts[s];
+            const double area = found == &whole ? 4 : 2, volume = area * (to - from);
+            const double least = found == &whole ? 1e-12 : 1e-6;  // pieces of regions are kept as floats
+            EXPECT_EQ(part.name, sets[s].name);
+            EXPECT_EQ(part.cells, static_cast<std::size_t>(volume));
+            EXPECT_NEAR(part.volume, volume, least * volume);
+            EXPECT_NEAR(part.given_volume, volume, least * volume);
+            EXPECT_NEAR(part.fields[0].mean, (from + to) / 2, 4 * least);
+            EXPECT_NEAR(part.fields[0].integral, volume * (from + to) / 2, 32 * least);
+            EXPECT_NEAR(part.fields[0].min.value, from, 4 * least);
+            EXPECT_NEAR(part.fields[0].max.value, to, 4 * least);
+            EXPECT_NEAR(part.fields[0].given.mean, (from + to) / 2, 4 * least);
+            EXPECT_NEAR(part.fields[0].given.min.value, from, 4 * least);
+            EXPECT_NEAR(part.fields[0].given.max.value, to, 4 * least);
+        }
+        for (std::size_t b = 0; b < 4; ++b) {
+            const auto at = static_cast<double>(b);
+            EXPECT_NEAR(whole.parts[s].fields[0].histogram[b], at >= from && at < to ? 4 : 0, 1e-9) << "bins of the whole";
+        }
+    }
+    const std::vector<Region> none{Region("half:2,0,0,-1,0,0")};
+    const LimitMeasure beside = measure_limit_in(mesh, none, {.scheme = {.kind = Scheme::Linear}, .sets = sets});
+    EXPECT_EQ(beside.parts[3].cells, 0U) << "nothing of it lies in the region";
+    EXPECT_EQ(beside.parts[3].volume, 0);
+    const std::vector<CellSet> wrong{{"much", {99}}};
+    test::expect_error(ErrorCode::InvalidInput, "much", [&] { (void)measure_limit(mesh, {.sets = wrong}); });
+    const std::vector<Index> groups(mesh.cells.size(), 0);
+    test::expect_error(ErrorCode::InvalidInput, "groups and sets",
+                       [&] { (void)measure_limit(mesh, {.groups = groups, .sets = sets}); });
+}
+
+/// Half of a ball, by whole cells: by symmetry half of the volume and of each integral, whatever the cut does to the half
+/// alone.
+TEST(Measure, APartIsThatOfTheLimitOfTheWhole) {
+    HexMesh ball = make_model("ball", 4);
+    ball.attributes.clear();
+    test::add_field(ball, "f", [](const Vec3& p) { return p.y * p.y; });
+    std::vector<std::uint8_t> half(ball.cells.size(), 0);
+    CellSet quarter{"quarter", {}};
+    for (Index c = 0; c < ball.cells.size(); ++c) {
+        Vec3 middle(0.0);
+        for (const Index p : ball.cells[c]) middle += ball.points[p] / 8.0;
+        half[c] = middle.x > 0 ? 1 : 0;
+        if (middle.z > 0) quarter.cells.push_back(c);
+    }
+    const std::vector<CellSet> sets{quarter};
+    const PartMeasure whole = measure_limit(ball, {.tolerance = 1e-4}).whole;
+    const std::vector<Region> around{Region("box:-9,-9,-9,9,9,9")};
+    for (const LimitMeasure& found : {measure_limit(ball, {.tolerance = 1e-4, .sets = sets, .cells = half}),
+                                      measure_limit_in(ball, around, {.tolerance = 1e-4, .sets = sets, .cells = half})}) {
+        const PartMeasure& part = found.whole;
+        EXPECT_EQ(part.cells, static_cast<std::size_t>(std::ranges::count(half, 1)));
+        EXPECT_NEAR(part.volume, whole.volume / 2, 4e-4 * whole.volume);  // the tolerance, of both
+        EXPECT_NEAR(part.given_volume, whole.given_volume / 2, 4e-4 * whole.given_volume);
+        EXPECT_NEAR(part.fields[0].mean, whole.fields[0].mean, 4e-4);
+        EXPECT_NEAR(part.fields[0].max.value, whole.fields[0].max.value, 1e-3);
+        EXPECT_GE(part.fields[0].max.place.x, -1e-9);
+        ASSERT_EQ(found.parts.size(), 1U);
+        EXPECT_NEAR(found.parts[0].volume, whole.volume / 4, 4e-4 * whole.volume) << "what the set has of the half";
+        const Index cell = part.fields[0].max.cell;
+        ASSERT_LT(cell, ball.cells.size());
+        EXPECT_NE(half[cell], 0) << "cells have the numbers of the whole mesh";
+    }
+    const std::vector<std::uint8_t> few(3, 1);
+    test::expect_error(ErrorCode::InvalidInput, "3 flags", [&] { (void)measure_limit(ball, {.cells = few}); });
+}
+
 TEST(Measure, IsTheSameForAnyNumberOfThreads) {
     const HexMesh mesh = make_model("pawn", 12);
     const auto field = [&](std::size_t threads) {

@@ -53,8 +53,8 @@ TEST(PatchMeasure, TheErrorOfAConstantIsThatOfTheArea) {
     for (std::size_t k = 0; k < 10; ++k) {
         const double value = k == 0 ? 1.0 / 3 : 1.0 / (2 + static_cast<double>(k));
         EXPECT_NEAR(found.fields[k].mean, value, 1e-10);
-        EXPECT_NEAR(found.fields[k].min, value, found.fields[k].extreme_error + 1e-10);
-        EXPECT_NEAR(found.fields[k].max, value, found.fields[k].extreme_error + 1e-10);
+        EXPECT_NEAR(found.fields[k].min.value, value, found.fields[k].extreme_error + 1e-10);
+        EXPECT_NEAR(found.fields[k].max.value, value, found.fields[k].extreme_error + 1e-10);
         EXPECT_LE(found.fields[k].extreme_error, 1e-4) << "of the range, which is less than 1";
     }
 }
@@ -92,11 +92,11 @@ TEST(PatchMeasure, NoValueLiesBeyondTheExtremes) {
                 most = std::max(most, fine.attributes[0].values[2 * p + c]);
             }
             const PatchField& one = found.fields[c];
-            EXPECT_GE(least, one.min - one.extreme_error);
-            EXPECT_LE(most, one.max + one.extreme_error);
+            EXPECT_GE(least, one.min.value - one.extreme_error);
+            EXPECT_LE(most, one.max.value + one.extreme_error);
             constexpr double kBetween = 0.01;  // a parabola rises by an eighth of its bend (some 16 of a cell²) × 1/16² between
-            EXPECT_NEAR(least, one.min, kBetween + one.extreme_error);
-            EXPECT_NEAR(most, one.max, kBetween + one.extreme_error);
+            EXPECT_NEAR(least, one.min.value, kBetween + one.extreme_error);
+            EXPECT_NEAR(most, one.max.value, kBetween + one.extreme_error);
             largest_error = std::max(largest_error, one.extreme_error);
         }
     }

@@ -231,6 +231,21 @@ TEST_F(Abaqus, AssembliesHaveMeshesAndSetsInTheirInstances) {
     EXPECT_NEAR(inspect(read_mesh(path("a.inp"), {.blocks = {"_Surf"}}).mesh).bounds.lower.y, 5, 1e-12);
 }
 
+TEST_F(Abaqus, WhatNamesNothingIsSaid) {
+    const std::string mesh = std::string(kNodes) + "*ELEMENT, TYPE=C3D8, ELSET=all\n1, 10, 20, 30, 40, 50, 60, 70, 80\n";
+    const auto warnings = [&](const std::string& more) { return read_mesh(write("a.inp", mesh + more)).warnings; };
+    EXPECT_THAT(
+        warnings(
+            "*ELSET, ELSET=some\n1\n*ELSET, ELSET=range, GENERATE\n1, 5, 1\n*SURFACE, NAME=s\nsome, S1\n*NODE\n30, 1, 1\n"),
+        ElementsAre());
+    EXPECT_THAT(warnings("*ELSET, ELSET=some\n1, 77, 78\n*ELSET, ELSET=none\n9\n"),
+                ElementsAre("numbers in sets of elements that no element has: \"none\" (1), \"some\" (2)"));
+    EXPECT_THAT(warnings("*SURFACE, NAME=s\nALL, S1\nnope, S2\n"),
+                ElementsAre("its surfaces name sets that it does not have: \"NOPE\""));
+    EXPECT_THAT(warnings("*NODE\n30, 1, 1, .5\n"),
+                ElementsAre("1 node is listed again with other coordinates: the last ones are taken"));
+}
+
 TEST_F(Abaqus, WrongDecksGetASentenceWithTheLine) {
     const std::string nodes = kNodes;
     EXPECT_THAT(error(""), HasSubstr("a.inp: it has no nodes"));

@@ -106,6 +106,10 @@ TEST_F(GmshIo, FieldsAtNodes) {
     EXPECT_EQ(result.mesh.find_attribute("v")->values[35], -12);
     EXPECT_THAT(result.warnings, ElementsAre("array \"part\" has no value at 11 nodes: ignored",
                                              "array \"e\" has no value at 1 element: ignored"));
+    EXPECT_THAT(read_error(gmsh_text(kBox, "0") + replaced(data, "\n12 120\n", "\n5 120\n")),
+                HasSubstr("array \"my field\": line 8: node 5 has a value already"));
+    EXPECT_THAT(read_error(gmsh_text(kBox, "0") + replaced(data, "1\n0.5\n", "1\nnan\n")),
+                HasSubstr("array \"my field\": its time is not finite"));
 }
 
 TEST_F(GmshIo, ErrorsNameThePlace) {

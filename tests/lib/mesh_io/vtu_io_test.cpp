@@ -109,6 +109,29 @@ TEST_F(VtuIo, EveryType) {
     }
 }
 
+// What another program would read is another number: 300 in a byte is 44.
+TEST_F(VtuIo, WordsAreNumbersOfTheirType) {
+    const auto text = [](const std::string& type, const std::string& word) {
+        VtuText vtu{.format = "ascii"};
+        const std::string values = vtu.array("Float64", "Name=\"f\"", std::vector<double>{0, 1, 2, 3, 4, 5, 6, 54321});
+        return vtu.file(vtu.piece(make_box(1, 1, 1),
+                                  "<PointData>" + replaced(replaced(values, "Float64", type), "54321", word) + "</PointData>"));
+    };
+    const std::vector<std::array<std::string, 3>> cases{
+        {"Int8", "127", "128"},         {"Int8", "-128", "-129"},
+        {"UInt8", "255", "300"},        {"UInt8", "0", "-1"},
+        {"Int16", "32767", "40000"},    {"UInt16", "65535", "65536"},
+        {"Int32", "7.0", "1.5"},        {"Int32", "2147483647", "3000000000"},
+        {"UInt32", "4294967295", "-1"}, {"Int64", "9223372036854775807", "1e19"},
+        {"UInt64", "1e19", "2e19"},     {"Float32", "3.4028235e38", "1e39"},
+    };
+    for (const auto& [type, good, bad] : cases) {
+        EXPECT_EQ(read(text(type, good)).mesh.find_attribute("f")->values[7], std::stod(good)) << type;
+        EXPECT_THAT(read_error(text(type, bad)),
+                    HasSubstr("array \"f\": value 7: a number of the type " + type + " is expected, not \"" + bad + "\""));
+    }
+}
+
 TEST_F(VtuIo, WhatIsWrittenIsReadAgainToTheBit) {
     HexMesh mesh = kBox;
     mesh.attributes = {{"a<\"b\">", 1, ramp(18)}, {"v", 3, ramp(54)}};
@@ -213,7 +236,10 @@ TEST_F(VtuIo, ErrorsNameFileLineAndArray) {
         {"0 1 4 3", "0 1.5 4 3", "array \"connectivity\": value 1: an integer is expected, not \"1.5\""},
         {"type=\"Int32\"", "type=\"Float32\"", "\"connectivity\": an integer type is needed"},
         {"type=\"Float64\" Name=\"s\"", "type=\"Real\" Name=\"s\"", "\"s\": the type \"Real\" is not supported"},
-        {"NumberOfComponents=\"3  \"", "NumberOfComponents=\"0\"", "it cannot have 0 components"},
+        {"NumberOfComponents=\"3  \"", "NumberOfComponents=\"0\"", "it cannot have \"0\" components"},
+        {"NumberOfComponents=\"3  \"", "NumberOfComponents=\"-1\"", "it cannot have \"-1\" components"},
+        {"NumberOfComponents=\"3  \"", "NumberOfComponents=\"1.5\"", "it cannot have \"1.5\" components"},
+        {"NumberOfComponents=\"3  \"", "NumberOfComponents=\"\"", "it cannot have \"\" components"},
         {"Name=\"connectivity\"", "Name=\"corners\"", "the piece has no array connectivity"},
         {"format=\"ascii\"", "format=\"morse\"", "format \"morse\" is unknown"},
         {"0.33333333333333331 0 0", "inf 0 0", "non-finite coordinate at point 1"},

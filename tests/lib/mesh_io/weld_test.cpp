@@ -5,9 +5,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
+#include <vector>
 
 #include "lib/temp_folder.h"
 #include "lib/test_meshes.h"
+#include "subvol/detail/point_welder.h"
 #include "subvol/mesh_io.h"
 #include "subvol/mesh_report.h"
 #include "subvol/surface.h"
@@ -175,6 +178,32 @@ TEST_F(Weld, CellsWithHiddenPointsAreLeftOut) {
     EXPECT_EQ(inspect(result.mesh).volume, 2);
     const std::string all = text("2 2 2 2 2 2 2 2 2 2 2 2 2 2 2 2\n");
     EXPECT_THAT(error_of([&] { static_cast<void>(read_mesh(write("b.vtk", all))); }), HasSubstr("the mesh has no hexahedra"));
+}
+
+/// Points by the dozen about places near the sides of the welder's cubes, some of them at the tolerance from each other.
+TEST(PointWelder, JoinsWhatEveryPairJoins) {
+    for (const double tolerance : {0.0, 1e-9, 0.1}) {
+        for (const double far : {0.0, 1e6}) {
+            std::mt19937 random(7);
+            std::uniform_int_distribution<int> step(-6, 6), cube(-2, 2);
+            std::vector<Vec3> points;
+            for (int k = 0; k < 1500; ++k) {
+                Vec3 x(far);
+                for (int axis = 0; axis < 3; ++axis)
+                    x[axis] += tolerance > 0 ? tolerance * (4 * cube(random) + step(random) / 4.0) : cube(random);
+                points.push_back(x);
+            }
+            detail::PointWelder welder(points, tolerance);
+            std::vector<Index> kept;
+            for (Index p = 0; p < points.size(); ++p) {
+                const auto first =
+                    std::ranges::find_if(kept, [&](Index q) { return glm::distance(points[q], points[p]) <= tolerance; });
+                const Index expected = first == kept.end() ? p : *first;
+                ASSERT_EQ(welder.join(p), expected) << tolerance << " " << far << " " << p;
+                if (expected == p) kept.push_back(p);
+            }
+        }
+    }
 }
 
 }  // namespace weld_test

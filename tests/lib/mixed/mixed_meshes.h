@@ -4,6 +4,7 @@
 #include <array>
 #include <functional>
 
+#include "lib/random_vector.h"
 #include "lib/test_meshes.h"
 #include "subvol/refine_mixed.h"
 
@@ -30,7 +31,7 @@ inline MixedMesh make_tet_ball(Index n) {
     for (Vec3& p : mesh.points) {
         p = p * (2.0 / n) - Vec3(1);
         const double most = std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)});
-        if (most < 0.99) p += Vec3(jitter(random), jitter(random), jitter(random)) / static_cast<double>(n);
+        if (most < 0.99) p += random_vector(jitter, random) / static_cast<double>(n);
         const double length = glm::length(p);
         if (length > 0) p *= 0.5 * most / length + 0.5 * (1 - 0.4 * most * most + 0.4 * most * most * most / length);
         if (most > 0.99) p = glm::normalize(p);

@@ -9,6 +9,7 @@
 #include <random>
 
 #include "lib/expect_error.h"
+#include "lib/random_vector.h"
 #include "subvol/detail/solid_field.h"
 #include "subvol/mesh_report.h"
 
@@ -82,7 +83,7 @@ void expect_round_trip() {
     std::uniform_real_distribution<double> inside(-1, 1);
     const BlockField field;
     for (int i = 0; i < 10'000; ++i) {
-        const Vec3 p(inside(random), inside(random), inside(random));
+        const Vec3 p = test::random_vector(inside, random);
         ASSERT_NEAR(glm::distance(BlockField::parameter(BlockField::position(p)), p), 0, 1e-12);
         const auto value = field.value(BlockField::position(p));
         ASSERT_TRUE(value);

@@ -7,6 +7,7 @@
 #include <random>
 #include <vector>
 
+#include "lib/random_vector.h"
 #include "subvol/detail/solid_field.h"
 #include "subvol/mesh_report.h"
 #include "subvol/model.h"
@@ -54,7 +55,7 @@ std::vector<Vec3> random_parameters(std::size_t count) {
     std::uniform_real_distribution<double> uniform(-1, 1);
     std::vector<Vec3> parameters;
     while (parameters.size() < count) {
-        const Vec3 p(uniform(random), uniform(random), uniform(random));
+        const Vec3 p = test::random_vector(uniform, random);
         if (std::is_same_v<Model, Nozzle> && p.y * p.y + p.z * p.z > 1) continue;  // a disk, not a square
         parameters.push_back(p);
     }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "subvol/detail/median_tree.h"
+#include "lib/random_vector.h"
 
 #include <gtest/gtest.h>
 
@@ -15,8 +16,8 @@ std::vector<Box> random_boxes(std::size_t count) {
     std::uniform_real_distribution<double> place(0, 10), size(0, 1);
     std::vector<Box> boxes(count);
     for (Box& box : boxes) {
-        box.add(Vec3(place(random), place(random), 2 * place(random)));
-        box.add(box.lower + Vec3(size(random), size(random), size(random)));
+        box.add(Vec3(1, 1, 2) * test::random_vector(place, random));
+        box.add(box.lower + test::random_vector(size, random));
     }
     return boxes;
 }

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -10,7 +11,11 @@
 #include "subvol/cell.h"
 #include "subvol/limit.h"
 #include "subvol/limit_shells.h"
+#include "subvol/limit_sides.h"
 #include "subvol/mesh_report.h"
+#include "subvol/mesh_sets.h"
+#include "subvol/model.h"
+#include "subvol/quantity.h"
 #include "subvol/topology.h"
 
 namespace subvol {
@@ -137,6 +142,54 @@ TEST_P(ShellsOfEveryScheme, FollowTheCellsThatTheyAreAttachedTo) {
     EXPECT_EQ(attached, 4u * 8 + 1);  // four edges of the plate
     EXPECT_EQ(fine.quads.size(), 8u * 64);
     EXPECT_EQ(fine.lines.size(), 3u * 8);
+}
+
+/// Half of a ball: a part of its boundary, and faces between cells.
+TEST_P(ShellsOfEveryScheme, SidesLieInTheLimitOfTheWholeMesh) {
+    HexMesh mesh = make_model("ball", 4);
+    test::add_field(mesh, "f", [](const Vec3& p) { return p.x * p.y; });
+    mesh.attributes.push_back({"v", 3, {}});
+    for (const Vec3& p : mesh.points) mesh.attributes.back().values.insert(mesh.attributes.back().values.end(), {p.x, p.y, .5});
+    mesh.attributes.push_back(field_of(mesh, "length", "length(v)"));
+    CellSet half{"half", {}};
+    for (Index c = 0; c < mesh.cells.size(); ++c) {
+        Vec3 middle(0.0);
+        for (const Index p : mesh.cells[c]) middle += mesh.points[p] / 8.0;
+        if (middle.x > 0) half.cells.push_back(c);
+    }
+    const Patch hull = subvol::hull_of(mesh, half);
+    const Shells sides = patch_shells(mesh, std::vector{hull});
+    const Shells limit = limit_sides(mesh, sides, {.scheme = {GetParam()}, .levels = 1});
+    ASSERT_EQ(limit.quads.size(), 4 * hull.sides.size());
+    ASSERT_EQ(limit.attributes.size(), mesh.attributes.size() + 1);
+    std::vector<LimitQuery> places;
+    std::vector<Index> points;
+    for (std::size_t q = 0; q < hull.sides.size(); ++q) {
+        constexpr std::array<std::array<double, 2>, 4> kCorners{{{0, 0}, {1, 0}, {1, 1}, {0, 1}}};
+        const auto add = [&](double s, double t, Index point) {
+            const auto at = place_on_side(hull.sides[q].side, s, t);
+            places.push_back({hull.sides[q].cell, {at[0], at[1], at[2]}});
+            points.push_back(point);
+        };
+        for (std::size_t k = 0; k < 4; ++k) add(kCorners[k][0], kCorners[k][1], limit.quads[4 * q + k][0]);
+        add(.5, .5, limit.quads[4 * q][2]);
+    }
+    const LimitSamples expected = evaluate_limit(mesh, places, {.scheme = {GetParam()}, .tolerance = 1e-9});
+    for (std::size_t i = 0; i < places.size(); ++i) {
+        // Beside extraordinary edges the evaluator refines up to its last level, which leaves 3e-8; elsewhere there are
+        // roundings.
+        constexpr double kLastLevel = 1e-7;
+        EXPECT_LE(glm::distance(limit.points[points[i]], expected.positions[i]), kLastLevel);
+        for (std::size_t a = 0; a < mesh.attributes.size(); ++a) {
+            const auto channels = static_cast<std::size_t>(mesh.attributes[a].channels);
+            for (std::size_t c = 0; c < channels; ++c) {
+                EXPECT_NEAR(limit.attributes[a].values[points[i] * channels + c],
+                            expected.attributes[a].values[i * channels + c], kLastLevel)
+                    << mesh.attributes[a].name;
+            }
+        }
+        EXPECT_EQ(limit.attributes.back().values[points[i]], 1) << "the number of the patch";
+    }
 }
 
 TEST_P(ShellsOfEveryScheme, OneLevelAfterTheOtherIsBothAtOnce) {

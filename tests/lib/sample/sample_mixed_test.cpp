@@ -7,6 +7,7 @@
 
 #include "lib/expect_error.h"
 #include "lib/mixed/mixed_meshes.h"
+#include "lib/random_vector.h"
 #include "subvol/rbf_field.h"
 
 namespace subvol {
@@ -47,7 +48,7 @@ TEST(SampleMixed, TheSumOfKernelsFollowsASmoothField) {
         std::mt19937 random(1);
         std::uniform_real_distribution<double> side(-0.5, 0.5);
         for (int i = 0; i < 500; ++i) {
-            const Vec3 x(side(random), side(random), side(random));
+            const Vec3 x = random_vector(side, random);
             const auto value = sum.value(x);
             ASSERT_TRUE(value) << "a hole between the kernels";
             largest = std::max(largest, std::abs(*value - field(x)));

@@ -69,7 +69,7 @@ TEST_F(ReadSurface, PlyHasFacesOrStrips) {
 }
 
 TEST_F(ReadSurface, SaysWhatIsWrongAndWhere) {
-    EXPECT_THAT(wrong("a.txt", ""), HasSubstr("is not a format of surfaces (.stl, .obj, .ply)"));
+    EXPECT_THAT(wrong("a.txt", ""), HasSubstr("is not a format of surfaces (.stl, .obj, .ply, .glb)"));
     EXPECT_THAT(wrong("a.stl", "hello"), HasSubstr("not an STL file"));
     EXPECT_THAT(wrong("a.stl", "solid\nendsolid\n"), HasSubstr("a.stl: "));
     EXPECT_THAT(wrong("a.stl", "solid\nendsolid\n"), HasSubstr("no triangles"));

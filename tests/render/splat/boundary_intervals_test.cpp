@@ -7,6 +7,7 @@
 #include <cmath>
 #include <random>
 
+#include "lib/random_vector.h"
 #include "lib/test_meshes.h"
 
 namespace subvol {
@@ -53,11 +54,23 @@ TEST(BoundaryIntervals, APartThatIsTurnedInsideOutIsInside) {
     }
 }
 
+// At a silhouette roundings decide which of two sides comes first. That is no part that is turned inside out.
+TEST(BoundaryIntervals, SidesInTheWrongOrderByRoundingsAreNoBody) {
+    for (const auto& [thickness, intervals] : {std::pair{1e-6, 0U}, {1e-4, 25U}}) {
+        Surface surface = boundary_surface(test::make_box(1, 1, 1));
+        for (Vec3& p : surface.points) p.y *= -thickness;
+        EXPECT_EQ(boundary_intervals(surface, along_y(5, .5), kNear, 0).triangles.size(), intervals) << thickness;
+        for (Vec3& p : surface.points) p.y *= -1;
+        const std::size_t thin = boundary_intervals(surface, along_y(5, .5), kNear, 0).triangles.size();
+        EXPECT_EQ(thin, 25U) << "the body itself, however thin";
+    }
+}
+
 TEST(BoundaryIntervals, RaysAreInsideWhereACrumpledSurfaceGoesRoundThem) {
     std::mt19937 random(7);
     std::uniform_real_distribution<double> shift(-.6, .6);
     Surface surface = boundary_surface(test::make_box(3, 3, 3));
-    for (Vec3& p : surface.points) p = p / 3.0 + Vec3(shift(random), shift(random), shift(random));
+    for (Vec3& p : surface.points) p = p / 3.0 + test::random_vector(shift, random);
     const View view = along_y(24, 1.6);
     const PixelIntervals found = boundary_intervals(surface, view, kNear, 0);
     int negative = 0, inside = 0;

@@ -4,6 +4,7 @@
 
 #include <random>
 
+#include "lib/random_vector.h"
 #include "splat_scenes.h"
 #include "subvol/splat.h"
 
@@ -40,7 +41,7 @@ RbfVolume cloud() {
     for (int i = 0; i < 40; ++i) {
         const double radius = 3 * size(random) / kSigma;
         const auto square = static_cast<float>(radius * radius);
-        volume.centers.emplace_back(place(random), place(random), place(random));
+        volume.centers.push_back(random_vector(place, random));
         volume.frames.push_back({square, 0, 0, square, 0, square});
         channel.values.push_back(value(random));
         channel.gradients.emplace_back();

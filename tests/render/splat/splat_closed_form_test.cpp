@@ -6,6 +6,7 @@
 #include <optional>
 #include <random>
 
+#include "lib/random_vector.h"
 #include "splat_scenes.h"
 #include "subvol/gl_device.h"
 #include "subvol/splat.h"
@@ -71,7 +72,7 @@ TEST(SplatClosedForm, GaussiansAddUp) {
     std::vector<Vec3> centers;
     std::vector<float> values;
     for (int i = 0; i < 12; ++i) {
-        centers.emplace_back(place(random), place(random), place(random));
+        centers.push_back(random_vector(place, random));
         values.push_back(static_cast<float>(value(random)));
     }
     const RbfVolume volume = gaussians(centers, values, 4.5);

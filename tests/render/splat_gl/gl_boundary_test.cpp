@@ -8,6 +8,7 @@
 #include <random>
 
 #include "gl_context.h"
+#include "lib/random_vector.h"
 #include "lib/test_meshes.h"
 #include "subvol/error.h"
 
@@ -75,7 +76,7 @@ TEST_F(GlBoundaries, NestedTouchingAndCrumpledShellsAreAsOnTheCpu) {
         expect_like_cpu(surface, view_of(perspective));
         std::mt19937 random(3);
         std::uniform_real_distribution<double> shift(-.2, .2);
-        for (auto& p : surface.points) p += Vec3(shift(random), shift(random), shift(random));
+        for (auto& p : surface.points) p += test::random_vector(shift, random);
         expect_like_cpu(surface, view_of(perspective));
     }
 }
@@ -130,6 +131,14 @@ TEST_F(GlBoundaries, PointsBetweenTwoStepsOfTheRasterAreRoundedAsOnTheCpu) {
         p = Vec3((std::round(p.x * 300) * 97 + .5) * step, p.y, (std::round(p.z * 300) * 89 + .5) * step);
     const View view({.eye = {0, -4, 0}, .target = {0, 0, 0}, .up = {0, 0, 1}, .ortho_height = 7}, 49, 49);
     expect_like_cpu(surface, view);
+}
+
+TEST_F(GlBoundaries, PartsThatAreTurnedInsideOutAreAsOnTheCpu) {
+    for (const double thickness : {1e-6, 1e-3, 1.0}) {
+        Surface surface = surface_of(test::make_nested_cubes(2), 1, {0, 0, 0});
+        for (auto& p : surface.points) p.y *= -thickness;
+        expect_like_cpu(surface, view_of(false, 33, 33));
+    }
 }
 
 TEST(IntervalsForGl, AreLimited) {

@@ -6,6 +6,7 @@
 #include <numeric>
 #include <random>
 
+#include "lib/random_vector.h"
 #include "subvol/error.h"
 #include "subvol/limit_level.h"
 #include "subvol/mesh_report.h"
@@ -126,7 +127,7 @@ TEST(LimitCells, BentPiecesLeaveNoCentreOut) {
     std::uniform_real_distribution<double> step(-0.075, 0.075);
     for (Vec3& p : mesh.points) {
         const bool inside = std::min({p.x, p.y, p.z}) > 0.01 && std::max({p.x, p.y, p.z}) < 0.99;
-        if (inside) p += Vec3(step(random), step(random), step(random));
+        if (inside) p += test::random_vector(step, random);
     }
     mesh = with_field(std::move(mesh), "f", [](const Vec3& p) { return p.y; });
     for (const int n : {40, 90}) {

@@ -107,6 +107,8 @@ TEST(MeshMotion, NeedsTheSameCells) {
     EXPECT_TRUE(same_cells(a, turned(a, 1)));
     EXPECT_FALSE(same_cells(a, b));
     EXPECT_FALSE(same_cells(a, creased));
+    EXPECT_TRUE(moved_cells(a, creased));
+    EXPECT_NO_THROW((void)velocity_between(a, creased, 1));
     EXPECT_THROW((void)velocity_between(a, b, 1), Error);
     EXPECT_THROW((void)velocity_between(a, a, 0), Error);
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <limits>
 #include <span>
 #include <string>
 #include <vector>
@@ -52,9 +53,9 @@ struct ApproximateOptions {
 struct FieldError {
     std::string name;
     double rms = 0, rms_boundary = 0, max = 0, range = 0;
-    Vec3 max_at{0.0};
+    Vec3 max_at{std::numeric_limits<double>::quiet_NaN()};
     double rms_between = 0, max_between = 0;
-    Vec3 max_between_at{0.0};
+    Vec3 max_between_at{std::numeric_limits<double>::quiet_NaN()};
     double beyond = 0;
 };
 

@@ -51,6 +51,8 @@ public:
     /// All active voxels lie in lower … upper, both included; lower > upper if there are none.
     [[nodiscard]] virtual std::array<Voxel, 2> range() const = 0;
     [[nodiscard]] virtual std::unique_ptr<VoxelCursor> cursor() const = 0;
+    /// Whether the values are distances from a surface, below 0 inside.
+    [[nodiscard]] virtual bool is_level_set() const { return false; }
 };
 
 }  // namespace subvol

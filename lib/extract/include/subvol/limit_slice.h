@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <filesystem>
 #include <span>
 #include <string>
@@ -14,8 +15,11 @@
 namespace subvol {
 
 /// resolution: places along the longer side of the part of the plane that is in the mesh's box, 2 to 20,000
+/// cells:      a flag for each cell of a mesh in memory: those that are cut, where they lie in the limit of the whole mesh; the
+///             frame is the box of their control points. Empty: all
 struct SliceOptions {
     int resolution = 512;
+    std::span<const std::uint8_t> cells{};
     LimitOptions limit{};
     Progress* progress = nullptr;
 };
@@ -29,6 +33,7 @@ struct SliceOptions {
 ///                right × down points away from where the plane's normal points: the picture is seen from there
 /// values:        row by row; NaN outside the volume; gradients: by world position, 0 outside
 /// cells:         the control cells, kNone outside
+/// min, max:      the least and the largest of the values, with their places. `find_slice_extremes` finds those of the plane
 struct LimitSlice {
     std::string field;
     int width = 0, height = 0;
@@ -37,6 +42,7 @@ struct LimitSlice {
     std::vector<Vec3> gradients;
     std::vector<Index> cells;
     double min = 0, max = 0;
+    Vec3 min_at{0.0}, max_at{0.0};
     std::size_t inside = 0;
 
     [[nodiscard]] Vec3 place(double column, double row) const { return origin + column * right + row * down; }

@@ -28,9 +28,10 @@ struct CellMeansFit {
 /// The means at points are corrected twice by what their limit lacks of the means over cells: of fourth order in even grids, of
 /// second order and exact for linear functions in others, of third order on the boundary of even grids. Waves from cell to cell
 /// are not amplified (by no more than a quarter, at any length), so means of rough fields are met only nearly, which the report
-/// says. Values stay near the range of the means around them. If 2 % of the cells have a field's least mean and so do all their
-/// neighbours, as where a fraction is 0, values are not less; and so for the greatest. These are the `bounds` of a field of one
-/// channel. The mean over the whole volume is that of the means, by a change that is least where values are near these bounds.
+/// says. Values stay within the range of the means around them, on the boundary within what the cells there lead to. If 2 % of
+/// the cells have a field's least mean and so do all their neighbours, as where a fraction is 0, values are not less; and so
+/// for the greatest. These are the `bounds` of a field of one channel. The mean over the whole volume is that of the means, by
+/// a change that is least where values are near these bounds.
 ///
 /// means: per cell of the mesh, by field
 /// parts: for each cell the number of the whole that it is a part of, whose mean is given at all its parts; none: each its own
@@ -38,6 +39,12 @@ struct CellMeansFit {
 /// cost:   parallel; bitwise the same for any number of threads
 [[nodiscard]] CellMeansFit fit_cell_means(const HexMesh& mesh, std::span<const Attribute> means,
                                           std::span<const Index> parts = {}, Progress* progress = nullptr);
+
+/// The same with what is known of the fields on the boundary: means do not lead beyond faces whose values are known, or across
+/// which a field does not change.
+[[nodiscard]] CellMeansFit fit_cell_means(const HexMesh& mesh, std::span<const Attribute> means,
+                                          const ValuesOnPatches& on_patches, std::span<const Index> parts = {},
+                                          Progress* progress = nullptr);
 
 /// tie:            how much a change of the first guess counts beside the means that are not met: it decides between the many
 ///                 sets of values with the same means, and keeps noise of the means from growing. Greater than 0
@@ -90,5 +97,16 @@ struct ExactMeansFit {
 /// cost: linear in the sides on patches; the same for any number of threads
 PatchValuesReport meet_patch_values(HexMesh& mesh, const ValuesOnPatches& on_patches,
                                     PatchValuesUse use = PatchValuesUse::Meet);
+
+/// Sets what is known of gradients at points of patches: of each field that the file has at cells and on faces, as finite
+/// volumes take them. Along a face it is that of the values on the patch; across, the step from the mean of the cell behind the
+/// face to the face's value, by the distance of their centres. At a wall at rest that is the shear of the first cells, which
+/// the limit of means over cells does not have. Exact for linear fields. A point of walls has the mean of the walls' faces
+/// there, and where they meet one whose length is between that and what each wall asks for; other points that of all faces
+/// whose values are known.
+///
+/// cell_parts: as in `ReadResult`
+/// cost: linear in the sides on patches and the cells; the same for any number of threads
+void set_wall_gradients(HexMesh& mesh, const ValuesOnPatches& on_patches, std::span<const Index> cell_parts = {});
 
 }  // namespace subvol

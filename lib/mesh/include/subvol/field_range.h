@@ -14,6 +14,11 @@ struct FieldRange {
     std::vector<double> min, max;
 };
 
+/// The numbers that a field has: at its cells where it is constant in each, else at its points.
+[[nodiscard]] inline const std::vector<double>& own_values(const Attribute& field) {
+    return field.constant ? field.cells : field.values;
+}
+
 /// throws: Error(InvalidInput) if there are no values
 [[nodiscard]] FieldRange range_of(const Attribute& field);
 

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstddef>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -13,16 +14,47 @@
 
 namespace subvol {
 
+namespace detail {
+struct PlaceFunction;
+}
+
+/// What a file of finite volumes says of the gradient of a field on its boundary.
+///
+/// points:    of the mesh, ascending
+/// gradients: for each of these points the gradients of all channels, in the field's unit per world length
+struct GradientsAtPoints {
+    std::vector<Index> points;
+    std::vector<Vec3> gradients;
+};
+
 /// A named array at the points of a mesh.
 ///
-/// values: `channels` numbers for each point: channel c of point p is values[p * channels + c]
-/// bounds: the least and the greatest value of each channel, as 0 and 1 of a fraction: where the limit of the values is
-///         evaluated it is kept within them, as interpolating schemes overshoot between points. Empty: none; infinite: no bound
+/// values:    `channels` numbers for each point: channel c of point p is values[p * channels + c]
+/// bounds:    the least and the greatest value of each channel, as 0 and 1 of a fraction: where the limit of the values is
+///            evaluated it is kept within them, as interpolating schemes overshoot between points. Empty: none; infinite: no
+///            bound
+/// function:  of a quantity that is not linear, such as the length of a vector: at each place of the volume the field is this
+///            function of the limit of the arguments there, not the limit of its values. None: it is that limit
+/// arguments: of the function, at each point. The values are those of the function at the points
+/// cells:     of a field that the file has at cells: `channels` numbers for each cell, which `values` are made of. Files that
+///            are written have these. Empty: a field at points
+/// constant:  the field is `cells`, the same everywhere in a cell; `values` are means over the cells at each point. It has no
+///            function
+/// walls:     what is known of the gradient on the boundary beside the limit
+/// derived:   made of derivatives of a limit, which the cells as they were given have not at their points
+/// potential: of the gradient of a scalar: the scalar
 struct Attribute {
     std::string name;
     int channels = 1;
     std::vector<double> values;
     std::vector<std::array<double, 2>> bounds = {};
+    std::shared_ptr<const detail::PlaceFunction> function = {};
+    std::vector<double> arguments = {};
+    std::vector<double> cells = {};
+    bool constant = false;
+    GradientsAtPoints walls = {};
+    bool derived = false;
+    std::shared_ptr<const Attribute> potential = {};
 };
 
 /// A hexahedral control mesh with attributes at its points.

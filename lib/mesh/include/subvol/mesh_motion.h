@@ -10,7 +10,11 @@ namespace subvol {
 /// Whether two meshes have the same cells, creases and sharp faces: their refinements then differ only in points and values.
 [[nodiscard]] bool same_cells(const HexMesh& a, const HexMesh& b);
 
-/// The mesh whose points and values are 1 − t of those of a mesh and t of those of another.
+/// Whether two meshes have the same cells between corresponding points. Their creases may differ: a body that is bent has other
+/// sharp edges.
+[[nodiscard]] bool moved_cells(const HexMesh& a, const HexMesh& b);
+
+/// The mesh whose points and values are 1 − t of those of a mesh and t of those of another; all else is that of the first.
 ///
 /// throws: Error(InvalidInput) if their cells, or the names and channels of their fields differ
 [[nodiscard]] HexMesh mesh_between(HexMesh a, const HexMesh& b, double t);

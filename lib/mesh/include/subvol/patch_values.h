@@ -21,11 +21,15 @@ enum class PatchRole : std::uint8_t { Open, Wall, Plane };
 ///
 /// values: `channels` for each face; not a number: unknown
 /// along:  of each face: vectors have no component along its normal, and nothing else is known
+/// level:  of each face: the field does not change across it. Empty: no face is known to be so
 struct FieldOnPatches {
     std::string name;
     int channels = 1;
     std::vector<double> values;
     std::vector<std::uint8_t> along;
+    std::vector<std::uint8_t> level = {};
+
+    [[nodiscard]] bool is_level(std::size_t face) const { return face < level.size() && level[face] != 0; }
 };
 
 /// What a file of finite volumes says of fields on the faces of its patches.

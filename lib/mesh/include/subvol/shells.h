@@ -45,7 +45,8 @@ struct Shells {
 [[nodiscard]] Shells make_shells(const HexMesh& mesh, std::span<const std::array<Index, 4>> quads,
                                  std::span<const std::array<Index, 2>> lines);
 
-/// The sides of patches as shells, each patch with its own points. The last attribute, "patch", counts the patches from 1.
+/// The sides of patches as shells, each patch with its own points, which are attached to the cells of this mesh: `limit_sides`
+/// has them where they lie in its limit. The last attribute, "patch", counts the patches from 1.
 ///
 /// throws: Error(InvalidInput) if a side is not of the mesh
 [[nodiscard]] Shells patch_shells(const HexMesh& mesh, std::span<const Patch> patches);

@@ -10,6 +10,7 @@
 #include "subvol/names.h"
 #include "subvol/option.h"
 #include "subvol/patch_values.h"
+#include "subvol/sharp_edges.h"
 #include "subvol/shells.h"
 
 namespace subvol {
@@ -38,19 +39,25 @@ struct NameTable<OtherCells> {
         {OtherCells::Split, "split"}, {OtherCells::Ignore, "ignore"}, {OtherCells::Refuse, "refuse"}};
 };
 
-/// What values at cells are taken for. They become values at points either way.
+/// What values at cells are taken for. Files that are written have them at cells, whichever it is.
 ///
+/// Constant: they are as they are, the same everywhere in a cell
 /// Mean:  at each point the mean over its cells, weighted by their volumes
 /// Fit:   they are means over the cells, as finite volumes have them: values at points whose limit volume (of the scheme MCQ)
 ///        follows these means without waves, as `fit_cell_means` finds them. A warning says how well the means are met
 /// Exact: the same, but the means are met wherever that is possible, as by `fit_exact_cell_means`
-/// Auto:  Fit for OpenFOAM, Mean for all others
-enum class CellValues { Auto, Mean, Fit, Exact };
+/// Auto:  Fit for OpenFOAM; for all others Constant where an array of scalars has nothing but whole numbers and the file's type
+/// of
+///        numbers, or its name, says that these are labels, such as materials and blocks, and Mean else
+enum class CellValues { Auto, Mean, Fit, Exact, Constant };
 
 template <>
 struct NameTable<CellValues> {
-    static constexpr Name<CellValues> rows[] = {
-        {CellValues::Auto, "auto"}, {CellValues::Fit, "fit"}, {CellValues::Mean, "mean"}, {CellValues::Exact, "exact"}};
+    static constexpr Name<CellValues> rows[] = {{CellValues::Auto, "auto"},
+                                                {CellValues::Fit, "fit"},
+                                                {CellValues::Mean, "mean"},
+                                                {CellValues::Exact, "exact"},
+                                                {CellValues::Constant, "constant"}};
 };
 
 /// Whether values at cells are taken for means over them.
@@ -70,6 +77,11 @@ struct NameTable<CellValues> {
 /// step: of a series (`open_series`), from 0. Nothing: that of `time`, or the last one
 /// time: takes the step whose time is nearest to it, if no step is given
 /// blocks: the names of the parts of the mesh that are read (`ReadResult::blocks`). None: all
+/// deck: of a .frd file of CalculiX, the deck (.inp) that it has the results of: its sets of elements and its surfaces become
+///       sets and patches of the mesh, by the numbers of elements and nodes. Empty: none
+/// crease_angle_deg: edges of the boundary that bend by more than this become creases too; 0: none are looked for. Nothing:
+/// those
+///       that `keep_sharp_edges` finds, unless the file has creases or sharp faces of its own (`sharp`, or files of ours)
 /// shells_alone: a file of shells and beams without any cell is read too. Its mesh has no cells, so most calls refuse it
 struct ReadOptions {
     OtherCells other_cells = OtherCells::Split;
@@ -81,10 +93,12 @@ struct ReadOptions {
     std::vector<std::string> blocks = {};
     CellValues cell_values = CellValues::Auto;
     PatchValuesUse patch_values = PatchValuesUse::Normal;
+    std::string deck = {};
+    std::optional<double> crease_angle_deg = {};
     bool shells_alone = false;
 };
 
-/// other-cells, weld-distance, curved, cell-values, patch-values, step, time, blocks, sharp
+/// other-cells, weld-distance, curved, cell-values, patch-values, step, time, blocks, sharp, mesh, crease-angle
 [[nodiscard]] std::vector<Option> options_of(ReadOptions& options);
 
 /// A named part of a mesh. cells: of all kinds, as the file has them
@@ -128,16 +142,18 @@ struct UnreadField {
 /// unread:     fields that could not be read; a warning names them
 /// sets:       patches of the boundary and sets of cells, of formats that have them: what lies inside the mesh is left out
 /// cell_means: only if values at cells were fitted: the values of these fields in the file, for each cell of the mesh
-/// cell_parts: for each cell of the mesh the number of the file's cell that it is a part of; empty if there are no such fields
+/// cell_parts: for each cell of the mesh the number of the file's cell that it is a part of; empty if there are no such fields,
+///             and none on patches
 /// cell_values: how well the means are met; nothing if there are no such fields
 /// on_patches:  what the file has on faces of patches, of the fields at cells; empty for most formats
 /// patch_values: what became of it; nothing if there is none, or it was not used
 /// curved:      nothing if there are no curved hexahedra, or only their corners are used
 /// steps, step: how many the file has, and which one this is; its time is `mesh.time`
+/// sharp_edges: that were found in the mesh and kept; nothing if the file has its own, or none were looked for
 /// shells:     the quads and lines of VTK and Gmsh files beside hexahedra that were not split, but for those that are faces and
 ///             edges of the hexahedra
 struct ReadResult {
-    HexMesh mesh;  // validated; a cell array became a point array by the volume-weighted mean over incident cells
+    HexMesh mesh;  // validated; the values at points of a cell array are volume-weighted means over incident cells
     std::vector<FieldInfo> fields;
     std::vector<std::string> warnings;  // one sentence for each thing left out, turned round or converted
     std::vector<MeshBlock> blocks = {};
@@ -148,6 +164,7 @@ struct ReadResult {
     std::optional<PatchValuesReport> patch_values = {};
     std::size_t steps = 1, step = 0;
     std::optional<CurvedReport> curved = {};
+    std::optional<SharpEdges> sharp_edges = {};
     Shells shells = {};
     std::vector<UnreadField> unread = {};
     MeshSets sets = {};

@@ -13,12 +13,13 @@
 
 namespace subvol {
 
-/// An array of a VTK grid. values: `components` for each point or cell
+/// An array of a VTK grid. values: `components` for each point or cell; integers: their type in the grid is one of integers
 struct VtkGridArray {
     std::string name;
     int components = 1;
     bool at_cells = false;
     std::vector<double> values;
+    bool integers = false;
 };
 
 /// An array of whole numbers in the field data of a VTK grid.

@@ -48,9 +48,10 @@ void validate(const MixedMesh& mesh);
 
 /// The mesh of which `split_into_hexes` made these hexahedra, as readers do: groups of 4, 6 or 8 that follow each other and
 /// meet in the middle of their cell become a tetrahedron, a prism or a hexahedron again, with the values at its corners. If a
-/// cell is in no such group, all are hexahedra as they are. Pyramids were cut into tetrahedra, which they stay.
+/// cell is in no such group, all are hexahedra as they are. Pyramids were cut into tetrahedra, which they stay. An edge both
+/// halves of which are creases is a crease. Sharp faces, which these schemes do not have, are left out with their creases.
 ///
-/// throws: as `make_mixed_mesh`, and Error(InvalidInput) if the mesh has creases and was split
+/// throws: as `make_mixed_mesh`, and Error(InvalidInput) if the mesh was split and has a crease that is not along such an edge
 [[nodiscard]] MixedMesh join_split_cells(const HexMesh& split);
 
 /// The mesh with every cell in tetrahedra: quads are cut along the diagonal from their smallest id, octahedra along the

@@ -28,7 +28,7 @@ struct NameTable<TetScheme> {
 inline constexpr int kMostTetLevels = 8;
 
 /// levels:           0 to kMostTetLevels
-/// crease_angle_deg: boundary edges bent by more than this become creases too; (0,180)
+/// crease_angle_deg: boundary edges bent by more than this become creases too; (0,180], 180: none
 struct MixedRefineOptions {
     TetScheme scheme = TetScheme::Tetoct;
     int levels = 1;

@@ -9,8 +9,9 @@ namespace subvol {
 /// around them. Between kernels their sum can still go beyond by what the derivatives of the others add; whoever draws it
 /// clamps that (`clamped`).
 ///
-/// returns: how many were moved
-/// throws:  Error(InvalidInput) if the range is not finite or min > max
+/// min, max: may be infinite
+/// returns:  how many were moved
+/// throws:   Error(InvalidInput) unless min ≤ max
 std::size_t clamp_channel(RbfChannel& channel, double min, double max);
 
 }  // namespace subvol

@@ -29,7 +29,8 @@ struct PartOpacity {
 ///
 /// rest:      what is opaque; it may have no cells
 /// cells:     a flag for each cell: whether it is in the rest
-/// shells:    the sides of translucent parts, each part with its own points; what two parts share is there once, and sides that
+/// shells:    the sides of translucent parts, each part with its own points, as of `patch_shells` of the mesh that was given;
+/// what two parts share is there once, and sides that
 ///            a part shares with the rest are left out, as the rest has them
 /// opacities: of each quad of the shells
 struct TranslucentParts {

@@ -28,7 +28,9 @@ struct SelectedField {
 [[nodiscard]] SelectedField select_field(const HexMesh& mesh, const std::optional<std::string>& name,
                                          Progress* progress = nullptr);
 
-/// A quantity of a mesh at its points: a field by its name, or what is computed from fields.
+/// A quantity of a mesh: a field by its name, or what is computed from fields. What is not linear, such as a length or a
+/// product, has its values at the points and is a function elsewhere (`Attribute::function`): of the limit of the fields at
+/// the place.
 ///
 ///     T   `von Mises`   U.x   S.xy   U.0          fields, in quotes (` or ') unless their names are words; components
 ///     length(U)  mises(S)  principal1(S)  …       functions of vectors and tensors
@@ -52,8 +54,10 @@ struct SelectedField {
 
 /// A quantity that is a vector, such as U or grad(T), whose flow is asked for.
 ///
-/// returns: x, y, z at each point of the mesh
+/// returns: a field of three channels with that name
 /// throws:  Error(InvalidInput) as `field_of`, or if it has another number of components
+[[nodiscard]] Attribute vector_field_of(const HexMesh& mesh, const std::string& source, Progress* progress = nullptr);
+/// The same at the points alone: x, y, z at each.
 [[nodiscard]] std::vector<double> vectors_of(const HexMesh& mesh, const std::string& source, Progress* progress = nullptr);
 
 /// The shells with the fields that the mesh has, which were selected from the same ones.

@@ -52,6 +52,10 @@ private:
     std::string quantity_;
 };
 
+/// "half:" and "box:" of numbers. throws: Error(InvalidInput) as the constructor
+[[nodiscard]] Region half_space(const Vec3& point, const Vec3& normal);
+[[nodiscard]] Region box_region(const Box& box);
+
 /// throws: Error(InvalidInput) as the constructor
 [[nodiscard]] std::vector<Region> parse_regions(std::span<const std::string> texts);
 
@@ -71,7 +75,9 @@ struct SpaceAndCells {
 [[nodiscard]] std::vector<std::uint8_t> cells_in(const HexMesh& mesh, std::span<const Region> regions,
                                                  const MeshSets& sets = {});
 
-/// The mesh of some cells. The cells that were beside them no longer shape their limit. cells: a flag for each cell
+/// The mesh of some cells. Edges where it is cut out are creases, unless its boundary runs on smoothly there in the limit of
+/// the whole mesh. Even so its limit is another one near the cut, as the cells that were beside it no longer shape it:
+/// `part_of_limit` says how far it is from there, and refines it. cells: a flag for each cell
 [[nodiscard]] HexMesh only_cells(const HexMesh& mesh, std::span<const std::uint8_t> cells);
 
 /// The mesh of the cells that belong to all regions.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -47,7 +48,7 @@ struct FitShapeOptions {
 /// missed_rms, missed_max, missed_at: from places of the surface to the boundary: large where the mesh does not reach
 struct ShapeError {
     double rms = 0, max = 0, covered_rms = 0, covered_max = 0, hole_part = 0, missed_rms = 0, missed_max = 0;
-    Vec3 max_at{0.0}, missed_at{0.0};
+    Vec3 max_at{std::numeric_limits<double>::quiet_NaN()}, missed_at{max_at};
 };
 
 /// Measures a boundary at the vertices of level 2, 25 for each side, and a surface at as many places.

@@ -27,6 +27,8 @@ namespace subvol {
 /// max_triangles: the search for a finer level ends before there would be more
 /// sides:         those of cells to which the boundary is restricted, as of a patch; empty: the whole boundary. Isosurfaces are
 ///                left out then, and triangles are not improved
+/// cells:         a flag for each cell of a mesh in memory: the boundary of these is made, where they lie in the limit of the
+///                whole mesh. Isosurfaces are those of these cells as a mesh of its own. Empty: all
 /// improve:       edges of triangles with small angles are collapsed or flipped, so that fewer of them are slivers
 struct SurfaceOptions {
     SchemeOptions scheme{};
@@ -37,6 +39,7 @@ struct SurfaceOptions {
     int max_level = 6;
     std::size_t max_triangles = 40'000'000;
     std::span<const CellSide> sides{};
+    std::span<const std::uint8_t> cells{};
     bool improve = true;
     Progress* progress = nullptr;
 };

@@ -67,9 +67,9 @@ struct Topology {
 /// cost:   O(n log n) time, about 500 bytes per cell
 [[nodiscard]] Topology build_topology(const HexMesh& mesh);
 
-/// Tags the smooth boundary edges whose two face normals differ by more than `angle_deg`.
+/// Tags the smooth boundary edges whose two face normals differ by more than `angle_deg`. `keep_sharp_edges` has the default.
 ///
-/// throws: Error(InvalidInput) if the angle is not in (0,180)
+/// throws: Error(InvalidInput) if the angle is not in (0,180]; 180 tags none
 void tag_creases(HexMesh& mesh, double angle_deg);
 
 }  // namespace subvol

@@ -113,6 +113,8 @@ void validate(const MethodOptions& options);
 /// channels: of kernels or of the file: the first is shown, the last gives the colours; empty: all
 /// shape:    meshes with the same number have the same cells; 0: no other has them
 /// moved:    the mesh is being moved, so that tables for its cells are worth while
+/// of_file:  the mesh is one that a user has: a warning says if what is drawn shows that the field of the colours leaves its
+///           range in the mesh by more than 1 % of it
 struct PictureBody {
     std::optional<MeshSource> mesh{};
     bool tets = false;
@@ -122,6 +124,7 @@ struct PictureBody {
     std::vector<std::size_t> channels{};
     std::uint64_t shape = 0;
     bool moved = false;
+    bool of_file = false;
 
     [[nodiscard]] BodyKind kind() const;
 };

@@ -38,6 +38,14 @@ struct ShellScene {
                                           std::optional<int> most, const Optics& optics, int samples, const Clip& clip,
                                           std::span<const float> opacities = {});
 
+/// The same of sides of cells, as of `patch_shells`, where they lie in the limit of the mesh that they are of.
+///
+/// whole: that mesh, with the fields of its file
+/// throws: Error(InvalidInput) as `limit_sides` and `with_fields_of`
+[[nodiscard]] ShellScene make_side_scene(const HexMesh& mesh, const HexMesh& whole, const Shells& sides, RefineOptions refine,
+                                         std::optional<int> most, const Optics& optics, int samples, const Clip& clip,
+                                         std::span<const float> opacities = {});
+
 /// Opaque triangles in or about a volume, such as tubes along its streamlines, which the clip of the picture does not cut.
 ///
 /// mesh: of the volume that may hide them, on the limit

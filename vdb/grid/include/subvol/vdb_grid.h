@@ -16,6 +16,7 @@
 namespace subvol {
 
 /// kind:     float, vector, integer, mask, or the name of another type
+/// level_set: its values are distances from a surface, below 0 inside; the file says so
 /// min, max: of the active values; of a vector its length
 /// outside:  the value that stands for places where there is none: 0; of a level set the background, which is the largest
 ///           distance that it has
@@ -24,6 +25,7 @@ namespace subvol {
 struct GridReport {
     std::string name;
     std::string kind;
+    bool level_set = false;
     std::size_t active_voxels = 0;
     double voxel_size_world = 0;
     std::size_t bytes = 0;  // of the tree in memory

@@ -10,7 +10,7 @@
 namespace subvol {
 
 /// spacing_world: distance of the kernels, rounded to a whole number of voxels; up to one voxel, each voxel becomes a kernel
-/// correction:    its derivatives are differences between voxels
+/// correction:    its derivatives are differences between voxels; of the body of a level set there are none
 /// kernel:        must be radial
 struct VoxelSampleOptions {
     double spacing_world = 0;
@@ -39,6 +39,9 @@ struct VoxelSampleResult {
 /// none if less than half of them are active. Gradients are central differences, one-sided at the rim; second derivatives are
 /// differences too, 0 where a voxel that they need is inactive. The result has no boundary surface: the volume ends where the
 /// kernels' weights end, which on a flat side is the voxels' own face. The channel has the grid's name, or `density`.
+///
+/// A level set gives the body within its surface: density 1, at kernels in the middle of blocks of voxels that the inside
+/// reaches, and with the surface as the boundary. Without a spacing there are up to 64 blocks along the longest side.
 ///
 /// throws: Error(InvalidInput) if the transform is not linear, the voxels are not floats, no voxel is active, more than 2³¹
 /// are, a

@@ -43,6 +43,10 @@ struct LevelSetOptions {
 /// block_bytes:      of a mesh in pieces: about the most that a block of voxels and the cells about it take
 /// half:             store floats in 16 bits
 /// cell_numbers:     adds a grid of integers named "cell": the control cell that contains the voxel's centre
+/// cells:            of a mesh in memory: for each cell its number in the grid of cell numbers, or kNone: it is not rasterized,
+/// and
+///                   only shapes the limit of the others, which end at it sharply, as of `part_with_halo`. The box is that of
+///                   the others. Empty: all cells, by their places
 /// mask:             adds a grid of bits named "mask": where the volume is
 /// coverage:         adds a grid of floats named "coverage": the part of each voxel that the volume fills, by 4³ samples;
 ///                   active where it is above zero
@@ -62,6 +66,7 @@ struct RasterizeOptions {
     std::size_t block_bytes = std::size_t{1} << 30;
     bool half = false;
     bool cell_numbers = false;
+    std::span<const Index> cells{};
     bool mask = false;
     bool coverage = false;
     std::optional<LevelSetOptions> level_set{};
@@ -95,6 +100,17 @@ struct RasterizeOptions {
             .between(1, kMostWidth)
             .help("N", "the band's reach to either side, in voxels")
             .only_with("sdf")};
+}
+
+/// The box of the points of the cells that are rasterized.
+[[nodiscard]] inline Box rasterized_box(const HexMesh& mesh, const RasterizeOptions& options) {
+    if (options.cells.size() != mesh.cells.size()) return bounds(mesh);
+    Box box;
+    for (std::size_t c = 0; c < mesh.cells.size(); ++c) {
+        if (options.cells[c] == kNone) continue;
+        for (const Index p : mesh.cells[c]) box.add(mesh.points[p]);
+    }
+    return box;
 }
 
 /// The edge of a voxel: of `like`, the one that is given, or as the resolution says for this box.

@@ -24,17 +24,19 @@ public:
 
     /// The first of the points kept so far that `p` coincides with; `p` itself, which is then kept, if there is none.
     Index join(Index p) {
-        const Cube home = cube_of(points_[p]);
-        const Index found = tolerance_ > 0 ? first_around(p, home) : first_in(p, home);
+        const Index found = first_near(p);
         if (found != kNone) return found;
-        Index& last = last_in_.try_emplace(home, kNone).first->second;
+        Index& last = last_in_.try_emplace(cube_of(points_[p]), kNone).first->second;
         before_[p] = std::exchange(last, p);
         return p;
     }
 
 private:
-    // The cube of a lattice that holds a point: as wide as the tolerance. Without a tolerance, the coordinates themselves.
+    // The cube of a lattice that holds a point: four times as wide as the tolerance, so that most points have no other within
+    // reach. Points that are kept are farther apart than the tolerance: few are in one. Without a tolerance, the coordinates
+    // themselves.
     using Cube = std::array<double, 3>;
+    static constexpr double kWidth = 4, kReach = 1 + 1e-9;  // in tolerances; a little more, for rounding
 
     struct CubeHash {
         std::size_t operator()(const Cube& cube) const {
@@ -45,7 +47,9 @@ private:
     };
 
     [[nodiscard]] Cube cube_of(const Vec3& x) const {
-        const auto along = [&](double v) { return (tolerance_ > 0 ? std::floor(v / tolerance_) : v) + 0.0; };  // -0 is 0
+        const auto along = [&](double v) {
+            return (tolerance_ > 0 ? std::floor(v / (kWidth * tolerance_)) : v) + 0.0;
+        };  // -0 is 0
         return {along(x.x), along(x.y), along(x.z)};
     }
 
@@ -58,11 +62,16 @@ private:
         return first;
     }
 
-    [[nodiscard]] Index first_around(Index p, const Cube& home) const {
+    /// In all cubes that the tolerance reaches.
+    [[nodiscard]] Index first_near(Index p) const {
+        const Vec3 reach(kReach * tolerance_);
+        const Cube low = cube_of(points_[p] - reach), high = cube_of(points_[p] + reach);
+        if (low == high) return first_in(p, low);
         Index first = kNone;
-        for (int n = 0; n < 27; ++n) {
-            const int x = n % 3 - 1, y = n / 3 % 3 - 1, z = n / 9 - 1;
-            first = std::min(first, first_in(p, {home[0] + x, home[1] + y, home[2] + z}));
+        for (double x = low[0]; x <= high[0]; ++x) {
+            for (double y = low[1]; y <= high[1]; ++y) {
+                for (double z = low[2]; z <= high[2]; ++z) first = std::min(first, first_in(p, {x, y, z}));
+            }
         }
         return first;
     }
