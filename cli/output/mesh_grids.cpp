@@ -70,11 +70,12 @@ WithFacts<LimitCells> reported_limit(const HexMesh& mesh, const RefineOptions& r
     return {std::move(limit), std::move(facts)};
 }
 
-HexMesh rasterized_cells(const HexMesh& mesh, std::span<const Index> cells) {
+const HexMesh& rasterized_cells(const HexMesh& mesh, std::span<const Index> cells, HexMesh& part) {
     if (cells.empty()) return mesh;
     std::vector<std::uint8_t> flags;
     for (const Index number : cells) flags.push_back(number != kNone);
-    return only_cells(mesh, flags);
+    part = only_cells(mesh, flags);
+    return part;
 }
 
 MeshGrids::MeshGrids(std::string input, const VdbArguments& asked, RefineArguments& refine)
@@ -128,8 +129,9 @@ double MeshGrids::voxel_size_world(const HexMesh& mesh, const RasterizeOptions& 
     if (asked_.budget_bytes > 0) {
         double channels = asked_.grids.cell_numbers ? 1 : 0;
         for (const Attribute& attribute : mesh.attributes) channels += attribute.channels;
-        return std::cbrt(std::abs(measure_cells(rasterized_cells(mesh, options.cells)).volume) * kBytesOfChannel * channels /
-                         static_cast<double>(asked_.budget_bytes));
+        HexMesh part;
+        return std::cbrt(std::abs(measure_cells(rasterized_cells(mesh, options.cells, part)).volume) * kBytesOfChannel *
+                         channels / static_cast<double>(asked_.budget_bytes));
     }
     return voxel_size_of(rasterized_box(mesh, options), asked_.grids);
 }

@@ -20,8 +20,10 @@ namespace subvol::cli {
 /// vertices each.
 [[nodiscard]] WithFacts<LimitCells> reported_limit(const HexMesh& mesh, const RefineOptions& refinement, double voxel_size);
 
-/// The cells that are rasterized, as a mesh of their own. cells: as of `RasterizeOptions`
-[[nodiscard]] HexMesh rasterized_cells(const HexMesh& mesh, std::span<const Index> cells);
+/// The cells that are rasterized: the mesh itself, or `part`, which becomes a mesh of those alone.
+///
+/// cells: as of `RasterizeOptions`
+[[nodiscard]] const HexMesh& rasterized_cells(const HexMesh& mesh, std::span<const Index> cells, HexMesh& part);
 
 /// The greatest and the mean error of a grid. grid: its number
 struct GridErrorFigures {

@@ -95,7 +95,9 @@ public:
         check_output(output_, {".png", ".exr", ".vtp", ".csv"});
         const Vec3 background = parse_color(background_, "--background");
         check_notes();
+        // What is wrong with these is said before the slice is computed.
         if (range_) (void)parse_range(*range_, {.min = 0, .max = 1}, "--range");
+        (void)find_transfer_function(function_, {.min = 0, .max = 1});
         std::vector<double> plane;
         if (!plane_.empty()) plane = parse_numbers("--plane", plane_, 6, "0,0,0,0,0,1");
         report.if_long("a lower --resolution");

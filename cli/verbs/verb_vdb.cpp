@@ -110,7 +110,10 @@ private:
         }
         const bool once = output_.memory_bytes == 0;
         const RasterizeOptions options = report.unpack(maker.set_up(mesh, report.progress(), once, cells));
-        report.warn(limit_warning(input_, rasterized_cells(mesh, cells), options.refine.scheme, report.progress()));
+        if (options.limit != nullptr || options.refine.levels > 0) {  // else the cells are those of the file
+            HexMesh part;
+            report.warn(limit_warning(input_, rasterized_cells(mesh, cells, part), options.refine.scheme, report.progress()));
+        }
         if (output_.memory_bytes > 0) {
             if (asked_.error) throw Error(ErrorCode::InvalidInput, "works with one file only, not with parts", "--error");
             refuse_with_memory();

@@ -401,8 +401,10 @@ private:
         fit_.defects(batch, off_);
         for (std::size_t l = 0; l < numbers.size(); ++l) {
             detail::FittedChannel& channel = channels[channels.size() - numbers.size() + l];
-            channel.least = batch.least[l];
-            channel.most = batch.most[l];
+            constexpr double kNoBound = std::numeric_limits<double>::infinity();
+            const bool scalar = fields[numbers[l].field].channels == 1;  // the limit of others is not kept within bounds
+            channel.least = scalar ? batch.least[l] : -kNoBound;
+            channel.most = scalar ? batch.most[l] : kNoBound;
             channel.values.resize(batch.values.size());
             channel.from.resize(batch.values.size());
             channel.to.resize(batch.values.size());
@@ -463,8 +465,7 @@ CellMeansFit fitted(const HexMesh& mesh, std::span<const Attribute> fields, std:
             field.values[p * width + channel.channel.number] = channel.value(p);
         }
         const auto bounds = channel.bounds();
-        if (width == 1 && std::ranges::any_of(bounds, [](double bound) { return std::isfinite(bound); }))
-            field.bounds = {bounds};
+        if (std::ranges::any_of(bounds, [](double bound) { return std::isfinite(bound); })) field.bounds = {bounds};
     }
     result.report.seconds = watch.seconds();
     return result;

@@ -311,13 +311,19 @@ SliceFigures given_figures_of(const MeshSource& source, const LimitSlice& slice,
         return chosen;
     };
     const Probing probe = probing_of(source, given, slice, {.scheme = {.kind = Scheme::Linear}, .progress = progress}, cells);
+    constexpr std::size_t kAtOnce = 1 << 16;  // places
+    std::vector<double> values;
+    std::vector<Index> cells_at;
     std::vector<Vec3> places;
-    places.reserve(slice.values.size());
     for (int row = 0; row < slice.height; ++row) {
         for (int column = 0; column < slice.width; ++column) places.push_back(slice.place(column, row));
+        if (places.size() < kAtOnce && row + 1 < slice.height) continue;
+        const ProbeResult found = probe(places);
+        values.insert(values.end(), found.fields.front().values.begin(), found.fields.front().values.end());
+        cells_at.insert(cells_at.end(), found.cells.begin(), found.cells.end());
+        places.clear();
     }
-    const ProbeResult found = probe(places);
-    const SliceFigures figures = SliceSums(slice).figures(found.fields.front().values, found.cells, probe);
+    const SliceFigures figures = SliceSums(slice).figures(values, cells_at, probe);
     if (!derived) return figures;
     SliceFigures area;
     area.area = figures.area;

@@ -8,6 +8,7 @@
 #include "subvol/boundary_values.h"
 #include "subvol/flow_surface.h"
 #include "subvol/gl_device.h"
+#include "subvol/part_of_limit.h"
 #include "subvol/part_opacity.h"
 #include "subvol/picture_maker.h"
 #include "subvol/shell_scene.h"
@@ -306,17 +307,29 @@ void bind_render(py::module_& module) {
         py::arg("points"));
     module.def(
         "translucent_parts",
-        [](const HexMesh& mesh, const py::object& source, const std::vector<std::string>& texts) {
+        [](const HexMesh& mesh, const py::object& source, const std::vector<std::string>& texts, const py::dict& given) {
+            GivenPicture chosen;
+            set_options(options_of(chosen), given);
             try {
-                std::vector<PartOpacity> parts;
-                for (const std::string& text : texts) parts.push_back(parse_part_opacity(text));
-                return translucent_parts(mesh, parts, sets_of(source));
+                std::vector<PartOpacity> asked;
+                for (const std::string& text : texts) asked.push_back(parse_part_opacity(text));
+                TranslucentParts parts = translucent_parts(mesh, asked, sets_of(source));
+                std::string warning;
+                if (!parts.rest.cells.empty()) {
+                    PartOptions wanted{.scheme = chosen.refinement.scheme};
+                    if (chosen.levels) wanted.max_levels = 0;  // those of the cells as they were given
+                    PartOfLimit rest = part_of_limit(mesh, parts.cells, wanted);
+                    warning = detail::part_warning(rest, OptionNames::Keywords);
+                    parts.rest = std::move(rest.mesh);
+                }
+                return py::make_tuple(std::move(parts), warning);
             } catch (const Error& error) {
                 throw Error(error.code(), (error.where().empty() ? "" : error.where() + ": ") + error.message(), "part_opacity",
                             error.allowed());
             }
         },
-        py::arg("mesh"), py::arg("source"), py::arg("texts"));
+        py::arg("mesh"), py::arg("source"), py::arg("texts"), py::arg("given") = py::dict(),
+        "The parts and the rest, which lies as in the whole, and a warning if it does not.");
     module.def(
         "choose_patches",
         [](const HexMesh& mesh, const std::vector<std::string>& names) {

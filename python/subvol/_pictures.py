@@ -141,7 +141,9 @@ def _parts_of(what: Drawable, mesh: Optional[HexMesh], texts: list[str], patches
         raise refuse("needs the limit of hexahedra", "another scheme")
     if patches:
         raise refuse("is of parts of a volume, and patch draws faces alone", "without patch")
-    parts = _core.translucent_parts(mesh, what, texts)
+    parts, warning = _core.translucent_parts(mesh, what, texts, given)
+    if warning:
+        warn(warning)
     rest = parts.rest.without_unused_points() if len(parts.rest.cells) else parts.rest
     values, points = parts.values, parts.points
     if len(rest.cells):

@@ -294,9 +294,9 @@ class EveryVerb(InFolder):
         self.assertLess(found["min"], -1.2)
         self.assertTrue(2 - 1e-3 <= found["file_max_at"][0] <= 3 + 1e-3, found["file_max_at"])
         # The plane z = 1/2 of a beam of 4: trapezoids of T have the means 0, 5, 10, 5.
-        self.assertAlmostEqual(found["file_area"], 4, 9)
-        self.assertAlmostEqual(found["file_mean"], 5, 9)
-        self.assertAlmostEqual(found["area"], 4, 9)
+        self.assertAlmostEqual(found["file_area"], 4, 4)  # by squares, which reach a little beyond
+        self.assertAlmostEqual(found["file_mean"], 5, 4)
+        self.assertAlmostEqual(found["area"], 4, 4)
         self.assertNotAlmostEqual(found["mean"], 5, 2)
         kept = self.run_ok("points", "beam.vtk", "-o", "a.ply", "--per-edge", "2", "--clamp", "file", "--json").json()
         self.assertGreater(kept["clamped"], 0)

@@ -56,6 +56,13 @@ def corners(cells):
     return len({p for n in cells for p in CELLS[n]})
 
 
+VOXEL = .35  # no voxel's centre lies on a side between two cubes
+
+
+def voxels(cells):
+    return sum(math.prod(sum(low <= VOXEL * k < low + 1 for k in range(99)) for low in LOWEST[n]) for n in cells)
+
+
 # Commands, and the figure of each: by the command's JSON, and by cells, as a volume, an area or a number.
 COMMANDS = {
     "info": (["info", "{}"], lambda found: found["volume"], len),
@@ -65,7 +72,7 @@ COMMANDS = {
     "slice": (["slice", "{}", "--plane", ".5,.5,3,1,0,0", "--resolution", "96", "-o", "s.csv"],
               lambda found: found["inside"] * found["step"]**2, lambda cells: sum(LOWEST[n][0] == 0 for n in cells)),
     "points": (["points", "{}", "-o", "s.ply"], lambda found: found["points"], corners),
-    "vdb": (["vdb", "{}", "--voxel-size", ".25", "-o", "s.vdb"], lambda found: found["active_voxels"] / 64, len),
+    "vdb": (["vdb", "{}", "--voxel-size", str(VOXEL), "-o", "s.vdb"], lambda found: found["active_voxels"], voxels),
     "split": (["split", "{}", "-o", "bricks{n}"], lambda found: found["cells"], len),
     # The field is x.
     "compare": (["compare", "{}", "{}", "--samples", "100"], lambda found: found["a"]["mass"], lambda cells: sum(centre(n)[0] for n in cells)),

@@ -46,7 +46,7 @@ def test_one_object_is_not_a_list_of_them(tmp_path, ball_points):
 
 
 def test_what_is_drawn_is_whole(cube):
-    shells = _core.translucent_parts(cube, cube, ["half:.5,.5,.5,1,0,0=.5"])
+    shells, _ = _core.translucent_parts(cube, cube, ["half:.5,.5,.5,1,0,0=.5"])
     for wrong in ({}, {"colors": cube}, {"parts": shells}, {"source": cube}, {"mesh": cube, "points": subvol.sample(cube)},
                   {"points": subvol.sample(cube), "channels": [1]}, {"mesh": cube, "colors": subvol.HexMesh(cube.points, cube.cells)}):
         with pytest.raises(subvol.InvalidInput):

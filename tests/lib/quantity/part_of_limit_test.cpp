@@ -49,7 +49,7 @@ void add_field(HexMesh& mesh) {
 HexMesh bent_bar() {
     HexMesh mesh = test::make_box(8, 3, 3);
     for (Vec3& p : mesh.points) {
-        const double angle = p.x / 8 * std::numbers::pi / 2, radius = 1 + p.y / 3;
+        const double angle = p.x / 8 * std::numbers::pi / 2, radius = 2 - p.y / 3;
         p = Vec3(radius * std::cos(angle), radius * std::sin(angle), p.z / 3);
     }
     add_field(mesh);
@@ -96,7 +96,7 @@ TEST(PartOfLimit, EdgesAreSharpWhereTheCutBendsInTheWhole) {
     EXPECT_EQ(edges([](const Vec3& p) { return p.x < 2; }), 0u);             // a plane: the edges around it are of single cells
     EXPECT_EQ(edges([](const Vec3& p) { return p.x < 2 && p.y < 2; }), 0u);  // a corner
     EXPECT_EQ(edges([](const Vec3& p) { return p.x < 2 || p.y < 2; }), 2u);  // a re-entrant edge of two cells' height
-    EXPECT_EQ(edges([](const Vec3& p) { return p.y + p.x < 4; }), 2u * 3);   // stairs: three re-entrant edges
+    EXPECT_EQ(edges([](const Vec3& p) { return p.y + p.x < 4; }), 2u * 2);   // stairs: two re-entrant edges
     EXPECT_EQ(edges([](const Vec3&) { return true; }), 0u);
     // A cut that bends by 90 degrees at the points, but runs on smoothly in the limit: there are two cells on both sides.
     HexMesh bent = box;
@@ -122,11 +122,15 @@ TEST(PartOfLimit, LiesWhereItIsInTheWhole) {
             const double found = farthest(whole, cells, part);
             // It was compared half way between the points; elsewhere it may be a little farther.
             EXPECT_LE(found, 1.5 * std::max(part.distance_world / bounds(part.mesh).diagonal(), 1e-9)) << k;
-            EXPECT_LE(found, 1.5e-3) << k;
+            const double said = part.distance_world / bounds(part.mesh).diagonal();
+            EXPECT_TRUE(said <= 1e-3 || part.levels == 2) << k << ": it was not refined until it is near";
+            EXPECT_LE(said, 2.5e-3) << k << ": with two levels";
             EXPECT_LE(part.field_change, .01) << k;
             // By integrals over the limit of the whole mesh.
             const double volume = measure_limit(whole, {.cells = cells}).whole.volume;
-            EXPECT_NEAR(measure_limit(part.mesh).whole.volume, volume, 1e-3 * volume) << k;
+            const double change = measure_limit(part.mesh).whole.volume / volume - 1;
+            EXPECT_LE(std::abs(change), 1.5e-3) << k;
+            EXPECT_NEAR(part.volume_change, change, 1e-3) << k;  // by straight cells of the next level at the cut
         }
     }
 }

@@ -95,20 +95,21 @@ double distance_to_box(const Vec3& p, const Vec3& lower, const Vec3& upper) {
 }
 
 TEST(Parts, LevelSetsAndCoverageEndAtTheCut) {
-    const HexMesh mesh = test::with_field(test::box_mesh(4), "f", [](const Vec3& p) { return p.x; });
+    HexMesh mesh = test::with_field(test::box_mesh(4), "f", [](const Vec3& p) { return p.x; });
     Flags flags;
     for (const auto& cell : mesh.cells) flags.push_back(mesh.points[cell[0]].x < .5 && mesh.points[cell[0]].y < .5);
+    const Vec3 half_a_voxel(.025);  // whole voxels are in the box: none of their centres lies on a side
+    for (Vec3& p : mesh.points) p += half_a_voxel;
     const PartWithHalo part = part_with_halo(mesh, flags);
     for (const bool limit : {false, true}) {
         const auto grids =
             grids_of(part.mesh, {.cells = part.numbers, .coverage = true, .level_set = LevelSetOptions{}}, limit);
         ASSERT_EQ(grids.size(), 3u);
-        const Vec3 lower(0.0), upper(.5, .5, 1);
+        const Vec3 lower = half_a_voxel, upper = half_a_voxel + Vec3(.5, .5, 1);
         EXPECT_EQ(grids[0].report().active_voxels, 10u * 10 * 20);
         double covered = 0;
         for (const auto& [voxel, value] : values_of(grids[1])) covered += value;
-        EXPECT_NEAR(covered * std::pow(.05, 3), .25,
-                    1e-9);  // whole samples of a box that fits them, but for the half-open side
+        EXPECT_NEAR(covered * std::pow(.05, 3), .25, 1e-9);
         std::size_t band = 0;
         for (const auto& [voxel, value] : values_of(grids[2])) {
             const Vec3 centre = .05 * Vec3(voxel[0], voxel[1], voxel[2]);
