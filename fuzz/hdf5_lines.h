@@ -8,8 +8,8 @@
 #include <set>
 #include <sstream>
 
-#include "hdf5_file.h"
 #include "input.h"
+#include "subvol/detail/hdf5_file.h"
 
 namespace subvol::fuzz {
 

@@ -11,6 +11,7 @@
 #include "lib/mesh_io/mesh_texts.h"
 #include "lib/mesh_io/vtu_texts.h"
 #include "subvol/detail/surface_share.h"
+#include "subvol/detail/vtu_bytes.h"
 #include "subvol/kernel_file.h"
 #include "subvol/mesh_io.h"
 #include "subvol/points_io.h"
@@ -20,7 +21,6 @@
 #include "subvol/vtk_grid.h"
 #include "subvol/wavelet_file.h"
 #include "svw_parts.h"
-#include "vtu_bytes.h"
 #include "wavelet_format.h"
 #ifdef SUBVOL_FUZZ_VDB
 #include "subvol/rasterize.h"

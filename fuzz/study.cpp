@@ -3,6 +3,7 @@
 
 #include "subvol/study.h"
 #include "input.h"
+#include "subvol/option.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     using namespace subvol;

@@ -6,8 +6,8 @@
 
 #include "input.h"
 #include "subvol/detail/byte_hash.h"
+#include "subvol/detail/svk_layout.h"
 #include "subvol/points_io.h"
-#include "svk_layout.h"
 
 namespace subvol::fuzz {
 

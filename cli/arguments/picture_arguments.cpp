@@ -16,6 +16,7 @@
 #include "subvol/detail/printable.h"
 #include "subvol/error.h"
 #include "subvol/legend.h"
+#include "subvol/option.h"
 #include "subvol/srgb.h"
 #include "text.h"
 

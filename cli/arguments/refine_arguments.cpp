@@ -10,6 +10,7 @@
 #include "subvol/detail/refined_memory.h"
 #include "subvol/error.h"
 #include "subvol/mesh_kernels.h"
+#include "subvol/option.h"
 #include "subvol/part_of_limit.h"
 #include "subvol/refine_mixed.h"
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "subvol/facts.h"
-#include "subvol/option.h"
+#include "subvol/option_names.h"
 #include "subvol/refine.h"
 
 namespace CLI {

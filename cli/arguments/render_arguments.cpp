@@ -7,6 +7,7 @@
 
 #include "choices.h"
 #include "options.h"
+#include "subvol/option.h"
 #include "text.h"
 
 namespace subvol::cli {

@@ -7,6 +7,7 @@
 #include "numbers.h"
 #include "options.h"
 #include "picture_arguments.h"
+#include "subvol/option.h"
 #include "subvol/visible_points.h"
 
 namespace subvol::cli {

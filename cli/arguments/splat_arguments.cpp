@@ -7,6 +7,7 @@
 
 #include "options.h"
 #include "subvol/error.h"
+#include "subvol/option.h"
 
 namespace subvol::cli {
 

@@ -5,6 +5,7 @@
 
 #include "numbers.h"
 #include "options.h"
+#include "subvol/option.h"
 
 namespace subvol::cli {
 

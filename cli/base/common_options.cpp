@@ -9,6 +9,7 @@
 #include "options.h"
 #include "subvol/detail/most_threads.h"
 #include "subvol/error.h"
+#include "subvol/option.h"
 
 namespace subvol::cli {
 

@@ -7,6 +7,7 @@
 #include "numbers.h"
 #include "subvol/detail/number_text.h"
 #include "subvol/error.h"
+#include "subvol/option.h"
 #include "text.h"
 
 namespace subvol::cli {

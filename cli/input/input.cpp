@@ -21,6 +21,7 @@
 #include "subvol/limit_body.h"
 #include "subvol/mesh_motion.h"
 #include "subvol/model.h"
+#include "subvol/option.h"
 #include "subvol/part_of_limit.h"
 #include "subvol/quantity.h"
 #include "subvol/read_surface.h"

@@ -4,6 +4,7 @@
 #include "grid_input.h"
 #include "numbers.h"
 #include "subvol/error.h"
+#include "subvol/option.h"
 #include "subvol/vdb_sample.h"
 #include "subvol/visible_points.h"
 #include "text.h"

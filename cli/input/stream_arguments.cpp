@@ -7,6 +7,7 @@
 #include "input.h"
 #include "options.h"
 #include "places_input.h"
+#include "subvol/option.h"
 
 namespace subvol::cli {
 

@@ -13,6 +13,7 @@
 
 #include "render_arguments.h"
 #include "subvol/method.h"
+#include "subvol/option.h"
 #include "subvol/version.h"
 
 namespace subvol::cli {

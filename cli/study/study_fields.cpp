@@ -20,6 +20,7 @@
 #include "subvol/limit_field.h"
 #include "subvol/mesh_field.h"
 #include "subvol/mesh_io.h"
+#include "subvol/option.h"
 #include "subvol/points_field.h"
 #include "subvol/points_io.h"
 #include "subvol/reduce.h"

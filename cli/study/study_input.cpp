@@ -10,6 +10,7 @@
 #include "subvol/limit_level.h"
 #include "subvol/mesh_io.h"
 #include "subvol/model.h"
+#include "subvol/option.h"
 #include "subvol/quantity.h"
 #include "subvol/rasterize.h"
 #include "subvol/refine.h"

@@ -22,6 +22,7 @@
 #include "subvol/image_io.h"
 #include "subvol/image_metrics.h"
 #include "subvol/model.h"
+#include "subvol/option.h"
 #include "subvol/picture_maker.h"
 #include "subvol/picture_metrics.h"
 #include "subvol/placed_image.h"

@@ -9,6 +9,7 @@
 #include "sample_arguments.h"
 #include "subvol/detail/number_text.h"
 #include "subvol/detail/stopwatch.h"
+#include "subvol/option.h"
 #include "subvol/picture_maker.h"
 
 namespace subvol::cli {

@@ -12,6 +12,7 @@
 #include "subvol/image_io.h"
 #include "subvol/image_regions.h"
 #include "subvol/oiio_compare.h"
+#include "subvol/option.h"
 #include "subvol/placed_image.h"
 #include "text.h"
 

@@ -23,6 +23,7 @@
 #include "subvol/error.h"
 #include "subvol/fit_shape.h"
 #include "subvol/mesh_io.h"
+#include "subvol/option.h"
 #include "subvol/read_surface.h"
 #include "text.h"
 #include "vdb_functions.h"

@@ -10,6 +10,7 @@
 #include "quantities.h"
 #include "refine_arguments.h"
 #include "subvol/mend_folds.h"
+#include "subvol/option.h"
 #include "text.h"
 #include "verb.h"
 

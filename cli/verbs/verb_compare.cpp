@@ -17,6 +17,7 @@
 #include "subvol/error.h"
 #include "subvol/field_metrics.h"
 #include "subvol/field_places.h"
+#include "subvol/option.h"
 #include "text.h"
 #include "verb.h"
 

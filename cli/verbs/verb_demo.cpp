@@ -14,6 +14,7 @@
 #include "subvol/image_io.h"
 #include "subvol/image_metrics.h"
 #include "subvol/model.h"
+#include "subvol/option.h"
 #include "subvol/picture_maker.h"
 #include "subvol/rasterize.h"
 #include "subvol/render_tets.h"

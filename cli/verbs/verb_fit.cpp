@@ -6,6 +6,7 @@
 #include "options.h"
 #include "subvol/detail/near_name.h"
 #include "subvol/error.h"
+#include "subvol/option.h"
 #include "text.h"
 #include "verb.h"
 

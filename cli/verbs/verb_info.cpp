@@ -22,6 +22,7 @@
 #include "subvol/error.h"
 #include "subvol/join_grids.h"
 #include "subvol/mesh_report.h"
+#include "subvol/option.h"
 #include "subvol/points_io.h"
 #include "subvol/splat.h"
 #include "subvol/vdb_grid.h"

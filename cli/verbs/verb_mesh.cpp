@@ -15,6 +15,7 @@
 #include "subvol/detail/missing_file.h"
 #include "subvol/detail/refuse_surface.h"
 #include "subvol/error.h"
+#include "subvol/option.h"
 #include "subvol/read_surface.h"
 #include "text.h"
 #include "vdb_functions.h"

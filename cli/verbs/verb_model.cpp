@@ -8,6 +8,7 @@
 #include "outputs.h"
 #include "subvol/error.h"
 #include "subvol/model.h"
+#include "subvol/option.h"
 #include "text.h"
 #include "verb.h"
 

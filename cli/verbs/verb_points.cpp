@@ -27,6 +27,7 @@
 #include "subvol/field_range.h"
 #include "subvol/kernel_file.h"
 #include "subvol/kernel_hierarchy.h"
+#include "subvol/option.h"
 #include "subvol/points_error.h"
 #include "subvol/points_io.h"
 #include "subvol/series_file.h"

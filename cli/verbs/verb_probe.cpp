@@ -21,6 +21,7 @@
 #include "subvol/measure.h"
 #include "subvol/mesh_io.h"
 #include "subvol/mixed_probe.h"
+#include "subvol/option.h"
 #include "subvol/part_places.h"
 #include "subvol/patch_measure.h"
 #include "subvol/probe.h"

@@ -23,6 +23,7 @@
 #include "subvol/image_io.h"
 #include "subvol/limit_slice.h"
 #include "subvol/measure.h"
+#include "subvol/option.h"
 #include "subvol/overlay.h"
 #include "tet_refinement.h"
 #include "text.h"

@@ -9,6 +9,7 @@
 #include "subvol/detail/place_function.h"
 #include "subvol/error.h"
 #include "subvol/expression.h"
+#include "subvol/option.h"
 #include "subvol/split.h"
 #include "text.h"
 #include "verb.h"

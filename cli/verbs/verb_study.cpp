@@ -25,6 +25,7 @@
 #include "subvol/detail/text_codes.h"
 #include "subvol/error.h"
 #include "subvol/mesh_io.h"
+#include "subvol/option.h"
 #include "subvol/study.h"
 #include "subvol/study_measures.h"
 #include "subvol/study_report.h"

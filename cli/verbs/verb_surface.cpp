@@ -20,6 +20,7 @@
 #include "subvol/field_range.h"
 #include "subvol/limit_shells.h"
 #include "subvol/limit_surface.h"
+#include "subvol/option.h"
 #include "subvol/quantity.h"
 #include "surface_output.h"
 #include "tet_refinement.h"

@@ -11,6 +11,7 @@
 #include "steps.h"
 #include "subvol/detail/missing_file.h"
 #include "subvol/error.h"
+#include "subvol/option.h"
 #include "subvol/picture_look.h"
 #include "subvol/usd_file.h"
 #include "text.h"

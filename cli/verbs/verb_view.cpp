@@ -29,6 +29,7 @@
 #include "subvol/image_io.h"
 #include "subvol/mesh_io.h"
 #include "subvol/mesh_series.h"
+#include "subvol/option.h"
 #include "subvol/picture_metrics.h"
 #include "subvol/view_session.h"
 #include "subvol/view_window.h"

@@ -10,6 +10,7 @@
 #include "subvol/detail/several_errors.h"
 #include "subvol/error.h"
 #include "subvol/kernel.h"
+#include "subvol/option.h"
 
 namespace subvol::detail {
 

@@ -7,6 +7,7 @@
 #include "subvol/detail/near_name.h"
 #include "subvol/detail/printable.h"
 #include "subvol/fit_kernel.h"
+#include "subvol/option.h"
 #include "subvol/reduce.h"
 #include "subvol/refine.h"
 #include "subvol/sample.h"

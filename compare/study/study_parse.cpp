@@ -15,6 +15,7 @@
 #include "subvol/detail/several_errors.h"
 #include "subvol/error.h"
 #include "subvol/image_io.h"
+#include "subvol/option.h"
 #include "subvol/picture_metrics.h"
 
 namespace subvol {

@@ -9,6 +9,7 @@
 #include "fitter.h"
 #include "refine_where.h"
 #include "subvol/error.h"
+#include "subvol/option.h"
 #include "subvol/topology.h"
 
 namespace subvol {

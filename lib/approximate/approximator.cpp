@@ -6,6 +6,7 @@
 #include "data_field.h"
 #include "fitter.h"
 #include "subvol/error.h"
+#include "subvol/option.h"
 
 namespace subvol {
 

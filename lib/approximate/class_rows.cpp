@@ -16,10 +16,10 @@
 #include <optional>
 #include <tuple>
 
-#include "piece_tree.h"
 #include "subvol/detail/counted_rows.h"
 #include "subvol/detail/parallel_each.h"
 #include "subvol/detail/parallel_sums.h"
+#include "subvol/detail/piece_tree.h"
 
 namespace subvol::detail {
 

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "cell_tables.h"
+#include "subvol/detail/cell_tables.h"
 #include "table_rows.h"
 
 namespace subvol::detail {

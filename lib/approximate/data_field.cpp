@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "mesh_subset.h"
 #include "subvol/detail/limit_of_part.h"
+#include "subvol/detail/mesh_subset.h"
 #include "subvol/topology.h"
 
 namespace subvol::detail {

@@ -7,17 +7,17 @@
 #include <algorithm>
 #include <cmath>
 
-#include "mesh_subset.h"
-#include "piece_tree.h"
-#include "row_access.h"
 #include "subvol/cell.h"
 #include "subvol/detail/limit_of_part.h"
+#include "subvol/detail/mesh_subset.h"
 #include "subvol/detail/parallel_each.h"
 #include "subvol/detail/parallel_sums.h"
+#include "subvol/detail/piece_tree.h"
 #include "subvol/detail/refined_memory.h"
+#include "subvol/detail/row_access.h"
 #include "subvol/detail/sparse_rows.h"
+#include "subvol/detail/transposed_table.h"
 #include "subvol/topology.h"
-#include "transposed_table.h"
 
 namespace subvol::detail {
 

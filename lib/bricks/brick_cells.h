@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "spill_file.h"
+#include "subvol/detail/spill_file.h"
 
 namespace subvol::detail {
 

@@ -10,13 +10,13 @@
 #include <optional>
 #include <span>
 
-#include "output_file.h"
 #include "subvol/detail/byte_hash.h"
+#include "subvol/detail/output_file.h"
 #include "subvol/detail/printable.h"
+#include "subvol/detail/text_scanner.h"
+#include "subvol/detail/vtk_xml.h"
+#include "subvol/detail/vtk_xml_writer.h"
 #include "subvol/error.h"
-#include "text_scanner.h"
-#include "vtk_xml.h"
-#include "vtk_xml_writer.h"
 
 // A brick is a .vtu file that opens alone: one piece of appended raw arrays, so that it is written and read without copies.
 //

@@ -10,10 +10,11 @@
 
 #include "brick_file.h"
 #include "brick_index.h"
-#include "output_file.h"
+#include "subvol/detail/output_file.h"
 #include "subvol/detail/printable.h"
+#include "subvol/detail/text_scanner.h"
 #include "subvol/error.h"
-#include "text_scanner.h"
+#include "subvol/option.h"
 
 // How a folder of bricks appears whole or not at all:
 //

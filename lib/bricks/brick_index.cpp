@@ -10,9 +10,9 @@
 #include <string_view>
 
 #include "brick_folder.h"
-#include "mesh_pieces.h"
 #include "subvol/detail/byte_hash.h"
 #include "subvol/detail/json_depth.h"
+#include "subvol/detail/mesh_pieces.h"
 #include "subvol/detail/printable.h"
 #include "subvol/error.h"
 #include "subvol/version.h"

@@ -10,6 +10,7 @@
 #include "brick_folder.h"
 #include "subvol/detail/parallel_each.h"
 #include "subvol/error.h"
+#include "subvol/option.h"
 
 // Compact bricks by halving: the cells, sorted by the coordinate of their centres along the longest side of their box, are cut
 // where so many lie below that each brick gets the same number, to one cell:

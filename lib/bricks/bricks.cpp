@@ -8,8 +8,8 @@
 #include "brick_index.h"
 #include "subvol/detail/gather_cells.h"
 #include "subvol/detail/read_file.h"
+#include "subvol/detail/text_scanner.h"
 #include "subvol/error.h"
-#include "text_scanner.h"
 
 // Bricks as a mesh: the index is open, a brick is read when it is needed. What is worked out brick by brick takes
 // `source_of(bricks)`.

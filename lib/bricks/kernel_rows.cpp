@@ -7,10 +7,10 @@
 #include <numeric>
 #include <optional>
 
-#include "kernel_source.h"
-#include "spill_file.h"
+#include "subvol/detail/kernel_source.h"
 #include "subvol/detail/median_tree.h"
 #include "subvol/detail/ply_rows.h"
+#include "subvol/detail/spill_file.h"
 #include "subvol/error.h"
 
 // Kernels come brick by brick, but their numbers in the whole are mixed. Rows of a .ply have one length, so each is written at

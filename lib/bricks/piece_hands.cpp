@@ -14,8 +14,8 @@
 #include <vector>
 
 #include "brick_cells.h"
-#include "handed_face.h"
 #include "piece_tables.h"
+#include "subvol/detail/handed_face.h"
 #include "subvol/detail/parallel_each.h"
 #include "subvol/hex_mesh.h"
 

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "spill_file.h"
+#include "subvol/detail/spill_file.h"
 #include "subvol/index.h"
 #include "subvol/vec.h"
 

@@ -10,8 +10,8 @@
 #include <tuple>
 
 #include "assemble.h"
-#include "cell_splits.h"
-#include "spill_file.h"
+#include "subvol/detail/cell_splits.h"
+#include "subvol/detail/spill_file.h"
 #include "subvol/error.h"
 
 // Tetrahedra, prisms and pyramids of a mesh in tables become hexahedra: each cell gets a point at its centre, and one for each

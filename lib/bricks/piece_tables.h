@@ -9,7 +9,7 @@
 
 #include "assemble.h"
 #include "piece_numbers.h"
-#include "spill_file.h"
+#include "subvol/detail/spill_file.h"
 #include "subvol/mesh_io.h"
 #include "subvol/progress.h"
 #include "vtk/collection.h"

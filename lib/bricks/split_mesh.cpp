@@ -3,12 +3,13 @@
 
 #include "brick_file.h"
 #include "brick_folder.h"
-#include "mesh_pieces.h"
 #include "subvol/detail/bucket_sort.h"
 #include "subvol/detail/byte_hash.h"
 #include "subvol/detail/counted_rows.h"
+#include "subvol/detail/mesh_pieces.h"
 #include "subvol/detail/place_function.h"
 #include "subvol/error.h"
+#include "subvol/option.h"
 
 // A mesh in memory is cut by numbers alone: the brick of each cell is given, a point belongs to the brick of the first cell
 // that has it, and a halo is grown from the owned cells layer by layer. Points and cells keep their order, so that sums over a

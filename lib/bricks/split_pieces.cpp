@@ -9,12 +9,13 @@
 #include "brick_file.h"
 #include "brick_folder.h"
 #include "brick_shapes.h"
-#include "mesh_pieces.h"
 #include "piece_tables.h"
 #include "subvol/cell.h"
 #include "subvol/detail/byte_hash.h"
+#include "subvol/detail/mesh_pieces.h"
 #include "subvol/detail/parallel_each.h"
 #include "subvol/error.h"
+#include "subvol/option.h"
 
 // A mesh that comes in pieces is cut into bricks without being held:
 //

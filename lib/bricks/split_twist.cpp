@@ -8,6 +8,7 @@
 #include "subvol/detail/byte_hash.h"
 #include "subvol/detail/twist_block.h"
 #include "subvol/error.h"
+#include "subvol/option.h"
 
 // The model `twist` is a box of cells, so each brick is a smaller box: it is computed with its halo, and nothing else is.
 //

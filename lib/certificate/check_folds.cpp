@@ -6,12 +6,13 @@
 #include <optional>
 
 #include "fold_checker.h"
-#include "regular_grid.h"
 #include "subvol/cell.h"
 #include "subvol/certificate.h"
 #include "subvol/detail/parallel_each.h"
+#include "subvol/detail/regular_grid.h"
 #include "subvol/error.h"
 #include "subvol/limit.h"
+#include "subvol/option.h"
 #include "subvol/refine.h"
 #include "subvol/topology.h"
 

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "cell_parts.h"
-#include "fold_samples.h"
 #include "subvol/certificate.h"
+#include "subvol/detail/fold_samples.h"
 
 namespace subvol::detail {
 

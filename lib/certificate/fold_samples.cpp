@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "fold_samples.h"
+#include "subvol/detail/fold_samples.h"
 
 #include <algorithm>
 #include <array>

@@ -7,10 +7,11 @@
 #include <utility>
 
 #include "fold_checker.h"
-#include "mesh_subset.h"
 #include "movable_patch.h"
 #include "subvol/cell.h"
+#include "subvol/detail/mesh_subset.h"
 #include "subvol/error.h"
+#include "subvol/option.h"
 #include "subvol/topology.h"
 
 // Points near bad cells move, and with them the limit of the cells two layers around. These are the patch; two more layers

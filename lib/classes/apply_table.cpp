@@ -3,7 +3,7 @@
 // sums of all sixteen stay in registers, so each weight is loaded once and each value once.
 //
 // Compiled once for every instruction set; the best one is chosen where it runs.
-#include "class_tables.h"
+#include "subvol/detail/class_tables.h"
 
 #define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
 #undef HWY_TARGET_INCLUDE

@@ -12,7 +12,7 @@
 // The colours of points make the start of a walk unique. They are computed as in tests of graph isomorphism, by refinement of
 // colours: a cell's colour is a hash of those of its points, a point's new colour the sum of those of its cells. A sum does not
 // depend on the order of the cells, which may be any, and neither does it depend on the threads, as unsigned sums wrap around.
-#include "cell_links.h"
+#include "subvol/detail/cell_links.h"
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
@@ -21,10 +21,10 @@
 #include <atomic>
 #include <bit>
 
-#include "splitmix.h"
 #include "subvol/cell.h"
 #include "subvol/detail/bucket_sort.h"
-#include "topology_parts.h"
+#include "subvol/detail/splitmix.h"
+#include "subvol/detail/topology_parts.h"
 
 namespace subvol::detail {
 

@@ -27,11 +27,11 @@
 #include <numeric>
 #include <optional>
 
-#include "child_topology.h"
 #include "run_nested.h"
-#include "scheme_rows.h"
 #include "subvol/cell.h"
-#include "topology_parts.h"
+#include "subvol/detail/child_topology.h"
+#include "subvol/detail/scheme_rows.h"
+#include "subvol/detail/topology_parts.h"
 
 namespace subvol::detail {
 

@@ -8,10 +8,10 @@
 #include <memory>
 #include <vector>
 
-#include "class_tables.h"
-#include "neighborhood.h"
-#include "regular_grid.h"
 #include "step_table.h"
+#include "subvol/detail/class_tables.h"
+#include "subvol/detail/neighborhood.h"
+#include "subvol/detail/regular_grid.h"
 #include "subvol/scheme.h"
 
 namespace subvol::detail {

@@ -8,7 +8,7 @@
 //
 // Tables are kept up to a number of bytes; the one that has not been used for longest goes first. A dropped table stays alive
 // as long as somebody holds it, and has the same numbers when it is made again.
-#include "class_tables.h"
+#include "subvol/detail/class_tables.h"
 
 #include <algorithm>
 #include <cstring>
@@ -20,8 +20,8 @@
 
 #include "dense_block.h"
 #include "run_nested.h"
-#include "splitmix.h"
 #include "subvol/cell.h"
+#include "subvol/detail/splitmix.h"
 
 namespace subvol::detail {
 

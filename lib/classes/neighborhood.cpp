@@ -19,7 +19,7 @@
 //
 // A walk goes through faces. Cells that touch the others in an edge or a point alone are not found; `is_complete` notices by
 // the number of cells at each point, and the cell then has no class.
-#include "neighborhood.h"
+#include "subvol/detail/neighborhood.h"
 
 #include <algorithm>
 

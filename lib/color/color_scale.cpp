@@ -8,7 +8,7 @@
 #include <cmath>
 #include <vector>
 
-#include "knot_values.h"
+#include "subvol/detail/knot_values.h"
 #include "subvol/detail/number_text.h"
 #include "subvol/error.h"
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "knot_values.h"
+#include "subvol/detail/knot_values.h"
 #include "subvol/srgb.h"
 
 namespace subvol::detail {

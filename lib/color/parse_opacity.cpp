@@ -3,7 +3,7 @@
 #include <optional>
 #include <string_view>
 
-#include "knot_values.h"
+#include "subvol/detail/knot_values.h"
 #include "subvol/detail/number_text.h"
 #include "subvol/error.h"
 #include "subvol/transfer_function.h"

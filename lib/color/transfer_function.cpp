@@ -5,8 +5,8 @@
 #include <cmath>
 #include <iterator>
 
-#include "knot_values.h"
 #include "subvol/clamped.h"
+#include "subvol/detail/knot_values.h"
 #include "subvol/error.h"
 
 namespace subvol {

@@ -4,9 +4,9 @@
 #include <utility>
 
 #include "curves.h"
-#include "knot_values.h"
 #include "subvol/color_map_file.h"
 #include "subvol/detail/json_depth.h"
+#include "subvol/detail/knot_values.h"
 #include "subvol/detail/printable.h"
 #include "subvol/detail/read_file.h"
 #include "subvol/error.h"

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "curves.h"
-#include "knot_values.h"
+#include "subvol/detail/knot_values.h"
 #include "subvol/detail/near_name.h"
 #include "subvol/detail/small_letters.h"
 #include "subvol/error.h"

@@ -7,8 +7,8 @@
 #include <limits>
 #include <vector>
 
-#include "limit_place.h"
-#include "piece_tree.h"
+#include "subvol/detail/limit_place.h"
+#include "subvol/detail/piece_tree.h"
 #include "subvol/error.h"
 
 namespace subvol {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "limit_place.h"
+#include "subvol/detail/limit_place.h"
 
 #include <algorithm>
 #include <cmath>

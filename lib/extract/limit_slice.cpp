@@ -8,13 +8,14 @@
 #include <tuple>
 #include <utility>
 
-#include "output_file.h"
 #include "subvol/detail/number_text.h"
+#include "subvol/detail/output_file.h"
 #include "subvol/detail/printable.h"
+#include "subvol/detail/vtk_xml_writer.h"
 #include "subvol/error.h"
+#include "subvol/option.h"
 #include "subvol/part_places.h"
 #include "subvol/raster.h"
-#include "vtk_xml_writer.h"
 
 namespace subvol {
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "subvol/mixed_file.h"
 
-#include "mixed_shapes.h"
-#include "output_file.h"
+#include "subvol/detail/mixed_shapes.h"
+#include "subvol/detail/output_file.h"
+#include "subvol/detail/vtk_xml_writer.h"
 #include "subvol/error.h"
-#include "vtk_xml_writer.h"
 
 namespace subvol {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "piece_tree.h"
+#include "subvol/detail/piece_tree.h"
 
 #include <algorithm>
 #include <cmath>

@@ -9,15 +9,16 @@
 #include <glm/vector_relational.hpp>
 #include <optional>
 
-#include "limit_place.h"
-#include "mesh_pieces.h"
-#include "piece_tree.h"
-#include "space_order.h"
 #include "subvol/detail/limit_of_part.h"
+#include "subvol/detail/limit_place.h"
 #include "subvol/detail/median_tree.h"
+#include "subvol/detail/mesh_pieces.h"
 #include "subvol/detail/number_text.h"
 #include "subvol/detail/parallel_each.h"
+#include "subvol/detail/piece_tree.h"
+#include "subvol/detail/space_order.h"
 #include "subvol/error.h"
+#include "subvol/option.h"
 
 namespace subvol {
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <string>
 
-#include "output_file.h"
 #include "subvol/detail/atomic_file.h"
 #include "subvol/detail/number_text.h"
+#include "subvol/detail/output_file.h"
 #include "subvol/detail/printable.h"
+#include "subvol/detail/vtk_xml_writer.h"
 #include "subvol/error.h"
 #include "subvol/quantity.h"
 #include "subvol/streamlines.h"
-#include "vtk_xml_writer.h"
 
 namespace subvol {
 namespace {

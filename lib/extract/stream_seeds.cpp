@@ -4,10 +4,10 @@
 #include <cmath>
 #include <numbers>
 
-#include "space_order.h"
 #include "subvol/detail/across.h"
 #include "subvol/detail/number_text.h"
 #include "subvol/detail/printable.h"
+#include "subvol/detail/space_order.h"
 #include "subvol/error.h"
 #include "subvol/streamlines.h"
 

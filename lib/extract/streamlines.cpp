@@ -7,6 +7,7 @@
 
 #include "subvol/detail/parallel_each.h"
 #include "subvol/error.h"
+#include "subvol/option.h"
 
 // Streamlines of the limit: dx/dt = U(x), by Dormand and Prince's method, whose seven stages
 //

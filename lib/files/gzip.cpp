@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gzip.h"
+#include "subvol/detail/gzip.h"
 
 #include <zlib.h>
 #include <algorithm>

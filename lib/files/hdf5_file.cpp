@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "hdf5_file.h"
+#include "subvol/detail/hdf5_file.h"
 
 #include <algorithm>
 #include <system_error>
 #include <utility>
 
 #include "subvol/detail/printable.h"
+#include "subvol/detail/text_scanner.h"
 #include "subvol/error.h"
-#include "text_scanner.h"
 
 namespace subvol::detail {
 

@@ -7,8 +7,8 @@
 #include <system_error>
 #include <utility>
 
-#include "hdf5_file.h"
 #include "hdf5_functions.h"
+#include "subvol/detail/hdf5_file.h"
 #include "subvol/detail/module.h"
 #include "subvol/detail/read_file.h"
 #include "subvol/error.h"

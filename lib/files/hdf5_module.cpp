@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "hdf5_functions.h"
-#include "number_type.h"
+#include "subvol/detail/number_type.h"
 #include "subvol/version.h"
 
 namespace subvol::detail {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "named_files.h"
+#include "subvol/detail/named_files.h"
 
 #include <sys/stat.h>
 #include <algorithm>

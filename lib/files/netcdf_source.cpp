@@ -2,15 +2,15 @@
 // netCDF-4: each variable is a dataset of the root group, and so is each dimension. The dataset of a dimension is a "dimension
 // scale"; if there is no variable of that name its own NAME says so, and only its length counts. Names that a dimension and
 // another variable share are told apart by a prefix.
-#include "netcdf_source.h"
+#include "subvol/detail/netcdf_source.h"
 
 #include <algorithm>
 #include <array>
 #include <optional>
 
-#include "hdf5_file.h"
-#include "named_files.h"
-#include "text_scanner.h"
+#include "subvol/detail/hdf5_file.h"
+#include "subvol/detail/named_files.h"
+#include "subvol/detail/text_scanner.h"
 
 namespace subvol::detail {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "number_type.h"
+#include "subvol/detail/number_type.h"
 
 #include <algorithm>
 #include <array>

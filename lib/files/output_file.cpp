@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #ifdef __linux__
 #endif
-#include "output_file.h"
+#include "subvol/detail/output_file.h"
 
 #include <fcntl.h>
 #include <sys/stat.h>

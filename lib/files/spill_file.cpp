@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "spill_file.h"
+#include "subvol/detail/spill_file.h"
 
 #include <fcntl.h>
 #include <stdlib.h>  // mkostemp

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "text_scanner.h"
+#include "subvol/detail/text_scanner.h"
 
 #include <algorithm>
 #include <charconv>

@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "mcq_grid.h"
+#include "subvol/detail/mcq_grid.h"
 #include "subvol/error.h"
 
 namespace subvol {

@@ -5,6 +5,7 @@
 #include "fit_shapes.h"
 #include "subvol/detail/number_text.h"
 #include "subvol/error.h"
+#include "subvol/option.h"
 
 namespace subvol {
 

@@ -9,6 +9,7 @@
 #include "subvol/detail/kernel_code.h"
 #include "subvol/detail/number_text.h"
 #include "subvol/error.h"
+#include "subvol/option.h"
 
 namespace subvol {
 

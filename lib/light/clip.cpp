@@ -8,6 +8,7 @@
 #include "camera_axes.h"
 #include "subvol/detail/ray_clip.h"
 #include "subvol/error.h"
+#include "subvol/option.h"
 
 namespace subvol {
 

@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "absorption.h"
-#include "knot_values.h"
 #include "subvol/detail/compositor.h"
+#include "subvol/detail/knot_values.h"
 #include "subvol/detail/number_text.h"
 #include "subvol/error.h"
 

@@ -9,6 +9,7 @@
 #include "subvol/clamped.h"
 #include "subvol/color_name.h"
 #include "subvol/error.h"
+#include "subvol/option.h"
 #include "subvol/srgb.h"
 
 namespace subvol {

@@ -12,6 +12,7 @@
 #include "subvol/detail/picture_size.h"
 #include "subvol/detail/printable.h"
 #include "subvol/error.h"
+#include "subvol/option.h"
 
 namespace subvol {
 namespace {

@@ -5,25 +5,25 @@
 //
 // Cutting off the other cells exposes new faces. None of them has a point on the hull, as every cell at such a point is kept;
 // so one point of a face decides whether it belongs to the hull of the whole mesh or was exposed.
-#include "boundary_level.h"
+#include "subvol/detail/boundary_level.h"
 
 #include <tbb/enumerable_thread_specific.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "boundary_rings.h"
-#include "child_topology.h"
-#include "mesh_subset.h"
-#include "refine_steps.h"
-#include "scheme_rows.h"
 #include "subvol/boundary_values.h"
 #include "subvol/detail/all_cells.h"
+#include "subvol/detail/boundary_rings.h"
+#include "subvol/detail/child_topology.h"
+#include "subvol/detail/mesh_subset.h"
 #include "subvol/detail/place_function.h"
+#include "subvol/detail/refine_steps.h"
+#include "subvol/detail/scheme_rows.h"
+#include "subvol/detail/surface_builder.h"
+#include "subvol/detail/topology_parts.h"
 #include "subvol/error.h"
 #include "subvol/limit.h"
-#include "surface_builder.h"
-#include "topology_parts.h"
 
 namespace subvol::detail {
 

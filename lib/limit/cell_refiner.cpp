@@ -15,7 +15,7 @@
 // visitor at levels 1 and 2 by their table, and cells of common classes at level 1. The others, and those of the latter that go
 // on, are shown level 1 as it is refined, level 2 as the grids of their
 // children, and from there on each child goes on by itself, one level at a time, as long as the visitor asks for more.
-#include "cell_refiner.h"
+#include "subvol/detail/cell_refiner.h"
 
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
@@ -28,15 +28,15 @@
 #include <numeric>
 #include <optional>
 
-#include "cell_tables.h"
-#include "class_tables.h"
 #include "constant_fields.h"
 #include "dense_block.h"
 #include "run_nested.h"
-#include "space_order.h"
 #include "subvol/cell.h"
 #include "subvol/detail/bucket_sort.h"
+#include "subvol/detail/cell_tables.h"
+#include "subvol/detail/class_tables.h"
 #include "subvol/detail/place_function.h"
+#include "subvol/detail/space_order.h"
 #include "subvol/limit.h"
 
 namespace subvol::detail {

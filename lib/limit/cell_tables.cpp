@@ -9,7 +9,7 @@
 // so one weight of the table is multiplied with the values of sixteen cells, and the table is read once for all of them.
 // `store` takes a lane apart again. The rows are along the axes of the walk; the cell's own axes may be permuted and reversed,
 // which is a permutation of the grid's strides and, for a reversed axis, a start at its other end.
-#include "cell_tables.h"
+#include "subvol/detail/cell_tables.h"
 
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_sort.h>

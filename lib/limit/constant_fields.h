@@ -4,8 +4,8 @@
 #include <span>
 #include <vector>
 
-#include "mesh_subset.h"
 #include "subvol/dense_cells.h"
+#include "subvol/detail/mesh_subset.h"
 
 namespace subvol::detail {
 

@@ -14,15 +14,15 @@
 #include <numeric>
 #include <optional>
 
-#include "cell_refiner.h"
 #include "constant_fields.h"
 #include "dense_block.h"
-#include "patch.h"
-#include "refine_steps.h"
 #include "run_nested.h"
-#include "space_order.h"
 #include "subvol/detail/all_cells.h"
+#include "subvol/detail/cell_refiner.h"
+#include "subvol/detail/patch.h"
 #include "subvol/detail/place_function.h"
+#include "subvol/detail/refine_steps.h"
+#include "subvol/detail/space_order.h"
 #include "subvol/error.h"
 #include "subvol/limit.h"
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "mcq_block.h"
-#include "regular_grid.h"
+#include "subvol/detail/regular_grid.h"
 #include "subvol/limit.h"
 
 namespace subvol::detail {

@@ -32,15 +32,16 @@
 #include "constant_fields.h"
 #include "jets.h"
 #include "limit_descents.h"
-#include "mesh_subset.h"
 #include "patch_tree.h"
-#include "refine_steps.h"
 #include "subvol/cell.h"
 #include "subvol/detail/limit_of_part.h"
+#include "subvol/detail/mesh_subset.h"
 #include "subvol/detail/place_function.h"
+#include "subvol/detail/refine_steps.h"
 #include "subvol/detail/tolerance_length.h"
+#include "subvol/detail/topology_parts.h"
 #include "subvol/error.h"
-#include "topology_parts.h"
+#include "subvol/option.h"
 
 namespace subvol {
 

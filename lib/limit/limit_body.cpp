@@ -5,9 +5,9 @@
 #include <array>
 #include <cmath>
 
-#include "boundary_level.h"
+#include "subvol/detail/boundary_level.h"
 #include "subvol/detail/parallel_sums.h"
-#include "surface_builder.h"
+#include "subvol/detail/surface_builder.h"
 
 namespace subvol {
 

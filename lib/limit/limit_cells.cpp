@@ -20,17 +20,17 @@
 #include <tuple>
 #include <vector>
 
-#include "cell_refiner.h"
-#include "mesh_subset.h"
-#include "node_steps.h"
-#include "refine_steps.h"
 #include "subvol/cell.h"
 #include "subvol/detail/all_cells.h"
+#include "subvol/detail/cell_refiner.h"
 #include "subvol/detail/flat_array.h"
 #include "subvol/detail/limit_of_part.h"
+#include "subvol/detail/mesh_subset.h"
+#include "subvol/detail/node_steps.h"
 #include "subvol/detail/parallel_each.h"
 #include "subvol/detail/part_of_progress.h"
 #include "subvol/detail/place_function.h"
+#include "subvol/detail/refine_steps.h"
 #include "subvol/field_range.h"
 #include "subvol/limit_level.h"
 

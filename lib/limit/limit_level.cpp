@@ -11,9 +11,9 @@
 #include <mutex>
 #include <numeric>
 
-#include "node_steps.h"
 #include "subvol/dense_cells.h"
 #include "subvol/detail/all_cells.h"
+#include "subvol/detail/node_steps.h"
 
 namespace subvol {
 

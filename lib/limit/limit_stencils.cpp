@@ -13,18 +13,18 @@
 #include <memory>
 #include <mutex>
 
-#include "child_topology.h"
-#include "incident.h"
-#include "mesh_subset.h"
-#include "patch.h"
-#include "refine_steps.h"
-#include "regular_grid.h"
 #include "run_nested.h"
-#include "scheme_rows.h"
+#include "subvol/detail/child_topology.h"
+#include "subvol/detail/incident.h"
 #include "subvol/detail/limit_of_part.h"
+#include "subvol/detail/mesh_subset.h"
+#include "subvol/detail/patch.h"
 #include "subvol/detail/place_function.h"
+#include "subvol/detail/refine_steps.h"
+#include "subvol/detail/regular_grid.h"
+#include "subvol/detail/scheme_rows.h"
+#include "subvol/detail/topology_parts.h"
 #include "subvol/limit.h"
-#include "topology_parts.h"
 
 namespace subvol {
 

@@ -2,7 +2,7 @@
 // Prediction is separable: first along u between nodes that are even in v and w, then along
 // v, then along w. After the three passes an odd node in a face or a cell holds the product of the predictions along its axes.
 // The passes overwrite odd nodes only, so a copy of the nodes is all the memory that they need.
-#include "node_steps.h"
+#include "subvol/detail/node_steps.h"
 
 #include <algorithm>
 #include <cmath>

@@ -23,7 +23,7 @@
 #include "run_nested.h"
 #include "subvol/cell.h"
 #include "subvol/detail/parallel_each.h"
-#include "topology_parts.h"
+#include "subvol/detail/topology_parts.h"
 
 namespace subvol::detail {
 

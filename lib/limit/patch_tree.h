@@ -8,7 +8,7 @@
 
 #include "class_graph.h"
 #include "descent_worker.h"
-#include "patch.h"
+#include "subvol/detail/patch.h"
 
 namespace subvol::detail {
 

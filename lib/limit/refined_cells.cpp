@@ -18,10 +18,10 @@
 #include <bit>
 #include <mutex>
 
-#include "space_order.h"
 #include "subvol/cell.h"
 #include "subvol/detail/parallel_each.h"
-#include "topology_parts.h"
+#include "subvol/detail/space_order.h"
+#include "subvol/detail/topology_parts.h"
 
 namespace subvol::detail {
 

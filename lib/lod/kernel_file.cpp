@@ -14,8 +14,8 @@
 #include <utility>
 #include <vector>
 
-#include "kernel_source.h"
 #include "node_test.h"
+#include "subvol/detail/kernel_source.h"
 #include "subvol/error.h"
 #include "svk_file.h"
 

@@ -6,8 +6,8 @@
 #include <span>
 #include <string>
 
-#include "kernel_source.h"
 #include "node_merger.h"
+#include "subvol/detail/kernel_source.h"
 #include "subvol/detail/median_tree.h"
 #include "subvol/detail/points_range.h"
 #include "subvol/error.h"

@@ -22,11 +22,11 @@
 #include <string_view>
 
 #include "mean_stencils.h"
-#include "mesh_subset.h"
 #include "subvol/cell.h"
 #include "subvol/cell_means.h"
 #include "subvol/detail/flat_array.h"
 #include "subvol/detail/limit_of_part.h"
+#include "subvol/detail/mesh_subset.h"
 #include "subvol/limit.h"
 
 namespace subvol {

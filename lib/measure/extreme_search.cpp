@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "extreme_bounds.h"
-#include "mesh_subset.h"
+#include "subvol/detail/mesh_subset.h"
 #include "subvol/limit.h"
 
 namespace subvol::detail {

@@ -19,8 +19,8 @@
 #include <limits>
 
 #include "extreme_bounds.h"
-#include "piece_tree.h"
 #include "subvol/cell.h"
+#include "subvol/detail/piece_tree.h"
 
 namespace subvol::detail {
 

@@ -12,6 +12,7 @@
 #include "overlapping_sets.h"
 #include "subvol/cell.h"
 #include "subvol/error.h"
+#include "subvol/option.h"
 
 namespace subvol {
 

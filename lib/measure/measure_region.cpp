@@ -28,12 +28,13 @@
 #include "cut_piece.h"
 #include "given_figures.h"
 #include "overlapping_sets.h"
-#include "piece_tree.h"
 #include "region_extremes.h"
 #include "seen_folds.h"
+#include "subvol/detail/piece_tree.h"
 #include "subvol/error.h"
 #include "subvol/field_range.h"
 #include "subvol/measure.h"
+#include "subvol/option.h"
 
 namespace subvol {
 namespace {

@@ -21,12 +21,12 @@
 #include <numeric>
 #include <utility>
 
-#include "mesh_subset.h"
-#include "node_steps.h"
-#include "refine_steps.h"
 #include "seen_folds.h"
-#include "space_order.h"
 #include "subvol/cell.h"
+#include "subvol/detail/mesh_subset.h"
+#include "subvol/detail/node_steps.h"
+#include "subvol/detail/refine_steps.h"
+#include "subvol/detail/space_order.h"
 
 namespace subvol::detail {
 

@@ -10,10 +10,10 @@
 #include <string>
 #include <vector>
 
-#include "cell_refiner.h"
 #include "extreme_search.h"
 #include "grid_measure.h"
 #include "hanging_nodes.h"
+#include "subvol/detail/cell_refiner.h"
 #include "subvol/detail/limit_of_part.h"
 #include "subvol/measure.h"
 #include "sum_changes.h"

@@ -6,9 +6,9 @@
 #include <string>
 #include <utility>
 
-#include "mixed_shapes.h"
-#include "point_quadratics.h"
+#include "subvol/detail/mixed_shapes.h"
 #include "subvol/detail/parallel_each.h"
+#include "subvol/detail/point_quadratics.h"
 #include "subvol/error.h"
 
 namespace subvol {

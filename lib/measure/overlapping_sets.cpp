@@ -6,8 +6,8 @@
 #include <string>
 #include <unordered_map>
 
-#include "mesh_subset.h"
 #include "subvol/detail/limit_of_part.h"
+#include "subvol/detail/mesh_subset.h"
 #include "subvol/error.h"
 
 namespace subvol::detail {

@@ -3,10 +3,10 @@
 
 #include <algorithm>
 
-#include "fold_samples.h"
-#include "mesh_subset.h"
 #include "subvol/cell.h"
+#include "subvol/detail/fold_samples.h"
 #include "subvol/detail/limit_of_part.h"
+#include "subvol/detail/mesh_subset.h"
 
 namespace subvol::detail {
 

@@ -12,10 +12,10 @@
 #include <utility>
 
 #include "given_figures.h"
-#include "mesh_pieces.h"
-#include "piece_tree.h"
 #include "region_extremes.h"
 #include "subvol/detail/limit_of_part.h"
+#include "subvol/detail/mesh_pieces.h"
+#include "subvol/detail/piece_tree.h"
 #include "subvol/measure.h"
 #include "subvol/part_places.h"
 #include "subvol/probe.h"

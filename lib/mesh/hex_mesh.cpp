@@ -15,8 +15,8 @@
 #include <string>
 #include <string_view>
 
-#include "mesh_subset.h"
 #include "subvol/detail/error_text.h"
+#include "subvol/detail/mesh_subset.h"
 #include "subvol/detail/near_name.h"
 #include "subvol/detail/place_function.h"
 #include "subvol/error.h"

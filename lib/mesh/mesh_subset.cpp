@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "mesh_subset.h"
+#include "subvol/detail/mesh_subset.h"
 
 #include <algorithm>
 #include <set>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cell_splits.h"
+#include "subvol/detail/cell_splits.h"
 
 #include <algorithm>
 #include <compare>

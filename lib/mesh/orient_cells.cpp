@@ -7,7 +7,7 @@
 #include <array>
 #include <vector>
 
-#include "handed_face.h"
+#include "subvol/detail/handed_face.h"
 #include "subvol/hex_mesh.h"
 
 namespace subvol {

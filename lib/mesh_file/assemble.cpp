@@ -8,12 +8,12 @@
 #include <unordered_map>
 #include <utility>
 
-#include "cell_splits.h"
-#include "facets.h"
 #include "file_sets.h"
 #include "mesh_arrays.h"
 #include "sharp_groups.h"
 #include "subvol/cell.h"
+#include "subvol/detail/cell_splits.h"
+#include "subvol/detail/facets.h"
 #include "subvol/detail/small_letters.h"
 #include "subvol/error.h"
 #include "subvol/topology.h"

@@ -11,9 +11,9 @@
 #include <unordered_map>
 
 #include "assemble.h"
+#include "subvol/detail/text_scanner.h"
 #include "subvol/detail/tolerance_length.h"
 #include "subvol/error.h"
-#include "text_scanner.h"
 
 namespace subvol::detail {
 

@@ -17,6 +17,7 @@
 #include "subvol/detail/printable.h"
 #include "subvol/error.h"
 #include "subvol/index.h"
+#include "subvol/option.h"
 
 namespace subvol::detail {
 

@@ -13,11 +13,11 @@
 #include "curved_cells.h"
 #include "subvol/detail/distinct_names.h"
 #include "subvol/detail/flat_array.h"
+#include "subvol/detail/text_scanner.h"
 #include "subvol/index.h"
 #include "subvol/patch_values.h"
 #include "subvol/read_options.h"
 #include "subvol/vec.h"
-#include "text_scanner.h"
 
 namespace subvol::detail {
 

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "formats.h"
-#include "mesh_subset.h"
+#include "subvol/detail/mesh_subset.h"
 #include "subvol/detail/number_text.h"
 #include "subvol/detail/printable.h"
 #include "subvol/error.h"

@@ -16,10 +16,11 @@
 #include "subvol/detail/missing_file.h"
 #include "subvol/detail/number_text.h"
 #include "subvol/detail/refuse_surface.h"
+#include "subvol/detail/text_scanner.h"
 #include "subvol/error.h"
 #include "subvol/field_bounds.h"
 #include "subvol/mesh_series.h"
-#include "text_scanner.h"
+#include "subvol/option.h"
 #include "vtk/collection.h"
 #include "wavelet_format.h"
 

@@ -10,7 +10,7 @@
 //
 // The boundary of the next level follows from this one without positions (split_boundary), so a crease by angle is found on the
 // control mesh alone.
-#include "mixed_levels.h"
+#include "subvol/detail/mixed_levels.h"
 
 #include <tbb/parallel_sort.h>
 
@@ -19,8 +19,8 @@
 #include <numbers>
 #include <string>
 
-#include "mixed_shapes.h"
 #include "subvol/detail/disjoint_sets.h"
+#include "subvol/detail/mixed_shapes.h"
 #include "subvol/detail/number_text.h"
 #include "subvol/detail/parallel_each.h"
 #include "subvol/error.h"

@@ -21,10 +21,10 @@
 #include <cmath>
 #include <string>
 
-#include "mixed_levels.h"
-#include "mixed_shapes.h"
-#include "stencil_block.h"
 #include "subvol/detail/bucket_sort.h"
+#include "subvol/detail/mixed_levels.h"
+#include "subvol/detail/mixed_shapes.h"
+#include "subvol/detail/stencil_block.h"
 #include "subvol/error.h"
 
 namespace subvol {

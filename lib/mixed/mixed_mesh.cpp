@@ -6,8 +6,8 @@
 #include <limits>
 #include <string>
 
-#include "cell_splits.h"
-#include "mixed_shapes.h"
+#include "subvol/detail/cell_splits.h"
+#include "subvol/detail/mixed_shapes.h"
 #include "subvol/detail/place_function.h"
 #include "subvol/error.h"
 

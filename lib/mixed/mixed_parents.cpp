@@ -2,13 +2,13 @@
 // Which control cell a cell of a level is in. `split_cells` writes the children of each kind at places that depend on the
 // parents' numbers alone, so the control cells of a level are found by repeating their numbers in the same order, without
 // looking at the cells.
-#include "mixed_shapes.h"
+#include "subvol/detail/mixed_shapes.h"
 
 #include <array>
 #include <numeric>
 #include <string>
 
-#include "cell_splits.h"
+#include "subvol/detail/cell_splits.h"
 #include "subvol/error.h"
 #include "subvol/refine_mixed.h"
 

@@ -18,7 +18,7 @@
 // eigenvalues ½, ½, ½, ¼ of a regular point then (docs/schemes.md). The box spline [cmq2002] is 1/8 of the point and 7/8 of the
 // mean of its neighbours, diagonals included. On the boundary faces take the place of cells: the rules there do not see the
 // inside.
-#include "mixed_levels.h"
+#include "subvol/detail/mixed_levels.h"
 
 #include <tbb/parallel_for.h>
 
@@ -26,9 +26,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "mixed_shapes.h"
-#include "stencil_block.h"
 #include "subvol/detail/bucket_sort.h"
+#include "subvol/detail/mixed_shapes.h"
+#include "subvol/detail/stencil_block.h"
 
 namespace subvol::detail {
 

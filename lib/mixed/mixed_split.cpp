@@ -17,7 +17,7 @@
 //
 // The corners of an octahedron are three pairs of opposite ones, 0–1, 2–3 and 4–5, so corner w ^ 1 is opposite to w. The pair
 // 0–1 is the diagonal on which the box spline has its middle.
-#include "mixed_levels.h"
+#include "subvol/detail/mixed_levels.h"
 
 #include <tbb/parallel_sort.h>
 
@@ -25,8 +25,8 @@
 #include <cassert>
 #include <numeric>
 
-#include "mixed_shapes.h"
 #include "subvol/cell.h"
+#include "subvol/detail/mixed_shapes.h"
 #include "subvol/detail/parallel_each.h"
 #include "subvol/error.h"
 

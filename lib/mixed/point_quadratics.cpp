@@ -9,14 +9,14 @@
 // units of their mean, so that the nine unknowns are of one size and the rank is decided by numbers without dimension: where
 // neighbours lie in a plane, the derivatives across it are not determined, and the orthogonal decomposition gives the smallest
 // ones.
-#include "point_quadratics.h"
+#include "subvol/detail/point_quadratics.h"
 
 #include <tbb/parallel_sort.h>
 
 #include <Eigen/Dense>
 #include <algorithm>
 
-#include "mixed_shapes.h"
+#include "subvol/detail/mixed_shapes.h"
 
 namespace subvol::detail {
 

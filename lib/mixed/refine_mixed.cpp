@@ -15,8 +15,8 @@
 #include <cstring>
 #include <string>
 
-#include "mixed_levels.h"
-#include "mixed_shapes.h"
+#include "subvol/detail/mixed_levels.h"
+#include "subvol/detail/mixed_shapes.h"
 #include "subvol/error.h"
 
 namespace subvol {

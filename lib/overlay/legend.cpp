@@ -11,9 +11,9 @@
 #include <sstream>
 #include <utility>
 
-#include "knot_values.h"
-#include "output_file.h"
+#include "subvol/detail/knot_values.h"
 #include "subvol/detail/number_text.h"
+#include "subvol/detail/output_file.h"
 #include "subvol/detail/printable.h"
 #include "subvol/detail/round_ticks.h"
 #include "subvol/error.h"

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "knot_values.h"
 #include "subvol/detail/coverage.h"
+#include "subvol/detail/knot_values.h"
 #include "subvol/detail/number_text.h"
 #include "subvol/detail/round_ticks.h"
 #include "subvol/overlay.h"

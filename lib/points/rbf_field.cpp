@@ -9,8 +9,8 @@
 
 #include "kernel_tree.h"
 #include "kernel_weight.h"
-#include "space_order.h"
 #include "subvol/detail/number_text.h"
+#include "subvol/detail/space_order.h"
 #include "subvol/error.h"
 
 namespace subvol {

@@ -8,12 +8,12 @@
 #include <tuple>
 #include <vector>
 
-#include "ply_table.h"
 #include "points_file.h"
+#include "subvol/detail/ply_table.h"
 #include "subvol/detail/refuse_surface.h"
 #include "subvol/detail/surface_io.h"
+#include "subvol/detail/text_scanner.h"
 #include "subvol/error.h"
-#include "text_scanner.h"
 
 namespace subvol::detail {
 

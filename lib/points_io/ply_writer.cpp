@@ -9,17 +9,17 @@
 #include <string_view>
 #include <vector>
 
-#include "knot_values.h"
-#include "output_file.h"
 #include "points_file.h"
 #include "splat_gaussians.h"
+#include "subvol/detail/knot_values.h"
+#include "subvol/detail/output_file.h"
 #include "subvol/detail/ply_rows.h"
 #include "subvol/detail/surface_io.h"
+#include "subvol/detail/text_scanner.h"
 #include "subvol/error.h"
 #include "subvol/points_io.h"
 #include "subvol/rbf_volume.h"
 #include "subvol/transfer_function.h"
-#include "text_scanner.h"
 
 namespace subvol::detail {
 

@@ -8,8 +8,9 @@
 #include "subvol/detail/number_text.h"
 #include "subvol/detail/ply_rows.h"
 #include "subvol/detail/surface_io.h"
+#include "subvol/detail/text_scanner.h"
 #include "subvol/error.h"
-#include "text_scanner.h"
+#include "subvol/option.h"
 
 namespace subvol {
 

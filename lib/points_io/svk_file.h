@@ -8,8 +8,8 @@
 #include <string_view>
 #include <vector>
 
-#include "output_file.h"
-#include "svk_layout.h"
+#include "subvol/detail/output_file.h"
+#include "subvol/detail/svk_layout.h"
 
 namespace subvol::detail {
 

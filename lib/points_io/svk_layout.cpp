@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "svk_layout.h"
+#include "subvol/detail/svk_layout.h"
 
 #include <algorithm>
 #include <array>

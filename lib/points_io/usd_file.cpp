@@ -13,10 +13,10 @@
 #include <cctype>
 #include <functional>
 
-#include "output_file.h"
 #include "splat_gaussians.h"
 #include "subvol/detail/distinct_names.h"
 #include "subvol/detail/number_text.h"
+#include "subvol/detail/output_file.h"
 #include "subvol/detail/printable.h"
 #include "subvol/error.h"
 

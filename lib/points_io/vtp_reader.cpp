@@ -4,8 +4,8 @@
 #include "points_file.h"
 #include "subvol/detail/refuse_surface.h"
 #include "subvol/detail/surface_io.h"
+#include "subvol/detail/vtk_xml.h"
 #include "subvol/error.h"
-#include "vtk_xml.h"
 
 namespace subvol::detail {
 

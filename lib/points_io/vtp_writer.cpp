@@ -8,9 +8,9 @@
 #include "points_file.h"
 #include "subvol/detail/principal_axes.h"
 #include "subvol/detail/surface_io.h"
+#include "subvol/detail/text_scanner.h"
+#include "subvol/detail/vtk_xml_writer.h"
 #include "subvol/error.h"
-#include "text_scanner.h"
-#include "vtk_xml_writer.h"
 
 namespace subvol::detail {
 

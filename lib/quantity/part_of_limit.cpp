@@ -6,9 +6,9 @@
 #include <cmath>
 #include <vector>
 
-#include "mesh_subset.h"
 #include "subvol/cell.h"
 #include "subvol/detail/limit_of_part.h"
+#include "subvol/detail/mesh_subset.h"
 #include "subvol/detail/number_text.h"
 #include "subvol/detail/place_function.h"
 #include "subvol/error.h"

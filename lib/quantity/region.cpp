@@ -8,8 +8,8 @@
 #include <string_view>
 #include <tuple>
 
-#include "mesh_subset.h"
 #include "region_cells.h"
+#include "subvol/detail/mesh_subset.h"
 #include "subvol/detail/number_text.h"
 #include "subvol/detail/parallel_each.h"
 #include "subvol/detail/small_letters.h"

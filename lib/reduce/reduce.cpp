@@ -14,6 +14,7 @@
 #include "subvol/detail/number_text.h"
 #include "subvol/detail/stopwatch.h"
 #include "subvol/error.h"
+#include "subvol/option.h"
 #include "subvol/rbf_field.h"
 #include "subvol/surface.h"
 

@@ -9,8 +9,8 @@
 #include <cmath>
 
 #include "kernel_tree.h"
-#include "space_order.h"
 #include "subvol/detail/bucket_sort.h"
+#include "subvol/detail/space_order.h"
 
 namespace subvol::detail {
 namespace {

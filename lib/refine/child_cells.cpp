@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "child_topology.h"
+#include "subvol/detail/child_topology.h"
 
 #include "subvol/cell.h"
 #include "subvol/detail/bucket_sort.h"

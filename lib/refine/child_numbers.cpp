@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "boundary_rings.h"
+#include "subvol/detail/boundary_rings.h"
 #include "subvol/detail/bucket_sort.h"
 
 namespace subvol::detail {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "child_topology.h"
+#include "subvol/detail/child_topology.h"
 #include "subvol/topology.h"
 
 namespace subvol::detail {

@@ -4,10 +4,10 @@
 // about an edge c, inside a cell, four of each.
 #include <algorithm>
 
-#include "boundary_rings.h"
 #include "child_numbers.h"
+#include "subvol/detail/boundary_rings.h"
 #include "subvol/detail/bucket_sort.h"
-#include "topology_parts.h"
+#include "subvol/detail/topology_parts.h"
 
 namespace subvol::detail {
 

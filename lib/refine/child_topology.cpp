@@ -11,15 +11,15 @@
 //    flags           those of the parent entity; an entity inside a cell is on no boundary
 //
 // build_topology of the child mesh gives the same bits, at several times the cost: it sorts.
-#include "child_topology.h"
+#include "subvol/detail/child_topology.h"
 
 #include <algorithm>
 #include <array>
 #include <string>
 #include <utility>
 
-#include "boundary_rings.h"
 #include "child_numbers.h"
+#include "subvol/detail/boundary_rings.h"
 #include "subvol/detail/bucket_sort.h"
 #include "subvol/error.h"
 

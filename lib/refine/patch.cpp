@@ -8,16 +8,16 @@
 //
 // Layer 2 is only looked at: its children would lack their own surroundings. A patch that is refined once more needs one layer,
 // one that is not refined needs none. Creases and sharp faces are kept where they lie on the patch's cells.
-#include "patch.h"
+#include "subvol/detail/patch.h"
 
 #include <algorithm>
 #include <atomic>
 #include <cassert>
 
-#include "child_topology.h"
-#include "scheme_rows.h"
+#include "subvol/detail/child_topology.h"
 #include "subvol/detail/parallel_each.h"
-#include "topology_parts.h"
+#include "subvol/detail/scheme_rows.h"
+#include "subvol/detail/topology_parts.h"
 
 namespace subvol::detail {
 

@@ -7,16 +7,17 @@
 #include <cmath>
 #include <utility>
 
-#include "child_topology.h"
-#include "mesh_subset.h"
-#include "patch.h"
-#include "refine_steps.h"
-#include "scheme_rows.h"
 #include "subvol/detail/all_cells.h"
+#include "subvol/detail/child_topology.h"
+#include "subvol/detail/mesh_subset.h"
 #include "subvol/detail/number_text.h"
+#include "subvol/detail/patch.h"
 #include "subvol/detail/place_function.h"
+#include "subvol/detail/refine_steps.h"
 #include "subvol/detail/refined_memory.h"
+#include "subvol/detail/scheme_rows.h"
 #include "subvol/error.h"
+#include "subvol/option.h"
 
 namespace subvol {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scheme_rows.h"
+#include "subvol/detail/scheme_rows.h"
 
 #include "subvol/detail/bucket_sort.h"
 #include "subvol/error.h"

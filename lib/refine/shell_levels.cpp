@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "shell_levels.h"
+#include "subvol/detail/shell_levels.h"
 
 #include <algorithm>
 #include <map>
 #include <memory>
 #include <utility>
 
-#include "refine_steps.h"
-#include "schemes.h"
 #include "subvol/cell.h"
 #include "subvol/detail/counted_rows.h"
+#include "subvol/detail/refine_steps.h"
+#include "subvol/detail/schemes.h"
 #include "subvol/error.h"
 
 namespace subvol {

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <bit>
 
-#include "boundary_rings.h"
-#include "child_topology.h"
+#include "subvol/detail/boundary_rings.h"
 #include "subvol/detail/bucket_sort.h"
+#include "subvol/detail/child_topology.h"
 
 namespace subvol::detail {
 

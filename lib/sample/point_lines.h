@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "mesh_parts.h"
+#include "subvol/detail/mesh_parts.h"
 
 namespace subvol::detail {
 

@@ -7,17 +7,18 @@
 #include <cmath>
 #include <type_traits>
 
-#include "boundary_level.h"
-#include "child_topology.h"
-#include "refine_steps.h"
 #include "sample_ways.h"
 #include "subvol/boundary_values.h"
+#include "subvol/detail/boundary_level.h"
+#include "subvol/detail/child_topology.h"
 #include "subvol/detail/limit_of_part.h"
 #include "subvol/detail/number_text.h"
 #include "subvol/detail/parallel_each.h"
 #include "subvol/detail/points_range.h"
+#include "subvol/detail/refine_steps.h"
 #include "subvol/error.h"
 #include "subvol/limit.h"
+#include "subvol/option.h"
 #include "subvol/sample_pieces.h"
 #include "subvol/sample_tables.h"
 

@@ -26,11 +26,11 @@
 #include <atomic>
 #include <cmath>
 
-#include "boundary_rings.h"
 #include "cell_block.h"
 #include "direction_sums.h"
 #include "sample_ways.h"
 #include "subvol/cell.h"
+#include "subvol/detail/boundary_rings.h"
 #include "subvol/detail/bucket_sort.h"
 #include "value_rules.h"
 

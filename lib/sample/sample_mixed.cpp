@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <atomic>
 
-#include "mixed_levels.h"
-#include "mixed_shapes.h"
-#include "point_quadratics.h"
+#include "subvol/detail/mixed_levels.h"
+#include "subvol/detail/mixed_shapes.h"
 #include "subvol/detail/parallel_each.h"
+#include "subvol/detail/point_quadratics.h"
 #include "subvol/error.h"
 
 namespace subvol {

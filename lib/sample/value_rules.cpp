@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-#include "child_topology.h"
+#include "subvol/detail/child_topology.h"
 #include "subvol/detail/number_text.h"
 #include "subvol/error.h"
 #include "subvol/refine.h"

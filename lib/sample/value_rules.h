@@ -3,7 +3,7 @@
 
 #include <span>
 
-#include "regular_grid.h"
+#include "subvol/detail/regular_grid.h"
 #include "subvol/sample.h"
 
 namespace subvol::detail {

@@ -15,10 +15,10 @@
 #include <algorithm>
 
 #include "antipode.h"
-#include "incident.h"
 #include "opposites.h"
-#include "ring_sums.h"
-#include "schemes.h"
+#include "subvol/detail/incident.h"
+#include "subvol/detail/ring_sums.h"
+#include "subvol/detail/schemes.h"
 
 namespace subvol::detail {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "mcq_grid.h"
+#include "subvol/detail/mcq_grid.h"
 
 #include <algorithm>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "ring_sums.h"
+#include "subvol/detail/ring_sums.h"
 
 #include <algorithm>
 #include <cmath>

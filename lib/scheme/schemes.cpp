@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "schemes.h"
+#include "subvol/detail/schemes.h"
 
 #include <cmath>
 #include <utility>
 
 #include "subvol/detail/number_text.h"
 #include "subvol/error.h"
+#include "subvol/option.h"
 
 namespace subvol {
 

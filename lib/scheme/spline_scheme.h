@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "incident.h"
-#include "schemes.h"
+#include "subvol/detail/incident.h"
+#include "subvol/detail/schemes.h"
 
 namespace subvol::detail {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "stencil_block.h"
+#include "subvol/detail/stencil_block.h"
 
 #include <bit>
 

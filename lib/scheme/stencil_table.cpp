@@ -5,8 +5,8 @@
 
 #include <cassert>
 
-#include "row_access.h"
-#include "stencil_block.h"
+#include "subvol/detail/row_access.h"
+#include "subvol/detail/stencil_block.h"
 #include "subvol/error.h"
 
 namespace subvol {

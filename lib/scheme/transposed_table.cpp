@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "transposed_table.h"
+#include "subvol/detail/transposed_table.h"
 
 #include <string>
 

@@ -15,10 +15,11 @@
 #include "subvol/detail/disjoint_sets.h"
 #include "subvol/detail/number_text.h"
 #include "subvol/detail/parallel_each.h"
+#include "subvol/detail/text_scanner.h"
 #include "subvol/error.h"
 #include "subvol/mesh_report.h"
+#include "subvol/option.h"
 #include "surface_bodies.h"
-#include "text_scanner.h"
 
 namespace subvol {
 

@@ -11,12 +11,13 @@
 #include "subvol/detail/number_text.h"
 #include "subvol/detail/parallel_each.h"
 #include "subvol/detail/parallel_sums.h"
+#include "subvol/detail/surface_builder.h"
+#include "subvol/detail/text_scanner.h"
 #include "subvol/error.h"
 #include "subvol/limit.h"
 #include "subvol/mesh_report.h"
+#include "subvol/option.h"
 #include "surface_bodies.h"
-#include "surface_builder.h"
-#include "text_scanner.h"
 
 // A step looks for the nearest places of the surface and the boundary x = A c, both ways, and finds the ways d of the control
 // points c that minimise

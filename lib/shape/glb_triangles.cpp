@@ -18,8 +18,8 @@
 #include <span>
 #include <utility>
 
-#include "number_type.h"
 #include "subvol/detail/json_depth.h"
+#include "subvol/detail/number_type.h"
 #include "subvol/detail/printable.h"
 #include "subvol/error.h"
 

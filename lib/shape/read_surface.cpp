@@ -14,15 +14,15 @@
 #include <utility>
 
 #include "glb_triangles.h"
-#include "ply_table.h"
 #include "subvol/detail/number_text.h"
+#include "subvol/detail/ply_table.h"
 #include "subvol/detail/point_welder.h"
 #include "subvol/detail/printable.h"
 #include "subvol/detail/read_file.h"
 #include "subvol/detail/refuse_surface.h"
+#include "subvol/detail/text_scanner.h"
 #include "subvol/error.h"
 #include "subvol/fit_shape.h"
-#include "text_scanner.h"
 
 namespace subvol {
 

@@ -9,7 +9,7 @@
 
 #include "shape_fitter.h"
 #include "subvol/detail/parallel_each.h"
-#include "transposed_table.h"
+#include "subvol/detail/transposed_table.h"
 
 namespace subvol::detail {
 

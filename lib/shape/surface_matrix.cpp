@@ -5,9 +5,9 @@
 
 #include "subvol/detail/parallel_each.h"
 #include "subvol/detail/sparse_rows.h"
+#include "subvol/detail/surface_builder.h"
 #include "subvol/limit.h"
 #include "subvol/refine.h"
-#include "surface_builder.h"
 
 namespace subvol::detail {
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "subvol/limit_shells.h"
 
-#include "incident.h"
-#include "shell_levels.h"
+#include "subvol/detail/incident.h"
+#include "subvol/detail/shell_levels.h"
+#include "subvol/detail/topology_parts.h"
 #include "subvol/limit.h"
-#include "topology_parts.h"
 
 namespace subvol {
 

@@ -5,8 +5,8 @@
 #include <string>
 #include <utility>
 
-#include "mesh_subset.h"
 #include "subvol/detail/limit_of_part.h"
+#include "subvol/detail/mesh_subset.h"
 #include "subvol/detail/place_function.h"
 #include "subvol/error.h"
 #include "subvol/limit_shells.h"

@@ -6,14 +6,15 @@
 #include <optional>
 #include <string_view>
 
-#include "limit_place.h"
-#include "mesh_pieces.h"
 #include "settled_cut.h"
-#include "splitmix.h"
 #include "subvol/detail/limit_of_part.h"
+#include "subvol/detail/limit_place.h"
+#include "subvol/detail/mesh_pieces.h"
 #include "subvol/detail/parallel_each.h"
+#include "subvol/detail/splitmix.h"
 #include "subvol/detail/surface_share.h"
 #include "subvol/error.h"
+#include "subvol/option.h"
 #include "surface_shape.h"
 
 // A surface is cut from few cells of a mesh:

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "limit_place.h"
+#include "subvol/detail/limit_place.h"
 #include "subvol/detail/parallel_each.h"
 #include "surface_shape.h"
 

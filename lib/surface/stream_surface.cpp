@@ -9,6 +9,7 @@
 #include "shell_triangles.h"
 #include "subvol/detail/across.h"
 #include "subvol/error.h"
+#include "subvol/option.h"
 
 namespace subvol {
 namespace {

@@ -8,14 +8,14 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
-#include "output_file.h"
 #include "subvol/detail/number_text.h"
+#include "subvol/detail/output_file.h"
 #include "subvol/detail/printable.h"
+#include "subvol/detail/vtk_xml_writer.h"
+#include "subvol/detail/vtkhdf_writer.h"
 #include "subvol/error.h"
 #include "subvol/limit_surface.h"
 #include "subvol/srgb.h"
-#include "vtk_xml_writer.h"
-#include "vtkhdf_writer.h"
 
 namespace subvol {
 

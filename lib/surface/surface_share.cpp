@@ -5,9 +5,9 @@
 #include <cstring>
 #include <fstream>
 
-#include "output_file.h"
 #include "subvol/detail/byte_hash.h"
 #include "subvol/detail/byte_lists.h"
+#include "subvol/detail/output_file.h"
 #include "subvol/error.h"
 #include "surface_shape.h"
 

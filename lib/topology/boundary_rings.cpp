@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "boundary_rings.h"
+#include "subvol/detail/boundary_rings.h"
 
 #include <algorithm>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "topology_parts.h"
+#include "subvol/detail/topology_parts.h"
 
 #include <algorithm>
 

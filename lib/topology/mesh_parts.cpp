@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "mesh_parts.h"
+#include "subvol/detail/mesh_parts.h"
 
 #include <tbb/parallel_sort.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "mesh_pieces.h"
+#include "subvol/detail/mesh_pieces.h"
 
 #include <algorithm>
 #include <limits>
@@ -9,8 +9,8 @@
 #include "subvol/cell.h"
 #include "subvol/detail/parallel_each.h"
 #include "subvol/detail/place_function.h"
+#include "subvol/detail/topology_parts.h"
 #include "subvol/error.h"
-#include "topology_parts.h"
 
 namespace subvol::detail {
 

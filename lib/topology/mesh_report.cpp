@@ -10,9 +10,9 @@
 #include <cmath>
 #include <string>
 
-#include "boundary_rings.h"
-#include "mesh_parts.h"
 #include "subvol/cell.h"
+#include "subvol/detail/boundary_rings.h"
+#include "subvol/detail/mesh_parts.h"
 #include "subvol/detail/mesh_share.h"
 
 namespace subvol {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "regular_grid.h"
+#include "subvol/detail/regular_grid.h"
 
 #include <algorithm>
 #include <optional>

@@ -21,10 +21,10 @@
 #include <span>
 #include <utility>
 
-#include "cell_splits.h"
-#include "facets.h"
 #include "subvol/detail/bucket_sort.h"
+#include "subvol/detail/cell_splits.h"
 #include "subvol/detail/disjoint_sets.h"
+#include "subvol/detail/facets.h"
 
 namespace subvol::detail {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "space_order.h"
+#include "subvol/detail/space_order.h"
 
 #include <tbb/parallel_sort.h>
 

@@ -8,11 +8,11 @@
 #include <optional>
 #include <set>
 
-#include "boundary_rings.h"
+#include "subvol/detail/boundary_rings.h"
 #include "subvol/detail/bucket_sort.h"
 #include "subvol/detail/number_text.h"
+#include "subvol/detail/topology_parts.h"
 #include "subvol/error.h"
-#include "topology_parts.h"
 
 namespace subvol {
 

@@ -6,9 +6,9 @@
 
 #include "subvol/detail/bucket_sort.h"
 #include "subvol/detail/error_text.h"
+#include "subvol/detail/surface_builder.h"
+#include "subvol/detail/topology_parts.h"
 #include "subvol/error.h"
-#include "surface_builder.h"
-#include "topology_parts.h"
 
 namespace subvol::detail {
 

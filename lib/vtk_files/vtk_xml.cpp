@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "vtk_xml.h"
+#include "subvol/detail/vtk_xml.h"
 
 #include <algorithm>
 #include <array>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "vtk_xml_writer.h"
+#include "subvol/detail/vtk_xml_writer.h"
 
 #include <tbb/parallel_for.h>
 
@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "subvol/detail/text_codes.h"
-#include "text_scanner.h"
+#include "subvol/detail/text_scanner.h"
 
 namespace subvol::detail {
 

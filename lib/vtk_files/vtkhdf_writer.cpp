@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "vtkhdf_writer.h"
+#include "subvol/detail/vtkhdf_writer.h"
 
 #include <algorithm>
 #include <array>

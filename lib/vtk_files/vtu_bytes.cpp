@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "vtu_bytes.h"
+#include "subvol/detail/vtu_bytes.h"
 
 #include <lz4.h>
 #include <lzma.h>

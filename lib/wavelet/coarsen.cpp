@@ -9,8 +9,8 @@
 #include <cstdint>
 #include <map>
 
-#include "incident.h"
 #include "subvol/cell.h"
+#include "subvol/detail/incident.h"
 #include "subvol/error.h"
 
 namespace subvol::detail {

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
-#include "child_topology.h"
 #include "coarsen.h"
+#include "subvol/detail/child_topology.h"
 #include "subvol/error.h"
 #include "subvol/refine.h"
 

@@ -6,9 +6,9 @@
 #include "series_channels.h"
 #include "subvol/detail/byte_hash.h"
 #include "subvol/detail/read_file.h"
+#include "subvol/detail/vtu_bytes.h"
 #include "subvol/error.h"
 #include "subvol/refine.h"
-#include "vtu_bytes.h"
 #include "wavelet_bytes.h"
 
 namespace subvol::detail {

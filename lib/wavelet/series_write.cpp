@@ -8,15 +8,16 @@
 #include <string_view>
 #include <utility>
 
-#include "output_file.h"
 #include "series_channels.h"
 #include "series_survey.h"
 #include "subvol/detail/byte_hash.h"
+#include "subvol/detail/output_file.h"
+#include "subvol/detail/vtu_bytes.h"
 #include "subvol/error.h"
 #include "subvol/hierarchy.h"
 #include "subvol/mesh_motion.h"
+#include "subvol/option.h"
 #include "subvol/series_file.h"
-#include "vtu_bytes.h"
 #include "wavelet_bytes.h"
 
 namespace subvol {

@@ -5,12 +5,12 @@
 #include <span>
 #include <vector>
 
-#include "child_topology.h"
-#include "incident.h"
-#include "refine_steps.h"
-#include "scheme_rows.h"
 #include "subvol/cell.h"
+#include "subvol/detail/child_topology.h"
+#include "subvol/detail/incident.h"
 #include "subvol/detail/parallel_each.h"
+#include "subvol/detail/refine_steps.h"
+#include "subvol/detail/scheme_rows.h"
 #include "subvol/error.h"
 #include "subvol/refine.h"
 #include "subvol/wavelet.h"

@@ -7,9 +7,9 @@
 #include <string>
 #include <string_view>
 
+#include "subvol/detail/vtu_bytes.h"
 #include "subvol/error.h"
 #include "subvol/hex_mesh.h"
-#include "vtu_bytes.h"
 #include "wavelet_format.h"
 
 namespace subvol::detail {

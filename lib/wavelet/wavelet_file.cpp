@@ -5,13 +5,14 @@
 #include <cmath>
 #include <limits>
 
-#include "mesh_subset.h"
-#include "output_file.h"
+#include "subvol/detail/mesh_subset.h"
+#include "subvol/detail/output_file.h"
+#include "subvol/detail/vtu_bytes.h"
 #include "subvol/error.h"
 #include "subvol/hierarchy.h"
 #include "subvol/mesh_report.h"
+#include "subvol/option.h"
 #include "subvol/wavelet.h"
-#include "vtu_bytes.h"
 #include "wavelet_bytes.h"
 #include "wavelet_format.h"
 

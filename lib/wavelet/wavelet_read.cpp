@@ -2,10 +2,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "child_topology.h"
+#include "subvol/detail/child_topology.h"
+#include "subvol/detail/vtu_bytes.h"
 #include "subvol/error.h"
 #include "subvol/wavelet.h"
-#include "vtu_bytes.h"
 #include "wavelet_bytes.h"
 #include "wavelet_format.h"
 

@@ -9,6 +9,7 @@
 #include "subvol/detail/points_frame.h"
 #include "subvol/image_io.h"
 #include "subvol/legend.h"
+#include "subvol/option.h"
 #include "subvol/picture_look.h"
 #include "subvol/transfer_function.h"
 #include "subvol/view_options.h"

@@ -17,6 +17,7 @@
 #include "subvol/measure.h"
 #include "subvol/mend_folds.h"
 #include "subvol/mixed_probe.h"
+#include "subvol/option.h"
 #include "subvol/patch_measure.h"
 #include "subvol/points_error.h"
 #include "subvol/probe.h"

@@ -14,6 +14,7 @@
 #include "subvol/mesh_report.h"
 #include "subvol/mesh_series.h"
 #include "subvol/model.h"
+#include "subvol/option.h"
 #include "subvol/part_of_limit.h"
 #include "subvol/quantity.h"
 #include "subvol/region.h"

@@ -10,6 +10,7 @@
 #include "subvol/detail/error_text.h"
 #include "subvol/detail/most_threads.h"
 #include "subvol/detail/several_errors.h"
+#include "subvol/option.h"
 #include "subvol/scheme.h"
 #include "subvol/version.h"
 #include "uninitialised.h"

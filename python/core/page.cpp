@@ -8,6 +8,7 @@
 
 #include "bind.h"
 #include "subvol/detail/atomic_file.h"
+#include "subvol/option.h"
 #include "subvol/view_options.h"
 
 namespace subvol::python {

@@ -9,6 +9,7 @@
 #include "subvol/field_range.h"
 #include "subvol/fit_kernel.h"
 #include "subvol/kernel_file.h"
+#include "subvol/option.h"
 #include "subvol/points_io.h"
 #include "subvol/reduce.h"
 #include "subvol/sample.h"

@@ -2,6 +2,7 @@
 #include "bind.h"
 #include "subvol/limit.h"
 #include "subvol/mesh_motion.h"
+#include "subvol/option.h"
 #include "subvol/topology.h"
 
 namespace subvol::python {

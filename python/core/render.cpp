@@ -8,6 +8,7 @@
 #include "subvol/boundary_values.h"
 #include "subvol/flow_surface.h"
 #include "subvol/gl_device.h"
+#include "subvol/option.h"
 #include "subvol/part_of_limit.h"
 #include "subvol/part_opacity.h"
 #include "subvol/picture_maker.h"

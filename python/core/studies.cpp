@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bind.h"
 #include "subvol/detail/printable.h"
+#include "subvol/option.h"
 #include "subvol/picture_maker.h"
 #include "subvol/study.h"
 #include "subvol/study_run.h"

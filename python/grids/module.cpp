@@ -10,6 +10,7 @@
 #include "given_grids.h"
 #include "subvol/detail/shared_grid.h"
 #include "subvol/nanovdb.h"
+#include "subvol/option.h"
 #include "subvol/rasterize.h"
 #include "subvol/vdb_grid.h"
 #include "subvol/vdb_points.h"

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "subvol/error.h"
+#include "subvol/option.h"
 
 namespace subvol {
 namespace {

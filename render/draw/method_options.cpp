@@ -5,6 +5,7 @@
 
 #include "subvol/detail/number_text.h"
 #include "subvol/error.h"
+#include "subvol/option.h"
 #include "subvol/picture_maker.h"
 
 namespace subvol {

@@ -14,6 +14,7 @@
 #include "subvol/detail/stopwatch.h"
 #include "subvol/error.h"
 #include "subvol/optics.h"
+#include "subvol/option.h"
 #include "tet_faces.h"
 #include "tet_mesh.h"
 #include "tet_order.h"

@@ -6,6 +6,7 @@
 #include <iterator>
 
 #include "subvol/error.h"
+#include "subvol/option.h"
 #include "subvol/probe.h"
 #include "subvol/quantity.h"
 

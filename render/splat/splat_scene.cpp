@@ -17,6 +17,7 @@
 #include "sheet_count.h"
 #include "subvol/detail/number_text.h"
 #include "subvol/error.h"
+#include "subvol/option.h"
 
 namespace subvol::detail {
 

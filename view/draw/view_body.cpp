@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "subvol/field_range.h"
+#include "subvol/option.h"
 #include "subvol/quantity.h"
 #include "subvol/view_state.h"
 

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "subvol/error.h"
+#include "subvol/option.h"
 #include "view_actions.h"
 
 namespace subvol::detail {

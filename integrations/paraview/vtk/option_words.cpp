@@ -6,6 +6,7 @@
 #include <variant>
 
 #include "subvol/error.h"
+#include "subvol/option.h"
 
 namespace subvol {
 

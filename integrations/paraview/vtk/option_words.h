@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "subvol/option.h"
+#include "subvol/option_names.h"
 
 namespace subvol {
 

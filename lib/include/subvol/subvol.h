@@ -64,6 +64,8 @@
 #include "subvol/names.h"
 #include "subvol/optics.h"
 #include "subvol/option.h"
+#include "subvol/option_names.h"
+#include "subvol/option_needs.h"
 #include "subvol/overlay.h"
 #include "subvol/part_of_limit.h"
 #include "subvol/part_opacity.h"

@@ -12,11 +12,11 @@
 #include <vector>
 
 #include "mesh_file.h"
-#include "number_type.h"
 #include "sharp_groups.h"
+#include "subvol/detail/number_type.h"
+#include "subvol/detail/text_scanner.h"
 #include "subvol/hex_mesh.h"
 #include "subvol/read_options.h"
-#include "text_scanner.h"
 
 namespace subvol::detail {
 

@@ -6,9 +6,9 @@
 
 #include "assemble.h"
 #include "formats.h"
-#include "number_type.h"
-#include "output_file.h"
 #include "sharp_groups.h"
+#include "subvol/detail/number_type.h"
+#include "subvol/detail/output_file.h"
 #include "subvol/error.h"
 
 namespace subvol::detail {

@@ -6,7 +6,7 @@
 #include "assemble.h"
 #include "formats.h"
 #include "mesh_file.h"
-#include "number_type.h"
+#include "subvol/detail/number_type.h"
 #include "subvol/error.h"
 
 namespace subvol::detail {

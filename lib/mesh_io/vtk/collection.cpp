@@ -13,13 +13,14 @@
 #include "formats.h"
 #include "join_pieces.h"
 #include "mesh_file.h"
-#include "named_files.h"
 #include "subvol/detail/json_depth.h"
+#include "subvol/detail/named_files.h"
 #include "subvol/detail/number_text.h"
 #include "subvol/detail/printable.h"
+#include "subvol/detail/text_scanner.h"
+#include "subvol/detail/vtk_xml.h"
 #include "subvol/error.h"
-#include "text_scanner.h"
-#include "vtk_xml.h"
+#include "subvol/option.h"
 
 namespace subvol::detail {
 

@@ -11,8 +11,8 @@
 #include "mesh_arrays.h"
 #include "mesh_file.h"
 #include "subvol/detail/printable.h"
+#include "subvol/detail/text_scanner.h"
 #include "subvol/error.h"
-#include "text_scanner.h"
 #include "vtk_cells.h"
 
 namespace subvol {

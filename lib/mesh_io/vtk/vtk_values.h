@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "mesh_file.h"
-#include "number_type.h"
-#include "text_scanner.h"
+#include "subvol/detail/number_type.h"
+#include "subvol/detail/text_scanner.h"
 
 namespace subvol::detail {
 

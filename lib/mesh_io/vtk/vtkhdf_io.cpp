@@ -5,14 +5,14 @@
 
 #include "assemble.h"
 #include "formats.h"
-#include "hdf5_file.h"
 #include "join_pieces.h"
 #include "mesh_arrays.h"
 #include "mesh_file.h"
-#include "mesh_subset.h"
+#include "subvol/detail/hdf5_file.h"
+#include "subvol/detail/mesh_subset.h"
+#include "subvol/detail/vtkhdf_writer.h"
 #include "subvol/error.h"
 #include "vtk_cells.h"
-#include "vtkhdf_writer.h"
 
 namespace subvol::detail {
 

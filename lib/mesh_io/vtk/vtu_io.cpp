@@ -11,13 +11,13 @@
 #include "formats.h"
 #include "mesh_arrays.h"
 #include "mesh_file.h"
-#include "mesh_subset.h"
-#include "output_file.h"
+#include "subvol/detail/mesh_subset.h"
+#include "subvol/detail/output_file.h"
+#include "subvol/detail/text_scanner.h"
+#include "subvol/detail/vtk_xml.h"
+#include "subvol/detail/vtk_xml_writer.h"
 #include "subvol/hex_mesh.h"
-#include "text_scanner.h"
 #include "vtk_cells.h"
-#include "vtk_xml.h"
-#include "vtk_xml_writer.h"
 
 namespace subvol::detail {
 

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "mesh_file.h"
+#include "subvol/detail/text_scanner.h"
 #include "subvol/error.h"
-#include "text_scanner.h"
 #include "xdmf_function.h"
 
 namespace subvol::detail {

@@ -10,8 +10,8 @@
 #include <string_view>
 #include <vector>
 
-#include "hdf5_file.h"
-#include "named_files.h"
+#include "subvol/detail/hdf5_file.h"
+#include "subvol/detail/named_files.h"
 
 namespace subvol::detail {
 

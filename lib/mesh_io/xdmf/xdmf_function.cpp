@@ -9,7 +9,7 @@
 #include <iterator>
 #include <utility>
 
-#include "text_scanner.h"
+#include "subvol/detail/text_scanner.h"
 
 namespace subvol::detail {
 

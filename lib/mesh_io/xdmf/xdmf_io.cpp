@@ -10,8 +10,8 @@
 #include "join_pieces.h"
 #include "mesh_file.h"
 #include "subvol/detail/number_text.h"
+#include "subvol/detail/text_scanner.h"
 #include "subvol/error.h"
-#include "text_scanner.h"
 #include "vtk_cells.h"
 #include "xdmf_file.h"
 

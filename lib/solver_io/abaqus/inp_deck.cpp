@@ -12,9 +12,9 @@
 #include <unordered_map>
 
 #include "local_system.h"
-#include "named_files.h"
+#include "subvol/detail/named_files.h"
+#include "subvol/detail/text_scanner.h"
 #include "subvol/error.h"
-#include "text_scanner.h"
 
 namespace subvol::detail {
 

@@ -15,10 +15,10 @@
 
 #include "assemble.h"
 #include "mesh_file.h"
-#include "number_type.h"
 #include "solver_formats.h"
+#include "subvol/detail/number_type.h"
+#include "subvol/detail/text_scanner.h"
 #include "subvol/error.h"
-#include "text_scanner.h"
 
 namespace subvol::detail {
 

@@ -13,14 +13,14 @@
 #include "assemble.h"
 #include "cgns_patches.h"
 #include "cgns_tree.h"
-#include "hdf5_file.h"
 #include "join_pieces.h"
 #include "mesh_file.h"
 #include "polyhedra.h"
 #include "solver_formats.h"
+#include "subvol/detail/hdf5_file.h"
 #include "subvol/detail/printable.h"
+#include "subvol/detail/text_scanner.h"
 #include "subvol/error.h"
-#include "text_scanner.h"
 
 namespace subvol::detail {
 

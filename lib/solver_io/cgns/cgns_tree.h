@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "hdf5_file.h"
+#include "subvol/detail/hdf5_file.h"
 
 namespace subvol::detail {
 

@@ -7,8 +7,8 @@
 #include <numeric>
 
 #include "subvol/detail/small_letters.h"
+#include "subvol/detail/text_scanner.h"
 #include "subvol/error.h"
-#include "text_scanner.h"
 
 namespace subvol::detail {
 

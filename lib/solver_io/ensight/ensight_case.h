@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "text_scanner.h"
+#include "subvol/detail/text_scanner.h"
 
 namespace subvol::detail {
 

@@ -8,7 +8,7 @@
 #include <tuple>
 #include <utility>
 
-#include "number_type.h"
+#include "subvol/detail/number_type.h"
 #include "subvol/detail/small_letters.h"
 
 namespace subvol::detail {

@@ -15,12 +15,12 @@
 #include "ensight_six.h"
 #include "join_pieces.h"
 #include "mesh_file.h"
-#include "named_files.h"
 #include "polyhedra.h"
 #include "solver_formats.h"
+#include "subvol/detail/named_files.h"
+#include "subvol/detail/text_scanner.h"
 #include "subvol/error.h"
 #include "subvol/index.h"
-#include "text_scanner.h"
 
 namespace subvol::detail {
 

@@ -15,12 +15,12 @@
 #include "assemble.h"
 #include "join_pieces.h"
 #include "mesh_file.h"
-#include "netcdf_source.h"
 #include "solver_formats.h"
+#include "subvol/detail/netcdf_source.h"
 #include "subvol/detail/read_file.h"
 #include "subvol/detail/scalar_groups.h"
+#include "subvol/detail/text_scanner.h"
 #include "subvol/error.h"
-#include "text_scanner.h"
 
 namespace subvol::detail {
 

@@ -11,8 +11,8 @@
 
 #include "foam_text.h"
 #include "mesh_file.h"
+#include "subvol/detail/text_scanner.h"
 #include "subvol/error.h"
-#include "text_scanner.h"
 
 // A case has one mesh in constant/polyMesh, or that of each processor in a folder of its own (processor0, processor1, …), or
 // those of several in the files of one folder, block after block: "processors" has all of them, "processors8" too, and

@@ -12,16 +12,16 @@
 #include "assemble.h"
 #include "foam_case.h"
 #include "foam_text.h"
-#include "gzip.h"
 #include "join_pieces.h"
 #include "mesh_file.h"
-#include "named_files.h"
 #include "polyhedra.h"
 #include "solver_formats.h"
 #include "subvol/detail/counted_rows.h"
+#include "subvol/detail/gzip.h"
+#include "subvol/detail/named_files.h"
+#include "subvol/detail/text_scanner.h"
 #include "subvol/error.h"
 #include "subvol/read_options.h"
-#include "text_scanner.h"
 
 namespace subvol::detail {
 

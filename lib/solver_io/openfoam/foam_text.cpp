@@ -9,7 +9,7 @@
 #include <tuple>
 #include <utility>
 
-#include "gzip.h"
+#include "subvol/detail/gzip.h"
 #include "subvol/detail/number_text.h"
 
 namespace subvol::detail {

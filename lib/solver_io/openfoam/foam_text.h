@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "number_type.h"
-#include "text_scanner.h"
+#include "subvol/detail/number_type.h"
+#include "subvol/detail/text_scanner.h"
 
 namespace subvol::detail {
 

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "subvol/detail/text_codes.h"
-#include "text_scanner.h"
+#include "subvol/detail/text_scanner.h"
 
 namespace subvol::test {
 

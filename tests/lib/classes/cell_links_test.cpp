@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cell_links.h"
+#include "subvol/detail/cell_links.h"
 
 #include <gtest/gtest.h>
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "neighborhood.h"
+#include "subvol/detail/neighborhood.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
 #include "lib/test_meshes.h"
-#include "patch.h"
+#include "subvol/detail/patch.h"
 #include "subvol/model.h"
 
 namespace subvol {

@@ -10,7 +10,7 @@
 
 #include "lib/expect_error.h"
 #include "lib/mixed/mixed_meshes.h"
-#include "mixed_shapes.h"
+#include "subvol/detail/mixed_shapes.h"
 #include "subvol/refine_mixed.h"
 
 namespace subvol {

@@ -7,8 +7,8 @@
 #include <cmath>
 #include <string>
 
-#include "mixed_levels.h"
 #include "mixed_meshes.h"
+#include "subvol/detail/mixed_levels.h"
 
 namespace subvol {
 namespace mixed_spectrum_test {

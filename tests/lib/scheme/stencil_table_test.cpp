@@ -8,9 +8,9 @@
 
 #include "lib/expect_error.h"
 #include "lib/test_meshes.h"
+#include "subvol/detail/transposed_table.h"
 #include "subvol/error.h"
 #include "subvol/refine.h"
-#include "transposed_table.h"
 
 namespace subvol {
 namespace stencil_table_test {

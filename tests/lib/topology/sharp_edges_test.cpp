@@ -8,9 +8,9 @@
 #include <numbers>
 #include <tuple>
 
-#include "facets.h"
 #include "lib/test_meshes.h"
 #include "subvol/cell.h"
+#include "subvol/detail/facets.h"
 #include "subvol/topology.h"
 
 namespace subvol {

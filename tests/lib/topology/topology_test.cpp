@@ -6,10 +6,10 @@
 
 #include <algorithm>
 
-#include "child_topology.h"
 #include "lib/expect_error.h"
 #include "lib/test_meshes.h"
 #include "subvol/cell.h"
+#include "subvol/detail/child_topology.h"
 #include "subvol/error.h"
 #include "subvol/mesh_report.h"
 #include "subvol/model.h"

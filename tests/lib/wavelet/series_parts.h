@@ -11,7 +11,7 @@
 
 #include "series_format.h"
 #include "subvol/detail/byte_hash.h"
-#include "vtu_bytes.h"
+#include "subvol/detail/vtu_bytes.h"
 #include "wavelet_bytes.h"
 
 namespace subvol::test {

@@ -9,10 +9,10 @@
 #include "lib/expect_error.h"
 #include "lib/temp_folder.h"
 #include "lib/test_meshes.h"
+#include "subvol/detail/vtu_bytes.h"
 #include "subvol/mesh_io.h"
 #include "subvol/model.h"
 #include "subvol/refine.h"
-#include "vtu_bytes.h"
 #include "wavelet_format.h"
 
 namespace subvol {

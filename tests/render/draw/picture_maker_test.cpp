@@ -15,6 +15,7 @@
 #include "subvol/gl_device.h"
 #include "subvol/limit.h"
 #include "subvol/model.h"
+#include "subvol/option.h"
 #include "subvol/render_tets.h"
 #include "subvol/split.h"
 

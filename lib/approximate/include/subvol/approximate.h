@@ -10,7 +10,7 @@
 #include "subvol/hex_mesh.h"
 #include "subvol/limit.h"
 #include "subvol/mesh_sets.h"
-#include "subvol/option.h"
+#include "subvol/option_names.h"
 #include "subvol/progress.h"
 #include "subvol/scheme.h"
 

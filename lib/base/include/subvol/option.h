@@ -13,6 +13,8 @@
 #include <vector>
 
 #include "subvol/names.h"
+#include "subvol/option_names.h"
+#include "subvol/option_needs.h"
 
 namespace subvol {
 
@@ -48,26 +50,6 @@ struct NumbersValue {
     bool repeatable = false;
     std::function<void(std::span<const double> row, const std::string& where)> add{};
 };
-
-/// A condition of an option: another one is given, or its value (the default, if it is not given) is one of these words.
-///
-/// excluded: the other way round: the option has no effect if that is so
-/// instead:  or this option is given
-struct OptionNeed {
-    std::string option;
-    std::vector<std::string> words{};
-    bool excluded = false;
-    std::string instead{};
-};
-
-/// How errors and help call options: as of the command, --per-edge, or as Python and studies, per_edge.
-enum class OptionNames { Flags, Keywords };
-
-/// option: without dashes before it
-[[nodiscard]] std::string option_name(std::string_view option, OptionNames names);
-
-/// What was given for an option, as text; nothing if it was not given.
-using GivenOptions = std::function<std::optional<std::string>(std::string_view option)>;
 
 /// One member of an options struct, as users know it: its name, what it may be, and a sentence about it. Each options struct
 /// has a function beside it that describes all its members that users set:
@@ -175,17 +157,6 @@ template <class Options>
 void check_options(Options options) {
     for (const Option& option : options_of(options)) option.check();
 }
-
-/// Refuses an option that was given and has no effect, or cannot be given together with another one.
-///
-/// given:  what was given
-/// usual:  the defaults of options that were not given
-/// throws: Error(InvalidInput): "--kbuffer: has no effect without --order havs"
-void check_needs(const Option& option, const GivenOptions& given, const GivenOptions& usual, OptionNames names);
-/// The same for all options of a call; the defaults are their values.
-void check_needs(const std::vector<Option>& options, const GivenOptions& given, OptionNames names);
-/// The condition as users read it: "with --order havs", "not with --levels".
-[[nodiscard]] std::string need_text(const OptionNeed& need, OptionNames names);
 
 namespace detail {
 

@@ -11,7 +11,7 @@
 #include "subvol/bricks.h"
 #include "subvol/mesh_io.h"
 #include "subvol/names.h"
-#include "subvol/option.h"
+#include "subvol/option_names.h"
 #include "subvol/progress.h"
 
 namespace subvol {

@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "subvol/option.h"
+#include "subvol/option_names.h"
 #include "subvol/probe.h"
 
 namespace subvol {

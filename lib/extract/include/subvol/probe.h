@@ -8,7 +8,7 @@
 
 #include "subvol/limit.h"
 #include "subvol/mesh_source.h"
-#include "subvol/option.h"
+#include "subvol/option_names.h"
 
 namespace subvol {
 

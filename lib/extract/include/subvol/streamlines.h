@@ -12,7 +12,7 @@
 #include "subvol/facts.h"
 #include "subvol/limit.h"
 #include "subvol/names.h"
-#include "subvol/option.h"
+#include "subvol/option_names.h"
 #include "subvol/probe.h"
 
 namespace subvol {

@@ -6,7 +6,7 @@
 #include "subvol/basis_function.h"
 #include "subvol/kernel.h"
 #include "subvol/names.h"
-#include "subvol/option.h"
+#include "subvol/option_names.h"
 
 namespace subvol {
 

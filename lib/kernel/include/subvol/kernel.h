@@ -7,7 +7,7 @@
 #include <variant>
 #include <vector>
 
-#include "subvol/option.h"
+#include "subvol/option_names.h"
 #include "subvol/vec.h"
 
 namespace subvol {

@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "subvol/option.h"
+#include "subvol/option_names.h"
 #include "subvol/vec.h"
 
 namespace subvol {

@@ -9,7 +9,7 @@
 #include "subvol/mesh_source.h"
 #include "subvol/names.h"
 #include "subvol/optics.h"
-#include "subvol/option.h"
+#include "subvol/option_names.h"
 #include "subvol/transfer_function.h"
 
 namespace subvol {

@@ -8,7 +8,7 @@
 
 #include "subvol/camera.h"
 #include "subvol/facts.h"
-#include "subvol/option.h"
+#include "subvol/option_names.h"
 
 namespace subvol {
 

@@ -13,7 +13,7 @@
 #include "subvol/limit_slice.h"
 #include "subvol/mesh_sets.h"
 #include "subvol/mesh_source.h"
-#include "subvol/option.h"
+#include "subvol/option_names.h"
 #include "subvol/region.h"
 
 namespace subvol {

@@ -8,7 +8,7 @@
 #include "subvol/hex_mesh.h"
 #include "subvol/mesh_sets.h"
 #include "subvol/names.h"
-#include "subvol/option.h"
+#include "subvol/option_names.h"
 #include "subvol/patch_values.h"
 #include "subvol/sharp_edges.h"
 #include "subvol/shells.h"

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "subvol/names.h"
-#include "subvol/option.h"
+#include "subvol/option_names.h"
 #include "subvol/rbf_volume.h"
 
 namespace subvol {

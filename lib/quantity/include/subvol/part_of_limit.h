@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "subvol/hex_mesh.h"
-#include "subvol/option.h"
+#include "subvol/option_names.h"
 #include "subvol/progress.h"
 #include "subvol/refine.h"
 #include "subvol/scheme.h"

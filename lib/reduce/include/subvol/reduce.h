@@ -7,7 +7,7 @@
 
 #include "subvol/field_samples.h"
 #include "subvol/limit.h"
-#include "subvol/option.h"
+#include "subvol/option_names.h"
 #include "subvol/progress.h"
 #include "subvol/rbf_volume.h"
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "subvol/hex_mesh.h"
-#include "subvol/option.h"
+#include "subvol/option_names.h"
 #include "subvol/progress.h"
 #include "subvol/scheme.h"
 #include "subvol/stencil_table.h"

@@ -7,7 +7,7 @@
 #include "subvol/camera.h"
 #include "subvol/hex_mesh.h"
 #include "subvol/names.h"
-#include "subvol/option.h"
+#include "subvol/option_names.h"
 #include "subvol/progress.h"
 #include "subvol/rbf_volume.h"
 #include "subvol/refine.h"

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "subvol/names.h"
-#include "subvol/option.h"
+#include "subvol/option_names.h"
 
 namespace subvol {
 

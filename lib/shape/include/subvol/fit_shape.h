@@ -8,7 +8,7 @@
 #include "subvol/facts.h"
 #include "subvol/hex_mesh.h"
 #include "subvol/mend_folds.h"
-#include "subvol/option.h"
+#include "subvol/option_names.h"
 #include "subvol/progress.h"
 #include "subvol/scheme.h"
 #include "subvol/surface.h"

@@ -11,7 +11,7 @@
 #include "subvol/limit.h"
 #include "subvol/mesh_sets.h"
 #include "subvol/mesh_source.h"
-#include "subvol/option.h"
+#include "subvol/option_names.h"
 #include "subvol/probe.h"
 #include "subvol/surface.h"
 #include "subvol/transfer_function.h"

@@ -11,7 +11,7 @@
 #include "subvol/facts.h"
 #include "subvol/hex_mesh.h"
 #include "subvol/mesh_sets.h"
-#include "subvol/option.h"
+#include "subvol/option_names.h"
 #include "subvol/progress.h"
 
 namespace subvol {

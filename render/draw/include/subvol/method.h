@@ -7,7 +7,7 @@
 
 #include "subvol/flow_surface.h"
 #include "subvol/names.h"
-#include "subvol/option.h"
+#include "subvol/option_needs.h"
 
 namespace subvol {
 

@@ -7,7 +7,7 @@
 #include "subvol/draw_shells.h"
 #include "subvol/facts.h"
 #include "subvol/hex_mesh.h"
-#include "subvol/option.h"
+#include "subvol/option_names.h"
 #include "subvol/picture_look.h"
 #include "subvol/stream_surface.h"
 #include "subvol/streamlines.h"

@@ -7,7 +7,7 @@
 
 #include "subvol/clip.h"
 #include "subvol/names.h"
-#include "subvol/option.h"
+#include "subvol/option_names.h"
 #include "subvol/progress.h"
 #include "subvol/shading.h"
 

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "subvol/limit_body.h"
-#include "subvol/option.h"
+#include "subvol/option_names.h"
 
 namespace subvol::detail {
 

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "boundary_rings.h"
+#include "subvol/detail/boundary_rings.h"
 #include "subvol/refine_shells.h"
 #include "subvol/shells.h"
 #include "subvol/topology.h"

@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "cell_links.h"
-#include "patch.h"
+#include "subvol/detail/cell_links.h"
+#include "subvol/detail/patch.h"
 
 namespace subvol::detail {
 

@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "number_type.h"
+#include "subvol/detail/number_type.h"
 
 namespace subvol::detail {
 

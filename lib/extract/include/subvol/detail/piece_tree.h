@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "limit_place.h"
+#include "subvol/detail/limit_place.h"
 #include "subvol/detail/median_tree.h"
 #include "subvol/limit_level.h"
 

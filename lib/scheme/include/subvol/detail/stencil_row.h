@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "sort_network.h"
+#include "subvol/detail/sort_network.h"
 #include "subvol/stencil_table.h"
 
 namespace subvol::detail {

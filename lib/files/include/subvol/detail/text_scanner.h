@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "number_type.h"
+#include "subvol/detail/number_type.h"
 #include "subvol/detail/printable.h"
 #include "subvol/detail/read_file.h"
 

@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "mesh_subset.h"
 #include "subvol/detail/gather_cells.h"
+#include "subvol/detail/mesh_subset.h"
 #include "subvol/mesh_source.h"
 
 namespace subvol::detail {

@@ -7,9 +7,9 @@
 #include <memory>
 #include <string>
 
-#include "child_topology.h"
-#include "schemes.h"
-#include "stencil_block.h"
+#include "subvol/detail/child_topology.h"
+#include "subvol/detail/schemes.h"
+#include "subvol/detail/stencil_block.h"
 #include "subvol/progress.h"
 
 namespace subvol::detail {

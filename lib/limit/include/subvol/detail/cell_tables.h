@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
-#include "class_tables.h"
 #include "subvol/dense_cells.h"
+#include "subvol/detail/class_tables.h"
 
 namespace subvol::detail {
 

@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
+#include "subvol/detail/svk_layout.h"
 #include "subvol/kernel_file.h"
-#include "svk_layout.h"
 
 namespace subvol::detail {
 

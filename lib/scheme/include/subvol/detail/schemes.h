@@ -4,9 +4,9 @@
 #include <memory>
 #include <vector>
 
-#include "boundary_rings.h"
-#include "ring_sums.h"
-#include "stencil_row.h"
+#include "subvol/detail/boundary_rings.h"
+#include "subvol/detail/ring_sums.h"
+#include "subvol/detail/stencil_row.h"
 #include "subvol/scheme.h"
 #include "subvol/topology.h"
 

@@ -8,7 +8,7 @@
 #include <memory>
 #include <vector>
 
-#include "neighborhood.h"
+#include "subvol/detail/neighborhood.h"
 #include "subvol/detail/sparse_rows.h"
 #include "subvol/scheme.h"
 

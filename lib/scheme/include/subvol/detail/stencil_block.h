@@ -3,7 +3,7 @@
 
 #include <unordered_map>
 
-#include "stencil_row.h"
+#include "subvol/detail/stencil_row.h"
 
 namespace subvol::detail {
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "hdf5_file.h"
+#include "subvol/detail/hdf5_file.h"
 #include "subvol/vec.h"
 
 namespace subvol::detail {

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "boundary_rings.h"
+#include "subvol/detail/boundary_rings.h"
 #include "subvol/topology.h"
 
 namespace subvol::detail {

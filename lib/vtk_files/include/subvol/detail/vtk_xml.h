@@ -11,10 +11,10 @@
 #include <string_view>
 #include <vector>
 
-#include "named_files.h"
-#include "number_type.h"
-#include "text_scanner.h"
-#include "vtu_bytes.h"
+#include "subvol/detail/named_files.h"
+#include "subvol/detail/number_type.h"
+#include "subvol/detail/text_scanner.h"
+#include "subvol/detail/vtu_bytes.h"
 
 namespace subvol::detail {
 

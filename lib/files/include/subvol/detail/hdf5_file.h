@@ -11,9 +11,9 @@
 #include <type_traits>
 #include <vector>
 
-#include "named_files.h"
-#include "number_type.h"
 #include "subvol/detail/atomic_file.h"
+#include "subvol/detail/named_files.h"
+#include "subvol/detail/number_type.h"
 
 namespace subvol::detail {
 

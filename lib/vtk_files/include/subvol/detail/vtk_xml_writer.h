@@ -10,7 +10,7 @@
 #include <string>
 #include <string_view>
 
-#include "output_file.h"
+#include "subvol/detail/output_file.h"
 
 namespace subvol::detail {
 

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "stencil_row.h"
+#include "subvol/detail/stencil_row.h"
 #include "subvol/topology.h"
 
 namespace subvol::detail {

@@ -6,8 +6,8 @@
 #include <memory>
 #include <span>
 
-#include "cell_links.h"
 #include "subvol/dense_cells.h"
+#include "subvol/detail/cell_links.h"
 
 namespace subvol::detail {
 

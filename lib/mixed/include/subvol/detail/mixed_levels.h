@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "boundary_rings.h"
+#include "subvol/detail/boundary_rings.h"
 #include "subvol/mixed_mesh.h"
 #include "subvol/refine_mixed.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "ply_table.h"
+#include "subvol/detail/ply_table.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,7 +12,7 @@ namespace subvol::detail {
 
 namespace {
 
-const std::map<std::string_view, NumberType> kTypes{
+const std::map<std::string_view, NumberType> kPlyTypes{
     {"char", NumberType::Int8},      {"uchar", NumberType::UInt8},    {"short", NumberType::Int16},
     {"ushort", NumberType::UInt16},  {"int", NumberType::Int32},      {"uint", NumberType::UInt32},
     {"float", NumberType::Float32},  {"double", NumberType::Float64}, {"int8", NumberType::Int8},
@@ -45,8 +45,8 @@ public:
 
     NumberType type() {
         const std::string_view name = word();
-        const auto type = kTypes.find(name);
-        if (type == kTypes.end()) in_.fail(in_quotes(name) + " is not a type of a property", "such as float or uchar");
+        const auto type = kPlyTypes.find(name);
+        if (type == kPlyTypes.end()) in_.fail(in_quotes(name) + " is not a type of a property", "such as float or uchar");
         return type->second;
     }
 
