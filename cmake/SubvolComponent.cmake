@@ -59,13 +59,29 @@ function(subvol_precompiled_of result)
   set(${result} ${name} PARENT_SCOPE)
 endfunction()
 
-# subvol_room(COMPONENT NAME SOURCES file… ALONE file… USES room… FOREIGN library… SHADERS file… COLD HOT): a room is a folder of a component and
-# an object library. Its include roots are its folder, its public headers in NAME/include, and those of the rooms that it uses: an
-# include against the arrows does not compile, and neither does one of a third-party library that the room does not list.
+# subvol_wing(COMPONENT NAME USES wing…): a wing is a folder of a component that has rooms. Its front door is NAME/include: what
+# rooms of other wings, other components and users include. Its rooms see those of the wings that it uses, and nothing else.
+function(subvol_wing component name)
+  cmake_parse_arguments(ARG "" "" "USES" ${ARGN})
+  set(wing subvol_${component}_wing_${name})
+  add_library(${wing} INTERFACE)
+  target_include_directories(${wing} INTERFACE ${CMAKE_CURRENT_SOURCE_DIR}/include)
+  list(TRANSFORM ARG_USES PREPEND subvol_${component}_wing_)
+  get_property(of_component GLOBAL PROPERTY SUBVOL_SEEN_BY_${component})
+  target_link_libraries(${wing} INTERFACE ${ARG_USES} ${of_component})
+  target_include_directories(subvol_${component} PUBLIC $<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/include>)
+  install(DIRECTORY include/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT development)
+endfunction()
+
+# subvol_room(WHERE NAME SOURCES file… ALONE file… USES room… FOREIGN library… SHADERS file… COLD HOT): a room is a folder and an object library, of
+# a component or, as lib/mesh, of a wing. Its include roots are its folder, its public headers in NAME/include, those of the rooms that it
+# uses, and the front doors that its wing sees: an include against the arrows does not compile, and neither does one of a third-party library that the room does not list.
 # In unity builds several sources of a room are compiled together: names in their unnamed namespaces must be unique within the room.
 # ALONE sources are not: Highway includes them once for each instruction set.
-function(subvol_room component name)
+function(subvol_room where name)
   cmake_parse_arguments(ARG "COLD;HOT" "" "SOURCES;ALONE;USES;FOREIGN;SHADERS" ${ARGN})
+  string(REPLACE "/" ";" where_path ${where})
+  list(POP_FRONT where_path component)
   set(room subvol_${component}_${name})
   list(TRANSFORM ARG_SOURCES PREPEND ${name}/)
   list(TRANSFORM ARG_ALONE PREPEND ${name}/)
@@ -81,7 +97,8 @@ function(subvol_room component name)
     install(DIRECTORY ${name}/include/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT development)
   endif()
   get_property(of_component GLOBAL PROPERTY SUBVOL_SEEN_BY_${component})
-  target_link_libraries(${room} PUBLIC ${ARG_USES} ${of_component} PRIVATE TBB::tbb)
+  list(TRANSFORM where_path PREPEND subvol_${component}_wing_)
+  target_link_libraries(${room} PUBLIC ${ARG_USES} ${where_path} ${of_component} PRIVATE TBB::tbb)
   if(NOT Highway IN_LIST ARG_FOREIGN) # in functions for other instruction sets GCC takes the options of the precompiled header
     subvol_precompiled_of(precompiled ${ARG_FOREIGN})
     subvol_use_precompiled(${room} ${precompiled})
@@ -103,6 +120,9 @@ function(subvol_room component name)
   subvol_warnings(${room})
   target_sources(subvol_${component} PRIVATE $<TARGET_OBJECTS:${room}>)
   set_property(GLOBAL APPEND PROPERTY SUBVOL_ROOMS_${component} ${CMAKE_CURRENT_SOURCE_DIR}/${name})
+  if(where_path)
+    set_property(GLOBAL APPEND PROPERTY SUBVOL_ROOMS_${where} ${CMAKE_CURRENT_SOURCE_DIR}/${name})
+  endif()
 endfunction()
 
 # subvol_module(COMPONENT ROOM NAME SOURCES file… LIBRARIES target…): a part of a room that uses a large library and is loaded when a
@@ -125,10 +145,10 @@ function(subvol_module component room name)
   install(TARGETS ${target} LIBRARY DESTINATION ${SUBVOL_MODULES_INSTALLED} COMPONENT command)
 endfunction()
 
-# subvol_private_roots(TARGET COMPONENT…): the include roots of all rooms, for tests and benchmarks of private headers.
+# subvol_private_roots(TARGET WHERE…): the include roots of all rooms of a component or a wing, for tests and benchmarks of private headers.
 function(subvol_private_roots target)
-  foreach(component IN LISTS ARGN)
-    get_property(rooms GLOBAL PROPERTY SUBVOL_ROOMS_${component})
+  foreach(where IN LISTS ARGN)
+    get_property(rooms GLOBAL PROPERTY SUBVOL_ROOMS_${where})
     target_include_directories(${target} PRIVATE ${rooms})
   endforeach()
 endfunction()

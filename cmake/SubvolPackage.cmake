@@ -27,8 +27,8 @@ set(CPACK_DEBIAN_COMMAND_PACKAGE_RECOMMENDS "libegl1, libgl1, libgl1-mesa-dri, f
 set(CPACK_DEBIAN_COMMAND_PACKAGE_SUGGESTS "ffmpeg")
 
 set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION "subdivision volumes: the library
-Headers, static libraries and CMake package of subvol::lib, subvol::vdb,
-subvol::render and subvol::compare.")
+Headers, static libraries and CMake package of subvol::lib, subvol::io,
+subvol::vdb, subvol::render, subvol::compare and subvol::view.")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libsubvol-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 # The modules, which programs with the static libraries load as well, are in the package of the command.

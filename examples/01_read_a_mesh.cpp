@@ -3,6 +3,7 @@
 
 #include <cstdio>
 
+#include "subvol/io.h"
 #include "subvol/subvol.h"
 
 int main(int argc, char** argv) try {

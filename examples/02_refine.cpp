@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "subvol/io.h"
 #include "subvol/subvol.h"
 
 int main() try {

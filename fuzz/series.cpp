@@ -2,7 +2,7 @@
 // The readers of files that list others, beside two good pieces: the first byte says which of the lists the rest is.
 
 #include "case_folder.h"
-#include "lib/mesh_io/vtu_texts.h"
+#include "io/mesh_io/vtu_texts.h"
 #include "subvol/mesh_io.h"
 #include "subvol/mesh_report.h"
 

@@ -13,21 +13,22 @@ from command import InFolder
 
 TOP = Path(__file__).resolve().parents[2]
 DOCUMENTS = [*TOP.glob("*.md"), *(TOP / "docs").rglob("*.md")]
-WAYS_IN = {"lib": "subvol.h", "vdb": "vdb.h", "render": "render.h", "view": "view.h", "compare": "compare.h"}
+WINGS = ["base", "files", "mesh", "subdivision", "look", "kernels", "ask", "make"]
+WAYS_IN = {"lib": "subvol.h", "io": "io.h", "vdb": "vdb.h", "render": "render.h", "view": "view.h", "compare": "compare.h"}
 
 
-def rooms(component):
-    """The rooms of a component, each with those that it uses, by its CMakeLists.txt."""
-    text = (TOP / component / "CMakeLists.txt").read_text()
-    calls = re.findall(rf"^subvol_(?:room\({component} |extension\()(\w+)\n([^)]*)\)", text, re.M)
+def rooms(where):
+    """The rooms of a component or of a wing, as lib/mesh, each with those that it uses, by its CMakeLists.txt."""
+    text = (TOP / where / "CMakeLists.txt").read_text()
+    calls = re.findall(rf"^subvol_(?:room\({where} |extension\()(\w+)\n([^)]*)\)", text, re.M)
     uses = {name: re.search(r"USES ([\w ]+)", rest) for name, rest in calls}
     return {name: sorted(found[1].split()) if found else [] for name, found in uses.items()}
 
 
 def public_headers(component):
-    """(room, header), without subvol/detail."""
-    return {(room, header.name) for room in rooms(component)
-            for header in (TOP / component / room / "include/subvol").glob("*.h")}
+    """(room or wing, header), without subvol/detail and the header with which a wing begins."""
+    return {(room, header.name) for room in (WINGS if component == "lib" else rooms(component))
+            for header in (TOP / component / room / "include/subvol").glob("*.h") if header.stem != room or component != "lib"}
 
 
 def calls():
@@ -160,10 +161,19 @@ class Documents(unittest.TestCase):
 
 class WaysIn(unittest.TestCase):
     def test_one_header_of_a_component_brings_all_of_its_public_headers(self):
+        def included(path):
+            return set(re.findall(r'#include "subvol/([\w/]+\.h)"', path.read_text())) - {"version.h"}  # made by the build
+
         for component, way_in in WAYS_IN.items():
-            text = (TOP / component / "include/subvol" / way_in).read_text()
-            included = set(re.findall(r'#include "subvol/([\w/]+\.h)"', text)) - {"version.h"}  # made by the build
-            self.assertEqual(included, {header for _, header in public_headers(component)}, way_in)
+            brought = included(TOP / component / "include/subvol" / way_in)
+            if component == "lib":
+                self.assertEqual(brought, {f"{wing}.h" for wing in WINGS})
+            else:
+                self.assertEqual(brought, {header for _, header in public_headers(component)}, way_in)
+        for wing in WINGS:
+            front = TOP / "lib" / wing / f"include/subvol/{wing}.h"
+            self.assertEqual(included(front), {header for room, header in public_headers("lib") if room == wing})
+            self.assertLessEqual(len(front.read_text().splitlines()), 120, front)
 
     def test_the_table_of_calls_names_every_public_header_in_its_room(self):
         for component in WAYS_IN:
@@ -178,9 +188,13 @@ class WaysIn(unittest.TestCase):
                 self.assertRegex(text, rf"\b{name}\b", header)
 
     def test_every_room_is_in_the_table_of_rooms(self):
-        rows = re.findall(r"^\| `(\w+/\w+)` \| .+ \| ?(.*) \|$", (TOP / "CONTRIBUTING.md").read_text(), re.M)
+        rows = re.findall(r"^\| `([\w/]+)` \| .+ \| ?(.*) \|$", (TOP / "CONTRIBUTING.md").read_text(), re.M)
         listed = {room: sorted(uses.split(", ")) if uses else [] for room, uses in rows}
-        here = {f"{component}/{room}": uses for component in [*WAYS_IN, "cli", "python"] for room, uses in rooms(component).items()}
+        places = [*(f"lib/{wing}" for wing in WINGS), *(component for component in WAYS_IN if component != "lib"), "cli", "python"]
+        here = {f"{where}/{room}": uses for where in places for room, uses in rooms(where).items()}
+        for wing in WINGS:  # their rows stand in a table above
+            text = (TOP / "lib" / wing / "CMakeLists.txt").read_text()
+            here[f"lib/{wing}"] = sorted(re.search(rf"^subvol_wing\(lib {wing}(?: USES ([\w ]+))?\)", text, re.M)[1].split()) if " USES" in text.split("subvol_room")[0] else []
         self.assertEqual(listed, here)
         for room in here:
             self.assertTrue((TOP / room).is_dir(), room)

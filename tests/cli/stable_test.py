@@ -16,7 +16,7 @@ TOP = Path(__file__).resolve().parents[2]
 KEPT = Path(__file__).resolve().parent / "stable"
 # Of each format of series, which are newer than 0.2; `--write-series` makes the last one, once.
 STEPS = [KEPT / "series-1.svw", KEPT / "series-2.svw"]
-COMPONENTS = ("lib", "vdb", "render", "compare", "view")
+COMPONENTS = ("lib", "io", "vdb", "render", "compare", "view")
 
 # A command for each kind of figures; in one folder, one after the other.
 COMMANDS = [

@@ -12,7 +12,6 @@
 #include "subvol/image_regions.h"
 #include "subvol/mesh_field.h"
 #include "subvol/oiio_compare.h"
-#include "subvol/page.h"
 #include "subvol/picture_metrics.h"
 #include "subvol/placed_image.h"
 #include "subvol/plot.h"

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Calls into every component, so that each must have been installed with what it links to.
 #include <subvol/compare.h>
+#include <subvol/io.h>
 #include <subvol/render.h>
 #include <subvol/subvol.h>
 #include <subvol/vdb.h>
@@ -10,7 +11,11 @@
 static_assert(SUBVOL_VERSION_MAJOR == 0 && SUBVOL_VERSION_MINOR == 2);
 
 int main() {
-    const subvol::HexMesh mesh = subvol::make_model("ball", 2);
+    // As programs of the release before do, of which subvol::lib is all that they link.
+    const auto mesh_file = std::filesystem::temp_directory_path() / "subvol_consumer.vtu";
+    subvol::write_mesh(mesh_file, subvol::make_model("ball", 2));
+    const subvol::HexMesh mesh = subvol::read_mesh(mesh_file).mesh;
+    std::filesystem::remove(mesh_file);
     const subvol::HexMesh fine = subvol::refine(mesh, {.levels = 1});
     const subvol::Attribute& density = fine.attributes.front();
     const auto grids = subvol::rasterize(fine, std::vector{density.name}, {.resolution = 16});
