@@ -7,7 +7,7 @@
 #include <iostream>
 #include <regex>
 
-#include "io/mesh_io/exodus_texts.h"
+#include "io/solver_io/exodus_texts.h"
 #include "io/mesh_io/mesh_texts.h"
 #include "io/mesh_io/vtu_texts.h"
 #include "subvol/detail/surface_share.h"

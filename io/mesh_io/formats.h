@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
 #include <filesystem>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "mesh_file.h"
-#include "solver_formats.h"
+#include "mesh_format.h"
 #include "subvol/hex_mesh.h"
 #include "subvol/mesh_sets.h"
 #include "subvol/read_options.h"
@@ -17,47 +17,13 @@
 namespace subvol::detail {
 
 class Hdf5File;
-struct Collection;
 
-/// What a writer gets, valid. shells: none for other formats than `.vtu`
-struct WrittenMesh {
-    const HexMesh& mesh;
-    const Shells& shells;
-    const MeshSets& sets;
-};
-
-/// A format of mesh files.
-///
-/// extensions:     in lower case, unused ones empty
-/// read:           reads the mesh of one step
-/// write:          null if the library only reads the format
-/// times:          the times of the steps of a file; null if a file of this format is one step
-/// piece:          reads a file as a piece of a mesh, before it is assembled; null if a file is always a whole mesh
-/// parts:          how many parts of a mesh a name stands for, such as the pieces of which it names one, or the processors of
-///                 a case; null if a name is always that of one
-/// part:           reads one of these parts
-/// files:          reads a list of other files; null if the format is not such a list
-/// groups:         whether its groups of faces and edges are read
-/// blocks:         whether it has named parts, which ReadOptions::blocks chooses
-/// finite_volumes: whether its values at cells are means over them
-struct MeshFormat {
-    std::array<std::string_view, 4> extensions;
-    std::string_view name;
-    ReadResult (*read)(const std::filesystem::path& path, const ReadOptions& options);
-    std::vector<std::string> (*write)(const std::filesystem::path& path, const WrittenMesh& written) = nullptr;
-    std::vector<double> (*times)(const std::filesystem::path& path) = nullptr;
-    MeshFile (*piece)(std::string_view text, std::string_view file, const ReadOptions& options) = nullptr;
-    std::size_t (*parts)(const std::filesystem::path& path) = nullptr;
-    MeshFile (*part)(const std::filesystem::path& path, std::size_t part, const ReadOptions& options) = nullptr;
-    Collection (*files)(const std::filesystem::path& path) = nullptr;
-    bool groups = false;
-    bool blocks = false;
-    bool deck = false;  // whether the file has results of a deck
-    bool finite_volumes = false;
-};
+/// The formats that are built in, by families.
+[[nodiscard]] std::span<const FormatFamily> format_families();
 
 /// Returns the format of a file: the one that its first bytes show beyond doubt, else the one that its extension names, in
-/// upper or lower case, else the one that the first bytes suggest; for a folder OpenFOAM. Null if there is none.
+/// upper or lower case, else the one that the first bytes suggest; for a folder the one whose meshes are folders. Null if there
+/// is none.
 [[nodiscard]] const MeshFormat* format_of(const std::filesystem::path& path);
 
 /// The same; throws: Error(InvalidInput) that lists all formats if there is none.

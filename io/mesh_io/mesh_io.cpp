@@ -11,6 +11,9 @@
 
 #include "formats.h"
 #include "series_format.h"
+#ifdef SUBVOL_SOLVERS
+#include "solver_formats.h"
+#endif
 #include "subvol/cell_means.h"
 #include "subvol/detail/error_text.h"
 #include "subvol/detail/missing_file.h"
@@ -29,11 +32,6 @@ namespace subvol {
 using namespace detail;
 
 namespace {
-
-template <ReadResult (&kRead)(std::string_view, std::string_view, const ReadOptions&)>
-ReadResult read_file(const std::filesystem::path& path, const ReadOptions& options) {
-    return kRead(read_text(path), path.string(), options);
-}
 
 // The file with the flow has the grid's name.
 ReadResult read_grid_and_flow(const std::filesystem::path& path, const ReadOptions& options) {
@@ -81,7 +79,7 @@ ReadResult read_wavelets(const std::filesystem::path& path, const ReadOptions& o
 }
 
 // Neighbouring rows with the same name share an entry in the lists of formats that messages show.
-constexpr std::array<MeshFormat, 22> kFormats{{
+constexpr std::array<MeshFormat, 16> kFormats{{
     {.extensions = {".mesh"}, .name = "MEDIT", .read = read_file<read_medit>, .write = write_medit, .groups = true},
     {.extensions = {".meshb"}, .name = "MEDIT", .read = read_file<read_meshb>, .groups = true},
     {.extensions = {".vtk"}, .name = "legacy VTK", .read = read_file<read_legacy_vtk>},
@@ -105,29 +103,21 @@ constexpr std::array<MeshFormat, 22> kFormats{{
      .blocks = true},
     {.extensions = {".msh"}, .name = "Gmsh", .read = read_file<read_gmsh>, .times = gmsh_times, .groups = true},
     {.extensions = {".xyz", ".p3d"}, .name = "Plot3D", .read = read_grid_and_flow},
-    {.extensions = {".e", ".exo", ".ex2", ".g"},
-     .name = "Exodus II",
-     .read = read_exodus_file,
-     .times = exodus_times,
-     .piece = read_exodus_piece,
-     .parts = exodus_parts,
-     .part = read_exodus_part,
-     .blocks = true},
     {.extensions = {".vtkhdf", ".hdf"}, .name = "VTKHDF", .read = read_vtkhdf, .write = write_vtkhdf, .times = vtkhdf_times},
     {.extensions = {".xdmf", ".xmf"}, .name = "XDMF", .read = read_file<read_xdmf>, .times = xdmf_times},
-    {.extensions = {".frd"}, .name = "CalculiX", .read = read_file<read_frd>, .times = frd_times, .deck = true},
-    {.extensions = {".cgns"}, .name = "CGNS", .read = read_cgns, .times = cgns_times, .blocks = true},
-    {.extensions = {".case"}, .name = "EnSight Gold", .read = read_ensight, .times = ensight_times, .blocks = true},
-    {.extensions = {".foam", ".openfoam"},
-     .name = "OpenFOAM",
-     .read = read_foam,
-     .times = foam_times,
-     .parts = foam_parts,
-     .part = read_foam_part,
-     .finite_volumes = true},
-    {.extensions = {".inp"}, .name = "Abaqus", .read = read_inp, .blocks = true},
     {.extensions = {".svw"}, .name = "wavelets", .read = read_wavelets, .times = wavelet_times},
 }};
+
+// Those of all families, in their order.
+const std::vector<MeshFormat>& all_formats() {
+    static const std::vector<MeshFormat> formats = [] {
+        std::vector<MeshFormat> all;
+        for (const FormatFamily& family : format_families())
+            all.insert(all.end(), family.formats.begin(), family.formats.end());
+        return all;
+    }();
+    return formats;
+}
 
 bool is_left_out(const MeshFormat& format, bool writable_only) {
     return writable_only && !format.write;
@@ -137,7 +127,7 @@ bool is_left_out(const MeshFormat& format, bool writable_only) {
 std::string list_written_formats() {
     std::string list;
     std::string_view name;
-    for (const MeshFormat& format : kFormats) {
+    for (const MeshFormat& format : all_formats()) {
         if (is_left_out(format, true)) continue;
         const bool new_entry = format.name != name;
         if (new_entry && !name.empty()) list += ": " + std::string(name) + "; ";
@@ -153,13 +143,24 @@ std::string list_written_formats() {
 
 std::vector<std::string> list_extensions(bool writable_only) {
     std::vector<std::string> extensions;
-    for (const MeshFormat& format : kFormats) {
+    for (const MeshFormat& format : all_formats()) {
         if (is_left_out(format, writable_only)) continue;
         for (const std::string_view extension : format.extensions) {
             if (!extension.empty()) extensions.emplace_back(extension);
         }
     }
     return extensions;
+}
+
+// ".exo, .cgns": of the formats that have something.
+std::string extensions_with(bool MeshFormat::*has) {
+    std::string list;
+    for (const MeshFormat& format : all_formats()) {
+        if (!(format.*has)) continue;
+        for (const std::string_view extension : format.extensions)
+            if (!extension.empty()) list += (list.empty() ? "" : ", ") + std::string(extension);
+    }
+    return list.empty() ? "none is built in" : list;
 }
 
 // Puts the fitted fields in the place of those that were read.
@@ -205,12 +206,6 @@ void take_patch_values(ReadResult& result, PatchValuesUse use) {
                               counted(report.fields, "field has", "fields have") + " there" + change);
 }
 
-// The extension of the format whose files begin as this one does. certain: an ending that says something else is wrong
-struct Contents {
-    std::string_view extension;
-    bool certain = true;
-};
-
 // The types of VTK XML, and the ending of each.
 constexpr std::array<std::array<std::string_view, 2>, 10> kVtkXmlTypes{{{"\"UnstructuredGrid\"", ".vtu"},
                                                                         {"\"StructuredGrid\"", ".vts"},
@@ -241,34 +236,26 @@ Contents contents_of_text(std::string_view begin) {
     if (first.starts_with("$MeshFormat") || first.starts_with("$NOD")) return {".msh"};
     if (first.starts_with("$Comments") || first.starts_with("$PhysicalNames")) return {".msh", false};
     if (upper.starts_with("MESHVERSIONFORMATTED")) return {".mesh"};
-    if (begin.starts_with("    1C")) return {".frd"};
-    if (upper.find("FORMAT") != std::string::npos && upper.find("ENSIGHT") != std::string::npos &&
-        upper.find("GEOMETRY") != std::string::npos)
-        return {".case", upper.starts_with("FORMAT")};
-    for (const std::string_view keyword : {"*HEADING", "*NODE", "*PART", "*INCLUDE", "**"}) {
-        if (upper.starts_with(keyword) && upper.find("*NODE") != std::string::npos) return {".inp", keyword != "**"};
-    }
     return {};
+}
+
+// begin: of a file of one of the formats above
+Contents contents_of_own(std::string_view begin) {
+    if (begin.starts_with("\x89HDF") && begin.find("VTKHDF") != std::string_view::npos) return {".vtkhdf"};
+    return contents_of_text(begin.substr(0, kFirstText));
 }
 
 // Empty if the first bytes do not show a format.
 Contents contents_of(const std::filesystem::path& path) {
-    constexpr std::size_t kText = 4096, kGroups = 1 << 16;
     if (!not_regular(path).empty()) return {};
-    std::string begin(kGroups, '\0');
+    std::string begin(kFirstBytes, '\0');
     std::ifstream in(path, std::ios::binary);
     in.read(begin.data(), static_cast<std::streamsize>(begin.size()));
     begin.resize(static_cast<std::size_t>(std::max<std::streamsize>(0, in.gcount())));
-    const std::string_view all = begin;
-    const auto has = [&](std::string_view text) { return all.find(text) != std::string_view::npos; };
-    if (all.starts_with("CDF\1") || all.starts_with("CDF\2") || all.starts_with("CDF\5")) return {".exo"};
-    if (all.starts_with("\x89HDF")) {
-        if (has("VTKHDF")) return {".vtkhdf"};
-        if (has("CGNSLibraryVersion") || has("CGNSBase_t")) return {".cgns"};
-        return {".exo", false};  // the names of its groups may come later
+    for (const FormatFamily& family : format_families()) {
+        if (const Contents found = family.contents(begin); !found.extension.empty()) return found;
     }
-    if (all.substr(0, 64).find("ADF Database") != std::string_view::npos) return {".cgns"};
-    return contents_of_text(all.substr(0, kText));
+    return {};
 }
 
 // Other programs' files that meshio reads; python/subvol/_foreign.py has the same.
@@ -307,8 +294,8 @@ const MeshFormat* format_with(std::string_view extension) {
     const auto has_it = [&](const MeshFormat& format) {
         return std::ranges::any_of(format.extensions, [&](std::string_view e) { return !e.empty() && upper_case(e) == upper; });
     };
-    const auto found = std::ranges::find_if(kFormats, has_it);
-    return found == kFormats.end() ? nullptr : &*found;
+    const auto found = std::ranges::find_if(all_formats(), has_it);
+    return found == all_formats().end() ? nullptr : &*found;
 }
 
 void warn_of_time(const std::optional<double>& asked, const std::vector<double>& times, ReadResult& result) {
@@ -331,10 +318,23 @@ void warn_of_time(const std::optional<double>& asked, const std::vector<double>&
 
 }  // namespace
 
+std::span<const FormatFamily> detail::format_families() {
+    static const std::vector<FormatFamily> families{
+        {kFormats, contents_of_own},
+#ifdef SUBVOL_SOLVERS
+        solver_formats(),
+#endif
+    };
+    return families;
+}
+
 const MeshFormat* detail::format_of(const std::filesystem::path& path) {
     std::error_code none;
     const MeshFormat* named = format_with(path.extension().string());
-    if (std::filesystem::is_directory(path, none)) return named ? named : format_with(".foam");
+    if (std::filesystem::is_directory(path, none)) {
+        const auto folder = std::ranges::find_if(all_formats(), &MeshFormat::folder);
+        return named || folder == all_formats().end() ? named : &*folder;
+    }
     const Contents contents = contents_of(path);
     const MeshFormat* found = format_with(contents.extension);
     return found && (contents.certain || !named) ? found : named;
@@ -345,7 +345,13 @@ const MeshFormat& detail::readable_format(const std::filesystem::path& path) {
     if (!format) {
         refuse_missing(path);
         refuse_others(path);
-        refuse_format(path, "read", "docs/formats.md and `subvol info --help` list the formats that can" + way_to(path));
+#ifdef SUBVOL_SOLVERS
+        const std::string without;
+#else
+        const std::string without = "; this build is one without the readers of solvers' files, SUBVOL_SOLVERS";
+#endif
+        refuse_format(path, "read",
+                      "docs/formats.md and `subvol info --help` list the formats that can" + way_to(path) + without);
     }
     return *format;
 }
@@ -362,11 +368,11 @@ void detail::check_options(const MeshFormat& format, const std::filesystem::path
     }
     if (!options.deck.empty() && !format.deck) {
         throw Error(ErrorCode::InvalidInput, "such files have their own sets and patches", path.string(),
-                    "a deck is read beside a .frd file of CalculiX, which has none");
+                    "a deck is read beside files that have none: " + extensions_with(&MeshFormat::deck));
     }
     if (!options.blocks.empty() && !format.blocks) {
         throw Error(ErrorCode::InvalidInput, "such files have no named blocks", path.string(),
-                    "blocks come from Exodus II, CGNS, .case, .inp and .vtm files");
+                    "those of these have: " + extensions_with(&MeshFormat::blocks));
     }
 }
 
@@ -422,8 +428,8 @@ std::vector<std::string> write_mesh(const std::filesystem::path& path, const Hex
     const auto writes = [&](const MeshFormat& format) {
         return format.write && std::ranges::find(format.extensions, path.extension().string()) != format.extensions.end();
     };
-    const auto format = std::ranges::find_if(kFormats, writes);
-    if (path.extension().empty() || format == kFormats.end()) refuse_format(path, "written", list_written_formats());
+    const auto format = std::ranges::find_if(all_formats(), writes);
+    if (path.extension().empty() || format == all_formats().end()) refuse_format(path, "written", list_written_formats());
     if (!shells.empty() && path.extension() != ".vtu") {
         throw Error(ErrorCode::InvalidInput, "shells and beams cannot be written to such files", path.string(), ".vtu");
     }

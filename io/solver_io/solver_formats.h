@@ -1,65 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <filesystem>
-#include <string_view>
-#include <vector>
-
-#include "subvol/read_options.h"
+#include "mesh_format.h"
 
 namespace subvol::detail {
 
-class Hdf5File;
-struct MeshFile;
-
-// The readers of solvers' files in the rows of the table of formats. Each `NAME_times` gives the times of the steps of a file.
-
-/// Reads a step of Exodus II.
-///
-/// throws: Error(MissingCapability) for an HDF5 file if this library is built without HDF5
-[[nodiscard]] ReadResult read_exodus(std::string_view text, std::string_view file, const ReadOptions& options);
-/// The same from a file; a name such as a.e.4.0 stands for the first of four pieces, which are joined.
-[[nodiscard]] ReadResult read_exodus_file(const std::filesystem::path& path, const ReadOptions& options);
-/// The number of pieces that such a name stands for; 0 if it is another name.
-[[nodiscard]] std::size_t exodus_parts(const std::filesystem::path& path);
-[[nodiscard]] MeshFile read_exodus_part(const std::filesystem::path& path, std::size_t part, const ReadOptions& options);
-[[nodiscard]] MeshFile read_exodus_piece(std::string_view text, std::string_view file, const ReadOptions& options);
-[[nodiscard]] std::vector<double> exodus_times(const std::filesystem::path& path);
-
-/// Reads a step of CalculiX's results, as text.
-[[nodiscard]] ReadResult read_frd(std::string_view text, std::string_view file, const ReadOptions& options);
-[[nodiscard]] std::vector<double> frd_times(const std::filesystem::path& path);
-
-/// Reads a step of the first base of a CGNS file in HDF5: structured and unstructured zones, as blocks that are joined.
-[[nodiscard]] ReadResult read_cgns(const std::filesystem::path& path, const ReadOptions& options);
-[[nodiscard]] ReadResult read_cgns(const Hdf5File& file, const ReadOptions& options);
-
-[[nodiscard]] std::vector<double> cgns_times(const std::filesystem::path& path);
-
-/// Reads a step of an EnSight Gold case, of text or of C's binary files. Its parts are joined.
-[[nodiscard]] ReadResult read_ensight(const std::filesystem::path& path, const ReadOptions& options);
-[[nodiscard]] std::vector<double> ensight_times(const std::filesystem::path& path);
-
-/// Reads a step of an OpenFOAM case. path: its folder, or a file in it
-[[nodiscard]] ReadResult read_foam(const std::filesystem::path& path, const ReadOptions& options);
-/// The number of processors of a decomposed case, else 1; and one of them as a part of the mesh.
-[[nodiscard]] std::size_t foam_parts(const std::filesystem::path& path);
-[[nodiscard]] MeshFile read_foam_part(const std::filesystem::path& path, std::size_t part, const ReadOptions& options);
-[[nodiscard]] std::vector<double> foam_times(const std::filesystem::path& path);
-
-/// Reads an Abaqus or CalculiX deck: nodes, elements of volumes, parts, instances, and sets of elements as blocks.
-[[nodiscard]] ReadResult read_inp(const std::filesystem::path& path, const ReadOptions& options);
-
-/// What a deck has, for a file of its results.
-///
-/// found:    its cells of volumes, sets, surfaces and blocks, with its points
-/// nodes:    the number of each point; elements: that of each cell, as cells are counted in `found`
-struct DeckContents {
-    MeshFile found;
-    std::vector<std::int64_t> nodes, elements;
-};
-
-/// throws: Error(InvalidInput) as `read_inp`, or if it has parts and instances, whose numbers are not those of the results
-[[nodiscard]] DeckContents read_inp_contents(const std::filesystem::path& path, const ReadOptions& options);
+/// The files of solvers and of their meshers. The only thing that is known outside of this room, and only if it is built in.
+[[nodiscard]] FormatFamily solver_formats();
 
 }  // namespace subvol::detail

@@ -20,7 +20,7 @@ WAYS_IN = {"lib": "subvol.h", "io": "io.h", "vdb": "vdb.h", "render": "render.h"
 def rooms(where):
     """The rooms of a component or of a wing, as lib/mesh, each with those that it uses, by its CMakeLists.txt."""
     text = (TOP / where / "CMakeLists.txt").read_text()
-    calls = re.findall(rf"^subvol_(?:room\({where} |extension\()(\w+)\n([^)]*)\)", text, re.M)
+    calls = re.findall(rf"^ *subvol_(?:room\({where} |extension\()(\w+)\n([^)]*)\)", text, re.M)
     uses = {name: re.search(r"USES ([\w ]+)", rest) for name, rest in calls}
     return {name: sorted(found[1].split()) if found else [] for name, found in uses.items()}
 

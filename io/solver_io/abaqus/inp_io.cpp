@@ -8,7 +8,7 @@
 #include "assemble.h"
 #include "inp_deck.h"
 #include "mesh_file.h"
-#include "solver_formats.h"
+#include "solver_readers.h"
 #include "subvol/detail/error_text.h"
 #include "subvol/error.h"
 

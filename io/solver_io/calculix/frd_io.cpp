@@ -15,7 +15,7 @@
 
 #include "assemble.h"
 #include "mesh_file.h"
-#include "solver_formats.h"
+#include "solver_readers.h"
 #include "subvol/detail/number_type.h"
 #include "subvol/detail/text_scanner.h"
 #include "subvol/error.h"

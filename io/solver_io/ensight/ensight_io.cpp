@@ -16,7 +16,7 @@
 #include "join_pieces.h"
 #include "mesh_file.h"
 #include "polyhedra.h"
-#include "solver_formats.h"
+#include "solver_readers.h"
 #include "subvol/detail/named_files.h"
 #include "subvol/detail/text_scanner.h"
 #include "subvol/error.h"

@@ -15,7 +15,7 @@
 #include "assemble.h"
 #include "join_pieces.h"
 #include "mesh_file.h"
-#include "solver_formats.h"
+#include "solver_readers.h"
 #include "subvol/detail/netcdf_source.h"
 #include "subvol/detail/read_file.h"
 #include "subvol/detail/scalar_groups.h"

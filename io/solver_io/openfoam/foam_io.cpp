@@ -15,7 +15,7 @@
 #include "join_pieces.h"
 #include "mesh_file.h"
 #include "polyhedra.h"
-#include "solver_formats.h"
+#include "solver_readers.h"
 #include "subvol/detail/counted_rows.h"
 #include "subvol/detail/gzip.h"
 #include "subvol/detail/named_files.h"

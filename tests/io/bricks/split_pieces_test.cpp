@@ -6,8 +6,8 @@
 #include <cmath>
 #include <random>
 
-#include "io/mesh_io/exodus_texts.h"
-#include "io/mesh_io/foam_texts.h"
+#include "io/solver_io/exodus_texts.h"
+#include "io/solver_io/foam_texts.h"
 #include "mesh_in_pieces.h"
 #include "subvol/model.h"
 
@@ -56,6 +56,7 @@ TEST_F(SplitPieces, TheBricksAreThoseOfTheWhole) {
     }
 }
 
+#ifdef SUBVOL_SOLVERS
 // Files that one name of Exodus stands for, joined by their places and by their node_num_map.
 TEST_F(SplitPieces, PiecesOfExodus) {
     const HexMesh mesh = test::make_box(4, 3, 2);
@@ -112,6 +113,7 @@ TEST_F(SplitPieces, ProcessorsOfOpenFoam) {
     EXPECT_THAT(split_pieces(path("c.bricks"), path("case/a.foam"), {.read = {.cell_values = CellValues::Mean}}).warnings,
                 testing::Contains(HasSubstr("array \"p\" left out: ")));
 }
+#endif
 
 TEST_F(SplitPieces, NumbersThatNumberNothingAreNotUsed) {
     const HexMesh mesh = ball();

@@ -140,21 +140,21 @@ TEST_F(MeshIo, ListedExtensionsAreThoseThatAreReadAndWritten) {
         write_mesh(path("a" + extension), kBox);
         EXPECT_EQ(read_mesh(path("a" + extension)).mesh.cells, kBox.cells);
     }
-    EXPECT_THAT(readable_mesh_extensions(), testing::Contains(".exo"));
+    EXPECT_THAT(readable_mesh_extensions(), testing::Contains(".xdmf"));
     EXPECT_THAT(writable_mesh_extensions(), ElementsAre(".mesh", ".vtu", ".vtkhdf", ".hdf"));
 }
 
 // What a file is decides, where it shows that beyond doubt; its name is believed otherwise.
 TEST_F(MeshIo, TheContentsDecideWhereTheEndingIsMisleading) {
     write_mesh(path("a.vtu"), kBox);
-    for (const auto& [from, to] : {std::array{"a.vtu", "a.vtk"}, std::array{"a.vtu", "a.e"}, std::array{"a.vtu", "a.case"}}) {
+    for (const auto& [from, to] : {std::array{"a.vtu", "a.vtk"}, std::array{"a.vtu", "a.msh"}, std::array{"a.vtu", "a.xdmf"}}) {
         std::filesystem::copy_file(path(from), path(to), std::filesystem::copy_options::overwrite_existing);
         const ReadResult result = read_mesh(path(to));
         expect_same_geometry(result.mesh, kBox);
         EXPECT_THAT(result.warnings, testing::Contains(HasSubstr("the contents are those of VTK XML, which decides")));
     }
     EXPECT_EQ(read("b.vtu", medit_text(kBox)).mesh.cells, kBox.cells);
-    EXPECT_EQ(read("b.inp", vtk_text(kBox)).mesh.cells, kBox.cells);
+    EXPECT_EQ(read("b.msh", vtk_text(kBox)).mesh.cells, kBox.cells);
     EXPECT_TRUE(read("b.mesh", medit_text(kBox)).warnings.empty());
     // Nothing that only suggests a format is stronger than the name.
     EXPECT_THAT(read_error("c.mesh", "** FORMAT *NODE ENSIGHT GEOMETRY"), HasSubstr("c.mesh, line 1"));

@@ -7,7 +7,7 @@
 #include <map>
 #include <numbers>
 
-#include "hdf5_texts.h"
+#include "io/mesh_io/hdf5_texts.h"
 #include "lib/temp_folder.h"
 #include "lib/test_meshes.h"
 #include "subvol/cell.h"

@@ -5,8 +5,8 @@
 
 #include <cstdio>
 
+#include "io/mesh_io/mesh_damage.h"
 #include "lib/test_meshes.h"
-#include "mesh_damage.h"
 #include "subvol/mesh_report.h"
 #include "subvol/mesh_series.h"
 

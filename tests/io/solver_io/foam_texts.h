@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "mesh_texts.h"
+#include "io/mesh_io/mesh_texts.h"
 #include "subvol/hex_mesh.h"
 
 namespace subvol::test::foam {

@@ -7,7 +7,7 @@
 #include <array>
 
 #include "exodus_expected.h"
-#include "hdf5_texts.h"
+#include "io/mesh_io/hdf5_texts.h"
 #include "lib/temp_folder.h"
 #include "lib/test_meshes.h"
 #include "subvol/mesh_series.h"

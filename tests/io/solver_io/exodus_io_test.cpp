@@ -6,8 +6,8 @@
 #include <limits>
 
 #include "exodus_expected.h"
+#include "io/mesh_io/mesh_damage.h"
 #include "lib/test_meshes.h"
-#include "mesh_damage.h"
 #include "subvol/mesh_report.h"
 #include "subvol/mesh_series.h"
 

@@ -9,9 +9,9 @@
 #include <random>
 #include <span>
 
+#include "io/mesh_io/mesh_damage.h"
+#include "io/mesh_io/mesh_texts.h"
 #include "lib/test_meshes.h"
-#include "mesh_damage.h"
-#include "mesh_texts.h"
 #include "subvol/mesh_report.h"
 #include "subvol/mesh_series.h"
 
