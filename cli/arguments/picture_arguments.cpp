@@ -73,23 +73,23 @@ void PictureArguments::add_light_to(CLI::App& app) {
                         .help("F", "the size of the letters and the bar of --legend in the picture, 1 by default"));
     add_option(app, Option("legend-format", legend_format)
                         .help("FORMAT", "how --legend writes numbers: %.2f, %g, %.3e (default: as many digits as they need)"));
-    app.add_option("--unit", unit, "the field's unit, which the legend shows")->type_name("TEXT");
-    app.add_flag("--axes", axes, "draw the directions of x, y and z in the lower left corner");
-    app.add_flag("--scale-bar", scale_bar,
-                 "draw a bar of a round length in the lower right corner, at the depth of the box's centre");
-    app.add_flag(
-        "--edges", edges,
-        "draw the edges of the control mesh into the picture, also where it is cut; hidden lines hidden, and in a volume "
-        "as far as what is before them is opaque");
-    app.add_flag(
-        "--extremes", extremes,
-        "mark the places of the least and the largest value, with the values: of the limit, as probe --stats finds them, as "
-        "far as --clip leaves it");
-    app.add_option(
-           "--background", background,
-           "the background: linear red, green, blue in 0..1, #rrggbb (sRGB), a name, or none (.png with alpha); default: light "
-           "grey for solid and isosurface, white for xray, black for volume")
-        ->type_name("COLOR");
+    add_option(app, Option("unit", unit).help("TEXT", "the field's unit, which the legend shows"));
+    add_option(app, Option("axes", axes).help("draw the directions of x, y and z in the lower left corner"));
+    add_option(app, Option("scale-bar", scale_bar)
+                        .help("draw a bar of a round length in the lower right corner, at the depth of the box's centre"));
+    add_option(app, Option("edges", edges)
+                        .help("draw the edges of the control mesh into the picture, also where it is cut; hidden lines hidden, "
+                              "and in a volume "
+                              "as far as what is before them is opaque"));
+    add_option(app, Option("extremes", extremes)
+                        .help("mark the places of the least and the largest value, with the values: of the limit, as probe "
+                              "--stats finds them, as "
+                              "far as --clip leaves it"));
+    add_option(app, Option("background", background)
+                        .help("COLOR",
+                              "the background: linear red, green, blue in 0..1, #rrggbb (sRGB), a name, or none (.png with "
+                              "alpha); default: light "
+                              "grey for solid and isosurface, white for xray, black for volume"));
 }
 
 void PictureArguments::settle_look(bool has_boundary) {

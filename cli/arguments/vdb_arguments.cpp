@@ -29,26 +29,27 @@ void VdbArguments::add_sizes_to(CLI::App& app) {
 }
 
 void VdbArguments::add_grids_to(CLI::App& app) {
-    app.add_option("--fields", fields,
-                   "fields to write, the first as fog volume; a field with three components becomes a grid of vectors, "
-                   "NAME.k is its component k. GRID=FIELD names the grid; GRID=EXPRESSION computes it from x, y, z and the "
-                   "fields, e.g. \"heat=(Temp-293)/620,speed=length(V)\"")
-        ->type_name("A,B=C");
+    add_option(
+        app, Option("fields", fields)
+                 .help("A,B=C",
+                       "fields to write, the first as fog volume; a field with three components becomes a grid of vectors, "
+                       "NAME.k is its component k. GRID=FIELD names the grid; GRID=EXPRESSION computes it from x, y, z and the "
+                       "fields, e.g. \"heat=(Temp-293)/620,speed=length(V)\""));
     app.add_option("--remap", remaps,
                    "values from LO to HI become 0 to 1, or A to B, what is beyond becomes the nearer of these; of the first "
                    "field or of GRID (repeatable)")
         ->type_name("[GRID=]LO,HI[:A,B]")
         ->allow_extra_args(false);
-    app.add_flag(
-        "--clamp", clamp,
-        "keep values within the range of the field at the mesh's points: interpolating schemes overshoot between them");
-    app.add_option("--up", up, "the axis that is up: z, or y as in most programs for pictures (default z)")->type_name("AXIS");
+    add_option(app, Option("clamp", clamp)
+                        .help("keep values within the range of the field at the mesh's points: interpolating schemes overshoot "
+                              "between them"));
+    add_option(app, Option("up", up).help("AXIS", "the axis that is up: z, or y as in most programs for pictures (default z)"));
     add_option(app, Option("scale", scale).positive().help("S", "multiply all coordinates by this"));
     for (const Option& option : options_of(grids)) {
         if (option.name != "voxel-size" && option.name != "resolution") add_option(app, option);
     }
-    app.add_flag("--error", error,
-                 "also write for each field a grid NAME_error: an upper bound of |value - limit| at each voxel");
+    add_option(app, Option("error", error)
+                        .help("also write for each field a grid NAME_error: an upper bound of |value - limit| at each voxel"));
     const std::vector<Option> level_set = options_of(level_set_asked);
     level_set_option = app.add_option("--sdf", level_set_asked.name, level_set.front().sentence);
     level_set_option->type_name(level_set.front().about)->expected(0, 1);
@@ -71,7 +72,7 @@ void VdbArguments::add_files_to(CLI::App& app) {
                          "make the grids in parts that take no more than this, e.g. 2G. If all together take no more, "
                          "NAME.vdb has them, else NAME_0000.vdb and so on; NAME.json lists the file or the files, and join "
                          "makes one of them. Of bricks also what the cells about a part take (default 1G)"));
-    app.add_flag("--nano", nano, "also write a NanoVDB file, NAME.nvdb; needs a build with NanoVDB");
+    add_option(app, Option("nano", nano).help("also write a NanoVDB file, NAME.nvdb; needs a build with NanoVDB"));
 }
 
 void VdbArguments::add_frames_to(CLI::App& app) {
@@ -80,12 +81,14 @@ void VdbArguments::add_frames_to(CLI::App& app) {
                    "padded with zeros to that many digits")
         ->type_name("A-B")
         ->transform(frame_range());
-    app.add_option("--to", to,
-                   "a sequence from FILE to this mesh of the same cells: points and values are interpolated linearly")
-        ->type_name("FILE");
-    app.add_flag("--velocity", velocity,
-                 "also write a grid of vectors, named vel: the velocity of the volume, in world units per frame; of steps per "
-                 "unit of their time; of a mesh that stands still that of the flow in it (U, V, velocity)");
+    add_option(app,
+               Option("to", to).help(
+                   "FILE", "a sequence from FILE to this mesh of the same cells: points and values are interpolated linearly"));
+    add_option(
+        app,
+        Option("velocity", velocity)
+            .help("also write a grid of vectors, named vel: the velocity of the volume, in world units per frame; of steps per "
+                  "unit of their time; of a mesh that stands still that of the flow in it (U, V, velocity)"));
     add_option(app, Option("fps", frames_per_second)
                         .positive()
                         .help("F", "with --velocity: in world units per second, at this many frames per second")

@@ -1,4 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
+// From the word FILE of a command to the mesh that its verb works on, in this order:
+//
+//     kind      a mesh, a generated model, a folder of bricks, points, a grid or a picture, by the name and the extension
+//     read      the file, the model or all bricks; between two steps, points and values are interpolated linearly in time
+//     at rest   a density by an expression, and every quantity that is asked for, are computed in the whole mesh
+//     only      the cells of the regions are taken out, or flagged where the verb works in the whole mesh
+//     warp      points move by a vector field times a factor
+//     patch     faces of the boundary become shells, and no cell is left
+//     opacity   translucent parts become shells, and the opaque rest stays a mesh
+//     field     one scalar is selected, and a second one if another quantity gives the colours
+//
+// Quantities come before the cut and the motion, so that they are those of the body as it was given. Where a part is cut out,
+// its limit would differ from that of the whole near the cut; such a part is refined at most a few times, so that the two are
+// near each other, and what is left of the difference is said.
 #include "input.h"
 
 #include <algorithm>

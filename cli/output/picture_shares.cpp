@@ -1,4 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
+// A picture by several processes, each of which draws the rows of its share.
+//
+//     alone (a part as a file)   all kernels are at hand; those that touch no row of the share are left out
+//     ranks                      each rank takes a range of the kernels and sends every rank those that touch its rows
+//
+//              kernels 0 … n/2 ─ rank 0 ─┬──────► rows of rank 0 ─┐
+//                                        ╳                        ├─► rank 0 joins the rows
+//              kernels n/2 … n ─ rank 1 ─┴──────► rows of rank 1 ─┘
+//
+// Kernels arrive in the order of ranks, which is their order in the whole volume, so that the rows have the bits of one
+// process. Without a boundary, and with shadows or ambient occlusion, a pixel may depend on any kernel: then every rank gets
+// all of them. A mesh in pieces is sampled piece by piece. All ranks take part in as many rounds, because they exchange
+// kernels in each; a rank without a piece left sends none. The numbers of tetrahedra of pieces, and their boxes, are gathered
+// and added up likewise.
 #include "picture_shares.h"
 
 #include <algorithm>

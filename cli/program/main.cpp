@@ -1,4 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
+// The program: it parses the words of the command line, runs one verb, and turns whatever is thrown into one message and one
+// exit code.
+//
+//     words ─► parser ─► verb ─► report          code 0, or 1 if a comparison failed
+//                │        │
+//                └────────┴────► error           2 bad input, 3 something is missing, 128 + the signal if it is interrupted
+//
+// An error goes to standard error as a sentence with its place; with --json an object on standard output says it, too. Of
+// several processes that MPI started, rank 0 alone speaks, and all end with the error of any: the ranks agree on it before one
+// of them ends, as mpirun ends the others with the first. The cores of a computer are divided among its ranks. Before the
+// parser runs, closed standard streams are filled, so that no output file takes their place, and numbers get a point whatever
+// the locale is.
 #include <execinfo.h>
 #include <fcntl.h>
 #include <tbb/global_control.h>

@@ -1,4 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
+// The manual page, from the same table of arguments by which the program parses its command line. Each verb gives its name,
+// description, options in groups and footer; each option its names, the type of its value, the allowed range, and what it
+// needs or excludes. Chapters on the volume, the fields and the files come before the verbs, others after them. All words are
+// written as roff: its own characters are escaped, a hyphen becomes a minus, and a character of several bytes becomes its code
+// point. The date is that of SOURCE_DATE_EPOCH if it is set, so that a repeated build has the same page.
 #include "manual.h"
 
 #include <CLI/CLI.hpp>

@@ -1,4 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
+// Cases of studies that compare fields, without a picture. Each case gets the mesh of its input, makes something of it, and
+// measures the difference from the limit at random places in the mesh, or at the points that one refinement adds.
+//
+//     mesh ─┬─► kernels, every second of them, or fewer within a target error
+//           ├─► voxels, written to a file and read again
+//           ├─► a coarser control mesh, fitted or of wavelets          ─► error at the places, number of kernels or voxels,
+//           └─► values at new points by a rule                            bytes of the file
+//
+// One case only counts kernels and tetrahedra. Errors are given in the field's unit, as root mean square and largest, and in
+// parts of the range of the mesh's values. A file is measured as it is read again, so that rounding counts, and it is
+// temporary.
 #include <algorithm>
 #include <cassert>
 #include <cmath>

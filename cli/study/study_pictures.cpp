@@ -1,4 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
+// Cases of studies that draw pictures, and the references that these are compared with. A case draws its scene by its method:
+// as often as the case says, of which the least time counts. The picture may also be that of the closed form of a model, or a
+// file that another program made with the same camera. It is compared with the reference by the case's metrics and written
+// beside maps of the difference and of its sign. If the reference is drawn by the same method, no finer than the case, nothing
+// is compared.
+//
+// A reference is refined until its picture changes by less than the tolerance. The picture of the step before tells how well
+// each metric is known: its value between the two is the metric's floor, because the error of the finer one is less than its
+// change as long as each step makes it smaller by half or more. Cases take the floors over from their reference.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -250,10 +259,6 @@ CaseResult run_picture_case(const StudyCase& item, const CasePlace& place) {
     result.notes["reference"] = reference_case->id;
     return result;
 }
-
-// A reference is refined until its picture changes by less than the tolerance. The picture of the step before tells how well
-// each metric is known: its value between the two is the metric's floor, because the error of the finer one is less than its
-// change as long as each step makes it smaller by half or more.
 
 CaseResult run_reference(const StudyCase& item, const CasePlace& place) {
     CaseResult result;

@@ -1,4 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+// The figures of a mesh in two forms: lines of words for people, and JSON for programs and for shares that are joined later.
+//
+//     share of cells ─► counts, volumes, numbers of inverted cells ─► JSON ─► all shares ─► one report ─► lines, verdict
+//
+// Counts of shares are added up under the names of the JSON, so one table of names and members serves writing and reading.
+// Figures that are read from a file are checked: a count is a whole number of 0 or more, and anything else is an error that
+// names the file. The verdict is "sound", or lists what is wrong: inverted cells by their first numbers, cells without volume,
+// edges at which more than two boundary faces meet.
 #include "mesh_figures.h"
 
 #include <algorithm>

@@ -1,4 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
+// What is found at places, over parts of the body and over patches, as JSON, as lines for people, as a table and as a plot.
+//
+//     places    value and gradient of each field and channel; outside the volume null in JSON, and empty in a table
+//     parts     volume, and for each field its mean, integral, extremes with their places, and a histogram
+//     patches   area, the same figures of fields, and the flow out through the patch
+//
+// Figures are those of the limit, each with how far it may be off; beside them stand those of the cells as the file has them,
+// after "file". Warnings say where the two differ. A plot along a line has gaps where the line is outside. A table has all
+// digits of its numbers; lines for people are limited in number.
 #include "probe_output.h"
 
 #include <algorithm>

@@ -1,4 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
+// The verb `approximate`: it fits a control mesh to data, so that the limit of the mesh has the fields or the shape of the
+// data.
+//
+//     data      a mesh, or a table of places and values           ─► samples
+//               a grid, read at places in each control cell       ─► samples
+//               a surface, or a level set where its distance is 0 ─► surface
+//     shape     the control points move until the limit's boundary is near the surface, if that is asked for
+//     fields    values at the control points by least squares of the limit at the samples
+//     output    the control mesh with these values, and the errors at the samples and between them
+//
+// Of a series, each step or frame is fitted onto the same control mesh; one approximator keeps the places of the samples in
+// the mesh while they stay the same, and says how often it had to find them. The exit code is 1 if a fitted shape is not
+// sound.
 #include <CLI/CLI.hpp>
 #include <functional>
 #include <optional>
@@ -75,8 +88,8 @@ public:
             ->transform(frame_range());
         scheme_.add_scheme_to(app());
         add_options(app(), options_of(options_));
-        CLI::Option* shape =
-            app().add_flag("--shape", shape_, "move the control points first: the limit's boundary to that of DATA");
+        CLI::Option* shape = add_option(
+            app(), Option("shape", shape_).help("move the control points first: the limit's boundary to that of DATA"));
         add_options(app(), options_of(shaping_));
         for (const char* name : {"--shape-rounds", "--stiffness", "--keep-folds", "--boundary-move"})
             app().get_option(name)->needs(shape);

@@ -40,7 +40,7 @@ public:
         app().add_option("FILE", input_, input_help())->required();
         scheme_.add_scheme_to(app());
         add_options(app(), options_of(options_));
-        CLI::Option* mend = app().add_flag("--mend", mend_, "move control points until the limit does not fold");
+        CLI::Option* mend = add_option(app(), Option("mend", mend_).help("move control points until the limit does not fold"));
         mend->needs(
             app().add_option("-o,--output", output_, "the mended mesh (.vtu, .vtkhdf)")->type_name("FILE")->needs(mend));
         add_options(app(), options_of(mending_));

@@ -1,4 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
+// The verb `compare`: how much A differs from B, the reference. Two pictures are compared by their pixels, two fields at
+// random places in the domain of B:
+//
+//     both inputs ─► a view of each field ─► l1, l2, linf and gradients at N places
+//                                         ─► integrals over the domains, and Hausdorff distance of isosurfaces
+//                                         ─► the vertices that the first refinement of the mesh B adds
+//
+// Places at which A has no value count as uncovered. If less than a given share of them is covered, no demand counts as met,
+// as the figures are then those of a part of B. Each demand METRIC=VALUE is judged by whether more or less of its metric is
+// better; the exit code is 1 if one is not met. Names of metrics and the kinds of the inputs are checked before anything long
+// begins.
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <iomanip>

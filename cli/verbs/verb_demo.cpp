@@ -1,4 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
+// The verb `demo`: the whole way from a generated model to a judged picture, for three models.
+//
+//     model ─┬─► kernels ─► splats ───────────────────────┐
+//            ├─► lit picture, as the verb `render` draws  ├─► PSNR, map of the difference
+//            └─► refined mesh ─┬─► rays through tetrahedra┘
+//                              └─► grid of voxels
+//
+// The mesh is refined as often as its cells stay below a bound, as the memory of the rays grows with them. Seconds of each
+// stage, counts and names of files go into a summary in JSON, and into a page that shows the pictures of each model in a row.
 #include <sys/utsname.h>
 #include <tbb/global_control.h>
 

@@ -33,8 +33,9 @@ public:
                "  subvol fit --kernel bc --scheme cc --json\n"
                "  subvol fit --kernel '{\"type\": \"gaussian\", \"sigma\": 0.5}'",
                Reads::NoMesh) {
-        app().add_flag("--table1", table1_, "table 1 of the EuroVis 2007 paper: its figures, ours, and the difference");
-        app().add_flag("--kernels", kernels_, "fit every kind of kernel: parameters and errors");
+        add_option(app(),
+                   Option("table1", table1_).help("table 1 of the EuroVis 2007 paper: its figures, ours, and the difference"));
+        add_option(app(), Option("kernels", kernels_).help("fit every kind of kernel: parameters and errors"));
         add_option(app(), Option("kernel", kernel_)
                               .offer(kernel_names())
                               .help("NAME|JSON", text("fit this one: ", join(kernel_names()),

@@ -1,4 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
+// The verb `info`: the figures of what a file holds, by its kind.
+//
+//     mesh     counts, volume, quality, fields, blocks, patches, sets and steps, and a verdict; also folds of the limit, its
+//              volume, or the figures of refined tetrahedra, if these are asked for
+//     bricks   the same counts, found brick by brick
+//     points   kernel, channels and boundary; of a file with levels of detail its head alone is read
+//     grids    kind, active voxels, range and hash of each, and values at given places
+//
+// A mesh can be inspected in shares: each process finds the figures of a range of cells, and they are joined, or written as
+// JSON for `join`. Options that a kind cannot have are refused. --field limits what is listed to one name.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <optional>
@@ -57,10 +67,12 @@ public:
                "{proved, folded, undecided, irregular} and open_volume, as of "
                "check.") {
         app().add_option("FILE", input_, text(input_help(), ", or a .vdb file, or points (.ply, .vtp, .svk)"));
-        app().add_flag("--list-fields", list_fields_, "print the names of a mesh's fields only, one a line");
-        app().add_flag("--folds", folds_, "how many cells are proved not to fold in the limit of MCQ (check: where they fold)");
-        app().add_flag("--limit", limit_, "volume and box of the limit of MCQ, too");
-        app().add_flag("--gl", gl_, "list the OpenGL devices that can splat");
+        add_option(app(), Option("list-fields", list_fields_).help("print the names of a mesh's fields only, one a line"));
+        add_option(
+            app(),
+            Option("folds", folds_).help("how many cells are proved not to fold in the limit of MCQ (check: where they fold)"));
+        add_option(app(), Option("limit", limit_).help("volume and box of the limit of MCQ, too"));
+        add_option(app(), Option("gl", gl_).help("list the OpenGL devices that can splat"));
         app()
             .add_option("--at", points_,
                         "print the values of a .vdb file's grids there, or of the one that --field names (repeatable)")

@@ -47,10 +47,9 @@ public:
                "united, cavities, cavities_alike, copies, sheets, turned, one_sided, many_edges}.") {
         app().add_option("FILE", input_, "a closed surface (.stl, .obj, .ply, .glb), or a .vdb grid of floats")->required();
         app().add_option("-o,--output", output_, "the control mesh (.vtu, .vtkhdf)")->type_name("FILE")->required();
-        app()
-            .add_option("--iso", iso_,
-                        "of a grid: the surface where it has this value (fog: half of its greatest; level sets: 0)")
-            ->type_name("V");
+        add_option(app(),
+                   Option("iso", iso_)
+                       .help("V", "of a grid: the surface where it has this value (fog: half of its greatest; level sets: 0)"));
         scheme_.add_scheme_to(app());
         add_options(app(), options_of(options_));
         set_essentials(

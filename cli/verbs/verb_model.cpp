@@ -27,7 +27,7 @@ public:
             .add_option("-o,--output", output_, "the mesh to write (.vtu or .vtkhdf with its field, .mesh without)")
             ->type_name("FILE");
         add_option(app(), Option("resolution", resolution_).between(2, 512).help("N", "cells along the main direction"));
-        app().add_flag("--list", list_, "list the models");
+        add_option(app(), Option("list", list_).help("list the models"));
     }
 
     int run(Report& report) override {

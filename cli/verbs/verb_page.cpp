@@ -1,7 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
+// The verb `page`: one HTML file in which a volume can be turned, coloured and clipped without a network.
+//
+//     each step   mesh ─► fields as scalars ─► kernels, and values on the boundary's surface
+//     all steps   one box, one range for each field, one transfer function for each field
+//     page        kernels are rounded and merged until the file is no larger than asked; the errors of that are said
+//
+// All steps must have the fields of the first, in the same order. A level set gives one step with the body inside its surface.
+// The camera is the one that `render` would take. Unless it is left out, a picture of the first view by splats is added, with
+// which a reader's drawing can be compared. A title or source on the page never has the folder of the file.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>
+#include "options.h"
 
 #include "grid_fields.h"
 #include "grid_input.h"
@@ -19,6 +29,7 @@
 #include "subvol/detail/atomic_file.h"
 #include "subvol/detail/refuse_surface.h"
 #include "subvol/error.h"
+#include "subvol/option.h"
 #include "subvol/page.h"
 #include "subvol/quantity.h"
 #include "subvol/splat.h"
@@ -53,11 +64,11 @@ public:
                         "error")
             ->type_name("B")
             ->transform(number_in(1e4, 2e9));
-        app().add_option("--title", title_, "the page's title (default: the file's name)")->type_name("TEXT");
-        app().add_flag("--no-reference", no_reference_, "without the picture of `render` to compare with");
+        add_option(app(), Option("title", title_).help("TEXT", "the page's title (default: the file's name)"));
+        add_option(app(), Option("no-reference", no_reference_).help("without the picture of `render` to compare with"));
         picture_.add_some_to(app(), {"--size", "--camera", "--view", "--ortho", "--look", "--tf", "--range", "--log",
                                      "--symlog", "--bands", "--below", "--above", "--opacity", "--opacity-unit"});
-        app().add_option("--unit", unit_, "the first field's unit, for the legend")->type_name("TEXT");
+        add_option(app(), Option("unit", unit_).help("TEXT", "the first field's unit, for the legend"));
         sample_.add_to(app());
         refine_.add_to(app(), "show the refined mesh of this level instead of the limit");
         set_essentials({"--output", "--fields", "--field", "--look", "--tf", "--opacity", "--view", "--camera", "--max-bytes",

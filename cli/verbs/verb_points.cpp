@@ -1,4 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
+// The verb `points`: it turns a volume into kernels, or, with a tolerance, into a compressed mesh.
+//
+//     mesh or grid ─► kernels ─► merged, values clamped, a channel of errors added ─► one file
+//     bricks       ─► kernels brick by brick, each written as it is made           ─► one file
+//     steps        ─► kernels of each step                                         ─► a file for each
+//     mesh         ─► wavelets of one field, within a root mean square error       ─► .svw
+//     mesh, steps  ─► all fields, each value within a largest error                ─► .svw
+//
+// Shares are ranges of the kernels in their order, ranges of bricks, or some of the steps; their files, or what ranks make,
+// join to what one process would write. Options of kernels are refused where a compressed mesh is written.
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <optional>
@@ -137,9 +147,12 @@ public:
         add_option(app(), Option("tf", transfer_function_)
                               .help("FILE|NAME", "the colour map for --threshold, as for `render`")
                               .only_with("threshold"));
-        app().add_flag("--clamp", clamp_, "keep the kernels' values within the field's range: interpolating schemes overshoot");
-        app().add_flag("--error", error_,
-                       "also write a channel NAME_error: about how far the sum of kernels is from the limit near each");
+        add_option(
+            app(),
+            Option("clamp", clamp_).help("keep the kernels' values within the field's range: interpolating schemes overshoot"));
+        add_option(app(),
+                   Option("error", error_)
+                       .help("also write a channel NAME_error: about how far the sum of kernels is from the limit near each"));
         add_option(app(),
                    Option("merge", merge_error_)
                        .positive()

@@ -1,4 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
+// The verb `probe`: it evaluates the limit. Three kinds of questions can be asked of one body:
+//
+//     places    values, gradients, cell and parameters at points, along a line, or at the rows of a table
+//     stats     integrals, means, extremes and a histogram, of the whole and of each block and set
+//     patches   area and means over parts of the boundary, and the flow of a vector field out through them
+//
+// Regions of --only that choose whole cells are taken as flags of cells in the whole mesh, so that the limit stays that of the
+// whole; regions of space are cut out of the limit itself. With a scheme of tetrahedra the volume is that of a refined level,
+// linear between its vertices. Of a series, one of these questions is asked at each step, and a table shows the answers over
+// time.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <string>
@@ -92,8 +102,11 @@ public:
             ->transform(number_list(6, "0,0,0,1,1,1: its two ends"));
         add_option(app(),
                    Option("count", count_).between(2, 10000000).help("N", "how many places on the line").only_with("line"));
-        app().add_option("--points", points_, "a table of places: three numbers a line, or columns x, y, z")->type_name("FILE");
-        app().add_flag("--stats", stats_, "integral, mean, extremes with their places, histogram; of each block and set, too");
+        add_option(app(),
+                   Option("points", points_).help("FILE", "a table of places: three numbers a line, or columns x, y, z"));
+        add_option(
+            app(),
+            Option("stats", stats_).help("integral, mean, extremes with their places, histogram; of each block and set, too"));
         add_option(app(), options_of(measured_).back().only_with("stats"));
         app()
             .add_option("--patch", patches_,

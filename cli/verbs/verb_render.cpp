@@ -1,4 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
+// The verb `render`: pictures and videos of a volume.
+//
+//     input ─► body             a mesh in memory or in bricks, voxels, kernels, or a file of kernels with levels of detail
+//              field, colours   the field of the opacities first, that of the colours last, with their ranges
+//              notes            streamlines, shells, edges, marks of extremes, a scale bar, a legend
+//              views            from a named direction, several of them, or a turntable
+//           ─► maker            draws the body in a view by the method, with depths for what lies within
+//           ─► output           one file for each view, or the frames of a video
+//
+// Of steps all are read once for a common box and common ranges, and each again for its picture. Shares are rows of one
+// picture, which splats and tetrahedra can be drawn in, or else whole frames. The limit of a mesh is compared with the file's
+// cells once for all steps, and a warning says where they differ.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <iterator>
@@ -33,6 +45,7 @@
 #include "subvol/limit.h"
 #include "subvol/measure.h"
 #include "subvol/method.h"
+#include "subvol/option.h"
 #include "subvol/quantity.h"
 #include "subvol/shell_scene.h"
 #include "text.h"
@@ -213,8 +226,8 @@ public:
         add_part_opacities(
             "of a solid: the opacity of the surface of a set of cells or of a region as of --only, 0 to 1; 0 leaves it out "
             "(repeatable)");
-        app().add_option("--title", picture_.title, "a line of text above the body")->type_name("TEXT");
-        app().add_flag("--time-label", picture_.time_label, "draw the time of the step above the body");
+        add_option(app(), Option("title", picture_.title).help("TEXT", "a line of text above the body"));
+        add_option(app(), Option("time-label", picture_.time_label).help("draw the time of the step above the body"));
         share_.add_to(app(), "rows of the picture, or some of the frames");
         set_essentials({"--output", "--field", "--look", "--tf", "--opacity", "--background", "--size", "--view", "--views",
                         "--camera", "--turntable", "--legend", "--per-edge", "--method", "--levels", "--json"});

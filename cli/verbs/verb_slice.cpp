@@ -1,4 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
+// The verb `slice`: a field of the limit on a plane.
+//
+//     plane ─► raster of places, each with its cell and value ─┬─► colours, contour lines, labels, axes, legend ─► picture
+//                                                              └─► squares and lines, or a row for each place  ─► .vtp, .csv
+//
+// Places outside the volume have no cell and stay empty. N contours lie at min + (max − min) c / (N + 1), c from 1 to N. Area,
+// mean and extremes on the plane are given of the limit, and beside them of the cells as the file has them; of a mesh in
+// memory the extremes are searched for between the places, of bricks they are those of the places. Contour lines are light on
+// dark colours and dark on light ones. The coordinates along a side are x, y or z where the side is parallel to one of them.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
@@ -68,12 +77,15 @@ public:
         add_option(app(), Option("contours", contours_)
                               .between(1, 1000)
                               .help("N", "lines at this many values between the least and the largest on the plane"));
-        app().add_flag("--contour-labels", contour_labels_, "write the values of --contours on the lines");
-        app().add_flag(
-            "--axes", axes_,
-            "coordinates along the sides of the picture: x, y or z where a side is parallel to one, else lengths from "
-            "the plane's point");
-        app().add_flag("--extremes", extremes_, "mark the least and the largest value on the plane, with the values");
+        add_option(app(), Option("contour-labels", contour_labels_).help("write the values of --contours on the lines"));
+        add_option(
+            app(),
+            Option("axes", axes_)
+                .help(
+                    "coordinates along the sides of the picture: x, y or z where a side is parallel to one, else lengths from "
+                    "the plane's point"));
+        add_option(app(),
+                   Option("extremes", extremes_).help("mark the least and the largest value on the plane, with the values"));
         add_option(app(), Option("tf", function_).help("FILE|NAME", "the colours: a preset, or a colour map of ParaView"));
         add_option(
             app(),
@@ -86,7 +98,7 @@ public:
             if (std::ranges::find(kShape, option.name) != kShape.end()) add_option(app(), option);
         }
         add_option(app(), Option("background", background_).help("COLOR", "the colour outside the volume, of a .png"));
-        app().add_flag("--no-legend", no_legend_, "the picture alone");
+        add_option(app(), Option("no-legend", no_legend_).help("the picture alone"));
         add_option(app(), Option("unit", unit_).help("TEXT", "of the field, for the legend").instead_of({"no-legend"}));
         scheme_.add_scheme_to(app());
         set_essentials({"--output", "--plane", "--resolution", "--contours", "--axes", "--tf", "--range", "--field", "--json"});

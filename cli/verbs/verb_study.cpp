@@ -1,4 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
+// The verb `study`: it runs the cases of studies and writes a report.
+//
+//     names or files ─► studies ─► cases, each in a process of its own ─► results ─► tables, plots, manifest of hashes
+//                                                                         │
+//     results that earlier runs left in the folder ───────────────────────┴──────► one report of all
+//
+// Cases that are finished are kept and not run again unless that is asked for. Where costs are measured, cases run one after
+// the other with all cores; else several run at the same time and share the cores. A folder is locked while a run writes to
+// it. A study that can no longer be read is left out of the report with a warning. The exit code is 1 if a case fails, a
+// demand of a study is not met, or a reference did not converge where that is required.
 #include <tbb/global_control.h>
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -137,22 +147,23 @@ public:
             .add_option("-o,--output", output_,
                         "the folder: report.html, and for each study a folder with results.csv, costs.csv, cases, pictures")
             ->type_name("DIR");
-        app()
-            .add_option("--mesh", meshes_, "another mesh for the study, with the options of its first input (repeatable)")
-            ->type_name("FILE");
+        add_option(app(), Option("mesh", meshes_)
+                              .help("FILE", "another mesh for the study, with the options of its first input (repeatable)"));
         add_option(app(), Option("jobs", jobs_)
                               .between(1, 1024)
                               .help("N", "cases that run at the same time, unless costs are measured (default: one per core)"));
-        auto* resume = app().add_flag(
-            "--resume", resume_, "keep the cases that an earlier run of this version finished in the folder (the default)");
+        auto* resume = add_option(
+            app(), Option("resume", resume_)
+                       .help("keep the cases that an earlier run of this version finished in the folder (the default)"));
         app().add_flag("--fresh", fresh_, "run all cases again")->excludes(resume);
-        app().add_flag("--pages", pages_,
-                       "also a page for each input, on which it can be turned (as `page`); the report links to them");
-        app().add_flag("--exr", exr_, "also keep the pictures of all cases as .exr, with a manifest of hashes");
-        app().add_flag("--require-converged", require_converged_, "exit with 1 if a reference did not converge");
-        app().add_flag("--list", list_, "list the studies");
-        app().add_flag("--keys", keys_, "print all keys, metrics and options of studies as tables (Markdown)");
-        app().add_option("--print", print_, "print a built-in study's file, as a start for your own")->type_name("NAME");
+        add_option(app(),
+                   Option("pages", pages_)
+                       .help("also a page for each input, on which it can be turned (as `page`); the report links to them"));
+        add_option(app(), Option("exr", exr_).help("also keep the pictures of all cases as .exr, with a manifest of hashes"));
+        add_option(app(), Option("require-converged", require_converged_).help("exit with 1 if a reference did not converge"));
+        add_option(app(), Option("list", list_).help("list the studies"));
+        add_option(app(), Option("keys", keys_).help("print all keys, metrics and options of studies as tables (Markdown)"));
+        add_option(app(), Option("print", print_).help("NAME", "print a built-in study's file, as a start for your own"));
         app().add_option("--case", case_)->group("");  // how the verb runs its cases, each in a process of its own
         app().add_option("--case-of", case_of_)->group("");
     }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <CLI/CLI.hpp>
+#include "options.h"
 
 #include "grid_fields.h"
 #include "input.h"
@@ -11,6 +12,7 @@
 #include "subvol/limit_shells.h"
 #include "subvol/mesh_report.h"
 #include "subvol/mixed_file.h"
+#include "subvol/option.h"
 #include "subvol/region.h"
 #include "tet_refinement.h"
 #include "text.h"
@@ -31,10 +33,12 @@ public:
             ->type_name("FILE")
             ->required();
         refine_.add_to(app(), "number of refinements (default 1)");
-        app().add_flag("--on-limit", on_limit_, "move the refined points to the limit (those of mcq and linear lie on it)");
-        app().add_flag(
-            "--clamp", clamp_,
-            "keep values within the ranges of the fields at the mesh's points: interpolating schemes overshoot between them");
+        add_option(
+            app(),
+            Option("on-limit", on_limit_).help("move the refined points to the limit (those of mcq and linear lie on it)"));
+        add_option(app(), Option("clamp", clamp_)
+                              .help("keep values within the ranges of the fields at the mesh's points: interpolating schemes "
+                                    "overshoot between them"));
     }
 
     int run(Report& report) override {

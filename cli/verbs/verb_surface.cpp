@@ -67,7 +67,7 @@ public:
             ->type_name("NAME")
             ->allow_extra_args(false)
             ->excludes("--iso", "--cap");
-        app().add_flag("--keep-slivers", keep_slivers_, "leave triangles with small angles as they are");
+        add_option(app(), Option("keep-slivers", keep_slivers_).help("leave triangles with small angles as they are"));
         add_option(app(), Option("color-field", color_field_)
                               .help("NAME", "colour the points by this field (default in .ply, .obj, .glb: none)"));
         add_option(app(), Option("tf", function_)

@@ -1,4 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
+// The verb `vdb`: grids of voxels, one for each field, from a mesh, a sequence or points.
+//
+//     bricks   blocks of voxels, each from the cells about it; memory is that of a block
+//     steps    a file for each step of a series, with velocities from the times of the steps
+//     frames   a file for each mesh of a numbered sequence, or for each frame on the way from one mesh to another
+//     points   sums of kernels in voxels
+//     share    one slab of the voxels, to be joined
+//     mesh     all voxels at once, or in parts within a given memory
+//
+// The first of these that fits the input and the options is done. Shares keep all bits of their values: they are rounded to 16
+// bits where all voxels are at hand, so that the result does not depend on the number of shares. Of a mesh or of points, a
+// result without any voxel is an error that suggests finer ones.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <optional>

@@ -1,4 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
+// The verb `view`: a session in which a volume is shown and changed by actions, in a window or by a script without one.
+//
+//     file and options ─► source   reads a step, refines, seeds streamlines, writes and measures pictures
+//                      ─► body     a mesh, kernels of points, or voxels with kernels of them
+//                      ─► state    camera, field, colours, cuts and method, as `render` would begin
+//                      ─► session  runs actions, draws, and gives the state and the command of `render` for it
+//
+// Actions change the state alone; the options that no action changes are kept as words, those of reading the file apart from
+// the others, so that the command draws the same picture. The window opens other files in the same way, one at a time, without
+// the options that were about the first. A script reports how long each action waits for a first and for the full picture.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
@@ -74,10 +84,11 @@ public:
             text(input_help(),
                  "; or points (.ply, .vtp, .svk, .vdb), or a .vdb grid of floats (a level set: its surface). Without a "
                  "file the window begins with a page that opens one"));
-        app().add_option("--script", script_, "run a script of actions without a window, then quit")->type_name("FILE.json");
-        app().add_option("--screenshot", screenshot_, "write the last picture (.png or .exr), then quit")->type_name("FILE");
-        app().add_flag("--window", window_, "play the --script in the window; --screenshot is then of the whole window");
-        app().add_option("--state", saved_, "begin with a state that a session has saved")->type_name("FILE.json");
+        add_option(app(), Option("script", script_).help("FILE.json", "run a script of actions without a window, then quit"));
+        add_option(app(), Option("screenshot", screenshot_).help("FILE", "write the last picture (.png or .exr), then quit"));
+        add_option(app(),
+                   Option("window", window_).help("play the --script in the window; --screenshot is then of the whole window"));
+        add_option(app(), Option("state", saved_).help("FILE.json", "begin with a state that a session has saved"));
         app()
             .add_option("--method", method_name_, text(subvol::names_of(kViewMethods), ", as of render (default splat)"))
             ->type_name("NAME")
