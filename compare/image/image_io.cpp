@@ -1,4 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
+// Pictures in files. In memory they are linear, with colours that are multiplied by alpha.
+//
+//     write   .exr   the values as they are, with depths, the camera, and the data window inside the display window
+//             .png   8 bits of sRGB: over a background, c + (1 − α) b, or without one with c / α and α
+//             .jpg, .webp   the same over a background, which they need
+//     read    OpenEXR first, OpenImageIO for what it does not take; whole numbers are sRGB and become linear
+//
+// The byte of a linear value is found in a table of the least value of each byte, which bisection of the exact curve gives: a
+// bin of [0, 1] tells where to begin, and a step or more leads to the byte. Files are written beside their place and take
+// their name when they are complete. Two pictures are compared where their data windows overlap, if they have the same display
+// window.
 #include "subvol/image_io.h"
 
 #include <algorithm>

@@ -1,4 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
+// Plots of lines over two axes, linear or logarithmic, as SVG and as PDF by the same drawing onto a canvas.
+//
+//     points ─► range with a margin ─► axes ─► ticks, thinned until labels are apart ─► grid, labels
+//            ─► strands between breaks, markers, bars of spreads, hollow markers of bounds
+//            ─► band beyond the floor of the reference
+//            ─► legend below, in one to three columns
+//
+// Points that an axis cannot show, such as 0 on a logarithmic one, are left out. Logarithmic ticks are at decades, or at 1, 2
+// and 5 of each where there are few; where fewer than two fit, ticks are linear. Lengths are in proportion to the font. The
+// order of convergence in the legend is the slope of log y over log x by least squares.
 #include "subvol/plot.h"
 
 #include <algorithm>

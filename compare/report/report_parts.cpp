@@ -1,4 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
+// Parts of the report of a study as HTML: tables, plots, pictures and failures. The page needs no other file: pictures are
+// data URIs, plots are SVG. Cases of a plot are grouped by the panel that they are shown in, then by the line that they belong
+// to. A line joins cases that differ in the option that is swept; those that differ only in what is averaged are one place
+// with a bar for the deviation. Figures beyond the floor of their reference are bounds, drawn hollow, and the area beyond the
+// worst floor is grey. A table's letters are counted to choose how small it is printed.
 #include "report_parts.h"
 
 #include <algorithm>

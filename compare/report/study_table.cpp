@@ -1,4 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
+// Tables from the results of a study, and how their figures are shown.
+//
+//     cases that match ─► rows by the values of the row keys ─► columns by keys, and by the values of the key across
+//                      ─► one case in a cell: its value;  several: their mean ± standard deviation, or the list of words
+//
+// A reference is known only to an accuracy: the metric's own floor, or what follows from the change r of its last refinement
+// (rmse, mae: r; mse: r²; psnr: −20 log10 r). A figure beyond that is a bound: "≤" where less is better, "≥" where more is.
+// Means take the floor for such figures and are marked likewise. Marks are for people: CSV has the numbers, and deviations in
+// a column of their own.
 #include "subvol/study_table.h"
 
 #include <algorithm>

@@ -1,4 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
+// A study from its JSON: a list of cases, each a complete set of values by which it can be run alone.
+//
+//     inputs × cameras × lights × options of a method ─► cases of the method;  all methods ─► cases of the study
+//
+// An option that is a list multiplies the cases, and its key is in their names. Every case also has the size, metrics and
+// reference of the study, and the content of the files that it refers to, so that its id, a hash of all values, changes when
+// they do. Two equal cases are refused, and equal names of different cases get the id. Mistakes are collected, and all of them
+// are said together with the place of each in the JSON; what depends on a wrong part is not checked. The number of cases is
+// limited before a product is formed.
 #include <algorithm>
 #include <array>
 #include <cctype>

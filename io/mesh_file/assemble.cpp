@@ -1,4 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
+// From what a reader has found in a file to the mesh of hexahedra that everything else works on, in this order:
+//
+//     points     ghosts are dropped, coordinates are checked, points at one place are joined if asked for
+//     cells      curved cells are split into grids of straight ones, collapsed cells are taken as what they are
+//     turned     left-handed hexahedra are turned round
+//     sharp      edges that bend and faces between parts, of the cells as the file has them, unless options or groups say them
+//     split      tetrahedra, prisms and pyramids become hexahedra, and all hexahedra with them so that they fit together
+//     sets       sets of cells, patches, and values on their faces, with the numbers of the new cells
+//     fields     at points as they are, or means over the points that a new one lies between; at cells kept for a fit,
+//                constant in each cell if they are labels, else means over the cells at a point by volume
+//     shells     quads and lines beside hexahedra that were not split
+//
+// A field with a value that is not finite, at a cell or its points, is left out; it is an error if no other field is left.
 #include "assemble.h"
 
 #include <algorithm>

@@ -1,4 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
+// Curved hexahedra as polynomials over a lattice of nodes: degrees p, q, r, and (p + 1)(q + 1)(r + 1) slots, x fastest. A
+// layout says which slot each node of the file has in the order of its format; positions and fields are channels of the same
+// lattice.
+//
+//     20 or 24 nodes   the missing middles follow from others:   face  ½ Σ edges − ¼ Σ corners
+//                                                                cell  ½ Σ faces − ¼ Σ edges + ⅛ Σ corners
+//     rational         channels are multiplied by the weight of their node, and divided by the sum of weights in the end
+//
+// Values at a grid come axis by axis, with Lagrange or Bernstein weights at i / n. The bend along an axis is the largest
+// second difference of samples on the lines along it, times the square of their number: an estimate of the second derivative;
+// divided by 8 n² it estimates how far n straight pieces are from the curve. At the ends the difference is continued linearly.
 #include "curved_cells.h"
 
 #include <algorithm>

@@ -1,4 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
+// Into how many pieces each edge of curved cells is cut, and the numbers of the points that result.
+//
+//     ┌─a─┬─b─┐   Opposite edges of a cell have as many pieces, and so have all edges that cells join in this way: the
+//     c   c   c   edges c are one class. A class is found by joining the four edges of each cell that run along an axis.
+//     └─a─┴─b─┘
+//
+// Pieces are given one by one, to the class with the largest error, until all are within the tolerance or there are too many
+// hexahedra. The points of the grids are numbered: corners first, then those inside edges, then for each cell those inside its
+// faces that are new, and those inside the cell. Neighbours agree on a shared point, as an edge is walked from its smaller end
+// and a face from its smallest corner, first towards that one's smaller neighbour.
 #include "curved_pieces.h"
 
 #include <algorithm>

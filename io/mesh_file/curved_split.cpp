@@ -1,4 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
+// Replaces every hexahedron of a mesh with curved ones by a grid of smaller, straight ones, with points on the curved shape.
+//
+//     layouts   degrees and order of the nodes of each cell; a cell that is not curved has degree 1
+//     ranges    the size of the mesh, and the range of each array; constants and whole numbers do not count
+//     bends     for each cell and axis, how far the shape and the fields are from straight, in parts of these ranges
+//     pieces    numbers of pieces along each class of edges, so that the errors of shape and fields are within the tolerance
+//     fill      each cell is evaluated at its grid; a point that a neighbour has made already is taken from there
+//
+// Arrays at points are evaluated with the same polynomials as the shape. If no edge needs a second piece, the corners alone
+// are used. Beside cells of other kinds, with sharp groups or with repeated points, curved cells are not split, and a warning
+// says so.
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -30,7 +41,6 @@ constexpr std::string_view kWeights = "RationalWeights";
 // needs more in one direction takes the rest.
 constexpr std::size_t kMostHexes = std::size_t{1} << 16, kMostPerNode = 2;
 
-// Replaces every hexahedron of a mesh with curved ones by a grid of smaller ones, with points on the curved shape.
 class CurvedSplit {
 public:
     CurvedSplit(MeshFile& found, double tolerance, std::string_view file, const EntityNames& names)

@@ -1,4 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
+// Puts the pieces of a mesh together to one.
+//
+//     points   by their global numbers, if all pieces have them, each whole, once in a piece and at one place; else by their
+//              exact places. The first of those that are joined is kept, with its values. Numbers also give the order
+//     cells    one piece after the other, with the new numbers of points; then in the order of their global numbers, if these
+//              are whole and different for all cells but ghosts
+//     rest     patches and sets of the same name become one; arrays that a piece lacks are left out, but for ghost flags, which
+//              are 0 there; values on patches go to their faces in the whole
+//
+// The order by numbers does not depend on how the mesh was cut, so that what follows is as it would be for the whole mesh.
 #include "join_pieces.h"
 
 #include <algorithm>

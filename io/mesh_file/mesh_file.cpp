@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+// What readers of all formats share on the way from a file to cells, and the options by which meshes are read. A point that is
+// not finite is kept with its place in the file: it is an error only if a cell uses it. A structured grid of i × j × k points,
+// i fastest, becomes (i − 1)(j − 1)(k − 1) hexahedra; products of sizes stop at the largest index, so that sizes of a hostile
+// file do not overflow. Quads and lines that are faces or edges of hexahedra are parts of these and no shells: they are sorted
+// by their points, and each face and edge of a cell is looked up among them. Names that several arrays have are made
+// different, blocks are chosen by name without regard to case if no name is equal, and the last step is read unless one is
+// chosen.
 #include "mesh_file.h"
 
 #include <algorithm>

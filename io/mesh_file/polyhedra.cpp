@@ -1,4 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
+// Cells that are given by their faces.
+//
+//     faces ─► closed?   each edge has two faces, else the cell is left out
+//           ─► turned    from face to face over edges, so that all have one hand; the volume decides which
+//           ─► known     six quads: a hexahedron; two triangles and three quads: a prism; a quad and four triangles: a pyramid;
+//                        four triangles: a tetrahedron
+//           ─► other     cut from the middle: each face into triangles from one of its points, each triangle and the middle a
+//                        tetrahedron; fields have the mean of the cell's points in the middle
+//
+// A face is cut alike by both of its cells: from its smallest point, or in faces of more than four points the smallest one
+// that gives no flat triangle. Two triangles of a cell at the same points cancel. Faces that a file does not give follow from
+// the hull of the corners: every plane through three of them that has all others on one side.
 #include "polyhedra.h"
 
 #include <algorithm>

@@ -1,4 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
+// Reads and writes meshes of all formats. A table has a row for each: its file name extensions, and the functions that read it,
+// write it and list its times. Where the first bytes of a file show its format with certainty, they decide which row is taken;
+// elsewhere the extension does, if there is a row with it. A folder may be of a format, too. What the reader returns is
+// finished here:
+//
+//     options → row → step nearest to the time → reader → check ┐
+//     ┌─────────────────────────────────────────────────────────┘
+//     └→ means of cells become values at points → values on patches → bounds of fractions → steps and time
+//
+// Values on patches come after those that are fitted to means, which they replace at the points on patches. The writer is found
+// by the extension alone, and gets a mesh only after it has been validated with its sets.
 #include "subvol/mesh_io.h"
 
 #include <algorithm>

@@ -1,4 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
+// Reads one step of a file of steps. The head says where the index is; the index has the places of meshes and steps, their
+// hashes, and how the values of each array are rounded. To decode a step, those from its last key step on are decoded in turn:
+//
+//     head → index → mesh, refined if a coarser one is stored → key step → … → step → values
+//
+// In a step, a channel has a number n at each point, in 1/256 of its rounding. Planes of bytes give residuals in whole
+// roundings; with the prediction from points that are known already, they make the difference from what the one or two steps
+// before say, and so n. The value is origin + rounding · n / 256, within the channel's range, or one that is kept exactly.
+// Channels are independent of each other, so they are decoded in parallel.
+//
+// Nothing in a file is trusted: each range must be there, with its hash if the file has hashes; meshes and steps must follow
+// each other without gaps; and memory and work are refused that so few bytes do not stand for.
 #include <tbb/parallel_for.h>
 
 #include <system_error>

@@ -1,4 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
+// Writes a mesh that changes with time into one file. Steps are read twice: a survey of all finds the ranges of values, from
+// which the rounding of each array follows; then they are written one after the other. What fits into a fixed memory is kept
+// between.
+//
+//     head │ mesh │ key step │ step │ step │ key step │ … │ mesh │ key step │ … │ zeros │ index
+//
+// A mesh is written when the cells change: as the coarser one whose refinement has the same cells in the same order, if there
+// is one. From a value is taken what one or two steps before say, and what the neighbours predict of the rest; what is left is
+// stored as a whole number of roundings. Each channel takes the predictions with the fewest bytes. Values whose error would be
+// too large are kept exactly. A key step depends on no other one. Residuals of all channels are packed in blocks, in parallel.
+// Zeros make a file as long as readers demand for the memory that a step takes. The head, with the place and the hash of the
+// index, is written last.
 #include <tbb/parallel_for.h>
 
 #include <algorithm>

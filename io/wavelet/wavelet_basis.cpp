@@ -1,4 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
+// The weights of wavelets over the levels of a control mesh, from the rows of the scheme alone. A level's new points have the
+// values f_new = S c + d, S the scheme's rows, c the coarser values and d the details. From coarse to fine are found
+//
+//     star   of an old point v: the new points on its edges and faces and in its cells
+//     U, D   S_v − Σ U S_new has no term but D c_v: linear equations for the weights U over the star, solved by elimination.
+//            Schemes that interpolate need none. Where D is near 0 the rule cannot be turned round: an error
+//
+// and then from fine to coarse the measures and the lift:
+//
+//     m      integrals of the basis functions in finest cells: at first 1/8 for each corner of a cell, then Sᵀ m
+//     A      the integral of a detail, m_new + Σ U m_v, in equal shares to the old points near it, each over the point's m
+//
+// so that means stay what they are when details are left out. Sums go row by row: they do not depend on the threads.
 #include <algorithm>
 #include <atomic>
 #include <cmath>

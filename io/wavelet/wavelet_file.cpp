@@ -1,4 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
+// Writes a mesh with its fields as wavelets. A coarser mesh whose refinement has the cells is found; over it each array is
+// taken apart into coarse values and details, rounded as much as its tolerance allows, and written as whole numbers:
+//
+//     magic, length │ compressed: scheme, levels, coarse mesh, cells that are there │ points │ fields │ numbers at cells
+//
+// Coarse numbers are differences. A detail is a byte; 255 means that the rest follows after all details of the channel. Points
+// are the first array; unless their tolerance is given, it is divided by 3, some times, until no more cells are inverted than
+// before. Errors are root mean squares over the mesh's own points in parts of the range: points that the hierarchy adds do not
+// count. Values at cells are differences in the order of the refined cells, and whole numbers stay what they are.
 #include "subvol/wavelet_file.h"
 
 #include <algorithm>

@@ -1,4 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
+// The look of pictures in Python: transfer functions (Knots), cameras, the light of a picture, and pictures themselves (Image).
+//
+//     keywords of the look, map, ranges ─► PictureLight (look, optics) ─► camera that frames what is visible ─► render
+//     array (height, width, 3 or 4) or a file ─► Image ─► array, PNG or a file
+//
+// Knots come as rows {value, r, g, b} and {value, opacity} and are checked when they are made. A PictureLight takes the
+// opacities over the range of the shown field and the colours over the range of the field that colours it; a map of its own
+// excludes the keywords `range` and `opacity`. Images hold premultiplied linear RGBA floats, rows from the top, and numpy reads
+// their memory in place, read-only. Cameras and images can be pickled; depths and reports of images are not kept then.
 #include <cmath>
 #include <cstring>
 

@@ -1,4 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
+// What Python asks of the limit of a mesh: probes, integrals, slices, surfaces, streamlines, folds; and what it fits to data:
+// meshes to samples, shapes or surfaces. Most calls have these steps:
+//
+//     keywords ─► options     arrays ─► vectors      ─► work on a thread of its own, without the GIL ─► dict of arrays, facts
+//                                                         └─► progress, on the thread of the call
+//
+// Values move into arrays without a copy; numbers of cells become 64-bit integers with −1 outside. Values and gradients of
+// probes outside the volume are not a number. Figures of the file's own cells have names with `file_` and stand beside those of
+// the limit. An Approximator keeps what it has found from step to step, so that a call that begins while another one runs is
+// refused.
 #include <algorithm>
 #include <cmath>
 #include <iterator>

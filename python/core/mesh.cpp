@@ -1,4 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
+// Meshes in Python: read from files or VTK grids, or made from arrays; and what is asked of them and written.
+//
+//     arrays ─► checked mesh ─► creases by the rule by which files are read ─► HexMesh, with patches and sets beside it
+//     HexMesh ─► read-only views of points, cells, creases and fields; dictionaries that refuse changes
+//
+// A HexMesh does not change: every call that changes something returns another mesh. Patches and sets are no part of the C++
+// mesh. They are an attribute of the Python object, are copied when they are read, and are passed on to the meshes of the same
+// cells, or, of a part, to what is left of them. Pickles hold the arrays, the patches and sets, and what fields have beside
+// their values at points: bounds, values at cells, gradients at walls. Files are read and written without the GIL.
 #include <algorithm>
 #include <iterator>
 #include <string_view>

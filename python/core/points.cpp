@@ -1,4 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
+// Volumes of radial basis functions (RbfVolume) in Python: sampled from meshes, reduced, read, or made from arrays, and written
+// as points, kernel files or USD.
+//
+//     centers (n,3), frames (n,6), values by channel ─► volume, checked ─► read-only views under the channels' names
+//
+// A frame holds six numbers of a symmetric matrix. The dictionary of values says which channels there are; gradients, moments
+// and Hessians are put into these by name. Gradients and moments that are not given are 0, Hessians are left out. Sampling
+// clamps a channel of one number to the bounds of the field that it comes from. Kernels are described by JSON, and can be
+// fitted to the basis function of a scheme or evaluated at offsets.
 #include <algorithm>
 #include <filesystem>
 

@@ -1,4 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
+// Refinement in Python: one level of a scheme for a mesh, tables that are applied many times, and the limit at parameters of
+// cells.
+//
+//     subdivide        mesh ─► L levels, on request moved to the limit; schemes of tetrahedra give hexahedra again
+//     Refinement       mesh ─► tables of L levels, once ─► other points, fields or arrays of the same cells
+//     evaluate_limit   cells and (u, v, w) ─► positions, Jacobians, values and derivatives
+//
+// Tables hold no unused points, while arrays have a row for each point of the mesh: rows of used points are picked before
+// tables are applied. Arrays of 32-bit floats stay so, all others become doubles. The Jacobian of query q is turned from
+// columns to rows, so that jacobians[q] @ d(uvw) is d(x). A mesh of tetrahedra is joined from its split hexahedra before it is
+// refined.
 #include "bind.h"
 #include "subvol/limit.h"
 #include "subvol/mesh_motion.h"

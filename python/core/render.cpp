@@ -1,4 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
+// Pictures in Python. The keywords of a call become the options of the command, so that the same rules refuse values and
+// combinations. A body is one mesh, one volume of points or one grid of voxels; what is drawn besides lies in the mesh.
+//
+//     1. streamlines and arrows ─► opaque surfaces, at which the rays of the volume end
+//     2. the volume by the chosen method; an empty picture if all of the mesh is translucent parts
+//     3. the surfaces of 1 into the picture, by depth
+//     4. translucent parts of the solid, each with its opacity
+//
+// Patches of a mesh are drawn alone, without the steps above. Facts of all steps make the report, in which the seconds of
+// stages are summed up. A body keeps the Python objects alive that it refers to.
 #include <algorithm>
 #include <iterator>
 #include <limits>

@@ -1,4 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
+// The grid of one control cell, 2^L micro-cells along each axis, as a mesh of tetrahedra that stores no neighbours. First the
+// points are ranked by (x, y, z), and a rank is a point's id. Then each micro-cell chooses its split by these ids: 8 apexes
+// times 2³ diagonals of the faces away from the apex, the smallest id of a face deciding. Two grids with a common side have the
+// same points there in the same order, so they split it alike.
+//
+//     tetrahedron t = 8 · micro-cell + 0..5      face f = 4 · t + the corner opposite to it
+//     neighbour across a face: within the micro-cell by the table of its split; beyond it, in the next micro-cell, the owner of
+//     the triangle that leaves out the same corner of the shared quad
+//
+// Each of the six sides has a quadtree of boxes, from one box down to a box for each quad. A ray descends it and tests the
+// triangles of the quads that its boxes admit. Boxes are floats relative to the first point, and tested with a margin for
+// rounding.
 #include "dense_grid.h"
 
 #include <algorithm>

@@ -1,4 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
+// Draws a volume by rays through grids of the limit at level L. The level is given, estimated from the limit before drawing, or
+// raised until the picture changes by less than a tolerance (RMS over RGB). One level is drawn in this order:
+//
+//     find    each control cell is refined; cells with invisible values or outside the picture are left out; grids are kept as
+//             long as all of them fit into the memory
+//     plan    the picture is halved until no part needs more grids than fit into memory at once
+//     draw    for each part its grids are made anew, unless all are kept, and its rays traced in tiles
+//
+// Where light ends within a tenth of the diagonal and there are no slices, grids are made from outside inwards instead: those
+// at the boundary first, then those that rays wait for and layers around them, twice as many each time. Pixels that wait are
+// traced again. If these grids do not fit into the memory, this is given up, and nothing is kept of it. Grids and pixels are
+// sorted before they are used.
 #include "subvol/render_dense.h"
 
 #include <tbb/combinable.h>

@@ -1,4 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
+// Draws kernels as splats, and keeps what it can from picture to picture. The backend is the GPU, the CPU, sheets in OpenGL, or
+// footprints; without a choice it is a hardware GPU if there is one, else the CPU, which also takes over from a GPU that fails.
+//
+//     classify ─► light volume (shadows, occlusion) ─► picture with n × n samples a pixel ─► means ─► colours of the boundary
+//                  made anew if its key changes        frame made anew if its key changes
+//
+// Keys are lists of numbers: all that the light or the frame depends on besides the kernels. If only colours and opacities
+// differ from the picture before, the frame stays and gets another transfer function. New kernels clear both keys. Means of
+// depths are weighted by opacity. OpenGL contexts are current only while they are used; one that fails is given up, and the
+// next picture makes another.
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 

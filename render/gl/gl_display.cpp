@@ -1,4 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
+// Finds OpenGL through EGL without a window, and opens one device after the other. Candidates are listed first, hardware before
+// software, after a check that libraries are installed and memory is left, since drivers and the loader would abort the
+// program:
+//
+//     hardware, Mesa surfaceless, software devices ─► context, 4.5 core ─► described ─► known or deferred: the next candidate
+//                                                                                  └─► else returned, current on this thread
+//
+// A device that turns out to be software when it is opened is put behind those that may be hardware. A card that two drivers
+// offer, and software that is reached in several ways, count once. Displays are never closed, as others may use them. The API
+// of EGL that is bound stays as it was, and a context that was current before can be made current again.
 #include "gl_display.h"
 
 #include <dlfcn.h>

@@ -1,4 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
+// Draws tetrahedra, or their faces, over each other by OpenGL. The tetrahedra are built once and stay on the device. Each
+// picture goes through these steps:
+//
+//     prepare   points in eye space in parts of the volume's diagonal, depths relative to that of its middle; values in parts
+//               of the range of the knots; faces of the cut, slices and ends of rays likewise
+//     order     by centroids, by shared faces, or of faces for a k-buffer
+//     draw      from back to front; or into lists that each pixel sorts, in parts if memory is short
+//
+// With n × n samples the mean of n² pictures is taken, each moved by a part of a pixel. If asked for, lists are drawn once more
+// to count the pixels whose order is wrong. Numbers of tetrahedra, faces and knots are checked against what 32-bit indices and
+// shaders hold. After an error of the device its context is given up, and the next picture makes another one.
 #include "subvol/render_projected.h"
 
 #include <algorithm>

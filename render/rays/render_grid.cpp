@@ -1,4 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
+// Rays through a grid of voxels, in its index space, where cell i lies between voxels i and i + 1 along each axis. A ray starts
+// where it enters the grid, or after the cut, and goes from cell to cell until it leaves, or until its transmittance falls
+// below a cutoff:
+//
+//     empty block      crossed in one step
+//     constant block   crossed in one step and integrated with one value
+//     cell             the value is trilinear over the active corners, along the ray a cubic in t if all are active
+//
+// A cell with inactive corners is cut at its middle planes, and the parts in inactive voxels are left out. In each part the
+// deviation of the value from a straight line, at both thirds, gives the number of pieces of a polyline. The optics integrate
+// each piece, linear in value. A slice ends the ray with the colour of its value. Each tile has its own tracer with a cursor,
+// and counts are added up in the end.
 #include "subvol/render_grid.h"
 
 #include <tbb/combinable.h>

@@ -1,4 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
+// Triangles into pixels. A triangle before the eye is a convex polygon of the picture, of 3 corners, or 4 where it is cut off
+// before the eye. In a row it covers what lies between the polygon's outermost edges; the depth z follows from its plane:
+//
+//      n·x = n·a        x = z (s, 1), s the ray's slopes:   z = n·a / n·(s, 1)
+//
+// Bands of rows are filled in parallel, each from the triangles that reach it, in their order.
+//
+// Opaque triangles keep the nearest depth of each ray. It is compared with the depth at which the ray enters the volume: what
+// lies before it hides the volume, what lies behind it is added as far as the pixel is transparent. Of translucent triangles
+// all layers before the volume are gathered, sorted by depth and composited; of two triangles at one depth, turned the same
+// way, the first counts. Light falls on either side, with normals that are means over neighbours bent by less than 40 degrees.
+// Pixels are means over n × n rays.
 #include "subvol/draw_shells.h"
 
 #include <tbb/parallel_for.h>
@@ -23,12 +35,6 @@
 
 namespace subvol {
 
-// Triangles into pixels. A triangle before the eye is a convex polygon of the picture, of 3 corners, or 4 where it is cut off
-// before the eye. In a row it covers what lies between the polygon's outermost edges; the depth z follows from its plane:
-//
-//      n·x = n·a        x = z (s, 1), s the ray's slopes:   z = n·a / n·(s, 1)
-//
-// Bands of rows are filled in parallel, each from the triangles that reach it, in their order.
 namespace detail {
 
 namespace {

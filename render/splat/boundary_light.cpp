@@ -1,4 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
+// The light on the boundary of a volume where rays enter it. The rays of a pixel are cut into intervals inside the boundary;
+// each interval names the triangle, or the face of a cut, through which it begins.
+//
+//     interval ─► depth z ─► place z (s, 1), or (s, z) of parallel rays ─► shares of the corners ─► normal ─► light there
+//
+// On a triangle the normal is the sum of its corners' normals, weighted by the shares; on a face of the cut it is that of the
+// plane. If there is a light volume, the light that arrives is taken a little before the surface, as the nodes behind it would
+// be dark.
+//
+// Finished pictures are changed by the first hits of n × n rays in each pixel: lit by the mean of their light, or given the
+// colours of values on the boundary. There, rays that enter through a cut or begin inside keep their share of the colour that
+// was drawn.
 #include "boundary_light.h"
 
 #include <tbb/parallel_for.h>

@@ -1,4 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
+// What all splatters share: the scene, which depends on neither view nor colours, the tables of colours and opacities, and the
+// sheets of a picture.
+//
+//     volume, options ─► scene: form and table of the kernel, thinnest kernel, half weight, clip
+//     scene, optics   ─► classification: pre-integrated extinction and emission, colours of a second channel
+//     scene, view     ─► sheets: planes of constant eye depth from the nearest to the farthest part of the volume
+//
+// Sizes, values and ranges are refused where 32-bit floats lose them. A kernel is compact, radial (a table over e) or separable
+// (a table over |ξ|). A volume without a boundary ends at half of the weight that its kernels add up to inside, a median over
+// places. The number of sheets is such that four of them fall into the depth reach of the finest kernels, but for a small part
+// of the volume, and grows with the square root of the inverse of the image tolerance.
 #include "splat_scene.h"
 
 #include <tbb/parallel_for.h>

@@ -1,4 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
+// Kernels on the GPU, listed by bins. A bin is a tile of the picture times a batch of sheets; the list of a bin holds the
+// kernels that may reach it. Data of kernels are packed once, without the view: 16 floats each, and extras (Hessian, second
+// channel, axes) in vectors of four. Then, for each frame:
+//
+//     count    kernels to eye space; for each its rectangle of tiles, its range of batches, and how many bins it meets
+//     scan     exclusive sums of these counts: where each kernel's entries begin
+//     emit     entries {bin, kernel}
+//     sort     radix sort by bin, with as many bits as bins need
+//     ranges   where each bin begins in the sorted list
+//
+// Scan to ranges are left out if all that decides which bins kernels meet is that of the last call: kernels, view, sheets, size
+// of the picture; colours do not matter. Features of the scene become defines of the shaders.
 #include "gl_splat_bins.h"
 
 #include <algorithm>

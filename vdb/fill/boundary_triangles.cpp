@@ -1,4 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
+// The boundary of the filled cells as triangles in voxels, without gaps. First a flood over shared faces finds the cells whose
+// corners have the opposite order to those of their part's first cell; their triangles are turned. Then the sides on which the
+// filled cells end are listed, each with 4^L quads at level L, and each quad is cut into two triangles at its lowest corner:
+//
+//     unrefined       by the smallest point number
+//     refined         nodes of the dense grid, by position
+//     curved pieces   nodes of the triquadratic pieces, by position; a point on an edge or corner comes from the first of the
+//                     cells that share it, so that both sides get the same bits, even between pieces of different levels
+//
+// These rules are those by which the fill cuts cells, so that the surface bounds its tetrahedra exactly.
 #include "boundary_triangles.h"
 
 #include <tbb/parallel_for.h>

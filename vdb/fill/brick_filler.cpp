@@ -1,4 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
+// Fills voxels with cells, batch by batch. Blocks are cells, or pieces of them, in the order of their numbers:
+//
+//     blocks ─► batch: nodes (cells, refined grids or pieces), in voxels, and values ─► box of voxels for each block
+//            ─► bricks that the boxes reach ─► one task a brick, which fills its blocks in order; the first one keeps a voxel
+//
+// A piece without voxels in its box is not loaded. If pieces are searched for, they are filled as they are found. Where only
+// some cells of a curved mesh are filled, their neighbours beyond the cut are filled too, as neighbours place their shared side
+// slightly differently and the first one has a voxel. Voxels without the number of a wanted cell are removed after that.
+//
+// Last, leaks are removed: where tetrahedra are turned, boxes are doubtful, and the voxels in them that have winding number 0
+// about the boundary lie outside. Only the part of the boundary whose columns reach doubtful tiles is made.
 #include "brick_filler.h"
 
 #include <tbb/parallel_for.h>

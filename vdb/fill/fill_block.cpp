@@ -1,6 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // Cells into voxels, in the widest vectors of the machine. This file is compiled once for every instruction set; the best one
-// is chosen at run time.
+// is chosen at run time. The parts that hold no vectors are compiled once.
+//
+//     straight cell   split into six tetrahedra ─► for rows of centres, one a lane, a word of bits: which centres lie inside
+//                     ─► voxels that are not active yet become active ─► their values, up to 64 at a time
+//     curved piece    box of its Bézier control points ─► Newton's method at centres ─► inside if parameters are within bounds;
+//                     a piece that is refused is split into eight small cells, and the rest is filled by its parameters
+//
+// Bounds are [0,1] on the boundary and a little more on other sides, so that no centre between two neighbours is missed. Boxes
+// are widened by more than the step by which centres are moved and the rounding. A box with turned tetrahedra is noted as
+// doubtful.
 #include "fill_block.h"
 
 #include <algorithm>

@@ -1,4 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
+// Volumes of kernels as OpenVDB points, and back. The grid holds a point for each kernel; what is not of points is metadata:
+//
+//     attributes   P, id, frame (the symmetric matrix); orient, scale, pscale (its axes, for other programs);
+//                  for each channel the value, and with a suffix its gradient, moment and, if there is one, Hessian
+//     metadata     the kernel as JSON, names of channels, number of boundary triangles
+//     beside it    the boundary, in a file of its own
+//
+// The voxel size is the cube root of the product of the mean volume of a point and the wanted points per voxel, within what
+// transforms and 32-bit indices allow. Names of channels become names of attributes by replacing characters; the original names
+// are in the metadata. OpenVDB orders points by leaf, so a reader sorts them by id again. Orient, scale and pscale are not
+// read.
 #include "subvol/vdb_points.h"
 
 #include <openvdb/points/PointConversion.h>

@@ -1,4 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
+// Active voxels of a grid of floats become kernels, one for each block of n³ voxels, in these steps:
+//
+//     1. tiles become voxels
+//     2. n > 1: a coarse tree of means over the active voxels of blocks that are at least half active; leaves of the fine tree
+//        are sorted by the coarse leaf that they lie in, and coarse leaves are summed in parallel
+//     3. each active voxel ijk becomes the point number that a sum over leaves gives it, at to_world · ijk + origin
+//
+// All kernels have one frame, r² A Aᵀ, A the matrix of the lattice and r the kernel's radius. Derivatives are differences of
+// neighbours in units of voxels: central, or one-sided where one neighbour is inactive; second ones are 0 unless all voxels
+// that they need are active. The inverse of A takes them to world space. The trace of the Hessian gives the moment, r² tr / 6;
+// the Hessian keeps the rest. A level set takes another way: the body within its surface becomes kernels.
 #include "subvol/vdb_sample.h"
 
 #include <tbb/parallel_for.h>

@@ -1,4 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
+// Meshes into OpenVDB grids. Arguments are checked and collected in a request: fields, the map to voxels, levels or pieces of
+// the limit, and which cells are filled. Then, for all of space or for one part after the other:
+//
+//     request ─► bricks of voxels ─► a grid for each field (3 channels: vectors), and for cell numbers
+//                                 ├► mask: the active voxels
+//                                 ├► coverage: a second filler on a finer lattice, counted for each voxel
+//                                 └► level set: distances to the boundary, negative where the mask is active
+//
+// Values are clamped to the bounds of their field, and refused if they do not fit into its floats. Parts are slabs of whole
+// bricks across x. Their bytes are estimated from the volumes of control cells; the outermost slabs reach as far as voxel
+// indices do, as refined cells may leave the control mesh. With a limit the pieces are taken as they are known, or found while
+// voxels are filled.
 #include "openvdb_grids.h"
 
 #include <algorithm>

@@ -1,4 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
+// A page of HTML that shows a volume in a browser: one file with data, scripts, shaders and styles inside.
+//
+//     steps ─► arrays of places, values, boundary ─► rounded to bits, compressed, base64 ┐
+//     options ─► head: camera, light, colours, fields, reference picture, as JSON         ┴─► html
+//
+// The page must not exceed a number of bytes. It is made with 21 bits for places and 16 for values first; if it is too large,
+// with 16 and 12; then kernels are merged, and how many are kept is found by a secant from the bytes of the tries before. The
+// boundary is not reduced, so a page with many triangles may be refused. Places and boundaries that are those of the step
+// before are not stored again. Errors of the fields are measured last, at places between kernels, by evaluating what the page
+// reads against what was given.
 #include "subvol/page.h"
 
 #include <algorithm>

@@ -1,4 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
+// A session of the viewer: a state, the body that is drawn for it, and workers that draw on other threads. Changes come as
+// actions, JSON objects with one key.
+//
+//     action ─► state ─► body (field, flow) ─► worker ─► picture ─┐
+//                             └─► worker of another method ────────┴─► composed: side by side, or their difference
+//
+// A body is chosen whole or not at all: where the state does not fit it, the one before stays. Reading a step, writing, and
+// measuring two pictures go on beside the window. Each ends in a function that `settle` runs on the session's own thread, so
+// that the state is changed there alone. While a step is read, only the last one that was asked for besides is remembered.
+// Pictures of different cameras are not composed, and coarse ones are enlarged before. Saved states and the render command are
+// made from the state.
 #include <algorithm>
 #include <chrono>
 #include <cmath>

@@ -1,4 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
+// Keys of the window, and the list of them that is shown as help. A key becomes an action of the session, or a change of the
+// window's look, such as a panel or a tool:
+//
+//     always                Escape, ctrl + o, F1
+//     no file is shown      the letters for help, quit, and dark or light panels
+//     a file is shown       letters; ctrl and a letter; arrows, with shift too; Tab, F12, Enter
+//
+// Letters come as characters, other keys and those with ctrl by number. No key is taken while the file dialog is open, but for
+// Escape and the one that opens it. Escape leaves one thing at a time: the dialog, a menu, notes or help, a tool, playing, and
+// then what is at work. Edits that are in no file are dropped only at the second attempt.
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 #include <imgui.h>

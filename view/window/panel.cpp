@@ -1,4 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
+// The panel at the right of the window. Each frame draws it anew from the state of the session, which it does not change
+// itself: a widget that is used becomes an action with a JSON value, and the next frame shows what came of it.
+//
+//     host.state() ─► widgets ─► {"name": value} ─► host ─► error, kept as the problem of the last action
+//
+// Above are the field, look, method and step; below, sections under headings, of which one is open at a time, by its heading or
+// by a key; at the foot, what was picked, help, undo and redo. Tools for the mesh are put away when their section is not open.
+// Numbers are written as text that is the same in every locale. Entries of lists are drawn as they are and identified by
+// number, so that names from files may hold anything.
 #include "panel.h"
 
 #include <imgui.h>

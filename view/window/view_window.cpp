@@ -1,5 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// The session as the window sees it. GLFW and Dear ImGui are in a module, which is loaded here.
+// The session as the window sees it. GLFW and Dear ImGui are in a module, which is loaded here; it has no other way to the
+// session than this host.
+//
+//     window ─► action as text ─► session     a file is read on another thread ─► session, which takes the place of the last
+//     window ◄─ picture as sRGB bytes ◄─ session
+//
+// A picture is encoded only if it, or how it is composed, differs from the one on the screen. Square roots of linear light
+// index a table of bytes, from which few steps up lead to the same bytes as those of a .png file. A file that is opened while
+// another one is read cancels it; the same file with other options keeps the view. Errors of actions come back as text. A
+// script's actions are played one at a time, each once the session is idle.
 #include "subvol/view_window.h"
 
 #include <tbb/parallel_for.h>

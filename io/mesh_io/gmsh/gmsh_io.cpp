@@ -1,4 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
+// Reads Gmsh's files of the versions 1, 2 and 4, as text or binary. A first pass looks at the headers of the data sections
+// only: an array that has several moments (time, step) makes the steps of the file, and one that has a single moment belongs to
+// every step. The second pass reads the sections in their order:
+//
+//     $MeshFormat          $PhysicalNames, $Entities      $Nodes       $Elements      $NodeData, $ElementData
+//     layout, byte order   groups, sharp or not           points       cells          arrays of the chosen step
+//
+// Data follow what they belong to, and elements follow the nodes. The file gives nodes and elements any numbers; data find them
+// by these. Elements that are not read as cells are counted, too, so that data for them have a place. An array stays out, with
+// a warning, if it lacks a value at a node or at an element that is read as a cell. Other sections are passed over up to their
+// end; other data are warned of.
 #include <algorithm>
 #include <cmath>
 #include <limits>

@@ -1,4 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
+// Reads MEDIT's meshes as text and as binary, and writes them as text. A section has entities of one kind: their count, then
+// for each its vertices, counted from 1, and a reference.
+//
+//     text     one pass. Cells that come before the vertices are read at the end, when their indices can be checked
+//     binary   the first number gives the byte order, the version the widths of numbers. Each section has the position of the
+//              next one: a first pass finds all of them, then they are read in a fixed order
+//
+// Faces and edges become sharp if their reference is that of a wanted group; ridges are the numbers of edges. Cells other than
+// hexahedra are read, or counted for a warning. Creases are written as edges that are ridges, and sharp faces as quadrilaterals
+// of reference 1; of attributes and sets, which are not written, a warning tells.
 #include <algorithm>
 #include <charconv>
 #include <map>

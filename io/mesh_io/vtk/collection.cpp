@@ -1,5 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// One mesh of the files that a collection names.
+// One mesh of the files that a collection names. A list gives files with times, with blocks, or as pieces of one mesh; files of
+// the same time are one step. Of the chosen step, lists in lists are replaced by their own files:
+//
+//     list → step → files → chosen blocks without surfaces → parts → joined → one mesh
+//              └─ a single file without a block: another list, of which the last step is taken, or the mesh itself
+//
+// Blocks are named by their path in the tree, "outer/inner"; of several files with the same name the cells are added up. What
+// is read is limited: the nesting of blocks, the lengths of their names, and the files and bytes in all, as a small list may
+// name the same file many times.
 #include "collection.h"
 
 #include <algorithm>

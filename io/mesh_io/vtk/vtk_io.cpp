@@ -1,4 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
+// Reads legacy VTK files, as text or binary: unstructured grids, and the structured ones as blocks of hexahedra. The header
+// says which kind it is; then sections follow by their keywords, first those of the mesh, then those of arrays.
+//
+//     unstructured   POINTS, CELLS, CELL_TYPES. Up to version 4 CELLS has a count before the corners of each cell, later
+//                    offsets and one list of corners
+//     structured     DIMENSIONS, and POINTS or three lists of coordinates or an origin and a spacing
+//
+// Cells are sorted by their types after the last section, since only types tell corners from the faces of polyhedra; each cell
+// keeps its position in the text for messages. Counts reserve no more memory than the rest of the file can fill.
 #include <algorithm>
 #include <optional>
 #include <string>

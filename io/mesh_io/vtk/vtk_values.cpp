@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+// Values and arrays of legacy VTK files. Keywords, names and counts are words in every file. The values after them are words in
+// a text file; in a binary one they are big-endian numbers that begin after the end of the line, and bits are packed from the
+// highest one of each byte.
+//
+// An array begins with its keyword; the number of its components follows from this, or is written after the name. There are
+// values for all points or cells, as the last POINT_DATA or CELL_DATA says. Colours become numbers from 0 to 1. Texts, lookup
+// tables and fields before the data are passed over value by value. Names are decoded, %20 to a space.
 #include "vtk_values.h"
 
 #include <algorithm>

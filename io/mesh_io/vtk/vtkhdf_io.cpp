@@ -1,4 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
+// Reads and writes unstructured grids of VTKHDF. All partitions of all steps lie one after the other in the same datasets, so a
+// part of the mesh is a range of each:
+//
+//     Steps: the step's first partition, its number of partitions, and where its points, cells and corners begin
+//       └→ NumberOfPoints, NumberOfCells, … of each partition → ranges of Points, Types, Offsets, Connectivity, arrays
+//
+// Offsets have one more entry than cells in each partition. The faces of polyhedra are not placed by steps: the counts of all
+// partitions before are added up. Arrays may begin at places of their own. Each partition becomes a part; parts are joined to
+// one mesh. A file is written with one partition: fields and sets as arrays, whole numbers of labels as integers.
 #include <algorithm>
 #include <tuple>
 #include <utility>

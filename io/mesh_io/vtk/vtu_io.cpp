@@ -1,4 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
+// Reads and writes the volume data sets of VTK XML: unstructured grids, and blocks whose points are listed (structured), lie on
+// planes (rectilinear) or are evenly spaced and may be turned (image). Pieces are read one after the other into the same mesh:
+// the indices of a piece are counted from the points and cells before it. In each come points, then cells, then arrays. The
+// list of corners is read as a stream: a cell is taken when its offset is reached, so only the corners of one cell are kept.
+//
+// An array goes on in the next piece under its name, place and components; one that is not in every piece is left out with a
+// warning. Fields of the whole file are read last. What is written has one piece:
+//
+//     hexahedra, quads, lines → connectivity, offsets, types → fields at points → fields at cells → sets as flags 0 and 1
+//
+// Shells share the points of the hexahedra where they meet, and add their other points. Quads and lines have the means of their
+// corners where a field is at cells.
 #include <algorithm>
 #include <charconv>
 #include <limits>

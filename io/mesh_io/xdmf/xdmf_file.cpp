@@ -1,4 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
+// The elements of an XDMF file, and the values of its data items. An element may stand for another one, by a path in the same
+// file; paths are a small part of XPath, and all elements that are looked at are counted, so that their number can be limited.
+//
+//     data item ─┬─ XML       words of the text
+//                ├─ HDF       a dataset of another file, whole or some of its rows
+//                ├─ Binary    bytes of another file from a position on
+//                ├─ HyperSlab start, stride and count along each dimension of another item
+//                └─ Function  an expression of other items
+//
+// Items are nested to a fixed depth. What is read and what is made of it is counted against the sizes of the files, as values
+// may be named many times. At the end the number of values must be that of the item's Dimensions.
 #include "xdmf_file.h"
 
 #include <algorithm>

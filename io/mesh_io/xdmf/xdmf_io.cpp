@@ -1,4 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
+// Reads meshes of XDMF. The first temporal collection of the domain gives the steps, each a grid with a time, and puts them in
+// the order of the times; without one the domain is the only step. A grid of the chosen step is a tree of grids, whose leaves
+// are read one by one and joined:
+//
+//     step → grids → Geometry: points → Topology: cells, or a block of hexahedra → Attributes: arrays → joined
+//
+// A step that has no cells or points of its own has those of the first step. In a list of mixed cells, each begins with the
+// number of its type. Of hexahedra with 20 and 27 nodes, writers disagree about the order of the nodes in the middle of edges:
+// that order is taken in which they are nearer to the middles. An array that cannot be read stops no other one.
 #include <algorithm>
 #include <cmath>
 #include <numeric>

@@ -1,4 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
+// Reads an input deck of Abaqus or CalculiX into parts, instances, sets and surfaces. A deck consists of keyword lines (*NODE)
+// and of data lines that belong to the last keyword; included files are read where they are named. A keyword sets the section
+// and its options, and each data line adds to the part or instance that is open:
+//
+//     *NODE, *NGEN      points, from local and cylindrical or spherical systems turned into rectangular ones
+//     *ELEMENT, *ELGEN  elements, over several lines if needed, and copies of them
+//     *ELSET, *SURFACE  sets of elements by numbers, ranges and other sets; sides of elements
+//
+// After the last line ranges are replaced by the elements that are there. Names are compared in capitals. Few lines may ask for
+// many nodes, elements and members of sets: they are counted, and limited in proportion to the bytes of the deck. Keywords that
+// would make or move nodes in other ways are refused, as the mesh would be another one.
 #include "inp_deck.h"
 
 #include <algorithm>

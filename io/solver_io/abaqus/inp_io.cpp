@@ -1,4 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
+// Makes one mesh of a deck's parts. Each instance is a copy of its part, moved and turned; its points and cells follow those of
+// the instances before.
+//
+//     instance → points, moved → elements of chosen sets → cells by shape → sets by numbers of elements → surfaces by sides
+//
+// The file's numbers of nodes and elements are unique in an instance only, so they are looked up in it; all elements that are
+// counted keep a place, also those of types that are not read. Sides become lists of corners in the order of the shape's own
+// table; a surface without a side means all sides, of which those inside the mesh fall away later. Shells that are faces or
+// edges of cells are dropped. Warnings list what is left out, and the numbers and sets that are named but are not there.
 #include <algorithm>
 #include <tuple>
 #include <unordered_map>

@@ -1,4 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
+// Reads meshes of CGNS from HDF5: the first base, its chosen zones, and the solutions of one step. A zone is read as a part of
+// its own, and the parts are joined:
+//
+//     zone → coordinates of the step → sections of elements, or one block → boundary conditions → solutions → polyhedra
+//
+// Sections are read in the order of their numbers, as cells are counted over all of them. Polyhedra are lists of numbered
+// faces, so the faces of all sections are known before a polyhedron is put together; the signs of the numbers are not used.
+// Faces are kept after that only for boundary conditions. Solutions belong to the step that lists of the zone name them for;
+// those that no list names belong to every step. Layers of values about a structured zone (Rind) are cut off, and three arrays
+// whose names end in X, Y and Z become a vector. A solution that cannot be read stops no other one.
 #include <algorithm>
 #include <cmath>
 #include <fstream>

@@ -1,4 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
+// Reads EnSight's cases: a text that names a geometry and variables, each in files of their own for the times. Files of the
+// form 6 are first turned into those of Gold, so that everything after reads one form.
+//
+//     case → step → geometry: parts with points, elements by type, or a block → variables → chosen parts, joined
+//
+// Where only coordinates change with time, elements come from one step and points from another. Elements of a part are counted
+// over all its types, in the order of the file, and values at elements come type by type; a value that is undefined or not
+// listed is NaN. Blanked and ghost cells of blocks are left out. A variable that cannot be read is removed from all parts, and
+// stops no other one.
 #include <algorithm>
 #include <filesystem>
 #include <limits>

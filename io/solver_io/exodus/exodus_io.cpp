@@ -1,4 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
+// Reads Exodus II files, in netCDF's classic form or in HDF5. A file has dimensions and variables over them; which ones they
+// are follows from their names. Points come first, then blocks of elements of one type, counted one after the other:
+//
+//     points → blocks: cells and a set each → side sets: patches → element sets → variables of the chosen step
+//
+// Elements of blocks that are not read keep their numbers, so that values and sets refer to the right ones; their values are
+// NaN where the file has none. Scalars whose names say that they are components are read as one vector or tensor. A count is
+// checked against the size of the file before anything of that many is read.
+//
+// A mesh may lie in several files, NAME.4.0 to NAME.4.3. Each is read alone, with the numbers of its nodes in the whole mesh
+// where it has them, and then the pieces are joined.
 #include <algorithm>
 #include <charconv>
 #include <cstdint>

@@ -1,4 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
+// Reads cases of OpenFOAM. A mesh is a list of faces, each with its owner and, inside the mesh, its neighbour; normals point
+// out of the owner. Cells are the faces that name them:
+//
+//     owner, neighbour → faces → points → check → faces sorted by cells, those of a neighbour reversed → cells by their shape
+//     → patches and zones → fields of the step's folder
+//
+// Files are read in this order so that the counts of one limit those of the next. The faces of a cell decide whether it is a
+// hexahedron, prism, pyramid or tetrahedron; others are split. A decomposed case has a part for each processor: patches where
+// it was cut are left out, and the parts are joined, with the numbers of their points in the whole mesh where files give these.
+// Patches, zones and fields that cannot be read stop nothing but themselves.
 #include <algorithm>
 #include <filesystem>
 #include <functional>

@@ -1,4 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
+// Reads the words, lists and dictionaries of one OpenFOAM file, which may be compressed, binary, or one block of a file for
+// several processors. The header says the class, the byte order and the widths of numbers.
+//
+//     list        count ( values ), or count { value } for equal ones; in a binary file the values are bytes
+//     dictionary  name { key value; … }
+//     field       entries up to internalField, which is uniform or nonuniform; units are powers of kg, m, s, K, mol, A, cd
+//
+// Entries before a field are kept by name, also those of included files, because $name stands for the text of an entry. How
+// much a compressed file may grow to follows from the counts in its beginning and from what other files say; counts are limited
+// by the bytes that are left, and included and inserted text by a depth and a size.
 #include "foam_text.h"
 
 #include <algorithm>

@@ -1,4 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
+// Values of a field on a plane through the limit, contour lines of them, and their files. The plane cuts the box of the volume
+// in a polygon; the rectangle around it is filled with squares, whose centres are the places:
+//
+//     plane, box → rectangle → places, row after row → values, gradients and cells at them → contour lines
+//
+// The longer side has as many places as the resolution says. A place outside the volume has NaN. For contour lines each square
+// of four places is halved, and where a value lies between the ends of an edge of a triangle, the line crosses it, at the place
+// of linear interpolation. A triangle is crossed at two edges or none; pieces with an edge in common are joined by its number,
+// first those that have an end, then the closed ones. Triangles with a NaN have no lines.
 #include "subvol/limit_slice.h"
 
 #include <algorithm>

@@ -1,4 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
+// Finds the cell and the parameters uvw at which the limit x(uvw) is at a given place, and the fields there. A tree of the
+// parts of space that cells may reach gives each place its candidates; then Newton's method goes on from the first of them,
+// with all open places in one evaluation of the limit a round:
+//
+//     candidates → x, J at uvw → step J⁻¹ (place − x) → next cell, if the step leaves this one → …  until the step is tiny
+//
+// The last step is not evaluated: values change by it linearly. If the place is then farther than the tolerance and the reach,
+// the next candidate is tried; a place without any is outside. Places are sorted in space, in batches, so that near ones share
+// what they read. A large mesh is worked on piece by piece, each cut down to the cells that places may lie in and the layers
+// that their limit needs; a place that several pieces find belongs to the cell with the least number.
 #include "subvol/probe.h"
 
 #include <tbb/parallel_for.h>

@@ -1,4 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
+// Which part of a piece of the limit lies in regions of space. The position in a piece is a polynomial of degree 2 in each of
+// u, v and w, with 27 Bézier coefficients, and so is the depth behind a plane. As it lies between its coefficients, a box is
+// inside if none is negative; the quadratic of the largest coefficients at each step along an axis is never less, so what lies
+// beyond its roots is outside. The box shrinks along all axes, again and again, while that gains enough. A sphere stands for
+// planes that touch it: their depths are never less than its own, and nothing that is inside is cut off.
+//
+//     box → narrowed → outside, inside or cut → points and weights of Gauss in what is left
+//
+// Integrals over a cut box go axis by axis; the inner one is that which crosses the faces most directly. Each interval is
+// broken where faces cross it, with three points of Gauss between two breaks. Of the inner parts, only those in the regions
+// count.
 #include "cut_piece.h"
 
 #include <algorithm>

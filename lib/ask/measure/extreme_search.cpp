@@ -1,4 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
+// Largest and least values of the limit, by branch and bound. A side is a part of the mesh, a channel and a sign: it has the
+// best value that is known, and `open`, the largest bound of all that was left without being searched.
+//
+//     cells of a level → candidates, open while their bound is beyond the best value by more than half the tolerance
+//       └→ the most promising are refined; those of the last level become boxes in the parameters of their cells
+//            └→ a box is sampled at 5³ nodes, and halved along the axes along which the values bend most
+//                 └→ the best places, in up to four cells a side, are followed in the limit itself
+//
+// In the last part 27 places around the best one are looked at, and the distance shrinks when none of them is better. One of
+// the boxes that look alike is enough. Boxes are worked on in batches, with the cells around them that their limit depends on;
+// their number is limited, and the error of an extreme is what `open` is beyond it.
 #include "extreme_search.h"
 
 #include <algorithm>

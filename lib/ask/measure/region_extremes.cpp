@@ -1,4 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
+// The largest value of the limit in regions of space, by branch and bound over boxes in pieces; the least one by the sign. A
+// heap gives the box with the highest bound:
+//
+//     pieces with a bound beyond the best value → boxes, narrowed to the regions → bound lowered, places tried → two halves → …
+//
+// In a box the value f and the depths d_k behind the faces that cut it are polynomials. f + Σ g_k d_k with gains g_k ≥ 0 is
+// nowhere below f in the regions, as d_k ≥ 0 there: its largest Bézier coefficient is a bound. The gains come from a linear
+// program, f and d_k made linear at a place: it is solved by trying all corners of three planes. Its solution is the next
+// place, and is tried as the best one. The box is halved along the axis along which the polynomial of the best bound bends
+// most. What is left when the number of boxes is used up goes into the bound of the result.
 #include "region_extremes.h"
 
 #include <tbb/blocked_range.h>

@@ -1,4 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
+// Removes triangles with small angles from a surface without moving points. Each triangle with an angle below a limit is looked
+// at: its shortest edge that may be collapsed is, to that of its ends which leaves the larger least angle; if no edge may be,
+// the longest one that may be flipped is.
+//
+//     collapse   a point goes to its neighbour: the triangles stay a surface, none turns too far or away from the limit's
+//                normals, and the surface bends by no more than the slack
+//     flip       the other diagonal of two triangles: the least angle grows, and both diagonals are as near as the slack
+//
+// Points of sharp lines go along their line only, if what is left of it stays within the slack; fixed points stay. Passes, of
+// which there is a most, follow until one changes nothing, and look at triangles about which something has changed. Edges are
+// collapsed and flipped one after the other: the result depends on the order alone, which is that of the triangles.
 #include <algorithm>
 #include <cmath>
 #include <iterator>
@@ -24,7 +35,6 @@ constexpr double kSmallAngle_deg = 25;  // triangles with a smaller one are look
 constexpr double kSameSide = 0.8;       // cosine
 constexpr int kMostPasses = 16;
 
-/// Collapses and flips edges, one after the other: the result depends on the order alone, which is that of the triangles.
 class SliverMender {
 public:
     SliverMender(const std::vector<Vec3>& points, const std::vector<Vec3>& normals, SharpLines lines, double slack,

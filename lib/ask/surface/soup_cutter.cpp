@@ -1,4 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
+// Cuts the surface where a field has a value, or the hull, out of the refined cells of a mesh, without refining the whole mesh.
+//
+//     cells: bounds by control values → values of level 1 → candidates
+//     cut:   cell → children → tetrahedra → triangles by the signs at four corners → points on edges, joined over cells
+//
+// Each vertex has a number that all cells around it agree on, from those of points, edges, faces and cells of the mesh. A child
+// is split into tetrahedra by the order of its numbers, so that neighbours split a common face alike, and a point of the
+// surface is known by the two ends of its edge: triangles of all cells meet without comparing places. Where a point lies on a
+// face of a cell, the surface goes on in the cell behind it, which is cut next if it is allowed to be, until no more are found.
+// On the hull, the parts of faces whose values are at least the isovalue are added.
 #include "soup_cutter.h"
 
 #include <tbb/parallel_sort.h>

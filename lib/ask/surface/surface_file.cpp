@@ -1,4 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
+// Triangles on the limit, with normals, fields and colours, become a file of the format that the extension names. If an origin
+// is given, the points are first moved relative to it; then the request is checked, colours are made as bytes of sRGB, and the
+// format's writer runs. The file gets its name only when all of it is written.
+//
+//     .ply     binary: points and fields as doubles, normals as floats, colours of the points
+//     .stl     binary: 32-bit floats, three corners for each triangle, with the triangle's own normal
+//     .vtp     XML: points and fields as doubles, normals as floats; the field of the colours is the active one
+//     .vtkhdf  the same arrays on an unstructured grid of triangles
+//     .obj     text: points with all digits, colours as parts of 1, normals; corners count from 1
+//     .glb     floats relative to the centre c of the box, colours in linear light; the node has c and turns z up into y up
 #include <algorithm>
 #include <array>
 #include <bit>

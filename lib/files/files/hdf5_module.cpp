@@ -1,5 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// The module subvol_hdf5.so: HDF5's library, which is 5 MB and brings those of compression and of the network.
+// The module subvol_hdf5.so: HDF5's library, which is 5 MB and brings those of compression and of the network. It offers a
+// table of functions with plain types; identifiers of the library other than that of the file live within one call.
+//
+//     read     open → names of a group, shape of a dataset, texts and integers of attributes → a block of a dataset → close
+//     write    create → groups, datasets, attributes → finish, which tells whether all was written
+//
+// A file that is read is not trusted. Links to other files are refused, and values that are stored outside of the file have no
+// type. Before a block is read, its large chunks are looked at: one with more stored bytes than its values could need is
+// refused, and one that was compressed by deflate is inflated piece by piece, to see that it does not become more than its
+// values. Files that are written hold no times, so that the same contents are the same bytes; values are in chunks of about
+// 1 MB, shuffled and deflated.
 #include <hdf5.h>
 #include <zlib.h>
 #include <algorithm>

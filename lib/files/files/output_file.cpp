@@ -1,4 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
+// A file that appears complete or not at all. Links of the target are followed to their end; then
+//
+//     a file      a temporary file beside it → access rights of the file that is there → fsync → rename → fsync of the folder
+//     a stream    a temporary file in a private folder → its bytes are appended to the device or pipe → it is removed
+//
+// The syncs can be left for later, for all files of a folder together. A temporary file that will replace another one can be
+// read by its owner alone until it gets its rights. Its name has 64 random bits and keeps the extension.
+//
+// The name of each temporary file is noted before the file is made, so that a signal's handler can remove what is unfinished.
+// The notes are blocks of places with an atomic state each (free, changing, held): there are no locks, and blocks are added but
+// never removed, so a handler may walk along them at any time. Files are removed first, then the folders that were made for
+// them.
 #ifdef __linux__
 #endif
 #include "subvol/detail/output_file.h"

@@ -1,4 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
+// Elements and arrays of a VTK XML file, read from its text.
+//
+//     text ──► short copy without long contents ──► XML parser ──► elements
+//       │                                                             │ offset of an element, taken back to the whole text
+//       └──────────────────────────► contents of an array ◄───────────┘
+//                                     ascii:            words ──► values
+//                                     binary, appended: base64 or raw ──► header ──► blocks, decompressed ──► values
+//
+// The copy keeps what is needed to find an element in the whole text, so arrays are not in memory twice and errors name the
+// line. The parser sees nothing behind the tag AppendedData, as those bytes need not be XML. Values are handed on part by part;
+// bytes of a value that ends in the next block wait for it. A header that states more bytes or blocks than are left is refused,
+// and what all arrays take is counted, as several may name the same appended bytes.
 #include "subvol/detail/vtk_xml.h"
 
 #include <algorithm>

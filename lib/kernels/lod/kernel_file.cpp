@@ -1,4 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
+// The kernels that a view needs, from a file in blocks with a tree of merged kernels over them.
+//
+//     top of the tree ──► nodes that pass the test, and blocks whose roots do not
+//     each block      ──► nodes that pass, level by level as they are reached; at leaves that do not, the slots of kernels
+//     kernels' numbers, ascending ──► the place of each kernel in the result: its rank
+//     blocks with kernels ──► their kernels, read and put into place
+//
+// The result has the kernels first, by their numbers in the volume that was written, then the nodes in the tree's order: as a
+// cut of the tree in memory. Blocks are worked on in parallel, in turns, so that only those of one turn and those in the cache
+// are in memory besides the result. After each turn the cache gives up what is beyond its size: parts that this view has not
+// used, the longest unused first, then the last ones that it has read. A number that occurs twice is an error.
 #include "subvol/kernel_file.h"
 
 #include <tbb/parallel_for.h>

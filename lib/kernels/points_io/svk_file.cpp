@@ -1,4 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
+// Reads and writes files of kernels in blocks, extent by extent:
+//
+//     preamble, 48 bytes │ head │ boundary │ top of the tree │ nodes, part by part │ kernels' numbers │ kernels
+//
+// In each of the last three, the extents of all blocks follow each other. The head has counts, the kernel, the channels, and a
+// hash for every extent; the preamble has the hash of the head. All places follow from the head.
+//
+// Opening a file checks its beginning, byte order, version, length and head, and that the counts need exactly that length. An
+// extent is checked against its hash when it is read, and the numbers in it against the counts. A file that is written gets its
+// extents in any order, then the preamble and the head, whose hashes are known last, and then its name. Reading all of it takes
+// the numbers of all blocks, makes sure that none occurs twice, and puts each kernel at its number: the order of the volume
+// that was written.
 #include "svk_file.h"
 
 #include <fcntl.h>

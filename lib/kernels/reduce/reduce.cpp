@@ -1,4 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
+// Few kernels for the samples of a field, from the top down. The samples are one part at first; each part has one kernel, whose
+// centre is the part's mean and whose frame is its covariance, scaled for the kernel's support and widened until the part's
+// farthest sample is covered.
+//
+//     parts are split by the errors of their own fits, until all errors together are 5 times the target
+//     ┌► all kernels are fitted together to some samples of each part, by conjugate gradients
+//     │  the parts with the largest squared errors are split, about as many as the rest of the error needs
+//     └─ until the target is met, or nothing can be split
+//     kernels are moved and resized, if asked for
+//     errors are measured at other samples; if they are too large, it goes on at "┌►" with a lower target, a few times
+//
+// The error is the root of the mean square by the samples' weights, in the field's unit. New parts start with their own fit,
+// the others with the terms of the last round.
 #include "subvol/reduce.h"
 
 #include <tbb/parallel_for.h>

@@ -1,4 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
+// Samples a subdivision volume into kernels. There are two ways to the points:
+//
+//     one power of two of intervals for all edges,   the mesh is refined so often; its points, on the limit, are the samples
+//     and values of the scheme
+//     anything else                                  intervals for each edge, or as many as a tolerance needs; samples are
+//                                                    evaluated in blocks of cells
+//
+// With one kernel for each control point the samples need no refinement, and the topology is built part by part to save memory.
+// Gradients and frames of the first way come from the lines of the mesh through each point. The boundary surface is refined for
+// itself, by default to quads of half a sample interval, or coarser ones if there would be too many triangles.
+//
+// A piece of a mesh with enough layers of halo gives its own points the same bits as the whole mesh does. For meshes that
+// differ in their points alone, lines and tables of the boundary are made once and applied to each.
 #include "subvol/sample.h"
 
 #include <algorithm>

@@ -1,4 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
+// Transfer functions by name, over a range of values. A name is looked up in small letters, also by its aliases; each preset
+// makes colour knots, in linear light, and opacity knots, both at values of the field:
+//
+//     entries of a table                       viridis
+//     stops, mixed in a space of colours       coolwarm, grey, bone, jet, rainbow, desaturated, blackbody, xray
+//     polynomials, sampled evenly              plasma, inferno, cividis, turbo
+//     a colour for each integer                categories
+//
+// These get an opacity from 0 to one half over the range, but for categories, whose opacity is the same everywhere, as that of
+// the white preset "constant" is. "isosurface" has viridis with five narrow peaks, and "surface" ivory with an opacity that
+// rises steeply from the value 0 on. An unknown name is an error that lists the names, and says which one may be meant.
 #include <algorithm>
 #include <array>
 #include <cmath>

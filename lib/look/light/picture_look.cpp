@@ -1,4 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
+// From what a user chooses to the optics of a picture: a transfer function and the distance, in world units, that its opacities
+// are for.
+//
+//     choices ──► look ──► options, with values and per cents of the field's range as numbers ──► optics
+//
+// The optics are made in this order, and each step may replace what came before: the colour map, with opacities over the range
+// of the one field and colours over that of the other, unless a range was chosen; its scale, its bands and the colours beyond
+// it; what the look demands (a solid is opaque, an x-ray of a body without a field has one opacity); opacities that were asked
+// for; at last, values beyond the range that look like its ends.
+//
+// Unless the body is solid, a camera frames the cells that can be seen: those in which the opacity is somewhere more than a
+// fiftieth of the largest. If their box is nearly as large as that of the whole, the whole is framed.
 #include "subvol/picture_look.h"
 
 #include <algorithm>

@@ -1,4 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
+// A legend as an SVG picture. It consists of the title and, from top to bottom:
+//
+//     1 ┌───────────────┐
+//       │ opacity curve │    filled with the colours of the bar
+//     0 └───────────────┘
+//      ◁│  colour bar   │▷   tips in the colours of values beyond the range
+//       ╵   ╵   ╵   ╵   ╵    ticks at round values, or at the ends of the bands
+//
+// If the opacities are those of another field, their curve comes below the bar, in grey and with its own title and ticks. If
+// there are names, of categories or for the one value of a constant field, a swatch and a name for each take the place of all
+// this. Values lie along the bar as the colour scale has them, linear or logarithmic. Colours are stops in sRGB at even steps
+// and at the knots of the function. Lengths are pixels.
 #include "subvol/legend.h"
 
 #include <algorithm>

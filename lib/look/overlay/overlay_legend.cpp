@@ -1,4 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
+// A legend that is painted into a picture, at its right side or along its lower edge:
+//
+//     title                       title, note
+//     opacity │ bar │─ label      ◁│ bar                    │▷
+//      curve  │     │─ label          ╵ label   ╵ label   ╵
+//     note
+//
+// All lengths are multiples of the letter's size, which is a part of the picture's shorter side between limits. The extent is
+// known before anything is drawn, so that the picture can be made large enough: at the side, of the titles up to a part of the
+// shorter side, or of bar and labels, whichever is wider. The curve of the opacity is drawn at the side alone, and left out
+// where the opacity is the same everywhere; that of another field lies below the bar. Categories are swatches with names; where
+// there is no room for all, the last entry says how many more there are.
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -1,4 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
+// Control values x whose limit is near to samples b, by least squares: min |A x − b|² + |D x|².
+//
+// Once for all fields: places of the samples in the limit; A, the limit there as a matrix; D, weighted first and second
+// differences of control values, which continue values where samples do not decide them; places between the samples, to compare
+// with the data.
+//
+// For each channel: the linear trend of the samples is taken off, unless smoothing is asked for ──► x starts as means of
+// samples in the cells about a point, continued layer by layer ──► the solver's steps ──► values that samples hardly decide are
+// kept near the range of what is left ──► the trend is added again ──► values are clamped to the range, if asked for. Very
+// large or small values are scaled by a power of two first, so that their squares are numbers.
+//
+// Errors at the samples are those of A. At the worst samples, or at all if these are not many, between the samples and at
+// extremes the limit itself is evaluated. Cells with errors beyond a tolerance can then be asked for.
 #include "fitter.h"
 
 #include <algorithm>

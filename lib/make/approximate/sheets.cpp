@@ -1,4 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
+// More control points where they are asked for, by splitting sheets of cells.
+//
+// Which sheets: the edges of a sheet are joined from side to opposite side of every face. A cell that asks chooses the
+// direction in which the control values bend most, and others with at least half as much; the sheets of its edges along these
+// are split as a whole.
+//
+// Splitting: every edge of such a sheet gets a point, every face and cell a further one where it is split along all its
+// directions. A cell becomes 1, 2, 4 or 8 parts, each with its place in the cell. Creases and sharp faces are split likewise.
+//
+// Grading: halves beside wholes would be a jump. The length l of an edge, in parameters of the cell that was split, moves in
+// four passes towards those l' beyond its ends, by (l' − l) / 4 for each, and its ends move as much. A point's place is noted
+// in the cell into which it moves along all three edges, if there is one.
 #include "sheets.h"
 
 #include <algorithm>

@@ -1,4 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
+// A mesh of hexahedra for what a surface of triangles encloses.
+//
+//     surface ──► bodies: what is inside of it ──► chains of sharp edges
+//     ┌► cubes of a grid, some divided into 27 parts ──► those with their middles inside, and more until their boundary is
+//     │  a surface ──► a layer of cells around them
+//     │  rounds with straight cells: the boundary is drawn to the surface, more each time
+//     │  paths of edges for the sharp chains ──► creases, with a layer of cells along them ──► more of these rounds
+//     │  rounds with the limit of the scheme
+//     └─ cubes are divided where the surface or a sharp chain is still too far away, as often as allowed
+//     folds are mended and the report is made
+//
+// The first rounds have straight cells, as the limit of cubes is not like the surface. Each cell has a side that it should
+// have; layers make all of them smaller, so that the volume remains. Surfaces without volume, or too far from the origin for
+// the digits of their coordinates, are refused, as is a grid with too many cubes.
 #include "subvol/control_mesh.h"
 
 #include <algorithm>

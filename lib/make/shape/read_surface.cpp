@@ -1,4 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
+// Triangles of a surface from a file; the extension names the format.
+//
+//     .stl   binary if the file is as long as its count of triangles says, else text ──► corners ──► welded
+//     .obj   lines v and f; corners count from 1, or from the end if negative
+//     .ply   elements vertex, face and tristrips; others are skipped
+//     .glb   triangles of the scene ──► corners ──► welded
+//
+// Welding makes corners at exactly the same place one point, numbered as they first occur. Polygons become fans about their
+// first corner, and triangles with a corner twice are left out. The surface is validated at the end. Errors name the file and
+// the line or the byte.
 #include "subvol/read_surface.h"
 
 #include <algorithm>

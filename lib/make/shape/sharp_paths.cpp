@@ -1,4 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
+// Paths of edges of a mesh's boundary along the sharp curves of a surface.
+//
+// Each corner of the curves takes the nearest free point with as many edges as curves end there. Curves then get paths one
+// after the other, the shortest curves first: cheapest paths over points that no other path has, where an edge costs its length
+// times 1 + 16 d², with d the distance of its middle from the curve in cells. Points farther than two cells from the curve are
+// barred. A ring goes by three points, and once more by those midway between them, as the first three may lie beside the best
+// path. A path much shorter than its curve has cut something off and is dropped.
+//
+// Then paths of one or two edges that end freely are dropped. Other free ends go on to another path by cuts: edges that are no
+// creases. Where there is no way, the path is dropped. Curves without a path are missed. All is tried again with the missed
+// curves first, up to 20 times, and the try that misses the least length is the result.
 #include "sharp_paths.h"
 
 #include <algorithm>

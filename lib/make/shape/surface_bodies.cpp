@@ -1,4 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
+// What a surface of triangles encloses, however it was put together. In this order:
+//
+//     copies     triangles with the same corners, the same way round, and those without three different corners are left out
+//     fins       flat patches at edges of an odd number of triangles are left out, again and again: all that end freely, else
+//                the flattest one
+//     turning    triangles of a patch are turned as most of it is
+//     walls      triangles joined by edges; those with open edges are one wall together
+//     unions     walls of which an edge of one pierces a triangle of another, found by a sweep over their boxes
+//     depth      in how many other unions a wall lies, by the winding numbers at 15 of its triangles; odd: a cavity
+//
+// Of several walls, a place has the likeness p of a union by the largest |winding number| of its walls, at most 1. Inside is
+// what lies in an odd number of unions: likenesses p and q become p + q − 2 p q. Points count as one within 1e-7 of the box's
+// diagonal.
 #include "surface_bodies.h"
 
 #include <algorithm>

@@ -1,4 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
+// Edges, faces and incidences of a hexahedral mesh, as flat arrays, in this order:
+//
+//     cells ──► faces ──► a number for each cell, from its sorted faces
+//       faces ──► edges: records (two points, face, slot), sorted; equal pairs are one edge, with its faces
+//       edges ──► offsets by the smaller point ──► edges of cells, by look-up ──► edges of points
+//       hull and tagged faces ──► boundary edges and points ──► rings of faces and cells around edges ──► creases
+//
+// Sorting makes the numbers of edges and faces depend on point ids alone, not on the order of the cells or on the threads. A
+// boundary edge is a crease if it is not manifold, if a single cell lies between two of its boundary faces, or if the mesh tags
+// it.
+//
+// Creases by angle: the two boundary quads at a smooth edge are oriented alike, and the edge is tagged if the cosine between
+// their normals is less than that of the angle.
 #include "subvol/topology.h"
 
 #include <algorithm>

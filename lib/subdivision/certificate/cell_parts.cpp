@@ -1,4 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
+// Cells and their descendants, as parts for which a test can ask for derivatives and children.
+//
+// A part of a grid is a window of points. Its axes are turned round and exchanged until its type is the one that bounds are
+// known for; the frame notes how, and where that makes the cell left-handed, x changes its sign. For each axis c, differences d
+// along c give the polynomial B d, the derivatives at the corners, and the rest d − V W d, which the type's bound κ multiplies.
+// Children are products of the type's rules, which are kept as sparse rows, with the points.
+//
+// A part whose derivatives are polynomials has their Bernstein coefficients, for each axis: of the trilinear cell the
+// differences of its corners, of the tricubic spline three times the differences of its Bézier points. Children halve them
+// along each axis and take half of the values, as derivatives are by the child's own parameters. Such a part has no rest.
 #include "cell_parts.h"
 
 #include <algorithm>

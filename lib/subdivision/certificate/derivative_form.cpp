@@ -1,4 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
+// The matrices of a derivative on one type of cells, and the proof of a bound κ of what they leave out. Symbols as in the
+// header.
+//
+//     rules of the type ──► D_s ──► φ at the corners, by powers of D_sᵀ ──► φ at 9×9×9 nodes, by the children's values
+//     reproduced polynomials, found by trying the rules ──► V, their differences, in integers
+//     B: nearest to φ at the nodes; 3 B rounded to multiples of 2⁻²⁴, made exact on V by differences at a base, then
+//        made as symmetric as the type is
+//     W: nearest element of V, by least squares
+//
+// What is made for a type is kept. The proof walks down the tree of children from the cell, with the product D of the way and
+// the polynomial λ restricted to the part. From the third level on a part is done if Σ|γ| + ρ κ' ≤ κ; else its children are
+// visited, and the proof fails beyond the eighth level or some thousand parts. Halves that are mirror images of others are left
+// out. Matrices are doubles with a bound of how far their row sums may be off, so Σ|γ| and ρ are upper bounds.
 #include "derivative_form.h"
 
 #include <Eigen/Sparse>

@@ -1,4 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
+// A mixed mesh is made in this order: the cells of a file are checked, turned until all are right-handed, and the points that
+// no cell uses are left out. Last, the corners of each tetrahedron are put in the order a c b d or a c d b of their numbers a <
+// b < c < d, whichever is right-handed. The diagonal of its octahedron, between the middles of ac and bd, then depends on the
+// numbers alone.
+//
+// Prisms, pyramids and hexahedra are cut into tetrahedra along diagonals of their quads, octahedra along the shortest diagonal:
+//
+//     octahedron +x −x +y −y +z −z  ──axis of the shortest diagonal──►  4 tetrahedra around it, one for each edge of the ring
+//
+// The shape of a cell is 6 V / e³ times a factor that makes it 1 for a regular cell. V is its volume, or the least of its parts
+// or corner tetrahedra, and e the root mean square of its edges. A negative shape marks an inverted cell. The volume of prisms
+// and pyramids is that of the tetrahedra into which they are cut, so that cells with a common quad add up.
 #include "subvol/mixed_mesh.h"
 
 #include <algorithm>

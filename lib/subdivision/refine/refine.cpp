@@ -1,4 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
+// Refines a mesh of hexahedra level by level. The control mesh is checked, loses unused points, and gets creases by angle, if
+// these are asked for, once.
+//
+//     topology of level l − 1 ─┬─► rows of the scheme ─┬─► applied to points and attributes, block by block ─► level l
+//                              │                       └─► or kept as a table, applied to any values later
+//                              └─► creases, sharp faces and topology of level l
+//
+// Fields at cells are taken out before and given to the 8^L children of each cell after L levels. Fields that are functions of
+// place are refined by their arguments, and restored after that.
+//
+// Some cells alone are refined as a patch, with two layers of cells around them. Tables of all levels can be applied one after
+// the other, or multiplied into one table over the control points.
 #include "subvol/refine.h"
 
 #include <unistd.h>

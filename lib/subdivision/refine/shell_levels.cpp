@@ -1,4 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
+// Refines shells of quads and lines together with the solid that they are attached to, level by level. An attached point of a
+// shell is a corner of a cell, so that its place and values are those of the refined cells; all other points follow the
+// scheme's rules for boundary faces and creases. Each level is made in this order:
+//
+//     1. topology   quads as boundary faces without cells; an edge is a crease if it has other than two quads, lies on an edge
+//                   of a cell, or is a line. Lines that are no edges of quads have a topology of their own
+//     2. solid      the cells within two layers of the attached points are refined once
+//     3. points     old points, then edges and faces of quads, then lines: from a corner of a child of the solid if all their
+//                   points are attached and a cell has the same edge or face, else from the rules
+//     4. split      each quad into four, each line into two
+//
+// A point of quads is smooth if it has no creases, is not attached, and its faces form one ring. It is on a crease if it has
+// two creases, all its faces lie in fans between them, and both lie on the solid if it is attached. All other points are
+// corners.
 #include "subvol/detail/shell_levels.h"
 
 #include <algorithm>

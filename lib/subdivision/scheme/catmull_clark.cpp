@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Catmull-Clark solids [mj1996]: weighted means of cells, faces and edges in the interior, Catmull-Clark surfaces on the
-// boundary, cubic B-splines on creases.
+// boundary. Creases are the cubic B-splines of SplineScheme.
 #include "spline_scheme.h"
 
 namespace subvol::detail {
