@@ -7,9 +7,9 @@
 #include <iostream>
 #include <regex>
 
-#include "io/solver_io/exodus_texts.h"
 #include "io/mesh_io/mesh_texts.h"
 #include "io/mesh_io/vtu_texts.h"
+#include "io/solver_io/exodus_texts.h"
 #include "subvol/detail/surface_share.h"
 #include "subvol/detail/vtu_bytes.h"
 #include "subvol/kernel_file.h"

@@ -33,7 +33,7 @@ std::array<double, 8> weights_at(const Vec3& uvw) {
 class PartCells {
 public:
     PartCells(const HexMesh& mesh, std::span<const std::uint8_t> cells)
-        : mesh_(mesh), at_points_(counted_rows<Index>(mesh.points.size(), [&](const auto& put) {
+        : mesh_(mesh), at_points_(detail::counted_rows<Index>(mesh.points.size(), [&](const auto& put) {
               for (Index c = 0; c < cells.size(); ++c) {
                   if (cells[c] == 0) continue;
                   for (const Index p : mesh.cells[c]) put(p, c);

@@ -9,6 +9,7 @@
 #include "subvol/detail/printable.h"
 #include "subvol/detail/space_order.h"
 #include "subvol/error.h"
+#include "subvol/option.h"
 #include "subvol/streamlines.h"
 
 namespace subvol {
