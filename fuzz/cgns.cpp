@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The reader of CGNS on any nodes.
 
+#include "formats.h"
 #include "solver_readers.h"
 
 #include "hdf5_lines.h"

@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string_view>
 #include <vector>
 
+#include "mesh_file.h"
 #include "subvol/read_options.h"
 
 namespace subvol::detail {
 
 class Hdf5File;
-struct MeshFile;
 
 // The readers of solvers' files in the rows of the table of formats. Each `NAME_times` gives the times of the steps of a file.
 
