@@ -18,19 +18,16 @@ class App;
 namespace subvol::cli {
 
 /// What `subvol render` is told about a picture: all options but the files and the shares.
-///
-/// method, body: as settled
-/// chosen:       what the library describes of pictures; the rest of it stays as it is
 struct RenderArguments {
-    Method method = Method::Splat;
-    BodyKind body = BodyKind::Mesh;
+    Method method = Method::Splat;   ///< as settled
+    BodyKind body = BodyKind::Mesh;  ///< as settled
     PictureArguments picture{};
     SampleArguments sample{};
     Clip clip{};
     SplatArguments splat{};
     RefineArguments refine{};
     TetRefinement tets{};
-    MethodOptions chosen{};
+    MethodOptions chosen{};  ///< the options of pictures that the library describes; the rest stays as it is
 
     void add_to(CLI::App& app);
     /// What the library and the command describe of them.

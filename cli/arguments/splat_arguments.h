@@ -14,10 +14,8 @@ class App;
 namespace subvol::cli {
 
 /// The options of splatting.
-///
-/// chosen: those that the library describes
 struct SplatArguments : PictureChoices {
-    SplatOptions chosen{};
+    SplatOptions chosen{};  ///< the options that the library describes
 
     void add_to(CLI::App& app);
     [[nodiscard]] std::vector<Option> described();

@@ -7,11 +7,9 @@
 namespace subvol::cli {
 
 /// The result of a child process.
-///
-/// signal: the one that ended it; 0: it exited by itself
 struct ChildResult {
     int code = 0;
-    int signal = 0;
+    int signal = 0;  ///< the signal that ended it; 0: it exited by itself
     std::string out, err;
 };
 

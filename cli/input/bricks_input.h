@@ -19,12 +19,9 @@ namespace subvol::cli {
 [[nodiscard]] WithFacts<Bricks> open_bricks_input(const std::string& input, const CLI::App& app);
 
 /// A field that is taken from each brick, with its range in the whole mesh.
-///
-/// name:   as the user says it: a field, the length of a vector, a component "V.1"; empty: density 1 everywhere
-/// vector: all three channels are taken
 struct StreamedField {
-    std::string name;
-    bool vector = false;
+    std::string name;  ///< as the user says it: a field, the length of a vector, a component "V.1"; empty: density 1 everywhere
+    bool vector = false;  ///< all three channels are taken
     double min = 0, max = 1;
 };
 

@@ -44,16 +44,12 @@ enum class InputKind { Picture, Mesh, Bricks, Points, Grid };
 enum class ShellsAlone { Refuse, Take };
 
 /// What --warp and --part-opacity have made of a mesh.
-///
-/// moved:     the displacement with its factor
-/// whole:     the mesh that the shells are sides of
-/// in_part:   a flag for each cell of the mesh that --only leaves, if the verb takes these out of the whole; empty: all
-/// opacities: of the quads of the shells, which are the translucent parts
 struct Reshaped {
-    std::optional<Warp> moved{};
-    std::optional<HexMesh> whole{};
+    std::optional<Warp> moved{};     ///< the displacement with its factor
+    std::optional<HexMesh> whole{};  ///< the mesh that the shells are sides of
+    /// A flag for each cell of the mesh that --only leaves, if the verb takes these out of the whole; empty: all.
     std::vector<std::uint8_t> in_part{};
-    std::vector<float> opacities{};
+    std::vector<float> opacities{};  ///< the opacities of the shells' quads, which are the translucent parts
 };
 
 /// Reads a mesh file, or generates "model:NAME[:RESOLUTION]". The reader's warnings are facts.

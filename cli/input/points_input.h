@@ -36,10 +36,10 @@ namespace subvol::cli {
 /// Whether the input is a file of points with levels of detail, .svk.
 [[nodiscard]] bool holds_levels(const std::string& input);
 
-/// A file of points with levels of detail that was opened. channels: as the fields that `load_points` selects
+/// A file of points with levels of detail that was opened.
 struct LevelsInput {
     KernelFile file;
-    std::vector<std::size_t> channels;
+    std::vector<std::size_t> channels;  ///< the channels of the fields that `load_points` selects
 };
 
 /// Opens such a file in place of `load_points`. cache_bytes: as of KernelFile

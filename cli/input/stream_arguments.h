@@ -14,11 +14,9 @@ class App;
 namespace subvol::cli {
 
 /// The options of streamlines, and of the arrows beside them.
-///
-/// seeds: texts as of `parse_seeds`, or files of places; none: middles of cells
 struct StreamArguments {
     FlowChoices chosen{};
-    std::vector<std::string> seeds{};
+    std::vector<std::string> seeds{};  ///< texts as of `parse_seeds`, or files of places; none: middles of cells
 
     /// Also what is only seen in pictures.
     void add_to(CLI::App& app);

@@ -25,9 +25,9 @@ namespace subvol::cli {
 /// cells: as of `RasterizeOptions`
 [[nodiscard]] const HexMesh& rasterized_cells(const HexMesh& mesh, std::span<const Index> cells, HexMesh& part);
 
-/// The greatest and the mean error of a grid. grid: its number
+/// The greatest and the mean error of a grid.
 struct GridErrorFigures {
-    std::size_t grid;
+    std::size_t grid;  ///< the number of the grid
     double max, rms;
 };
 

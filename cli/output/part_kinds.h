@@ -43,13 +43,11 @@ struct KernelParts {
 };
 
 /// Kernels of a mesh in pieces, which may not fit into memory: a part is a file, from which `join_points_of_bricks` reads.
-///
-/// points: of all parts
 struct StoredKernelParts {
     using Made = std::filesystem::path;
     using Whole = BrickPointsReport;
     std::string path{};
-    std::uint64_t points = 0;
+    std::uint64_t points = 0;  ///< the number of kernels of all parts
     Progress* progress = nullptr;
 
     [[nodiscard]] BrickPointsReport join(const std::vector<std::filesystem::path>& parts, std::span<const std::string>) const;

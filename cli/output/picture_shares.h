@@ -18,12 +18,9 @@
 namespace subvol::cli {
 
 /// The rows of a picture that this process draws.
-///
-/// share: none: all of them
-/// ranks: the processes that draw the other rows; null: this one is alone
 struct OwnRows {
-    std::optional<Share> share{};
-    Ranks* ranks = nullptr;
+    std::optional<Share> share{};  ///< the share of the rows; none: all of them
+    Ranks* ranks = nullptr;        ///< the processes that draw the other rows; null: this one is alone
 
     [[nodiscard]] PixelRows of(int height) const { return share ? rows_of(*share, height) : PixelRows{}; }
     /// Whether rank 0 puts the rows of all ranks together.

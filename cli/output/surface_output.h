@@ -10,13 +10,11 @@
 namespace subvol::cli {
 
 /// How a surface is written, and what the error says if there is none.
-///
-/// field: that isosurfaces are of, with the range of its control values; isos: how many isovalues were asked for
 struct SurfaceOutput {
     SurfaceFileOptions file{};
-    std::string field{};
-    Range range{};
-    std::size_t isos = 0;
+    std::string field{};   ///< the field that isosurfaces are of
+    Range range{};         ///< the range of the field's control values
+    std::size_t isos = 0;  ///< how many isovalues were asked for
 };
 
 /// For the note of a share.

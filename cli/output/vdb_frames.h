@@ -13,14 +13,11 @@
 namespace subvol::cli {
 
 /// The frames that are to be written.
-///
-/// all:   of all shares
-/// times: of the steps of a series, from step 0; empty: the frames are not steps
 struct FramesToGrids {
     MeshFrames& frames;
-    FrameRange all;
+    FrameRange all;  ///< the frames of all shares
     Share share;
-    std::vector<double> times;
+    std::vector<double> times;  ///< the times of the steps of a series, from step 0; empty: the frames are not steps
 };
 
 /// Makes and writes the grids of frames, one after the other. The first frame of all determines the voxel size and the level of

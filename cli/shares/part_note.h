@@ -19,15 +19,13 @@ namespace subvol::cli {
 inline constexpr const char* kPartNote = "subvol_part";
 
 /// What the file of a part says about itself, so that `join` takes only parts that belong together.
-///
-/// task:  a hash of the verb, its options, the input and the version: the same for all shares
-/// range: what the part has of the work: parts of builds that divide it differently do not fit together
-/// how:   what `join` must know to write the whole
 struct PartNote {
     Share share;
-    std::string verb, input, task;
+    std::string verb, input;
+    std::string task;  ///< a hash of the verb, its options, the input and the version: the same for all shares
+    /// What the part has of the work: parts of builds that divide it differently do not fit together.
     std::optional<ShareRange> range{};
-    nlohmann::ordered_json how = nlohmann::ordered_json::object();
+    nlohmann::ordered_json how = nlohmann::ordered_json::object();  ///< what `join` must know to write the whole
 };
 
 /// The note of a share. app: the verb, whose options have been parsed; those that do not change the result do not count

@@ -19,10 +19,9 @@ struct MpiFunctions;
 
 /// The rank of this process and the number of processes, as mpirun or srun puts them into the environment; nothing if it was
 /// started alone. MPI itself is not needed to know it.
-///
-/// on_host: the number of processes on this computer
 struct RankInEnvironment {
-    int rank = 0, size = 1, on_host = 1;
+    int rank = 0, size = 1;
+    int on_host = 1;  ///< the number of processes on this computer
 };
 [[nodiscard]] std::optional<RankInEnvironment> rank_in_environment();
 

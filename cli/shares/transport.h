@@ -32,13 +32,10 @@ namespace subvol::cli {
 //     OpenedPart<Made> open(const std::string& file)
 
 /// How the part that this process makes comes to the others.
-///
-/// note:  of the part's file; none: it is not written to a file
-/// ranks: that make the other parts; null: there are none
 struct Transport {
     Share share{};
-    std::optional<PartNote> note{};
-    Ranks* ranks = nullptr;
+    std::optional<PartNote> note{};  ///< the note in the part's file; none: the part is not written to a file
+    Ranks* ranks = nullptr;          ///< the ranks that make the other parts; null: there are none
     Progress* progress = nullptr;
 };
 
@@ -83,13 +80,10 @@ template <class Kind>
 }
 
 /// A part in a file.
-///
-/// note: nothing if the file has none
-/// read: reads the part; to be called once
 template <class Made>
 struct OpenedPart {
-    std::optional<std::string> note;
-    std::function<Made()> read;
+    std::optional<std::string> note;  ///< the note in the file; none: the file has none
+    std::function<Made()> read;       ///< reads the part; to be called once
 };
 
 /// A whole that was joined from files, and what the note of the first part says of how it is to be written.

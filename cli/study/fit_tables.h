@@ -10,11 +10,10 @@
 
 namespace subvol::cli {
 
-/// terms: of a sum of Gaussians, if the name determines them
 struct NamedShape {
     std::string name;
     KernelShape shape;
-    std::optional<int> terms{};
+    std::optional<int> terms{};  ///< the number of terms of a sum of Gaussians, if the name determines it
 };
 
 /// The names of all shapes.
@@ -31,10 +30,9 @@ struct NamedShape {
 /// A kernel's parameters, without long tables.
 [[nodiscard]] Json parameters_of(const Kernel& kernel);
 
-/// rows: for JSON; lines: for people
 struct FitTable {
-    Json rows = Json::array();
-    std::vector<std::string> lines;
+    Json rows = Json::array();       ///< for JSON
+    std::vector<std::string> lines;  ///< for people
 };
 
 /// Table 1 of [mnmq2007]: the paper's kernels with its printed errors, with ours summed in float (as the paper did) and in

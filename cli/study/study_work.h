@@ -10,12 +10,9 @@
 namespace subvol::cli {
 
 /// The folders of a case.
-///
-/// folder:     of the study; pictures are written to its pictures/
-/// references: of finished references, ID.exr
 struct CasePlace {
-    std::filesystem::path folder;
-    std::filesystem::path references;
+    std::filesystem::path folder;      ///< the folder of the study; pictures are written to its pictures/
+    std::filesystem::path references;  ///< the folder of finished references, ID.exr
 };
 
 /// Runs a case in this process.

@@ -12,13 +12,13 @@
 
 namespace subvol::cli {
 
-/// What was found in one step of a series. places, measure, patches: what was asked for
+/// What was found in one step of a series.
 struct ProbedStep {
     std::size_t step = 0;
     double time = 0;
-    std::optional<ProbeResult> places;
-    std::optional<LimitMeasure> measure;
-    std::vector<PatchMeasure> patches = {};
+    std::optional<ProbeResult> places;       ///< if values at places were asked for
+    std::optional<LimitMeasure> measure;     ///< if the measure was asked for
+    std::vector<PatchMeasure> patches = {};  ///< if patches were asked for
 };
 
 /// The steps of a series: into the report as `steps`, as lines for people, and into a table with a row for each step and place,

@@ -17,36 +17,25 @@
 namespace subvol::detail {
 
 /// A picture as its file has it, not yet linear.
-///
-/// values:       `channels` a pixel, at most the file's first four, integers as 0 to 1
-/// alpha:        which of the channels is alpha; -1: none
-/// integers:     the file has integers
-/// unassociated: colours are not premultiplied
-/// data, display: the windows of the file, see PlacedImage
-/// depth:        the channel Z, if it was asked for and the file has one
-/// note:         a text of `PictureValues::note`
 struct DecodedPicture {
     int channels = 0;
-    int alpha = -1;
-    bool integers = false, unassociated = false;
-    std::vector<float> values;
-    PixelWindow data{}, display{};
+    int alpha = -1;                 ///< which of the channels is alpha; -1: none
+    bool integers = false;          ///< the file has integers
+    bool unassociated = false;      ///< colours are not premultiplied
+    std::vector<float> values;      ///< `channels` numbers for each pixel, at most the file's first four; integers as 0 to 1
+    PixelWindow data{}, display{};  ///< the windows of the file, see PlacedImage
     bool wants_depth = false;
-    std::vector<float> depth{};
-    std::string note{};
+    std::vector<float> depth{};  ///< the channel Z, if it was asked for and the file has one
+    std::string note{};          ///< a text of `PictureValues::note`
 };
 
 /// Pixels for a file: linear floats R, G, B, A, and a depth for each, if there are any.
-///
-/// data, display: as in PlacedImage
-/// note:          a text beside the pixels
-/// camera:        its numbers; null: none
 struct PictureValues {
-    PixelWindow data{}, display{};
+    PixelWindow data{}, display{};  ///< as in PlacedImage
     const float* rgba = nullptr;
     const float* depth = nullptr;
-    const char* note = nullptr;
-    const char* camera = nullptr;
+    const char* note = nullptr;    ///< a text beside the pixels
+    const char* camera = nullptr;  ///< the numbers of the camera; null: none
 };
 
 struct PictureFault {

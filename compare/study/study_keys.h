@@ -18,16 +18,13 @@ using Json = nlohmann::ordered_json;
 /// its words
 enum class KeyKind { Switch, Whole, Number, Text, KernelShape, Described };
 
-/// fallback: the value where the key is missing; none: the key stays absent
-/// choices:  of a text; empty: any text
-/// option:   the description from which the key was made; it refers to a value that reading changes
 struct Key {
     std::string name;
     KeyKind kind = KeyKind::Text;
     double least = 0, most = 0;
-    std::optional<StudyValue> fallback{};
-    std::vector<std::string> choices{};
-    std::optional<Option> option{};
+    std::optional<StudyValue> fallback{};  ///< the value where the key is missing; none: the key stays absent
+    std::vector<std::string> choices{};    ///< the values that a text may have; empty: any text
+    std::optional<Option> option{};  ///< the description from which the key was made; it refers to a value that reading changes
 };
 
 /// The key of an option. fallback: as of Key

@@ -11,15 +11,11 @@
 namespace subvol::detail {
 
 /// The cells of all bricks with their halos.
-///
-/// owners: of points: the brick of the first cell. 4 bytes a point
-/// owned:  the cells of brick b are owned[first[b] .. first[b + 1]), ascending. 4 bytes a cell
-/// halo:   brick and cell, ascending. 8 bytes each
 struct BrickCells {
-    std::vector<std::uint32_t> owners;
+    std::vector<std::uint32_t> owners;  ///< brick of the first cell of each point, 4 bytes a point
     std::vector<std::size_t> first;
-    std::vector<Index> owned;
-    std::vector<std::pair<std::uint32_t, Index>> halo;
+    std::vector<Index> owned;  ///< the cells of brick b are owned[first[b] .. first[b + 1]), ascending. 4 bytes a cell
+    std::vector<std::pair<std::uint32_t, Index>> halo;  ///< brick and cell, ascending. 8 bytes each
 
     /// The cells of a brick with its halo, ascending.
     [[nodiscard]] std::vector<Index> stored(std::size_t brick) const;

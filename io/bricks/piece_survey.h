@@ -61,29 +61,26 @@ void each_cell(const MeshFile& piece, const Call& call) {
 [[nodiscard]] std::uint64_t hash_of(const MeshFile& piece);
 
 /// What the pieces of a mesh have in common, and the numbers of their points and cells.
-///
-/// hashes:     of the pieces that are not empty; first_cells: how many cells the pieces before have
-/// with_cells: how many pieces have any
-/// others:     there are other cells than hexahedra; cut: as in MeshFile
-/// arrays:     each with the number of pieces that have it
 struct PieceSurvey {
-    /// An array that may number points or cells. parts: how many pieces have it; whole: whether its numbers are
+    /// An array that may number points or cells.
     struct Numbers {
         std::string_view name;
-        std::size_t parts = 0;
-        bool whole = true;
+        std::size_t parts = 0;  ///< how many pieces have it
+        bool whole = true;      ///< whether its numbers are whole
         RanksOfNumbers ranks;
     };
 
-    std::vector<std::uint64_t> hashes;
-    std::vector<std::size_t> first_cells;
-    std::size_t cells = 0, with_cells = 0;
-    bool others = false, cut = false;
+    std::vector<std::uint64_t> hashes;     ///< hashes of the pieces that are not empty
+    std::vector<std::size_t> first_cells;  ///< how many cells the pieces before have
+    std::size_t cells = 0;
+    std::size_t with_cells = 0;  ///< how many pieces have any cells
+    bool others = false;         ///< there are other cells than hexahedra
+    bool cut = false;            ///< as in MeshFile
     Box box;
     double largest_cell = 0;
-    std::vector<std::pair<FileArray, std::size_t>> arrays;
+    std::vector<std::pair<FileArray, std::size_t>> arrays;  ///< each with the number of pieces that have it
     std::vector<Numbers> point_numbers, cell_numbers;
-    const Numbers* order = nullptr;  // of the cells; null: that of the files
+    const Numbers* order = nullptr;  ///< of the cells; null: that of the files
     std::vector<std::string> warnings;
 
     [[nodiscard]] std::size_t pieces() const { return hashes.size(); }

@@ -18,25 +18,21 @@ namespace subvol::detail {
 
 /// A mesh in pieces as tables in files, joined as `join_pieces` does: points and cells have the same order, and the same
 /// values.
-///
-/// points, cells: their counts; used: the points of cells
-/// arrays:        of the file, without their values; those of points make a record of point_values, in their order, those of
-///                cells one of cell_values
-/// corners:       of the cells, as the file has them; those of other cells than hexahedra end in kNone
-/// counts:        of each kind of cells; cut: as in MeshFile
-/// turned:        left-handed cells were turned, and what is negative stays so
-/// hash:          of all that is in the tables
 struct PieceTables {
     explicit PieceTables(const std::filesystem::path& folder);
 
-    std::uint64_t points = 0, cells = 0;
-    CellCounts counts;
-    bool cut = false, turned = false;
-    PointFlags used;
+    std::uint64_t points = 0, cells = 0;  ///< number of points and of cells
+    CellCounts counts;                    ///< number of cells of each kind
+    bool cut = false;                     ///< as in MeshFile
+    bool turned = false;                  ///< left-handed cells were turned, and what is negative stays so
+    PointFlags used;                      ///< the points of cells
+    /// Arrays of the file, without their values; those of points make a record of point_values, in their order, those of cells
+    /// one of cell_values
     std::vector<FileArray> arrays;
-    SpillFile coordinates, corners;
-    std::unique_ptr<SpillFile> point_values, cell_values;  // null: there are none
-    std::uint64_t hash = 0;
+    SpillFile coordinates;
+    SpillFile corners;  ///< corners of the cells, as the file has them; those of other cells than hexahedra end in kNone
+    std::unique_ptr<SpillFile> point_values, cell_values;  ///< null: there are none
+    std::uint64_t hash = 0;                                ///< hash of all that is in the tables
     std::vector<std::string> warnings;
 
     /// Numbers in a record of point_values, of cell_values.

@@ -14,15 +14,11 @@ namespace subvol::detail {
 enum class CurvedOrder : std::uint8_t { Vtk, Vtk8, VtkBezier, VtkBezier8, Exodus, Gmsh };
 
 /// The nodes of a curved hexahedron as a grid of (p+1)(q+1)(r+1) places, the first direction fastest.
-///
-/// degrees:   p, q, r
-/// slots:     the place of each node of the file
-/// completed: the file has no nodes in the middle of some faces and of the cell; they follow from the others
 struct CurvedLayout {
-    std::array<std::size_t, 3> degrees{1, 1, 1};
+    std::array<std::size_t, 3> degrees{1, 1, 1};  ///< p, q, r
     bool bezier = false;
-    bool completed = false;
-    std::vector<std::size_t> slots;
+    bool completed = false;  ///< the file has no nodes in the middle of some faces and of the cell; they follow from the others
+    std::vector<std::size_t> slots;  ///< the place of each node of the file
 
     [[nodiscard]] std::size_t size() const { return (degrees[0] + 1) * (degrees[1] + 1) * (degrees[2] + 1); }
 };

@@ -33,27 +33,21 @@ private:
 
 /// How far a straight line is from the curve at most, if a direction of a cell is not split: in parts of the mesh's size, and
 /// of the fields' ranges. The distance falls with the square of the number of pieces.
-///
-/// degrees: of the polynomials along each direction
 struct CellBend {
     std::array<float, 3> shape{}, fields{};
-    std::array<std::uint8_t, 3> degrees{1, 1, 1};
+    std::array<std::uint8_t, 3> degrees{1, 1, 1};  ///< degrees of the polynomials along each direction
 };
 
 /// The error of a field along a direction in n pieces, if it is `bend` in one piece of a polynomial of this degree.
 [[nodiscard]] double fields_error(double bend, std::size_t degree, std::size_t n);
 
 /// Into how many pieces the directions of curved cells are split.
-///
-/// class_of:   for each cell the classes of its three directions
-/// of_class:   the pieces of each class of edges
-/// hexes:      the hexahedra that all cells become
-/// limited:    whether there would have been more than most_hexes for the tolerance
 struct CurvedPieces {
-    std::vector<std::array<std::size_t, 3>> class_of;
-    std::vector<std::size_t> of_class;
-    std::size_t hexes = 0, most_hexes = 0;
-    bool limited = false;
+    std::vector<std::array<std::size_t, 3>> class_of;  ///< for each cell the classes of its three directions
+    std::vector<std::size_t> of_class;                 ///< the pieces of each class of edges
+    std::size_t hexes = 0;                             ///< the hexahedra that all cells become
+    std::size_t most_hexes = 0;
+    bool limited = false;  ///< whether there would have been more than most_hexes for the tolerance
 
     [[nodiscard]] std::array<std::size_t, 3> of_cell(std::size_t c) const {
         return {of_class[class_of[c][0]], of_class[class_of[c][1]], of_class[class_of[c][2]]};

@@ -10,9 +10,10 @@
 
 namespace subvol::detail {
 
-/// sides: of the mesh that lie on faces of the patches. Their numbers count the faces of all patches, one patch after the other
 struct FileSetsOfMesh {
     MeshSets sets;
+    /// Sides of the mesh that lie on faces of the patches. Their numbers count the faces of all patches, one patch after the
+    /// other
     std::vector<ValuesOnPatches::Side> sides;
 };
 

@@ -27,10 +27,10 @@ namespace subvol::detail {
 //                   has it too, so that no sharp edges are looked for when it is read
 //     patch:NAME    the mark, four points for each face of the patch
 
-/// An array of field data. numbers: all components, one tuple after the other
+/// An array of field data.
 struct NamedNumbers {
     std::string name;
-    std::vector<std::int64_t> numbers;
+    std::vector<std::int64_t> numbers;  ///< all components, one tuple after the other
 };
 
 /// Whether field data of this name belongs to a mesh.

@@ -22,27 +22,22 @@
 namespace subvol::detail {
 
 /// What a file says of an array on the faces of one of its patches.
-///
-/// along:  vectors have no component along the normal, and nothing else is known
-/// values: a tuple for each face; not a number: unknown
-/// level:  the array does not change across the faces
 struct FileOnPatch {
     std::size_t patch = 0;
-    bool along = false;
-    std::vector<double> values = {};
-    bool level = false;
+    bool along = false;               ///< vectors have no component along the normal, and nothing else is known
+    std::vector<double> values = {};  ///< a tuple for each face; not a number: unknown
+    bool level = false;               ///< the array does not change across the faces
 };
 
-/// An array of a file. at_cells: one tuple for each cell of the file, of any kind; else one for each point; unit: such as m/s;
-/// integers: the file has it in a type of integers
+/// An array of a file.
 struct FileArray {
     std::string name;
     int components = 1;
-    bool at_cells = false;
+    bool at_cells = false;  ///< one tuple for each cell of the file, of any kind; else one for each point
     std::vector<double> values;
-    std::string unit = {};
+    std::string unit = {};  ///< such as m/s
     std::vector<FileOnPatch> on_patches = {};
-    bool integers = false;
+    bool integers = false;  ///< the file has it in a type of integers
 };
 
 /// Symmetric tensors have their components in the order xx, yy, zz, xy, yz, xz. The place of each in files that list the upper
@@ -52,21 +47,18 @@ inline constexpr std::array<std::size_t, 6> kSymmetricByRows{0, 3, 5, 1, 4, 2};
 /// Values of symmetric tensors in our order. places: of our components in the file
 void order_symmetric(std::vector<double>& values, const std::array<std::size_t, 6>& places);
 
-/// The cells of one kind. numbers: the number of each among all cells of the file, from 0; empty if no array needs it
+/// The cells of one kind.
 template <std::size_t N>
 struct FileCells {
     std::vector<std::array<Index, N>> corners;
-    std::vector<Index> numbers;
+    std::vector<Index> numbers;  ///< number of each cell among all cells of the file, from 0; empty if no array needs it
 };
 
 /// All nodes of the curved ones among the hexahedra, which have their corners as all others.
-///
-/// numbers: as in FileCells
-/// ends:    of the nodes of each cell
 struct CurvedHexes {
-    std::vector<Index> numbers;
+    std::vector<Index> numbers;  ///< as in FileCells
     std::vector<CurvedOrder> orders;
-    std::vector<std::size_t> ends;
+    std::vector<std::size_t> ends;  ///< where the nodes of each cell end
     std::vector<Index> nodes;
 
     [[nodiscard]] std::size_t size() const { return numbers.size(); }
@@ -83,12 +75,10 @@ struct CurvedHexes {
 };
 
 /// The faces and edges of the groups that ReadOptions::sharp names. A triangle repeats its last corner.
-///
-/// settled: the file says which edges and faces are sharp, even if there are none
 struct FileTags {
     std::vector<std::array<Index, 4>> faces;
     std::vector<std::array<Index, 2>> edges;
-    bool settled = false;
+    bool settled = false;  ///< the file says which edges and faces are sharp, even if there are none
 
     [[nodiscard]] bool empty() const { return faces.empty() && edges.empty(); }
 };
@@ -136,12 +126,6 @@ private:
 };
 
 /// The contents of a file as a reader found them; `assemble` makes a mesh of them.
-///
-/// carriers:   of points that were made in curved cells: the corners between which each lies; none: points are those of the
-/// file prisms:     of either handedness, since formats differ; otherwise as in MixedCells quads, lines: of shells and beams;
-/// they need numbers cut:        the cells fit together only if all are cut into tetrahedra turned:     the hexahedra stay as
-/// they are, also where their volume is negative unread:     fields that could not be read not_finite: points with a coordinate
-/// that is not finite, and their position in the text: an error if a cell uses the point
 struct MeshFile {
     struct NotFinite {
         std::size_t point;
@@ -150,21 +134,24 @@ struct MeshFile {
     std::vector<Vec3> points;
     FileCells<8> hexes;
     FileCells<4> tets;
-    FileCells<6> prisms;
+    FileCells<6> prisms;  ///< prisms of either handedness, since formats differ; otherwise as in MixedCells
     FileCells<5> pyramids;
-    FileCells<4> quads;
-    FileCells<2> lines;
+    FileCells<4> quads;  ///< quads of shells; they need numbers
+    FileCells<2> lines;  ///< lines of beams; they need numbers
     CurvedHexes curved;
     FileTags sharp;
     std::vector<FileArray> arrays;
-    std::vector<UnreadField> unread;
+    std::vector<UnreadField> unread;  ///< fields that could not be read
+    /// Points with a coordinate that is not finite, and their position in the text: an error if a cell uses the point
     std::vector<NotFinite> not_finite;
     std::vector<std::string> warnings;
     std::vector<MeshBlock> blocks;
     std::vector<FilePatch> patches;
     std::vector<FileSet> sets;
+    /// For points that were made in curved cells: the corners between which each lies; none: points are those of the file
     IndexRows carriers;
-    bool cut = false, turned = false;
+    bool cut = false;     ///< the cells fit together only if all are cut into tetrahedra
+    bool turned = false;  ///< the hexahedra stay as they are, also where their volume is negative
 };
 
 /// Calls call(cells) for the FileCells of each kind of cells with a volume.
@@ -177,13 +164,11 @@ void each_kind(File& file, const Call& call) {
 }
 
 /// A format's words for a point and a cell, and the number that it gives to the first of them, for messages.
-///
-/// point_numbers: the number of each point where they are not consecutive
 struct EntityNames {
     std::string_view point_word;
     std::string_view cell_word;
     std::size_t first;
-    std::span<const std::int64_t> point_numbers = {};
+    std::span<const std::int64_t> point_numbers = {};  ///< number of each point where the numbers are not consecutive
 
     /// "vertex 13" for point 12 of a format that counts from 1.
     [[nodiscard]] std::string point(std::size_t p) const {
@@ -275,10 +260,8 @@ std::size_t drop_where(FileCells<N>& cells, const Drops& drops) {
 [[nodiscard]] std::vector<std::uint8_t> used_points(const MeshFile& found);
 
 /// A block of points and the hexahedra between them, both counted along i first, then j, then k.
-///
-/// points: their number along i, j and k
 struct StructuredGrid {
-    std::array<std::size_t, 3> points{};
+    std::array<std::size_t, 3> points{};  ///< number of points along i, j and k
 
     /// The number of points and of cells; kNone if it is out of the range of Index.
     [[nodiscard]] std::size_t point_count() const;

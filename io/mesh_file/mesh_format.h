@@ -20,44 +20,36 @@ namespace subvol::detail {
 
 struct Collection;
 
-/// What a writer gets, valid. shells: none for other formats than `.vtu`
+/// What a writer gets, valid.
 struct WrittenMesh {
     const HexMesh& mesh;
-    const Shells& shells;
+    const Shells& shells;  ///< none for other formats than `.vtu`
     const MeshSets& sets;
 };
 
 /// A format of mesh files.
-///
-/// extensions:     in lower case, unused ones empty
-/// read:           reads the mesh of one step
-/// write:          null if the library only reads the format
-/// times:          the times of the steps of a file; null if a file of this format is one step
-/// piece:          reads a file as a piece of a mesh, before it is assembled; null if a file is always a whole mesh
-/// parts:          how many parts of a mesh a name stands for, such as the pieces of which it names one, or the processors of
-///                 a case; null if a name is always that of one
-/// part:           reads one of these parts
-/// files:          reads a list of other files; null if the format is not such a list
-/// groups:         whether its groups of faces and edges are read
-/// blocks:         whether it has named parts, which ReadOptions::blocks chooses
-/// deck:           whether the file has results of a deck, which ReadOptions::deck names
-/// folder:         whether a folder may be such a mesh
-/// finite_volumes: whether its values at cells are means over them
 struct MeshFormat {
-    std::array<std::string_view, 4> extensions;
+    std::array<std::string_view, 4> extensions;  ///< in lower case, unused ones empty
     std::string_view name;
-    ReadResult (*read)(const std::filesystem::path& path, const ReadOptions& options);
+    ReadResult (*read)(const std::filesystem::path& path, const ReadOptions& options);  ///< reads the mesh of one step
+    /// Null if the library only reads the format
     std::vector<std::string> (*write)(const std::filesystem::path& path, const WrittenMesh& written) = nullptr;
+    /// The times of the steps of a file; null if a file of this format is one step
     std::vector<double> (*times)(const std::filesystem::path& path) = nullptr;
+    /// Reads a file as a piece of a mesh, before it is assembled; null if a file is always a whole mesh
     MeshFile (*piece)(std::string_view text, std::string_view file, const ReadOptions& options) = nullptr;
+    /// How many parts of a mesh a name stands for, such as the pieces of which it names one, or the processors of a case; null
+    /// if a name is always that of one
     std::size_t (*parts)(const std::filesystem::path& path) = nullptr;
+    /// Reads one of these parts
     MeshFile (*part)(const std::filesystem::path& path, std::size_t part, const ReadOptions& options) = nullptr;
+    /// Reads a list of other files; null if the format is not such a list
     Collection (*files)(const std::filesystem::path& path) = nullptr;
-    bool groups = false;
-    bool blocks = false;
-    bool deck = false;
-    bool folder = false;
-    bool finite_volumes = false;
+    bool groups = false;          ///< whether its groups of faces and edges are read
+    bool blocks = false;          ///< whether it has named parts, which ReadOptions::blocks chooses
+    bool deck = false;            ///< whether the file has results of a deck, which ReadOptions::deck names
+    bool folder = false;          ///< whether a folder may be such a mesh
+    bool finite_volumes = false;  ///< whether its values at cells are means over them
 };
 
 /// A reader of a text as the reader of a file.
@@ -67,12 +59,9 @@ ReadResult read_file(const std::filesystem::path& path, const ReadOptions& optio
 }
 
 /// What the first bytes of a file show.
-///
-/// extension: of the format whose files begin so; empty: of none
-/// certain:   an ending that says something else is wrong
 struct Contents {
-    std::string_view extension;
-    bool certain = true;
+    std::string_view extension;  ///< extension of the format whose files begin so; empty: no format has such files
+    bool certain = true;         ///< an ending that says something else is wrong
 };
 
 /// The first bytes of a file that are looked at, and those of them at which texts are recognised.

@@ -29,10 +29,9 @@ inline constexpr std::int64_t kVtkPolyhedron = 42;
 
 /// The faces of the polyhedra of a piece, in VTK's lists of two generations: for each cell all its faces, one after the other;
 /// or faces with numbers, and the numbers of each cell, if there are `number_ends`.
-///
-/// ends: in `stream`, that of the cell before for other cells
 struct VtkFaces {
-    std::vector<std::int64_t> stream, ends;
+    std::vector<std::int64_t> stream;
+    std::vector<std::int64_t> ends;  ///< end of each cell in `stream`; that of the cell before for other cells
     std::vector<std::int64_t> points, point_ends, numbers, number_ends;
 
     /// The faces of a cell; first_point, point_count and the result as for `faces_of_stream`

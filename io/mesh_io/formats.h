@@ -60,9 +60,9 @@ void check_read(ReadResult& result, const std::string& file);
 [[nodiscard]] ReadResult read_vtr(std::string_view text, std::string_view file, const ReadOptions& options);
 [[nodiscard]] ReadResult read_vti(std::string_view text, std::string_view file, const ReadOptions& options);
 
-/// The file with the flow that belongs to a Plot3D grid. text: empty if there is none
+/// The file with the flow that belongs to a Plot3D grid.
 struct Plot3dFlow {
-    std::string_view text;
+    std::string_view text;  ///< empty if there is none
     std::string_view file;
 };
 

@@ -52,12 +52,10 @@ class Hdf5File;
 [[nodiscard]] ReadResult read_inp(const std::filesystem::path& path, const ReadOptions& options);
 
 /// What a deck has, for a file of its results.
-///
-/// found:    its cells of volumes, sets, surfaces and blocks, with its points
-/// nodes:    the number of each point; elements: that of each cell, as cells are counted in `found`
 struct DeckContents {
-    MeshFile found;
-    std::vector<std::int64_t> nodes, elements;
+    MeshFile found;                      ///< its cells of volumes, sets, surfaces and blocks, with its points
+    std::vector<std::int64_t> nodes;     ///< number of each point
+    std::vector<std::int64_t> elements;  ///< number of each cell, as cells are counted in `found`
 };
 
 /// throws: Error(InvalidInput) as `read_inp`, or if it has parts and instances, whose numbers are not those of the results

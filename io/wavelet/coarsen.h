@@ -12,11 +12,10 @@
 namespace subvol::detail {
 
 /// A structured grid that a mesh is: its cells, u fastest, and how each lies.
-///
-/// corners: for each corner of a cell in the grid's orientation, the corner as the mesh has it
 struct StructuredCells {
     std::array<std::size_t, 3> counts{};
     std::vector<Index> cells;
+    /// For each corner of a cell in the grid's orientation, the corner as the mesh has it
     std::vector<std::array<std::uint8_t, 8>> corners;
 };
 
@@ -24,15 +23,12 @@ struct StructuredCells {
 [[nodiscard]] std::optional<StructuredCells> structured_cells(const Topology& topology);
 
 /// One level up.
-///
-/// points:   for each coarse point the finer point that it is
-/// children: for each coarse cell and each of its corners the finer cell there
-/// corners:  of that finer cell, for each corner of a cell in the coarse cell's orientation, the corner as the finer cell has
-///           it
 struct CoarserMesh {
     HexMesh mesh;
-    std::vector<Index> points;
-    std::vector<std::array<Index, 8>> children;
+    std::vector<Index> points;                   ///< for each coarse point the finer point that it is
+    std::vector<std::array<Index, 8>> children;  ///< for each coarse cell and each of its corners the finer cell there
+    /// For each of these finer cells and each corner of a cell in the coarse cell's orientation, the corner as the finer cell
+    /// has it
     std::vector<std::array<std::array<std::uint8_t, 8>, 8>> corners;
 };
 

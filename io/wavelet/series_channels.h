@@ -59,11 +59,9 @@ struct CodedChannel {
                                  const std::array<const std::vector<std::int64_t>*, 2>& before, const Predictions& predictions);
 
 /// What is kept of a channel.
-///
-/// exact: the points whose values are kept as they are, and these
 struct KeptValues {
-    std::vector<std::size_t> exact_points;
-    std::vector<double> exact_values;
+    std::vector<std::size_t> exact_points;  ///< points whose values are kept as they are
+    std::vector<double> exact_values;       ///< values of these points
     double max_error = 0;
 };
 

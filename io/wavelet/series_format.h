@@ -73,10 +73,9 @@ struct SeriesArray {
     std::vector<Quantization> channels;
 };
 
-/// hash: of the bytes there; none in files of the first version
 struct SeriesPlace {
     std::uint64_t place = 0, length = 0;
-    std::optional<std::uint64_t> hash = {};
+    std::optional<std::uint64_t> hash = {};  ///< hash of the bytes there; none in files of the first version
 };
 
 struct SeriesMesh {

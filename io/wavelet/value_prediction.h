@@ -11,16 +11,12 @@ namespace subvol::detail {
 
 /// An order of the points of a mesh, and how the value of each is predicted from those before it: the sum of the weights times
 /// their values, divided by `parts` and rounded. All of it is whole numbers, so that every machine predicts the same.
-///
-/// order:  each point once
-/// points, weights: a row for each point, in this order
-/// parts:  for each row the divisor
 struct ValuePrediction {
-    std::vector<Index> order;
+    std::vector<Index> order;  ///< each point once
     std::vector<std::size_t> offsets{0};
-    std::vector<Index> points;
-    std::vector<std::int8_t> weights;
-    std::vector<std::uint8_t> parts;
+    std::vector<Index> points;         ///< a row for each point, in the order of `order`
+    std::vector<std::int8_t> weights;  ///< a row for each point, in the order of `order`
+    std::vector<std::uint8_t> parts;   ///< for each row the divisor
 
     /// What row `i` predicts.
     [[nodiscard]] std::int64_t predict(std::size_t i, std::span<const std::int64_t> values) const {

@@ -163,10 +163,10 @@ struct PictureLight {
 [[nodiscard]] std::vector<Vec3> seeds_in(const HexMesh& mesh, const py::object& seeds, std::size_t count,
                                          const LimitOptions& limit);
 
-/// A scheme of hexahedra, or of tetrahedra. rules: all but its kind
+/// A scheme of hexahedra, or of tetrahedra.
 struct GivenScheme {
     std::string name = "mcq";
-    SchemeOptions rules{};
+    SchemeOptions rules{};  ///< all of the scheme but its kind
 
     [[nodiscard]] std::optional<TetScheme> tets() const;
     /// throws: Error(InvalidInput) for another scheme

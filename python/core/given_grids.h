@@ -11,16 +11,12 @@
 namespace subvol::python {
 
 /// The keywords of rasterize() and write_vdb().
-///
-/// voxel_size: nothing: as the resolution says
-/// levels:     nothing: the limit
-/// sdf:        nothing: no level set
 struct GivenGrids {
     SchemeOptions scheme{};
-    std::optional<int> levels{};
-    std::optional<double> voxel_size{};
+    std::optional<int> levels{};         ///< none: the limit
+    std::optional<double> voxel_size{};  ///< none: as the resolution says
     RasterizeOptions grids{};
-    std::optional<std::string> sdf{};
+    std::optional<std::string> sdf{};  ///< none: no level set
     LevelSetOptions level_set{};
 
     [[nodiscard]] RasterizeOptions chosen() const {

@@ -12,17 +12,16 @@
 
 namespace subvol::python {
 
-/// What a renderer returns to Python: the class Image there. report: counts and seconds, under the names of the command's JSON;
-/// camera: its numbers, for the header of a file; part: the windows of a file that has a part of a picture
+/// What a renderer returns to Python: the class Image there.
 struct Picture {
     Image image;
     std::vector<float> depth{};
-    pybind11::dict report{};
-    std::string camera{};
+    pybind11::dict report{};  ///< counts and seconds, under the names of the command's JSON
+    std::string camera{};     ///< the camera's numbers, for the header of a file
     struct Windows {
         PixelWindow data, display;
     };
-    std::optional<Windows> part{};
+    std::optional<Windows> part{};  ///< the windows, for a file that has a part of a picture
 
     [[nodiscard]] Windows windows() const {
         const PixelWindow whole{0, 0, image.width, image.height};

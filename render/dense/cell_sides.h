@@ -11,10 +11,8 @@
 namespace subvol::detail {
 
 /// How a side of a cell continues in another cell: its two axes are swapped there, and then each runs backwards or not.
-///
-/// cell: kNone on an open side
 struct SideLink {
-    Index cell = kNone;
+    Index cell = kNone;  ///< kNone on an open side
     std::uint8_t side = 0;
     bool swapped = false;
     std::array<bool, 2> backwards{};

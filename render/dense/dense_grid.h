@@ -15,17 +15,15 @@ namespace subvol::detail {
 
 /// One of the 64 ways to split a hexahedron into 6 tetrahedra about a corner, given by the corner and by the diagonals of the
 /// three faces that do not touch it. The same splits as those of `split_cell`, with tables of the neighbours.
-///
-/// corners:   of each tetrahedron, as corners of the cell
-/// neighbors: what lies across the face opposite to a corner: a tetrahedron of the cell, or 8 + a face of the cell
-/// missing:   if that is a face of the cell: the face's corner that the triangle leaves out
-/// owners:    for a face and the corner that a triangle on it leaves out: 4 · tetrahedron + opposite corner of that triangle;
-///            kNoOwner where the split has no such triangle
 struct CellSplit {
     static constexpr std::uint8_t kNoOwner = 255;
-    std::array<std::array<std::uint8_t, 4>, 6> corners{};
+    std::array<std::array<std::uint8_t, 4>, 6> corners{};  ///< the corners of each tetrahedron, as corners of the cell
+    /// What lies across the face opposite to a corner: a tetrahedron of the cell, or 8 + a face of the cell.
     std::array<std::array<std::uint8_t, 4>, 6> neighbors{};
+    /// For a neighbour that is a face of the cell: the face's corner that the triangle leaves out.
     std::array<std::array<std::uint8_t, 4>, 6> missing{};
+    /// For a face and the corner that a triangle on it leaves out: 4 · tetrahedron + opposite corner of that triangle; kNoOwner
+    /// where the split has no such triangle.
     std::array<std::array<std::uint8_t, 8>, 6> owners{};
 };
 

@@ -11,12 +11,10 @@ namespace subvol::detail {
 
 /// A level of dense grids, and how far what it shows lies from the limit, in the mean over the picture (RMS): the boundary
 /// and the lines where colours jump in pixels, colours and opacities elsewhere as parts of 1.
-///
-/// within: the one is not more than a quarter, the other not more than 1/256
 struct DenseLevel {
     int level = 0;
     double error_px = 0, error_color = 0;
-    bool within = false;
+    bool within = false;  ///< `error_px` is not more than a quarter, and `error_color` not more than 1/256
 };
 
 /// The lowest level up to `most` that lies within these tolerances. The same for any number of threads.

@@ -20,23 +20,19 @@ namespace subvol::detail {
 
 /// The part of the tetrahedra's data that changes from picture to picture. Places are in eye space, in units of `scale`, and
 /// depths are relative to that of the volume's middle.
-///
-/// points:    place; value in parts of the range of the knots
-/// order:     numbers of tetrahedra, from back to front, or of faces, from front to back
-/// eye_value: the value at the eye, in the same parts; only for faces
 struct GlTetFrame {
     /// A knot of the transfer function; the same as in shaders/projected_segment.glsl.
     struct Knot {
         std::array<float, 4> rgba;  // colour, opacity
         std::array<float, 4> value{};
     };
-    std::vector<std::array<float, 4>> points;
-    std::vector<std::uint32_t> order;
+    std::vector<std::array<float, 4>> points;  ///< position; value, in parts of the range of the knots
+    std::vector<std::uint32_t> order;          ///< numbers of tetrahedra, from back to front, or of faces, from front to back
     std::vector<Knot> knots;
-    double scale = 1;          // world length
-    double middle_depth = 0;   // in units of it
-    double opacity_units = 1;  // opacity units in the scale
-    double eye_value = 0;
+    double scale = 1;          ///< length in world units
+    double middle_depth = 0;   ///< in units of `scale`
+    double opacity_units = 1;  ///< opacity units in the scale
+    double eye_value = 0;      ///< the value at the eye, in the same parts as the values of the points; only for faces
 
     /// Planes {normal, offset} in eye space, in the same units: the faces of a clip, then the slices. After them the depths at
     /// which the rays of pixels end, four in each; none: no ray ends.

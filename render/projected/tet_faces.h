@@ -10,14 +10,13 @@
 namespace subvol::detail {
 
 /// The faces of tetrahedra; shared faces are listed once.
-///
-/// faces: first those by which rays enter or leave, or at which cells fold over; then the inner ones in a reproducible random
-///        order that favours large faces, so that the first n of them are spread evenly over the mesh for every n
 struct TetFaces {
     struct Face {
         std::array<Index, 3> corner;  // ascending
         std::uint32_t cover;          // 2 + tetrahedra on the side of the face's normal − those on the other
     };
+    /// First the faces by which rays enter or leave, or at which cells fold over; then the inner ones in a reproducible random
+    /// order that favours large faces, so that the first n of them are spread evenly over the mesh for every n.
     std::vector<Face> faces;
     std::size_t outer = 0;
 

@@ -9,11 +9,9 @@
 
 namespace subvol::detail {
 
-/// tets:   from back to front
-/// cycles: how often no tetrahedron was ready
 struct TetOrder {
-    std::vector<std::uint32_t> tets;
-    std::size_t cycles = 0;
+    std::vector<std::uint32_t> tets;  ///< the tetrahedra from back to front
+    std::size_t cycles = 0;           ///< how often no tetrahedron was ready
 };
 
 /// Sorts by the eye depth of the centroids; equal ones by their number.

@@ -11,14 +11,14 @@
 namespace subvol::detail {
 
 /// The intervals in which the ray of each pixel is inside a closed surface. Pixel p (row by row) has the depth pairs {enter,
-/// exit} depths[2·offsets[p] .. 2·offsets[p+1]), ascending and disjoint. triangles: where each interval is entered; kNoTriangle
-/// at the near depth, kFirstFace + i at face i of a clip. A slice is an interval without length. hits: crossings of all rays.
+/// exit} depths[2·offsets[p] .. 2·offsets[p+1]), ascending and disjoint. A slice is an interval without length.
 struct PixelIntervals {
     static constexpr std::uint32_t kNoTriangle = 0xffffffff, kFirstFace = 0xffff0000;
     std::vector<std::uint32_t> offsets;
     std::vector<float> depths;
+    /// Where each interval is entered; kNoTriangle at the near depth, kFirstFace + i at face i of a clip.
     std::vector<std::uint32_t> triangles;
-    std::size_t hits = 0;
+    std::size_t hits = 0;  ///< crossings of all rays
 
     [[nodiscard]] bool is_slice(std::size_t i) const { return depths[2 * i] == depths[2 * i + 1]; }
 };

@@ -17,11 +17,11 @@ namespace subvol::detail {
 /// a + kPastCenter_px is in to that of b − kPastCenter_px, and of none if that is before the first.
 inline constexpr float kPastCenter_px = 0.45f;
 
-/// What a ray meets where it enters or leaves the volume. x: the value, and that of the second channel, in cells;
-/// kUnknownValue where no kernel reaches. light: a factor of the colour, and white that is added.
+/// What a ray meets where it enters or leaves the volume.
 struct IntervalEnd {
+    /// The value, and that of the second channel, in cells; kUnknownValue where no kernel reaches.
     float x = kUnknownValue, color = 0;
-    SurfaceLight light;
+    SurfaceLight light;  ///< a factor of the colour, and white that is added
 };
 
 /// The values of a tile's pixels on the sheets of a batch, which other transfer functions may use again. Blocks are vectors of

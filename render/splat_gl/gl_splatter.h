@@ -12,26 +12,19 @@
 namespace subvol::detail {
 
 /// How the work is divided. The picture does not depend on it.
-///
-/// tile_px:            8 or 16; 0: 8 on hardware, where small groups wait less for each other, else 16
-/// batch:              sheets, 1..16; 0: 4 on hardware, where more of fewer sums fit at a time, else 8. Where a picture has
-/// more
-///                     sheets than its stack it depends on batches that do not divide 8
-/// most_buffer_bytes:  limit for a buffer, if the device has no lower one
-/// memory_bytes:       limit for kernels and lists together; 0: memory_budget()
-/// most_entries:       limit for the pairs of a bin and a kernel
-/// most_tiles:         limit for the tiles of a dispatch
-/// most_steps:         a thread of a dispatch ends soon after so many iterations of loops, or earlier where the device is slow;
-///                     at least 64 for each sheet of a batch. Software ends them after 2¹⁴.
-/// boundary_on_device: rasterize the boundary with OpenGL even if it is software, where the CPU's rasterizer is faster
 struct GlTuning {
-    int tile_px = 0;
+    int tile_px = 0;  ///< 8 or 16; 0: 8 on hardware, where small groups wait less for each other, else 16
+    /// Sheets of a batch, 1..16; 0: 4 on hardware, where more of fewer sums fit at a time, else 8. Where a picture has more
+    /// sheets than its stack, it depends on batches that do not divide 8.
     int batch = 0;
-    std::size_t most_buffer_bytes = std::size_t{1} << 31;
-    std::size_t memory_bytes = 0;
-    std::size_t most_entries = std::size_t{1} << 26;
-    std::uint32_t most_tiles = 1U << 16;
+    std::size_t most_buffer_bytes = std::size_t{1} << 31;  ///< limit for a buffer, if the device has no lower one
+    std::size_t memory_bytes = 0;                          ///< limit for kernels and lists together; 0: memory_budget()
+    std::size_t most_entries = std::size_t{1} << 26;       ///< limit for the pairs of a bin and a kernel
+    std::uint32_t most_tiles = 1U << 16;                   ///< limit for the tiles of a dispatch
+    /// A thread of a dispatch ends soon after so many iterations of loops, or earlier where the device is slow; at least 64 for
+    /// each sheet of a batch. Software ends them after 2¹⁴.
     std::uint32_t most_steps = 1U << 18;
+    /// Rasterize the boundary with OpenGL even if it is software, where the CPU's rasterizer is faster.
     bool boundary_on_device = false;
 };
 

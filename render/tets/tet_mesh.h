@@ -38,9 +38,6 @@ struct TetShapes {
 };
 
 /// A mesh of tetrahedra with their neighbours.
-///
-/// links: for each tetrahedron one link for each face, half a cache line in all, by the rank of the opposite corner's id among
-///        the four. A walk knows the ids from the face by which it came, so it reads nothing else
 struct TetMesh {
     struct Tet {
         std::array<Index, 4> corner;
@@ -51,6 +48,8 @@ struct TetMesh {
     };
     std::vector<Point> points;
     std::vector<Tet> tets;
+    /// For each tetrahedron one link for each face, half a cache line in all, by the rank of the opposite corner's id among the
+    /// four. A walk knows the ids from the face by which it came, so it reads nothing else.
     std::vector<std::array<TetLink, 4>> links;
     std::vector<TetFace> boundary;
     TetShapes shapes{};

@@ -211,12 +211,11 @@ struct TraceCounts {
     }
 };
 
-/// What has been integrated, up to depth t: every depth counts once, even where a mesh folds over itself. slice: the value on
-/// the slice that ends the ray
+/// What has been integrated, up to depth t: every depth counts once, even where a mesh folds over itself.
 struct LitDepth {
     Segment light;
     double t = 0;
-    std::optional<double> slice{};
+    std::optional<double> slice{};  ///< the value on the slice that ends the ray
 };
 
 /// What is left of a ray, and whether its slices are drawn alone.

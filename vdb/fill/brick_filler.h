@@ -40,17 +40,14 @@ public:
 
 private:
     /// Some blocks, one after the other: cells, or pieces of cells.
-    ///
-    /// numbers: of the blocks
-    /// first: the first node of each block, then the number of all nodes; boxes: the voxels of each block
     struct Batch {
-        std::span<const Index> numbers;
-        std::vector<std::size_t> first;
+        std::span<const Index> numbers;  ///< the numbers of the blocks
+        std::vector<std::size_t> first;  ///< the first node of each block, then the number of all nodes
         FlatArray<Vec3> points;
         FlatArray<double> values;
-        FlatArray<Index> ids;  // of the nodes of unrefined cells
-        std::vector<VoxelBox> boxes;
-        std::vector<std::size_t> first_piece;  // of curved cells
+        FlatArray<Index> ids;                  ///< the ids of the nodes of unrefined cells
+        std::vector<VoxelBox> boxes;           ///< the voxels of each block
+        std::vector<std::size_t> first_piece;  ///< the first piece of each curved cell, in `piece_boxes`
         std::vector<VoxelBox> piece_boxes;
     };
     void load(std::span<const Index> blocks, Batch& batch);

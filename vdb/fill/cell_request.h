@@ -23,34 +23,27 @@ struct ToVoxels {
 };
 
 /// Cells to be rasterized: a mesh, how it is refined, and the voxels.
-///
-/// fields:      of the mesh; their channels become those of the voxels, one after the other
-/// refine:      levels 0: the mesh itself, unless on_limit or curved
-/// on_limit:    the refined vertices are moved to the limit
-/// curved:      positions and values are triquadratic between the vertices of the next level
-/// cell_levels: null, or for each control cell the level of its vertices, which replaces the next one; at least 1
-/// pieces:      null, or the curved cells' pieces, with the values of the fields: then nothing is refined, and `cell_levels`
-///              is not used
-/// slack_voxels: of curved cells: what two neighbours' ideas of their shared side may differ by
-/// search:      null, or how fine the pieces are that are looked for while the voxels are filled; `pieces` is null then
-/// numbers:     of the cells, as voxels get them; kNone: the cell is not filled, and only shapes the limit of the others.
-/// Empty:
-///              all cells, by their places
-/// tables:      null, or tables that do to this mesh what `refine` (with one more level if curved) and `on_limit` do
 struct CellRequest {
     const HexMesh* mesh = nullptr;
+    /// Fields of the mesh; their channels become those of the voxels, one after the other.
     std::vector<const Attribute*> fields;
     ToVoxels to_voxels;
-    RefineOptions refine{.levels = 0};
-    bool on_limit = false;
-    bool curved = false;
-    double slack_voxels = 0;
+    RefineOptions refine{.levels = 0};  ///< levels 0: the mesh itself, unless on_limit or curved
+    bool on_limit = false;              ///< the refined vertices are moved to the limit
+    bool curved = false;                ///< positions and values are triquadratic between the vertices of the next level
+    double slack_voxels = 0;            ///< for curved cells: how much two neighbours' ideas of their shared side may differ
+    /// Null, or for each control cell the level of its vertices, which replaces the next one; at least 1.
     const std::vector<std::uint8_t>* cell_levels = nullptr;
+    /// Null, or the curved cells' pieces, with the values of the fields: then nothing is refined, and `cell_levels` is unused.
     const LimitPieces* pieces = nullptr;
-    std::vector<std::size_t> places_in_pieces{};  // of each field
+    std::vector<std::size_t> places_in_pieces{};  ///< for each field its place in the pieces
+    /// Null, or how fine the pieces are that are looked for while the voxels are filled; `pieces` is null then.
     const LimitCellsOptions* search = nullptr;
+    /// Null, or tables that do to this mesh what `refine` (with one more level if curved) and `on_limit` do.
     const RefinementTables* tables = nullptr;
     bool cell_numbers = false;
+    /// The numbers that voxels get for the cells; kNone: the cell is not filled, and only shapes the limit of the others.
+    /// Empty: all cells, by their places.
     std::span<const Index> numbers{};
     Progress* progress = nullptr;
 

@@ -55,32 +55,24 @@ const CornerSplit& corner_split(const Less& less) {
 // within [0,1]³, so that steps 1 and 2 are one: fill_curved-inl.h. Only pieces that are folded, flat or much bent are split.
 
 /// A control cell as a grid of smaller ones: side³ nodes, u fastest, then v, then w.
-///
-/// step:         nodes from one corner of a smaller cell to the next; 1 if curved
-/// curved:       positions and values are triquadratic through 27 nodes, those of two smaller cells along each axis
-/// channels:     numbers per node; cell_numbers: leaves have one more channel, the number of the control cell
-/// orientation:  1, or -1 for a mesh of left-handed cells
-/// boundary:     of a curved block, bit 2d + e: the side where parameter d is e lies on the mesh's boundary
-/// slack:        voxels by which the other sides of a curved block may be exceeded: neighbours of other levels, or split into
-///               tetrahedra, have a slightly different shared side, and no centre between the two is to be missed
-/// points:       in voxels: centres have whole coordinates
-/// values:       node-major, `channels` numbers per node
-/// piece_boxes:  of a curved block: what set_piece_boxes has set
-/// ids:          of the nodes of a block of 8: they decide how the cell is split into tetrahedra; null: the positions decide
 struct CellBlock {
     Index cell = 0;
     std::size_t side = 2;
-    std::size_t step = 1;
+    std::size_t step = 1;  ///< nodes from one corner of a smaller cell to the next; 1 if curved
+    /// Positions and values are triquadratic through 27 nodes, those of two smaller cells along each axis.
     bool curved = false;
-    std::size_t channels = 1;
-    bool cell_numbers = false;
-    double orientation = 1;
-    std::uint8_t boundary = 0;
+    std::size_t channels = 1;   ///< numbers per node
+    bool cell_numbers = false;  ///< leaves have one more channel, the number of the control cell
+    double orientation = 1;     ///< 1, or -1 for a mesh of left-handed cells
+    std::uint8_t boundary = 0;  ///< for a curved block, bit 2d + e: the side where parameter d is e lies on the mesh's boundary
+    /// Voxels by which the other sides of a curved block may be exceeded: neighbours of other levels, or split into tetrahedra,
+    /// have a slightly different shared side, and no centre between the two is to be missed.
     double slack = 0;
-    const Vec3* points = nullptr;
-    const double* values = nullptr;
+    const Vec3* points = nullptr;    ///< positions in voxels: centres have whole coordinates
+    const double* values = nullptr;  ///< node-major, `channels` numbers per node
+    /// The ids of the nodes of a block of 8: they decide how the cell is split into tetrahedra; null: the positions decide.
     const Index* ids = nullptr;
-    const VoxelBox* piece_boxes = nullptr;
+    const VoxelBox* piece_boxes = nullptr;  ///< for a curved block: what set_piece_boxes has set
 
     /// How many pieces of 27 nodes it has.
     [[nodiscard]] std::size_t pieces() const { return (side - 1) / 2 * ((side - 1) / 2) * ((side - 1) / 2); }
@@ -98,21 +90,16 @@ constexpr std::size_t kCurvedNodes = 27;
 constexpr std::size_t kPaddedNodes = 32;  // whole vectors
 
 /// One of a block's small cells. Positions are relative to `origin`, its first corner; corners are in VTK order.
-///
-/// values: channels × 8
-/// curved: the cell is a part of a larger one with these nodes, the last one repeated, and channels × 27 node_values: in the
-///         parameters of the larger one it begins at `first_part` and is `part` long along each axis
-/// size:   the longest side of its bounding box
 struct CellShape {
     Vec3 origin;
     std::array<std::array<double, 8>, 3> corners;
-    std::vector<double> values;
-    bool curved = false;
-    alignas(64) std::array<std::array<double, kPaddedNodes>, 3> nodes;
-    double part = 1;
-    std::array<double, 3> first_part{};
-    std::vector<double> node_values;
-    double size = 0;
+    std::vector<double> values;                                         ///< channels × 8 numbers
+    bool curved = false;                                                ///< the cell is a part of a larger one with these nodes
+    alignas(64) std::array<std::array<double, kPaddedNodes>, 3> nodes;  ///< the nodes of the larger cell, the last one repeated
+    double part = 1;                     ///< length of the cell along each axis, in the parameters of the larger one
+    std::array<double, 3> first_part{};  ///< where the cell begins, in the parameters of the larger one
+    std::vector<double> node_values;     ///< channels × 27 numbers
+    double size = 0;                     ///< the longest side of its bounding box
     const CornerSplit* split = nullptr;
 };
 

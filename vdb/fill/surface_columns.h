@@ -25,11 +25,10 @@ public:
     void for_each_run(const std::function<void(const VoxelCoord&, int)>& visit) const;
 
 private:
-    /// step: 1 where the column enters the surface upwards, else -1
     struct Crossing {
         int x, y;
         double z;
-        int step;
+        int step;  ///< 1 where the column enters the surface upwards, else -1
 
         auto operator<=>(const Crossing&) const = default;
     };

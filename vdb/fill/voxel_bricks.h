@@ -33,13 +33,11 @@ inline constexpr int kBrickSide = kBrickLeaves * kLeafSide;
 }
 
 /// 8³ voxels, numbered x·64 + y·8 + z.
-///
-/// active: bit z + 8 y of word x
-/// values: 512 per channel, one channel after the other; 0 where inactive; whole numbers are stored as their bits
 struct VoxelLeaf {
     explicit VoxelLeaf(std::size_t channels) : values(std::make_unique<float[]>(channels * kLeafVoxels)) {}
 
-    std::array<std::uint64_t, 8> active{};
+    std::array<std::uint64_t, 8> active{};  ///< bit z + 8 y of word x
+    /// 512 numbers per channel, one channel after the other; 0 where inactive; whole numbers are stored as their bits.
     std::unique_ptr<float[]> values;
 
     [[nodiscard]] bool empty() const;
@@ -47,14 +45,11 @@ struct VoxelLeaf {
 };
 
 /// 4³ leaves, filled by one thread at a time. A leaf exists once one of its voxels is active.
-///
-/// cells:    those of the current batch that may fill voxels of the brick
-/// doubtful: boxes of folded cells, which may have filled voxels outside the mesh
 struct VoxelBrick {
     VoxelCoord origin{};
     std::array<std::unique_ptr<VoxelLeaf>, std::size_t{kBrickLeaves} * kBrickLeaves * kBrickLeaves> leaves;
-    std::vector<Index> cells;
-    std::vector<VoxelBox> doubtful;
+    std::vector<Index> cells;        ///< the cells of the current batch that may fill voxels of the brick
+    std::vector<VoxelBox> doubtful;  ///< boxes of folded cells, which may have filled voxels outside the mesh
 
     [[nodiscard]] VoxelBox box() const;
     /// The lowest voxel of a leaf.

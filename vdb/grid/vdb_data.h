@@ -8,9 +8,6 @@
 namespace subvol::detail {
 
 /// What a VdbGrid holds.
-///
-/// floats:       the same grid if it is one of floats, else null
-/// is_level_set: its inactive voxels with values below 0 lie inside and have values, too
 class VdbData : public GridData {
 public:
     explicit VdbData(const openvdb::GridBase::Ptr& from);
@@ -22,8 +19,8 @@ public:
     [[nodiscard]] std::unique_ptr<Voxels> voxels() const override;
 
     openvdb::GridBase::Ptr grid;
-    openvdb::FloatGrid::Ptr floats;
-    bool is_level_set;
+    openvdb::FloatGrid::Ptr floats;  ///< the same grid if it is one of floats, else null
+    bool is_level_set;               ///< whether inactive voxels with values below 0 lie inside and have values, too
 
 private:
     GridReport report_;

@@ -7,10 +7,9 @@
 
 namespace subvol::detail {
 
-/// voxels_a_side: of the blocks with a kernel in their middle
 struct LevelSetBody {
     RbfVolume volume;
-    int voxels_a_side = 1;
+    int voxels_a_side = 1;  ///< side of the blocks with a kernel in their middle, in voxels
 };
 
 /// The body within the surface of a level set, of density 1. It ends at the surface, where the distance is 0; kernels lie in

@@ -18,10 +18,9 @@ struct VoxelCubes {
     std::array<int, 3> lower{}, upper{};
 };
 
-/// grids:  the voxels in the block
-/// folded: cells fold over, and what they fill beyond the boundary was looked for along z in the part that was given
 struct BlockGrids {
-    std::vector<VdbGrid> grids;
+    std::vector<VdbGrid> grids;  ///< the voxels in the block
+    /// Cells fold over, and what they fill beyond the boundary was looked for along z in the part that was given.
     bool folded = false;
 };
 

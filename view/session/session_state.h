@@ -97,11 +97,11 @@ struct ViewSession::State {
     /// The mesh whose control points are edited.
     [[nodiscard]] const HexMesh& handles() const { return coarse ? coarse->coarse() : body->mesh; }
 
-    /// What undo goes back to: all that actions change. mesh: of the step, with all fields
+    /// What undo goes back to: all that actions change.
     struct Moment {
         ViewState state{};
         std::shared_ptr<const ViewBody> body{};
-        std::shared_ptr<HexMesh> mesh{};
+        std::shared_ptr<HexMesh> mesh{};  ///< the mesh of the step, with all fields
         bool edited = false;
     };
     [[nodiscard]] Moment moment() const { return {state, body, mesh, edited}; }

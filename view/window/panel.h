@@ -11,7 +11,7 @@
 
 namespace subvol::detail {
 
-/// The dialog that opens files. entries: of the folder, folders first
+/// The dialog that opens files.
 struct FileDialog {
     struct Entry {
         std::string name{};
@@ -19,18 +19,15 @@ struct FileDialog {
     };
     bool open = false, all_files = false, read = false;
     std::filesystem::path folder{};
-    std::vector<Entry> entries{};
+    std::vector<Entry> entries{};  ///< the entries of the folder, folders first
     std::string name{};
 };
 
 /// What the window remembers from frame to frame, besides the state of the session.
-///
-/// scale:    of letters and distances: of the screen
-/// problem:  the last action's error; empty: none
-/// message:  what the last action did, for a while
 struct WindowMemory {
-    float scale = 1;
-    std::string problem{}, message{};
+    float scale = 1;        ///< scale of letters and distances: that of the screen
+    std::string problem{};  ///< the last action's error; empty: none
+    std::string message{};  ///< what the last action did, for a while
     double message_until = 0;
     int held_knot = -1;
     double next_step_at = 0;
@@ -38,22 +35,22 @@ struct WindowMemory {
     char state_file[256] = "state.json";
     char map_file[256] = "map.json", mesh_file[256] = "edited.vtu";
     float paint_value = 0;
-    bool works = false, rectangle = false;  // what a drag with a tool is
-    std::array<float, 2> corner{};          // where it began
+    bool works = false, rectangle = false;  ///< what a drag with a tool is
+    std::array<float, 2> corner{};          ///< where the drag began
     bool quit = false;
-    std::uintptr_t asked_about = 0;  // edits that the next attempt drops
-    std::string section{};           // that was open in the last frame
-    bool holds_border = false;       // between the pictures that are compared
-    bool asks_menu = false;          // the menu of the picture is to open
-    bool close_popup = false;        // menus and lists close in the next frame
+    std::uintptr_t asked_about = 0;  ///< edits that the next attempt drops
+    std::string section{};           ///< the section that was open in the last frame
+    bool holds_border = false;       ///< the border between the pictures that are compared is dragged
+    bool asks_menu = false;          ///< the menu of the picture is to open
+    bool close_popup = false;        ///< menus and lists close in the next frame
     bool shows_notes = false;
-    std::string tip{};  // the tooltip that is about to show, and since when
-    double tip_since = 0;
-    std::string expression{};  // typed for the field
+    std::string tip{};         ///< the tooltip that is about to show
+    double tip_since = 0;      ///< since when the tooltip is about to show
+    std::string expression{};  ///< the expression typed for the field
     std::string only{}, warp{};
-    bool options_known = false;  // the two are those of the file
+    bool options_known = false;  ///< `only` and `warp` are those of the file
     FileDialog dialog{};
-    bool holds_cut = false, turns_cut = false;  // a handle of a plane is dragged, at its foot or at its tip
+    bool holds_cut = false, turns_cut = false;  ///< a handle of a plane is dragged, at its foot or at its tip
     CutHandle held_cut{};
 };
 

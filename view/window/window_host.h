@@ -15,13 +15,10 @@
 namespace subvol::detail {
 
 /// A picture for the screen.
-///
-/// rgba:   8 bits each, sRGB, over the background
-/// number: rises with each picture; 0: none yet
 struct ScreenPicture {
     int width = 0, height = 0, scale = 1;
-    std::vector<std::uint8_t> rgba{};
-    std::uint64_t number = 0;
+    std::vector<std::uint8_t> rgba{};  ///< 8 bits each, sRGB, over the background
+    std::uint64_t number = 0;          ///< rises with each picture; 0: none yet
 };
 
 /// A colour map at a value: sRGB, 0..1, and the opacity.
@@ -29,10 +26,11 @@ struct CurvePlace {
     float red = 0, green = 0, blue = 0, alpha = 0;
 };
 
-/// What is at work. fraction: of the stage; seconds: since it was asked for; stage: empty: nothing
+/// What is at work.
 struct WindowWork {
-    std::string stage{};
-    double fraction = 0, seconds = 0;
+    std::string stage{};  ///< the stage; empty: nothing is at work
+    double fraction = 0;  ///< the fraction of the stage that is done
+    double seconds = 0;   ///< since it was asked for
 };
 
 /// What the window needs of the session. The window is in a module of its own, which has no other way to it; all that it

@@ -92,9 +92,9 @@ private:
 /// The kind of cell that a Gmsh element is read as; lines, triangles and quads as parts of groups.
 enum class GmshShape { Other, Line, Triangle, Quad, Hexahedron, Tetrahedron, Prism, Pyramid };
 
-/// A type of elements. nodes: their number; the corners come first, then those in the middle of edges, faces and the element
+/// A type of elements.
 struct GmshElement {
-    std::size_t nodes;
+    std::size_t nodes;  ///< number of nodes; the corners come first, then those in the middle of edges, faces and the element
     std::string_view one, many;
     GmshShape shape = GmshShape::Other;
 };

@@ -13,14 +13,11 @@
 namespace subvol::detail {
 
 /// A file that a collection names.
-///
-/// block: its name; empty if the collection does not divide its mesh into blocks
-/// place: where the collection names it, for messages
-/// part:  which part of the mesh that the path stands for (MeshFormat::part); nothing: the file is one
 struct ListedFile {
     std::filesystem::path path;
-    std::string block;
-    std::string place;
+    std::string block;  ///< name of its block; empty if the collection does not divide its mesh into blocks
+    std::string place;  ///< where the collection names it, for messages
+    /// Which part of the mesh that the path stands for (MeshFormat::part); nothing: the file is one
     std::optional<std::size_t> part = {};
 };
 
@@ -41,15 +38,12 @@ struct Collection {
 [[nodiscard]] Collection read_blocks_list(const std::filesystem::path& path);
 
 /// The files of one step of a collection that are read as parts of one mesh.
-///
-/// files:    in the order of the lists; those of blocks that are not chosen and of surfaces are left out
-/// warnings: of the step, and of the surfaces
-/// means:    whether values at cells are read as means over them
 struct PartFiles {
+    /// In the order of the lists; those of blocks that are not chosen and of surfaces are left out
     std::vector<ListedFile> files;
-    std::string_view word;  // "piece" or "block"
-    std::vector<std::string> warnings;
-    bool means = false;
+    std::string_view word;              ///< "piece" or "block"
+    std::vector<std::string> warnings;  ///< warnings of the step, and of the surfaces
+    bool means = false;                 ///< whether values at cells are read as means over them
 };
 
 /// Returns nothing if the file is not a collection, or if its step is a single file.

@@ -11,10 +11,10 @@
 
 namespace subvol::detail {
 
-/// A data type of legacy VTK. bits: eight values in each byte
+/// A data type of legacy VTK.
 struct VtkType {
     NumberType number = NumberType::Float64;
-    bool bits = false;
+    bool bits = false;  ///< eight values in each byte
 };
 
 /// Reads the values of a legacy VTK file: words of the text or, in a BINARY file, big-endian numbers between its lines.

@@ -15,47 +15,46 @@
 
 namespace subvol::detail {
 
-/// An element of a deck. nodes: none if its type is not read
+/// An element of a deck.
 struct InpElement {
     std::int64_t number;
     const InpType* type;
-    std::vector<std::int64_t> nodes;
-    std::string_view place;  // for messages
+    std::vector<std::int64_t> nodes;  ///< none if its type is not read
+    std::string_view place;           ///< for messages
 };
 
-/// Elements by their numbers. name: as it is written first; ranges: from, to, and the step between
+/// Elements by their numbers.
 struct InpSet {
-    std::string name;
+    std::string name;  ///< as it is written first
     std::vector<std::int64_t> numbers;
-    std::vector<std::array<std::int64_t, 3>> ranges;
+    std::vector<std::array<std::int64_t, 3>> ranges;  ///< from, to, and the step between
 };
 
-/// Sides of elements. set: of elements, or empty: `number` is one of them; side: from 1, or 0 for all sides that are free
+/// Sides of elements.
 struct InpSide {
-    std::string set;
+    std::string set;  ///< set of elements, or empty: `number` is an element
     std::int64_t number = 0;
-    std::size_t side = 0;
+    std::size_t side = 0;  ///< from 1, or 0 for all sides that are free
 };
 
-/// scope: the part that the surface is of, as in InpInstance; empty: of the assembly
 struct InpSurface {
-    std::string name, scope;
+    std::string name;
+    std::string scope;  ///< the part that the surface is of, as in InpInstance; empty: it is of the assembly
     std::vector<InpSide> sides;
 };
 
-/// The nodes and elements of a part, or those that an instance adds to its part. sets: of elements, by names in capitals
+/// The nodes and elements of a part, or those that an instance adds to its part.
 struct InpPart {
     std::vector<std::int64_t> numbers;
     std::vector<Vec3> points;
     std::vector<InpElement> elements;
-    std::map<std::string, InpSet> sets;
+    std::map<std::string, InpSet> sets;  ///< sets of elements, by names in capitals
 };
 
 /// A part where the assembly puts it: turned about an axis, after it was moved.
-///
-/// inside: the name of the part that has what the instance adds, which are nodes, elements and sets
 struct InpInstance {
-    std::string part, inside;
+    std::string part;
+    std::string inside;  ///< the name of the part that has what the instance adds, which are nodes, elements and sets
     Vec3 move{0.0};
     std::array<Vec3, 2> axis{Vec3(0.0), Vec3(0.0)};
     double angle_deg = 0;

@@ -9,12 +9,11 @@ namespace subvol::detail {
 
 enum class InpShape { Other, Hex, Prism, Pyramid, Tet, Quad, Line };
 
-/// A type of elements of Abaqus or CalculiX. name: in capitals, such as C3D8R; nodes: of an element, its corners first; 0 for
-/// Other
+/// A type of elements of Abaqus or CalculiX.
 struct InpType {
-    std::string name;
+    std::string name;  ///< in capitals, such as C3D8R
     InpShape shape = InpShape::Other;
-    std::size_t nodes = 0;
+    std::size_t nodes = 0;  ///< number of nodes of an element, its corners first; 0 for Other
 };
 
 /// What the name of a type says of its shape, whatever its elements compute.

@@ -12,27 +12,27 @@
 
 namespace subvol::detail {
 
-/// Files of one kind in a case. name: with stars in place of the number of a step or a file; time_set: 0 if there is one file
-/// for all times; file_set: of files with several steps, else 0
+/// Files of one kind in a case.
 struct EnsightFiles {
-    std::string name;
-    int time_set = 0, file_set = 0;
-    std::size_t position = 0;  // in the case, for messages
+    std::string name;          ///< with stars in place of the number of a step or a file
+    int time_set = 0;          ///< 0 if there is one file for all times
+    int file_set = 0;          ///< file set of files with several steps, else 0
+    std::size_t position = 0;  ///< in the case, for messages
 };
 
-/// A variable. components: of a value; at_cells: at the elements
+/// A variable.
 struct EnsightVariable {
     std::string name;
-    std::size_t components = 1;
-    bool at_cells = false;
+    std::size_t components = 1;  ///< components of a value
+    bool at_cells = false;       ///< the values are at the elements
     EnsightFiles files;
 };
 
-/// The steps of a time set. numbers: in the names of the files; places: among the steps in the order of the case
+/// The steps of a time set.
 struct EnsightTimes {
     std::vector<double> times;
-    std::vector<std::int64_t> numbers;
-    std::vector<std::size_t> places;
+    std::vector<std::int64_t> numbers;  ///< numbers in the names of the files
+    std::vector<std::size_t> places;    ///< places among the steps in the order of the case
 };
 
 /// A file, and which of its steps; nothing if the file is one step.
@@ -87,9 +87,9 @@ private:
         std::int64_t start = 0, increment = 1;
     };
     std::map<int, Spread> spreads_;
-    // Files with several steps, in the order of their steps. index: in place of the stars
+    // Files with several steps, in the order of their steps.
     struct Several {
-        std::int64_t index = 0;
+        std::int64_t index = 0;  ///< number in place of the stars
         std::size_t steps = 0;
     };
     int file_set_ = 0;

@@ -31,13 +31,13 @@ private:
         std::size_t count = 0;
         std::vector<Index> corners;
     };
-    // block: the bytes of a structured part; nodes: those that its elements use
     struct Part {
         std::int64_t number = 0;
-        std::string name, block;
+        std::string name;
+        std::string block;  ///< bytes of a structured part
         std::size_t block_points = 0, block_cells = 0;
         std::vector<Group> groups;
-        std::vector<Index> nodes;
+        std::vector<Index> nodes;  ///< nodes that its elements use
     };
 
     void read_nodes(EnsightData& data, const std::string& ids);

@@ -10,19 +10,16 @@
 namespace subvol::detail {
 
 /// Where the meshes and fields of an OpenFOAM case are.
-///
-/// parts:   the folder of the case, or those of its processors
-/// numbers: of the times in increasing order; folders: their names
 struct FoamCase {
-    /// block: in the files of the folder, where they have those of several processors
     struct Part {
         std::filesystem::path folder;
+        /// Block in the files of the folder, where they have those of several processors
         std::optional<std::size_t> block = {};
     };
     std::filesystem::path root;
-    std::vector<Part> parts;
-    std::vector<double> times;
-    std::vector<std::string> folders;
+    std::vector<Part> parts;           ///< the folder of the case, or those of its processors
+    std::vector<double> times;         ///< numbers of the times in increasing order
+    std::vector<std::string> folders;  ///< names of the times
     bool decomposed = false;
 
     /// A file of the mesh of a part at a step: that of the last time, up to the step's, that has one; else in `constant`.

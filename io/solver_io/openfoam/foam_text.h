@@ -26,24 +26,20 @@ struct FoamFaces {
     }
 };
 
-/// A patch: type: such as wall or processor; groups: that it belongs to; its faces are `count` from `first` on.
-///
-/// neighbour: the processor behind a patch where the mesh was cut, else -1
+/// A patch. Its faces are `count` from `first` on.
 struct FoamPatch {
-    std::string name, type = {};
-    std::int64_t first = 0, count = 0, neighbour = -1;
-    std::vector<std::string> groups = {};
+    std::string name;
+    std::string type = {};  ///< such as wall or processor
+    std::int64_t first = 0, count = 0;
+    std::int64_t neighbour = -1;           ///< the processor behind a patch where the mesh was cut, else -1
+    std::vector<std::string> groups = {};  ///< groups that it belongs to
 };
 
 /// What a field is on a patch.
-///
-/// along:  a vector has no component along the normal
-/// values: for each face; empty: unknown
-/// level:  the field does not change across the faces
 struct FoamOnPatch {
-    bool along = false;
-    std::vector<double> values = {};
-    bool level = false;
+    bool along = false;               ///< a vector has no component along the normal
+    std::vector<double> values = {};  ///< values for each face; empty: unknown
+    bool level = false;               ///< the field does not change across the faces
 };
 
 struct FoamZone {

@@ -26,12 +26,10 @@ struct PieceNode {
 };
 
 /// One face of a region over a box of a piece.
-///
-/// depth:  linear in the place, so exact; of a sphere that behind a plane that touches it: never less than the sphere's
-/// sphere: null for a plane
 struct FaceInBox {
+    /// Linear in the place, so exact; for a sphere the depth behind a plane that touches it: never less than the sphere's
     BoxPolynomial depth;
-    const Region* sphere;
+    const Region* sphere;  ///< null for a plane
 };
 
 /// How parts of space cut a piece of the limit. All statements are proved for the piece, as a polynomial lies between its

@@ -16,21 +16,18 @@ namespace subvol::detail {
 [[nodiscard]] double first_bound(std::span<const double> grid, double known);
 
 /// The same from level 2 on.
-///
-/// alike: the same number for grids whose pieces have the same values and bounds, in any order
 struct FinerBound {
     double bound = -HUGE_VAL;
-    std::uint64_t alike = 0;
+    std::uint64_t alike = 0;  ///< the same number for grids whose pieces have the same values and bounds, in any order
 };
 /// side:    5, or one more than a larger multiple of 4
 /// quantum: values that differ by less are the same
 [[nodiscard]] FinerBound finer_bound(std::span<const double> grid, std::size_t side, double known, double quantum);
 
 /// The bounds of the octants of a grid of 5³ nodes, in the order u + 2v + 4w.
-///
-/// bends: along each axis, how far the limit may be from the parabolas of the nodes: what is gained where that axis is halved
 struct OctantBounds {
     std::array<double, 8> bounds;
+    /// Along each axis, how far the limit may be from the parabolas of the nodes: what is gained where that axis is halved
     std::array<double, 3> bends;
 };
 [[nodiscard]] OctantBounds octant_bounds(std::span<const double, 125> grid);

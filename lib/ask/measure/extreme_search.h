@@ -71,27 +71,28 @@ public:
               std::vector<PartMeasure>& found);
 
 private:
-    /// A place with a value near an extreme. peak: where it may be even nearer; bound: sign × what it may reach
+    /// A place with a value near an extreme.
     struct Start {
-        double value, bound;
+        double value;
+        double bound;  ///< sign × what the value may reach
         Index cell;
-        Vec3 uvw, peak, step;
+        Vec3 uvw;
+        Vec3 peak;  ///< where the value may be even nearer
+        Vec3 step;
     };
-    /// sign: 1 for the largest values, −1 for the least
-    /// best: sign × the best value that the limit is known to have; open: the same of what it may have in cells that were left
-    /// starts: the best places, of different cells, in order
     struct Side {
-        double sign;
-        double best = -HUGE_VAL, open = -HUGE_VAL;
-        std::vector<Start> starts{};
+        double sign;                  ///< 1 for the largest values, −1 for the least
+        double best = -HUGE_VAL;      ///< sign × the best value that the limit is known to have
+        double open = -HUGE_VAL;      ///< sign × the best value that it may have in cells that were left
+        std::vector<Start> starts{};  ///< the best places, of different cells, in order
 
         void add(const Start& start);
     };
-    /// A cell in which the limit may have an extreme. alike: as that of the cell's extreme
+    /// A cell in which the limit may have an extreme.
     struct Candidate {
         std::uint32_t number, side;
         double bound;
-        std::uint64_t alike;
+        std::uint64_t alike;  ///< as that of the cell's extreme
     };
 
     [[nodiscard]] std::size_t side_of(std::size_t part, std::size_t channel, bool high) const {
@@ -108,11 +109,10 @@ private:
     void keep_open();
     void leave_out_copies();
 
-    /// A part of a cell in which the limit may have an extreme. lower, width: in parameters of the cell; without width along an
-    /// axis it is a part of a side
+    /// A part of a cell in which the limit may have an extreme.
     struct CellBox : Candidate {
         Index cell = 0;
-        Vec3 lower{0.0}, width{1.0};
+        Vec3 lower{0.0}, width{1.0};  ///< in parameters of the cell; a box without width along an axis is a part of a side
 
         [[nodiscard]] auto place() const {
             return std::array{static_cast<double>(cell), lower.x, lower.y, lower.z, width.x, width.y, width.z};

@@ -61,15 +61,13 @@ public:
     }
 
     /// The largest value of a channel times a sign, at a node.
-    ///
-    /// uvw:   where in the cell; peak: where the quadratic through the nodes around has it, from level 2 on
-    /// bound: how far the limit may go between the nodes, an estimate
-    /// alike: the same for cells that look alike in this channel, from level 2 on; else 0
     struct Extreme {
         std::size_t channel = 0;
-        double sign = 1, value = 0, bound = 0;
-        Vec3 uvw{0.0}, peak{0.0};
-        std::uint64_t alike = 0;
+        double sign = 1, value = 0;
+        double bound = 0;         ///< how far the limit may go between the nodes, an estimate
+        Vec3 uvw{0.0};            ///< place in the cell
+        Vec3 peak{0.0};           ///< where the quadratic through the nodes around has the largest value, from level 2 on
+        std::uint64_t alike = 0;  ///< the same for cells that look alike in this channel, from level 2 on; else 0
     };
     /// Adds the extremes of the channel whose bounds reach what is known: the largest values times −1 and times 1.
     ///

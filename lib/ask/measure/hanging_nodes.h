@@ -9,10 +9,10 @@
 
 namespace subvol::detail {
 
-/// The levels of the cells beside a cell. sides: as kCellFaces; edges: as kCellEdges
+/// The levels of the cells beside a cell.
 struct LevelsBeside {
-    std::array<std::uint8_t, 6> sides{};
-    std::array<std::uint8_t, 12> edges{};
+    std::array<std::uint8_t, 6> sides{};   ///< as kCellFaces
+    std::array<std::uint8_t, 12> edges{};  ///< as kCellEdges
 };
 
 /// Where cells beside a cell are coarser, moves the nodes that they share on to their quadratic pieces, so that neither a gap

@@ -46,29 +46,28 @@ public:
 private:
     static constexpr std::size_t kBlock = 8192;  // cells: fixed, so that sums do not depend on the number of threads
 
-    /// One channel of an attribute. scale: 1/range of the attribute, or 0 for a constant
+    /// One channel of an attribute.
     struct Channel {
         std::string name;
-        double origin, scale;
+        double origin;
+        double scale;  ///< 1/range of the attribute, or 0 for a constant
         bool derived;
     };
 
     /// What the cells of a part sum up to.
-    ///
-    /// sums:     the volume, then the integrals of the channels without their origins
-    /// left:     of these, as a volume: that of an integral is divided by the channel's range
     struct PartSums {
-        std::vector<double> sums;
-        double left = 0;
-        std::vector<double> trilinear{};  // the sums of the cells before the first level
+        std::vector<double> sums;  ///< the volume, then the integrals of the channels without their origins
+        double left = 0;  ///< what is left of these sums, as a volume: that of an integral is divided by the channel's range
+        std::vector<double> trilinear{};  ///< the sums of the cells before the first level
     };
 
     /// The notes of one cell of a block: what it adds to the sums, and by how much its own sums differ from those of the level
-    /// before. trilinear: its sums before the first level; empty at later ones. turned: the determinant is negative somewhere
+    /// before.
     struct CellNote {
-        std::vector<double> sums, changes, trilinear;
+        std::vector<double> sums, changes;
+        std::vector<double> trilinear;  ///< its sums before the first level; empty at later ones
         std::vector<GridMeasure::Extreme> extremes;
-        bool turned = false;
+        bool turned = false;  ///< the determinant is negative somewhere
     };
 
     /// Memory of one thread.

@@ -14,12 +14,9 @@ namespace subvol::detail {
 
 /// Cells by the sets that they are in: a class has the cells that are in the same sets. Each cell is in one class, so that
 /// sets with common cells are measured as groups of cells are, each cell once.
-///
-/// groups:  the class of each cell; the classes are 0, 1, … and none is empty
-/// of_sets: the classes that each set consists of, ascending
 struct CellClasses {
-    std::vector<Index> groups;
-    std::vector<std::vector<Index>> of_sets;
+    std::vector<Index> groups;                ///< the class of each cell; the classes are 0, 1, … and none is empty
+    std::vector<std::vector<Index>> of_sets;  ///< the classes that each set consists of, ascending
 };
 
 /// throws: Error(InvalidInput) if a set has a cell that does not exist

@@ -13,19 +13,14 @@
 namespace subvol::detail {
 
 /// The largest value of a channel in a part of the regions, or the least.
-///
-/// part:  none: of the whole
-/// sign:  1 for the largest value, −1 for the least
-/// limit: sign × a bound that no value exceeds
-/// best:  where the regions are known to have a value; found further
-/// open:  sign × what no place exceeds; found
-/// slope: by how much the value changes with the place, at the best place (value / world); found
 struct RegionExtreme {
-    std::optional<Index> part;
+    std::optional<Index> part;  ///< none: of the whole
     std::size_t channel = 0;
-    double sign = 1, limit = HUGE_VAL;
-    LimitExtreme best{};
-    double open = -HUGE_VAL, slope = 0;
+    double sign = 1;          ///< 1 for the largest value, −1 for the least
+    double limit = HUGE_VAL;  ///< sign × a bound that no value exceeds
+    LimitExtreme best{};      ///< where the regions are known to have a value; found further
+    double open = -HUGE_VAL;  ///< sign × what no place exceeds; found
+    double slope = 0;         ///< by how much the value changes with the place, at the best place (value / world); found
 };
 
 /// Finds an extreme by branch and bound: boxes of pieces are halved while their bounds are above the best value by more than a

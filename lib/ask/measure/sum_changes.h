@@ -20,9 +20,6 @@ struct SampleOfChanges;
 
 /// By how much the sums of the cells of a level differ from those of the level before: of integrals divided by the range.
 ///
-/// follows: of each sum, the part of its change that is expected to follow in the levels to come, with its sign; it is added
-/// left:    of each sum, the part of its change that may be left after that: of what its cells sum up to with their signs, and
-///          of what does not cancel
 /// size: of a cell's change. What curves up along one axis and down along another changes a sum little, although much is left.
 ///       The cells beside it tell: the largest change of a cell and those across its sides counts
 class Changes {
@@ -38,7 +35,10 @@ public:
     struct Left {
         double of_sum, of_spread;
     };
+    /// For each sum, the part of its change that is expected to follow in the levels to come, with its sign; it is added
     std::vector<double> follows;
+    /// For each sum, the part of its change that may be left after that: of what its cells sum up to with their signs, and of
+    /// what does not cancel
     std::vector<Left> left;
 
     /// Some cells have changed by `before` at this level, and by `after` at the next one.
@@ -89,11 +89,10 @@ private:
     std::vector<float> changes_, sizes_;
 };
 
-/// numbers: of the cells of a sample; next: their changes at the next level, in this order; is_all: no cell is missing
 struct SampleOfChanges {
-    std::vector<std::uint32_t> numbers;
-    Changes next;
-    bool is_all;
+    std::vector<std::uint32_t> numbers;  ///< numbers of the cells of a sample
+    Changes next;                        ///< their changes at the next level, in this order
+    bool is_all;                         ///< no cell is missing
 };
 
 /// What is left in the cells that are not refined further. Volumes that one cell gains are mostly lost by its neighbours, so

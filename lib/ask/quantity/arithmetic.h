@@ -10,14 +10,10 @@
 namespace subvol::detail {
 
 /// What is known of a formula without its values.
-///
-/// degree:   0: a number, 1: linear in the variables up to a number, 2: anything else
-/// positive: it is never negative
-/// flag:     it is 0 or 1: a comparison
 struct FormulaKind {
-    int degree = 2;
-    bool positive = false;
-    bool flag = false;
+    int degree = 2;         ///< 0: a number, 1: linear in the variables up to a number, 2: anything else
+    bool positive = false;  ///< it is never negative
+    bool flag = false;      ///< it is 0 or 1: a comparison
 };
 
 /// Reads a formula of variables v0, v1, … for muParser. What it does not understand is of degree 2 and of any sign.

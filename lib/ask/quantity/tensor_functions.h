@@ -9,18 +9,13 @@
 namespace subvol::detail {
 
 /// A function of the channels of a vector or tensor at one point.
-///
-/// takes:     which fields it takes, for errors
-/// sizes:     the numbers of channels that it takes; none: any
-/// is_linear: its limit is that of its values at the points
-/// is_size:   it is never negative
 struct TensorFunction {
     std::string_view name;
-    std::string_view takes;
-    std::span<const int> sizes;
+    std::string_view takes;      ///< which fields it takes, for errors
+    std::span<const int> sizes;  ///< the numbers of channels that it takes; none: any
     double (*value)(std::span<const double> channels);
-    bool is_linear = false;
-    bool is_size = false;
+    bool is_linear = false;  ///< its limit is that of its values at the points
+    bool is_size = false;    ///< it is never negative
 
     [[nodiscard]] bool takes_channels(int channels) const {
         return sizes.empty() || std::ranges::find(sizes, channels) != sizes.end();

@@ -9,14 +9,11 @@
 namespace subvol::detail {
 
 /// What has been cut out of cells at one level, its points moved to the limit.
-///
-/// deviation_world: of the whole surface, as far as the cells that were looked at show it
-/// range: of the cells that the whole surface passes
 struct SettledCut {
     int level = 0;
-    double deviation_world = 0;
+    double deviation_world = 0;  ///< deviation of the whole surface, as far as the cells that were looked at show it
     bool converged = false;
-    ShareRange range{};
+    ShareRange range{};  ///< range of the cells that the whole surface passes
     SurfaceSoup soup;
     SettledPoints settled;
 };
@@ -30,11 +27,9 @@ struct SettledCut {
 void add_cut(const SettledCut& cut, bool improve, double slack_world, LimitSurface& all);
 
 /// What is known of a surface in some of its cells.
-///
-/// improve, slack_world: as of `add_cut`
 struct SurfaceShare {
-    bool improve = true;
-    double slack_world = 0;
+    bool improve = true;     ///< as of `add_cut`
+    double slack_world = 0;  ///< as of `add_cut`
     std::vector<SettledCut> cuts{};
 };
 

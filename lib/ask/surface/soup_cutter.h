@@ -49,31 +49,25 @@ private:
 };
 
 /// Where a surface crosses an edge of the tetrahedra, or a vertex of the grid that is part of a surface.
-///
-/// a, b:   the ends of the edge, a < b; a vertex: twice the same
-/// cell:   one of the control cells that have it; at: of the ends in that cell, in steps of the grid
-/// off:    at the ends, the value less the isovalue
-/// side:   a face of the hull that it lies on (kCellFaces); 6: none
 struct SurfacePoint {
-    VertexNumber a, b;
-    Index cell;
-    std::array<std::array<std::uint16_t, 3>, 2> at;
-    std::array<double, 2> off;
-    std::uint8_t side = 6;
+    VertexNumber a, b;                               ///< ends of the edge, a < b; a vertex: twice the same
+    Index cell;                                      ///< one of the control cells that have it
+    std::array<std::array<std::uint16_t, 3>, 2> at;  ///< places of the ends in that cell, in steps of the grid
+    std::array<double, 2> off;                       ///< at the ends, the value less the isovalue
+    std::uint8_t side = 6;                           ///< a face of the hull that it lies on (kCellFaces); 6: none
 };
 
-/// The triangles in one control cell. triangles: by the numbers of the points; hull: whether a triangle is part of the hull
+/// The triangles in one control cell.
 struct CellTriangles {
     std::vector<SurfacePoint> points;
-    std::vector<std::array<std::uint32_t, 3>> triangles;
-    std::vector<std::uint8_t> hull;
+    std::vector<std::array<std::uint32_t, 3>> triangles;  ///< by the numbers of the points
+    std::vector<std::uint8_t> hull;                       ///< whether a triangle is part of the hull
 };
 
-/// What is cut out of cells. iso: nothing: the hull alone; hull: of an isosurface the part of the hull where values are at
-/// least the isovalue
+/// What is cut out of cells.
 struct Cut {
-    std::optional<double> iso{};
-    bool hull = false;
+    std::optional<double> iso{};  ///< nothing: the hull alone
+    bool hull = false;            ///< for an isosurface the part of the hull where values are at least the isovalue
 };
 
 /// Cuts the tetrahedra (`split_cell`) of all children of a control cell.
@@ -83,27 +77,19 @@ struct Cut {
                                      const Topology& topology, const GridNumbers& numbers);
 
 /// Triangles whose corners are points on edges, before and after these have been moved to the limit.
-///
-/// points:    in the order of their ends
-/// triangles: cell by cell; hull: of each, whether it is part of the hull
-/// cells:     those with triangles, ascending; ends: of each, where its triangles end
-/// leads_out: the surface goes on in a cell that may not be cut
 struct SurfaceSoup {
-    std::vector<SurfacePoint> points;
-    std::vector<std::array<Index, 3>> triangles;
-    std::vector<std::uint8_t> hull;
-    std::vector<Index> cells;
-    std::vector<std::size_t> ends;
-    bool leads_out = false;
+    std::vector<SurfacePoint> points;             ///< in the order of their ends
+    std::vector<std::array<Index, 3>> triangles;  ///< cell by cell
+    std::vector<std::uint8_t> hull;               ///< for each triangle, whether it is part of the hull
+    std::vector<Index> cells;                     ///< cells with triangles, ascending
+    std::vector<std::size_t> ends;                ///< for each of these cells, where its triangles end
+    bool leads_out = false;                       ///< the surface goes on in a cell that may not be cut
 };
 
 /// How far a surface is followed from the cells that are given.
-///
-/// follow:   into the neighbours that it leads to
-/// not_into: but not into these: they are cut elsewhere
 struct SurfaceReach {
-    bool follow = true;
-    std::span<const Index> not_into{};
+    bool follow = true;                 ///< the surface is followed into the neighbours that it leads to
+    std::span<const Index> not_into{};  ///< the surface is not followed into these: they are cut elsewhere
 };
 
 /// Cuts a surface out of the cells of a mesh at some level, where it passes.

@@ -14,12 +14,9 @@ namespace subvol::detail {
 void measure_surface(const Surface& surface, SurfaceReport& report);
 
 /// The lines along which a surface is sharp, or ends: creases, where a cap meets its isosurface, borders.
-///
-/// next:  of each point the points before and behind it on a line; kNone: it is on none
-/// fixed: points where lines end or meet
 struct SharpLines {
-    std::vector<std::array<Index, 2>> next;
-    std::vector<std::uint8_t> fixed;
+    std::vector<std::array<Index, 2>> next;  ///< for each point the points before and behind it on a line; kNone: it is on none
+    std::vector<std::uint8_t> fixed;         ///< points where lines end or meet
 };
 
 /// hull: of each triangle, whether it is part of the hull

@@ -6,20 +6,18 @@
 
 namespace subvol::detail {
 
-/// A dataset of an HDF5 file. type: the number of a NumberType, or -1 if it consists neither of numbers nor of single
-/// characters in this file; stored: the bytes of its storage; filtered: they may be compressed, each `chunk` bytes alone;
-/// grows: its first dimension is unlimited
+/// A dataset of an HDF5 file.
 struct Hdf5Shape {
     static constexpr unsigned kMostRank = 8;
-    int type = -1;
+    int type = -1;  ///< number of a NumberType, or -1 if it consists neither of numbers nor of single characters in this file
     unsigned rank = 0;
     std::uint64_t lengths[kMostRank] = {};
-    std::uint64_t stored = 0;
+    std::uint64_t stored = 0;  ///< bytes of its storage
     std::uint64_t chunk = 0;
-    std::uint64_t address = 0;  // in the file: the same by all names of a dataset
-    bool filtered = false;
+    std::uint64_t address = 0;  ///< in the file: the same by all names of a dataset
+    bool filtered = false;      ///< the stored bytes may be compressed, each `chunk` bytes alone
     bool characters = false;
-    bool grows = false;
+    bool grows = false;  ///< its first dimension is unlimited
 };
 
 /// What the module does with HDF5's library. Numbers below 0 stand for failure. Links to other files are not followed.

@@ -24,10 +24,9 @@ inline constexpr int kFitReach = 3;  // fits use [−3,3]³
 
 /// The means of the samples at each distance. For a radial kernel, least squares over these means, weighted by `count`, are
 /// equivalent to those over all samples.
-///
-/// count: as a part of the number of all samples
 struct RadialSamples {
-    std::vector<double> rho, mean, count;
+    std::vector<double> rho, mean;
+    std::vector<double> count;  ///< as a part of the number of all samples
 
     [[nodiscard]] std::size_t size() const { return rho.size(); }
 };

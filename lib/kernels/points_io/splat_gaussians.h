@@ -13,16 +13,11 @@ namespace subvol::detail {
 inline constexpr double kConstantHarmonic = 0.28209479177387814;
 
 /// The Gaussian of a kernel that viewers of splats draw.
-///
-/// half_axes: σ along each, world
-/// rotation:  a quaternion w x y z
-/// opacity:   at least 1/255
-/// harmonic:  the constant term of the colour of the screen
 struct SplatGaussian {
-    std::array<double, 3> half_axes{};
-    std::array<double, 4> rotation{};
-    double opacity = 0;
-    std::array<double, 3> harmonic{};
+    std::array<double, 3> half_axes{};  ///< σ along each axis, world
+    std::array<double, 4> rotation{};   ///< a quaternion w x y z
+    double opacity = 0;                 ///< at least 1/255
+    std::array<double, 3> harmonic{};   ///< the constant term of the colour of the screen
 };
 
 /// The Gaussians with the height and the integral of the kernels, and the colours of their first channel.

@@ -30,12 +30,11 @@ struct LinearFit {
 [[nodiscard]] LinearFit fit_linear(const LinearSums& sums);
 
 /// Samples that share a kernel: a range of `SampleParts::order()`.
-///
-/// gain: by how much fit.error (Σ weight error²) falls if the part is halved by the plane through its mean across `normal`
 struct SamplePart {
     std::size_t begin = 0, end = 0;
     LinearFit fit;
     Vec3 normal{0.0};
+    /// By how much fit.error (Σ weight error²) falls if the part is halved by the plane through its mean across `normal`
     double gain = 0;
 };
 

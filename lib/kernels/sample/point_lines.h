@@ -7,16 +7,11 @@ namespace subvol::detail {
 
 /// The grid lines through every point of a mesh. Entries 2i and 2i+1 of a point are the neighbours on both sides along one
 /// line, or a neighbour and kNone where the line ends: at the boundary, at creases, at irregular edges.
-///
-/// starts:     the first entry of each point; the points may have their entries in any order
-/// counts:     how many entries each point has, an even number
-/// neighbours: of each entry
-/// cells:      of each entry: how many cells have the edge from the point to the neighbour
 struct PointLines {
-    FlatArray<std::size_t> starts;
-    FlatArray<Index> counts;
-    FlatArray<Index> neighbours;
-    FlatArray<std::uint8_t> cells;
+    FlatArray<std::size_t> starts;  ///< the first entry of each point; the points may have their entries in any order
+    FlatArray<Index> counts;        ///< how many entries each point has, an even number
+    FlatArray<Index> neighbours;    ///< neighbour of each entry
+    FlatArray<std::uint8_t> cells;  ///< for each entry, how many cells have the edge from the point to the neighbour
 
     [[nodiscard]] std::size_t size() const { return starts.size(); }
     [[nodiscard]] std::size_t end(std::size_t point) const { return starts[point] + counts[point]; }

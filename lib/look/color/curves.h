@@ -37,14 +37,11 @@ enum class ColorSpace { Rgb, Hsv, Lab, Diverging, Step };
                                                                        ColorSpace space);
 
 /// A knot of vtkPiecewiseFunction. Midpoint and sharpness, both in [0,1], shape the curve to the next knot.
-///
-/// midpoint:  where the curve is halfway, as a part of the interval
-/// sharpness: how sudden the change is: below .01 a straight line, above .99 a jump
 struct SharpKnot {
     double value;
     double alpha;
-    double midpoint;
-    double sharpness;
+    double midpoint;   ///< where the curve is halfway, as a part of the interval
+    double sharpness;  ///< how sudden the change is: below .01 a straight line, above .99 a jump
 };
 
 /// The opacity curve through the knots, to 1/512.

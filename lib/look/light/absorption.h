@@ -14,12 +14,9 @@ namespace subvol::detail {
 // Gauss–Legendre over pieces that are thin enough, and thicker ones are halved.
 
 /// The light that a piece absorbs. T is the optical depth from its front.
-///
-/// mean:  1 − the mean of e^{−T} over the piece (1−Ψ of docs/science.md)
-/// whole: 1 − e^{−T} at its back (1−ζ)
 struct Absorption {
-    double mean = 0;
-    double whole = 0;
+    double mean = 0;   ///< 1 − the mean of e^{−T} over the piece (1−Ψ of docs/science.md)
+    double whole = 0;  ///< 1 − e^{−T} at its back (1−ζ)
 };
 
 /// The optical depth of a piece, in closed form. alpha: in [0,1), at front and back; length: in opacity units, may be negative

@@ -28,19 +28,17 @@ public:
     void add_transposed(std::span<const double> values, std::vector<double>& sums) const;
 
 private:
-    /// node: the lowest of its 27 in the grid of the cell; at: among them; row: of the matrix
     struct Place {
-        Vec3 at;
-        Index row;
-        std::uint16_t node;
+        Vec3 at;             ///< place among its 27 nodes in the grid of the cell
+        Index row;           ///< row of the matrix
+        std::uint16_t node;  ///< the lowest of these nodes
     };
 
     /// Those rows of a class's table that some cells need, and their transpose.
-    ///
-    /// used: the points of the neighbourhood that have weights; columns of `values`, rows of `transposed`
-    /// rows: of each node of the grid its row in `values`; 0 for nodes that nobody needs
     struct Table {
-        std::vector<std::uint16_t> used, rows;
+        /// The points of the neighbourhood that have weights; columns of `values`, rows of `transposed`
+        std::vector<std::uint16_t> used;
+        std::vector<std::uint16_t> rows;  ///< for each node of the grid its row in `values`; 0 for nodes that nobody needs
         WeightTable values, transposed;
     };
 

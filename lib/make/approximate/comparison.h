@@ -8,12 +8,10 @@
 namespace subvol::detail {
 
 /// Where the limit is compared with the data between the samples.
-///
-/// places:  in control cells
-/// in_data: in the cells of the data, which has a value there; nearest: of other data, the nearest sample in the cells about
 struct Comparison {
-    std::vector<LimitQuery> places, in_data;
-    std::vector<Index> nearest;
+    std::vector<LimitQuery> places;   ///< places in control cells
+    std::vector<LimitQuery> in_data;  ///< places in the cells of the data, which has a value there
+    std::vector<Index> nearest;       ///< for other data, the nearest sample in the cells around
 };
 
 /// Of a mesh of data: some thousand places in it.

@@ -14,12 +14,9 @@
 namespace subvol::detail {
 
 /// How well samples decide the control values.
-///
-/// of_points: the sum of the squares of the trilinear weights that a value has in the samples; usual: the median of those
-///            above 0
 struct Support {
-    std::vector<double> of_points;
-    double usual = 0;
+    std::vector<double> of_points;  ///< the sum of the squares of the trilinear weights that a value has in the samples
+    double usual = 0;               ///< median of the values of `of_points` above 0
 
     /// places: of the samples, in control cells
     Support(const Topology& topology, const std::vector<LimitQuery>& places);
@@ -33,15 +30,12 @@ struct Support {
 
 /// Samples that lie in the volume, with their places in control cells. After those at points of the data come those between
 /// them.
-///
-/// is_snapped: a flag for each, whether it lies outside
-/// samples:    their points, of the first ones; between: places in the cells of the data, of the others
 struct Located {
     std::vector<LimitQuery> places;
     std::vector<Vec3> positions;
-    std::vector<std::uint8_t> is_snapped;
-    std::vector<Index> samples;
-    std::vector<LimitQuery> between;
+    std::vector<std::uint8_t> is_snapped;  ///< a flag for each sample, whether it lies outside
+    std::vector<Index> samples;            ///< points of the data, of the first samples
+    std::vector<LimitQuery> between;       ///< places in the cells of the data, of the other samples
     std::size_t outside = 0, snapped = 0;
 
     /// Of the values at points of the data, if some lie in the volume.

@@ -22,10 +22,9 @@ namespace subvol::detail {
 /// The edge on which an edge goes on beyond one of its ends: the single one there that shares no face with it; else kNone.
 [[nodiscard]] Index edge_beyond(const Topology& topology, Index edge, Index end);
 
-/// parts: of each cell of the mesh
 struct SplitMesh {
     HexMesh mesh;
-    std::vector<PartOfCell> parts;
+    std::vector<PartOfCell> parts;  ///< for each cell of the mesh
 };
 
 /// A flag for each edge: whether its sheet is to be split, which is the same for all edges of a sheet.

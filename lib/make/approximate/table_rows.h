@@ -15,10 +15,8 @@ namespace subvol::detail {
 
 /// Places that are nearer than `near_world` to a point of the finest level are moved onto it, where the limit's matrix is
 /// exact.
-///
-/// positions: of the places, in the world; none: nothing is moved
 struct Settling {
-    std::span<const Vec3> positions{};
+    std::span<const Vec3> positions{};  ///< positions of the places, in the world; none: nothing is moved
     double near_world = 0;
 };
 
@@ -51,11 +49,10 @@ public:
     void add_transposed(std::span<const double> values, std::vector<double>& sums) const;
 
 private:
-    /// cell: of level L−1; at: in it; row: of the matrix
     struct Place {
-        std::size_t cell;
-        Vec3 at;
-        std::size_t row;
+        std::size_t cell;  ///< cell of level L−1
+        Vec3 at;           ///< place in the cell
+        std::size_t row;   ///< row of the matrix
     };
 
     [[nodiscard]] Index node(const Place& place, std::size_t i, std::size_t j, std::size_t k) const;

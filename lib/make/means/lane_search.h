@@ -17,13 +17,10 @@ using LaneMatrix = SparseRows<float>;
 [[nodiscard]] Lanes dot(const std::vector<Lanes>& a, const std::vector<Lanes>& b);
 [[nodiscard]] Lanes largest(const std::vector<Lanes>& values);
 
-/// tie:            how much a change counts beside what is off
-/// enough:         the search of a lane ends when nothing is off by more than this
-/// max_iterations: of each search
 struct LaneSearch {
-    double tie = 0;
-    Lanes enough{};
-    int max_iterations = 0;
+    double tie = 0;          ///< how much a change counts beside what is off
+    Lanes enough{};          ///< the search of a lane ends when nothing is off by more than this
+    int max_iterations = 0;  ///< the most iterations of each search
 };
 
 /// Changes the values by conjugate gradients of the least squares |rows · values − wanted|² + tie |change|².

@@ -14,19 +14,15 @@ namespace subvol::detail {
 
 /// A channel whose values are found, but for the whole integral. Means and values are divided by a power of two, and then
 /// relative to the least mean, so that a large constant takes no digits from what varies.
-///
-/// low, high:   of the means
-/// least, most: what values are kept within, relative; or infinite
-/// from, to:    what each value is kept between, by the means around it
-/// integral:    of the relative means over the straight cells
-/// lacks:       what the integral of the values' limit over the straight cells lacks of that
 struct FittedChannel {
     MeanChannel channel{};
     int exponent = 0;
-    double low = 0, high = 0;
-    double least = 0, most = 0;
-    double integral = 0, lacks = 0;
-    std::vector<double> values{}, from{}, to{};
+    double low = 0, high = 0;    ///< range of the means
+    double least = 0, most = 0;  ///< what values are kept within, relative; or infinite
+    double integral = 0;         ///< integral of the relative means over the straight cells
+    double lacks = 0;            ///< what the integral of the values' limit over the straight cells lacks of that
+    std::vector<double> values{};
+    std::vector<double> from{}, to{};  ///< what each value is kept between, by the means around it
 
     [[nodiscard]] bool is_constant() const { return !(high > low); }
     /// What the field is kept within.

@@ -16,16 +16,11 @@ struct LayeredMesh {
 };
 
 /// Where layers lie: inside of each part of a mesh along the faces that part it from other cells.
-///
-/// parts:   a number for each cell; cells of kNone stay as they are
-/// at_hull: also along the hull
-/// cuts:    also along the faces between cells at these edges
-/// inwards: how far the cells of a part move away for a layer: a part of the way to the middles of the cells
 struct Layers {
-    std::span<const Index> parts;
-    bool at_hull = false;
-    std::span<const std::array<Index, 2>> cuts{};
-    double inwards;
+    std::span<const Index> parts;                  ///< a number for each cell; cells of kNone stay as they are
+    bool at_hull = false;                          ///< layers also lie along the hull
+    std::span<const std::array<Index, 2>> cuts{};  ///< layers also lie along the faces between cells at these edges
+    double inwards;  ///< how far the cells of a part move away for a layer: a part of the way to the middles of the cells
 };
 
 /// The mesh with layers. Its cells and points keep their numbers, and the new ones follow; points keep their places, too, at

@@ -12,11 +12,9 @@
 namespace subvol::detail {
 
 /// A chain of edges along which a surface is sharp.
-///
-/// points:  in their order; of a closed chain the first one again at its end
-/// corners: of the `SharpEdges`, where it begins and ends; the first is kNone for a closed chain
 struct SharpCurve {
-    std::vector<Vec3> points;
+    std::vector<Vec3> points;  ///< points in their order; for a closed chain the first one again at its end
+    /// Corners of the `SharpEdges` where it begins and ends; the first is kNone for a closed chain
     std::array<Index, 2> corners{kNone, kNone};
 
     [[nodiscard]] bool closed() const { return corners[0] == kNone; }
@@ -25,9 +23,8 @@ struct SharpCurve {
     [[nodiscard]] Vec3 at(double part) const;
 };
 
-/// corners: where chains meet, end or turn sharply
 struct SharpEdges {
-    std::vector<Vec3> corners;
+    std::vector<Vec3> corners;  ///< where chains meet, end or turn sharply
     std::vector<SharpCurve> curves;
 };
 
@@ -37,10 +34,10 @@ struct SharpEdges {
 /// side: of a cell
 [[nodiscard]] SharpEdges sharp_edges(const Surface& surface, double angle_deg, double side);
 
-/// The place of a curve that is nearest to a point, and the curve's direction there. end: it is one of the curve's ends
+/// The place of a curve that is nearest to a point, and the curve's direction there.
 struct CurvePlace {
     Vec3 point, along;
-    bool end;
+    bool end;  ///< the place is one of the curve's ends
 };
 
 class CurveTree {

@@ -7,18 +7,12 @@
 namespace subvol::detail {
 
 /// Edges of a mesh's boundary that follow the sharp edges of a surface.
-///
-/// creases: edges of the mesh, two points each, the smaller first; in ascending order
-/// curves:  which curve each crease follows
-/// cuts:    more edges, by which every path that ends freely goes on to another one
-/// corners: points of the mesh, and the corner that each takes
-/// missed:  curves that no path follows, as other ones are too near or the mesh does not reach them
 struct SharpPaths {
-    std::vector<std::array<Index, 2>> creases;
-    std::vector<Index> curves;
-    std::vector<std::array<Index, 2>> cuts;
-    std::vector<std::pair<Index, Index>> corners;
-    std::vector<Index> missed;
+    std::vector<std::array<Index, 2>> creases;  ///< edges of the mesh, two points each, the smaller first; in ascending order
+    std::vector<Index> curves;                  ///< which curve each crease follows
+    std::vector<std::array<Index, 2>> cuts;     ///< more edges, by which every path that ends freely goes on to another one
+    std::vector<std::pair<Index, Index>> corners;  ///< points of the mesh, and the corner that each takes
+    std::vector<Index> missed;  ///< curves that no path follows, as other ones are too near or the mesh does not reach them
 };
 
 /// Finds for each curve a path of edges of the boundary near to it. Paths meet in corners alone.

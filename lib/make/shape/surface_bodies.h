@@ -50,15 +50,15 @@ public:
     [[nodiscard]] bool is_sheet() const;
 
 private:
-    /// joined: the number of its union; depth: how many other unions it lies in; volume: signed
     struct Wall {
         Surface surface;
         std::optional<SurfaceTree> tree;
         bool closed = true;
-        std::size_t joined = 0, depth = 0;
-        double volume = 0;
+        std::size_t joined = 0;  ///< number of its union
+        std::size_t depth = 0;   ///< how many other unions it lies in
+        double volume = 0;       ///< signed
         Vec3 area{0.0};
-        double size = 0;  // of its area
+        double size = 0;  ///< of its area
     };
 
     /// Calls visit(wall) for the walls whose boxes hold a place.

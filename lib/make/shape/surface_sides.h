@@ -9,12 +9,11 @@
 
 namespace subvol::detail {
 
-/// A side of a triangle, from its corner `side` to the next one. ends: the edge by its points, the smaller first, of which
-/// those at the same place are one; forward: it runs from the first end to the second
+/// A side of a triangle, from its corner `side` to the next one.
 struct TriangleSide {
-    std::array<Index, 2> ends;
+    std::array<Index, 2> ends;  ///< the edge by its points, the smaller first, of which those at the same place are one
     Index triangle, side;
-    bool forward;
+    bool forward;  ///< it runs from the first end to the second
 };
 
 /// For each point the first one at the same place. same_place: how far apart points are that are the same

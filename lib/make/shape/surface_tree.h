@@ -15,12 +15,11 @@ namespace subvol::detail {
 }
 
 /// The place of a surface that is nearest to a point.
-///
-/// weights: of the triangle's corners; toward: the unit vector from the place to the point, or the triangle's normal where the
-/// point lies on it
 struct SurfacePlace {
     Index triangle = kNone;
-    Vec3 weights{0.0}, point{0.0}, toward{0.0};
+    Vec3 weights{0.0};  ///< weights of the triangle's corners
+    Vec3 point{0.0};
+    Vec3 toward{0.0};  ///< the unit vector from the place to the point, or the triangle's normal where the point lies on it
     double distance = 0;
 };
 

@@ -30,12 +30,11 @@ struct Twist {
 };
 
 /// Bends the axis `along` into an arc; lengths on it are kept.
-///
-/// radius: the centre of the arc is at -radius on the axis `towards`: a positive radius bends away from that axis. What is bent
-///         must lie within π·|radius| along the axis and on one side of the centre
 struct Bend {
     int along;
     int towards;
+    /// The centre of the arc is at -radius on the axis `towards`: a positive radius bends away from that axis. What is bent
+    /// must lie within π·|radius| along the axis and on one side of the centre
     double radius;
 
     [[nodiscard]] Vec3 apply(const Vec3& p) const;

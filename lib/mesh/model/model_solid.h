@@ -29,10 +29,8 @@ namespace subvol::detail::model {
 [[nodiscard]] double within(double squared_distance, double radius);
 
 /// Union (join), intersection (meet) and difference (cut) of shapes with rounded edges, by log-sum-exp.
-///
-/// rounding: the size of the rounded edges, in the unit of the shapes
 struct Blend {
-    double rounding;
+    double rounding;  ///< the size of the rounded edges, in the unit of the shapes
 
     [[nodiscard]] double join(std::initializer_list<double> shapes) const;
     [[nodiscard]] double meet(std::initializer_list<double> shapes) const;
@@ -40,18 +38,12 @@ struct Blend {
 };
 
 /// A solid in a straight block of cells that is then deformed.
-///
-/// distance:    about a signed distance of a place in the straight block, positive inside
-/// transition:  the density is tanh(distance / transition)
-/// half:        half the block's edges; its cells are about cubes
-/// main:        the axis along which the resolution counts cells
-/// deformation: of the straight block; its Jacobian is positive there
 struct Solid {
-    double (*distance)(const Vec3& q);
-    double transition;
-    Vec3 half;
-    int main;
-    std::span<const Deformation> deformation;
+    double (*distance)(const Vec3& q);         ///< about a signed distance of a place in the straight block, positive inside
+    double transition;                         ///< the density is tanh(distance / transition)
+    Vec3 half;                                 ///< half the block's edges; its cells are about cubes
+    int main;                                  ///< the axis along which the resolution counts cells
+    std::span<const Deformation> deformation;  ///< of the straight block; its Jacobian is positive there
 };
 
 // For most solids the unit of length is a cell of the block at its default resolution. The density goes from -.76 to .76 over

@@ -26,9 +26,8 @@ using BoxType = std::array<AxisType, 3>;
 [[nodiscard]] BoxType child_type(const BoxType& type, std::size_t child);
 
 /// The rules of MCQ on the window of a cell: those of a whole box, as `refine` has them, cut out.
-///
-/// children:  of each child the points of its window, from those of the cell's. All entries are dyadic, and exact
 struct BoxRules {
+    /// For each child the points of its window, from those of the cell's. All entries are dyadic, and exact
     std::array<Eigen::MatrixXd, 8> children;
 };
 

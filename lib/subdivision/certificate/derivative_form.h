@@ -34,19 +34,18 @@ namespace subvol::detail {
 // of level n by induction over n, and they are dense.
 
 /// The derivative along the first axis, for one type of cells.
-///
-/// steps:     D_s, of the eight children
-/// corners:   φ at the corners, corner 4u + 2v + w in row; they are limits of powers, exact to rounding
-/// bernstein: B, with a row for each of the 3×3×3 coefficients; three_bernstein: 3 B, in dyadic numbers, which takes V to 3
-///            times the coefficients of the derivatives without an error
-/// kept:      V, in integers
-/// weights:   W: of the differences that are near d in the least squares sense, their coefficients
-/// all_rows:  of B, W and `corners` below each other, for products with vectors; kept_rows, corner_rows: of V and `corners`
 struct DerivativeForm {
     BoxType type;
-    std::array<Eigen::MatrixXd, 8> steps;
-    Eigen::MatrixXd corners, bernstein, three_bernstein, kept, weights;
-    DenseRows all_rows, kept_rows, corner_rows;
+    std::array<Eigen::MatrixXd, 8> steps;  ///< D_s, for the eight children
+    Eigen::MatrixXd corners;    ///< φ at the corners, corner 4u + 2v + w in row; they are limits of powers, exact to rounding
+    Eigen::MatrixXd bernstein;  ///< B, with a row for each of the 3×3×3 coefficients
+    /// 3 B, in dyadic numbers, which takes V to 3 times the coefficients of the derivatives without an error
+    Eigen::MatrixXd three_bernstein;
+    Eigen::MatrixXd kept;     ///< V, in integers
+    Eigen::MatrixXd weights;  ///< W: of the differences that are near d in the least squares sense, their coefficients
+    DenseRows all_rows;       ///< rows of B, W and `corners` below each other, for products with vectors
+    DenseRows kept_rows;      ///< rows of V
+    DenseRows corner_rows;    ///< rows of `corners`
 
     [[nodiscard]] Eigen::Index differences() const { return corners.cols(); }
 };

@@ -43,10 +43,10 @@ public:
     [[nodiscard]] FoldCheck found() const;
 
 private:
-    /// irregular: the volume that touches irregular edges and is not decided
     struct CellState {
         std::optional<FoldPlace> fold;
-        double open = 0, irregular = 0;
+        double open = 0;
+        double irregular = 0;  ///< the volume that touches irregular edges and is not decided
         std::size_t tests = 0;
         int deepest = 0;
         CellSamples samples;

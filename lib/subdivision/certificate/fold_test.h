@@ -10,37 +10,30 @@
 namespace subvol::detail {
 
 /// J at the corners of a part.
-///
-/// corners: 4u + 2v + w
-/// size:    the largest differences of neighbouring points, component by component, of which the columns are sums
 struct PartCorners {
-    std::array<Mat3, 8> corners;
-    Vec3 size{0.0};
+    std::array<Mat3, 8> corners;  ///< 4u + 2v + w
+    Vec3 size{0.0};  ///< the largest differences of neighbouring points, component by component, of which the columns are sums
 };
 
 /// What is known of the Jacobian J of a part.
-///
-/// columns: polynomials near the columns of J
-/// rest:    of each axis the bound and the vectors that it bounds: J's column is within kappa × (the differences) of the
-/// polynomial,
-///          component by component in any coordinates; empty if it is the polynomial
 struct PartDerivatives {
     struct Rest {
         double kappa = 0;
         std::vector<Vec3> differences;
     };
-    BernsteinColumns columns;
+    BernsteinColumns columns;  ///< polynomials near the columns of J
+    /// For each axis the bound and the vectors that it bounds: J's column is within kappa × (the differences) of the
+    /// polynomial, component by component in any coordinates; empty if it is the polynomial
     std::array<Rest, 3> rest;
     PartCorners at;
 };
 
 enum class PartVerdict { Proved, Folded, Undecided };
 
-/// corner, determinant: of a folded part
 struct PartDecision {
     PartVerdict verdict = PartVerdict::Undecided;
-    std::size_t corner = 0;
-    double determinant = 0;
+    std::size_t corner = 0;  ///< corner of a folded part
+    double determinant = 0;  ///< determinant of a folded part
 };
 
 /// Decides whether det J > 0 on a part. With G the polynomial at its centre, H an inverse of G, Y = H J and the rest R ≥ |H E|:

@@ -12,23 +12,19 @@
 namespace subvol::detail {
 
 /// How a point may move.
-///
-/// edge:   its shortest edge
-/// reach:  the longest way from its start; 0 where it stays
-/// weight: symmetric; of the way in its edge, squared
 struct Freedom {
-    double edge = 1, reach = 0;
-    Mat3 weight{1.0};
+    double edge = 1;   ///< its shortest edge
+    double reach = 0;  ///< the longest way from its start; 0 where it stays
+    Mat3 weight{1.0};  ///< symmetric; of the way in its edge, squared
     bool on_boundary = false;
 };
 
 /// Bad cells are to become sound, kept ones to stay sound; those around only shape them.
 enum class CellRole : std::uint8_t { Around, Kept, Bad };
 
-/// share: of the cell's volume that the determinants of its children are to be at least
 struct PatchCell {
     CellRole role = CellRole::Around;
-    double share = 0;
+    double share = 0;  ///< part of the cell's volume that the determinants of its children are to be at least
 };
 
 /// A part of a mesh whose points move as little as possible,
@@ -63,11 +59,9 @@ private:
     };
 
     /// The change of the points of active corners with the points that move, in edges.
-    ///
-    /// corners: the rows of each corner's points
     struct ActiveMatrix {
         CsrMatrix matrix, transpose;
-        std::vector<std::array<Index, 4>> corners;
+        std::vector<std::array<Index, 4>> corners;  ///< the rows of each corner's points
     };
 
     [[nodiscard]] std::vector<Vec3> fine(const std::vector<Vec3>& points) const;

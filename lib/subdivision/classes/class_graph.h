@@ -20,37 +20,29 @@ struct DescentClass;
 
 /// How the neighbourhoods of a cell's children follow from that of the cell.
 struct ClassChildren {
-    /// to:   the child's class; null if its neighbourhood has none (see NeighborhoodWalk::find)
-    /// turn: from the axes of the child's walk to those of the parent's
-    /// near: makes the points that a place in the child is evaluated from
-    /// rest: makes the other points of its neighbourhood
     struct Child {
+        /// The child's class; null if its neighbourhood has none (see NeighborhoodWalk::find)
         const DescentClass* to = nullptr;
-        std::uint8_t turn = kIdentityTurn;
-        StepTable near{}, rest{};
+        std::uint8_t turn = kIdentityTurn;  ///< from the axes of the child's walk to those of the parent's
+        StepTable near{};                   ///< makes the points that a place in the child is evaluated from
+        StepTable rest{};                   ///< makes the other points of its neighbourhood
     };
     std::array<Child, 8> children{};  // by octants along the axes of the parent's walk
 };
 
 /// A class of neighbourhoods of two layers. Its points are numbered by the walk; the first eight are the cell's own, at octants
 /// u + 2v + 4w of the walk, unless it is the regular class, whose 6×6×6 points are those of NeighborhoodWalk::find_regular.
-///
-/// on_grid: whether the cell's surroundings are regular_grid, whose numbers `grid` has
 struct DescentClass {
     Neighborhood about{};
-    bool on_grid = false;
+    bool on_grid = false;  ///< whether the cell's surroundings are regular_grid, whose numbers `grid` has
     GridPoints grid{};
-    mutable std::atomic<const ClassChildren*> children{nullptr};  // once they are made
+    mutable std::atomic<const ClassChildren*> children{nullptr};  ///< once they are made
 
     [[nodiscard]] std::size_t point_count() const { return about.points.size(); }
 };
 
 /// The children of a cell whose neighbourhood of one layer is known: the way into the classes of the next level, whose weights
 /// would depend on two layers.
-///
-/// on_grid: whether the cell's surroundings are regular_grid, whose numbers among the walk's points `grid` has
-/// points:  of the children's neighbourhoods, each once, as corners of children of the cells that the walk around the parent
-///          visits
 struct ClassEntry {
     struct Corner {
         std::uint16_t cell;          // in the order of the walk
@@ -61,10 +53,13 @@ struct ClassEntry {
         std::uint8_t turn = kIdentityTurn;  // from the axes of the child's walk to those of the parent's
         std::vector<std::uint16_t> rows{};  // of `points`
     };
+    /// Whether the cell's surroundings are regular_grid, whose numbers among the walk's points `grid` has
     bool on_grid = false;
     GridPoints grid{};
+    /// Points of the children's neighbourhoods, each once, as corners of children of the cells that the walk around the parent
+    /// visits
     std::vector<Corner> points{};
-    std::array<Child, 8> children{};  // by octants
+    std::array<Child, 8> children{};  ///< by octants
 };
 
 /// Which classes the children of a class belong to, and how their points follow: a place in a cell is found by a walk from

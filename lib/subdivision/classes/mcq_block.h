@@ -10,12 +10,10 @@
 namespace subvol::detail {
 
 /// Points of a grid, as rows of channels: row i + side·(j + side·k) for the point at (i, j, k).
-///
-/// stride: numbers per row, a multiple of 4
 struct GridRows {
     const double* rows;
     std::size_t side;
-    std::size_t stride;
+    std::size_t stride;  ///< numbers per row, a multiple of 4
 
     /// The part that begins at a point.
     [[nodiscard]] GridRows from(const std::array<std::size_t, 3>& at) const {

@@ -35,14 +35,11 @@ public:
 
     static constexpr std::size_t kRows = 4;
     /// Up to kRows rows with as many terms; missing ones repeat the first.
-    ///
-    /// weights, columns: begin there; term t of row r has column kRows·t + r, four times the number of its point
-    /// same:             all rows have the weights 0, 1, 2 …; otherwise weights are ordered as columns are
-    /// terms:            even; the last may have no weight
     struct Group {
+        /// Where they begin; term t of row r has column kRows·t + r, four times the number of its point
         std::uint32_t weights, columns;
-        std::uint16_t terms;
-        bool same;
+        std::uint16_t terms;  ///< even; the last may have no weight
+        bool same;            ///< all rows have the weights 0, 1, 2 …; otherwise weights are ordered as columns are
         std::array<std::uint16_t, kRows> to;
     };
 

@@ -18,27 +18,23 @@ struct CellPlaces {
     std::size_t first, last;
 };
 
-/// A query that the classes have not evaluated to the end. level: of the first descendant that has no class
+/// A query that the classes have not evaluated to the end.
 struct LeftPlace {
     std::size_t query;
-    int level;
+    int level;  ///< level of the first descendant that has no class
     auto operator<=>(const LeftPlace&) const = default;
 };
 
 /// What is asked for, of which mesh.
-///
-/// order:   the numbers of the queries, sorted by cells
-/// scales:  of each channel, what tolerances are relative to
-/// targets: if not empty, the position that each query approaches; moved: by how much it has moved in its cell
 struct DescentTask {
     const HexMesh& control;
     std::span<const LimitQuery> queries;
-    std::span<const std::size_t> order;
+    std::span<const std::size_t> order;  ///< the numbers of the queries, sorted by cells
     const LimitOptions& options;
-    std::span<const double> scales;
+    std::span<const double> scales;  ///< for each channel, what tolerances are relative to
     LimitSamples& samples;
-    std::span<const Vec3> targets{};
-    std::span<Vec3> moved{};
+    std::span<const Vec3> targets{};  ///< if not empty, the position that each query approaches
+    std::span<Vec3> moved{};          ///< by how much each query has moved in its cell
     Channels channels{control};
 
     [[nodiscard]] bool is_spline() const { return !interpolates(options.scheme.kind); }

@@ -74,24 +74,16 @@ private:
 enum class Nearness : std::uint8_t { Unknown, Far, Some, Close };
 
 /// A query that has not converged yet.
-///
-/// uvw:    its place in the cell that is looked at
-/// last:   its jet at the level before
-/// agreed: number of consecutive levels whose jets agreed within the tolerance
-/// before: how near the last two jets were to each other
-/// octant: of the child that it is in; at first none
-/// stays:  whether the last two cells that it was in meet at a vertex of the cell before them
-/// has_last: whether there is a level before
-/// moved:  by how much it has moved in its control cell
 struct OpenPlace {
     std::size_t query;
-    Vec3 uvw;
-    double* last;
-    Vec3 moved{0.0};
-    std::uint8_t agreed = 0;
-    Nearness before = Nearness::Unknown;
-    std::uint8_t octant = 8;
-    bool stays = false, has_last = false;
+    Vec3 uvw;                             ///< its place in the cell that is looked at
+    double* last;                         ///< its jet at the level before
+    Vec3 moved{0.0};                      ///< by how much it has moved in its control cell
+    std::uint8_t agreed = 0;              ///< number of consecutive levels whose jets agreed within the tolerance
+    Nearness before = Nearness::Unknown;  ///< how near the last two jets were to each other
+    std::uint8_t octant = 8;              ///< octant of the child that it is in; at first none
+    bool stays = false;     ///< whether the last two cells that it was in meet at a vertex of the cell before them
+    bool has_last = false;  ///< whether there is a level before
 
     /// Moves it into the child that it is in.
     void step_down();

@@ -12,14 +12,14 @@
 
 namespace subvol::detail {
 
-/// The mesh of the control points, and what is made of it once. rows: the channels of the points
+/// The mesh of the control points, and what is made of it once.
 struct DescentMesh {
     const HexMesh& control;
     SchemeOptions scheme;
-    std::size_t stride;  // of rows
+    std::size_t stride;  ///< of rows
     Topology topology;
     CellLinks links;
-    std::vector<double> rows;
+    std::vector<double> rows;  ///< the channels of the points
 
     /// color_rounds: of the links
     DescentMesh(const HexMesh& mesh, const SchemeOptions& with, int color_rounds);
@@ -30,12 +30,12 @@ struct DescentMesh {
 
 class RefinedCells;
 
-/// A cell of level 1, with the walk around it. entry: null if it has no class, or is not wanted
+/// A cell of level 1, with the walk around it.
 struct RefinedOctant {
-    const RefinedCells* cells = nullptr;  // the cells that it was refined with
-    const ClassEntry* entry = nullptr;
+    const RefinedCells* cells = nullptr;  ///< the cells that it was refined with
+    const ClassEntry* entry = nullptr;    ///< null if it has no class, or is not wanted
     std::uint8_t turn = kIdentityTurn;
-    std::vector<Index> points{};  // the points that it is evaluated from
+    std::vector<Index> points{};  ///< the points that it is evaluated from
     std::vector<NeighborhoodWalk::Visited> visited{};
 };
 

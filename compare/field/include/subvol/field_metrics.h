@@ -15,20 +15,16 @@ namespace subvol {
 /// value, else one-sided; nothing where neither neighbour along an axis has one.
 [[nodiscard]] std::optional<Vec3> gradient_at(const FieldView& field, const Vec3& x);
 
-/// l1:            mean absolute difference
-/// l2:            root mean square difference: the L² norm over the volume, divided by the root of the volume
-/// linf:          largest absolute difference at a place
-/// gradient_rmse: root mean square of the length of the gradients' difference (world⁻¹), over `gradients` places
-/// samples:       places where both fields have a value
-/// uncovered:     places where only the reference has a value; they do not enter the other numbers
-///
 /// Numbers over no place at all are NaN: l1, l2 and linf of fields that have no place in common, gradient_rmse where no
 /// gradients were compared.
 struct FieldDifference {
-    double l1 = std::numeric_limits<double>::quiet_NaN(), l2 = l1, linf = l1;
+    double l1 = std::numeric_limits<double>::quiet_NaN();  ///< mean absolute difference
+    double l2 = l1;    ///< root mean square difference: the L² norm over the volume, divided by the root of the volume
+    double linf = l1;  ///< largest absolute difference at a place
+    /// Root mean square of the length of the gradients' difference (world⁻¹), over `gradients` places.
     double gradient_rmse = l1;
-    std::size_t samples = 0;
-    std::size_t uncovered = 0;
+    std::size_t samples = 0;    ///< places where both fields have a value
+    std::size_t uncovered = 0;  ///< places where only the reference has a value; they do not enter the other numbers
     std::size_t gradients = 0;
 
     /// The share of the reference's places at which both fields have a value: what the other numbers are about.
@@ -65,11 +61,11 @@ struct FieldDifferenceOptions {
 [[nodiscard]] double integrate_field(const FieldView& field, const Box& box, int resolution = 128,
                                      Progress* progress = nullptr);
 
-/// relative:   |∫ test − ∫ reference| / |∫ reference|, both on the same cubes; infinite if only the reference's integral is 0
-/// resolution: cubes along the longest side
 struct MassError {
-    double test = 0, reference = 0, relative = 0;
-    int resolution = 0;
+    double test = 0, reference = 0;
+    /// |∫ test − ∫ reference| / |∫ reference|, both on the same cubes; infinite if only the reference's integral is 0.
+    double relative = 0;
+    int resolution = 0;  ///< cubes along the longest side
 };
 
 /// resolution: as of `integrate_field`; none: from 32 on as fine as it takes, at most 128, until `relative` changes by no more
@@ -92,13 +88,11 @@ struct MassError {
 /// away than vertices. Infinite if one surface has no triangle; 0 if neither has.
 [[nodiscard]] double hausdorff_distance(const Surface& a, const Surface& b);
 
-/// distance:     the Hausdorff distance of both isosurfaces on the same grid; infinite if only one of them exists
-/// spacing:      side of the grid's cubes, world: the uncertainty of the distance, which is much less for smooth surfaces
-/// test_triangles, reference_triangles: 0 if the field does not take the value
 struct IsosurfaceDistance {
-    double distance = 0;
+    double distance = 0;  ///< the Hausdorff distance of both isosurfaces on the same grid; infinite if only one of them exists
+    /// Side of the grid's cubes, world: the uncertainty of the distance, which is much less for smooth surfaces.
     double spacing = 0;
-    std::size_t test_triangles = 0, reference_triangles = 0;
+    std::size_t test_triangles = 0, reference_triangles = 0;  ///< 0 if the field does not take the value
 };
 
 /// throws: as `isosurface`, or Error(InvalidInput) if neither field takes the value

@@ -10,10 +10,9 @@ namespace subvol {
 /// Pixels per degree of a 3840-pixel screen .7 m wide, seen from .7 m.
 inline constexpr double kFlipPixelsPerDegree = 67.020643276582255;
 
-/// mean: over all pixels; map: 0 to 1 at each pixel
 struct FlipResult {
-    double mean = 0;
-    MetricMap map;
+    double mean = 0;  ///< the mean over all pixels
+    MetricMap map;    ///< the value at each pixel, 0 to 1
 };
 
 /// LDR-FLIP: how strongly a viewer notices a difference when the two pictures alternate on a screen, 0 to 1.
@@ -27,20 +26,20 @@ struct FlipResult {
 /// source: [flip2020]
 [[nodiscard]] FlipResult flip(const Image& test, const Image& reference, double pixels_per_degree = kFlipPixelsPerDegree);
 
-/// start, stop: exposures in stops; none: those at which the reference's largest and its median luminance become .85 on the
-///              screen. If the median pixel is black, the median is over the pixels that are not
 struct HdrFlipOptions {
     double pixels_per_degree = kFlipPixelsPerDegree;
+    /// Exposure in stops; none: that at which the reference's largest luminance becomes .85 on the screen.
     std::optional<double> start{};
+    /// Exposure in stops; none: that at which the reference's median luminance becomes .85 on the screen. If the median pixel
+    /// is black, the median is over the pixels that are not.
     std::optional<double> stop{};
 };
 
-/// exposures: how many, from start to stop in equal steps
 struct HdrFlipResult {
     double mean = 0;
     MetricMap map;
     double start = 0, stop = 0;
-    int exposures = 0;
+    int exposures = 0;  ///< how many exposures, from start to stop in equal steps
 };
 
 /// HDR-FLIP: per pixel the largest LDR-FLIP over a series of exposures, each after the ACES tone curve. Colours are clamped to

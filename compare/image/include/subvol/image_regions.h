@@ -5,11 +5,9 @@
 
 namespace subvol {
 
-/// edge:     the band along the silhouette, 2 band_px wide
-/// interior: the pixels that the object covers, without the band
 struct ImageRegions {
-    PixelMask interior;
-    PixelMask edge;
+    PixelMask interior;  ///< the pixels that the object covers, without the band
+    PixelMask edge;      ///< the band along the silhouette, 2 band_px wide
 };
 
 /// Splits a picture by its object's silhouette. Pixels are covered where alpha is above 0, or in a picture that is opaque
@@ -20,12 +18,12 @@ struct ImageRegions {
 /// throws:     Error(InvalidInput) if there are no pixels or the band is not positive
 [[nodiscard]] ImageRegions silhouette_regions(const Image& reference, int band_px = 2, const Vec3& background = Vec3(0.0));
 
-/// sum:       Σ −ln(1−α) over the pixels; times the area of a pixel it is the optical depth of the whole picture, which in an
-///            orthographic view is the volume's integral of the extinction
-/// saturated: pixels with a transmittance 1−α below 1e-4: a float has few digits for it, and renderers stop there. A
-///            transmittance of 0 counts as 2⁻²⁴
 struct OpticalDepth {
+    /// Σ −ln(1−α) over the pixels; times the area of a pixel it is the optical depth of the whole picture, which in an
+    /// orthographic view is the volume's integral of the extinction.
     double sum = 0;
+    /// Pixels with a transmittance 1−α below 1e-4: a float has few digits for it, and renderers stop there. A transmittance of
+    /// 0 counts as 2⁻²⁴.
     std::size_t saturated = 0;
 };
 

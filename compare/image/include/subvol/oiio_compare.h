@@ -14,10 +14,9 @@ struct OiioOptions {
     float fail_relative = 0, warn_relative = 0;
 };
 
-/// warnings, failures: numbers of pixels
 struct OiioMetrics {
     double mean_error = 0, rms_error = 0, psnr = 0, max_error = 0;
-    std::size_t warnings = 0, failures = 0;
+    std::size_t warnings = 0, failures = 0;  ///< numbers of pixels
 };
 
 /// OpenImageIO's own comparison, over red, green, blue and alpha.

@@ -41,31 +41,22 @@ private:
 };
 
 /// A number that says how far two pictures are apart.
-///
-/// name:           under which `subvol compare` has it; study: under which studies have it
-/// stage:          whose seconds it takes
-/// of:             the number. mask: the pixels that count, only if `masked`; empty: all
-/// masked:         whether it can be of a part of the pixels
-/// encoded:        whether `compare` also takes it of 8-bit sRGB
-/// seen:           whether it is always of 8-bit sRGB
-/// flag, help:     the option of `compare` that asks for it; empty: it is always taken
-/// quantity:       what an axis calls it; the unit is not part of it
-/// formula:        its definition, with the colour space and the peak; source: where that is from
 struct PictureMetric {
-    std::string_view name;
-    std::string_view study;
-    std::string_view stage;
+    std::string_view name;   ///< the name that `subvol compare` has for it
+    std::string_view study;  ///< the name that studies have for it
+    std::string_view stage;  ///< the stage whose seconds it takes
+    /// The number. `mask`: the pixels that count, only if `masked`; empty: all.
     double (*of)(const PicturePair& pair, std::span<const std::uint8_t> mask);
     std::string_view unit{};
     bool more_is_better = false;
-    bool masked = false;
-    bool encoded = false;
-    bool seen = false;
-    std::string_view flag{};
-    std::string_view help{};
-    std::string_view quantity{};
-    std::string_view formula{};
-    std::string_view source{};
+    bool masked = false;          ///< whether it can be of a part of the pixels
+    bool encoded = false;         ///< whether `compare` also takes it of 8-bit sRGB
+    bool seen = false;            ///< whether it is always of 8-bit sRGB
+    std::string_view flag{};      ///< the option of `compare` that asks for it; empty: it is always taken
+    std::string_view help{};      ///< the help of that option
+    std::string_view quantity{};  ///< what an axis calls it; the unit is not part of it
+    std::string_view formula{};   ///< its definition, with the colour space and the peak
+    std::string_view source{};    ///< where the formula is from
 
     /// The number of a pair of pictures, in the colours that the metric is about.
     [[nodiscard]] double measure(const PicturePair& pair, std::span<const std::uint8_t> mask = {}) const {

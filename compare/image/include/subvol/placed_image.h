@@ -18,14 +18,11 @@ struct PixelWindow {
 };
 
 /// A picture that may be a part of a larger one, as crops in `.exr` files are.
-///
-/// data_window:    the pixels that there are: those of `image`
-/// display_window: the pixels of the larger picture; the same, if the picture is whole
-/// name:           what messages call it
 struct PlacedImage {
     Image image;
+    /// The pixels that there are, those of `image`, and the pixels of the larger picture; the same if the picture is whole.
     PixelWindow data_window{}, display_window{};
-    std::string name{};
+    std::string name{};  ///< what messages call it
 
     [[nodiscard]] bool whole() const { return data_window == display_window; }
 };

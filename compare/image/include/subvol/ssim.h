@@ -5,12 +5,11 @@
 
 namespace subvol {
 
-/// map:  the similarity at each pixel, in [-1,1]
-/// mean: over the pixels whose window lies inside the picture, as in [ssim2004]; over all pixels if the picture is narrower or
-///       lower than a window (11 pixels)
 struct SsimResult {
+    /// The mean over the pixels whose window lies inside the picture, as in [ssim2004]; over all pixels if the picture is
+    /// narrower or lower than a window (11 pixels).
     double mean = 0;
-    MetricMap map;
+    MetricMap map;  ///< the similarity at each pixel, in [-1,1]
 };
 
 /// Structural similarity, the mean of that of red, green and blue; 1 for equal pictures, and symmetric in its arguments.

@@ -8,15 +8,12 @@
 
 namespace subvol {
 
-/// breaks:  the points, by their indices, that no line joins with the one before
-/// spreads: half the lengths of bars through the points, along y; empty: there are none
-/// bounds:  the points, by their indices, whose values are bounds: they are drawn hollow
 struct PlotLine {
     std::string name;
     std::vector<double> x, y;
-    std::vector<std::size_t> breaks{};
-    std::vector<double> spreads{};
-    std::vector<std::size_t> bounds{};
+    std::vector<std::size_t> breaks{};  ///< the points, by their indices, that no line joins with the one before
+    std::vector<double> spreads{};      ///< half the lengths of bars through the points, along y; empty: there are none
+    std::vector<std::size_t> bounds{};  ///< the points, by their indices, whose values are bounds: they are drawn hollow
 };
 
 /// The size of a plot without its legend, and of its letters, in PostScript points. On screens a point is a unit of the view
@@ -28,22 +25,18 @@ struct PlotSize {
 inline constexpr PlotSize kColumnPlot{238.11, 160, 7.5};  // 84 mm, a column of a journal
 inline constexpr PlotSize kPagePlot{493.23, 280, 9};      // 174 mm, a page
 
-/// log_x, log_y: logarithmic axes; values that are not positive are left out
-/// fit:          show the slope of each line in a log-log plot after its name
-/// x_ticks:      where the axis has its labels; empty: at round numbers
-/// floor:        values of y at this and beyond are not known better: a grey band from there to the end of the axis, downwards,
-/// or
-///               upwards if floor_above. floor_name: its words
 struct Plot {
     std::string title;
     std::string x_label, y_label;
-    bool log_x = true, log_y = true;
-    bool fit = false;
+    bool log_x = true, log_y = true;  ///< logarithmic axes; values that are not positive are left out
+    bool fit = false;                 ///< show the slope of each line in a log-log plot after its name
     std::vector<PlotLine> lines;
-    std::vector<double> x_ticks{};
+    std::vector<double> x_ticks{};  ///< where the axis has its labels; empty: at round numbers
+    /// Values of y at this and beyond are not known better: a grey band from there to the end of the axis, downwards, or
+    /// upwards if floor_above.
     std::optional<double> floor{};
     bool floor_above = false;
-    std::string floor_name{};
+    std::string floor_name{};  ///< the words for the grey band
 };
 
 /// The plot as one SVG element that fills the width of its container, without fonts, scripts or links. Points that are not

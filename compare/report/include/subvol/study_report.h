@@ -15,40 +15,35 @@ namespace subvol {
 /// Facts under their names, in the order in which they are shown.
 using ReportFacts = std::vector<std::pair<std::string, std::string>>;
 
-/// host, versions: the machine and the programs that the studies ran with, by names such as "processor", "subvol", "commit",
-///                 "date"
-/// command:        runs them again
-/// pages:          of inputs, their names and pages that draw them (`make_page`), as paths from the report's folder; linked to
 struct ReportOptions {
+    /// The machine and the programs that the studies ran with, by names such as "processor", "subvol", "commit", "date".
     ReportFacts host, versions;
-    std::string command;
+    std::string command;  ///< the command that runs the studies again
+    /// Names of inputs, and pages that draw them (`make_page`), as paths from the report's folder; linked to.
     ReportFacts pages{};
 };
 
 /// A demand of a study, and whether it is met.
-///
-/// words: the demand and the result, for people; cases: how many it applies to; met: how many of them meet it
 struct Judgement {
-    std::string words;
-    std::size_t cases = 0;
-    std::size_t met = 0;
+    std::string words;      ///< the demand and the result, for people
+    std::size_t cases = 0;  ///< how many cases it applies to
+    std::size_t met = 0;    ///< how many of the cases meet it
     [[nodiscard]] bool all_met() const { return met == cases && cases > 0; }
 };
 
 [[nodiscard]] std::vector<Judgement> judge(const StudyResults& results);
 
-/// A reference that cases were compared with. name: of its mesh, camera and transfer function
+/// A reference that cases were compared with.
 struct ReferenceState {
-    std::string name;
+    std::string name;  ///< names its mesh, camera and transfer function
     bool converged = true;
 };
 
 /// The references of a study, in the order of the cases that they are of.
 [[nodiscard]] std::vector<ReferenceState> reference_states(const StudyResults& results);
 
-/// name: of its files, without ending
 struct StudyPlot {
-    std::string name;
+    std::string name;  ///< the name of its files, without ending
     Plot plot;
 };
 

@@ -15,9 +15,6 @@
 namespace subvol {
 
 /// A table: rows of texts and numbers under headings. An unknown number is NaN.
-///
-/// marks:   for people, instead of numbers that are below what the reference can tell: "≤ 0.0002", by row and column
-/// spreads: standard deviations of numbers that are means of several cases
 struct StudyTable {
     using Cell = std::variant<std::string, double>;
 
@@ -27,7 +24,9 @@ struct StudyTable {
     std::vector<std::string> columns;
     std::vector<std::vector<Cell>> rows;
     int digits = 4;
+    /// For people, instead of numbers that are below what the reference can tell: "≤ 0.0002", by row and column.
     std::map<std::pair<std::size_t, std::size_t>, std::string> marks{};
+    /// Standard deviations of numbers that are means of several cases.
     std::map<std::pair<std::size_t, std::size_t>, double> spreads{};
 };
 

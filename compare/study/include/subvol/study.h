@@ -19,14 +19,11 @@ using StudyValue = std::variant<bool, double, std::string>;
 using StudyValues = std::map<std::string, StudyValue>;
 
 /// One computation to run and measure.
-///
-/// id:     a hash of the values, without names that are only shown: 16 hexadecimal digits, the same on every machine
-/// name:   for people: unique in its study, and valid as part of a file name
-/// values: "input", "input.model", "view", "tf", "method", "label", a method's own options, "given.NAME" …
 struct StudyCase {
+    /// A hash of the values, without names that are only shown: 16 hexadecimal digits, the same on every machine.
     std::string id;
-    std::string name;
-    StudyValues values;
+    std::string name;    ///< for people: unique in its study, and valid as part of a file name
+    StudyValues values;  ///< "input", "input.model", "view", "tf", "method", "label", a method's own options, "given.NAME" …
 
     [[nodiscard]] bool has(const std::string& key) const { return values.contains(key); }
     /// The value; "", 0 or false if there is none.
@@ -43,10 +40,6 @@ using StudyFilter = std::map<std::string, std::string>;
 
 /// A table of the report: a row for each combination of the values of `rows`; after these come `columns`, then, for each value
 /// of `across`, a column for each of `values`. Keys are names of values, metrics and costs.
-///
-/// average:  keys over which cells have means with their standard deviations
-/// headings: the names of keys in the report
-/// digits:   of numbers that are not counts
 struct StudyTableSpec {
     std::string title;
     std::string caption;
@@ -54,28 +47,26 @@ struct StudyTableSpec {
     std::vector<std::string> columns;
     std::string across;
     std::vector<std::string> values;
-    std::vector<std::string> average{};
-    std::map<std::string, std::string> headings;
+    std::vector<std::string> average{};           ///< keys over which cells have means with their standard deviations
+    std::map<std::string, std::string> headings;  ///< the names of keys in the report
     StudyFilter where;
-    int digits = 4;
+    int digits = 4;  ///< the digits of numbers that are not counts
 };
 
 /// A plot of the report: metric `y` over `x`, with a line for each combination of the values of `series`, and a plot for each
 /// value of `panels`.
-///
-/// average:  keys over which points are means, with bars of their standard deviations
-/// together: keys in which the cases of a series may differ; lines join only those that do not
-/// fit:      show the slope of each line
 struct StudyPlotSpec {
     std::string title;
     std::string caption;
     std::string x, y;
     std::vector<std::string> series;
     std::string panels;
+    /// Keys over which points are means, with bars of their standard deviations; `together` has keys in which the cases of a
+    /// series may differ, and lines join only those that do not.
     std::vector<std::string> average{}, together{};
     std::map<std::string, std::string> headings;
     bool log_x = true, log_y = true;
-    bool fit = false;
+    bool fit = false;  ///< show the slope of each line
     StudyFilter where;
 };
 
@@ -86,19 +77,15 @@ struct StudyDemand {
     StudyFilter where;
 };
 
-/// timed:    costs are measured, so cases run one after the other
-/// seconds:  about how long it takes on two cores; 0: not known
-/// pictures: the report shows pictures beside their reference, for the cases of `pictures_where`
-/// measured: what a function of the caller gives besides what the methods do
 struct Study {
     std::string name;
     std::string title;
     std::string about;
-    bool timed = false;
-    double seconds = 0;
-    bool pictures = false;
+    bool timed = false;     ///< costs are measured, so cases run one after the other
+    double seconds = 0;     ///< about how long it takes on two cores; 0: not known
+    bool pictures = false;  ///< the report shows pictures beside their reference, for the cases of `pictures_where`
     StudyFilter pictures_where;
-    std::vector<std::string> measured{};
+    std::vector<std::string> measured{};  ///< what a function of the caller gives besides what the methods do
     std::vector<StudyCase> cases;
     std::vector<StudyTableSpec> tables;
     std::vector<StudyPlotSpec> plots;
@@ -133,11 +120,10 @@ inline constexpr std::size_t kMaxStudyCases = 10'000;
                                 std::span<const PictureMethod> methods);
 [[nodiscard]] Study read_study(const std::filesystem::path& file, std::span<const PictureMethod> methods);
 
-/// seconds: as of Study
 struct StudyInfo {
     std::string name;
     std::string title;
-    double seconds = 0;
+    double seconds = 0;  ///< as Study::seconds
 };
 
 /// The built-in studies, and the text of their files.

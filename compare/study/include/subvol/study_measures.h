@@ -11,15 +11,11 @@
 namespace subvol {
 
 /// A number, or a text, that cases are measured by.
-///
-/// methods:  that give it, separated by spaces; "pictures": all that draw
-/// quantity: what an axis calls it, with the unit
-/// meaning:  a sentence for the table of all keys
 struct StudyMeasure {
     std::string_view key;
-    std::string_view methods;
-    std::string_view quantity;
-    std::string_view meaning;
+    std::string_view methods;   ///< the methods that give it, separated by spaces; "pictures": all that draw
+    std::string_view quantity;  ///< what an axis calls it, with the unit
+    std::string_view meaning;   ///< a sentence for the table of all keys
 };
 
 /// All that cases are measured by, but the metrics of pictures (`picture_metrics`), which a study names.

@@ -14,43 +14,32 @@
 namespace subvol {
 
 /// The result of a case.
-///
-/// metrics: reproducible: the same in every run
-/// costs:   seconds, cpu_seconds, peak_bytes: different in every run
-/// files:   names relative to the study's folder
-/// notes:   such as a device, or warnings
-/// failure: a sentence; empty if the case succeeded
 struct CaseResult {
-    std::map<std::string, double> metrics{};
-    std::map<std::string, double> costs{};
-    std::map<std::string, std::string> files{};
-    std::map<std::string, std::string> notes{};
-    std::string failure{};
+    std::map<std::string, double> metrics{};     ///< reproducible: the same in every run
+    std::map<std::string, double> costs{};       ///< seconds, cpu_seconds, peak_bytes: different in every run
+    std::map<std::string, std::string> files{};  ///< names relative to the study's folder
+    std::map<std::string, std::string> notes{};  ///< for example a device, or warnings
+    std::string failure{};                       ///< a sentence; empty if the case succeeded
 };
 
 /// Computes a case. Any exception except Error(Cancelled) becomes the case's failure. Called from several threads at once if
 /// there are several jobs.
 using CaseWork = std::function<CaseResult(const StudyCase&)>;
 
-/// folder:   created if necessary; gets cases/ID.json for each case, results.csv, costs.csv
-/// jobs:     cases that run at the same time; 1 for a timed study
-/// fresh:    run all cases, even those that an earlier run of this version finished
-/// finished: called for each case as it ends, one at a time; ran: false if an earlier run finished it
 struct StudyRunOptions {
-    std::filesystem::path folder;
-    int jobs = 1;
-    bool fresh = false;
+    std::filesystem::path folder;  ///< created if necessary; gets cases/ID.json for each case, results.csv, costs.csv
+    int jobs = 1;                  ///< cases that run at the same time; 1 for a timed study
+    bool fresh = false;            ///< run all cases, even those that an earlier run of this version finished
+    /// Called for each case as it ends, one at a time; `ran` is false if an earlier run finished it.
     std::function<void(const StudyCase&, const CaseResult&, bool ran)> finished{};
     Progress* progress = nullptr;
 };
 
-/// results: one per case, in the order of the cases
-/// ran:     number of cases run by this call; failed: number of failures among all cases
 struct StudyResults {
     Study study;
-    std::vector<CaseResult> results;
-    std::size_t ran = 0;
-    std::size_t failed = 0;
+    std::vector<CaseResult> results;  ///< one per case, in the order of the cases
+    std::size_t ran = 0;              ///< number of cases run by this call
+    std::size_t failed = 0;           ///< number of failures among all cases
 };
 
 /// Runs the cases of a study that an earlier run of this version has not finished. Each case's file is written as soon as it is

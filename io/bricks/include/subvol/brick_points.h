@@ -10,22 +10,18 @@
 
 namespace subvol {
 
-/// points:      how many were written; flat_frames: of them, those whose cells are flat
-/// min, max:    of the first channel; triangles: of the boundary
 struct BrickPointsReport {
-    std::uint64_t points = 0;
-    std::size_t flat_frames = 0;
-    double min = 0, max = 0;
-    std::size_t triangles = 0;
+    std::uint64_t points = 0;     ///< how many were written
+    std::size_t flat_frames = 0;  ///< of these points, those whose cells are flat
+    double min = 0, max = 0;      ///< range of the first channel
+    std::size_t triangles = 0;    ///< triangles of the boundary
 };
 
 /// Some of the pieces, as one share of the work.
-///
-/// begin, end: their numbers, from `begin` to before `end`; the share that begins at 0 has the boundary
-/// note:       of the share's file, for `read_points_note`
 struct BrickShare {
+    /// Numbers of the pieces, from `begin` to before `end`; the share that begins at 0 has the boundary
     std::size_t begin = 0, end = 0;
-    std::string note;
+    std::string note;  ///< note of the share's file, for `read_points_note`
 };
 
 /// Samples piece after piece and writes one binary `.ply`, or a `.svk` if the path ends so: the bytes are those that

@@ -15,45 +15,32 @@
 namespace subvol {
 
 /// A field of a mesh in bricks, over the points that cells use.
-///
-/// min, max:       of each channel
-/// shortest, longest: of vectors, their lengths; of one channel, as min and max
-/// bounds:         `Attribute::bounds`
 struct BrickField {
     std::string name;
     int channels = 1;
-    std::vector<double> min, max;
-    double shortest = 0, longest = 0;
-    std::vector<std::array<double, 2>> bounds{};
+    std::vector<double> min, max;                 ///< range of each channel
+    double shortest = 0, longest = 0;             ///< range of the lengths of vectors; for one channel, as min and max
+    std::vector<std::array<double, 2>> bounds{};  ///< `Attribute::bounds`
 };
 
 /// A brick, as the index has it.
-///
-/// file:          its name in the folder
-/// cells, points: that it owns: every cell and every point of the mesh is owned by one brick
-/// stored_cells, stored_points: with the halo
-/// bounds:        of the owned cells; reach: of their limit and more: no value of the limit in an owned cell lies outside
-/// bytes, hash:   of the file
 struct Brick {
-    std::string file;
-    std::uint64_t cells = 0, points = 0;
-    std::uint64_t stored_cells = 0, stored_points = 0;
-    Box bounds, reach;
-    std::uint64_t bytes = 0, hash = 0;
+    std::string file;                     ///< name of the file in the folder
+    std::uint64_t cells = 0, points = 0;  ///< what it owns: every cell and every point of the mesh is owned by one brick
+    std::uint64_t stored_cells = 0, stored_points = 0;  ///< what it owns, with the halo
+    Box bounds;                                         ///< box of the owned cells
+    Box reach;  ///< box of the limit of the owned cells and more: no value of the limit in an owned cell lies outside
+    std::uint64_t bytes = 0, hash = 0;  ///< size and hash of the file
     std::vector<BrickField> fields;
 };
 
 /// A mesh in a folder of bricks, of which only the index is in memory.
-///
-/// id:            of the mesh and of how it was cut: each brick has it too
-/// cells, points: of the whole mesh; no point is unused
-/// halo_layers:   about the owned cells: cells that share a point with a cell of the layer before
 struct Bricks {
     std::filesystem::path path;
-    std::uint64_t id = 0;
-    std::uint64_t cells = 0, points = 0;
+    std::uint64_t id = 0;                 ///< identifies the mesh and how it was cut: each brick has it too
+    std::uint64_t cells = 0, points = 0;  ///< cells and points of the whole mesh; no point is unused
     Box bounds;
-    int halo_layers = 0;
+    int halo_layers = 0;  ///< layers around the owned cells: cells that share a point with a cell of the layer before
     std::vector<BrickField> fields;
     std::vector<Brick> bricks;
 

@@ -30,29 +30,26 @@ struct NameTable<BrickShape> {
                                                 {BrickShape::Random, "random", "for tests"}};
 };
 
-/// bricks:      how many; 0: as many as `memory_bytes` asks for
-/// memory_bytes: about the most that a command takes for one brick; some 1,000 bytes a cell
-/// halo_layers: 1 to 16. Values and gradients of the limit need 3, and so do kernels of the schemes MCQ and linear; those of
-///              other schemes need 4. Kernels with the correction `Full` need one more
-/// seed:        of random bricks
 struct SplitOptions {
-    std::size_t bricks = 0;
+    std::size_t bricks = 0;  ///< number of bricks; 0: as many as `memory_bytes` asks for
+    /// About the most that a command takes for one brick; some 1,000 bytes a cell
     std::uint64_t memory_bytes = std::uint64_t{1} << 30;
     BrickShape shape = BrickShape::Blocks;
+    /// 1 to 16. Values and gradients of the limit need 3, and so do kernels of the schemes MCQ and linear; those of other
+    /// schemes need 4. Kernels with the correction `Full` need one more
     int halo_layers = 3;
-    std::uint64_t seed = 0;
+    std::uint64_t seed = 0;  ///< seed of random bricks
     Progress* progress = nullptr;
 };
 
 /// bricks, memory, halo, by
 [[nodiscard]] std::vector<Option> options_of(SplitOptions& options);
 
-/// bricks:  the folder as `open_bricks` returns it; written, kept: how many were written, and kept of an interrupted run
-/// bytes:   written
 struct SplitResult {
-    Bricks bricks;
-    std::size_t written = 0, kept = 0;
-    std::uint64_t bytes = 0;
+    Bricks bricks;            ///< the folder as `open_bricks` returns it
+    std::size_t written = 0;  ///< bricks that were written
+    std::size_t kept = 0;     ///< bricks that were kept of an interrupted run
+    std::uint64_t bytes = 0;  ///< bytes written
 };
 
 /// The brick of each cell.
@@ -77,22 +74,18 @@ SplitResult split_mesh(const std::filesystem::path& folder, HexMesh mesh, std::s
                        const SplitOptions& options = {});
 
 /// How to read a mesh in pieces.
-///
-/// change:       what is done with each brick's mesh before it is written: another field, for example
-/// about_change: what `change` does, in any words: a split that was interrupted goes on only if they are the same
 struct PiecesOptions {
     ReadOptions read = {};
-    BrickFields change = {};
+    BrickFields change = {};  ///< what is done with each brick's mesh before it is written: another field, for example
+    /// What `change` does, in any words: a split that was interrupted goes on only if the words are the same
     std::string about_change = {};
 };
 
-/// result:     nothing if the mesh must be held whole: then nothing has been written
-/// held_whole: why, such as "it has curved cells"; empty if the file is not a list of pieces
-/// warnings:   those of `read_mesh`
 struct PiecesSplit {
-    std::optional<SplitResult> result;
+    std::optional<SplitResult> result;  ///< nothing if the mesh must be held whole: then nothing has been written
+    /// Why the mesh must be held whole, such as "it has curved cells"; empty if the file is not a list of pieces
     std::string held_whole;
-    std::vector<std::string> warnings;
+    std::vector<std::string> warnings;  ///< warnings of `read_mesh`
 };
 
 /// Cuts a mesh in pieces (.pvtu, .vtm and others that name several files) into bricks without holding it: the bricks are those

@@ -15,15 +15,14 @@
 
 namespace subvol {
 
-/// An array of a file. location: "point" or "cell"; min and max over its finite values, of vectors over their lengths; unit:
-/// empty where the file does not have it
+/// An array of a file.
 struct FieldInfo {
     std::string name;
-    std::string location;
+    std::string location;  ///< "point" or "cell"
     int components = 1;
-    double min = 0;
-    double max = 0;
-    std::string unit = {};
+    double min = 0;         ///< least of its finite values, for vectors of their lengths
+    double max = 0;         ///< greatest of its finite values, for vectors of their lengths
+    std::string unit = {};  ///< empty where the file does not have it
 };
 
 /// How to read tetrahedra, prisms and pyramids.
@@ -65,108 +64,99 @@ struct NameTable<CellValues> {
     return values == CellValues::Fit || values == CellValues::Exact;
 }
 
-/// sharp: names of groups of faces and edges (MEDIT, Gmsh): their faces inside the mesh become sharp faces, their edges on the
-///       boundary or on such faces creases. In Gmsh the name of a physical group of dimension 2 or 1, or its number; in MEDIT a
-///       reference of quadrilaterals, triangles and edges, or "Ridges"
-/// weld: joins points that are no farther apart than this (world units; 0: at exactly the same place), as the borders between
-///       pieces of a file need. The first of them is kept, with its values; a warning gives the number. Nothing: no welding
-/// curved_tolerance: curved hexahedra are split into smaller ones, with points on their true shape, so often that these lie
-///       within this part of the mesh's diagonal from the shape, and fields within 400 times this part of their ranges; in at
-///       most 65,536 hexahedra, or twice as many as there are between the nodes, p · q · r for a cell of degrees p, q and r.
-///       Arrays of whole numbers do not count. Greater than 0. Nothing: only their corners are used
-/// step: of a series (`open_series`), from 0. Nothing: that of `time`, or the last one
-/// time: takes the step whose time is nearest to it, if no step is given
-/// blocks: the names of the parts of the mesh that are read (`ReadResult::blocks`). None: all
-/// deck: of a .frd file of CalculiX, the deck (.inp) that it has the results of: its sets of elements and its surfaces become
-///       sets and patches of the mesh, by the numbers of elements and nodes. Empty: none
-/// crease_angle_deg: edges of the boundary that bend by more than this become creases too; 0: none are looked for. Nothing:
-/// those
-///       that `keep_sharp_edges` finds, unless the file has creases or sharp faces of its own (`sharp`, or files of ours)
-/// shells_alone: a file of shells and beams without any cell is read too. Its mesh has no cells, so most calls refuse it
 struct ReadOptions {
     OtherCells other_cells = OtherCells::Split;
+    /// Joins points that are no farther apart than this (world units; 0: at exactly the same place), as the borders between
+    /// pieces of a file need. The first of them is kept, with its values; a warning gives the number. Nothing: no welding
     std::optional<double> weld = {};
+    /// Names of groups of faces and edges (MEDIT, Gmsh): their faces inside the mesh become sharp faces, their edges on the
+    /// boundary or on such faces creases. In Gmsh the name of a physical group of dimension 2 or 1, or its number; in MEDIT a
+    /// reference of quadrilaterals, triangles and edges, or "Ridges"
     std::vector<std::string> sharp = {};
+    /// Curved hexahedra are split into smaller ones, with points on their true shape, so often that these lie within this part
+    /// of the mesh's diagonal from the shape, and fields within 400 times this part of their ranges; in at most 65,536
+    /// hexahedra, or twice as many as there are between the nodes, p · q · r for a cell of degrees p, q and r. Arrays of whole
+    /// numbers do not count. Greater than 0. Nothing: only their corners are used
     std::optional<double> curved_tolerance = 5e-6;
+    /// Time step of a series (`open_series`), from 0. Nothing: that of `time`, or the last one
     std::optional<std::size_t> step = {};
-    std::optional<double> time = {};
+    std::optional<double> time = {};  ///< takes the step whose time is nearest to it, if no step is given
+    /// The names of the parts of the mesh that are read (`ReadResult::blocks`). None: all
     std::vector<std::string> blocks = {};
     CellValues cell_values = CellValues::Auto;
     PatchValuesUse patch_values = PatchValuesUse::Normal;
+    /// Deck (.inp) that a .frd file of CalculiX has the results of: its sets of elements and its surfaces become sets and
+    /// patches of the mesh, by the numbers of elements and nodes. Empty: none
     std::string deck = {};
+    /// Edges of the boundary that bend by more than this become creases too; 0: none are looked for. Nothing: those that
+    /// `keep_sharp_edges` finds, unless the file has creases or sharp faces of its own (`sharp`, or files of ours)
     std::optional<double> crease_angle_deg = {};
+    /// A file of shells and beams without any cell is read too. Its mesh has no cells, so most calls refuse it
     bool shells_alone = false;
 };
 
 /// other-cells, weld-distance, curved, cell-values, patch-values, step, time, blocks, sharp, mesh, crease-angle
 [[nodiscard]] std::vector<Option> options_of(ReadOptions& options);
 
-/// A named part of a mesh. cells: of all kinds, as the file has them
+/// A named part of a mesh.
 struct MeshBlock {
     std::string name;
-    std::size_t cells = 0;
+    std::size_t cells = 0;  ///< number of cells of all kinds, as the file has them
 };
 
 /// How far the means over cells that values at points were made from are met, in parts of each field's range; the largest of
-/// all fields. method: Fit or Exact
+/// all fields.
 struct CellValuesReport {
-    CellValues method = CellValues::Fit;
+    CellValues method = CellValues::Fit;  ///< Fit or Exact
     std::size_t fields = 0;
     double rms_of_range = 0, most_of_range = 0;
 };
 
 /// What became of curved hexahedra. Errors are estimated from second derivatives; the limit is nearer.
-///
-/// curved, cells: the curved hexahedra, and all hexahedra of the file
-/// hexes:         those that they all were split into; as many as `cells` if none is bent by more than the tolerance
-/// most_hexes:    no more would have been made
-/// tolerance:     that was asked for, in parts of the mesh's diagonal; of the fields 400 times that, in parts of their ranges
-/// shape_error, fields_error: what the smaller cells are off at most, in the same parts
-/// limited:       an error is above the tolerance, since there would have been more than most_hexes
 struct CurvedReport {
-    std::size_t curved = 0, cells = 0, hexes = 0, most_hexes = 0;
+    std::size_t curved = 0;  ///< curved hexahedra
+    std::size_t cells = 0;   ///< all hexahedra of the file
+    /// Hexahedra that all of these were split into; as many as `cells` if none is bent by more than the tolerance
+    std::size_t hexes = 0;
+    std::size_t most_hexes = 0;  ///< no more would have been made
+    /// Tolerance that was asked for, in parts of the mesh's diagonal; for the fields 400 times that, in parts of their ranges
     double tolerance = 0;
-    double shape_error = 0, fields_error = 0;
-    bool limited = false;
+    double shape_error = 0, fields_error = 0;  ///< what the smaller cells are off at most, in the parts of `tolerance`
+    bool limited = false;  ///< an error is above the tolerance, since there would have been more than most_hexes
 
     [[nodiscard]] bool split() const { return hexes > cells; }
 };
 
-/// A field of a file that was left out. why: what could not be read, such as a value that is not finite
+/// A field of a file that was left out.
 struct UnreadField {
     std::string name;
-    std::string why;
+    std::string why;  ///< what could not be read, such as a value that is not finite
 };
 
-/// blocks:     the parts that were read, of formats that have such parts
-/// unread:     fields that could not be read; a warning names them
-/// sets:       patches of the boundary and sets of cells, of formats that have them: what lies inside the mesh is left out
-/// cell_means: only if values at cells were fitted: the values of these fields in the file, for each cell of the mesh
-/// cell_parts: for each cell of the mesh the number of the file's cell that it is a part of; empty if there are no such fields,
-///             and none on patches
-/// cell_values: how well the means are met; nothing if there are no such fields
-/// on_patches:  what the file has on faces of patches, of the fields at cells; empty for most formats
-/// patch_values: what became of it; nothing if there is none, or it was not used
-/// curved:      nothing if there are no curved hexahedra, or only their corners are used
-/// steps, step: how many the file has, and which one this is; its time is `mesh.time`
-/// sharp_edges: that were found in the mesh and kept; nothing if the file has its own, or none were looked for
-/// shells:     the quads and lines of VTK and Gmsh files beside hexahedra that were not split, but for those that are faces and
-///             edges of the hexahedra
 struct ReadResult {
-    HexMesh mesh;  // validated; the values at points of a cell array are volume-weighted means over incident cells
+    HexMesh mesh;  ///< validated; the values at points of a cell array are volume-weighted means over incident cells
     std::vector<FieldInfo> fields;
-    std::vector<std::string> warnings;  // one sentence for each thing left out, turned round or converted
-    std::vector<MeshBlock> blocks = {};
+    std::vector<std::string> warnings;   ///< one sentence for each thing left out, turned round or converted
+    std::vector<MeshBlock> blocks = {};  ///< the parts that were read, of formats that have such parts
+    /// Only if values at cells were fitted: the values of these fields in the file, for each cell of the mesh
     std::vector<Attribute> cell_means = {};
+    /// For each cell of the mesh the number of the file's cell that it is a part of; empty if `cell_means` is empty and there
+    /// are none on patches
     std::vector<Index> cell_parts = {};
-    std::optional<CellValuesReport> cell_values = {};
-    ValuesOnPatches on_patches = {};
+    std::optional<CellValuesReport> cell_values = {};  ///< how well the means are met; nothing if `cell_means` is empty
+    ValuesOnPatches on_patches = {};  ///< what the file has on faces of patches, of the fields at cells; empty for most formats
+    /// What became of `on_patches`; nothing if there is none, or it was not used
     std::optional<PatchValuesReport> patch_values = {};
-    std::size_t steps = 1, step = 0;
-    std::optional<CurvedReport> curved = {};
+    std::size_t steps = 1;                    ///< how many time steps the file has
+    std::size_t step = 0;                     ///< time step of the mesh; its time is `mesh.time`
+    std::optional<CurvedReport> curved = {};  ///< nothing if there are no curved hexahedra, or only their corners are used
+    /// Sharp edges that were found in the mesh and kept; nothing if the file has its own, or none were looked for
     std::optional<SharpEdges> sharp_edges = {};
+    /// The quads and lines of VTK and Gmsh files beside hexahedra that were not split, but for those that are faces and edges
+    /// of the hexahedra
     Shells shells = {};
-    std::vector<UnreadField> unread = {};
+    std::vector<UnreadField> unread = {};  ///< fields that could not be read; a warning names them
+    /// Patches of the boundary and sets of cells, of formats that have them: what lies inside the mesh is left out
     MeshSets sets = {};
 };
 

@@ -9,11 +9,9 @@
 namespace subvol {
 
 /// A mesh file, or a file that lists others, with its steps in the order of their times.
-///
-/// times: one for each step, at least one; the number of the step where the file has no times. A file of one step has the time
-/// 0
 struct MeshSeries {
     std::filesystem::path path;
+    /// One for each step, at least one; the number of the step where the file has no times. A file of one step has the time 0
     std::vector<double> times;
 
     [[nodiscard]] std::size_t size() const { return times.size(); }

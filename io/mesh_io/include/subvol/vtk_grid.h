@@ -13,13 +13,13 @@
 
 namespace subvol {
 
-/// An array of a VTK grid. values: `components` for each point or cell; integers: their type in the grid is one of integers
+/// An array of a VTK grid.
 struct VtkGridArray {
     std::string name;
     int components = 1;
     bool at_cells = false;
-    std::vector<double> values;
-    bool integers = false;
+    std::vector<double> values;  ///< `components` for each point or cell
+    bool integers = false;       ///< the type of the values in the grid is one of integers
 };
 
 /// An array of whole numbers in the field data of a VTK grid.
@@ -29,20 +29,18 @@ struct VtkFieldArray {
 };
 
 /// An unstructured grid as VTK has it in memory.
-///
-/// types:        VTK's number for the type of each cell
-/// ends:         of each cell in `connectivity`
-/// connectivity: the points of the cells, one cell after the other
-/// faces:        of polyhedra, VTK's list: how many faces, then for each its number of points and the points; for each cell all
-///               its faces, one cell after the other
-/// face_ends:    of each cell in `faces`, that of the cell before for cells of other types; empty if there are no polyhedra
-/// field_arrays: those of the field data whose names are `is_vtk_field_array`; others are not looked at
 struct VtkUnstructuredGrid {
     std::vector<Vec3> points;
-    std::vector<std::uint8_t> types;
-    std::vector<std::int64_t> ends, connectivity;
-    std::vector<std::int64_t> faces{}, face_ends{};
+    std::vector<std::uint8_t> types;         ///< VTK's number for the type of each cell
+    std::vector<std::int64_t> ends;          ///< end of each cell in `connectivity`
+    std::vector<std::int64_t> connectivity;  ///< the points of the cells, one cell after the other
+    /// VTK's list of the faces of polyhedra: how many faces, then for each its number of points and the points; for each cell
+    /// all its faces, one cell after the other
+    std::vector<std::int64_t> faces{};
+    /// End of each cell in `faces`; that of the cell before for cells of other types; empty if there are no polyhedra
+    std::vector<std::int64_t> face_ends{};
     std::vector<VtkGridArray> arrays{};
+    /// Arrays of the field data whose names are `is_vtk_field_array`; others are not looked at
     std::vector<VtkFieldArray> field_arrays{};
 };
 

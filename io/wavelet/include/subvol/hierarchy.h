@@ -18,22 +18,19 @@ struct PaddedPoint {
 };
 
 /// A mesh as the level `levels` of a coarser one.
-///
-/// coarse: its points, which are points of the mesh, cells, creases and sharp faces; no attributes
-/// points: for each point of refine(coarse, levels) the point of the mesh; `mesh points + k` is padded[k]
-/// cells:  for each cell of refine(coarse, levels) the cell of the mesh; kNone for cells that were added
 struct MeshHierarchy {
-    HexMesh coarse;
+    HexMesh coarse;  ///< its points, which are points of the mesh, cells, creases and sharp faces; no attributes
     int levels = 0;
+    /// For each point of refine(coarse, levels) the point of the mesh; `mesh points + k` is padded[k]
     std::vector<Index> points;
+    /// For each cell of refine(coarse, levels) the cell of the mesh; kNone for cells that were added
     std::vector<Index> cells;
     std::vector<PaddedPoint> padded;
 };
 
-/// levels: the most levels to find, 1 to 10
-/// pad:    add layers of cells to a structured grid whose counts cannot be halved twice, at most half as many cells as it has
 struct HierarchyOptions {
-    int levels = 6;
+    int levels = 6;  ///< the most levels to find, 1 to 10
+    /// Add layers of cells to a structured grid whose counts cannot be halved twice, at most half as many cells as it has
     bool pad = true;
 };
 

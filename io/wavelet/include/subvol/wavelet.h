@@ -15,46 +15,36 @@ namespace subvol {
 /// The step between two levels, c the coarser and f the finer one, with the new points' values f_new = S c + d.
 ///
 /// The first points of the finer level are the old ones, numbered as in the coarser level; new point n is point columns() + n.
-///
-/// refine:  S, all rows of the scheme
-/// star:    for each old point v the new points on its edges and faces and in its cells, ascending
-/// even:    U, for each entry of `star`; empty for schemes that interpolate. S_v − Σ U S_new has no term but v's own
-/// own:     D, that term; empty for schemes that interpolate, where it is 1
-/// lift:    A, for each entry of `star`: details change the coarser value so that means stay what they are
-/// measure: for each point of the finer level the integral of its basis function over the finest level, in finest cells
-/// beside:  for each new point three neighbours along the edges of one of its cells
 struct WaveletStep {
-    StencilTable refine;
-    IndexRows star;
+    StencilTable refine;  ///< S, all rows of the scheme
+    IndexRows star;       ///< for each old point v the new points on its edges and faces and in its cells, ascending
+    /// U, for each entry of `star`; empty for schemes that interpolate. S_v − Σ U S_new has no term but v's own
     std::vector<double> even;
-    std::vector<double> own;
+    std::vector<double> own;  ///< D, v's own term; empty for schemes that interpolate, where it is 1
+    /// A, for each entry of `star`: details change the coarser value so that means stay what they are
     std::vector<double> lift;
+    /// For each point of the finer level the integral of its basis function over the finest level, in finest cells
     std::vector<double> measure;
-    std::vector<std::array<Index, 3>> beside;
+    std::vector<std::array<Index, 3>> beside;  ///< for each new point three neighbours along the edges of one of its cells
 
     [[nodiscard]] std::size_t new_points() const { return refine.rows() - refine.columns(); }
 };
 
 /// The wavelets over the levels of a control mesh.
-///
-/// steps:   from coarse to fine
-/// measure: of the control points, as in WaveletStep
-/// cells, creases, sharp_faces: of the finest level
 struct WaveletBasis {
     std::size_t control_points = 0;
-    std::vector<WaveletStep> steps;
-    std::vector<double> measure;
-    std::vector<std::array<Index, 8>> cells;
-    std::vector<std::array<Index, 2>> creases;
-    std::vector<std::array<Index, 4>> sharp_faces;
+    std::vector<WaveletStep> steps;                 ///< from coarse to fine
+    std::vector<double> measure;                    ///< measure of the control points, as in WaveletStep
+    std::vector<std::array<Index, 8>> cells;        ///< cells of the finest level
+    std::vector<std::array<Index, 2>> creases;      ///< creases of the finest level
+    std::vector<std::array<Index, 4>> sharp_faces;  ///< sharp faces of the finest level
 
     [[nodiscard]] std::size_t points() const { return steps.empty() ? control_points : steps.back().refine.rows(); }
 };
 
-/// scheme.crease_angle_deg is not used: tag creases before. levels: 0 to 10
 struct WaveletOptions {
-    SchemeOptions scheme{};
-    int levels = 1;
+    SchemeOptions scheme{};  ///< its crease_angle_deg is not used: tag creases before
+    int levels = 1;          ///< 0 to 10
     Progress* progress = nullptr;
 };
 
@@ -68,13 +58,10 @@ struct WaveletOptions {
 [[nodiscard]] WaveletBasis wavelet_basis(const Topology& control, const WaveletOptions& options = {});
 
 /// Values of the finest level as control values and details.
-///
-/// coarse:  control_points × channels
-/// details: for each step, coarse to fine: new_points × channels
 struct WaveletField {
     std::size_t channels = 1;
-    std::vector<double> coarse;
-    std::vector<std::vector<double>> details;
+    std::vector<double> coarse;                ///< control_points × channels
+    std::vector<std::vector<double>> details;  ///< for each step, coarse to fine: new_points × channels
 };
 
 /// Takes values of the finest level apart. Of a refined field all details are 0 and `coarse` is the field before it was
@@ -107,10 +94,9 @@ struct WaveletError {
 [[nodiscard]] WaveletError difference(std::span<const double> a, std::span<const double> b, std::size_t channels,
                                       std::span<const std::uint8_t> counted = {});
 
-/// kept: the details of which a channel is not 0, of `details` in all
 struct DroppedDetails {
-    std::size_t details = 0;
-    std::size_t kept = 0;
+    std::size_t details = 0;  ///< number of all details
+    std::size_t kept = 0;     ///< number of details of which a channel is not 0
     WaveletError error;
 };
 

@@ -15,13 +15,10 @@ namespace subvol {
 [[nodiscard]] Shells limit_shells(const HexMesh& mesh, const Shells& shells, const RefineOptions& options = {});
 
 /// Shells and beams as triangles, to be drawn.
-///
-/// surface:         the points and triangles of the shells, then those of the tubes
-/// sources:         for each point of the surface the point of the shells and beams whose values it has
-/// shell_triangles: number of triangles of the shells, two for each quad; the triangles of the tubes follow them
 struct ShellSurface {
-    Surface surface;
-    std::vector<Index> sources;
+    Surface surface;             ///< the points and triangles of the shells, then those of the tubes
+    std::vector<Index> sources;  ///< for each point of the surface the point of the shells and beams whose values it has
+    /// Number of triangles of the shells, two for each quad; the triangles of the tubes follow them
     std::size_t shell_triangles = 0;
 };
 

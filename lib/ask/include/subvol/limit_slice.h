@@ -14,11 +14,10 @@
 
 namespace subvol {
 
-/// resolution: places along the longer side of the part of the plane that is in the mesh's box, 2 to 20,000
-/// cells:      a flag for each cell of a mesh in memory: those that are cut, where they lie in the limit of the whole mesh; the
-///             frame is the box of their control points. Empty: all
 struct SliceOptions {
-    int resolution = 512;
+    int resolution = 512;  ///< places along the longer side of the part of the plane that is in the mesh's box, 2 to 20,000
+    /// A flag for each cell of a mesh in memory: those that are cut, where they lie in the limit of the whole mesh; the frame
+    /// is the box of their control points. Empty: all
     std::span<const std::uint8_t> cells{};
     LimitOptions limit{};
     Progress* progress = nullptr;
@@ -27,22 +26,18 @@ struct SliceOptions {
 [[nodiscard]] std::vector<Option> options_of(SliceOptions& options);
 
 /// A field of the limit at a grid of places on a plane.
-///
-/// origin:        the place of column 0 in row 0
-/// right, down:   from a place to the next one in its row, and to the one in the next row; they are of the same length, and
-///                right × down points away from where the plane's normal points: the picture is seen from there
-/// values:        row by row; NaN outside the volume; gradients: by world position, 0 outside
-/// cells:         the control cells, kNone outside
-/// min, max:      the least and the largest of the values, with their places. `find_slice_extremes` finds those of the plane
 struct LimitSlice {
     std::string field;
     int width = 0, height = 0;
-    Vec3 origin{0.0}, right{0.0}, down{0.0};
-    std::vector<double> values;
-    std::vector<Vec3> gradients;
-    std::vector<Index> cells;
-    double min = 0, max = 0;
-    Vec3 min_at{0.0}, max_at{0.0};
+    Vec3 origin{0.0};  ///< the place of column 0 in row 0
+    /// From a place to the next one in its row, and to the one in the next row; they are of the same length, and right × down
+    /// points away from where the plane's normal points: the picture is seen from there
+    Vec3 right{0.0}, down{0.0};
+    std::vector<double> values;     ///< row by row; NaN outside the volume
+    std::vector<Vec3> gradients;    ///< gradients by world position, 0 outside
+    std::vector<Index> cells;       ///< the control cells, kNone outside
+    double min = 0, max = 0;        ///< least and largest of the values. `find_slice_extremes` finds those of the plane
+    Vec3 min_at{0.0}, max_at{0.0};  ///< places of the least and the largest value
     std::size_t inside = 0;
 
     [[nodiscard]] Vec3 place(double column, double row) const { return origin + column * right + row * down; }
@@ -61,10 +56,10 @@ struct LimitSlice {
 [[nodiscard]] LimitSlice slice_limit(const MeshSource& source, std::string_view field, const Vec3& point, const Vec3& normal,
                                      const SliceOptions& options = {});
 
-/// A line along which the field of a slice has one value. places: in columns and rows of the slice
+/// A line along which the field of a slice has one value.
 struct ContourLine {
     double value = 0;
-    std::vector<Vec2> places;
+    std::vector<Vec2> places;  ///< in columns and rows of the slice
 };
 
 /// Contour lines of a slice, by linear interpolation between its places. Closed lines end where they begin.

@@ -18,68 +18,51 @@
 
 namespace subvol {
 
-/// isos:          values of the field whose isosurfaces are wanted
-/// boundary:      also the boundary of the volume
-/// cap:           each isosurface becomes the closed surface of the part where the field is at least its value: the boundary
-///                of the volume closes it
-/// tolerance:     how far triangles may lie from the limit, as a part of the longest side of the box; > 0
-/// max_level:     cells are refined no further, 1 to 8
-/// max_triangles: the search for a finer level ends before there would be more
-/// sides:         those of cells to which the boundary is restricted, as of a patch; empty: the whole boundary. Isosurfaces are
-///                left out then, and triangles are not improved
-/// cells:         a flag for each cell of a mesh in memory: the boundary of these is made, where they lie in the limit of the
-///                whole mesh. Isosurfaces are those of these cells as a mesh of its own. Empty: all
-/// improve:       edges of triangles with small angles are collapsed or flipped, so that fewer of them are slivers
 struct SurfaceOptions {
     SchemeOptions scheme{};
-    std::vector<double> isos{};
-    bool boundary = false;
+    std::vector<double> isos{};  ///< values of the field whose isosurfaces are wanted
+    bool boundary = false;       ///< also the boundary of the volume
+    /// Each isosurface becomes the closed surface of the part where the field is at least its value: the boundary of the volume
+    /// closes it
     bool cap = false;
-    double tolerance = 1e-3;
-    int max_level = 6;
-    std::size_t max_triangles = 40'000'000;
+    double tolerance = 1e-3;  ///< how far triangles may lie from the limit, as a part of the longest side of the box; > 0
+    int max_level = 6;        ///< cells are refined no further, 1 to 8
+    std::size_t max_triangles = 40'000'000;  ///< the search for a finer level ends before there would be more
+    /// Sides of cells to which the boundary is restricted, as of a patch; empty: the whole boundary. Isosurfaces are left out
+    /// then, and triangles are not improved
     std::span<const CellSide> sides{};
+    /// A flag for each cell of a mesh in memory: the boundary of these is made, where they lie in the limit of the whole mesh.
+    /// Isosurfaces are those of these cells as a mesh of its own. Empty: all
     std::span<const std::uint8_t> cells{};
-    bool improve = true;
+    bool improve = true;  ///< edges of triangles with small angles are collapsed or flipped, so that fewer of them are slivers
     Progress* progress = nullptr;
 };
 
 [[nodiscard]] std::vector<Option> options_of(SurfaceOptions& options);
 
-/// level:           of the refinement whose cells were cut
-/// deviation_world: the estimated largest distance of triangles from the limit
-/// converged:       the deviation is within the tolerance
-/// cells:           control cells that were refined
-/// area, volume:    of the surface; the volume is that which it encloses, if it is watertight
-/// watertight:      every edge has two triangles, which run along it in opposite directions
-/// euler:           points − edges + triangles
-/// components:      parts that are not joined
-/// min_angle_deg:   the least angle of a triangle; small_angles: the part of triangles with one below 10°
-/// mended:          edges collapsed or flipped
 struct SurfaceReport {
-    int level = 0;
-    double deviation_world = 0;
-    bool converged = false;
-    std::size_t cells = 0;
-    double area = 0, volume = 0;
-    bool watertight = false;
-    long euler = 0;
-    std::size_t components = 0;
-    double min_angle_deg = 0, small_angles = 0;
-    std::size_t mended = 0;
+    int level = 0;               ///< level of the refinement whose cells were cut
+    double deviation_world = 0;  ///< the estimated largest distance of triangles from the limit
+    bool converged = false;      ///< the deviation is within the tolerance
+    std::size_t cells = 0;       ///< control cells that were refined
+    double area = 0;             ///< area of the surface
+    double volume = 0;           ///< volume that the surface encloses, if it is watertight
+    bool watertight = false;     ///< every edge has two triangles, which run along it in opposite directions
+    long euler = 0;              ///< points − edges + triangles
+    std::size_t components = 0;  ///< parts that are not joined
+    double min_angle_deg = 0;    ///< least angle of a triangle
+    double small_angles = 0;     ///< part of the triangles with an angle below 10°
+    std::size_t mended = 0;      ///< edges collapsed or flipped
 };
 
 /// Triangles on the limit, counter-clockwise seen from where the field is below the isovalue, or from outside the volume.
-///
-/// normals: one for each point, to the same side: from the exact gradient of the field, or the exact Jacobian at the boundary.
-///          On creases of the boundary, and where a cap meets its isosurface, the mean of those of its sides
-/// places:  of the points in the limit
-/// fields:  all attributes of the mesh at the points, with their gradients
 struct LimitSurface {
     Surface surface;
+    /// One for each point, to the same side: from the exact gradient of the field, or the exact Jacobian at the boundary. On
+    /// creases of the boundary, and where a cap meets its isosurface, the mean of those of its sides
     std::vector<Vec3> normals;
-    std::vector<LimitQuery> places;
-    std::vector<ProbedField> fields;
+    std::vector<LimitQuery> places;   ///< places of the points in the limit
+    std::vector<ProbedField> fields;  ///< all attributes of the mesh at the points, with their gradients
     SurfaceReport report;
 };
 
@@ -103,13 +86,11 @@ struct LimitSurface {
 [[nodiscard]] LimitSurface limit_surface(const MeshSource& source, std::string_view field, const SurfaceOptions& options);
 
 /// What else a file of a surface holds.
-///
-/// color:    an index into fields: points get colours by the function (.ply, .glb, .obj), or its values first (.vtp)
-/// function: of the colours
-/// origin:   points are written relative to it: the 32-bit floats of .stl keep 7 digits, too few for map coordinates
 struct SurfaceFileOptions {
+    /// An index into fields: points get colours by the function (.ply, .glb, .obj), or its values first (.vtp)
     std::optional<std::size_t> color{};
-    TransferFunction function{};
+    TransferFunction function{};  ///< function of the colours
+    /// Points are written relative to it: the 32-bit floats of .stl keep 7 digits, too few for map coordinates
     Vec3 origin{0.0};
 };
 

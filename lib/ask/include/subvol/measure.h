@@ -18,33 +18,29 @@
 
 namespace subvol {
 
-/// tolerance: of the volume as a part of it, of means and extremes as parts of each field's range
-/// bins:      of the histograms, 1 to 100,000
-/// groups:    the number of the part to which each cell belongs, e.g. its block; empty: all cells are of part 0
-/// names:     of the parts
-/// sets:      sets of cells that are measured as parts, in place of groups: they may have cells in common
-/// cells:     a flag for each cell of a mesh in memory: those that are measured, where they lie in the limit of the whole mesh,
-///            and of sets those of them; empty: all
 struct MeasureOptions {
     SchemeOptions scheme{};
-    double tolerance = 1e-4;
-    int bins = 32;
+    double tolerance = 1e-4;  ///< tolerance of the volume as a part of it, of means and extremes as parts of each field's range
+    int bins = 32;            ///< bins of the histograms, 1 to 100,000
+    /// The number of the part to which each cell belongs, e.g. its block; empty: all cells are of part 0
     std::span<const Index> groups{};
-    std::vector<std::string> names{};
+    std::vector<std::string> names{};  ///< names of the parts
+    /// Sets of cells that are measured as parts, in place of groups: they may have cells in common
     std::span<const CellSet> sets{};
+    /// A flag for each cell of a mesh in memory: those that are measured, where they lie in the limit of the whole mesh, and of
+    /// sets those of them; empty: all
     std::span<const std::uint8_t> cells{};
     Progress* progress = nullptr;
 };
 
 [[nodiscard]] std::vector<Option> options_of(MeasureOptions& options);
 
-/// An extreme value of the limit, and where it is. uvw: in the cell. Where there is none, value and place are not a number, and
-/// there is no cell.
+/// An extreme value of the limit, and where it is. Where there is none, value and place are not a number, and there is no cell.
 struct LimitExtreme {
     double value = std::numeric_limits<double>::quiet_NaN();
     Vec3 place{std::numeric_limits<double>::quiet_NaN()};
     Index cell = kNone;
-    Vec3 uvw{0.0};
+    Vec3 uvw{0.0};  ///< parameters in the cell
 
     /// The corner of the cell where it is, if it is at one.
     [[nodiscard]] std::optional<std::size_t> corner() const;
@@ -59,50 +55,42 @@ struct GivenFigures {
 };
 
 /// One channel of an attribute over a volume.
-///
-/// integral:  over the volume (value × world³); mean: divided by the volume, NaN (as min and max) where there is none
-/// extreme_error: how far beyond min and max the limit may go, an estimate
-/// histogram: the volume (world³) where the value is in each of equal intervals from the limit's minimum to its maximum
-/// given:     the same of the cells as they were given; NaN of what is made of derivatives
 struct FieldMeasure {
     std::string name;
-    double integral = 0;
+    double integral = 0;  ///< integral over the volume (value × world³)
+    /// Integral divided by the volume, NaN (as min and max) where there is none
     double mean = std::numeric_limits<double>::quiet_NaN();
     LimitExtreme min, max;
-    double extreme_error = 0;
+    double extreme_error = 0;  ///< how far beyond min and max the limit may go, an estimate
+    /// The volume (world³) where the value is in each of equal intervals from the limit's minimum to its maximum
     std::vector<double> histogram;
-    GivenFigures given{};
+    GivenFigures given{};  ///< the same figures of the cells as they were given; NaN of what is made of derivatives
     bool derived = false;
 };
 
-/// cells: control cells; fields: one for each channel, with ".k" after the name where an attribute has several
-/// error: an estimate of how far off the volume is, as a part of it, and each mean, as a part of its attribute's range
-/// given_volume: that of the cells as they were given
 struct PartMeasure {
     std::string name;
-    std::size_t cells = 0;
+    std::size_t cells = 0;  ///< control cells
     double volume = 0;
+    /// An estimate of how far off the volume is, as a part of it, and each mean, as a part of its attribute's range
     double error = 0;
-    std::vector<FieldMeasure> fields;
-    double given_volume = 0;
+    std::vector<FieldMeasure> fields;  ///< one for each channel, with ".k" after the name where an attribute has several
+    double given_volume = 0;           ///< volume of the cells as they were given
 };
 
 /// Cells in which the limit folds, though the cell itself is not inverted, as far as an integration saw them: there may be more
-/// (`check_folds` decides). first: the one with the smallest number; place: where the determinant of its Jacobian is negative
+/// (`check_folds` decides).
 struct SeenFolds {
     std::size_t cells = 0;
-    Index first = kNone;
-    Vec3 place{std::numeric_limits<double>::quiet_NaN()};
+    Index first = kNone;                                   ///< the cell with the smallest number
+    Vec3 place{std::numeric_limits<double>::quiet_NaN()};  ///< where the determinant of its Jacobian is negative
 };
 
-/// parts:  of the groups or sets, in their order; empty without them
-/// pieces: that were integrated
-/// folds:  of the whole
 struct LimitMeasure {
     PartMeasure whole;
-    std::vector<PartMeasure> parts;
-    std::size_t pieces = 0;
-    SeenFolds folds{};
+    std::vector<PartMeasure> parts;  ///< measures of the groups or sets, in their order; empty without them
+    std::size_t pieces = 0;          ///< pieces that were integrated
+    SeenFolds folds{};               ///< folds of the whole
 };
 
 /// Integrals, means, extremes and histograms of the limit.
@@ -157,13 +145,14 @@ struct SliceExtremes {
 SliceExtremes find_slice_extremes(const HexMesh& mesh, LimitSlice& slice, const LimitOptions& options = {},
                                   std::span<const std::uint8_t> cells = {});
 
-/// What a plane cuts. area: world²; mean: of the field over it, NaN where nothing is cut; min, max: at the places of the slice
+/// What a plane cuts.
 ///
 /// Each place of a slice stands for its square; those at the rim are seen at 16 places each, so that the area is exact to some
 /// hundredths of a square for each square at the rim.
 struct SliceFigures {
-    double area = 0, mean = std::numeric_limits<double>::quiet_NaN();
-    LimitExtreme min{}, max{};
+    double area = 0;                                         ///< world²
+    double mean = std::numeric_limits<double>::quiet_NaN();  ///< mean of the field over the area, NaN where nothing is cut
+    LimitExtreme min{}, max{};                               ///< extremes at the places of the slice
 };
 
 /// source:  that of the slice, also in pieces

@@ -15,39 +15,31 @@
 
 namespace subvol {
 
-/// scheme:          of the limit
-/// tolerance:       how far a place of the part's own limit may lie from where it lies in the whole, of the diagonal of the
-///                  part's box; > 0
-/// field_tolerance: the same for the values of its fields, of their ranges in the whole mesh; > 0
-/// max_levels:      the part is refined no further, 0 to 4
-/// max_cells:       nor beyond so many cells
 struct PartOptions {
-    SchemeOptions scheme{};
+    SchemeOptions scheme{};  ///< scheme of the limit
+    /// How far a place of the part's own limit may lie from where it lies in the whole, of the diagonal of the part's box; > 0
     double tolerance = 1e-3;
+    /// The same for the values of the part's fields, as a part of their ranges in the whole mesh; > 0
     double field_tolerance = 1e-2;
-    int max_levels = 2;
-    std::size_t max_cells = 200'000;
+    int max_levels = 2;               ///< the part is refined no further, 0 to 4
+    std::size_t max_cells = 200'000;  ///< the part is not refined beyond so many cells
     Progress* progress = nullptr;
 };
 
 /// Some cells of a mesh as a mesh of its own.
-///
-/// levels:         it was refined so often before it was cut out: cells c·8^levels and on are those of the c-th cell
-/// distance_world: the largest distance that was found between a place in its own limit and the same place in the whole
-/// field_change:   the largest difference of a field's values, as a part of the field's range in the whole mesh
-/// volume_change:  its own volume is larger by this than that in the whole, as a part of the latter
 struct PartOfLimit {
     HexMesh mesh;
-    int levels = 0;
-    double distance_world = 0, field_change = 0, volume_change = 0;
+    int levels = 0;  ///< how often it was refined before it was cut out: cells c·8^levels and on are those of the c-th cell
+    /// Largest distance that was found between a place in the part's own limit and the same place in the whole
+    double distance_world = 0;
+    double field_change = 0;   ///< largest difference of a field's values, as a part of the field's range in the whole mesh
+    double volume_change = 0;  ///< the part's own volume is larger by this than that in the whole, as a part of the latter
 };
 
 /// Some cells of a mesh with the layers of cells about them that their limit depends on.
-///
-/// numbers: for each cell its number in the mesh, or kNone: it is one of the layers
 struct PartWithHalo {
     HexMesh mesh;
-    std::vector<Index> numbers;
+    std::vector<Index> numbers;  ///< for each cell its number in the mesh, or kNone: it is one of the layers
 };
 
 /// For what takes some cells out of the limit of a mesh: the limit in these cells is that in the whole mesh.

@@ -13,50 +13,45 @@
 
 namespace subvol {
 
-/// flux:      a vector at each point of the mesh (x, y, z, x, …), whose flow through the patches is wanted; empty: none
-/// flux_field: the same as a field of three channels, which may be a function of others
-/// tolerance: of areas, as a part of them, of means, as a part of their attribute's range, and of flows, as a part of the area
-///            times the longest vector
 struct PatchOptions {
     SchemeOptions scheme{};
+    /// A vector at each point of the mesh (x, y, z, x, …), whose flow through the patches is wanted; empty: none
     std::span<const double> flux{};
-    std::optional<Attribute> flux_field{};
+    std::optional<Attribute> flux_field{};  ///< the same as a field of three channels, which may be a function of others
+    /// Tolerance of areas, as a part of them, of means, as a part of their attribute's range, and of flows, as a part of the
+    /// area times the longest vector
     double tolerance = 1e-5;
     Progress* progress = nullptr;
 };
 
 /// One channel of an attribute over a patch.
-///
-/// integral: over the area (value × world²); mean: divided by the area, NaN where there is none
-/// extreme_error: how far beyond min and max the limit may go on the patch, as of `FieldMeasure`
-/// given:         the same of the sides of cells as they were given, bilinear between their corners; NaN of what is made of
-///                derivatives
 struct PatchField {
     std::string name;
-    double integral = 0, mean = std::numeric_limits<double>::quiet_NaN();
+    double integral = 0;                                     ///< integral over the area (value × world²)
+    double mean = std::numeric_limits<double>::quiet_NaN();  ///< integral divided by the area, NaN where there is none
     LimitExtreme min{}, max{};
-    double extreme_error = 0;
+    double extreme_error = 0;  ///< how far beyond min and max the limit may go on the patch, as of `FieldMeasure`
+    /// The same figures of the sides of cells as they were given, bilinear between their corners; NaN of what is made of
+    /// derivatives
     GivenFigures given{};
 };
 
-/// A patch of the limit's boundary. area: world²
-///
-/// normal:    the integral of the outward unit normal (world²); of a closed surface 0
-/// error:     an estimate of how far off the area is, as a part of it, the means, as parts of their attributes' ranges, and the
-///            flow, as a part of the area times the longest vector
-/// flux:      the integral of the field's component along the outward normal (value × world²)
-/// throughput: the integral of that component's absolute value
-/// fields:    one for each channel, with ".k" after the name where an attribute has several
-/// given_:    the same of the sides of cells as they were given. The flow of the gradient of a scalar is that of the trilinear
-///            cells; that of other derivatives is left out
+/// A patch of the limit's boundary.
 struct PatchMeasure {
     std::string name;
     std::size_t sides = 0;
-    double area = 0, error = 0, given_area = 0;
-    Vec3 normal{0.0};
-    std::optional<double> flux, throughput;
+    double area = 0;  ///< world²
+    /// An estimate of how far off the area is, as a part of it, the means, as parts of their attributes' ranges, and the flow,
+    /// as a part of the area times the longest vector
+    double error = 0;
+    double given_area = 0;             ///< area of the sides of cells as they were given
+    Vec3 normal{0.0};                  ///< integral of the outward unit normal (world²); 0 for a closed surface
+    std::optional<double> flux;        ///< the integral of the field's component along the outward normal (value × world²)
+    std::optional<double> throughput;  ///< integral of the absolute value of that component
+    /// Flux and throughput of the sides of cells as they were given. The flow of the gradient of a scalar is that of the
+    /// trilinear cells; that of other derivatives is left out
     std::optional<double> given_flux{}, given_throughput{};
-    std::vector<PatchField> fields;
+    std::vector<PatchField> fields;  ///< one for each channel, with ".k" after the name where an attribute has several
 };
 
 /// Areas, means and flows of patches of the limit's boundary.

@@ -12,20 +12,18 @@
 
 namespace subvol {
 
-/// channel: of the points, which is compared with the mesh's field
 struct PointsErrorOptions {
     SchemeOptions scheme{};
-    std::size_t channel = 0;
+    std::size_t channel = 0;  ///< channel of the points, which is compared with the mesh's field
     Progress* progress = nullptr;
 };
 
-/// of_points: of each kernel the largest |sum of kernels − limit| of the places where it was compared, in the field's unit
-/// max, rms:  over all of these places
-/// places:    how many lay inside the limit; gaps: of these, where kernels have no value (they are left out)
 struct PointsError {
+    /// For each kernel the largest |sum of kernels − limit| of the places where it was compared, in the field's unit
     std::vector<double> of_points;
-    double max = 0, rms = 0;
-    std::size_t places = 0, gaps = 0;
+    double max = 0, rms = 0;  ///< over all of these places
+    std::size_t places = 0;   ///< how many places lay inside the limit
+    std::size_t gaps = 0;     ///< of these, places where kernels have no value (they are left out)
 };
 
 /// How far the field of kernels (`RbfField`) is from the limit of a mesh, about each kernel: an estimate. They are compared at

@@ -12,11 +12,9 @@
 
 namespace subvol {
 
-/// limit:       the scheme, and how exact the limit is: options of `evaluate_limit`
-/// reach_world: places outside, at most this far from the boundary, get the values of its nearest point; ≥ 0
 struct ProbeOptions {
-    LimitOptions limit{};
-    double reach_world = 0;
+    LimitOptions limit{};    ///< the scheme, and how exact the limit is: options of `evaluate_limit`
+    double reach_world = 0;  ///< places outside, at most this far from the boundary, get the values of its nearest point; ≥ 0
 };
 
 [[nodiscard]] std::vector<Option> options_of(ProbeOptions& options);
@@ -31,17 +29,12 @@ struct ProbedField {
 };
 
 /// One entry per place.
-///
-/// cells:      the control cell, kNone outside the volume; where cells meet, one of them
-/// parameters: the place in the cell, (u,v,w) in [0,1]³
-/// distances:  0 inside; with `reach_world` how far outside (world)
-/// rounds:     how often the limit was evaluated for the last of the places
 struct ProbeResult {
-    std::vector<Index> cells;
-    std::vector<Vec3> parameters;
-    std::vector<double> distances;
+    std::vector<Index> cells;       ///< the control cell, kNone outside the volume; where cells meet, one of them
+    std::vector<Vec3> parameters;   ///< the place in the cell, (u,v,w) in [0,1]³
+    std::vector<double> distances;  ///< 0 inside; with `reach_world` how far outside (world)
     std::vector<ProbedField> fields;
-    int rounds = 0;
+    int rounds = 0;  ///< how often the limit was evaluated for the last of the places
 
     [[nodiscard]] bool inside(std::size_t place) const { return cells[place] != kNone; }
 };

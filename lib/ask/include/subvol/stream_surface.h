@@ -8,19 +8,16 @@
 
 namespace subvol {
 
-/// radius: of the tubes, as a part of the diagonal of the mesh's box
 struct TubeOptions {
-    double radius = 0.003;
+    double radius = 0.003;  ///< radius of the tubes, as a part of the diagonal of the mesh's box
 };
 
 /// tube-radius
 [[nodiscard]] std::vector<Option> options_of(TubeOptions& options);
 
-/// count: of arrows, at most one in each cell
-/// size:  the length of the longest, as a part of the diagonal of the mesh's box
 struct GlyphOptions {
-    std::size_t count = 400;
-    double size = 0.06;
+    std::size_t count = 400;  ///< number of arrows, at most one in each cell
+    double size = 0.06;       ///< length of the longest arrow, as a part of the diagonal of the mesh's box
 };
 
 /// glyph-count, glyph-size

@@ -36,18 +36,14 @@ struct NameTable<StreamEnd> {
                                                {StreamEnd::Steps, "steps"},       {StreamEnd::Seed, "seed"}};
 };
 
-/// limit:         the scheme, and how exact the limit is
-/// direction:     from the seeds
-/// length_world:  no line is longer to either side of its seed; none: two diagonals of the mesh's box
-/// duration:      nor does it take longer, in units of length by those of the field; none: any time
-/// tolerance:     the error of a step, as a part of the diagonal
-/// longest_step:  steps are no longer than this part of the diagonal, so that lines between points look like the curve
 struct StreamlineOptions {
-    LimitOptions limit{};
-    StreamDirection direction = StreamDirection::Both;
+    LimitOptions limit{};                               ///< the scheme, and how exact the limit is
+    StreamDirection direction = StreamDirection::Both;  ///< direction from the seeds
+    /// No line is longer to either side of its seed; none: two diagonals of the mesh's box
     std::optional<double> length_world{};
-    std::optional<double> duration{};
-    double tolerance = 1e-6;
+    std::optional<double> duration{};  ///< no line takes longer, in units of length by those of the field; none: any time
+    double tolerance = 1e-6;           ///< the error of a step, as a part of the diagonal
+    /// Steps are no longer than this part of the diagonal, so that lines between points look like the curve
     double longest_step = 0.01;
     Progress* progress = nullptr;
 };
@@ -56,20 +52,15 @@ struct StreamlineOptions {
 [[nodiscard]] std::vector<Option> options_of(StreamlineOptions& options);
 
 /// Streamlines one after the other, each along the field: a line has the points from firsts[i] to firsts[i + 1].
-///
-/// times:   of each point, 0 at the seed and negative before it
-/// fields:  all attributes of the mesh at the points, with their gradients
-/// seeds:   of each line, the number of its seed
-/// ends:    of each line, why its first and its last point are the ends; Seed: it was not followed to that side
-/// outside: numbers of the seeds that are outside the volume, which have no line
 struct Streamlines {
     std::vector<Vec3> points;
-    std::vector<double> times;
-    std::vector<ProbedField> fields;
+    std::vector<double> times;        ///< time at each point, 0 at the seed and negative before it
+    std::vector<ProbedField> fields;  ///< all attributes of the mesh at the points, with their gradients
     std::vector<std::size_t> firsts{0};
-    std::vector<std::size_t> seeds;
+    std::vector<std::size_t> seeds;  ///< for each line, the number of its seed
+    /// For each line, why its first and its last point are the ends; Seed: it was not followed to that side
     std::vector<std::array<StreamEnd, 2>> ends;
-    std::vector<std::size_t> outside;
+    std::vector<std::size_t> outside;  ///< numbers of the seeds that are outside the volume, which have no line
 
     [[nodiscard]] std::size_t count() const { return seeds.size(); }
     /// Returns the sum of the lengths of all lines (world).

@@ -11,10 +11,9 @@
 namespace subvol {
 
 /// A displacement of points: a vector field of the mesh, times a factor.
-///
-/// factor: nothing: such that the longest displacement is a tenth of the diagonal of the mesh's box
 struct Warp {
     std::string field;
+    /// Nothing: such that the longest displacement is a tenth of the diagonal of the mesh's box
     std::optional<double> factor = 1;
 };
 

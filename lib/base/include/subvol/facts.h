@@ -120,11 +120,10 @@ struct FactValue {
         : value(List(std::begin(items), std::end(items))) {}
 };
 
-/// unit: as "s", "B" or "px"; empty for pure numbers and texts
 struct Fact {
     std::string name;
     FactValue value;
-    std::string unit{};
+    std::string unit{};  ///< such as "s", "B" or "px"; empty for pure numbers and texts
 };
 
 }  // namespace subvol

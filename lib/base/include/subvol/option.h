@@ -29,25 +29,18 @@ struct NumberRange {
 };
 
 /// A value that is written as a word, or as a text with a meaning.
-///
-/// set:     where is named in its error
-/// numbers: is a number or a word
 struct WordValue {
     std::function<std::string()> get;
-    std::function<void(const std::string& word, const std::string& where)> set;
-    bool numbers = false;
+    std::function<void(const std::string& word, const std::string& where)> set;  ///< `where` is named in its error
+    bool numbers = false;                                                        ///< the value is a number or a word
 };
 
 /// Rows of numbers, as of planes and boxes.
-///
-/// count:      in a row
-/// example:    of a row, for errors: "0,0,0,0,0,1: a point of the plane and its normal"
-/// repeatable: there may be several rows
-/// add:        takes a row; `where` is named in its error
 struct NumbersValue {
-    std::size_t count = 0;
-    std::string example{};
-    bool repeatable = false;
+    std::size_t count = 0;    ///< count of numbers in a row
+    std::string example{};    ///< example of a row, for errors: "0,0,0,0,0,1: a point of the plane and its normal"
+    bool repeatable = false;  ///< there may be several rows
+    /// Takes a row; `where` is named in its error
     std::function<void(std::span<const double> row, const std::string& where)> add{};
 };
 

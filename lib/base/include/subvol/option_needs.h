@@ -12,14 +12,11 @@
 namespace subvol {
 
 /// A condition of an option: another one is given, or its value (the default, if it is not given) is one of these words.
-///
-/// excluded: the other way round: the option has no effect if that is so
-/// instead:  or this option is given
 struct OptionNeed {
     std::string option;
     std::vector<std::string> words{};
-    bool excluded = false;
-    std::string instead{};
+    bool excluded = false;  ///< the other way round: the option has no effect if that is so
+    std::string instead{};  ///< or this option is given
 };
 
 /// What was given for an option, as text; nothing if it was not given.

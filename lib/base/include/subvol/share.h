@@ -11,10 +11,9 @@ namespace subvol {
 
 /// One of several equal shares of a work: of cells, kernels, bricks, rows or layers of voxels. All shares together are the
 /// whole.
-///
-/// number: from 1 to `count`
 struct Share {
-    int number = 1, count = 1;
+    int number = 1;  ///< from 1 to `count`
+    int count = 1;
 
     [[nodiscard]] bool whole() const { return count == 1; }
 

@@ -12,20 +12,19 @@ namespace subvol {
 using Voxel = std::array<std::int32_t, 3>;
 
 /// The voxels from lower to lower + size − 1 along each axis.
-///
-/// kind: Nothing if all are inactive, Constant if all are active with one value, Mixed otherwise or if that is not known
 struct VoxelBlock {
     enum class Kind { Nothing, Constant, Mixed };
+    /// Nothing if all are inactive, Constant if all are active with one value, Mixed otherwise or if that is not known
     Kind kind = Kind::Mixed;
     Voxel lower{};
     std::int32_t size = 1;
     double value = 0;
 };
 
-/// The eight voxels lower + (0|1, 0|1, 0|1), x fastest. active: a bit for each of them
+/// The eight voxels lower + (0|1, 0|1, 0|1), x fastest.
 struct VoxelCorners {
     std::array<double, 8> values{};
-    unsigned active = 0;
+    unsigned active = 0;  ///< a bit for each of the voxels
 };
 
 /// Reads voxels and remembers its last place, so that neighbours are found fast. Each thread needs its own.

@@ -13,14 +13,13 @@ namespace subvol {
 
 /// What one control vertex of a regular mesh adds to the field: the limit of the scheme for the value 1 at one vertex and 0 at
 /// all others, at the places (i, j, k)/2^level of the lattice.
-///
-/// half_width: of the support, in sample intervals of the control mesh: 3 for MCQ, 2 for Catmull-Clark and BSXW, 1 for linear
-/// values:     of the wedge i ≥ j ≥ k ≥ 0, in the order of wedge_index
 struct BasisFunction {
     Scheme scheme = Scheme::Mcq;
     int level = 0;
+    /// Half the width of the support, in sample intervals of the control mesh: 3 for MCQ, 2 for Catmull-Clark and BSXW, 1 for
+    /// linear
     int half_width = 0;
-    std::vector<double> values;
+    std::vector<double> values;  ///< values of the wedge i ≥ j ≥ k ≥ 0, in the order of wedge_index
 
     /// The last index of the support along an axis.
     [[nodiscard]] int last() const { return half_width << level; }

@@ -58,23 +58,20 @@ struct NameTable<KernelShape> {
                                                  {KernelShape::SeparableTable, "separable_table"}};
 };
 
-/// extent:    of the cubics in (0,3]; their pieces meet at half of it
-/// sign_slip: fit B and C with 2 + 3/2·B − C as the inner cubic coefficient instead of 2 − 3/2·B − C, which explains the values
-///            that [mnmq2007] prints. Errors are those of the correct kernel
-/// terms:     of a sum of Gaussians, 1 to 6; each is at least 1.25 times as wide as the one before
 struct FitOptions {
-    double extent = 2;
+    double extent = 2;  ///< extent of the cubics in (0,3]; their pieces meet at half of it
+    /// Fit B and C with 2 + 3/2·B − C as the inner cubic coefficient instead of 2 − 3/2·B − C, which explains the values that
+    /// [mnmq2007] prints. Errors are those of the correct kernel
     bool sign_slip = false;
-    int terms = 2;
+    int terms = 2;  ///< terms of a sum of Gaussians, 1 to 6; each is at least 1.25 times as wide as the one before
 };
 
 [[nodiscard]] std::vector<Option> options_of(FitOptions& options);
 
-/// parameters: how many numbers were fitted; iterations: of the search for the nonlinear ones, else 0
 struct FitReport {
     FitErrors errors;
-    int parameters = 0;
-    int iterations = 0;
+    int parameters = 0;  ///< how many numbers were fitted
+    int iterations = 0;  ///< iterations of the search for the nonlinear ones, else 0
     bool converged = true;
 };
 
@@ -92,13 +89,10 @@ struct KernelFit {
 [[nodiscard]] KernelFit fit_kernel(const BasisFunction& basis, KernelShape shape, const FitOptions& options = {});
 
 /// Σ core(p,q,r) f_p(|x|) f_q(|y|) f_r(|z|), one set of factors for the three axes.
-///
-/// factors: factor p at i/2^level is entry p·(3·2^level + 1) + i
-/// core:    rank³ numbers, p fastest
 struct TuckerFit {
     int rank = 0;
-    std::vector<double> factors;
-    std::vector<double> core;
+    std::vector<double> factors;  ///< factor p at i/2^level is entry p·(3·2^level + 1) + i
+    std::vector<double> core;     ///< rank³ numbers, p fastest
     FitReport report;
 };
 

@@ -16,10 +16,6 @@
 namespace subvol {
 
 /// What a file of kernels with levels of detail holds.
-///
-/// levels: of the tree, with the root and the leaves
-/// blocks: of some 1000 kernels each; what lies below one node of the tree
-/// bytes:  of the file
 struct KernelFileContents {
     struct Channel {
         std::string name;
@@ -30,9 +26,9 @@ struct KernelFileContents {
     std::vector<Channel> channels{};
     Box bounds;
     std::size_t boundary_triangles = 0;
-    int levels = 0;
-    std::size_t blocks = 0;
-    std::uint64_t bytes = 0;
+    int levels = 0;           ///< levels of the tree, with the root and the leaves
+    std::size_t blocks = 0;   ///< blocks of some 1000 kernels each; what lies below one node of the tree
+    std::uint64_t bytes = 0;  ///< bytes of the file
 };
 
 /// Writes kernels and their hierarchy (`build_kernel_hierarchy`) as `.svk`, from which `KernelFile` reads what a view needs,
@@ -45,12 +41,10 @@ struct KernelFileContents {
 KernelFileContents write_kernel_file(const std::filesystem::path& path, const RbfVolume& volume, Progress* progress = nullptr);
 
 /// The kernels for a view, with the boundary: those of `choose_level`, in the same order.
-///
-/// bytes_read: of the file, for this view
 struct StreamedKernels {
     RbfVolume volume;
     KernelCut cut;
-    std::uint64_t bytes_read = 0;
+    std::uint64_t bytes_read = 0;  ///< bytes of the file that were read for this view
 };
 
 /// A file of `write_kernel_file`, of which the parts of blocks are read that a view needs: a few levels of nodes where kernels

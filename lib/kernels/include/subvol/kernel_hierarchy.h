@@ -21,21 +21,15 @@ namespace subvol {
 /// shape of the cells of one sample interval that they stand for; so the sum of weights is on average what it was. Its value
 /// and derivatives are the quadratic (of channels without Hessians: the linear function with a part along S⁻¹) that is nearest
 /// to those of its children, in the mean of squares weighted with their masses.
-///
-/// order:       the kernel in each slot
-/// nodes:       the kernels of the nodes; no boundary
-/// masses:      world³
-/// covariances: of those cells: world²; that of a kernel is S / 12R²
-/// boxes:       of the centres of a node's kernels
-/// widths:      world: the longest diameter of a node's ellipsoid, at least those of the nodes below it
-/// errors:      for each channel and node a bound of |its polynomial − the value of a kernel below it| at that kernel's centre
 struct KernelHierarchy {
-    std::vector<Index> order;
-    RbfVolume nodes;
-    std::vector<double> masses;
+    std::vector<Index> order;    ///< the kernel in each slot
+    RbfVolume nodes;             ///< the kernels of the nodes; no boundary
+    std::vector<double> masses;  ///< world³
+    /// Covariances of the cells of one sample interval that the kernels stand for: world²; that of a kernel is S / 12R²
     std::vector<Symmetric3> covariances;
-    std::vector<Box> boxes;
-    std::vector<float> widths;
+    std::vector<Box> boxes;     ///< boxes of the centres of a node's kernels
+    std::vector<float> widths;  ///< world: the longest diameter of a node's ellipsoid, at least those of the nodes below it
+    /// For each channel and node a bound of |its polynomial − the value of a kernel below it| at that kernel's centre
     std::vector<std::vector<float>> errors;
 
     [[nodiscard]] bool is_last(std::size_t node) const { return 2 * node + 1 >= nodes.size(); }
@@ -49,25 +43,20 @@ struct KernelHierarchy {
 /// source: mm2001, wm2003; ours are the quadratics, and masses that keep the sum of weights
 [[nodiscard]] KernelHierarchy build_kernel_hierarchy(const RbfVolume& volume, Progress* progress = nullptr);
 
-/// pixels:  a node is drawn in place of its kernels if its ellipsoid is narrower than this in the picture; 0: never
-/// error:   and if its error bound in the channel is at most this, in the field's unit
-/// channel: whose error bounds count
 struct LevelOptions {
+    /// A node is drawn in place of its kernels if its ellipsoid is narrower than this in the picture; 0: never
     double pixels = 1;
+    /// The error bound of that node in the channel must be at most this, in the field's unit
     double error = std::numeric_limits<double>::infinity();
-    std::size_t channel = 0;
+    std::size_t channel = 0;  ///< channel whose error bounds count
 };
 
 /// The highest nodes that may be drawn, and the kernels that are below none of them. Each kernel is below one of the nodes or
 /// in the list, once.
-///
-/// nodes:   in the order of the tree
-/// kernels: ascending
-/// error:   the largest error bound of the nodes
 struct KernelCut {
-    std::vector<Index> nodes;
-    std::vector<Index> kernels;
-    double error = 0;
+    std::vector<Index> nodes;    ///< in the order of the tree
+    std::vector<Index> kernels;  ///< ascending
+    double error = 0;            ///< the largest error bound of the nodes
 
     [[nodiscard]] std::size_t size() const { return nodes.size() + kernels.size(); }
 };

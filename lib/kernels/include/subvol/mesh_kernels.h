@@ -11,23 +11,17 @@
 namespace subvol {
 
 /// How a mesh becomes kernels, for pictures, files and pages alike.
-///
-/// sample:        where kernels are placed and what they carry
-/// levels:        the refined mesh of this level, with its trilinear cells, takes the place of the limit
-/// reduce_rmse:   > 0: as few kernels as this root mean square error needs, in the unit of the field, instead of samples
-/// move:          with reduce_rmse: kernels are also moved and resized
-/// tets:          the mesh is a level of a scheme of tetrahedra on its limit, cut into hexahedra (`in_hexahedra`): it gets one
-///                kernel at each of its points
-/// visible:       kernels that this function makes invisible are dropped; none: all are kept
-/// levels_option: what the errors call `levels`
 struct KernelOptions {
-    SampleOptions sample{};
-    std::optional<int> levels{};
+    SampleOptions sample{};       ///< where kernels are placed and what they carry
+    std::optional<int> levels{};  ///< the refined mesh of this level, with its trilinear cells, takes the place of the limit
+    /// If > 0, as few kernels as this root mean square error needs, in the unit of the field, instead of samples
     double reduce_rmse = 0;
-    bool move = false;
+    bool move = false;  ///< with reduce_rmse: kernels are also moved and resized
+    /// The mesh is a level of a scheme of tetrahedra on its limit, cut into hexahedra (`in_hexahedra`): it gets one kernel at
+    /// each of its points
     bool tets = false;
-    std::optional<TransferFunction> visible{};
-    std::string levels_option = "levels";
+    std::optional<TransferFunction> visible{};  ///< kernels that this function makes invisible are dropped; none: all are kept
+    std::string levels_option = "levels";       ///< what the errors call `levels`
     Progress* progress = nullptr;
 
     /// Whether there is one kernel for each control point with all that it carries by default, so that the kernels of a

@@ -21,14 +21,11 @@ struct NameTable<UpAxis> {
     static constexpr Name<UpAxis> rows[] = {{UpAxis::X, "x"}, {UpAxis::Y, "y"}, {UpAxis::Z, "z"}};
 };
 
-/// ascii:  for `.ply`: text instead of binary numbers
-/// splats: for `.ply`: adds properties for viewers of 3-D Gaussian splats, see `write_points`
-/// up:     of splats: what these viewers are to show at the top
-/// note:   a line of text that the file has in a comment, for `read_points_note`; empty: none. It has no control characters
 struct PointsWriteOptions {
-    bool ascii = false;
-    bool splats = false;
-    UpAxis up = UpAxis::Z;
+    bool ascii = false;     ///< for `.ply`: text instead of binary numbers
+    bool splats = false;    ///< for `.ply`: adds properties for viewers of 3-D Gaussian splats, see `write_points`
+    UpAxis up = UpAxis::Z;  ///< for splats: what these viewers are to show at the top
+    /// A line of text that the file has in a comment, for `read_points_note`; empty: none. It has no control characters
     std::string note{};
 };
 

@@ -13,17 +13,14 @@ namespace subvol {
 /// Where the sum of the weights is not above this there is no value, neither in a field nor in a picture.
 inline constexpr double kLeastWeight = 0.02;
 
-/// channel:      which channel of the volume
-/// least_weight: where the sum of the weights is not above this the field has no value
 struct RbfFieldOptions {
-    std::size_t channel = 0;
-    double least_weight = kLeastWeight;
+    std::size_t channel = 0;             ///< which channel of the volume
+    double least_weight = kLeastWeight;  ///< where the sum of the weights is not above this the field has no value
 };
 
-/// gradient: world⁻¹
 struct FieldJet {
     double value = 0;
-    Vec3 gradient{0.0};
+    Vec3 gradient{0.0};  ///< world⁻¹
 };
 
 /// The field of an RBF volume at points: Σ wᵢ (vᵢ + gᵢ·d + mᵢ eᵢ + ½ dᵀHᵢd) / Σ wᵢ with d = x−μᵢ, eᵢ = dᵀ Sᵢ⁻¹ d, wᵢ the kernel

@@ -26,29 +26,22 @@ using Symmetric3 = std::array<float, 6>;
 
 /// One scalar channel. The contribution of a kernel at x is values + gradients·d + moments·e + ½ dᵀ hessians d, with d = x−μ
 /// and e = dᵀ S⁻¹ d.
-///
-/// gradients: world⁻¹; moments: R²L/6, L the second moment H:JJᵀ of the field's Hessian H, in the units of the value
-/// hessians:  H without its part along S⁻¹ (world⁻²), one per point; empty: there is only that part
 struct RbfChannel {
     std::string name{};
     std::vector<float> values{};
-    std::vector<std::array<float, 3>> gradients{};
-    std::vector<float> moments{};
+    std::vector<std::array<float, 3>> gradients{};  ///< world⁻¹
+    std::vector<float> moments{};  ///< R²L/6, L the second moment H:JJᵀ of the field's Hessian H, in the units of the value
+    /// H without its part along S⁻¹ (world⁻²), one per point; empty: there is only that part
     std::vector<Symmetric3> hessians{};
 };
 
 /// A subdivision volume as radial basis functions: the input of every renderer and exporter.
-///
-/// centers:  world
-/// frames:   S = R² J Jᵀ (world²), J's columns the world displacement per sample interval
-/// kernel:   of all points: its value at ρ = R√e is their weight; its support radius is the R of the frames
-/// boundary: the solid's surface, outward; outside it there is nothing. Empty: the boundary is not known
 struct RbfVolume {
-    std::vector<Vec3> centers;
-    std::vector<Symmetric3> frames;
+    std::vector<Vec3> centers;       ///< world
+    std::vector<Symmetric3> frames;  ///< S = R² J Jᵀ (world²), J's columns the world displacement per sample interval
     std::vector<RbfChannel> channels;
-    Kernel kernel;
-    Surface boundary;
+    Kernel kernel;  ///< kernel of all points: its value at ρ = R√e is their weight; its support radius is the R of the frames
+    Surface boundary;  ///< the solid's surface, outward; outside it there is nothing. Empty: the boundary is not known
     Box bounds;
 
     [[nodiscard]] std::size_t size() const { return centers.size(); }

@@ -14,44 +14,36 @@
 namespace subvol {
 
 /// How far the field of an RBF volume is from samples.
-///
-/// rmse:      root of the mean squared error over the volume
-/// uncovered: samples where the field has no value; they do not count for the others, which are NaN if there are no more
 struct ErrorAtSamples {
-    double rmse = 0;
+    double rmse = 0;  ///< root of the mean squared error over the volume
     double max_abs = 0;
+    /// Samples where the field has no value; they do not count for the others, which are NaN if there are no more
     std::size_t uncovered = 0;
 };
 
 [[nodiscard]] ErrorAtSamples error_at_samples(const RbfVolume& volume, const FieldSamples& samples);
 
-/// rmse:       the target, in units of the field, > 0
-/// kernel:     of the result; radial
-/// overlap:    0.7 to 2; 1 is that of uniform samples: a box of side h gets the support radius R h, R that of the kernel
-/// max_points: no more kernels than these
-/// move:       kernels are also moved and resized (`refine_rbf`): about half as many, ten times as slow
-/// limit:      the scheme, and the accuracy of the validation samples; its `progress` is not used
 struct ReduceOptions {
-    double rmse = 0.01;
-    Kernel kernel{};
+    double rmse = 0.01;  ///< the target, in units of the field, > 0
+    Kernel kernel{};     ///< kernel of the result; radial
+    /// 0.7 to 2; 1 is that of uniform samples: a box of side h gets the support radius R h, R that of the kernel
     double overlap = 1;
-    std::size_t max_points = 1'000'000;
-    bool move = false;
+    std::size_t max_points = 1'000'000;  ///< no more kernels than these
+    bool move = false;  ///< kernels are also moved and resized (`refine_rbf`): about half as many, ten times as slow
+    /// The scheme, and the accuracy of the validation samples; its `progress` is not used
     LimitOptions limit{.tolerance = 1e-4};
     Progress* progress = nullptr;
 };
 
 [[nodiscard]] std::vector<Option> options_of(ReduceOptions& options);
 
-/// rmse, validation: errors at the samples that were fitted, and at independent ones
-/// reached:          both meet the target, and no sample is uncovered
 struct ReduceReport {
     std::size_t points = 0;
     std::size_t samples = 0;
     int rounds = 0;
-    double rmse = 0;
-    ErrorAtSamples validation;
-    bool reached = false;
+    double rmse = 0;            ///< error at the samples that were fitted
+    ErrorAtSamples validation;  ///< errors at independent samples
+    bool reached = false;       ///< `rmse` and `validation` meet the target, and no sample is uncovered
     double seconds = 0;
 };
 
@@ -78,22 +70,19 @@ struct ReduceResult {
 /// throws: as above, as `refine` and `scalar_field`
 [[nodiscard]] ReduceResult reduce_rbf(const HexMesh& mesh, std::string_view field, const ReduceOptions& options = {});
 
-/// move:       also fit centres and sizes, not only values, gradients and moments
-/// iterations: the most of the solver: conjugate gradients without `move`, Levenberg-Marquardt with it
-/// ridge:      how strongly terms are held that no sample determines, as a part of a kernel's mean weight
 struct RbfRefineOptions {
-    bool move = false;
+    bool move = false;  ///< also fit centres and sizes, not only values, gradients and moments
+    /// The most iterations of the solver: conjugate gradients without `move`, Levenberg-Marquardt with it
     int iterations = 60;
-    double ridge = 1e-4;
+    double ridge = 1e-4;  ///< how strongly terms are held that no sample determines, as a part of a kernel's mean weight
     Progress* progress = nullptr;
 };
 
-/// bytes: estimated memory of the solver
 struct RbfRefineReport {
     int iterations = 0;
     double rmse_before = 0, rmse_after = 0;
     double seconds = 0;
-    std::size_t bytes = 0;
+    std::size_t bytes = 0;  ///< estimated memory of the solver
 };
 
 struct RbfRefineResult {

@@ -43,40 +43,35 @@ struct NameTable<ValueRule> {
 };
 
 /// Samples for a picture: neighbours that the camera sees are at most `spacing_px` pixels apart.
-///
-/// least_cell_px: cells whose projected box is smaller than this in width and height keep one interval
 struct Footprint {
     Camera camera;
     int width_px = 512;
     int height_px = 512;
     double spacing_px = 1.5;
-    double least_cell_px = 1.5;
+    double least_cell_px = 1.5;  ///< cells whose projected box is smaller than this in width and height keep one interval
 };
 
-/// per_edge:        sample intervals per cell edge, 1 to 64; 1 is one kernel per control vertex
-/// spacing_world:   > 0: instead of per_edge, each edge gets ⌈length / spacing⌉ intervals
-/// footprint:       instead of both, each edge gets ⌈length in pixels / spacing⌉ intervals
-/// tolerance:       > 0: instead of these, as many intervals as needed until the first channel's error, in its own unit, is
-///                  smaller at the points of the second refinement. Where no kernel covers a point, the error is the channel's
-///                  range, or the value there if that is larger
-/// centers:         also a kernel in the middle of each small cell between the samples: a body-centred lattice of twice as many
-///                  kernels, with about a third of the error; the first of the steps of slow growth [pas2002]
-/// values:          how values between control points are found; gradients and moments are those of the scheme
-/// value_kernel:    of the rule `Paper`; its weights must be positive in sum wherever there is a sample
-/// boundary_levels: refinements of the boundary surface, 0 to 6; none: as many as make its quads half a sample interval wide,
-///                  at most 4 and no more than make eight million triangles; where intervals differ, that is the root of their
-///                  mean square on the boundary
 struct SampleOptions {
     SchemeOptions scheme{};
-    int per_edge = 1;
-    double spacing_world = 0;
+    int per_edge = 1;          ///< sample intervals per cell edge, 1 to 64; 1 is one kernel per control vertex
+    double spacing_world = 0;  ///< if > 0, instead of per_edge each edge gets ⌈length / spacing⌉ intervals
+    /// Instead of per_edge and spacing_world, each edge gets ⌈length in pixels / spacing⌉ intervals
     std::optional<Footprint> footprint{};
+    /// If > 0, instead of all of these as many intervals as needed until the first channel's error, in its own unit, is smaller
+    /// at the points of the second refinement. Where no kernel covers a point, the error is the channel's range, or the value
+    /// there if that is larger
     double tolerance = 0;
+    /// Also a kernel in the middle of each small cell between the samples: a body-centred lattice of twice as many kernels,
+    /// with about a third of the error; the first of the steps of slow growth [pas2002]
     bool centers = false;
     Correction correction = Correction::Second;
+    /// How values between control points are found; gradients and moments are those of the scheme
     ValueRule values = ValueRule::Scheme;
     Kernel kernel{};
+    /// Kernel of the rule `Paper`; its weights must be positive in sum wherever there is a sample
     Kernel value_kernel = BcSplineKernel{.b = 0.039579, .c = 0.028746, .extent = 2};
+    /// Refinements of the boundary surface, 0 to 6; none: as many as make its quads half a sample interval wide, at most 4 and
+    /// no more than make eight million triangles; where intervals differ, that is the root of their mean square on the boundary
     std::optional<int> boundary_levels{};
     Progress* progress = nullptr;
 };

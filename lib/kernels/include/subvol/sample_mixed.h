@@ -6,11 +6,9 @@
 
 namespace subvol {
 
-/// correction: what the kernels have beside their values
-/// kernel:     radial
 struct MixedSampleOptions {
-    Correction correction = Correction::Second;
-    Kernel kernel{};
+    Correction correction = Correction::Second;  ///< what the kernels have beside their values
+    Kernel kernel{};                             ///< radial
     Progress* progress = nullptr;
 };
 

@@ -10,12 +10,9 @@
 namespace subvol {
 
 /// Kernels at the points that a piece of a mesh owns. Their bits are those that `sample_rbf_points` gives the whole mesh.
-///
-/// volume:  without a boundary
-/// numbers: of the points in the whole mesh, ascending
 struct PieceKernels {
-    RbfVolume volume;
-    std::vector<std::uint64_t> numbers;
+    RbfVolume volume;                    ///< without a boundary
+    std::vector<std::uint64_t> numbers;  ///< numbers of the points in the whole mesh, ascending
     std::size_t flat_frames = 0;
 };
 

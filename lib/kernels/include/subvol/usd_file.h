@@ -28,16 +28,11 @@ struct UsdStep {
 };
 
 /// A volume whose grids are in `.vdb` files.
-///
-/// grids:              those of each file
-/// steps:              one, or one for each time code; the codes ascend
-/// colors:             the colour map, over the values of the first grid
-/// opacity_unit_world: the distance that its opacities are for
 struct UsdVolume {
-    std::vector<UsdGrid> grids;
-    std::vector<UsdStep> steps;
-    TransferFunction colors;
-    double opacity_unit_world = 1;
+    std::vector<UsdGrid> grids;     ///< grids of each file
+    std::vector<UsdStep> steps;     ///< one, or one for each time code; the codes ascend
+    TransferFunction colors;        ///< the colour map, over the values of the first grid
+    double opacity_unit_world = 1;  ///< distance that the opacities of the colour map are for
 };
 
 /// Writes OpenUSD text (`.usda`): a Volume of UsdVol with an OpenVDBAsset for each grid, by the path of its file relative to

@@ -13,23 +13,20 @@
 namespace subvol {
 
 /// A camera without a lens, in a right-handed world. Rays go through pixel centres; pixel (0,0) is the top left.
-///
-/// fovy_deg:     vertical field of view, (0,180), of a perspective camera
-/// ortho_height: height of the picture in world units of an orthographic camera; 0: the camera is a perspective one
 struct Camera {
     Vec3 eye{0, 0, 1};
     Vec3 target{0, 0, 0};
     Vec3 up{0, 1, 0};
-    double fovy_deg = 40;
+    double fovy_deg = 40;  ///< vertical field of view, (0,180), of a perspective camera
+    /// Height of the picture in world units of an orthographic camera; 0: the camera is a perspective one
     double ortho_height = 0;
 };
 
-/// x(z) = origin + z · direction, z the eye depth: |direction| ≥ 1 is the world length of a unit of depth. end: the depth at
-/// which it ends
+/// x(z) = origin + z · direction, z the eye depth: |direction| ≥ 1 is the world length of a unit of depth.
 struct Ray {
     Vec3 origin;
     Vec3 direction;
-    double end = std::numeric_limits<double>::infinity();
+    double end = std::numeric_limits<double>::infinity();  ///< the depth at which it ends
 };
 
 /// A camera and a picture size: the mapping between pixels, eye space (x right, y up, z = depth along the view) and the world.

@@ -9,14 +9,10 @@
 namespace subvol {
 
 /// How values are spread over a colour map.
-///
-/// logarithmic: equal ratios of values get equal parts of the map; of a range that is not above 0, linear
-/// linear_within: symmetrically logarithmic: by sign(v) ln(1 + |v|/C), with C = linear_within > 0; 0: not
-/// where:       is named in errors
 struct ColorScale {
-    bool logarithmic = false;
-    double linear_within = 0;
-    std::string where = "transfer function";
+    bool logarithmic = false;  ///< equal ratios of values get equal parts of the map; of a range that is not above 0, linear
+    double linear_within = 0;  ///< symmetrically logarithmic: by sign(v) ln(1 + |v|/C), with C = linear_within > 0; 0: not
+    std::string where = "transfer function";  ///< named in errors
 
     [[nodiscard]] bool linear() const { return !logarithmic && !(linear_within > 0); }
     /// The part of the range [min, max] at which a value lies, 0 to 1 inside.
@@ -28,13 +24,11 @@ struct ColorScale {
 inline constexpr int kMostBands = 1000;
 
 /// What is done with a colour map over its range.
-///
-/// bands:        so many colours, evenly spaced in the scale; the first and the last are the ends of the map; 0: all colours
-/// below, above: of values beyond the range, in linear light; none: those of its ends
 struct ColorShape {
     ColorScale scale{};
+    /// So many colours, evenly spaced in the scale; the first and the last are the ends of the map; 0: all colours
     int bands = 0;
-    std::optional<Vec3> below{}, above{};
+    std::optional<Vec3> below{}, above{};  ///< colours of values beyond the range, in linear light; none: those of its ends
 };
 
 /// Spreads colours and opacities, each over the range of its own knots, by the scale; cuts the colours into bands; adds those

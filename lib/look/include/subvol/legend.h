@@ -12,29 +12,24 @@
 
 namespace subvol {
 
-/// title:    above the legend, e.g. the field's name with its unit
-/// min, max: the range of values; without width: a swatch with the value takes the place of the bar
-/// shape:    the scale of the ticks, which are the ends of the bands, if there are a few; colours of values below and above are
-///           the bar's tips
-/// width_px: of the colour bar, 50..10000
-/// opacity_title, opacity_min, opacity_max: where the opacities are of another field than the colours, its name and range: they
-///           get a plot of their own; an empty title: they are of the same field
-/// note:     a line below the legend
-/// format:   of the ticks' values, as of printf: %.2f, %g, %.3e; empty: as many digits as they need
-/// names:    of categories, whose values are `values`, or min, min + 1, … if there are none: the legend has a swatch and the
-/// name
-///           for each, in place of the bar
 struct LegendOptions {
-    std::string title{};
-    double min = 0;
+    std::string title{};  ///< above the legend, e.g. the field's name with its unit
+    double min = 0;       ///< start of the range of values
+    /// End of the range of values; if the range has no width, a swatch with the value takes the place of the bar
     double max = 1;
+    /// The scale of the ticks, which are the ends of the bands, if there are a few; colours of values below and above are the
+    /// bar's tips
     ColorShape shape{};
-    int width_px = 360;
+    int width_px = 360;  ///< width of the colour bar, 50..10000
+    /// Where the opacities are of another field than the colours, its name: they get a plot of their own; empty: they are of
+    /// the same field
     std::string opacity_title{};
-    double opacity_min = 0;
-    double opacity_max = 1;
-    std::string note{};
-    std::string format{};
+    double opacity_min = 0;  ///< start of the range of that field
+    double opacity_max = 1;  ///< end of the range of that field
+    std::string note{};      ///< a line below the legend
+    std::string format{};    ///< format of the ticks' values, as of printf: %.2f, %g, %.3e; empty: as many digits as they need
+    /// Names of categories, whose values are `values`, or min, min + 1, … if there are none: the legend has a swatch and the
+    /// name for each, in place of the bar
     std::vector<std::string> names{};
     std::vector<double> values{};
 

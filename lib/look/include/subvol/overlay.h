@@ -22,9 +22,8 @@ namespace subvol {
 
 enum class TextAnchor { Start, Middle, End };
 
-/// size_px: of an em; capitals are about .73 of it high
 struct TextOptions {
-    double size_px = 14;
+    double size_px = 14;  ///< size of an em; capitals are about .73 of it high
     Vec3 color{0.0};
     TextAnchor anchor = TextAnchor::Start;
 };
@@ -44,11 +43,10 @@ void draw_text(Image& image, const Vec2& place, const std::string& text, const T
 /// Returns the letters (or bytes that are not UTF-8) of the texts that the built-in font lacks, each once.
 [[nodiscard]] std::vector<std::string> missing_letters(std::span<const std::string> texts);
 
-/// alpha: 0..1
 struct LineOptions {
     double width_px = 1;
     Vec3 color{0.0};
-    double alpha = 1;
+    double alpha = 1;  ///< 0..1
 };
 
 /// The width and strength of the edges of cells in a picture.
@@ -65,10 +63,11 @@ void draw_label(Image& image, const Vec2& place, const std::string& text, const 
 void draw_mark(Image& image, const Vec2& place, const std::string& text, double size_px, const Vec3& ink, const Vec3& paper,
                bool hidden = false);
 
-/// The coordinate along a side of a plot. first, last: at the left or lower end, and at the other one
+/// The coordinate along a side of a plot.
 struct PictureScale {
     std::string title{};
-    double first = 0, last = 1;
+    double first = 0;  ///< coordinate at the left or lower end
+    double last = 1;   ///< coordinate at the other end
 };
 
 /// Where a plot stands in a picture, in pixels.
@@ -102,16 +101,12 @@ void draw_edges(Image& image, std::span<const float> depth, const View& view, co
                 const LineOptions& options = {}, const Clip& clip = {});
 
 /// What a line covers of a pixel.
-///
-/// pixel:     its number, rows from the top
-/// faces_eye: whether the side of the hull or of a cut on which the line lies is turned to the eye
-/// depth:     the eye depth of the line there
-/// slack:     how far the limit may be from the line, along the ray
-/// cover:     0..1, with the alpha of the line
 struct LineSample {
-    std::uint32_t pixel = 0;
-    bool faces_eye = true;
-    float depth = 0, slack = 0, cover = 0;
+    std::uint32_t pixel = 0;  ///< number of the pixel, rows from the top
+    bool faces_eye = true;    ///< whether the side of the hull or of a cut on which the line lies is turned to the eye
+    float depth = 0;          ///< the eye depth of the line there
+    float slack = 0;          ///< how far the limit may be from the line, along the ray
+    float cover = 0;          ///< 0..1, with the alpha of the line
 };
 
 /// The pixels of the edges that `draw_edges` draws, for `sort_lines`.
@@ -146,15 +141,11 @@ struct NameTable<LegendSide> {
     static constexpr Name<LegendSide> rows[] = {{LegendSide::Right, "right"}, {LegendSide::Bottom, "bottom"}};
 };
 
-/// side:  where it stands
-/// size:  of the letters and the bar, 1 as they are by default
-/// ink:   of text and lines, in linear light
-/// width: of the whole picture in pixels: letters follow the shorter of its sides; 0: its height alone
 struct LegendStyle {
-    LegendSide side = LegendSide::Right;
-    double size = 1;
-    Vec3 ink{0.0};
-    int width = 0;
+    LegendSide side = LegendSide::Right;  ///< where it stands
+    double size = 1;                      ///< size of the letters and the bar, 1 as they are by default
+    Vec3 ink{0.0};                        ///< colour of text and lines, in linear light
+    int width = 0;  ///< width of the whole picture in pixels: letters follow the shorter of its sides; 0: its height alone
 };
 
 /// The pixels that `draw_legend` needs in a picture of this height: columns at its right, or rows below.

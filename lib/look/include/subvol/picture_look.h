@@ -14,10 +14,10 @@
 
 namespace subvol {
 
-/// The range of a field's values. bounded: values of the limit beyond it are shown as its ends (`Attribute::bounds`)
+/// The range of a field's values.
 struct ValueRange {
     double min = 0, max = 0;
-    bool bounded = false;
+    bool bounded = false;  ///< values of the limit beyond it are shown as its ends (`Attribute::bounds`)
 };
 
 /// The kinds of pictures. Solid: opaque and lit. Volume: transparent as the colour map says, black behind. Xray: dark where
@@ -31,42 +31,32 @@ struct NameTable<Look> {
 };
 
 /// Colours and opacities of a picture.
-///
-/// colors:  a preset, or a ParaView colour-map file (FILE.json:NAME for one of several in it); empty: that of the look
-/// range:   what the colour map covers; none: the field's range
-/// stretch: spreads the map of a file over the range; otherwise it keeps its own values
-/// opacity: knots instead of those of the map; empty: those of the map
-/// shape:   the scale of the map, its bands, and the colours beyond the range
-/// opacity_unit_world: the distance that opacities are for; none: 1/100 of the box's diagonal, of a solid 1/1,000,000
-/// clamp:   values beyond the field's range look like its ends
 struct LookOptions {
     Look look = Look::Volume;
+    /// A preset, or a ParaView colour-map file (FILE.json:NAME for one of several in it); empty: that of the look
     std::string colors{};
-    std::optional<ValueRange> range{};
-    bool stretch = false;
-    std::vector<TransferFunction::OpacityKnot> opacity{};
-    ColorShape shape{};
+    std::optional<ValueRange> range{};  ///< what the colour map covers; none: the field's range
+    bool stretch = false;               ///< spreads the map of a file over the range; otherwise it keeps its own values
+    std::vector<TransferFunction::OpacityKnot> opacity{};  ///< knots instead of those of the map; empty: those of the map
+    ColorShape shape{};  ///< the scale of the map, its bands, and the colours beyond the range
+    /// The distance that opacities are for; none: 1/100 of the box's diagonal, of a solid 1/1,000,000
     std::optional<double> opacity_unit_world{};
-    bool clamp = false;
+    bool clamp = false;  ///< values beyond the field's range look like its ends
 };
 
 /// What users choose of it, before the body and the range of its field are known.
-///
-/// look:    none: solid for bodies with a boundary, unless opacities are chosen; else volume
-/// range:   "MIN,MAX", parts of the field's range such as "10%,90%", or "field"
-/// opacity: as `parse_opacity` reads it
-/// iso:     values, or parts of the field's range, of lit surfaces: "300,60%"; the look is that of isosurfaces
-/// log:     a logarithmic scale; symlog: one that is so on both sides of 0, and linear within this value
-/// bands:   the number of colours; below, above: of values beyond the range, as `parse_color` reads them
 struct LookChoices {
-    std::optional<std::string> look{}, colors{}, range{}, opacity{};
-    std::string iso{};
+    std::optional<std::string> look{};  ///< none: solid for bodies with a boundary, unless opacities are chosen; else volume
+    std::optional<std::string> colors{};
+    std::optional<std::string> range{};    ///< "MIN,MAX", parts of the field's range such as "10%,90%", or "field"
+    std::optional<std::string> opacity{};  ///< as `parse_opacity` reads it
+    std::string iso{};  ///< values, or parts of the field's range, of lit surfaces: "300,60%"; the look is that of isosurfaces
     std::optional<double> opacity_unit_world{};
     bool clamp = false;
-    bool log = false;
-    std::optional<double> symlog{};
-    std::optional<int> bands{};
-    std::optional<std::string> below{}, above{};
+    bool log = false;                ///< a logarithmic scale
+    std::optional<double> symlog{};  ///< a scale that is logarithmic on both sides of 0, and linear within this value
+    std::optional<int> bands{};      ///< the number of colours
+    std::optional<std::string> below{}, above{};  ///< colours of values beyond the range, as `parse_color` reads them
 };
 
 /// look, tf, opacity-unit, clamp, range, opacity, iso, log, symlog, bands, below, above

@@ -18,18 +18,14 @@ namespace subvol {
 /// and colours are not changed. Where the volume is opaque already at its boundary, that is the surface: it is lit by its own
 /// normals, which are smooth except at creases. With the eye inside such a solid one sees the material at the eye, in the
 /// colour of its value there and without light, for there is no surface before it; every method draws that.
-///
-/// ambient, diffuse, specular: parts of the light, ≥ 0: from all around; by the cosines to the eye and to the key light; and
-///                             the gloss of Blinn and Phong, half of it from each, added in white
-/// head:                       the part of the diffuse light that is at the eye, 0 to 1; the rest is the key light's
-/// key:                        towards the key light, in eye space (right, up, away from the eye)
 struct Shading {
-    double ambient = 0.3;
-    double diffuse = 0.8;
-    double head = 0.5;
+    double ambient = 0.3;  ///< part of the light from all around, ≥ 0
+    double diffuse = 0.8;  ///< part of the light by the cosines to the eye and to the key light, ≥ 0
+    double head = 0.5;     ///< the part of the diffuse light that is at the eye, 0 to 1; the rest is the key light's
+    /// Gloss of Blinn and Phong as a part of the light, half of it from each of the two lights, added in white; ≥ 0
     double specular = 0;
     double shininess = 32;
-    Vec3 key{-0.5, 0.7, -0.5};
+    Vec3 key{-0.5, 0.7, -0.5};  ///< towards the key light, in eye space (right, up, away from the eye)
 };
 
 /// The light on surfaces of one colour: .08 of it comes from all around, and three quarters of the rest are the key light's.

@@ -10,9 +10,6 @@
 namespace subvol {
 
 /// Colour and opacity of a field value, each piecewise linear between its knots and constant beyond them.
-///
-/// color:   rgb in linear light, [0,1]; values ascending
-/// opacity: alpha in [0,1], per opacity unit (see Optics); values ascending
 struct TransferFunction {
     struct ColorKnot {
         double value;
@@ -22,8 +19,8 @@ struct TransferFunction {
         double value;
         double alpha;
     };
-    std::vector<ColorKnot> color;
-    std::vector<OpacityKnot> opacity;
+    std::vector<ColorKnot> color;      ///< rgb in linear light, [0,1]; values ascending
+    std::vector<OpacityKnot> opacity;  ///< alpha in [0,1], per opacity unit (see Optics); values ascending
 };
 
 /// Colour (in linear light) of a value. No list of the function may be empty.

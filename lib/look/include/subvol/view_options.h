@@ -24,18 +24,13 @@ struct PictureSize {
 [[nodiscard]] PictureSize parse_size(const std::string& text, const std::string& where);
 
 /// The size and the camera of a picture.
-///
-/// camera:       text as `parse_camera` reads it; nothing: the named view
-/// view:         the side to look from; the camera is fitted to what is visible
-/// fit:          moves the camera until the whole box is in the picture
-/// orthographic: makes a perspective camera an orthographic one, as high as the box needs
-/// turntable:    the pictures of one turn, all of which see what is visible; nothing: one picture
 struct ViewOptions {
     PictureSize size{};
-    std::optional<std::string> camera{};
-    std::string view = "iso";
-    bool fit = false, orthographic = false;
-    std::optional<int> turntable{};
+    std::optional<std::string> camera{};  ///< text as `parse_camera` reads it; nothing: the named view
+    std::string view = "iso";             ///< the side to look from; the camera is fitted to what is visible
+    bool fit = false;                     ///< moves the camera until the whole box is in the picture
+    bool orthographic = false;            ///< makes a perspective camera an orthographic one, as high as the box needs
+    std::optional<int> turntable{};       ///< the pictures of one turn, all of which see what is visible; nothing: one picture
 };
 
 /// size, camera, view, fit, ortho, turntable

@@ -16,25 +16,23 @@
 
 namespace subvol {
 
-/// levels:     the limit at a sample is interpolated between its points on this level: 27 about each cell of the level before
-/// reach:      samples outside the volume, at most this part of the box's diagonal from it, count at the nearest place
-/// smoothing:  the weight of the differences along edges, in the usual weight of the samples about a control point
-/// iterations: the most steps of the search, for each channel; it ends when it cannot make the sum of squares much smaller
-/// clamp:      control values beyond the range of the samples become its nearer end, as for densities that are not below 0
-/// refine:     the control mesh is refined up to so often where the samples are not met within `tolerance`: whole sheets of
-///             its cells are split, across the directions in which the fields bend there
-/// tolerance:  the largest error that is good enough, as a part of the range of the samples
-/// names:      how errors call the options
 struct ApproximateOptions {
     SchemeOptions scheme{};
+    /// The limit at a sample is interpolated between its points on this level: 27 about each cell of the level before
     int levels = 2;
+    /// Samples outside the volume, at most this part of the box's diagonal from it, count at the nearest place
     double reach = 0.01;
+    /// The weight of the differences along edges, in the usual weight of the samples about a control point
     double smoothing = 0;
+    /// The most steps of the search, for each channel; it ends when it cannot make the sum of squares much smaller
     int iterations = 200;
+    /// Control values beyond the range of the samples become its nearer end, as for densities that are not below 0
     bool clamp = false;
+    /// The control mesh is refined up to so often where the samples are not met within `tolerance`: whole sheets of its cells
+    /// are split, across the directions in which the fields bend there
     int refine = 0;
-    double tolerance = 1e-3;
-    OptionNames names = OptionNames::Keywords;
+    double tolerance = 1e-3;  ///< the largest error that is good enough, as a part of the range of the samples
+    OptionNames names = OptionNames::Keywords;  ///< how errors call the options
     Progress* progress = nullptr;
 };
 
@@ -42,44 +40,43 @@ struct ApproximateOptions {
 [[nodiscard]] std::vector<Option> options_of(ApproximateOptions& options);
 
 /// How far the limit is from the samples of a field.
-///
-/// rms, max: over all samples and channels; rms_boundary: over those in cells at the boundary
-/// max_at:   the sample where it is farthest
-/// range:    of the samples
-/// rms_between, max_between, max_between_at: at some thousand places between the samples, evenly spread: how far the limit is
-///           from the data's own field there, where the data is a mesh; of other data, from the value of the nearest sample,
-///           in which case it also has what the field changes on the way there
-/// beyond:   how far the limit leaves the range of the samples
 struct FieldError {
     std::string name;
-    double rms = 0, rms_boundary = 0, max = 0, range = 0;
-    Vec3 max_at{std::numeric_limits<double>::quiet_NaN()};
+    double rms = 0;                                         ///< over all samples and channels
+    double rms_boundary = 0;                                ///< over the samples in cells at the boundary
+    double max = 0;                                         ///< over all samples and channels
+    double range = 0;                                       ///< range of the samples
+    Vec3 max_at{std::numeric_limits<double>::quiet_NaN()};  ///< the sample where the limit is farthest
+    /// At some thousand places between the samples, evenly spread: how far the limit is from the data's own field there, where
+    /// the data is a mesh; for other data, from the value of the nearest sample, in which case it also has what the field
+    /// changes on the way there
     double rms_between = 0, max_between = 0;
-    Vec3 max_between_at{std::numeric_limits<double>::quiet_NaN()};
-    double beyond = 0;
+    Vec3 max_between_at{std::numeric_limits<double>::quiet_NaN()};  ///< the place of `max_between`
+    double beyond = 0;                                              ///< how far the limit leaves the range of the samples
 };
 
-/// samples:    that were used; outside: that lie beyond the reach; snapped: of the used ones, outside
-/// between:    places between the points of a mesh of data, where these are too few, at which its field is sampled too
-/// unseen:     control points without a sample in their cells: they continue what is around them
-/// undecided:  control points that samples hardly decide, the unseen ones included: no error is known there
-/// iterations: of the channel that took most; refined: how often the control mesh was
-/// continuous: the data is a mesh, whose fields are known between its points
 struct ApproximateReport {
-    std::size_t samples = 0, between = 0, outside = 0, snapped = 0, unseen = 0, undecided = 0;
-    int iterations = 0, refined = 0;
-    bool continuous = false;
+    std::size_t samples = 0;  ///< samples that were used
+    /// Places between the points of a mesh of data, where these are too few, at which its field is sampled too
+    std::size_t between = 0;
+    std::size_t outside = 0;  ///< samples that lie beyond the reach
+    std::size_t snapped = 0;  ///< used samples that lie outside
+    std::size_t unseen = 0;   ///< control points without a sample in their cells: they continue what is around them
+    /// Control points that samples hardly decide, the unseen ones included: no error is known there
+    std::size_t undecided = 0;
+    int iterations = 0;       ///< iterations of the channel that took most
+    int refined = 0;          ///< how often the control mesh was refined
+    bool continuous = false;  ///< the data is a mesh, whose fields are known between its points
     std::vector<FieldError> fields;
 };
 
 /// The report under its members' names; "fields" is a group with a group for each field.
 [[nodiscard]] Facts facts_of(const ApproximateReport& report);
 
-/// mesh:  the control mesh with the fitted fields as its attributes
-/// parts: where each of its cells lies in the cells of `onto`; empty if the mesh was not refined
 struct Approximation {
-    HexMesh mesh;
+    HexMesh mesh;  ///< the control mesh with the fitted fields as its attributes
     ApproximateReport report;
+    /// Where each cell of the mesh lies in the cells of `onto`; empty if the mesh was not refined
     std::vector<PartOfCell> parts = {};
 };
 

@@ -10,16 +10,14 @@
 
 namespace subvol {
 
-/// rms_off, most_off: how far the means of the limit are from those wanted, in parts of each field's range; the largest of all
-///                    fields
 struct CellMeansReport {
+    /// How far the means of the limit are from those wanted, in parts of each field's range; the largest of all fields
     double rms_off = 0, most_off = 0;
     double seconds = 0;
 };
 
-/// fields: values at the mesh's points, with the names of the means
 struct CellMeansFit {
-    std::vector<Attribute> fields;
+    std::vector<Attribute> fields;  ///< values at the mesh's points, with the names of the means
     CellMeansReport report;
 };
 
@@ -46,22 +44,19 @@ struct CellMeansFit {
                                           const ValuesOnPatches& on_patches, std::span<const Index> parts = {},
                                           Progress* progress = nullptr);
 
-/// tie:            how much a change of the first guess counts beside the means that are not met: it decides between the many
-///                 sets of values with the same means, and keeps noise of the means from growing. Greater than 0
-/// tolerance:      the search ends when no mean is off by more than this part of the means' range
-/// max_iterations: of conjugate gradients
 struct ExactMeansOptions {
     SchemeOptions scheme{};
+    /// How much a change of the first guess counts beside the means that are not met: it decides between the many sets of
+    /// values with the same means, and keeps noise of the means from growing. Greater than 0
     double tie = 1e-4;
-    double tolerance = 1e-4;
-    int max_iterations = 60;
+    double tolerance = 1e-4;  ///< the search ends when no mean is off by more than this part of the means' range
+    int max_iterations = 60;  ///< the most iterations of conjugate gradients
     Progress* progress = nullptr;
 };
 
-/// first_rms_off: rms_off before the search
 struct ExactMeansReport {
     CellMeansReport found;
-    double first_rms_off = 0;
+    double first_rms_off = 0;  ///< rms_off before the search
     int iterations = 0;
 };
 

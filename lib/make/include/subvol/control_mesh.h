@@ -5,69 +5,55 @@
 
 namespace subvol {
 
-/// cells:     along the longest side of the surface's box
-/// max_cells: that may be made
-/// rounds:    how often the nearest places are looked for, each time with half as much weight again for distances
-/// refine:    how often cubes may be divided into 27, where the boundary or a sharp edge is not met within `tolerance`
-/// tolerance: a distance that is near enough, as a part of the side of a cube that is not divided
-/// sharp_angle_deg: edges of the surface that are bent by more become creases of the mesh; 180: none
-/// scheme, folds, names, progress: as in `FitShapeOptions`; the scheme without an angle of creases
 struct ControlMeshOptions {
-    SchemeOptions scheme{};
-    int cells = 24;
-    std::size_t max_cells = 2'000'000;
-    int rounds = 15;
+    SchemeOptions scheme{};             ///< as in `FitShapeOptions`, without an angle of creases
+    int cells = 24;                     ///< cells along the longest side of the surface's box
+    std::size_t max_cells = 2'000'000;  ///< the most cells that may be made
+    int rounds = 15;                    ///< searches for nearest places; distances count 1.5 times as much in each
+    /// How often cubes may be divided into 27, where the boundary or a sharp edge is not met within `tolerance`
     int refine = 0;
-    double tolerance = 0.25;
-    double sharp_angle_deg = 40;
-    ShapeFolds folds{};
-    OptionNames names = OptionNames::Keywords;
-    Progress* progress = nullptr;
+    double tolerance = 0.25;      ///< a distance that is near enough, as a part of the side of a cube that is not divided
+    double sharp_angle_deg = 40;  ///< edges of the surface that are bent by more become creases of the mesh; 180: none
+    ShapeFolds folds{};           ///< as in `FitShapeOptions`
+    OptionNames names = OptionNames::Keywords;  ///< as in `FitShapeOptions`
+    Progress* progress = nullptr;               ///< as in `FitShapeOptions`
 };
 
 /// The options without those of the scheme.
 [[nodiscard]] std::vector<Option> options_of(ControlMeshOptions& options);
 
 /// The sharp edges of a surface, as chains, and the creases of a mesh that follow them.
-///
-/// missed:   chains without creases, as others are too near or the mesh does not reach them
-/// rms, max: distances of the creases from the chains
 struct SharpEdgeReport {
-    std::size_t curves = 0, missed = 0;
+    std::size_t curves = 0;
+    std::size_t missed = 0;  ///< chains without creases, as others are too near or the mesh does not reach them
     double length_world = 0, missed_length_world = 0;
     std::size_t creases = 0;
-    double rms = 0, max = 0;
+    double rms = 0, max = 0;  ///< distances of the creases from the chains
 };
 
 /// What a surface of triangles encloses, and what is odd about it.
-///
-/// walls:      closed parts of it, that are not joined by edges
-/// united:     walls that cross others before them; the mesh is that of their union
-/// cavities:   walls within another wall that bound a cavity; alike: those of them with the orientation of the wall around them
-/// copies:     triangles that are there twice, which are left out
-/// sheets:     triangles of sheets that enclose nothing, which are left out
-/// turned:     triangles with another orientation than most of those that they are joined with
-/// one_sided:  edges at which no orientation of the triangles agrees
-/// many_edges: edges of more than two triangles
 struct EnclosureReport {
-    std::size_t walls = 0, united = 0, cavities = 0, cavities_alike = 0, copies = 0, sheets = 0, turned = 0, one_sided = 0,
-                many_edges = 0;
+    std::size_t walls = 0;           ///< closed parts of the surface that are not joined by edges
+    std::size_t united = 0;          ///< walls that cross others before them; the mesh is that of their union
+    std::size_t cavities = 0;        ///< walls within another wall that bound a cavity
+    std::size_t cavities_alike = 0;  ///< cavities with the orientation of the wall around them
+    std::size_t copies = 0;          ///< triangles that are there twice, which are left out
+    std::size_t sheets = 0;          ///< triangles of sheets that enclose nothing, which are left out
+    std::size_t turned = 0;          ///< triangles with another orientation than most of those that they are joined with
+    std::size_t one_sided = 0;       ///< edges at which no orientation of the triangles agrees
+    std::size_t many_edges = 0;      ///< edges of more than two triangles
 };
 
-/// shape:      how far the limit's boundary is from the surface; before: as cubes with a layer around them
-/// parts:      of the mesh, that are not joined
-/// added:      cubes that were needed to make the boundary of the cubes a surface
-/// refined, divided: how often cubes were divided, and how many in all
-/// side_world: of a cube that is not divided
-/// min_scaled_jacobian: of the control cells: 1 for cubes, negative if one is turned inside out at a corner
 struct ControlMeshReport {
-    FitShapeReport shape;
+    FitShapeReport shape;  ///< how far the limit's boundary is from the surface; `before`: as cubes with a layer around them
     SharpEdgeReport sharp;
     EnclosureReport surface;
-    std::size_t parts = 0, added = 0;
-    int refined = 0;
-    std::size_t divided = 0;
-    double side_world = 0;
+    std::size_t parts = 0;    ///< parts of the mesh that are not joined
+    std::size_t added = 0;    ///< cubes that were needed to make the boundary of the cubes a surface
+    int refined = 0;          ///< how often cubes were divided
+    std::size_t divided = 0;  ///< how many cubes were divided in all
+    double side_world = 0;    ///< side of a cube that is not divided
+    /// Least of the control cells: 1 for cubes, negative if one is turned inside out at a corner
     double min_scaled_jacobian = 0;
 };
 

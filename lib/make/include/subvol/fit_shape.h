@@ -15,25 +15,21 @@
 
 namespace subvol {
 
-/// keep:           points do not move where the limit folds or may fold; else they do, by `mend_folds`
-/// boundary_edges: how far those of the boundary may move then, along it mostly, as a part of their shortest edge
 struct ShapeFolds {
-    bool keep = false;
+    bool keep = false;  ///< points do not move where the limit folds or may fold; else they do, by `mend_folds`
+    /// How far points of the boundary may move by `mend_folds`, along it mostly, as a part of their shortest edge
     double boundary_edges = 0.2;
 };
 
 [[nodiscard]] std::vector<Option> options_of(ShapeFolds& folds);
 
-/// rounds:    how often the nearest places are looked for and the points moved, at most
-/// stiffness: the weight with which neighbours move together, beside the distances about a control point; > 0
-/// folds:     what happens where the limit folds
-/// names:     how errors call the options
 struct FitShapeOptions {
     SchemeOptions scheme{};
-    int rounds = 10;
+    int rounds = 10;  ///< how often the nearest places are looked for and the points moved, at most
+    /// The weight with which neighbours move together, beside the distances about a control point; > 0
     double stiffness = 0.01;
-    ShapeFolds folds{};
-    OptionNames names = OptionNames::Keywords;
+    ShapeFolds folds{};                         ///< what happens where the limit folds
+    OptionNames names = OptionNames::Keywords;  ///< how errors call the options
     Progress* progress = nullptr;
 };
 
@@ -41,14 +37,13 @@ struct FitShapeOptions {
 [[nodiscard]] std::vector<Option> options_of(FitShapeOptions& options);
 
 /// Distances between the boundary of a limit and a surface, in the world.
-///
-/// rms, max:       from places of the boundary to the surface, and max_at: the place that is farthest
-/// covered_rms, covered_max: the same without places over a hole, to whose edge they are nearest
-/// hole_part:      the part of the boundary's area that is over holes
-/// missed_rms, missed_max, missed_at: from places of the surface to the boundary: large where the mesh does not reach
 struct ShapeError {
-    double rms = 0, max = 0, covered_rms = 0, covered_max = 0, hole_part = 0, missed_rms = 0, missed_max = 0;
-    Vec3 max_at{std::numeric_limits<double>::quiet_NaN()}, missed_at{max_at};
+    double rms = 0, max = 0;                  ///< from places of the boundary to the surface
+    double covered_rms = 0, covered_max = 0;  ///< the same without places over a hole, to whose edge they are nearest
+    double hole_part = 0;                     ///< the part of the boundary's area that is over holes
+    double missed_rms = 0, missed_max = 0;  ///< from places of the surface to the boundary: large where the mesh does not reach
+    Vec3 max_at{std::numeric_limits<double>::quiet_NaN()};  ///< the place of the boundary that is farthest from the surface
+    Vec3 missed_at{max_at};                                 ///< the place of the surface that is farthest from the boundary
 };
 
 /// Measures a boundary at the vertices of level 2, 25 for each side, and a surface at as many places.
@@ -56,21 +51,17 @@ struct ShapeError {
 /// throws: Error(InvalidInput) as `refine`, or if the surface is not valid
 [[nodiscard]] ShapeError shape_error(const HexMesh& mesh, const Surface& surface, const SchemeOptions& scheme = {});
 
-/// before, after: of the fit; rounds: that were made; moved_world: the longest way of a control point
-/// folds:  of the limit in the end; mended: the cells that folded or were undecided though they are regular, before they were
-///         mended
-/// open_edges, open_length_world: of the surface: edges of one triangle alone, and their length
-/// folded_cells, inverted_cells: control cells whose limit folds, and those that are turned inside out at a corner
-/// warnings: sentences for users about what is wrong: folds, inverted cells, holes of the surface, mending that did not end
 struct FitShapeReport {
-    ShapeError before, after;
-    int rounds = 0;
-    double moved_world = 0;
-    FoldReport folds;
-    std::size_t mended = 0;
-    std::size_t open_edges = 0;
-    double open_length_world = 0;
-    std::vector<std::size_t> folded_cells, inverted_cells;
+    ShapeError before, after;      ///< error before and after the fit
+    int rounds = 0;                ///< rounds that were made
+    double moved_world = 0;        ///< the longest way of a control point
+    FoldReport folds;              ///< folds of the limit in the end
+    std::size_t mended = 0;        ///< cells that folded or were undecided though they are regular, before they were mended
+    std::size_t open_edges = 0;    ///< edges of the surface of one triangle alone
+    double open_length_world = 0;  ///< length of these edges
+    std::vector<std::size_t> folded_cells;    ///< control cells whose limit folds
+    std::vector<std::size_t> inverted_cells;  ///< control cells that are turned inside out at a corner
+    /// Sentences for users about what is wrong: folds, inverted cells, holes of the surface, mending that did not end
     std::vector<std::string> warnings;
 
     /// Whether no cell is known to fold or to be inverted.

@@ -19,58 +19,47 @@ struct PlaceFunction;
 }
 
 /// What a file of finite volumes says of the gradient of a field on its boundary.
-///
-/// points:    of the mesh, ascending
-/// gradients: for each of these points the gradients of all channels, in the field's unit per world length
 struct GradientsAtPoints {
-    std::vector<Index> points;
+    std::vector<Index> points;  ///< points of the mesh, ascending
+    /// For each of these points the gradients of all channels, in the field's unit per world length
     std::vector<Vec3> gradients;
 };
 
 /// A named array at the points of a mesh.
-///
-/// values:    `channels` numbers for each point: channel c of point p is values[p * channels + c]
-/// bounds:    the least and the greatest value of each channel, as 0 and 1 of a fraction: where the limit of the values is
-///            evaluated it is kept within them, as interpolating schemes overshoot between points. Empty: none; infinite: no
-///            bound
-/// function:  of a quantity that is not linear, such as the length of a vector: at each place of the volume the field is this
-///            function of the limit of the arguments there, not the limit of its values. None: it is that limit
-/// arguments: of the function, at each point. The values are those of the function at the points
-/// cells:     of a field that the file has at cells: `channels` numbers for each cell, which `values` are made of. Files that
-///            are written have these. Empty: a field at points
-/// constant:  the field is `cells`, the same everywhere in a cell; `values` are means over the cells at each point. It has no
-///            function
-/// walls:     what is known of the gradient on the boundary beside the limit
-/// derived:   made of derivatives of a limit, which the cells as they were given have not at their points
-/// potential: of the gradient of a scalar: the scalar
 struct Attribute {
     std::string name;
     int channels = 1;
-    std::vector<double> values;
+    std::vector<double> values;  ///< `channels` numbers for each point: channel c of point p is values[p * channels + c]
+    /// The least and the greatest value of each channel, as 0 and 1 of a fraction: where the limit of the values is evaluated
+    /// it is kept within them, as interpolating schemes overshoot between points. Empty: none; infinite: no bound
     std::vector<std::array<double, 2>> bounds = {};
+    /// For a quantity that is not linear, such as the length of a vector: at each place of the volume the field is this
+    /// function of the limit of the arguments there, not the limit of its values. None: it is that limit
     std::shared_ptr<const detail::PlaceFunction> function = {};
+    /// Arguments of the function, at each point. The values are those of the function at the points
     std::vector<double> arguments = {};
+    /// For a field that the file has at cells: `channels` numbers for each cell, which `values` are made of. Files that are
+    /// written have these. Empty: a field at points
     std::vector<double> cells = {};
+    /// The field is `cells`, the same everywhere in a cell; `values` are means over the cells at each point. It has no function
     bool constant = false;
-    GradientsAtPoints walls = {};
-    bool derived = false;
-    std::shared_ptr<const Attribute> potential = {};
+    GradientsAtPoints walls = {};  ///< what is known of the gradient on the boundary beside the limit
+    bool derived = false;  ///< made of derivatives of a limit, which the cells as they were given have not at their points
+    std::shared_ptr<const Attribute> potential = {};  ///< for the gradient of a scalar: the scalar
 };
 
 /// A hexahedral control mesh with attributes at its points.
-///
-/// cells:   8 point ids in VTK corner order: 0-3 the bottom counter-clockwise, 4-7 above them; parameters u along 0→1,
-///          v along 0→3, w along 0→4
-/// creases: boundary edges to be kept sharp, besides those that the default rule finds; two point ids each, smaller first
-/// time:    of the step that the mesh is, if it was read from a file of steps
-/// sharp_faces: interior faces that schemes treat as a boundary from both sides; four point ids each, in cyclic order
 struct HexMesh {
     std::vector<Vec3> points;
+    /// 8 point ids in VTK corner order: 0-3 the bottom counter-clockwise, 4-7 above them; parameters u along 0→1, v along 0→3,
+    /// w along 0→4
     std::vector<std::array<Index, 8>> cells;
     std::vector<Attribute> attributes;
+    /// Boundary edges to be kept sharp, besides those that the default rule finds; two point ids each, smaller first
     std::vector<std::array<Index, 2>> creases;
+    /// Interior faces that schemes treat as a boundary from both sides; four point ids each, in cyclic order
     std::vector<std::array<Index, 4>> sharp_faces;
-    std::optional<double> time = {};
+    std::optional<double> time = {};  ///< time of the step that the mesh is, if it was read from a file of steps
 
     [[nodiscard]] const Attribute* find_attribute(std::string_view name) const;
 };

@@ -14,10 +14,10 @@
 
 namespace subvol {
 
-/// A side of a cell, on the boundary of the mesh. side: 0 to 5 as in `kCellFaces`
+/// A side of a cell, on the boundary of the mesh.
 struct CellSide {
     Index cell = 0;
-    std::uint8_t side = 0;
+    std::uint8_t side = 0;  ///< 0 to 5 as in `kCellFaces`
 
     bool operator==(const CellSide&) const = default;
 };

@@ -13,29 +13,24 @@ namespace subvol {
 
 /// A part of a mesh. Points and cells have the order that they have in the whole mesh, so that sums have their terms in the
 /// same order, and results the same bits.
-///
-/// point_numbers, cell_numbers: in the whole mesh, ascending
-/// owned_points, owned_cells:   a flag for each; the others are the halo
 struct MeshPiece {
     HexMesh mesh;
-    std::vector<std::uint64_t> point_numbers, cell_numbers;
-    std::vector<std::uint8_t> owned_points, owned_cells;
+    std::vector<std::uint64_t> point_numbers, cell_numbers;  ///< numbers in the whole mesh, ascending
+    std::vector<std::uint8_t> owned_points, owned_cells;     ///< a flag for each; the others are the halo
 };
 
 /// What is known about a piece before it is read.
-///
-/// cells, points: that it owns
-/// bounds: of the owned cells; reach: of their limit and more: no value of the limit in an owned cell lies outside
 struct PieceExtent {
-    std::uint64_t cells = 0, points = 0;
-    Box bounds{}, reach{};
+    std::uint64_t cells = 0, points = 0;  ///< what it owns
+    Box bounds{};                         ///< box of the owned cells
+    Box reach{};  ///< box of the limit of the owned cells and more: no value of the limit in an owned cell lies outside
 };
 
-/// A field of a whole mesh. min, max: over the points that cells use, of all channels together
+/// A field of a whole mesh.
 struct SourceField {
     std::string name;
     int channels = 1;
-    double min = 0, max = 0;
+    double min = 0, max = 0;  ///< over the points that cells use, of all channels together
 };
 
 /// A mesh in memory, or a mesh in pieces that are read one at a time:
@@ -54,19 +49,14 @@ public:
     MeshSource(const HexMesh& mesh) : mesh_(&mesh) {}
 
     /// A mesh that is stored in pieces.
-    ///
-    /// name:          of the folder, for errors
-    /// cells, points: of the whole mesh
-    /// halo_layers:   of cells about the owned ones
-    /// read:          reads the piece of a number with its halo
     struct Stored {
-        std::string name;
-        std::uint64_t cells = 0, points = 0;
+        std::string name;                     ///< name of the folder, for errors
+        std::uint64_t cells = 0, points = 0;  ///< cells and points of the whole mesh
         Box bounds{};
-        int halo_layers = 0;
+        int halo_layers = 0;  ///< layers of cells around the owned ones
         std::vector<SourceField> fields{};
         std::vector<PieceExtent> pieces{};
-        std::function<MeshPiece(std::size_t)> read{};
+        std::function<MeshPiece(std::size_t)> read{};  ///< reads the piece of a number with its halo
     };
     explicit MeshSource(Stored stored) : stored_(std::move(stored)) {}
 
@@ -116,11 +106,9 @@ void for_each_piece(const MeshSource::Stored& stored, const char* stage, Progres
 [[nodiscard]] MeshPiece gather(const MeshSource& source, const Box& box);
 
 /// The cells with a point on the hull of a mesh: all that the boundary of the limit depends on.
-///
-/// on_hull: a flag for each point
 struct MeshHull {
     HexMesh mesh;
-    std::vector<std::uint8_t> on_hull;
+    std::vector<std::uint8_t> on_hull;  ///< a flag for each point
 };
 
 /// Reads all pieces once.

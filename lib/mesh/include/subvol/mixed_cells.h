@@ -9,14 +9,10 @@
 namespace subvol {
 
 /// Cells other than the hexahedra of a mesh, as point ids.
-///
-/// tets:     four corners
-/// prisms:   a triangle, then the triangle above it (VTK's wedge)
-/// pyramids: the four corners of the base in cyclic order, then the apex
 struct MixedCells {
-    std::vector<std::array<Index, 4>> tets;
-    std::vector<std::array<Index, 6>> prisms;
-    std::vector<std::array<Index, 5>> pyramids;
+    std::vector<std::array<Index, 4>> tets;      ///< four corners
+    std::vector<std::array<Index, 6>> prisms;    ///< a triangle, then the triangle above it (VTK's wedge)
+    std::vector<std::array<Index, 5>> pyramids;  ///< the four corners of the base in cyclic order, then the apex
 
     [[nodiscard]] bool empty() const { return tets.empty() && prisms.empty() && pyramids.empty(); }
 };

@@ -18,32 +18,26 @@ namespace subvol {
 enum class PatchRole : std::uint8_t { Open, Wall, Plane };
 
 /// A field on faces of the boundary.
-///
-/// values: `channels` for each face; not a number: unknown
-/// along:  of each face: vectors have no component along its normal, and nothing else is known
-/// level:  of each face: the field does not change across it. Empty: no face is known to be so
 struct FieldOnPatches {
     std::string name;
     int channels = 1;
-    std::vector<double> values;
-    std::vector<std::uint8_t> along;
+    std::vector<double> values;       ///< `channels` for each face; not a number: unknown
+    std::vector<std::uint8_t> along;  ///< for each face: vectors have no component along its normal, and nothing else is known
+    /// For each face: the field does not change across it. Empty: no face is known to be so
     std::vector<std::uint8_t> level = {};
 
     [[nodiscard]] bool is_level(std::size_t face) const { return face < level.size() && level[face] != 0; }
 };
 
 /// What a file of finite volumes says of fields on the faces of its patches.
-///
-/// sides:   the sides of the mesh's cells, each with the face that it is a part of
-/// patches, roles: of each face: the number of its patch in the file, and that patch's role
 struct ValuesOnPatches {
     struct Side {
         CellSide side;
         Index face = 0;
     };
-    std::vector<Side> sides;
-    std::vector<Index> patches;
-    std::vector<PatchRole> roles;
+    std::vector<Side> sides;       ///< the sides of the mesh's cells, each with the face that it is a part of
+    std::vector<Index> patches;    ///< for each face, the number of its patch in the file
+    std::vector<PatchRole> roles;  ///< for each face, the role of that patch
     std::vector<FieldOnPatches> fields;
 };
 
@@ -62,16 +56,13 @@ struct NameTable<PatchValuesUse> {
 };
 
 /// What `meet_patch_values` changed.
-///
-/// fields:        how many got values on patches
-/// points:        how many got one, of the field with the most
-/// most_of_mean:  the largest change of a channel's integral over the volume (by an eighth of each cell's volume at its
-/// corners),
-///                as a part of the integral of its absolute value; most_changed: that field
 struct PatchValuesReport {
-    std::size_t fields = 0, points = 0;
+    std::size_t fields = 0;  ///< how many fields got values on patches
+    std::size_t points = 0;  ///< how many points got a value, for the field with the most
+    /// The largest change of a channel's integral over the volume (by an eighth of each cell's volume at its corners), as a
+    /// part of the integral of its absolute value
     double most_of_mean = 0;
-    std::string most_changed;
+    std::string most_changed;  ///< field with this change
 };
 
 }  // namespace subvol

@@ -13,12 +13,10 @@ inline constexpr double kSharpAngleDeg = 40;
 inline constexpr double kCurveAngleDeg = 60;
 
 /// What `keep_sharp_edges` made of a mesh.
-///
-/// edges: that became creases. Edges of a single cell are creases without a tag, and are not counted
-/// steps: all of them are right angles and many are re-entrant, as on the stairs of voxels
 struct SharpEdges {
+    /// Edges that became creases. Edges of a single cell are creases without a tag, and are not counted
     std::size_t edges = 0;
-    bool steps = false;
+    bool steps = false;  ///< all of them are right angles and many are re-entrant, as on the stairs of voxels
 };
 
 /// Tags the sharp edges of the boundary as creases, so that the limit keeps the edges and corners of the mesh: the rule by

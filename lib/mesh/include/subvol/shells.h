@@ -11,9 +11,9 @@
 
 namespace subvol {
 
-/// A corner of a cell of a mesh. cell: kNone if there is no such corner
+/// A corner of a cell of a mesh.
 struct CellCorner {
-    Index cell = kNone;
+    Index cell = kNone;  ///< kNone if there is no such corner
     std::uint8_t corner = 0;
 
     bool operator==(const CellCorner&) const = default;
@@ -21,17 +21,13 @@ struct CellCorner {
 
 /// Shells and beams: quads and lines that do not belong to a cell, beside a mesh of cells or alone. They have their own points,
 /// so that the mesh does not depend on them.
-///
-/// attributes: those of the mesh, in its order, with values at these points
-/// quads:      four points in cyclic order
-/// lines:      two points
-/// solid:      for each point a corner of the mesh's cells if it is a point of the mesh too. Numbers of corners stay when
-///             unused points of the mesh are left out, and child k of cell c has the number 8c + k at the next level
 struct Shells {
     std::vector<Vec3> points;
-    std::vector<Attribute> attributes;
-    std::vector<std::array<Index, 4>> quads;
-    std::vector<std::array<Index, 2>> lines;
+    std::vector<Attribute> attributes;        ///< those of the mesh, in its order, with values at these points
+    std::vector<std::array<Index, 4>> quads;  ///< four points in cyclic order
+    std::vector<std::array<Index, 2>> lines;  ///< two points
+    /// For each point a corner of the mesh's cells if it is a point of the mesh too. Numbers of corners stay when unused points
+    /// of the mesh are left out, and child k of cell c has the number 8c + k at the next level
     std::vector<CellCorner> solid;
 
     [[nodiscard]] bool empty() const { return quads.empty() && lines.empty(); }
@@ -56,12 +52,11 @@ struct Shells {
 void validate(const Shells& shells, const HexMesh& mesh);
 
 /// How shells and beams are connected, for `subvol info`.
-///
-/// attached:         points that are points of the mesh too
-/// free_edges:       edges of one quad whose ends are not both attached
-/// nonmanifold_edges: edges of more than two quads
 struct ShellReport {
-    std::size_t quads = 0, lines = 0, points = 0, attached = 0, free_edges = 0, nonmanifold_edges = 0;
+    std::size_t quads = 0, lines = 0, points = 0;
+    std::size_t attached = 0;           ///< points that are points of the mesh too
+    std::size_t free_edges = 0;         ///< edges of one quad whose ends are not both attached
+    std::size_t nonmanifold_edges = 0;  ///< edges of more than two quads
 };
 [[nodiscard]] ShellReport inspect(const Shells& shells);
 

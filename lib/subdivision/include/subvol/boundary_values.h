@@ -12,11 +12,9 @@
 namespace subvol {
 
 /// The boundary of a volume with the values of its fields there.
-///
-/// values: for each attribute of the mesh, one number for each point of the surface
 struct BoundaryValues {
     Surface surface;
-    std::vector<std::vector<double>> values;
+    std::vector<std::vector<double>> values;  ///< for each attribute of the mesh, one number for each point of the surface
 };
 
 /// The boundary of the mesh refined options.levels times, on the limit, with the limit's values. Only the cells at the boundary

@@ -30,48 +30,38 @@ struct NameTable<FoldVerdict> {
                                                  {FoldVerdict::Irregular, "irregular", "undecided near an irregular edge"}};
 };
 
-/// scheme: as for all calls; MCQ is certified with its tension of 1/16 alone
-/// levels: how often a cell is cut into eight where one test does not decide
-/// irregular_levels: how often a cell near an irregular edge is refined for the same
-/// tests:  the most tests of a cell
-/// names:  how errors call the options
 struct FoldOptions {
-    SchemeOptions scheme{};
-    int levels = 5;
-    int irregular_levels = 2;
-    int tests = 1000;
-    OptionNames names = OptionNames::Keywords;
+    SchemeOptions scheme{};                     ///< as for all calls; MCQ is certified with its tension of 1/16 alone
+    int levels = 5;                             ///< how often a cell is cut into eight where one test does not decide
+    int irregular_levels = 2;                   ///< how often a cell near an irregular edge is refined for the same
+    int tests = 1000;                           ///< the most tests of a cell
+    OptionNames names = OptionNames::Keywords;  ///< how errors call the options
     Progress* progress = nullptr;
 };
 
 /// The options without those of the scheme.
 [[nodiscard]] std::vector<Option> options_of(FoldOptions& options);
 
-/// A place where the limit is folded: uvw in the cell, its position, and det ∂x/∂u there. sampled: this was found by sampling,
-/// where nothing is proved
+/// A place where the limit is folded: uvw in the cell, its position, and det ∂x/∂u there.
 struct FoldPlace {
     Index cell = 0;
     Vec3 uvw{0.0};
     Vec3 position{0.0};
     double determinant = 0;
-    bool sampled = false;
+    bool sampled = false;  ///< this was found by sampling, where nothing is proved
 };
 
-/// proved, folded, open, irregular: numbers of cells
-/// open_volume, irregular_volume: of the cells that are not decided, the part that stays open, in cells
-/// tests:   in all
-/// deepest: the level of the smallest part that was tested
-/// sampled: cells that no test decided and that were sampled, at how many places; how many of these cells are folded, as they
-///          are at a place; and the least determinant, as a part of the mean magnitude
 struct FoldReport {
     struct Sampled {
         std::size_t cells = 0, places = 0, folded = 0;
         double least = 0;
     };
-    std::size_t proved = 0, folded = 0, open = 0, irregular = 0;
-    double open_volume = 0, irregular_volume = 0;
-    std::size_t tests = 0;
-    int deepest = 0;
+    std::size_t proved = 0, folded = 0, open = 0, irregular = 0;  ///< numbers of cells
+    double open_volume = 0, irregular_volume = 0;  ///< of the cells that are not decided, the part that stays open, in cells
+    std::size_t tests = 0;                         ///< tests in all
+    int deepest = 0;                               ///< the level of the smallest part that was tested
+    /// Cells that no test decided and that were sampled, at how many places; how many of these cells are folded, as they are at
+    /// a place; and the least determinant, as a part of the mean magnitude
     Sampled sampled;
     std::vector<std::string> warnings;
 };
@@ -80,11 +70,10 @@ struct FoldReport {
 /// are near irregular edges), "open_volume" of the undecided, and "sampled" with its members.
 [[nodiscard]] Facts facts_of(const FoldReport& report);
 
-/// verdicts: of the cells; open: the part of each that is not decided, 0 to 1; places: of the folded cells, in their order
 struct FoldCheck {
-    std::vector<FoldVerdict> verdicts;
-    std::vector<double> open;
-    std::vector<FoldPlace> places;
+    std::vector<FoldVerdict> verdicts;  ///< verdicts of the cells
+    std::vector<double> open;           ///< part of each cell that is not decided, 0 to 1
+    std::vector<FoldPlace> places;      ///< places of the folded cells, in their order
     FoldReport report;
 };
 

@@ -13,13 +13,11 @@ namespace subvol {
 
 /// One control cell after refinement, as a grid: side³ vertices of the refined mesh, side = 2^levels + 1, u fastest, then v,
 /// then w.
-///
-/// values: for each attribute side³ × channels numbers, vertex-major
 struct DenseCell {
-    Index cell = 0;  // of the control mesh
+    Index cell = 0;  ///< of the control mesh
     std::size_t side = 0;
     std::span<const Vec3> points;
-    std::vector<std::span<const double>> values;
+    std::vector<std::span<const double>> values;  ///< for each attribute side³ × channels numbers, vertex-major
 };
 
 /// Refines a mesh cell by cell: calls visit for every control cell with its grid, and keeps only a batch of cells per thread in
@@ -30,11 +28,9 @@ struct DenseCell {
 /// cost:   parallel; memory: the mesh, and per thread about 50 MB, or one cell if that is more: 300 bytes per vertex
 void for_each_dense_cell(const HexMesh& mesh, const RefineOptions& options, const std::function<void(const DenseCell&)>& visit);
 
-/// cells:    of the control mesh, without repetition; none: all
-/// on_limit: points and attributes are moved to the limit, as by `on_limit` of the refined mesh
 struct DenseSelection {
-    std::optional<std::vector<Index>> cells{};
-    bool on_limit = false;
+    std::optional<std::vector<Index>> cells{};  ///< cells of the control mesh, without repetition; none: all
+    bool on_limit = false;  ///< points and attributes are moved to the limit, as by `on_limit` of the refined mesh
 };
 
 /// The same for some of the cells, or for the limit of their vertices.

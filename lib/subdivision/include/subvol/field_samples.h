@@ -9,11 +9,11 @@
 
 namespace subvol {
 
-/// A scalar field at places of a volume. weights: the volume that each sample represents, ≥ 0 (world³)
+/// A scalar field at places of a volume.
 struct FieldSamples {
     std::vector<Vec3> points;
     std::vector<double> values;
-    std::vector<double> weights;
+    std::vector<double> weights;  ///< the volume that each sample represents, ≥ 0 (world³)
 
     [[nodiscard]] std::size_t size() const { return points.size(); }
 };

@@ -20,14 +20,13 @@ struct LimitQuery {
     Vec3 uvw{0.0};
 };
 
-/// tolerance:  relative to the diagonal of the mesh's box and to each attribute's range. What is not exact is refined until two
-///             levels differ by less, and their derivatives (per cell) by less than its square root; beside extraordinary edges
-///             and vertices that of the derivatives is given up after level 6
-/// max_levels: ≥ 2; refinement ends there in any case
 struct LimitOptions {
     SchemeOptions scheme{};
+    /// Relative to the diagonal of the mesh's box and to each attribute's range. What is not exact is refined until two levels
+    /// differ by less, and their derivatives (per cell) by less than its square root; beside extraordinary edges and vertices
+    /// that of the derivatives is given up after level 6
     double tolerance = 1e-6;
-    int max_levels = 10;
+    int max_levels = 10;  ///< ≥ 2; refinement ends there in any case
     Progress* progress = nullptr;
 };
 
@@ -51,10 +50,10 @@ struct LimitAttribute {
     std::vector<Vec3> derivatives;
 };
 
-/// One entry per query. jacobians: columns ∂x/∂u, ∂x/∂v, ∂x/∂w
+/// One entry per query.
 struct LimitSamples {
     std::vector<Vec3> positions;
-    std::vector<Mat3> jacobians;
+    std::vector<Mat3> jacobians;  ///< columns ∂x/∂u, ∂x/∂v, ∂x/∂w
     std::vector<LimitAttribute> attributes;
     LimitReport report;
 };

@@ -8,10 +8,8 @@
 namespace subvol {
 
 /// The body that the limit fills, and the one of the cells as they were given, trilinear between their corners.
-///
-/// volume: world³
 struct LimitBody {
-    double volume = 0, given_volume = 0;
+    double volume = 0, given_volume = 0;  ///< world³
     Box bounds, given_bounds;
 
     /// How much the limit differs from the cells: the larger of the difference of volumes, as a part of it, and that of the

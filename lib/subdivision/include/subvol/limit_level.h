@@ -15,24 +15,19 @@
 
 namespace subvol {
 
-/// position_world:        how far a new point may lie from the mean of the parent's points around it
-/// value_of_range:        the same for a new value, as a part of its attribute's range
-/// max_levels, max_cells: the search goes no further
 struct LimitLevelOptions {
-    double position_world = 0;
-    double value_of_range = 1e-3;
-    int max_levels = 4;
-    double max_cells = 3e7;
+    double position_world = 0;     ///< how far a new point may lie from the mean of the parent's points around it
+    double value_of_range = 1e-3;  ///< the same for a new value, as a part of its attribute's range
+    int max_levels = 4;            ///< the search goes to no finer level
+    double max_cells = 3e7;        ///< the search goes no further
 };
 
-/// level:          the level whose trilinear cells approximate the limit
-/// position_world: how far the last new points lay from the cells of the level before
-/// value_of_range: the same for values
-/// converged:      both are within tolerance; otherwise `level` is the finest one within max_levels and max_cells
 struct LimitLevel {
-    int level = 0;
-    double position_world = 0;
-    double value_of_range = 0;
+    int level = 0;              ///< the level whose trilinear cells approximate the limit
+    double position_world = 0;  ///< how far the last new points lay from the cells of the level before
+    double value_of_range = 0;  ///< the same for values
+    /// `position_world` and `value_of_range` are within tolerance; otherwise `level` is the finest one within max_levels and
+    /// max_cells
     bool converged = false;
 };
 
@@ -44,42 +39,32 @@ struct LimitLevel {
 /// throws: Error(InvalidInput) as `for_each_dense_cell`
 [[nodiscard]] LimitLevel find_limit_level(const HexMesh& mesh, RefineOptions refinement, const LimitLevelOptions& options);
 
-/// position_world: how far a piece may lie from the limit
-/// value_of_range: the same for values, as a part of their attribute's range
-/// max_levels:     nodes are of no finer level; with 0 the cells stay as they are
-/// max_bytes:      of pieces that are kept
 struct LimitCellsOptions {
-    double position_world = 0;
-    double value_of_range = 1e-3;
-    int max_levels = 6;
-    std::size_t max_bytes = std::size_t{1} << 30;
+    double position_world = 0;                     ///< how far a piece may lie from the limit
+    double value_of_range = 1e-3;                  ///< the same for values, as a part of their attribute's range
+    int max_levels = 6;                            ///< nodes are of no finer level; with 0 the cells stay as they are
+    std::size_t max_bytes = std::size_t{1} << 30;  ///< the most bytes of pieces that are kept
 };
 
 /// The limit as pieces of 27 nodes, triquadratic between them: control cells, or their children where these are too coarse, or
 /// their children's children. Where the limit is smooth a piece approximates it as well as trilinear cells of two more levels.
-///
-/// cells:  the control cell of each piece, in ascending order
-/// levels: of each piece: 0 for a whole cell; its nodes are vertices of the next level on the limit
-/// lowest: its lowest corner in the cell, in steps of 1/2^level along u, v, w
-/// hull_sides: of each piece: those on the hull of the mesh, bit i for side i of `kCellFaces`
-/// origins: the first node of each piece
-/// nodes:  27 for each piece, u fastest, then v, then w: the position relative to the origin, then the channels of all
-///         attributes, each relative to its origin in its unit (`value`)
-/// names, channels: of the attributes
-/// value_origins: of each channel, `value_origin` of its attribute's range: usually 0
-/// value_units:   of each channel, a power of two: 1 unless values would leave the range of floats
 struct LimitPieces {
-    std::vector<Index> cells;
+    std::vector<Index> cells;  ///< the control cell of each piece, in ascending order
+    /// Level of each piece: 0 for a whole cell; its nodes are vertices of the next level on the limit
     std::vector<std::uint8_t> levels;
+    /// Lowest corner of each piece in the cell, in steps of 1/2^level along u, v, w
     std::vector<std::array<std::uint8_t, 3>> lowest;
-    std::vector<std::uint8_t> hull_sides;
-    std::vector<Vec3> origins;
+    std::vector<std::uint8_t> hull_sides;  ///< sides of each piece on the hull of the mesh, bit i for side i of `kCellFaces`
+    std::vector<Vec3> origins;             ///< first node of each piece
+    /// 27 for each piece, u fastest, then v, then w: the position relative to the origin, then the channels of all attributes,
+    /// each relative to its origin in its unit (`value`)
     FlatArray<float> nodes;
-    std::vector<std::string> names;
-    std::vector<int> channels;
-    std::vector<double> value_origins, value_units;
-    std::size_t node_size = 3;    // numbers per node
-    std::uint64_t mesh_hash = 0;  // of the mesh without attributes
+    std::vector<std::string> names;     ///< names of the attributes
+    std::vector<int> channels;          ///< channels of the attributes
+    std::vector<double> value_origins;  ///< for each channel, `value_origin` of its attribute's range: usually 0
+    std::vector<double> value_units;    ///< for each channel, a power of two: 1 unless values would leave the range of floats
+    std::size_t node_size = 3;          ///< numbers per node
+    std::uint64_t mesh_hash = 0;        ///< of the mesh without attributes
     std::vector<std::uint64_t> attribute_hashes;
 
     static constexpr std::size_t kNodes = 27;
@@ -98,23 +83,17 @@ struct LimitPieces {
 };
 
 /// The limit's pieces, or how fine they are.
-///
-/// level:          the level whose trilinear cells approximate positions as well; surfaces are made of their faces
-/// cell_levels:    the level of the finest nodes in each control cell, at least 1. Empty if options.max_levels is 0: the cells
-///                 stay as they are
-/// pieces:         null if there were more than options.max_bytes; then cells are refined to their cell_levels
-/// piece_count:    how many there are
-/// position_world: how far the pieces are from the limit, as far as the last level that was looked at shows
-/// value_of_range: the same for values
-/// converged:      both are within tolerance
 struct LimitCells {
-    int level = 0;
+    int level = 0;  ///< the level whose trilinear cells approximate positions as well; surfaces are made of their faces
+    /// The level of the finest nodes in each control cell, at least 1. Empty if options.max_levels is 0: the cells stay as they
+    /// are
     std::vector<std::uint8_t> cell_levels;
+    /// Null if there were more than options.max_bytes; then cells are refined to their cell_levels
     std::shared_ptr<const LimitPieces> pieces{};
-    std::size_t piece_count = 0;
-    double position_world = 0;
-    double value_of_range = 0;
-    bool converged = false;
+    std::size_t piece_count = 0;  ///< how many pieces there are
+    double position_world = 0;    ///< how far the pieces are from the limit, as far as the last level that was looked at shows
+    double value_of_range = 0;    ///< the same for values
+    bool converged = false;       ///< `position_world` and `value_of_range` are within tolerance
 };
 
 /// Cuts each cell into pieces that are fine enough. A piece is fine enough if the nodes of its children lie within tolerance of

@@ -9,45 +9,39 @@
 
 namespace subvol {
 
-/// folds:          how the limit is checked
-/// boundary_edges: how far a point of the boundary may move, as a part of its shortest edge; with 0 the boundary stays
-/// rounds:         how often points are moved and the limit is checked again, at most
 struct MendOptions {
-    FoldOptions folds{};
+    FoldOptions folds{};  ///< how the limit is checked
+    /// How far a point of the boundary may move, as a part of its shortest edge; with 0 the boundary stays
     double boundary_edges = 0.1;
-    int rounds = 10;
+    int rounds = 10;  ///< how often points are moved and the limit is checked again, at most
 };
 
 /// The options without those of the check.
 [[nodiscard]] std::vector<Option> options_of(MendOptions& options);
 
-/// before:         what the check found
-/// moved:          control points that lie elsewhere now
-/// farthest_edges: the longest way of a point, in its shortest edges; boundary_edges: the same of the points of the boundary
-/// rounds:         that were made
-/// work, budget:   what was done and the most that is done, in tests of the check and steps that take as long: some 40 µs each.
-///                 Mending ends when the budget is used up, and with what was best until then
-/// left:           cells that still fold or are undecided though they are regular, and why each could not be mended
 struct MendReport {
-    FoldReport before;
-    std::size_t moved = 0;
-    double farthest_edges = 0, boundary_edges = 0;
-    int rounds = 0;
+    FoldReport before;          ///< what the check found
+    std::size_t moved = 0;      ///< control points that lie elsewhere now
+    double farthest_edges = 0;  ///< longest way of a point, in its shortest edges
+    double boundary_edges = 0;  ///< the same for the points of the boundary
+    int rounds = 0;             ///< rounds that were made
+    /// What was done and the most that is done, in tests of the check and steps that take as long: some 40 µs each. Mending
+    /// ends when the budget is used up, and with what was best until then
     std::size_t work = 0, budget = 0;
     struct Left {
         Index cell = 0;
         std::string reason;
     };
+    /// Cells that still fold or are undecided though they are regular, and why each could not be mended
     std::vector<Left> left;
 };
 
 /// The report under its members' names, but "folded" and "open" for the numbers of cells before.
 [[nodiscard]] Facts facts_of(const MendReport& report);
 
-/// check: of the mesh as it is now
 struct Mended {
     HexMesh mesh;
-    FoldCheck check;
+    FoldCheck check;  ///< check of the mesh as it is now
     MendReport report;
 };
 

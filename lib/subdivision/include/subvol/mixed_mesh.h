@@ -13,19 +13,17 @@ namespace subvol {
 /// A control mesh of tetrahedra, with octahedra, prisms, pyramids and hexahedra where there are some.
 ///
 /// All cells are right-handed; `make_mixed_mesh` makes them so.
-///
-/// tets:      (p1−p0, p2−p0, p3−p0) is right-handed; the box spline joins the middles of the edges 0–1 and 2–3
-/// octahedra: three pairs of opposite corners, +x −x +y −y +z −z; the box spline uses the diagonal 0–1
-/// prisms, pyramids: as in MixedCells
-/// creases:   boundary edges to be kept sharp, besides those that the default rule finds; two point ids, smaller first
 struct MixedMesh {
     std::vector<Vec3> points;
+    /// (p1−p0, p2−p0, p3−p0) is right-handed; the box spline joins the middles of the edges 0–1 and 2–3
     std::vector<std::array<Index, 4>> tets;
+    /// Three pairs of opposite corners, +x −x +y −y +z −z; the box spline uses the diagonal 0–1
     std::vector<std::array<Index, 6>> octahedra;
-    std::vector<std::array<Index, 6>> prisms;
-    std::vector<std::array<Index, 5>> pyramids;
+    std::vector<std::array<Index, 6>> prisms;    ///< as in MixedCells
+    std::vector<std::array<Index, 5>> pyramids;  ///< as in MixedCells
     std::vector<std::array<Index, 8>> hexes;
     std::vector<Attribute> attributes;
+    /// Boundary edges to be kept sharp, besides those that the default rule finds; two point ids, smaller first
     std::vector<std::array<Index, 2>> creases;
 
     [[nodiscard]] std::size_t cells() const {
@@ -62,11 +60,11 @@ void validate(const MixedMesh& mesh);
 /// cut into tetrahedra, then all cells are split by `split_into_hexes`. Creases are left out.
 [[nodiscard]] HexMesh in_hexahedra(const MixedMesh& mesh);
 
-/// inverted: cells with a corner at which the edges are left-handed; octahedra with a part that is not right-handed
-/// worst:    the least of the volumes of the tetrahedra at the corners, divided by (root mean square edge)³ and scaled so
-///           that that of a regular tetrahedron is 1; of octahedra, prisms, pyramids and hexahedra so that theirs is 1
 struct MixedShape {
+    /// Cells with a corner at which the edges are left-handed; octahedra with a part that is not right-handed
     std::size_t inverted = 0;
+    /// The least of the volumes of the tetrahedra at the corners, divided by (root mean square edge)³ and scaled so that that
+    /// of a regular tetrahedron is 1; of octahedra, prisms, pyramids and hexahedra so that theirs is 1
     double worst = 1;
     double volume = 0;
 };

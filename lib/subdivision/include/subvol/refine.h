@@ -14,10 +14,9 @@
 
 namespace subvol {
 
-/// levels: 0 to 10
 struct RefineOptions {
     SchemeOptions scheme{};
-    int levels = 1;
+    int levels = 1;  ///< 0 to 10
     Progress* progress = nullptr;
 };
 
@@ -44,15 +43,12 @@ struct RefineOptions {
 [[nodiscard]] HexMesh refine_cells(const HexMesh& mesh, std::span<const Index> cells, const RefineOptions& options = {});
 
 /// A refinement that is computed once and applied any number of times: for a control mesh that moves, or for many fields.
-///
-/// levels: level l (from 0) makes the points of level l+1 from those of level l
-/// cells, creases, sharp_faces: of the finest level
 struct RefinementTables {
     std::size_t control_points = 0;
-    std::vector<StencilTable> levels;
-    std::vector<std::array<Index, 8>> cells;
-    std::vector<std::array<Index, 2>> creases;
-    std::vector<std::array<Index, 4>> sharp_faces;
+    std::vector<StencilTable> levels;               ///< level l (from 0) makes the points of level l+1 from those of level l
+    std::vector<std::array<Index, 8>> cells;        ///< cells of the finest level
+    std::vector<std::array<Index, 2>> creases;      ///< creases of the finest level
+    std::vector<std::array<Index, 4>> sharp_faces;  ///< sharp faces of the finest level
 
     [[nodiscard]] std::size_t points() const { return levels.empty() ? control_points : levels.back().rows(); }
 

@@ -27,23 +27,18 @@ struct NameTable<TetScheme> {
 
 inline constexpr int kMostTetLevels = 8;
 
-/// levels:           0 to kMostTetLevels
-/// crease_angle_deg: boundary edges bent by more than this become creases too; (0,180], 180: none
 struct MixedRefineOptions {
     TetScheme scheme = TetScheme::Tetoct;
-    int levels = 1;
-    std::optional<double> crease_angle_deg{};
+    int levels = 1;                            ///< 0 to kMostTetLevels
+    std::optional<double> crease_angle_deg{};  ///< boundary edges bent by more than this become creases too; (0,180], 180: none
     Progress* progress = nullptr;
 };
 
 /// A refinement that is computed once and applied any number of times.
-///
-/// levels: level l (from 0) makes the points of level l+1 from those of level l
-/// fine:   the cells and creases of the finest level, without points and attributes
 struct MixedTables {
     std::size_t control_points = 0;
-    std::vector<StencilTable> levels;
-    MixedMesh fine;
+    std::vector<StencilTable> levels;  ///< level l (from 0) makes the points of level l+1 from those of level l
+    MixedMesh fine;                    ///< the cells and creases of the finest level, without points and attributes
 
     [[nodiscard]] std::size_t points() const { return levels.empty() ? control_points : levels.back().rows(); }
 
@@ -79,23 +74,18 @@ struct MixedTables {
 
 /// The control values whose limit at the vertices has the given points and attributes: v ← v + (given − limit of v), until
 /// nothing moves by more than `tolerance` of the range, or `most_steps` times.
-///
-/// steps:    those made
-/// left:     the largest remaining part of the range of an attribute, or of the box's longest side
 struct MixedInterpolation {
     MixedMesh mesh;
-    int steps = 0;
-    double left = 0;
+    int steps = 0;    ///< steps that were made
+    double left = 0;  ///< the largest remaining part of the range of an attribute, or of the box's longest side
 };
 [[nodiscard]] MixedInterpolation interpolate_vertices(const MixedMesh& given, TetScheme scheme, double tolerance = 1e-6,
                                                       int most_steps = 60);
 
 /// The level of a mesh on the limit that passes through the mesh's points and values.
-///
-/// left: as of MixedInterpolation
 struct MixedVolume {
     MixedMesh mesh;
-    double left = 0;
+    double left = 0;  ///< as in MixedInterpolation
 };
 
 /// Interpolates the mesh with its creases, refines it and puts the vertices on the limit: between them the volume is taken as

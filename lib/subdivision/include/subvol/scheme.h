@@ -27,12 +27,10 @@ struct NameTable<Scheme> {
 [[nodiscard]] bool interpolates(Scheme scheme);
 
 /// A scheme with its parameters, for all calls that refine, sample or evaluate a volume.
-///
-/// tension:          ω of MCQ: 0 is the trilinear split; cubics are reproduced at 1/16 only
-/// crease_angle_deg: boundary edges bent by more than this become creases too; (0,180], 180: none do
 struct SchemeOptions {
     Scheme kind = Scheme::Mcq;
-    double tension = 1.0 / 16.0;
+    double tension = 1.0 / 16.0;  ///< ω of MCQ: 0 is the trilinear split; cubics are reproduced at 1/16 only
+    /// Boundary edges bent by more than this become creases too; (0,180], 180: none do
     std::optional<double> crease_angle_deg{};
 };
 

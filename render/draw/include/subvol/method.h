@@ -59,18 +59,13 @@ using Bodies = unsigned;
 }
 
 /// Which methods and bodies read an option, and why the others do not.
-///
-/// name:    of the command, without dashes
-/// keyword: of Python; empty: Python does not have it
-/// reason:  why other methods do not read it
-/// bricks:  the methods that read it from a folder of bricks, if `bodies` contains these
 struct OptionUse {
-    std::string_view name;
-    std::string_view keyword;
+    std::string_view name;     ///< the name in the command, without dashes
+    std::string_view keyword;  ///< the keyword in Python; empty: Python does not have it
     Methods methods;
     Bodies bodies;
-    std::string_view reason;
-    Methods bricks = ~0U;
+    std::string_view reason;  ///< why other methods do not read it
+    Methods bricks = ~0U;     ///< the methods that read it from a folder of bricks, if `bodies` contains these
 };
 
 /// All options of pictures. This is the only place that knows which method reads which of them: the errors of the command and

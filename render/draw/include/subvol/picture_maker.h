@@ -27,46 +27,37 @@
 namespace subvol {
 
 /// What may change from picture to picture.
-///
-/// samples: n × n rays or places for each pixel; none: 2 for solids, else 1
 struct PictureStyle {
     Method method = Method::Splat;
     LookOptions look{};
-    std::optional<int> samples{};
+    std::optional<int> samples{};  ///< n × n rays or places for each pixel; none: 2 for solids, else 1
     Clip clip{};
 
     [[nodiscard]] int sample_count() const { return samples.value_or(look.look == Look::Solid ? 2 : 1); }
 };
 
 /// All options of pictures, for every method.
-///
-/// kernels:         how meshes become kernels; its scheme is that of all methods, and so are its levels (none: the limit, for
-///                  tets and pt level 1, of more than 300,000 cells level 0)
-/// drop_invisible:  kernels that the colours of the first picture make invisible are dropped from all
-/// splat:           how kernels are drawn; method, samples and clip are those of the style, channels those of the body, and
-///                  light is added where the look has it
-/// order, kbuffer:  of pt
-/// image_tolerance: the RMS by which colours may be off; none: 1e-3 for sheets, and the level of dense is chosen by how far it
-///                  lies from the limit in the picture
-/// max_levels:      of dense
-/// lod:             kernels are merged as long as they are narrower than so many pixels; of pt the fraction of inner faces
-///                  that is drawn
-/// seconds:         the time that a picture may take
-/// memory_bytes:    of bricks, for kernels or cells of a part of the picture
-/// names:           how errors call the options
 struct MethodOptions {
     PictureStyle style{};
+    /// How meshes become kernels; its scheme is that of all methods, and so are its levels (none: the limit, for tets and pt
+    /// level 1, of more than 300,000 cells level 0).
     KernelOptions kernels{};
-    bool drop_invisible = false;
+    bool drop_invisible = false;  ///< kernels that the colours of the first picture make invisible are dropped from all
+    /// How kernels are drawn; method, samples and clip are those of the style, channels those of the body, and light is added
+    /// where the look has it.
     SplatOptions splat{};
-    ProjectedOrder order = ProjectedOrder::Topological;
-    int kbuffer = 6;
+    ProjectedOrder order = ProjectedOrder::Topological;  ///< for pt
+    int kbuffer = 6;                                     ///< for pt
+    /// The RMS by which colours may be off; none: 1e-3 for sheets, and the level of dense is chosen by how far it lies from the
+    /// limit in the picture.
     std::optional<double> image_tolerance{};
-    int max_levels = 6;
+    int max_levels = 6;  ///< for dense
+    /// Kernels are merged as long as they are narrower than so many pixels; for pt the fraction of inner faces that is drawn.
     std::optional<double> lod{};
-    std::optional<double> seconds{};
+    std::optional<double> seconds{};  ///< the time that a picture may take
+    /// For bricks: the memory for kernels or cells of a part of the picture.
     std::uint64_t memory_bytes = std::uint64_t{1} << 30;
-    OptionNames names = OptionNames::Flags;
+    OptionNames names = OptionNames::Flags;  ///< how errors call the options
 };
 
 /// What users choose beside the method, the kernels (`KernelOptions`) and how these are drawn (`SplatOptions`).
@@ -83,13 +74,11 @@ struct PictureChoices {
 [[nodiscard]] std::vector<Option> options_of(PictureChoices& choices);
 
 /// All that users choose of a picture of a mesh, but its view and its colours.
-///
-/// refinement: its scheme and its level (`levels`, none: as `KernelOptions::levels`) are those of all methods
 struct PictureSettings {
     MethodOptions options{.names = OptionNames::Keywords};
     PictureChoices choices{};
-    RefineOptions refinement{};
-    std::optional<int> levels{};
+    RefineOptions refinement{};   ///< its scheme is that of all methods
+    std::optional<int> levels{};  ///< the level of all methods; none: as `KernelOptions::levels`
 
     [[nodiscard]] MethodOptions chosen() const;
 };
@@ -105,34 +94,28 @@ void validate(const PictureStyle& style, OptionNames names = OptionNames::Flags)
 void validate(const MethodOptions& options);
 
 /// What is drawn; one of the pointers is set. All is referred to, not copied.
-///
-/// mesh:     its first attribute is shown, its last one gives the colours; of pieces there is one attribute
-/// tets:     the mesh is a level of a scheme of tetrahedra on its limit, in hexahedra
-/// kernels:  with `voxels` those that were made of them, for the methods that draw kernels
-/// file:     each view reads what it needs
-/// channels: of kernels or of the file: the first is shown, the last gives the colours; empty: all
-/// shape:    meshes with the same number have the same cells; 0: no other has them
-/// moved:    the mesh is being moved, so that tables for its cells are worth while
-/// of_file:  the mesh is one that a user has: a warning says if what is drawn shows that the field of the colours leaves its
-///           range in the mesh by more than 1 % of it
 struct PictureBody {
+    /// Its first attribute is shown, its last one gives the colours; a mesh in pieces has one attribute.
     std::optional<MeshSource> mesh{};
-    bool tets = false;
+    bool tets = false;  ///< the mesh is a level of a scheme of tetrahedra on its limit, in hexahedra
+    /// Beside `voxels`: the kernels that were made of the voxels, for the methods that draw kernels.
     const RbfVolume* kernels = nullptr;
     const Voxels* voxels = nullptr;
-    KernelFile* file = nullptr;
+    KernelFile* file = nullptr;  ///< each view reads what it needs
+    /// The channels of the kernels or of the file: the first is shown, the last gives the colours; empty: all.
     std::vector<std::size_t> channels{};
-    std::uint64_t shape = 0;
-    bool moved = false;
+    std::uint64_t shape = 0;  ///< meshes with the same number have the same cells; 0: no other has them
+    bool moved = false;       ///< the mesh is being moved, so that tables for its cells are worth while
+    /// The mesh is one that a user has: a warning says if what is drawn shows that the field of the colours leaves its range in
+    /// the mesh by more than 1 % of it.
     bool of_file = false;
 
     [[nodiscard]] BodyKind kind() const;
 };
 
-/// depth: for each pixel, as of SplatResult; empty: the method finds none
 struct Picture {
     Image image;
-    std::vector<float> depth{};
+    std::vector<float> depth{};  ///< for each pixel, as of SplatResult; empty: the method finds none
     Facts facts{};
 };
 

@@ -7,16 +7,13 @@
 
 namespace subvol {
 
-/// seconds:      how long the work may take; the first picture is always finished
-/// footprint_px: distances between neighbouring kernels that are tried when there is time left, in pixels, descending
-/// sample:       how the mesh is sampled; the finer steps set its footprint
-/// splat:        options of the last pictures; the first ones have fewer sheets
-/// progress:     its `picture` gets every picture as soon as it is drawn; a request to stop ends the work as usual
 struct ProgressiveOptions {
-    double seconds = 1;
+    double seconds = 1;  ///< how long the work may take; the first picture is always finished
+    /// Distances between neighbouring kernels that are tried when there is time left, in pixels, descending.
     std::vector<double> footprint_px{4, 2, 1};
-    SampleOptions sample{};
-    SplatOptions splat{};
+    SampleOptions sample{};  ///< how the mesh is sampled; the finer steps set its footprint
+    SplatOptions splat{};    ///< options of the last pictures; the first ones have fewer sheets
+    /// Its `picture` gets every picture as soon as it is drawn; a request to stop ends the work as usual.
     Progress* progress = nullptr;
 };
 
@@ -37,14 +34,12 @@ struct ProgressiveResult {
 [[nodiscard]] ProgressiveResult render_progressively(const HexMesh& mesh, const View& view, const Optics& optics,
                                                      const ProgressiveOptions& options = {});
 
-/// seconds:   how long the work may take; the first picture is always finished
-/// lod:       fractions of the inner faces that are drawn on the way, ascending, 0..1
-/// projected: how pictures are drawn; order, lod and progress are replaced, and samples count for the last picture only
-/// progress:  its `picture` gets every picture as soon as it is drawn; a request to stop ends the work as usual
 struct ProjectedProgressiveOptions {
-    double seconds = 1;
-    std::vector<double> lod{0.03, 0.1, 0.3};
+    double seconds = 1;                       ///< how long the work may take; the first picture is always finished
+    std::vector<double> lod{0.03, 0.1, 0.3};  ///< fractions of the inner faces that are drawn on the way, ascending, 0..1
+    /// How pictures are drawn; order, lod and progress are replaced, and samples count for the last picture only.
     ProjectedOptions projected{};
+    /// Its `picture` gets every picture as soon as it is drawn; a request to stop ends the work as usual.
     Progress* progress = nullptr;
 };
 

@@ -14,16 +14,14 @@
 
 namespace subvol {
 
-/// rows:         of the picture that are drawn, whole rows of tiles; the others stay empty, or have some kernels only
-/// memory_bytes: about the most that kernels take while some regions are drawn; besides there are the boundary and a
-///               brick
-/// scratch:      a folder for kernels that wait for their region of the picture, some 90 bytes each; empty: the folder for
-///               temporary files
 struct BrickSplatOptions {
     SampleOptions sample{};
     SplatOptions splat{};
+    /// The rows of the picture that are drawn, whole rows of tiles; the others stay empty, or have some kernels only.
     PixelRows rows{};
+    /// About the most that kernels take while some regions are drawn; besides there are the boundary and a brick.
     std::uint64_t memory_bytes = std::uint64_t{1} << 30;
+    /// Folder for kernels that wait for their region of the picture, some 90 bytes each; empty: the folder for temporary files.
     std::filesystem::path scratch{};
 };
 

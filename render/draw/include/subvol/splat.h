@@ -33,9 +33,9 @@ struct SplatReport {
     std::string warning{};            // why the CPU draws in place of a GPU that failed, in the first picture since then
 };
 
-/// depth: for each pixel the mean eye depth of what is seen, weighted by opacity; infinity where nothing is seen
 struct SplatResult {
     Image image;
+    /// For each pixel the mean eye depth of what is seen, weighted by opacity; infinity where nothing is seen.
     std::vector<float> depth;
     SplatReport report;
 };

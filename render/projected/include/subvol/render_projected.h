@@ -39,23 +39,19 @@ struct NameTable<ProjectedOrder> {
         {ProjectedOrder::Havs, "havs", "faces by centroid, then a k-buffer per pixel"}};
 };
 
-/// device:           the OpenGL device's number in gl_devices(); none: the first hardware, else software. A ProjectedRenderer
-///                   keeps the device that it was made for
-/// kbuffer:          Havs: entries of the k-buffer, 1..65536
-/// lod:              Havs: the fraction of the inner faces that is drawn, 0..1; those of the boundary always are
-/// samples:          the mean of n × n pictures, moved by parts of a pixel, is taken, 1..16
-/// count_violations: draws a second time with lists, to find where the order is wrong. Lists compare themselves with the order
-///                   by centroids; Havs counts without a second picture
-/// clip:             how the volume is cut open
-/// list_bytes:       the most memory of lists, those of Havs too; a picture that needs more is drawn in parts
 struct ProjectedOptions {
     ProjectedOrder order = ProjectedOrder::Topological;
+    /// The OpenGL device's number in gl_devices(); none: the first hardware, else software. A ProjectedRenderer keeps the
+    /// device that it was made for.
     std::optional<int> device{};
-    int kbuffer = 6;
-    double lod = 1;
-    int samples = 1;
+    int kbuffer = 6;  ///< Havs: entries of the k-buffer, 1..65536
+    double lod = 1;   ///< Havs: the fraction of the inner faces that is drawn, 0..1; those of the boundary always are
+    int samples = 1;  ///< the mean of n × n pictures, moved by parts of a pixel, is taken, 1..16
+    /// Draws a second time with lists, to find where the order is wrong. Lists compare themselves with the order by centroids;
+    /// Havs counts without a second picture.
     bool count_violations = false;
-    Clip clip{};
+    Clip clip{};  ///< how the volume is cut open
+    /// The most memory of lists, those of Havs too; a picture that needs more is drawn in parts.
     std::size_t list_bytes = std::size_t{1} << 28;
     Progress* progress = nullptr;
 };

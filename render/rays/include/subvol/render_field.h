@@ -12,13 +12,10 @@
 
 namespace subvol {
 
-/// step_world: distance between samples, > 0; entries and exits are found by bisection to 1e-9 of it
-/// samples:    n × n rays for each pixel on a regular grid, 1..16
-/// clip:       how the volume is cut open
 struct MarchOptions {
-    double step_world = 0.002;
-    int samples = 1;
-    Clip clip{};
+    double step_world = 0.002;  ///< distance between samples, > 0; entries and exits are found by bisection to 1e-9 of it
+    int samples = 1;            ///< n × n rays for each pixel on a regular grid, 1..16
+    Clip clip{};                ///< how the volume is cut open
     Progress* progress = nullptr;
 };
 

@@ -12,12 +12,10 @@
 
 namespace subvol {
 
-/// samples:   n × n rays for each pixel on a regular grid, 1..16
-/// tolerance: how far the value may be from the straight lines that are integrated, as a part of the range of the knots, > 0
-/// clip:      how the volume is cut open
 struct GridOptions {
-    int samples = 1;
-    Clip clip{};
+    int samples = 1;  ///< n × n rays for each pixel on a regular grid, 1..16
+    Clip clip{};      ///< how the volume is cut open
+    /// How far the value may be from the straight lines that are integrated, as a part of the range of the knots, > 0.
     double tolerance = 1e-4;
     Progress* progress = nullptr;
 };

@@ -13,23 +13,19 @@
 namespace subvol {
 
 /// Triangles with a value at each point, such as those of `shell_surface`.
-///
-/// opacities: of each point, linear on triangles, 0 to 1: what part of the light from behind a surface keeps off; empty: opaque
 struct ColoredSurface {
     Surface surface;
     std::vector<double> values;
+    /// Opacity at each point, linear on triangles, 0 to 1: the part of the light from behind that it keeps off; empty: opaque.
     std::vector<float> opacities{};
 };
 
-/// samples: those of the picture: n × n places in each pixel
-/// clip:    that of the picture, without its slices
-/// whole:   the clip cuts the volume, but not the triangles
-/// ended:   each ray of the volume has ended where it meets the triangles (`ended_at`), so that they lie in its depth
 struct ShellOptions {
     Shading shading{};
-    int samples = 1;
-    Clip clip{};
-    bool whole = false;
+    int samples = 1;     ///< the samples of the picture: n × n places in each pixel
+    Clip clip{};         ///< the clip of the picture, without its slices
+    bool whole = false;  ///< the clip cuts the volume, but not the triangles
+    /// Each ray of the volume has ended where it meets the triangles (`ended_at`), so that they lie in its depth.
     bool ended = false;
 };
 

@@ -15,13 +15,10 @@
 namespace subvol {
 
 /// What users choose of streamlines and arrows.
-///
-/// streamlines: the vector that streamlines follow, a quantity as for `vectors_of`; empty: there are none
-/// glyphs:      the one that arrows show
-/// seed_count:  places of each text of seeds, and of the middles of cells without them
 struct FlowChoices {
+    /// The vectors that streamlines follow and that arrows show, quantities as for `vectors_of`; empty: there are none.
     std::string streamlines{}, glyphs{};
-    std::size_t seed_count = 30;
+    std::size_t seed_count = 30;  ///< places of each text of seeds, and of the middles of cells without them
     StreamlineOptions lines{};
     TubeOptions tubes{};
     GlyphOptions arrows{};
@@ -39,17 +36,13 @@ struct FlowChoices {
 void veil_body(LookChoices& look, const Clip& clip);
 
 /// What is drawn of vectors within a body: streamlines as tubes, and arrows.
-///
-/// stream_vectors: x, y, z at each point of the mesh, which streamlines follow; empty: there are none
-/// seeds:          where streamlines start
-/// glyph_vectors:  those that arrows show; empty: there are none
-/// limit, progress: of the mesh
 struct Flow {
     FlowChoices chosen{};
+    /// x, y, z at each point of the mesh, which streamlines follow; empty: there are none.
     std::vector<double> stream_vectors{};
-    std::vector<Vec3> seeds{};
-    std::vector<double> glyph_vectors{};
-    LimitOptions limit{};
+    std::vector<Vec3> seeds{};            ///< where streamlines start
+    std::vector<double> glyph_vectors{};  ///< x, y, z at each point of the mesh, which arrows show; empty: there are none
+    LimitOptions limit{};                 ///< options of the mesh's limit, with the progress
 };
 
 /// Vectors of both, without seeds.

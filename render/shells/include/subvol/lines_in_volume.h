@@ -13,10 +13,8 @@
 namespace subvol {
 
 /// Lines within a volume, at most one in each pixel.
-///
-/// depths: eye depths, one for each pixel; 0: there is no line
-/// covers: the part of the pixel that it covers, with its alpha
 struct LineLayer {
+    /// For each pixel the eye depth of the line, 0 if there is none, and the part of the pixel that it covers, with its alpha.
     std::vector<float> depths, covers;
 };
 

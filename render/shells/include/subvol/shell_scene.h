@@ -12,16 +12,14 @@
 namespace subvol {
 
 /// The shells and beams of a picture on the limit, and the boundary of the volume that may hide them.
-///
-/// control: as they were read, for edges drawn over the picture
 struct ShellScene {
     ColoredSurface drawn;
     Surface boundary;
-    Shells control;
+    Shells control;  ///< the shells as they were read, for edges drawn over the picture
     Optics optics;
     int samples = 1;
     Clip clip{};
-    bool whole = false, ended = false;  // as of ShellOptions
+    bool whole = false, ended = false;  ///< as in ShellOptions
 
     /// Draws into a finished picture, as `subvol::draw_shells`.
     void draw_into(Image& image, std::span<float> depth, const View& view) const;

@@ -34,36 +34,30 @@ struct NameTable<SplatMethod> {
         {SplatMethod::Auto, "auto"}, {SplatMethod::Gl, "gl"}, {SplatMethod::Cpu, "cpu"}};
 };
 
-/// samples:       the mean of n × n places on a regular grid in each pixel is taken, 1..16
-/// sheets:        planes of constant eye depth over the volume's depth range, 2..65536; 0: as many as the kernels need for the
-///                tolerance. Where rays enter and leave the volume it is sampled besides, so bodies thinner than a sheet are
-///                not lost
-/// image_tolerance: > 0: without a number of sheets, the RMS by which colours may differ from those of very many; single pixels
-///                may by about as much, as kernels that are thin for the sheets get more of them (SplatReport::sheets_finest)
-/// needed_sheets: > 0: without a number of sheets, what `sheets_of_picture` has found for a picture of which this volume has
-///                some of the kernels
-/// channel:       the channel of the volume that is shown
-/// device:        the OpenGL device's number in gl_devices(); none: the first hardware, else software
-/// color_channel: a channel for the colours that is not that of the opacities; its colours are not pre-integrated
-/// clip:          how the volume is cut open; Splatter::set_clip changes it later
-/// shadows:       whether the volume shadows itself from the key light (of `shading`, else of `Shading{}`); where no light of
-///                it arrives, the part Shading::ambient of colours without light on surfaces is left. Not with Sheets
-/// ambient_occlusion: > 0: darkens places from which less than half of the directions are open over this distance, in parts
-///                of the volume's diagonal, at most 1. Not with Sheets
-/// normalized:    whether sums are divided by the sum of weights; if not, kernels add up as they are
 struct SplatOptions {
     SplatMethod method = SplatMethod::Auto;
-    std::optional<int> device{};
-    int samples = 1;
+    std::optional<int> device{};  ///< the OpenGL device's number in gl_devices(); none: the first hardware, else software
+    int samples = 1;              ///< the mean of n × n places on a regular grid in each pixel is taken, 1..16
+    /// Planes of constant eye depth over the volume's depth range, 2..65536; 0: as many as the kernels need for the tolerance.
+    /// Where rays enter and leave the volume it is sampled besides, so bodies thinner than a sheet are not lost.
     int sheets = 0;
+    /// Without a number of sheets, the RMS by which colours may differ from those of very many sheets, > 0; single pixels may
+    /// differ by about as much, as kernels that are thin for the sheets get more of them (SplatReport::sheets_finest).
     double image_tolerance = 1e-3;
+    /// If above 0: without a number of sheets, what `sheets_of_picture` has found for a picture of which this volume has some
+    /// of the kernels.
     int needed_sheets = 0;
-    std::size_t channel = 0;
+    std::size_t channel = 0;  ///< the channel of the volume that is shown
+    /// A channel for the colours that is not that of the opacities; its colours are not pre-integrated.
     std::optional<std::size_t> color_channel{};
-    bool normalized = true;
+    bool normalized = true;  ///< whether sums are divided by the sum of weights; if not, kernels add up as they are
     std::optional<Shading> shading{};
-    Clip clip{};
+    Clip clip{};  ///< how the volume is cut open; Splatter::set_clip changes it later
+    /// Whether the volume shadows itself from the key light (of `shading`, else of `Shading{}`); where no light of it arrives,
+    /// the part Shading::ambient of colours without light on surfaces is left. Not with Sheets.
     bool shadows = false;
+    /// If above 0: darkens places from which less than half of the directions are open over this distance, in parts of the
+    /// volume's diagonal, at most 1. Not with Sheets.
     double ambient_occlusion = 0;
     Progress* progress = nullptr;
 };

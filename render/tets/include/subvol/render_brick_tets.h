@@ -11,23 +11,18 @@
 
 namespace subvol {
 
-/// refine:       of the mesh, onto the limit where the scheme does not interpolate
-/// tets:         as for a mesh in one piece
-/// memory_bytes: about the most that the cells of a part of the picture take; besides there is a brick
 struct BrickTetsOptions {
-    RefineOptions refine{};
-    TetsOptions tets{};
+    RefineOptions refine{};  ///< how the mesh is refined, onto the limit where the scheme does not interpolate
+    TetsOptions tets{};      ///< as for a mesh in one piece
+    /// About the most that the cells of a part of the picture take; besides there is a brick.
     std::uint64_t memory_bytes = std::uint64_t{1} << 30;
 };
 
 /// What every picture of the tetrahedra of a refined mesh in bricks depends on.
-///
-/// bounds:    of the refined points, on the limit
-/// of_bricks: the same of each brick
-/// overhang:  how far a refined cell reaches out of the box of its control cell at most, as a part of that box's diagonal
 struct BrickTets {
-    Box bounds{};
-    std::vector<Box> of_bricks{};
+    Box bounds{};                  ///< the box of the refined points, on the limit
+    std::vector<Box> of_bricks{};  ///< the box of the refined points of each brick
+    /// How far a refined cell reaches out of the box of its control cell at most, as a part of that box's diagonal.
     double overhang = 0;
     std::size_t tets = 0, degenerate_tets = 0, inverted_tets = 0;
 

@@ -16,13 +16,10 @@
 
 namespace subvol {
 
-/// samples: n × n rays for each pixel on a regular grid, 1..16
-/// clip:    how the volume is cut open
-/// rows:    of the picture that are drawn; the others stay empty
 struct TetsOptions {
-    int samples = 1;
-    Clip clip{};
-    PixelRows rows{};
+    int samples = 1;   ///< n × n rays for each pixel on a regular grid, 1..16
+    Clip clip{};       ///< how the volume is cut open
+    PixelRows rows{};  ///< the rows of the picture that are drawn; the others stay empty
     Progress* progress = nullptr;
 };
 

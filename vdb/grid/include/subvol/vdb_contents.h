@@ -11,14 +11,12 @@
 
 namespace subvol {
 
-/// grids:  of floats, vectors of floats, 32-bit integers and masks
-/// others: those of other types, which are not read
 struct VdbContents {
     struct Other {
         std::string name, type;
     };
-    std::vector<VdbGrid> grids;
-    std::vector<Other> others;
+    std::vector<VdbGrid> grids;  ///< grids of floats, vectors of floats, 32-bit integers and masks
+    std::vector<Other> others;   ///< grids of other types, which are not read
 };
 
 /// Reads all grids of a `.vdb` file, in the file's order.

@@ -15,24 +15,21 @@
 
 namespace subvol {
 
-/// kind:     float, vector, integer, mask, or the name of another type
-/// level_set: its values are distances from a surface, below 0 inside; the file says so
-/// min, max: of the active values; of a vector its length
-/// outside:  the value that stands for places where there is none: 0; of a level set the background, which is the largest
-///           distance that it has
-/// frame:    what named views show: the box of the mesh or the points that the grid was made of, which its file has; of other
-///           grids, the box of the active voxels
 struct GridReport {
     std::string name;
-    std::string kind;
-    bool level_set = false;
+    std::string kind;        ///< float, vector, integer, mask, or the name of another type
+    bool level_set = false;  ///< whether the values are distances from a surface, below 0 inside; the file says so
     std::size_t active_voxels = 0;
     double voxel_size_world = 0;
-    std::size_t bytes = 0;  // of the tree in memory
-    double min = 0, max = 0;
+    std::size_t bytes = 0;    ///< size of the tree in memory
+    double min = 0, max = 0;  ///< over the active values; for a vector, over its length
+    /// The value that stands for places where there is none: 0; for a level set the background, which is the largest distance
+    /// that it has.
     double outside = 0;
-    Box bounds{};  // of the active voxels' centres, world; empty if there are none
-    Box frame{};   // empty if there are no active voxels
+    Box bounds{};  ///< the box of the active voxels' centres, world; empty if there are none
+    /// What named views show: the box of the mesh or the points that the grid was made of, which its file has; for other grids,
+    /// the box of the active voxels. Empty if there are no active voxels.
+    Box frame{};
 };
 
 namespace detail {

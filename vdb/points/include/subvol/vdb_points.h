@@ -8,9 +8,8 @@
 
 namespace subvol {
 
-/// points_per_voxel: on average, > 0
 struct VdbPointsOptions {
-    double points_per_voxel = 4;
+    double points_per_voxel = 4;  ///< on average, > 0
     std::string creator = "OpenSubVol";
 };
 

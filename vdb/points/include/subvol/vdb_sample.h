@@ -9,23 +9,20 @@
 
 namespace subvol {
 
-/// spacing_world: distance of the kernels, rounded to a whole number of voxels; up to one voxel, each voxel becomes a kernel
-/// correction:    its derivatives are differences between voxels; of the body of a level set there are none
-/// kernel:        must be radial
 struct VoxelSampleOptions {
+    /// Distance of the kernels, rounded to a whole number of voxels; up to one voxel, each voxel becomes a kernel.
     double spacing_world = 0;
+    /// Its derivatives are differences between voxels; the body of a level set has none.
     Correction correction = Correction::Second;
-    Kernel kernel{};
+    Kernel kernel{};  ///< must be radial
     Progress* progress = nullptr;
 };
 
-/// voxels_a_side: of the block that becomes a kernel
-/// left_out:      active voxels in blocks of which more than half is inactive
 struct VoxelSampleReport {
     std::size_t points = 0;
-    int voxels_a_side = 1;
+    int voxels_a_side = 1;  ///< side of the block that becomes a kernel, in voxels
     double spacing_world = 0;
-    std::size_t left_out = 0;
+    std::size_t left_out = 0;  ///< active voxels in blocks of which more than half is inactive
 };
 
 struct VoxelSampleResult {

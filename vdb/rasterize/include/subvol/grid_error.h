@@ -11,21 +11,18 @@
 
 namespace subvol {
 
-/// half: the grid will be written with 16 bits a value: the bound has their rounding
 struct GridErrorOptions {
     SchemeOptions scheme{};
-    bool half = false;
+    bool half = false;  ///< the grid will be written with 16 bits a value: the bound has their rounding
     Progress* progress = nullptr;
 };
 
-/// grid:     of floats, named NAME_error, with the active voxels of the other: an upper bound of |value − limit| at each centre
-/// max, rms: over its active voxels, in the field's unit
-/// outside:  voxels whose centre lies outside the limit, by less than the grid's tolerance of positions or by its rounding;
-///           they are compared with the nearest place of the boundary, or if that is not within a voxel, have the field's
-///           whole range
 struct GridError {
+    /// Grid of floats, named NAME_error, with the active voxels of the other: an upper bound of |value − limit| at each centre.
     VdbGrid grid;
-    double max = 0, rms = 0;
+    double max = 0, rms = 0;  ///< over its active voxels, in the field's unit
+    /// Voxels whose centre lies outside the limit, by less than the grid's tolerance of positions or by its rounding; they are
+    /// compared with the nearest place of the boundary, or if that is not within a voxel, have the field's whole range.
     std::size_t outside = 0;
 };
 

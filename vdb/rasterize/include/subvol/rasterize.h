@@ -21,58 +21,48 @@
 
 namespace subvol {
 
-/// half_width_voxels: voxels up to this distance on both sides of the surface are active; 1 to 1000
 struct LevelSetOptions {
     std::string name = "sdf";
-    double half_width_voxels = 3;
+    double half_width_voxels = 3;  ///< voxels up to this distance on both sides of the surface are active; 1 to 1000
 };
 
 /// The three pointers are not owned; what they point to must live as long as the call that gets the options.
-///
-/// voxel_size_world: > 0, or 0 to use `resolution`; resolution: voxels along the longest side of the bounding box
-/// like:             null, or a grid whose voxels are used instead of both; its transform must be linear
-/// refine, on_limit: what is rasterized: the trilinear cells of the refined mesh (levels 0: of the mesh itself), whose
-///                   vertices stay in place or are moved to the limit; only some control cells at a time are refined
-/// limit:            null, or the cells that approximate the limit; they replace refine.levels and on_limit
-/// tables:           null, or the result of `rasterization_tables` for a mesh of the same cells: nothing of the refinement is
-///                   computed again, but the whole refined mesh is in memory. The grids are the same; with a limit, they are
-///                   those of cells whose nodes all have the finest level of the limit
-/// find_limit:       of a mesh in pieces: the cells that approximate the limit replace refine.levels and on_limit; they are
-/// found
-///                   for each block of voxels
-/// block_bytes:      of a mesh in pieces: about the most that a block of voxels and the cells about it take
-/// half:             store floats in 16 bits
-/// cell_numbers:     adds a grid of integers named "cell": the control cell that contains the voxel's centre
-/// cells:            of a mesh in memory: for each cell its number in the grid of cell numbers, or kNone: it is not rasterized,
-/// and
-///                   only shapes the limit of the others, which end at it sharply, as of `part_with_halo`. The box is that of
-///                   the others. Empty: all cells, by their places
-/// mask:             adds a grid of bits named "mask": where the volume is
-/// coverage:         adds a grid of floats named "coverage": the part of each voxel that the volume fills, by 4³ samples;
-///                   active where it is above zero
-/// level_set:        adds a grid of floats: the distance to the volume's boundary in world units, exact in a narrow band
-///                   about it, negative at centres inside the volume; beyond the band ± its half width, inactive
-/// frame:            the box that named views of the grids show, which they store; empty: that of the mesh or the points
-/// metadata:         names and texts that are stored in every grid
 struct RasterizeOptions {
-    double voxel_size_world = 0;
-    int resolution = 200;
+    double voxel_size_world = 0;  ///< above 0, or 0 to use `resolution`
+    int resolution = 200;         ///< voxels along the longest side of the bounding box
+    /// Null, or a grid whose voxels are used instead of `voxel_size_world` and `resolution`; its transform must be linear.
     const VdbGrid* like = nullptr;
+    /// What is rasterized: the trilinear cells of the refined mesh (levels 0: of the mesh itself); only some control cells at a
+    /// time are refined.
     RefineOptions refine{.levels = 0};
-    bool on_limit = false;
+    bool on_limit = false;  ///< the vertices of the refined mesh are moved to the limit; else they stay in place
+    /// Null, or the cells that approximate the limit; they replace refine.levels and on_limit.
     const LimitCells* limit = nullptr;
+    /// Null, or the result of `rasterization_tables` for a mesh of the same cells: nothing of the refinement is computed again,
+    /// but the whole refined mesh is in memory. The grids are the same; with a limit, they are those of cells whose nodes all
+    /// have the finest level of the limit.
     const RefinementTables* tables = nullptr;
+    /// For a mesh in pieces: the cells that approximate the limit replace refine.levels and on_limit; they are found for each
+    /// block of voxels.
     bool find_limit = false;
+    /// For a mesh in pieces: about the most that a block of voxels and the cells about it take.
     std::size_t block_bytes = std::size_t{1} << 30;
-    bool half = false;
-    bool cell_numbers = false;
+    bool half = false;          ///< store floats in 16 bits
+    bool cell_numbers = false;  ///< adds a grid of integers named "cell": the control cell that contains the voxel's centre
+    /// For a mesh in memory: for each cell its number in the grid of cell numbers, or kNone: it is not rasterized, and only
+    /// shapes the limit of the others, which end at it sharply, as of `part_with_halo`. The box is that of the others. Empty:
+    /// all cells, by their places.
     std::span<const Index> cells{};
-    bool mask = false;
+    bool mask = false;  ///< adds a grid of bits named "mask": where the volume is
+    /// Adds a grid of floats named "coverage": the part of each voxel that the volume fills, by 4³ samples; active where it is
+    /// above zero.
     bool coverage = false;
+    /// Adds a grid of floats: the distance to the volume's boundary in world units, exact in a narrow band about it, negative
+    /// at centres inside the volume; beyond the band ± its half width, inactive.
     std::optional<LevelSetOptions> level_set{};
-    Box frame{};
+    Box frame{};  ///< the box that named views of the grids show, which they store; empty: that of the mesh or the points
     std::string creator = "OpenSubVol";
-    std::vector<std::pair<std::string, std::string>> metadata{};
+    std::vector<std::pair<std::string, std::string>> metadata{};  ///< names and texts that are stored in every grid
     Progress* progress = nullptr;
 };
 
@@ -139,10 +129,9 @@ struct RasterizeOptions {
 [[nodiscard]] std::vector<VdbGrid> rasterize(const HexMesh& mesh, std::span<const std::string> fields,
                                              const RasterizeOptions& options = {});
 
-/// limit: how fine its pieces were; without the pieces
 struct LimitGrids {
     std::vector<VdbGrid> grids;
-    LimitCells limit;
+    LimitCells limit;  ///< how fine the pieces of the limit were; without the pieces
 };
 
 /// Rasterizes the limit, as `rasterize` with the pieces of `limit_for_voxels`. They are filled as they are found, some thousand
@@ -167,19 +156,18 @@ void check_voxels(const HexMesh& mesh, const RasterizeOptions& options);
 /// throws:  Error(InvalidInput) as `rasterize`
 [[nodiscard]] RefinementTables rasterization_tables(const HexMesh& mesh, const RasterizeOptions& options);
 
-/// One part of a volume. number: from 0; of: the number of parts
+/// One part of a volume.
 struct GridPart {
-    int number = 0, of = 1;
+    int number = 0;  ///< the number of the part, from 0
+    int of = 1;      ///< the number of parts
     std::vector<VdbGrid> grids;
 };
 
 /// How a mesh in pieces was rasterized.
-///
-/// blocks:    of voxels; in `folded` of them cells fold over, and all cells above and below were read, too
-/// converged: the limit is within its tolerance in all cells
 struct PartsReport {
-    std::size_t blocks = 0, folded = 0;
-    bool converged = true;
+    std::size_t blocks = 0;  ///< blocks of voxels
+    std::size_t folded = 0;  ///< blocks in which cells fold over; for these, all cells above and below were read, too
+    bool converged = true;   ///< the limit is within its tolerance in all cells
 };
 
 /// Rasterizes part by part. Together their leaves are those of `rasterize`.
@@ -194,10 +182,9 @@ struct PartsReport {
 PartsReport rasterize_parts(const MeshSource& source, std::span<const std::string> fields, const RasterizeOptions& options,
                             std::size_t memory_bytes, const std::function<void(GridPart)>& take);
 
-/// layers: the range of the layers of 32 voxels across x, of the mesh's
 struct GridShare {
     std::vector<VdbGrid> grids;
-    ShareRange layers{};
+    ShareRange layers{};  ///< the range of the layers of 32 voxels across x, among those of the mesh
     PartsReport report{};
 };
 

@@ -28,10 +28,11 @@ public:
     DrawWorker(const DrawWorker&) = delete;
     DrawWorker& operator=(const DrawWorker&) = delete;
 
-    /// What is being done, as of Progress; empty: nothing. seconds: since it was asked for
+    /// What is being done.
     struct Work {
-        std::string stage{};
-        double fraction = 0, seconds = 0;
+        std::string stage{};  ///< as in Progress; empty: nothing is being done
+        double fraction = 0;  ///< as in Progress
+        double seconds = 0;   ///< since it was asked for
     };
     [[nodiscard]] Work work() const;
 

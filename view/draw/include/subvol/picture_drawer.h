@@ -13,17 +13,15 @@
 
 namespace subvol {
 
-/// depth: for each pixel, as of SplatResult; empty: not known
-/// scale: 1 for a full picture; else its pixels are so many times as wide and as high, and the image is smaller
 struct DrawnPicture {
     Image image;
-    std::vector<float> depth{};
-    int scale = 1;
+    std::vector<float> depth{};  ///< for each pixel, as of SplatResult; empty: not known
+    int scale = 1;  ///< 1 for a full picture; else its pixels are so many times as wide and as high, and the image is smaller
     ViewState state{};
     std::string backend{};
-    std::size_t points = 0;                            // kernels, or tetrahedra
-    double seconds_build = 0;                          // of what is kept from picture to picture: kernels, boundary, tetrahedra
-    double seconds_boundary = 0, seconds_kernels = 0;  // the parts of these that were made anew
+    std::size_t points = 0;    ///< kernels, or tetrahedra
+    double seconds_build = 0;  ///< for what is kept from picture to picture: kernels, boundary, tetrahedra
+    double seconds_boundary = 0, seconds_kernels = 0;  ///< for the boundary and the kernels that were made anew
     double seconds_draw = 0;
 };
 

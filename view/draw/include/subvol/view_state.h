@@ -23,44 +23,31 @@
 namespace subvol {
 
 /// Streamlines and arrows of a picture, as users choose them.
-///
-/// seeds: where streamlines start, as for `ViewSource::seeds`; none: middles of cells
 struct ViewFlow {
     FlowChoices chosen{};
-    std::vector<std::string> seeds{};
+    std::vector<std::string> seeds{};  ///< where streamlines start, as for `ViewSource::seeds`; none: middles of cells
 
     /// The options that are not as by default, and their values, as users write them.
     [[nodiscard]] std::vector<std::pair<std::string, std::string>> words() const;
 };
 
 /// What is shown, as a plain value: the same state gives the same picture.
-///
-/// width, height: of the picture in pixels, with its legend
-/// field:         the field that is shown, as for `select_field`; empty: the most sensible one
-/// step:          of a series, from 0
-/// method:        one of `kViewMethods`
-/// background:    in linear light; none: that of the look
-/// axes, edges, legend: what is drawn over the picture
-/// inverted:      marks the cells of an edited mesh that are inverted
-/// flow:          streamlines and arrows in the body
-/// clip:          how the volume is cut open
-/// compare:       the method of a second picture, which is shown right of `slider` (0 to 1 of the width); none: no other
-/// difference:    shows the difference of the two instead
 struct ViewState {
     Camera camera{};
-    int width = 512, height = 512;
-    std::string field{};
-    std::size_t step = 0;
-    Method method = Method::Splat;
+    int width = 512, height = 512;  ///< size of the picture in pixels, with its legend
+    std::string field{};            ///< the field that is shown, as for `select_field`; empty: the most sensible one
+    std::size_t step = 0;           ///< the step of a series, from 0
+    Method method = Method::Splat;  ///< one of `kViewMethods`
     LookOptions look{};
-    std::optional<Vec3> background{};
-    bool axes = false, edges = false, legend = false;
-    bool inverted = true;
-    ViewFlow flow{};
-    Clip clip{};
+    std::optional<Vec3> background{};                  ///< in linear light; none: that of the look
+    bool axes = false, edges = false, legend = false;  ///< what is drawn over the picture
+    bool inverted = true;                              ///< marks the cells of an edited mesh that are inverted
+    ViewFlow flow{};                                   ///< streamlines and arrows in the body
+    Clip clip{};                                       ///< how the volume is cut open
+    /// The method of a second picture, which is shown right of `slider` (0 to 1 of the width); none: no other.
     std::optional<Method> compare{};
     double slider = 0.5;
-    bool difference = false;
+    bool difference = false;  ///< shows the difference of the two pictures instead
 };
 
 [[nodiscard]] inline Vec3 background_of(const ViewState& state) {
@@ -68,37 +55,27 @@ struct ViewState {
 }
 
 /// What is shown instead of a mesh: kernels, or voxels and the kernels that were made of them.
-///
-/// box:   what named views frame
-/// range: of the values; none: that of the kernels' values
 struct ViewPoints {
     std::shared_ptr<const RbfVolume> volume{};
     std::shared_ptr<const Voxels> voxels{};
-    Box box{};
-    std::optional<ValueRange> range{};
+    Box box{};                          ///< the box that named views frame
+    std::optional<ValueRange> range{};  ///< the range of the values; none: that of the kernels' values
 };
 
 /// A mesh with one field, which is its only attribute, and what the picture needs to know about both.
-///
-/// mesh:     of points, their centres without cells (`mesh_of_points`)
-/// shape:    bodies with the same number have the same cells; 0: of its own
-/// moved:    it is being moved, so that tables for its cells pay
-/// points:   shown instead of cells; without a volume: there are cells
-/// channel:  of the points
-/// flow:     vectors at the points of the mesh that are drawn, with seeds; null: none
-/// inverted: the numbers of the cells with a negative Jacobian at a corner, ascending; null: the mesh has not been edited
-/// tets:     the mesh is a level of a scheme of tetrahedra on its limit, in hexahedra. It is drawn as tetrahedra and octahedra,
-///           or with one kernel at each point
 struct ViewBody {
-    HexMesh mesh;
+    HexMesh mesh;  ///< for points, their centres without cells (`mesh_of_points`)
     Box box;
     ValueRange range;
-    std::uint64_t shape = 0;
-    bool moved = false;
-    ViewPoints points{};
-    std::size_t channel = 0;
+    std::uint64_t shape = 0;  ///< bodies with the same number have the same cells; 0: no other body has them
+    bool moved = false;       ///< the mesh is being moved, so that tables for its cells pay
+    ViewPoints points{};      ///< shown instead of cells; without a volume: there are cells
+    std::size_t channel = 0;  ///< the channel of the points
+    /// The mesh is a level of a scheme of tetrahedra on its limit, in hexahedra. It is drawn as tetrahedra and octahedra, or
+    /// with one kernel at each point.
     bool tets = false;
-    std::shared_ptr<const Flow> flow{};
+    std::shared_ptr<const Flow> flow{};  ///< vectors at the points of the mesh that are drawn, with seeds; null: none
+    /// The numbers of the cells with a negative Jacobian at a corner, ascending; null: the mesh has not been edited.
     std::shared_ptr<const std::vector<std::size_t>> inverted{};
 
     [[nodiscard]] const std::string& field() const { return mesh.attributes.front().name; }

@@ -28,45 +28,32 @@ struct NameTable<PageLook> {
 };
 
 /// A field of all steps of a page.
-///
-/// function: its colours, and the opacities of the looks Volume and Xray
-/// min, max: of its values over all steps
 struct PageField {
     std::string name{};
     std::string unit{};
-    TransferFunction function{};
-    double min = 0, max = 1;
+    TransferFunction function{};  ///< its colours, and the opacities of the looks Volume and Xray
+    double min = 0, max = 1;      ///< over the values of all steps
 };
 
 /// One state of what a page shows.
-///
-/// label:    in the chooser of steps
-/// volume:   compact kernels without Hessians; one channel for each field of the page, in their order
-/// boundary: where the volume ends, with a value for each field at its points
 struct PageStep {
-    std::string label{};
-    RbfVolume volume{};
-    BoundaryValues boundary{};
+    std::string label{};        ///< the name in the chooser of steps
+    RbfVolume volume{};         ///< compact kernels without Hessians; one channel for each field of the page, in their order
+    BoundaryValues boundary{};  ///< where the volume ends, with a value for each field at its points
 };
 
-/// source:             the file that the data are from
-/// facts:              more of what stands on the page, under names
-/// camera:             with which the page opens
-/// opacity_unit_world: as of Optics; 0: 1/100 of the diagonal
-/// background:         linear RGB
-/// reference:          a picture of the first field and the last step by the same camera, to be shown beside the page's own
-/// max_bytes:          of the page; kernels are rounded, then merged, until they fit
 struct PageOptions {
     std::string title{};
-    std::string source{};
-    std::vector<std::pair<std::string, std::string>> facts{};
+    std::string source{};                                      ///< the file that the data are from
+    std::vector<std::pair<std::string, std::string>> facts{};  ///< more of what stands on the page, under names
     std::vector<PageField> fields{};
     PageLook look = PageLook::Solid;
-    Camera camera{};
-    double opacity_unit_world = 0;
-    Vec3 background{0.0};
+    Camera camera{};                ///< the camera with which the page opens
+    double opacity_unit_world = 0;  ///< as in Optics; 0: 1/100 of the diagonal
+    Vec3 background{0.0};           ///< linear RGB
+    /// A picture of the first field and the last step by the same camera, to be shown beside the page's own.
     std::optional<Image> reference{};
-    std::size_t max_bytes = 24'000'000;
+    std::size_t max_bytes = 24'000'000;  ///< the most bytes of the page; kernels are rounded, then merged, until they fit
     Progress* progress = nullptr;
 };
 
@@ -76,15 +63,13 @@ struct PageError {
     double max_abs = 0;
 };
 
-/// bits:    of each number of a kernel
-/// kernels: of all steps, as given; kept: in the page
-/// errors:  of each field
 struct PageReport {
     std::size_t bytes = 0;
-    int bits = 16;
-    std::size_t kernels = 0, kept = 0;
+    int bits = 16;            ///< bits of each number of a kernel
+    std::size_t kernels = 0;  ///< kernels of all steps, as given
+    std::size_t kept = 0;     ///< kernels in the page
     std::size_t triangles = 0;
-    std::vector<PageError> errors{};
+    std::vector<PageError> errors{};  ///< one for each field
 };
 
 struct PageResult {

@@ -23,52 +23,42 @@ struct PictureFigures {
 };
 
 /// Where a session gets its meshes from.
-///
-/// input:         its name, for the render command
-/// read:          a mesh with all its fields; step: of a series, from 0
-/// times:         one for each step; at least one
-/// write_picture: writes a picture over a background; empty: the action `screenshot` is refused
-/// measure:       compares two pictures of one size; empty: comparisons have no figures
-/// seeds:         the places in a mesh where streamlines start; empty: streamlines and arrows are refused
-/// notes:         warnings of reading the input
-/// more_words:    further words of the render command: options that no action changes
-/// read_words:    the same of options for reading the input, which a mesh that was saved here does not need
-/// points:        shown instead of a mesh: kernels or voxels, which have one step and are not edited; without a volume: a
-///                mesh is
-/// tets:          a level of a scheme of tetrahedra for a mesh with one field, on its limit, in hexahedra, which is shown
-///                instead of the mesh and not edited; the settings then have the scheme `linear` and no levels. level: 1 for
-///                kernels, 2 for other methods, unless the user chose another. Empty: the mesh is shown
 struct ViewSource {
-    std::string input{};
-    std::function<HexMesh(std::size_t step)> read{};
-    std::vector<double> times{0.0};
+    std::string input{};                              ///< the name of the input, for the render command
+    std::function<HexMesh(std::size_t step)> read{};  ///< reads a mesh with all its fields. `step`: of a series, from 0
+    std::vector<double> times{0.0};                   ///< the time of each step; at least one
+    /// Writes a picture over a background; empty: the action `screenshot` is refused.
     std::function<void(const std::filesystem::path& path, const Image& image, const Vec3& background)> write_picture{};
+    /// Compares two pictures of one size; empty: comparisons have no figures.
     std::function<PictureFigures(const Image& test, const Image& reference)> measure{};
+    /// The places in a mesh where streamlines start; empty: streamlines and arrows are refused.
     std::function<std::vector<Vec3>(const ViewFlow& flow, const HexMesh& mesh, const LimitOptions& limit)> seeds{};
-    std::vector<std::string> notes{};
+    std::vector<std::string> notes{};  ///< warnings of reading the input
+    /// Further words of the render command: options that no action changes; `read_words` has those for reading the input, which
+    /// a mesh that was saved here does not need.
     std::vector<std::string> more_words{}, read_words{};
+    /// Shown instead of a mesh: kernels or voxels, which have one step and are not edited; without a volume: a mesh is.
     ViewPoints points{};
+    /// A level of a scheme of tetrahedra for a mesh with one field, on its limit, in hexahedra, which is shown instead of the
+    /// mesh and not edited; the settings then have the scheme `linear` and no levels. The `level` is 1 for kernels, 2 for other
+    /// methods, unless the user chose another. Empty: the mesh is shown.
     std::function<HexMesh(HexMesh mesh, int level)> tets{};
 };
 
 /// What is under a pixel: where most of its light comes from, with the value of the limit, or of the kernels, there.
-///
-/// cell: kNone of points and of schemes of tetrahedra
 struct Picked {
     Vec3 place{0.0};
     double value = 0;
     Vec3 gradient{0.0};
-    Index cell = kNone;
+    Index cell = kNone;  ///< kNone for points and for schemes of tetrahedra
 };
 
 /// What waiting for a picture showed.
-///
-/// action: the number of the action in the script
 struct WaitReport {
-    std::size_t action = 0;
+    std::size_t action = 0;  ///< the number of the action in the script
     double seconds_first = 0, seconds_full = 0;
     int coarse_scale = 0;
-    double seconds_boundary = 0, seconds_kernels = 0, seconds_draw = 0;  // of the first picture
+    double seconds_boundary = 0, seconds_kernels = 0, seconds_draw = 0;  ///< for the first picture
 };
 
 /// A mesh that is looked at: the state, the actions that change it, and the thread that draws it. It needs no window; the

@@ -13,34 +13,27 @@
 namespace subvol {
 
 /// A file with its options: how the command reads it.
-///
-/// only: regions; warp: a displacement; both as the options of the command; none: the whole mesh, at rest
 struct OpenedFile {
     std::string name{};
-    std::vector<std::string> only{};
-    std::optional<std::string> warp{};
+    std::vector<std::string> only{};    ///< regions, as the option of the command; none: the whole mesh
+    std::optional<std::string> warp{};  ///< a displacement, as the option of the command; none: the mesh at rest
     bool operator==(const OpenedFile&) const = default;
 };
 
-/// script:      a JSON array of actions that are played in the window; empty: none
-/// script_file: named in errors
-/// window_shot: gets the pixels of the whole window when the script has ended, and the window closes; empty: it stays open
-/// dark:        dark panels
-/// open:        makes a session of a file, on another thread; empty: the window opens no files
-/// first:       the file of the session that the window begins with
-/// extensions:  endings of files that `open` reads, as ".vtu"; models: names that it takes as files, too
-/// recent_list: a file with the names of those that were opened; empty: none is kept
 struct WindowOptions {
     int width = 1280, height = 800;
     std::string title = "subvol";
-    std::string script{};
-    std::string script_file{};
+    std::string script{};       ///< a JSON array of actions that are played in the window; empty: none
+    std::string script_file{};  ///< the name of the script's file in errors
+    /// Gets the pixels of the whole window when the script has ended, and the window closes; empty: it stays open.
     std::function<void(const Image& window)> window_shot{};
-    bool dark = true;
+    bool dark = true;  ///< dark panels
+    /// Makes a session of a file, on another thread; empty: the window opens no files.
     std::function<std::unique_ptr<ViewSession>(const OpenedFile& file, Progress* progress)> open{};
-    OpenedFile first{};
+    OpenedFile first{};  ///< the file of the session that the window begins with
+    /// Endings of files that `open` reads, as ".vtu", and names that it takes as files, too.
     std::vector<std::string> extensions{}, models{};
-    std::filesystem::path recent_list{};
+    std::filesystem::path recent_list{};  ///< a file with the names of the files that were opened; empty: none is kept
 };
 
 /// Shows a session in a window until the user closes it. To be called from the main thread.

@@ -10,15 +10,11 @@
 namespace subvol::detail {
 
 /// Some rows of a picture, as one of several processes has drawn them.
-///
-/// rows:  from `first_row` of a picture of this height; all columns
-/// depth: one per pixel, see `write_image`; empty: none
-/// note:  a text that is stored beside the pixels
 struct PicturePart {
-    Image rows;
-    std::vector<float> depth{};
+    Image rows;                  ///< all columns of the rows from `first_row` on, of a picture of the height `whole_height`
+    std::vector<float> depth{};  ///< one per pixel, see `write_image`; empty: none
     int first_row = 0, whole_height = 0;
-    std::string note{};
+    std::string note{};  ///< a text that is stored beside the pixels
 };
 
 /// Writes an `.exr` whose data window is that of the rows and whose display window is that of the whole picture. The file

@@ -32,11 +32,9 @@ private:
 
 /// The parameters by which a place of the limit should move to come nearest to `offset` (world), with those that would leave
 /// the volume held at its hull.
-///
-/// left: what remains of the offset, by the Jacobian
 struct LimitStep {
     Vec3 by{0.0};
-    Vec3 left{0.0};
+    Vec3 left{0.0};  ///< what remains of the offset, by the Jacobian
     bool held = false;
 };
 [[nodiscard]] LimitStep step_towards(const Vec3& offset, const Mat3& jacobian, const LimitPlace& from, const CellSteps& steps);

@@ -13,14 +13,11 @@
 namespace subvol::detail {
 
 /// A place of the limit near a place in the world.
-///
-/// excess: how far outside the piece its parameters are, in sides of the cell
-/// piece:  and the place's parameters in it, in [0,1]³
 struct NearPlace {
     LimitPlace place;
-    double excess = 0;
+    double excess = 0;  ///< how far outside the piece its parameters are, in sides of the cell
     std::size_t piece = 0;
-    Vec3 at{0.0};
+    Vec3 at{0.0};  ///< the place's parameters in the piece, in [0,1]³
 };
 
 /// The pieces of a limit in a tree of their boxes.

@@ -35,9 +35,10 @@ struct SurfaceShareBytes {
 [[nodiscard]] LimitSurface join_surface(std::vector<std::string> shares, std::span<const std::string> names,
                                         Progress* progress = nullptr);
 
-/// A share in a file. note: says which share of which work it is
+/// A share in a file.
 struct SurfaceShareFile {
-    std::string note, bytes;
+    std::string note;  ///< says which share of which work it is
+    std::string bytes;
 };
 
 /// The extension of such files.

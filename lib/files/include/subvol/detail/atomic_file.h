@@ -33,11 +33,9 @@ void remove_unfinished_files() noexcept;
 void remove_unfinished_files_of(void (*module)() noexcept);
 
 /// Where a file is written that a user names.
-///
-/// file:   the name, with symbolic links followed to their end, whether there is a file or not
-/// stream: a device, a pipe, or a link to an open file, such as /dev/stdout: it takes bytes, and nothing can replace it
 struct OutputPlace {
-    std::filesystem::path file;
+    std::filesystem::path file;  ///< the name, with symbolic links followed to their end, whether there is a file or not
+    /// A device, a pipe, or a link to an open file, such as /dev/stdout: it takes bytes, and nothing can replace it
     bool stream = false;
 };
 

@@ -17,17 +17,15 @@
 
 namespace subvol::detail {
 
-/// A dataset of an HDF5 file. lengths: of its dimensions, the slowest first; most_bytes: of values that its storage can have;
-/// compressed_chunk: the bytes that are decompressed together, 0 if nothing is compressed; address: the same by all names of
-/// it; characters: it consists of characters instead of numbers; grows: its first dimension is unlimited
+/// A dataset of an HDF5 file.
 struct Hdf5Dataset {
     NumberType type = NumberType::Float64;
-    std::vector<std::size_t> lengths;
-    std::size_t most_bytes = 0;
-    std::size_t compressed_chunk = 0;
-    std::uint64_t address = 0;
-    bool characters = false;
-    bool grows = false;
+    std::vector<std::size_t> lengths;  ///< lengths of its dimensions, the slowest first
+    std::size_t most_bytes = 0;        ///< the most bytes of values that its storage can have
+    std::size_t compressed_chunk = 0;  ///< bytes that are decompressed together, 0 if nothing is compressed
+    std::uint64_t address = 0;         ///< the same by all names of the dataset
+    bool characters = false;           ///< it consists of characters instead of numbers
+    bool grows = false;                ///< its first dimension is unlimited
 };
 
 /// An open HDF5 file. Paths are those inside of it, such as "/VTKHDF/Points".

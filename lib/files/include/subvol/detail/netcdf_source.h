@@ -14,15 +14,12 @@
 namespace subvol::detail {
 
 /// A variable of a netCDF file: a block of numbers or of characters.
-///
-/// lengths: of its dimensions, the slowest first
-/// record:  the first dimension is the unlimited one
-/// begin:   in a classic file the byte at which its values begin; for a record variable those of the first record
 struct NetcdfVariable {
     NumberType type = NumberType::Int8;
     bool characters = false;
-    bool record = false;
-    std::vector<std::size_t> lengths{};
+    bool record = false;                 ///< the first dimension is the unlimited one
+    std::vector<std::size_t> lengths{};  ///< lengths of its dimensions, the slowest first
+    /// In a classic file the byte at which its values begin; for a record variable those of the first record
     std::size_t begin = 0;
 };
 

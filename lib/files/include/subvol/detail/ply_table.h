@@ -17,11 +17,10 @@ namespace subvol::detail {
 
 // PLY as a format of tables, whatever they mean.
 
-/// counts: the type of the lengths if the property is a list; nothing if it is a single number
 struct PlyProperty {
     std::string name;
     NumberType type;
-    std::optional<NumberType> counts;
+    std::optional<NumberType> counts;  ///< the type of the lengths if the property is a list; nothing if it is a single number
 };
 
 struct PlyElement {
@@ -37,10 +36,10 @@ struct PlyHeader {
     std::vector<PlyElement> elements;
 };
 
-/// The values of a property, in the order of the rows. lengths: of the lists, one for each row
+/// The values of a property, in the order of the rows.
 struct PlyColumn {
     std::vector<double> values;
-    std::vector<std::size_t> lengths;
+    std::vector<std::size_t> lengths;  ///< lengths of the lists, one for each row
 };
 
 using PlyTable = std::map<std::string, PlyColumn, std::less<>>;

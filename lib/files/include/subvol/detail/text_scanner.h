@@ -12,11 +12,11 @@
 
 namespace subvol::detail {
 
-/// The entity that a number belongs to, for error messages: "vertex 13 of 27". number: < 0 for none; of: the total, 0 for none
+/// The entity that a number belongs to, for error messages: "vertex 13 of 27".
 struct Place {
     std::string_view what;
-    std::int64_t number = -1;
-    std::size_t of = 0;
+    std::int64_t number = -1;  ///< below 0 for none
+    std::size_t of = 0;        ///< the total, 0 for none
 };
 
 /// Splits a text into words and numbers that are separated by white space. The text must outlive the scanner.

@@ -19,13 +19,11 @@
 namespace subvol::detail {
 
 /// How a VTK XML file stores its arrays.
-///
-/// appended: the text after the underscore of AppendedData; empty if there is none
 struct VtuEncoding {
     std::endian order = std::endian::little;
     NumberType header = NumberType::UInt32;
     Compressor compressor = Compressor::None;
-    std::string_view appended;
+    std::string_view appended;  ///< the text after the underscore of AppendedData; empty if there is none
     bool appended_base64 = false;
 };
 
@@ -77,12 +75,11 @@ public:
     [[noreturn]] void fail(const pugi::xml_node& array, const std::string& message, const std::string& allowed = {}) const;
 
 private:
-    /// bytes:       of all values
-    /// block, last: bytes of a block, and of the last block, after decompression
-    /// compressed:  bytes of each compressed block
     struct Layout {
-        std::uint64_t bytes = 0, block = 0, last = 0;
-        std::vector<std::uint64_t> compressed = {};
+        std::uint64_t bytes = 0;                     ///< bytes of all values
+        std::uint64_t block = 0;                     ///< bytes of a block, after decompression
+        std::uint64_t last = 0;                      ///< bytes of the last block, after decompression
+        std::vector<std::uint64_t> compressed = {};  ///< bytes of each compressed block
     };
     using TakeBytes = std::function<void(std::string_view)>;
 

@@ -8,12 +8,9 @@
 namespace subvol::detail {
 
 /// The ellipsoid (x−μ)ᵀ S⁻¹ (x−μ) = 1 of a frame.
-///
-/// half_axes:  world, longest first; at least 10⁻⁶ of the longest, however flat the frame is
-/// directions: unit columns, right-handed
 struct PrincipalAxes {
-    Vec3 half_axes{1.0};
-    Mat3 directions{1.0};
+    Vec3 half_axes{1.0};   ///< world, longest first; at least 10⁻⁶ of the longest, however flat the frame is
+    Mat3 directions{1.0};  ///< unit columns, right-handed
 };
 
 /// frame: as in RbfVolume

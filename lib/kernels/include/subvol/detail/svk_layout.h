@@ -15,29 +15,27 @@ namespace subvol::detail {
 // A .svk file: kernels in blocks, and over them the tree of `build_kernel_hierarchy`, of which a view reads the blocks that it
 // needs. docs/formats.md describes the bytes.
 
-/// bent:     has Hessians
-/// min, max: of the kernels' values
 struct SvkChannel {
     std::string name;
-    bool bent = false;
-    float min = 0, max = 0;
+    bool bent = false;       ///< has Hessians
+    float min = 0, max = 0;  ///< range of the kernels' values
 };
 
-/// What the head of a file says. bounds: `box_of` the volume
+/// What the head of a file says.
 struct SvkContents {
     Kernel kernel{};
     std::uint64_t kernels = 0;
     std::vector<SvkChannel> channels{};
-    Box bounds{};
+    Box bounds{};  ///< `box_of` the volume
     std::uint64_t boundary_points = 0, boundary_triangles = 0;
 };
 
 [[nodiscard]] SvkContents svk_contents(const RbfVolume& volume);
 
-/// Where bytes are in the file. count: of kernels, nodes or numbers
+/// Where bytes are in the file.
 struct SvkExtent {
     std::uint64_t offset = 0, bytes = 0;
-    std::size_t count = 0;
+    std::size_t count = 0;  ///< number of kernels, nodes or numbers
 };
 
 /// The tree has 2^levels leaves of at most 8 kernels. A block is what lies below one node of the level `root_level`: some

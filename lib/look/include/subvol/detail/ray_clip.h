@@ -26,13 +26,13 @@ struct RaySlice {
     [[nodiscard]] double within(double from, double to) const { return std::min(std::max(depth, from), to); }
 };
 
-/// What a clip, and the end of the ray, leave of a ray; depths are the parameter of Ray. near_face: the face at `near` in
-/// RayClip::faces(); kNoFace at the ray's origin. slices: those that belong to what lies between both, ascending. Empty too if
-/// slices are drawn alone and there are none
+/// What a clip, and the end of the ray, leave of a ray; depths are the parameter of Ray.
 struct RayCut {
     static constexpr std::size_t kNoFace = static_cast<std::size_t>(-1);
     double near = 0, far = std::numeric_limits<double>::infinity();
-    std::size_t near_face = kNoFace;
+    std::size_t near_face = kNoFace;  ///< the face at `near` in RayClip::faces(); kNoFace at the ray's origin
+    /// Slices that belong to what lies between `near` and `far`, ascending. Empty too if slices are drawn alone and there are
+    /// none
     std::vector<RaySlice> slices{};
 
     [[nodiscard]] bool empty() const { return !(near < far) && slices.empty(); }

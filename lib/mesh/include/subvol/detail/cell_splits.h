@@ -15,14 +15,12 @@
 namespace subvol::detail {
 
 /// A kind of cell with three edges at each corner, as tables of corner numbers.
-///
-/// faces:        corners in cyclic order; a triangle repeats its last one
-/// corner_edges: the other ends of the three edges at each corner, right-handed in a right-handed cell
 template <std::size_t Corners, std::size_t Edges, std::size_t Faces>
 struct Shape {
     static constexpr std::size_t kCorners = Corners;
     std::array<std::array<std::size_t, 2>, Edges> edges;
-    std::array<std::array<std::size_t, 4>, Faces> faces;
+    std::array<std::array<std::size_t, 4>, Faces> faces;  ///< corners in cyclic order; a triangle repeats its last one
+    /// The other ends of the three edges at each corner, right-handed in a right-handed cell
     std::array<std::array<std::size_t, 3>, Corners> corner_edges;
 
     [[nodiscard]] constexpr std::size_t edge_between(std::size_t a, std::size_t b) const {
@@ -52,15 +50,11 @@ inline constexpr Shape<6, 9, 5> kPrismShape{{{{0, 1}, {1, 2}, {0, 2}, {3, 4}, {4
                                             {{{1, 2, 3}, {2, 0, 4}, {0, 1, 5}, {5, 4, 0}, {3, 5, 1}, {4, 3, 2}}}};
 
 /// The split of a mixed mesh into hexahedra, without any values.
-///
-/// sources:  the points of the mixed mesh whose mean each new point is
-/// parents:  the number of each cell's parent, counted through the hexes, tets, prisms and pyramids
-/// tets_cut: the number of tetrahedra into which all cells were cut first; 0 if that was not necessary
 struct HexSplit {
-    IndexRows sources;
+    IndexRows sources;  ///< the points of the mixed mesh whose mean each new point is
     std::vector<std::array<Index, 8>> cells;
-    std::vector<Index> parents;
-    std::size_t tets_cut = 0;
+    std::vector<Index> parents;  ///< the number of each cell's parent, counted through the hexes, tets, prisms and pyramids
+    std::size_t tets_cut = 0;    ///< the number of tetrahedra into which all cells were cut first; 0 if that was not necessary
 };
 
 /// The main part of `split_into_hexes`; throws the same.
@@ -94,11 +88,11 @@ void each_key(const Shape& shape, const Cell& cell, const Edge& edge, const Face
     center(key);
 }
 
-/// The new points of a cell that is split. edges, faces: in the order of its shape, and of `each_key`
+/// The new points of a cell that is split.
 template <std::size_t Corners>
 struct SplitPoints {
     std::array<Index, Corners> corners;
-    std::span<const Index> edges, faces;
+    std::span<const Index> edges, faces;  ///< in the order of the cell's shape, and of `each_key`
     Index center;
 };
 
@@ -122,10 +116,9 @@ inline constexpr const char* kTooManyToSplit = "too many cells to be split into 
 /// Makes all cells right-handed: exchanges corners of those whose volume is negative.
 void orient_mixed(std::span<const Vec3> points, std::vector<std::array<Index, 8>>& hexes, MixedCells& others);
 
-/// parents: as in HexSplit
 struct CutCells {
     std::vector<std::array<Index, 4>> tets;
-    std::vector<Index> parents;
+    std::vector<Index> parents;  ///< as in HexSplit
 };
 
 /// Cuts right-handed cells into right-handed tetrahedra. Quads are cut along the diagonal from their smallest id, so that

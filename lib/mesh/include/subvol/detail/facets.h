@@ -11,14 +11,11 @@ namespace subvol::detail {
 
 /// The sharp edges of a mesh of hexahedra and other cells, by the rule of `keep_sharp_edges`: the smaller point first, in the
 /// order of the points. A facet is a quad or a triangle, as the file has it.
-///
-/// steps:         as in SharpEdges
-/// edges_between: sharp edges of the faces between parts; a corner of a grid is none
-/// faces_between: all of those faces that an interface with a sharp edge has; a triangle repeats its last corner
 struct FoundSharpEdges {
     std::vector<std::array<Index, 2>> edges;
-    bool steps = false;
-    std::vector<std::array<Index, 2>> edges_between{};
+    bool steps = false;                                 ///< as in SharpEdges
+    std::vector<std::array<Index, 2>> edges_between{};  ///< sharp edges of the faces between parts; a corner of a grid is none
+    /// All of those faces that an interface with a sharp edge has; a triangle repeats its last corner
     std::vector<std::array<Index, 4>> faces_between{};
 };
 

@@ -17,15 +17,12 @@ namespace subvol::detail {
 /// chosen: a flag for each cell
 [[nodiscard]] MeshPiece chosen_cells(const MeshPiece& part, std::span<const std::uint8_t> chosen, int layers);
 
-/// reads:      whether a piece may have cells that are wanted; the others are not read
-/// chooses:    the owned cells of a piece that are wanted: a flag for each cell
-/// layers:     of cells about those; not more than the pieces have
-/// most_cells: that are gathered, with these layers
 struct GatherOptions {
-    std::function<bool(std::size_t)> reads;
+    std::function<bool(std::size_t)> reads;  ///< whether a piece may have cells that are wanted; the others are not read
+    /// The owned cells of a piece that are wanted: a flag for each cell
     std::function<std::vector<std::uint8_t>(const MeshPiece&)> chooses;
-    int layers;
-    std::uint64_t most_cells = ~std::uint64_t{0};
+    int layers;                                    ///< layers of cells around the chosen ones; not more than the pieces have
+    std::uint64_t most_cells = ~std::uint64_t{0};  ///< the most cells that are gathered, with these layers
     Progress* progress = nullptr;
 };
 

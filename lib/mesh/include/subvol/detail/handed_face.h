@@ -10,13 +10,12 @@
 
 namespace subvol::detail {
 
-/// A face of a cell: its points from the smallest on, in the direction of the smaller neighbour; reversed: against the order
-/// that is outward for a right-handed cell. Two cells of one hand see the face that they share from two sides, so one of them
-/// has it reversed.
+/// A face of a cell: its points from the smallest on, in the direction of the smaller neighbour. Two cells of one hand see the
+/// face that they share from two sides, so one of them has it reversed.
 struct HandedFace {
     std::array<Index, 4> points;
     Index cell;
-    bool reversed;
+    bool reversed;  ///< against the order that is outward for a right-handed cell
 
     /// side: as kCellFaces
     HandedFace(const std::array<Index, 8>& corners, Index number, std::size_t side) : points{}, cell(number) {

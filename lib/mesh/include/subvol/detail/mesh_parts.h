@@ -10,13 +10,10 @@ namespace subvol::detail {
 
 /// A part of a mesh: some points, which it owns, with all cells that use them. Every edge, face and cell with one of these
 /// points is in the part's topology as in the topology of the mesh, and in the same order.
-///
-/// points: the number in the mesh of each point of the part, ascending
-/// own:    a flag for each point: whether the part owns it and so has all its cells
 struct MeshPart {
     Topology topology;
-    std::vector<Index> points;
-    std::vector<std::uint8_t> own;
+    std::vector<Index> points;      ///< the number in the mesh of each point of the part, ascending
+    std::vector<std::uint8_t> own;  ///< a flag for each point: whether the part owns it and so has all its cells
 };
 
 /// Calls visit(part) for the parts of a mesh, slabs of up to a million points: each used point is owned by one part. The

@@ -11,18 +11,15 @@
 namespace subvol::detail {
 
 /// The figures of a share of a mesh, for several processes.
-///
-/// counts:   of the share's points, of the edges and faces whose smallest point is one of them, and of the share's cells;
-///           points, cells and bounds are those of the whole mesh, volume is not used
-/// range:    of the parts that the work is divided into
-/// volumes:  of the share's cells, 4096 at a time, or of its bricks: adding these up in the order of the shares gives the
-///           bits of `inspect`
-/// inverted: the numbers of the first inverted cells, at most as many as were asked for
 struct MeshShare {
+    /// Numbers of the share's points, of the edges and faces whose smallest point is one of them, and of the share's cells;
+    /// points, cells and bounds are those of the whole mesh, volume is not used
     MeshReport counts;
-    ShareRange range{};
+    ShareRange range{};  ///< range of the parts that the work is divided into
+    /// Volumes of the share's cells, 4096 at a time, or of its bricks: adding these up in the order of the shares gives the
+    /// bits of `inspect`
     std::vector<double> volumes{};
-    std::vector<std::size_t> inverted{};
+    std::vector<std::size_t> inverted{};  ///< the numbers of the first inverted cells, at most as many as were asked for
 };
 
 /// throws: as `inspect`

@@ -16,11 +16,9 @@ namespace subvol::detail {
 void grow(const HexMesh& mesh, std::vector<std::uint8_t>& cells, int layers);
 
 /// Some cells of a mesh with their points, and the tags that belong to them.
-///
-/// points, cells: their numbers in the mesh, ascending
 struct MeshSubset {
     HexMesh mesh;
-    std::vector<Index> points, cells;
+    std::vector<Index> points, cells;  ///< their numbers in the mesh, ascending
 };
 [[nodiscard]] MeshSubset subset(const HexMesh& mesh, std::span<const std::uint8_t> cells);
 

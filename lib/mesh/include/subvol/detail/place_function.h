@@ -11,16 +11,12 @@
 namespace subvol::detail {
 
 /// What a field is at a place, as a function of other numbers there (`Attribute::function`).
-///
-/// arguments: how many numbers it takes at a place
-/// channels:  how many it returns
-/// scales:    of each argument, the range of its field: what tolerances and the steps of differences are relative to; > 0
-/// evaluate:  from the arguments at some places, place after place, to the values there, which are finite. Several threads may
-///            call it
 struct PlaceFunction {
-    std::size_t arguments = 0;
-    std::size_t channels = 1;
+    std::size_t arguments = 0;  ///< how many numbers it takes at a place
+    std::size_t channels = 1;   ///< how many it returns
+    /// For each argument, the range of its field: what tolerances and the steps of differences are relative to; > 0
     std::vector<double> scales;
+    /// From the arguments at some places, place after place, to the values there, which are finite. Several threads may call it
     std::function<void(std::span<const double> arguments, std::span<double> values)> evaluate;
 };
 

@@ -12,11 +12,9 @@
 namespace subvol::detail {
 
 /// One of the 48 ways in which the axes of one cell can lie along those of another: a signed permutation of u, v, w.
-///
-/// octants: octant u + 2v + 4w of the one → octant of the other; sides: side 2·axis + (0 low, 1 high) likewise
 struct CellTurn {
-    std::array<std::uint8_t, 8> octants;
-    std::array<std::uint8_t, 6> sides;
+    std::array<std::uint8_t, 8> octants;  ///< octant u + 2v + 4w of the one → octant of the other
+    std::array<std::uint8_t, 6> sides;    ///< side 2·axis + (0 low, 1 high) likewise
 };
 
 inline constexpr std::uint8_t kIdentityTurn = 0;

@@ -23,13 +23,12 @@ namespace subvol::detail {
 class CellRefiner {
 public:
     /// How far cells are refined, cell by cell and child by child. Called from several threads at once.
-    ///
-    /// cell:  gets the grid of level 1 of each cell; returns whether it is to be refined further
-    /// whole: gets the grid of level 2 of such a cell; returns its children that are to be refined further, bit k: child k
-    /// part:  gets the grid of such a child, of `levels` levels: 2 first, then as long as it returns true one more
     struct Descent {
+        /// Gets the grid of level 1 of each cell; returns whether it is to be refined further
         std::function<bool(const DenseCell& cell)> cell;
+        /// Gets the grid of level 2 of such a cell; returns its children that are to be refined further, bit k: child k
         std::function<std::uint8_t(const DenseCell& cell)> whole;
+        /// Gets the grid of such a child, of `levels` levels: 2 first, then as long as it returns true one more
         std::function<bool(const DenseCell& cell, std::size_t child, int levels)> part;
     };
 

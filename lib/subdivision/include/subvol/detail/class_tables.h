@@ -16,11 +16,9 @@ namespace subvol::detail {
 
 /// The vertices of a cell's refinement as sums over the points of its neighbourhood: row i is the vertex at (u, v, w) of the
 /// grid of side³, side = 2^level + 1, i = u + side·(v + side·w).
-///
-/// points: of the neighbourhood; used: those that have weights, ascending; columns of a row ascend, too
 struct WeightTable : SparseRows<double, std::uint16_t, std::uint32_t> {
-    std::size_t points = 0;
-    std::vector<std::uint16_t> used;
+    std::size_t points = 0;           ///< points of the neighbourhood
+    std::vector<std::uint16_t> used;  ///< points that have weights, ascending; columns of a row ascend, too
 
     [[nodiscard]] std::size_t rows() const { return row_count(*this); }
     [[nodiscard]] std::size_t bytes() const {

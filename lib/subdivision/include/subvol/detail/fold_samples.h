@@ -9,12 +9,11 @@
 
 namespace subvol::detail {
 
-/// Determinants ∂x/∂u at places of a cell. least: the smallest one and where it is; places: how many; size: the
-/// sum of their magnitudes
+/// Determinants ∂x/∂u at places of a cell.
 struct CellSamples {
-    FoldPlace least;
-    std::size_t places = 0;
-    double size = 0;
+    FoldPlace least;         ///< the smallest one and where it is
+    std::size_t places = 0;  ///< number of places
+    double size = 0;         ///< sum of the magnitudes
 };
 
 /// Samples the limit of cells: at corners, in the middle of edges and sides, at places inside, and then nearer and nearer to

@@ -14,14 +14,11 @@ namespace subvol::detail {
 inline constexpr int kHaloOfLimit = 3;
 
 /// What tolerances of the limit are relative to.
-///
-/// box:    of the points that cells use
-/// ranges: least and largest value of each attribute at these points, of all channels together
-/// cell:   the diagonal of the largest cell's box; 0: not known
 struct LimitExtent {
-    Box box{};
+    Box box{};  ///< box of the points that cells use
+    /// Least and largest value of each attribute at these points, of all channels together
     std::vector<std::array<double, 2>> ranges{};
-    double cell = 0;
+    double cell = 0;  ///< the diagonal of the largest cell's box; 0: not known
 
     /// The length that tolerances of positions are parts of.
     [[nodiscard]] double length() const;

@@ -60,14 +60,10 @@ private:
 [[nodiscard]] MixedMesh split_cells(const MixedMesh& parent, const SplitNumbers& numbers);
 
 /// The boundary of a mixed mesh, as the rules need it.
-///
-/// faces:   oriented outward; the fourth corner of a triangle is kNone
-/// creases: sharp edges, sorted; smaller end first
-/// kinds:   of each point
 struct MixedBoundary {
-    std::vector<std::array<Index, 4>> faces;
-    std::vector<std::array<Index, 2>> creases;
-    std::vector<PointKind> kinds;
+    std::vector<std::array<Index, 4>> faces;    ///< oriented outward; the fourth corner of a triangle is kNone
+    std::vector<std::array<Index, 2>> creases;  ///< sharp edges, sorted; smaller end first
+    std::vector<PointKind> kinds;               ///< kind of each point
 };
 
 /// Creases are the boundary edges that mesh.creases names, that belong to one cell only, that have more than two boundary
@@ -100,12 +96,9 @@ struct MixedStep {
 
 /// The refinement of the cells at one point: the new points around it as weights of the old ones, which correspond to each
 /// other.
-///
-/// points:  of the cells at the point; the first is the point itself
-/// weights: row r are those of the new point that corresponds to points[r], row-major
 struct StarMatrix {
-    std::vector<Index> points;
-    std::vector<double> weights;
+    std::vector<Index> points;    ///< points of the cells at the point; the first is the point itself
+    std::vector<double> weights;  ///< row r has those of the new point that corresponds to points[r], row-major
 };
 [[nodiscard]] StarMatrix star_matrix(const MixedMesh& mesh, TetScheme scheme, Index point);
 

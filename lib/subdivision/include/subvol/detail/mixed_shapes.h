@@ -21,12 +21,11 @@ inline constexpr std::size_t kCellKinds = 5;
 ///     prism         0 1 2 counter-clockwise seen from 3 4 5, which lie above them
 ///     pyramid       0 1 2 3 counter-clockwise seen from the apex 4
 ///     hexahedron    0 1 2 3 counter-clockwise seen from 4 5 6 7, which lie above them
-///
-/// faces: counter-clockwise seen from outside a right-handed cell; the last corner of a triangle is −1
 struct CellTable {
     std::string_view name;
     std::size_t corners;
     std::span<const std::array<int, 2>> edges;
+    /// Counter-clockwise seen from outside a right-handed cell; the last corner of a triangle is −1
     std::span<const std::array<int, 4>> faces;
 };
 
@@ -94,11 +93,9 @@ template <class Cell>
 void cut_octahedron(const MixedMesh& mesh, const std::array<Index, 6>& corners, std::vector<std::array<Index, 4>>& tets);
 
 /// A mixed mesh in hexahedra (`in_hexahedra`), and the cell that each of these is in.
-///
-/// cells: counted through the tetrahedra, octahedra, prisms, pyramids and hexahedra
 struct HexesOfMixed {
     HexMesh mesh;
-    std::vector<Index> cells;
+    std::vector<Index> cells;  ///< counted through the tetrahedra, octahedra, prisms, pyramids and hexahedra
 };
 
 [[nodiscard]] HexesOfMixed hexahedra_of(const MixedMesh& mesh);

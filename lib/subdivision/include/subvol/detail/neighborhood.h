@@ -15,14 +15,12 @@ namespace subvol::detail {
 /// refined more than once those that share a point with these. Cells and points are numbered in the order of a walk from cell
 /// to cell that starts at the cell, along axes that depend on the surroundings, so that cells whose surroundings meet in the
 /// same way have the same `code`.
-///
-/// turn:   from the axes of the walk to those of the cell
-/// points: of the mesh, the cell's own eight first, at the places of the walk's octants u + 2v + 4w
-/// code:   the number of cells of the first layer, then the points of each cell by octants (places in `points`), then the tags:
-///         all that the weights of a refinement depend on
 struct Neighborhood {
-    std::uint8_t turn = kIdentityTurn;
+    std::uint8_t turn = kIdentityTurn;  ///< from the axes of the walk to those of the cell
+    /// Points of the mesh, the cell's own eight first, at the places of the walk's octants u + 2v + 4w
     std::vector<Index> points;
+    /// The number of cells of the first layer, then the points of each cell by octants (places in `points`), then the tags: all
+    /// that the weights of a refinement depend on
     std::vector<std::uint16_t> code;
 };
 

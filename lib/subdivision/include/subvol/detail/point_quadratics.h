@@ -24,10 +24,10 @@ private:
     std::vector<std::array<Index, 2>> pairs_;  // of a point and a neighbour, sorted
 };
 
-/// The quadratic f + g·d + ½ dᵀHd around a point. second: H as xx, xy, xz, yy, yz, zz; world⁻¹ and world⁻²
+/// The quadratic f + g·d + ½ dᵀHd around a point.
 struct PointQuadratic {
-    Vec3 gradient{0.0};
-    std::array<double, 6> second{};
+    Vec3 gradient{0.0};              ///< g, world⁻¹
+    std::array<double, 6> second{};  ///< H as xx, xy, xz, yy, yz, zz, world⁻²
 };
 
 /// The quadratics with the least sum of squares at the neighbours of a point p, each weighted by 1/|d|²; where there are fewer

@@ -29,10 +29,10 @@ public:
     /// Rings of so many members have sums; the rows of shorter ones have all members.
     static constexpr std::size_t kLong = 32;
 
-    /// What a ring goes around. number: of the edge, or of the point of the boundary
+    /// What a ring goes around.
     struct Center {
         enum Kind : std::uint8_t { Edge, Point } kind;
-        Index number;
+        Index number;  ///< number of the edge, or of the point of the boundary
         [[nodiscard]] std::uint64_t key() const { return 2 * std::uint64_t{number} + kind; }
     };
 

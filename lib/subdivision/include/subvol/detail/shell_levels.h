@@ -12,10 +12,9 @@
 
 namespace subvol::detail {
 
-/// kinds: of the points that have an edge here
 struct ShellTopology {
     Topology topology;
-    std::vector<PointKind> kinds;
+    std::vector<PointKind> kinds;  ///< kinds of the points that have an edge here
 };
 
 /// on_solid: whether an edge lies on an edge of a cell, by its points, the smaller first
@@ -28,16 +27,13 @@ using OnSolid = std::function<bool(Index, Index)>;
 [[nodiscard]] ShellTopology topology_of_lines(const Shells& shells, const Topology& quads);
 
 /// A level of shells, and the cells about them.
-///
-/// solid: the cells at the shells with some layers about them, as `refine` has them; of level 0 the whole control mesh. Without
-///        points if no point is attached
-/// cells: the number that each of these cells has in the whole mesh of this level; empty: the same
-/// at:    for each point of the shells its point of `solid`, or kNone
 struct ShellLevel {
     Shells shells;
+    /// The cells at the shells with some layers about them, as `refine` has them; of level 0 the whole control mesh. Without
+    /// points if no point is attached
     HexMesh solid;
-    std::vector<Index> cells;
-    std::vector<Index> at;
+    std::vector<Index> cells;  ///< the number that each of these cells has in the whole mesh of this level; empty: the same
+    std::vector<Index> at;     ///< for each point of the shells its point of `solid`, or kNone
 };
 
 /// The shells refined, with the points that are attached to cells where these have them.

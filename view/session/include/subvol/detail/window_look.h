@@ -6,17 +6,15 @@
 namespace subvol::detail {
 
 /// What the window looks like, without effect on pictures.
-///
-/// log_counts, log_opacity: logarithmic heights of the histogram and of the curve of opacities
-/// play:       the steps of a series go on by themselves
-/// panel:      the panel at the right is there
-/// section:    the part of the panel that is open
-/// tool:       what dragging with the left button does: turn the camera, or work on the control points
-/// brush_px:   the radius of brush and paint in pixels
 struct WindowLook {
-    bool dark = true, help = false, log_counts = true, log_opacity = false, panel = true, play = false;
-    std::string section = "colours", tool = "turn";
-    double brush_px = 40;
+    bool dark = true, help = false;
+    bool log_counts = true;           ///< logarithmic heights of the histogram
+    bool log_opacity = false;         ///< logarithmic heights of the curve of opacities
+    bool panel = true;                ///< the panel at the right is there
+    bool play = false;                ///< the steps of a series go on by themselves
+    std::string section = "colours";  ///< the part of the panel that is open
+    std::string tool = "turn";  ///< what dragging with the left button does: turn the camera, or work on the control points
+    double brush_px = 40;       ///< the radius of brush and paint in pixels
 };
 
 }  // namespace subvol::detail
