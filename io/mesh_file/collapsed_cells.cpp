@@ -108,7 +108,15 @@ private:
         }
         std::vector<Tet> tets;
         for (const Tet& tet : split_cell(hex)) {
-            if (all_different(tet)) tets.push_back(tet);
+            if (!all_different(tet)) continue;
+            // Another one with the same corners is its mirror image: together they have no volume.
+            const auto twin = std::ranges::find_if(
+                tets, [&](const Tet& other) { return std::is_permutation(tet.begin(), tet.end(), other.begin()); });
+            if (twin == tets.end()) {
+                tets.push_back(tet);
+            } else {
+                tets.erase(twin);
+            }
         }
         if (tets.empty()) {
             ++flat_;

@@ -19,6 +19,7 @@
 #include <numeric>
 #include <set>
 #include <unordered_map>
+#include <utility>
 
 #include "assemble.h"
 #include "polyhedra.h"
@@ -33,10 +34,13 @@ constexpr std::array<std::array<std::size_t, 4>, 6> kFaces{
 constexpr std::array<std::array<std::size_t, 2>, 12> kEdges{
     {{0, 1}, {1, 2}, {2, 3}, {3, 0}, {4, 5}, {5, 6}, {6, 7}, {7, 4}, {0, 4}, {1, 5}, {2, 6}, {3, 7}}};
 
+constexpr int kMostDepth = 8;  // halves of halves
+
 // The points that may hang, by their places. Points inside a mesh of equal cells have eight of them, hanging ones fewer.
 class HangingPoints {
 public:
-    explicit HangingPoints(const MeshFile& found) : points_(found.points) {
+    /// with_edges: for `have_edge`
+    HangingPoints(const MeshFile& found, bool with_edges) : points_(found.points) {
         std::vector<std::uint8_t> cells(points_.size());
         at_point_.assign(points_.size(), std::numeric_limits<float>::infinity());
         double longest = 0;
@@ -55,10 +59,19 @@ public:
         least_edge_ = kHalf * shortest_;
         width_ = std::sqrt(shortest_) / 64;
         if (!(width_ > 1e-9 * std::sqrt(longest))) return;
+        const auto may_hang = [&](std::size_t p) { return cells[p] > 0 && cells[p] < 8; };
         for (std::size_t p = 0; p < points_.size(); ++p) {
-            if (cells[p] > 0 && cells[p] < 8)
+            if (may_hang(p))
                 places_.emplace(key({cube(points_[p].x), cube(points_[p].y), cube(points_[p].z)}), static_cast<Index>(p));
         }
+        if (!with_edges) return;
+        for (const auto& hex : found.hexes.corners) {
+            for (const auto& [a, b] : kEdges) {
+                if (may_hang(hex[a]) && may_hang(hex[b])) edges_.push_back(std::minmax(hex[a], hex[b]));
+            }
+        }
+        std::ranges::sort(edges_);
+        edges_.erase(std::unique(edges_.begin(), edges_.end()), edges_.end());
     }
 
     [[nodiscard]] bool empty() const { return places_.empty(); }
@@ -96,6 +109,13 @@ public:
         return kNone;
     }
 
+    /// Whether hexahedra have an edge between two points that may hang, in one piece or in halves.
+    [[nodiscard]] bool have_edge(Index a, Index b, int depth = 0) const {
+        if (std::ranges::binary_search(edges_, std::pair<Index, Index>(std::minmax(a, b)))) return true;
+        const Index middle = depth < kMostDepth ? between(a, b) : kNone;
+        return middle != kNone && have_edge(a, middle, depth + 1) && have_edge(middle, b, depth + 1);
+    }
+
     /// Whether a point hangs on an edge of a hexahedron; faces with hanging points have such edges.
     [[nodiscard]] bool touches(const std::array<Index, 8>& hex) const {
         return std::ranges::any_of(kEdges, [&](const auto& edge) { return between(hex[edge[0]], hex[edge[1]]) != kNone; });
@@ -114,9 +134,8 @@ private:
     std::vector<float> at_point_;  // the square of the shortest edge there
     double shortest_ = 0, least_edge_ = 0, width_ = 0;
     std::unordered_multimap<std::uint64_t, Index> places_;
+    std::vector<std::pair<Index, Index>> edges_;  // of hexahedra, between these points; the smaller one first
 };
-
-constexpr int kMostDepth = 8;  // halves of halves
 
 // Appends the points between two corners, without these.
 void add_between(const HangingPoints& hanging, Index a, Index b, std::vector<Index>& into, int depth = 0) {
@@ -127,16 +146,28 @@ void add_between(const HangingPoints& hanging, Index a, Index b, std::vector<Ind
     add_between(hanging, middle, b, into, depth + 1);
 }
 
-// The faces that a quad has with its hanging points: four where small cells meet it, else one with more points.
+// The faces that a quad has with its hanging points: four where small cells meet it, two where these are halves in one
+// direction, else one with more points. Points on all sides, without an edge across, are those of cells beside the quad.
 void add_faces(const HangingPoints& hanging, const std::array<Index, 4>& quad, CellFaces& faces, int depth = 0) {
     const auto [a, b, c, d] = quad;
-    if (const Index middle = depth < kMostDepth ? hanging.between(a, c, b, d) : kNone; middle != kNone) {
+    if (depth < kMostDepth) {
         const std::array<Index, 4> sides{hanging.between(a, b), hanging.between(b, c), hanging.between(c, d),
                                          hanging.between(d, a)};
-        if (std::ranges::find(sides, kNone) == sides.end()) {
+        const auto is_cut = [&](std::size_t k) {
+            return sides[k] != kNone && sides[k + 2] != kNone && hanging.have_edge(sides[k], sides[k + 2]);
+        };
+        const std::array<bool, 2> cut{is_cut(0), is_cut(1)};
+        const Index middle = std::ranges::find(sides, kNone) == sides.end() ? hanging.between(a, c, b, d) : kNone;
+        if (middle != kNone && cut[0] == cut[1]) {
             for (std::size_t k = 0; k < 4; ++k) {
                 add_faces(hanging, {quad[k], sides[k], middle, sides[(k + 3) % 4]}, faces, depth + 1);
             }
+            return;
+        }
+        if (cut[0] != cut[1]) {
+            const std::size_t k = cut[0] ? 0 : 1;
+            add_faces(hanging, {quad[k], sides[k], sides[k + 2], quad[(k + 3) % 4]}, faces, depth + 1);
+            add_faces(hanging, {sides[k], quad[k + 1], quad[k + 2], sides[k + 2]}, faces, depth + 1);
             return;
         }
     }
@@ -172,7 +203,7 @@ void number_cells(MeshFile& found) {
 }  // namespace
 
 void say_hanging_points(MeshFile& found) {
-    const HangingPoints hanging(found);
+    const HangingPoints hanging(found, false);
     if (hanging.empty()) return;
     std::set<Index> points;
     for (const auto& hex : found.hexes.corners) {
@@ -188,7 +219,7 @@ void say_hanging_points(MeshFile& found) {
 }
 
 void join_hanging_points(MeshFile& found) {
-    const HangingPoints hanging(found);
+    const HangingPoints hanging(found, true);
     if (hanging.empty()) return;
     number_cells(found);
     Polyhedra polyhedra;

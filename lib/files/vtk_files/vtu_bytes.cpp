@@ -26,9 +26,11 @@ constexpr auto kDigitOf = [] {
 }();
 
 bool unzip(std::string_view bytes, std::string& into) {
-    uLongf size = into.size();
+    Bytef one = 0;  // zlib takes a place without bytes for one of one byte
+    uLongf size = std::max<std::size_t>(into.size(), 1);
+    auto* to = into.empty() ? &one : reinterpret_cast<Bytef*>(into.data());
     const auto* from = reinterpret_cast<const Bytef*>(bytes.data());
-    return uncompress(reinterpret_cast<Bytef*>(into.data()), &size, from, bytes.size()) == Z_OK && size == into.size();
+    return uncompress(to, &size, from, bytes.size()) == Z_OK && size == into.size();
 }
 
 constexpr std::uint64_t kMostDictionary = std::uint64_t{128} << 20;  // twice what the strongest preset needs
@@ -161,9 +163,12 @@ std::optional<std::string_view> LzmaReader::next() {
     lzma_stream& lzma = stream_->lzma;
     lzma.next_out = reinterpret_cast<std::uint8_t*>(piece_.data());
     lzma.avail_out = piece_.size();
-    const lzma_ret result = lzma_code(&lzma, LZMA_FINISH);
-    stream_->ended = result == LZMA_STREAM_END;
-    if (result != LZMA_OK && !stream_->ended) return std::nullopt;
+    // A call may do no more than read: only the end of the stream is the end of the bytes.
+    while (!stream_->ended && lzma.avail_out == piece_.size()) {
+        const lzma_ret result = lzma_code(&lzma, LZMA_FINISH);
+        stream_->ended = result == LZMA_STREAM_END;
+        if (result != LZMA_OK && !stream_->ended) return std::nullopt;
+    }
     if (stream_->ended && lzma.avail_in > 0) return std::nullopt;
     return std::string_view(piece_).substr(0, piece_.size() - lzma.avail_out);
 }
