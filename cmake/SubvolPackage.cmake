@@ -24,7 +24,7 @@ set(CPACK_DEBIAN_COMMAND_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_COMMAND_PACKAGE_SHLIBDEPS ON)
 # OpenGL is loaded when it is needed; plots as .pdf are written in DejaVu Sans; ffmpeg makes the videos of --turntable.
 set(CPACK_DEBIAN_COMMAND_PACKAGE_RECOMMENDS "libegl1, libgl1, libgl1-mesa-dri, fonts-dejavu-core")
-set(CPACK_DEBIAN_COMMAND_PACKAGE_SUGGESTS "ffmpeg")
+set(CPACK_DEBIAN_COMMAND_PACKAGE_SUGGESTS "ffmpeg, python3-meshio, python3-vtk9")
 
 set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION "subdivision volumes: the library
 Headers, static libraries and CMake package of subvol::lib, subvol::io,
@@ -58,6 +58,6 @@ import subvol: meshes, points and pictures as arrays of numpy.")
   list(GET python_versions 1 python_below)
   set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS
     "subvol (= ${PROJECT_VERSION}), python3 (>= ${python_from}), python3 (<< ${python_below}), python3-numpy")
-  set(CPACK_DEBIAN_PYTHON_PACKAGE_SUGGESTS "python3-tqdm, python3-meshio, python3-matplotlib")
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_SUGGESTS "python3-tqdm, python3-meshio, python3-vtk9, python3-matplotlib")
 endif()
 include(CPack)

@@ -42,14 +42,14 @@ struct Pipe {
     }
 };
 
-/// Reads both pipes to their end; passes an interrupt on to the child.
-void drain(Pipe& out, Pipe& err, pid_t child, ChildResult& result) {
+/// Reads both pipes to their end; passes an interrupt on to the child as a signal.
+void drain(Pipe& out, Pipe& err, pid_t child, int signal, ChildResult& result) {
     bool passed_on = false;
     std::array<pollfd, 2> files{pollfd{out.ends[0], POLLIN, 0}, pollfd{err.ends[0], POLLIN, 0}};
     const std::array<std::string*, 2> texts{&result.out, &result.err};
     while (files[0].fd >= 0 || files[1].fd >= 0) {
         if (poll(files.data(), files.size(), kLookForInterrupts_ms) < 0 && errno != EINTR) return;
-        if (!passed_on && interrupt_signal() != 0) passed_on = kill(child, SIGTERM) == 0;
+        if (!passed_on && interrupt_signal() != 0) passed_on = kill(child, signal) == 0;
         for (std::size_t i = 0; i < 2; ++i) {
             if (files[i].fd < 0 || files[i].revents == 0) continue;
             std::array<char, 1 << 16> bytes;
@@ -63,8 +63,15 @@ void drain(Pipe& out, Pipe& err, pid_t child, ChildResult& result) {
 }  // namespace
 
 ChildResult run_self(const std::vector<std::string>& arguments) {
+    // A child ends with its parent and leaves no unfinished file either. Not SIGTERM, which `drain` may just have passed
+    // on: a second one would end it at once.
+    return run_program("/proc/self/exe", arguments, {.orphaned = SIGPIPE});
+}
+
+ChildResult run_program(const std::string& path, const std::vector<std::string>& arguments, const ChildOptions& options) {
+    constexpr int kFile = 3;
     Pipe out, err;
-    std::string name = "subvol";
+    std::string name = path == "/proc/self/exe" ? "subvol" : path;
     std::vector<std::string> copies = arguments;
     std::vector<char*> argv{name.data()};
     for (std::string& argument : copies) argv.push_back(argument.data());
@@ -74,20 +81,20 @@ ChildResult run_self(const std::vector<std::string>& arguments) {
     if (child < 0) throw Error(ErrorCode::MissingCapability, std::generic_category().message(errno), "study");
     if (child == 0) {   // only calls that are safe between fork and exec
         setpgid(0, 0);  // so that Ctrl-C reaches it only once, through us
-        // A child ends with its parent and leaves no unfinished file either. Not SIGTERM, which `drain` may just have passed
-        // on: a second one would end it at once.
-        prctl(PR_SET_PDEATHSIG, SIGPIPE);
+        prctl(PR_SET_PDEATHSIG, options.orphaned);
         if (getppid() != parent) _exit(127);  // the parent has ended meanwhile
         dup2(out.ends[1], STDOUT_FILENO);
         dup2(err.ends[1], STDERR_FILENO);
-        execv("/proc/self/exe", argv.data());
+        if (options.file == kFile) (void)fcntl(kFile, F_SETFD, 0);  // dup2 would leave it closed by exec
+        if (options.file >= 0) dup2(options.file, kFile);
+        execv(path.c_str(), argv.data());
         _exit(127);
     }
     out.close_end(1);
     err.close_end(1);
     const WaitsForChild waits;
     ChildResult result;
-    drain(out, err, child, result);
+    drain(out, err, child, options.interrupted, result);
     int status = 0;
     while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
     }

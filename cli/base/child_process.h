@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <csignal>
 #include <string>
 #include <vector>
 
@@ -18,5 +19,20 @@ struct ChildResult {
 ///
 /// throws: Error(MissingCapability) if it cannot be started
 [[nodiscard]] ChildResult run_self(const std::vector<std::string>& arguments);
+
+/// How another program is run as a child.
+///
+/// file:        an open file that the child has as its number 3; -1: none
+/// interrupted: the signal that it gets when this program is interrupted
+/// orphaned:    the signal that it gets when this program ends
+struct ChildOptions {
+    int file = -1;
+    int interrupted = SIGTERM;
+    int orphaned = SIGPIPE;
+};
+
+/// The same for another program. path: of its file
+[[nodiscard]] ChildResult run_program(const std::string& path, const std::vector<std::string>& arguments,
+                                      const ChildOptions& options);
 
 }  // namespace subvol::cli

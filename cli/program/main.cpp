@@ -31,6 +31,7 @@
 #include <utility>
 
 #include "choices.h"
+#include "foreign_input.h"
 #include "help.h"
 #include "interrupt.h"
 #include "manual.h"
@@ -280,6 +281,7 @@ int main(int argc, char** argv) {
     // What unwinds std::call_once is loaded by glibc when it is first needed, too late where memory has run out.
     void* frame = nullptr;
     (void)backtrace(&frame, 1);
+    subvol::cli::read_foreign_inputs();
     CLI::App program(kDescription, "subvol");
     const std::vector<std::string> arguments = asked(argc, argv);
     const bool json = std::ranges::find(arguments, "--json") != arguments.end();

@@ -60,6 +60,7 @@ public:
                "  subvol info model:ball\n"
                "  subvol info ball.vdb --at 0,0,0 --at .5,0,0\n"
                "  subvol info part.vtu --folds\n"
+               "  subvol info wing.bdf      by meshio or VTK, as files of many other programs\n"
                "  subvol info --gl\n"
                "\n"
                "JSON: blocks and sets, each with name, cells (those that it consists of after the splitting; blocks also "

@@ -29,6 +29,9 @@ class Hdf5File;
 /// The same; throws: Error(InvalidInput) that lists all formats if there is none.
 [[nodiscard]] const MeshFormat& readable_format(const std::filesystem::path& path);
 
+/// Returns the row of files of other programs if a file's name is of one of them and a reader was set for them; else null.
+[[nodiscard]] const MeshFormat* foreign_row(const std::filesystem::path& path);
+
 /// How values at cells are read from a format where the options leave it open; still Auto where each array decides.
 [[nodiscard]] CellValues resolved_cell_values(const MeshFormat& format, CellValues chosen);
 

@@ -33,6 +33,7 @@
 #include "subvol/detail/text_scanner.h"
 #include "subvol/error.h"
 #include "subvol/field_bounds.h"
+#include "subvol/foreign_files.h"
 #include "subvol/mesh_series.h"
 #include "subvol/option.h"
 #include "vtk/collection.h"
@@ -269,21 +270,16 @@ Contents contents_of(const std::filesystem::path& path) {
     return {};
 }
 
-// Other programs' files that meshio reads; python/subvol/_foreign.py has the same.
-constexpr std::array<std::string_view, 19> kForeign{".med",  ".bdf",  ".nas", ".fem", ".su2", ".f3grid", ".avs",
-                                                    ".dato", ".post", ".dat", ".tec", ".ele", ".node",   ".ugrid",
-                                                    ".vol",  ".mdpa", ".xml", ".h5m", ".hmf"};
-
 // The way to files that the library does not read, for its refusal; empty for endings that are unknown.
 std::string way_to(const std::filesystem::path& path) {
     std::string extension = path.extension().string();
     std::ranges::transform(extension, extension.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    if (std::ranges::find(kForeign, extension) != kForeign.end()) {
-        return "; python3 -m subvol.convert " + path.filename().string() +
-               " mesh.vtu converts it by meshio (Debian: python3-meshio" + (extension == ".med" ? ", python3-h5py" : "") + ")";
+    if (const ForeignFormat* foreign = foreign_format(path)) {
+        return "; python3 -m subvol.convert " + path.filename().string() + " mesh.vtu converts it by " + foreign->by +
+               " (Debian: " + foreign->packages + ")";
     }
     if (extension == ".unv") return "; gmsh -save -format msh4 -o mesh.msh " + path.filename().string() + " converts it";
-    constexpr std::array<std::string_view, 8> kUnknown{".k", ".key", ".cdb", ".ans", ".op2", ".neu", ".mphtxt", ".pf3"};
+    constexpr std::array<std::string_view, 7> kUnknown{".k", ".key", ".cdb", ".ans", ".op2", ".mphtxt", ".pf3"};
     if (std::ranges::find(kUnknown, extension) != kUnknown.end()) {
         return "; meshio cannot read them either: export one of these from the program that made them";
     }
@@ -348,7 +344,8 @@ const MeshFormat* detail::format_of(const std::filesystem::path& path) {
     }
     const Contents contents = contents_of(path);
     const MeshFormat* found = format_with(contents.extension);
-    return found && (contents.certain || !named) ? found : named;
+    if (found && (contents.certain || !named)) return found;
+    return named ? named : foreign_row(path);
 }
 
 const MeshFormat& detail::readable_format(const std::filesystem::path& path) {

@@ -370,7 +370,7 @@ def read_mesh(
     mesh: str = '', crease_angle: Union[float, str] = 'auto'
 ) -> HexMesh:
     """Reads a mesh. The contents and the extension decide the format; docs/formats.md has the list. Formats that the library does not
-    read but meshio does (MED, Nastran, SU2, FLAC3D and others) are read by meshio, without their sets and steps.
+    read but meshio or VTK do (MED, Nastran, Tecplot, LS-DYNA, Fluent and others) are read by these in a child process, without their sets.
 
     The names of the file are in `mesh.patches`, by name (n,2): a cell and its side, u=0, u=1, v=0, v=1, w=0 or w=1, and in
     `mesh.sets`, by name (n,): cells. `warp`, `only`, `subdivide` and `write_mesh` keep them.
@@ -399,8 +399,8 @@ def read_mesh(
                  more than 40, and on round bodies of few cells by more than 60, unless the file has creases [auto, none]
 
     Warns (SubvolWarning) once for each thing left out, turned round or converted.
-    Raises FileError if the file cannot be opened; InvalidInput, with file and line, if it is malformed; MissingCapability if meshio is
-    needed and not installed.
+    Raises FileError if the file cannot be opened; InvalidInput, with file and line, if it is malformed; MissingCapability if meshio or
+    VTK is needed and not installed.
     """
 
 def reduce(

@@ -1,107 +1,67 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Meshes in formats of other programs, read by meshio, which is imported when a call needs it."""
+"""Meshes in formats of other programs. `_foreign_file.py` converts them by meshio or VTK, in a child process, because both trust the files."""
 from __future__ import annotations
 
-import contextlib
-import importlib
-import io
+import json
 import os
+import subprocess
+import sys
 import tempfile
 from typing import Any, Optional
 
-import numpy as np
-
-from . import _core
-from ._arguments import Path, extension, path_bytes, warn
+from . import _core, _foreign_file
+from ._arguments import Path, path_bytes
 from ._errors import FileError, InvalidInput, MissingCapability
 
-# The files that meshio reads and the library does not: extension, and what it is of.
-EXTENSIONS = {".med": "Salome", ".bdf": "Nastran", ".nas": "Nastran", ".fem": "Nastran", ".su2": "SU2", ".f3grid": "FLAC3D", ".avs": "AVS UCD",
-              ".dato": "Permas", ".post": "Permas", ".dat": "Tecplot", ".tec": "Tecplot", ".ele": "TetGen", ".node": "TetGen", ".ugrid": "UGRID",
-              ".vol": "Netgen", ".mdpa": "Kratos", ".xml": "Dolfin", ".h5m": "MOAB", ".hmf": "HMF"}
-_KINDS_WITH_VOLUME = ("tetra", "hexahedron", "wedge", "pyramid")
+# The endings of the files that meshio or VTK read and the library does not, and whose files they are.
+EXTENSIONS = {ending: row["program"] for row in _foreign_file.FORMATS for ending in row["endings"]}
 
 
 def is_foreign(path: Path) -> bool:
-    """Whether meshio has to read a file: by its extension, and because the library does not know the contents."""
-    return extension(path) in EXTENSIONS and not _core.is_mesh_file(path_bytes(path))
+    """Whether meshio or VTK has to read a file: by its name, and because the library does not know the contents."""
+    return _foreign_file.row_of(os.fsdecode(path)) is not None and not _core.is_mesh_file(path_bytes(path))
 
 
-def read(path: Path, file_format: Optional[str] = None) -> Any:
-    """A `meshio.Mesh`. file_format: meshio's name of the format; None: by the extension."""
-    name = os.fsdecode(path)
+def convert(source: Path, target: str, file_format: Optional[str] = None, step: Optional[int] = None, time: Optional[float] = None) -> dict[str, Any]:
+    """Writes a .vtu file. Returns the object that the program prints, whose "warnings" begin with what read the file.
+
+    file_format: meshio's name of the format; None: by the name of the file
+    step, time:  which step; None: the last one
+    """
+    name = os.fsdecode(source)
     if not os.path.isfile(name):
         raise FileError("cannot be read: there is no such file", name)
+    words = [sys.executable or "python3", _foreign_file.__file__, os.path.abspath(name), target]
+    for option, value in (("--format", file_format), ("--step", step), ("--time", time)):
+        if value is not None:
+            words.append(f"{option}={value}")
+    packages = os.pathsep.join(place for place in sys.path if place)  # what this process finds, the child finds
+    done = subprocess.run(words, stdin=subprocess.DEVNULL, capture_output=True, env={**os.environ, "PYTHONPATH": packages}, check=False)
     try:
-        meshio = importlib.import_module("meshio")
-        with contextlib.redirect_stdout(io.StringIO()) as said:  # it prints what is wrong, and may end Python
-            return meshio.read(name, file_format=file_format)
-    except ImportError as error:
-        package = "python3-h5py" if error.name == "h5py" else "python3-meshio"
-        raise MissingCapability(f"{name}: {error.name} is not installed", name, f"Debian has it as {package}") from error
-    except (Exception, SystemExit) as error:
-        reason = str(error) if isinstance(error, Exception) and str(error) else " ".join(said.getvalue().split()) or type(error).__name__
-        raise InvalidInput(f"{name}: meshio cannot read it: {reason}", name, "the format that the extension names, or file_format") from error
-
-
-def _numbers(values: Any) -> bool:
-    return np.asarray(values).dtype.kind in "iufb" and np.asarray(values).ndim in (1, 2)
-
-
-def prepared(mesh: Any) -> Any:
-    """The mesh with what a .vtu file holds: points in three dimensions and arrays of numbers. Warns about everything that is left out."""
-    if mesh.points.shape[1] < 3:
-        mesh.points = np.column_stack([mesh.points, np.zeros((len(mesh.points), 3 - mesh.points.shape[1]))])
-    arrays = [name for name, values in mesh.point_data.items() if not _numbers(values)]
-    for name in arrays:
-        del mesh.point_data[name]
-    for name, blocks in list(mesh.cell_data.items()):
-        same = all(block is not None and _numbers(block) for block in blocks) and len({np.shape(block)[1:] for block in blocks}) == 1
-        if not same:
-            arrays.append(name)
-            del mesh.cell_data[name]
-    sets = [*mesh.point_sets, *mesh.cell_sets]
-    families = [name for tags in ("point_tags", "cell_tags") for names in (getattr(mesh, tags, None) or {}).values() for name in names]
-    for what, names in (("array", arrays), ("set", sets), ("group", families)):
-        if names:
-            some = ", ".join(f'"{name}"' for name in names[:5]) + (", …" if len(names) > 5 else "")
-            warn(f"{len(names)} {what}{'s' if len(names) > 1 else ''} left out ({some})", 6)
-    mesh.point_sets, mesh.cell_sets, mesh.field_data = {}, {}, {}
-    return mesh
-
-
-def write_vtu(mesh: Any, path: str) -> None:
-    meshio = importlib.import_module("meshio")
-    found = prepared(mesh)
-    try:
-        with contextlib.redirect_stdout(io.StringIO()):
-            meshio.write(path, found, file_format="vtu")
-    except (Exception, SystemExit) as error:
-        raise InvalidInput(f"{path}: meshio cannot write the mesh: {type(error).__name__}: {error}", path) from error
+        found: dict[str, Any] = json.loads(done.stdout)
+    except ValueError:
+        how = f"by signal {-done.returncode}" if done.returncode < 0 else f"with exit code {done.returncode}"
+        last = done.stderr.decode("utf-8", "replace").strip().rpartition("\n")[2]
+        raise MissingCapability(f"{name}: Python ended {how} while it converted the file" + (f": {last}" if last else ""), name) from None
+    if "message" in found:
+        kind = MissingCapability if done.returncode == 3 else InvalidInput
+        raise kind(f"{name}: {found['message']}", name, found["allowed"])
+    found["warnings"].insert(0, f"read by {found['by']} ({found['program']}); {found['left']} not read")
+    return found
 
 
 def read_mesh(path: Path, options: dict[str, Any]) -> tuple[_core.HexMesh, list[str]]:
-    """What the library reads of what meshio reads, and its warnings."""
+    """What the library reads of what meshio or VTK reads, and its warnings."""
     name = os.fsdecode(path)
+    chosen: dict[str, Any] = {}
+    if (_foreign_file.row_of(name) or {}).get("steps"):
+        options = dict(options)
+        chosen = {word: options.pop(word, None) for word in ("step", "time")}
     with tempfile.TemporaryDirectory() as folder:
         made = os.path.join(folder, "mesh.vtu")
-        write_vtu(read(path), made)
+        found = convert(path, made, **chosen)
         try:
             mesh, said = _core.read_mesh(path_bytes(made), **options)
         except InvalidInput as error:
             raise InvalidInput(str(error).replace(made, name), error.where.replace(made, name), error.allowed) from None
-    return mesh, [f"read by meshio ({EXTENSIONS[extension(path)]}); sets and steps are not read", *said]
-
-
-def figures(mesh: Any) -> str:
-    """"8 points, 1 hexahedron; fields T, U": what was converted."""
-    counts: dict[str, int] = {}
-    for block in mesh.cells:
-        counts[block.type] = counts.get(block.type, 0) + len(block.data)
-    fields = ", ".join(map(str, [*mesh.point_data, *mesh.cell_data]))
-    cells = ", ".join(f"{count:,} {kind}" for kind, count in counts.items())
-    return f"{len(mesh.points):,} points, {cells}" + (f"; fields {fields}" if fields else "")
-
-
-def has_volume(mesh: Any) -> bool:
-    return any(block.type.startswith(_KINDS_WITH_VOLUME) and len(block.data) for block in mesh.cells)
+    return mesh, [*found["warnings"], *said]

@@ -5,6 +5,7 @@
 ///
 /// - `read_mesh`, `write_mesh`: any format, by its name or its first bytes; `ReadResult`: the mesh, its sets, its fields.
 /// - `open_series`: steps in time. `mesh_of_vtk`, `VtkUnstructuredGrid`: meshes to and from VTK in memory.
+/// - `read_foreign_files`: files of other programs, by a converter that a program runs.
 /// - `split_mesh`, `open_bricks`: meshes in folders of bricks, worked on brick by brick.
 /// - `write_wavelet_file`, `write_series_file`: fine meshes and series in few bytes.
 ///
@@ -18,6 +19,7 @@
 #include "subvol/brick_points.h"
 #include "subvol/bricks.h"
 #include "subvol/coarse_edit.h"
+#include "subvol/foreign_files.h"
 #include "subvol/hierarchy.h"
 #include "subvol/mesh_io.h"
 #include "subvol/mesh_series.h"
