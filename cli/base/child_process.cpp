@@ -45,11 +45,12 @@ struct Pipe {
 /// Reads both pipes to their end; passes an interrupt on to the child as a signal.
 void drain(Pipe& out, Pipe& err, pid_t child, int signal, ChildResult& result) {
     bool passed_on = false;
+    const pid_t whom = signal == SIGKILL ? -child : child;  // the child's group, as it cannot pass it on
     std::array<pollfd, 2> files{pollfd{out.ends[0], POLLIN, 0}, pollfd{err.ends[0], POLLIN, 0}};
     const std::array<std::string*, 2> texts{&result.out, &result.err};
     while (files[0].fd >= 0 || files[1].fd >= 0) {
         if (poll(files.data(), files.size(), kLookForInterrupts_ms) < 0 && errno != EINTR) return;
-        if (!passed_on && interrupt_signal() != 0) passed_on = kill(child, signal) == 0;
+        if (!passed_on && interrupt_signal() != 0) passed_on = kill(whom, signal) == 0;
         for (std::size_t i = 0; i < 2; ++i) {
             if (files[i].fd < 0 || files[i].revents == 0) continue;
             std::array<char, 1 << 16> bytes;
@@ -85,6 +86,9 @@ ChildResult run_program(const std::string& path, const std::vector<std::string>&
         if (getppid() != parent) _exit(127);  // the parent has ended meanwhile
         dup2(out.ends[1], STDOUT_FILENO);
         dup2(err.ends[1], STDERR_FILENO);
+        if (options.no_input) {
+            if (const int nothing = open("/dev/null", O_RDONLY | O_CLOEXEC); nothing >= 0) dup2(nothing, STDIN_FILENO);
+        }
         if (options.file == kFile) (void)fcntl(kFile, F_SETFD, 0);  // dup2 would leave it closed by exec
         if (options.file >= 0) dup2(options.file, kFile);
         execv(path.c_str(), argv.data());

@@ -23,10 +23,12 @@ struct ChildResult {
 /// How another program is run as a child.
 ///
 /// file:        an open file that the child has as its number 3; -1: none
-/// interrupted: the signal that it gets when this program is interrupted
+/// no_input:    it has an empty standard input
+/// interrupted: the signal that it gets when this program is interrupted; SIGKILL: its own children get it, too
 /// orphaned:    the signal that it gets when this program ends
 struct ChildOptions {
     int file = -1;
+    bool no_input = false;
     int interrupted = SIGTERM;
     int orphaned = SIGPIPE;
 };

@@ -34,6 +34,12 @@ namespace {
 
 constexpr const char* kDebiansPython = "/usr/bin/python3";
 
+// Runs the program that follows as an argument, which imports nothing from the current folder: not even what a program does
+// before its first line, such as __future__.
+constexpr const char* kRunIsolated = "import sys; sys.path[:] = filter(None, sys.path); exec(sys.argv.pop(1))";
+
+constexpr int kUnwritten = 4;  // the converter's exit code
+
 /// A file of this process that has no name any more.
 class NamelessFile {
 public:
@@ -85,7 +91,9 @@ std::vector<std::string> interpreters() {
         begin = end + 1;
     }
     std::error_code none;
-    const bool same = !found.empty() && std::filesystem::equivalent(found.front(), kDebiansPython, none);
+    // Folders, because the program of a virtual environment is a link to Debian's, and finds other packages.
+    const auto folder = [](const std::filesystem::path& file) { return file.parent_path(); };
+    const bool same = !found.empty() && std::filesystem::equivalent(folder(found.front()), folder(kDebiansPython), none);
     if (!same && access(kDebiansPython, X_OK) == 0) found.emplace_back(kDebiansPython);
     return found;
 }
@@ -101,11 +109,15 @@ nlohmann::json answer_of(const ChildResult& ended) {
     return {{"message", "python3 ended " + how + (line.empty() ? "" : ": " + line)}, {"allowed", ""}, {"missing", {""}}};
 }
 
+ErrorCode code_of(int ended) {
+    if (ended == 2) return ErrorCode::InvalidInput;
+    return ended == kUnwritten ? ErrorCode::Io : ErrorCode::MissingCapability;
+}
+
 ForeignFile file_of(const nlohmann::json& answer) {
     ForeignFile file;
     file.times = answer.at("times").get<std::vector<double>>();
     if (!answer.contains("by")) return file;  // only the times
-    file.step = answer.at("step");
     file.warnings.push_back(text("read by ", answer.at("by").get<std::string>(), " (", answer.at("program").get<std::string>(),
                                  "); ", answer.at("left").get<std::string>(), " not read"));
     for (const auto& warning : answer.at("warnings")) file.warnings.push_back(warning);
@@ -113,7 +125,8 @@ ForeignFile file_of(const nlohmann::json& answer) {
 }
 
 ForeignFile convert(const std::filesystem::path& path, const ForeignRequest& request) {
-    std::vector<std::string> words{"-c", std::string(foreign_program()), std::filesystem::absolute(path).string()};
+    std::vector<std::string> words{"-c", kRunIsolated, std::string(foreign_program()),
+                                   std::filesystem::absolute(path).string()};
     if (request.only_times) words.emplace_back("--times");
     if (!request.only_times) words.emplace_back("/dev/fd/3");
     if (request.step) words.insert(words.end(), {"--step", std::to_string(*request.step)});
@@ -124,7 +137,7 @@ ForeignFile convert(const std::filesystem::path& path, const ForeignRequest& req
     for (const std::string& python : interpreters()) {
         const NamelessFile made;
         const ChildResult ended =
-            run_program(python, words, {.file = made.number(), .interrupted = SIGKILL, .orphaned = SIGKILL});
+            run_program(python, words, {.file = made.number(), .no_input = true, .interrupted = SIGKILL, .orphaned = SIGKILL});
         if (interrupt_signal() != 0) throw Error(ErrorCode::Cancelled, "cancelled");
         const nlohmann::json answer = answer_of(ended);
         if (answer.contains("times")) {
@@ -133,8 +146,10 @@ ForeignFile convert(const std::filesystem::path& path, const ForeignRequest& req
             return file;
         }
         const bool lacks = !answer.at("missing").empty();
-        error = Error(ended.code == 2 ? ErrorCode::InvalidInput : ErrorCode::MissingCapability,
-                      answer.at("message").get<std::string>(), path.string(), answer.at("allowed").get<std::string>());
+        const Error found(code_of(ended.code), answer.at("message").get<std::string>(), path.string(),
+                          answer.at("allowed").get<std::string>());
+        // What one says of the file is more than what the next one lacks.
+        if (error.code() == ErrorCode::MissingCapability || found.code() != ErrorCode::MissingCapability) error = found;
         if (!lacks) break;
     }
     throw error;
@@ -143,7 +158,8 @@ ForeignFile convert(const std::filesystem::path& path, const ForeignRequest& req
 }  // namespace
 
 void read_foreign_inputs() {
-    read_foreign_files(convert);
+    // The completion of a shell asks for the fields of a file while somebody types, and python3 takes its time.
+    if (std::getenv("SUBVOL_COMPLETION") == nullptr) read_foreign_files(convert);
 }
 
 }  // namespace subvol::cli

@@ -62,6 +62,7 @@ ReadResult read_file(const std::filesystem::path& path, const ReadOptions& optio
 struct Contents {
     std::string_view extension;  ///< extension of the format whose files begin so; empty: no format has such files
     bool certain = true;         ///< an ending that says something else is wrong
+    bool shared = false;         ///< files of other programs begin so, too: an ending of theirs is right
 };
 
 /// The first bytes of a file that are looked at, and those of them at which texts are recognised.

@@ -22,8 +22,8 @@ class Hdf5File;
 [[nodiscard]] std::span<const FormatFamily> format_families();
 
 /// Returns the format of a file: the one that its first bytes show beyond doubt, else the one that its extension names, in
-/// upper or lower case, else the one that the first bytes suggest; for a folder the one whose meshes are folders. Null if there
-/// is none.
+/// upper or lower case, else the one that the first bytes suggest, unless the name is of a file of another program; for a
+/// folder the one whose meshes are folders. Null if there is none.
 [[nodiscard]] const MeshFormat* format_of(const std::filesystem::path& path);
 
 /// The same; throws: Error(InvalidInput) that lists all formats if there is none.

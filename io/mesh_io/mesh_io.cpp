@@ -344,7 +344,7 @@ const MeshFormat* detail::format_of(const std::filesystem::path& path) {
     }
     const Contents contents = contents_of(path);
     const MeshFormat* found = format_with(contents.extension);
-    if (found && (contents.certain || !named)) return found;
+    if (found && (contents.certain || (!named && !(contents.shared && foreign_format(path))))) return found;
     return named ? named : foreign_row(path);
 }
 

@@ -35,7 +35,7 @@ Contents contents_of_solvers(std::string_view begin) {
     if (begin.starts_with("CDF\1") || begin.starts_with("CDF\2") || begin.starts_with("CDF\5")) return {".exo"};
     if (begin.starts_with("\x89HDF")) {
         if (has("CGNSLibraryVersion") || has("CGNSBase_t")) return {".cgns"};
-        return {".exo", false};  // the names of its groups may come later
+        return {".exo", false, true};  // the names of its groups may come later
     }
     if (begin.substr(0, 64).find("ADF Database") != std::string_view::npos) return {".cgns"};
     begin = begin.substr(0, kFirstText);

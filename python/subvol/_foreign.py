@@ -11,7 +11,7 @@ from typing import Any, Optional
 
 from . import _core, _foreign_file
 from ._arguments import Path, path_bytes
-from ._errors import FileError, InvalidInput, MissingCapability
+from ._errors import Error, FileError, InvalidInput, MissingCapability
 
 # The endings of the files that meshio or VTK read and the library does not, and whose files they are.
 EXTENSIONS = {ending: row["program"] for row in _foreign_file.FORMATS for ending in row["endings"]}
@@ -44,7 +44,7 @@ def convert(source: Path, target: str, file_format: Optional[str] = None, step: 
         last = done.stderr.decode("utf-8", "replace").strip().rpartition("\n")[2]
         raise MissingCapability(f"{name}: Python ended {how} while it converted the file" + (f": {last}" if last else ""), name) from None
     if "message" in found:
-        kind = MissingCapability if done.returncode == 3 else InvalidInput
+        kind: type[Error] = {3: MissingCapability, 4: FileError}.get(done.returncode, InvalidInput)
         raise kind(f"{name}: {found['message']}", name, found["allowed"])
     found["warnings"].insert(0, f"read by {found['by']} ({found['program']}); {found['left']} not read")
     return found
@@ -64,4 +64,6 @@ def read_mesh(path: Path, options: dict[str, Any]) -> tuple[_core.HexMesh, list[
             mesh, said = _core.read_mesh(path_bytes(made), **options)
         except InvalidInput as error:
             raise InvalidInput(str(error).replace(made, name), error.where.replace(made, name), error.allowed) from None
+    if len(found["times"]) > 1 and all(value is None for value in chosen.values()):
+        found["warnings"].append(f"the file has {len(found['times'])} steps; the last one is read")
     return mesh, [*found["warnings"], *said]

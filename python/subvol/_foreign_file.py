@@ -13,7 +13,7 @@ limit that the system keeps, and what it prints is held back. `subvol.read_mesh`
 its text in itself and gives it to `python3 -c`. It needs nothing but the standard library, and of the packages what a route imports.
 
 The object of a success: "figures", "by", "program", "warnings", "times", "step". The object of a failure: "message", "allowed", "missing" (Debian's
-packages). Ends with 0, with 2 if the file cannot be read, or with 3 if packages are missing.
+packages). Ends with 0, with 2 if the file cannot be read, with 3 if packages are missing, or with 4 if the target cannot be written.
 """
 from __future__ import annotations
 
@@ -26,10 +26,12 @@ if __name__ == "__main__":  # neither the folder of this file, which has modules
 
 import argparse
 import contextlib
+import hashlib
 import importlib
 import io
 import json
 import re
+import resource
 import signal
 import tempfile
 from collections.abc import Callable
@@ -58,11 +60,12 @@ FORMATS: list[dict[str, Any]] = json.loads("""[
   {"endings": [".h5m"], "program": "MOAB", "meshio": "", "packages": ["python3-h5py"]},
   {"endings": [".hmf"], "program": "HMF", "meshio": "", "packages": ["python3-h5py"]},
   {"endings": ["d3plot", ".d3plot"], "program": "LS-DYNA", "vtk": ["vtkIOLSDyna", "vtkLSDynaReader"], "steps": true},
-  {"endings": [".cas"], "program": "Fluent", "vtk": ["vtkIOGeometry", "vtkFLUENTReader"]},
+  {"endings": [".cas"], "program": "Fluent", "vtk": ["vtkIOGeometry", "vtkFLUENTReader"], "rounds": true},
   {"endings": [".neu"], "program": "Gambit", "vtk": ["vtkIOGeometry", "vtkGAMBITReader"]},
-  {"endings": [".res"], "program": "MFIX", "vtk": ["vtkIOGeometry", "vtkMFIXReader"], "steps": true}
+  {"endings": [".res"], "program": "MFIX", "vtk": ["vtkIOGeometry", "vtkMFIXReader"], "steps": true, "rounds": true}
 ]""")
 LIMIT_S = 600
+BASE_LIMIT_S = 60  # of the clock on the wall: the machine may be busy
 BYTES_A_SECOND = 50_000  # meshio reads a million
 _VOLUMES = ("tetra", "hexahedron", "wedge", "pyramid", "polyhedron")
 _SOME = 5
@@ -70,6 +73,10 @@ _SOME = 5
 
 class Unreadable(Exception):
     """Why a route does not read the file."""
+
+
+class Unwritable(Exception):
+    """Why the target cannot be written."""
 
 
 def row_of(path: str) -> Optional[dict[str, Any]]:
@@ -139,8 +146,68 @@ def zones_of_tecplot(path: str) -> int:
         return sum(1 for line in file if re.match(rb"\s*zone\b", line, re.IGNORECASE))
 
 
+def bare_line(line: bytes) -> bytes:
+    """A line of Tecplot in upper case without its strings and comments."""
+    if b'"' in line:
+        line = re.sub(rb'"[^"]*"', b'""', line)
+    return line.partition(b"#")[0].strip().upper()
+
+
+def is_data_of_tecplot(line: bytes) -> bool:
+    """Whether a line has numbers, not words of a header."""
+    return re.match(rb"\s*(?:[-+.]*\d|[-+]?(?:nan|inf))[^=\"(\[)]*$", line, re.IGNORECASE) is not None
+
+
+def refuse_headers_of_tecplot(path: str, vtk: bool) -> None:
+    """Refuses zones of several times, and on VTK's route what VTK takes for something else, wherever it is in the file."""
+    times: set[bytes] = set()
+    header = b""
+    zone = 0
+
+    def refuse_header() -> None:
+        if not zone:
+            return
+        if vtk:
+            for word in (b"VARSHARELIST", b"CONNECTIVITYSHAREZONE"):
+                if re.search(rb"\b" + word + rb"\b", header):
+                    raise Unreadable(f"zone {zone} has {word.decode()}, and VTK does not share data between zones; write each zone with its own data")
+            places = re.search(rb"\bVARLOCATION\s*=\s*\(([^)]*)\)?", header)
+            if places and b"NODAL" in places[1] and b"CELLCENTERED" in places[1]:
+                raise Unreadable(f"zone {zone} lists NODAL and CELLCENTERED in VARLOCATION, which VTK does not read; list those that are CELLCENTERED alone")
+        if time := re.search(rb"\bSOLUTIONTIME\s*=\s*([-+.0-9ED]+)", header):
+            strand = re.search(rb"\bSTRANDID\s*=\s*([-+]?\d+)", header)
+            if strand is None or int(strand[1]) != 0:  # 0: at all times
+                with contextlib.suppress(ValueError):
+                    times.add(str(float(time[1].replace(b"D", b"E"))).encode())
+        if len(times) > 1:
+            raise Unreadable(f"its zones are of several times (up to zone {zone}: SOLUTIONTIME {', '.join(sorted(map(bytes.decode, times)))}), which would lie on each other; "
+                             "write a file of one time")
+
+    with open(path, "rb") as file:
+        for number, line in enumerate(file, 1):
+            if vtk and b"*" in line and (word := re.search(rb"(?<![^\s,])\d+\*[-+.\dNI]\S*", bare_line(line))):
+                raise Unreadable(f'line {number} has the repeat count "{word[0].decode("ascii", "replace")}", which VTK does not read; write each number')
+            if is_data_of_tecplot(line):
+                continue
+            bare = bare_line(line)
+            if re.match(rb"ZONE\b", bare):
+                refuse_header()
+                header = b""
+                zone += 1
+            header += bare + b" "
+            if len(header) > 1 << 20:
+                raise Unreadable(f"the header of zone {zone} does not end")
+    refuse_header()
+
+
 def by_meshio(row: dict[str, Any], source: str, target: str, wanted: argparse.Namespace) -> dict[str, Any]:
     meshio = importlib.import_module("meshio")
+    zones = 1
+    if row["program"] == "Tecplot" and wanted.format in (None, "tecplot"):
+        zones = zones_of_tecplot(source)
+        refuse_headers_of_tecplot(source, False)
+    warnings: list[str] = []
+    chosen_step(wanted, [], warnings)
     version = getattr(meshio, "__version__", "")
     with contextlib.redirect_stdout(io.StringIO()) as said:  # it prints what is wrong, and may end Python
         try:
@@ -155,11 +222,13 @@ def by_meshio(row: dict[str, Any], source: str, target: str, wanted: argparse.Na
             if len(block.data):
                 add_counts(counts, {block.type: len(block.data)})
         refuse_without_volume(len(mesh.points), counts)
-        warnings = without_others(mesh)
-        if row["program"] == "Tecplot" and (zones := zones_of_tecplot(source)) > 1:
+        warnings += without_others(mesh)
+        if zones > 1:
             warnings.append(f"meshio reads the first of {zones} zones; VTK (Debian: python3-vtk9) reads all")
         try:
             meshio.write(target, mesh, file_format="vtu")
+        except OSError as error:
+            raise Unwritable(error.strerror or str(error)) from error
         except (Exception, SystemExit) as error:
             raise Unreadable(f"the cells that it finds are wrong: {error}") from error
     fields = list(map(str, [*mesh.point_data, *mesh.cell_data]))
@@ -228,28 +297,55 @@ def with_volume(leaves: list[tuple[str, Any]], warnings: list[str]) -> tuple[lis
 
 
 def joined(volumes: list[tuple[str, Any]], warnings: list[str]) -> Any:
-    """One grid of all blocks, which share no points, with the arrays that all have. Of several, a field has their numbers."""
-    common = set.intersection(*(set(arrays_of(grid)) for _, grid in volumes))
-    left = sorted({name for _, grid in volumes for where, name in arrays_of(grid) if (where, name) not in common})
-    if left:
-        warnings.append(f"{counted(len(left), 'array')} that only some blocks have left out ({listed(left)})")
+    """One grid of all blocks, which share no points, with the arrays that all have alike. Of several, a field has their numbers."""
+    theirs = {key for _, grid in volumes for key in arrays_of(grid)}
+    field = "block"
+    while any(name == field for _, name in theirs):
+        field += "_"
     if len(volumes) > 1:
         names = ", ".join(f'{number} "{name}"' for number, (name, _) in enumerate(volumes[:_SOME])) + (", …" if len(volumes) > _SOME else "")
-        warnings.append(f'{len(volumes)} blocks are numbered in the field "block": {names}')
+        warnings.append(f'{len(volumes)} blocks are numbered in the field "{field}": {names}')
     append = vtk_module("vtkFiltersCore").vtkAppendFilter()
     append.MergePointsOff()
     for number, (_, grid) in enumerate(volumes):
         single = grid.NewInstance()
         single.ShallowCopy(grid)
+        for where, name in [key for key in arrays_of(grid) if not all(alike(grid, other, key) for _, other in volumes)]:
+            getattr(single, "Get" + where)().RemoveArray(name)
         if len(volumes) > 1:
             numbers = vtk_module("vtkCommonCore").vtkIntArray()
-            numbers.SetName("block")
+            numbers.SetName(field)
             numbers.SetNumberOfTuples(grid.GetNumberOfCells())
             numbers.Fill(number)
             single.GetCellData().AddArray(numbers)
         append.AddInputData(single)
     append.Update()
-    return append.GetOutput()
+    whole = append.GetOutput()
+    left = sorted({name for _, name in theirs - set(arrays_of(whole))})
+    if left:
+        warnings.append(f"{counted(len(left), 'array')} that not all blocks have alike left out ({listed(left)})")
+    return whole
+
+
+def alike(grid: Any, other: Any, key: tuple[str, str]) -> bool:
+    """Whether two blocks have an array with the same number of components."""
+    here, there = arrays_of(grid)[key], arrays_of(other).get(key)
+    return there is not None and here.GetNumberOfComponents() == there.GetNumberOfComponents()
+
+
+def refuse_copies(blocks: list[tuple[str, Any]]) -> None:
+    """Refuses blocks with the same points and cells: steps, which would lie on each other."""
+    seen: dict[bytes, str] = {}
+    for number, (name, grid) in enumerate(blocks):
+        told = f'{number} "{name}"'
+        parts = [grid.GetPoints().GetData()]
+        if grid.IsA("vtkUnstructuredGrid"):
+            parts += [grid.GetCells().GetConnectivityArray(), grid.GetCellTypesArray()]
+        marks = hashlib.sha256()
+        for part in parts:
+            marks.update(vtk_module("util.numpy_support").vtk_to_numpy(part).tobytes())
+        if (first := seen.setdefault(marks.digest(), told)) is not told:
+            raise Unreadable(f"blocks {first} and {told} have the same points and cells, as steps have, and would lie on each other; write a file of one step")
 
 
 def arrays_of(grid: Any) -> dict[tuple[str, str], Any]:
@@ -272,7 +368,7 @@ def checked(grid: Any) -> None:
     points = numpy_support.vtk_to_numpy(grid.GetPoints().GetData())
     if not np.isfinite(points).all():
         raise Unreadable("there are points that are not finite")
-    corners = numpy_support.vtk_to_numpy(grid.GetCells().GetConnectivityArray())
+    corners = numpy_support.vtk_to_numpy(grid.GetCells().GetConnectivityArray()) if grid.IsA("vtkUnstructuredGrid") else np.zeros(0, int)
     if len(corners) and not (0 <= corners.min() and corners.max() < len(points)):
         raise Unreadable(f"there are cells of points 0 to {max(abs(int(corners.min())), int(corners.max()))}, but only {len(points):,} points")
     for (where, name), array in arrays_of(grid).items():
@@ -308,10 +404,11 @@ def in_order_of_vtk(grid: Any) -> None:
         corners[starts[:, None] + np.arange(8)] = turned
 
 
-def numbers_in(path: str) -> int:
-    """The words of a text that are numbers."""
+def numbers_in(path: str, tecplot: bool) -> int:
+    """The words of a text that are numbers; of Tecplot those that are not in headers or comments."""
     with open(path, "rb") as file:
-        return sum(len(re.findall(rb"(?<![^\s,])(?:[-+.0-9][-+.0-9ed]*|[-+]?(?:nan|inf|infinity))(?![^\s,])", line.lower())) for line in file)
+        lines = (line.partition(b"#")[0] for line in file if is_data_of_tecplot(line)) if tecplot else file
+        return sum(len(re.findall(rb"(?<![^\s,])(?:[-+.0-9][-+.0-9ed]*|[-+]?(?:nan|inf|infinity))(?![^\s,])", line.lower())) for line in lines)
 
 
 def refuse_short_text(row: dict[str, Any], source: str, grids: list[Any]) -> None:
@@ -324,8 +421,8 @@ def refuse_short_text(row: dict[str, Any], source: str, grids: list[Any]) -> Non
         needed += sum(a.GetNumberOfTuples() * a.GetNumberOfComponents() for a in arrays_of(grid).values() if row["program"] != "Gambit")
         if row["program"] == "AVS UCD":  # numbers of points and cells before what they have
             needed += grid.GetNumberOfPoints() * (1 + (grid.GetPointData().GetNumberOfArrays() > 0)) + grid.GetNumberOfCells() * (1 + (grid.GetCellData().GetNumberOfArrays() > 1))
-    have = numbers_in(source)
-    if have < needed and not re.search(rb"VARSHARELIST|CONNECTIVITYSHAREZONE|\d+\*", open(source, "rb").read(1 << 20), re.IGNORECASE):
+    have = numbers_in(source, row["program"] == "Tecplot")
+    if have < needed:
         raise Unreadable(f"the file ends too early: it has {have:,} numbers, and its points, cells and values are {needed:,}")
     if row["program"] == "Gambit":
         with open(source, "rb") as file:
@@ -342,7 +439,30 @@ def refuse_open_end(path: str) -> None:
             raise Unreadable("the file ends too early: its last section has no end")
 
 
-def chosen_step(wanted: argparse.Namespace, times: list[float]) -> int:
+def refuse_other_file(row: dict[str, Any], source: str) -> None:
+    """Refuses a file that does not begin as MFIX's do: its reader reserves as much memory as it finds in it."""
+    if row["program"] == "MFIX":
+        with open(source, "rb") as file:
+            if file.read(6) != b"RES = ":
+                raise Unreadable('it does not begin with "RES = ", as the files .res of MFIX do')
+
+
+def refuse_unsure_step(times: list[float], step: int, warnings: list[str]) -> None:
+    """VTK finds a step by its time: the first one that is not before it."""
+    found = next((k for k, time in enumerate(times) if time >= times[step]), None)
+    if found != step:
+        others = f"step {found}, of time {times[found]:g}, is found before it" if found is not None else "it is no number"
+        raise Unreadable(f"step {step} has the time {times[step]:g}, by which VTK does not find it: {others}; choose another step (--step)")
+    if (same := times.count(times[step])) > 1:
+        warnings.append(f"{same} steps have the time {times[step]:g}; the first of them, step {step}, is read")
+
+
+def chosen_step(wanted: argparse.Namespace, times: list[float], warnings: list[str]) -> int:
+    """The step that is wanted, of those with these times, or of a file with one step."""
+    if wanted.time is not None and len(times) < 2:
+        warnings.append("the file has one step, so there is no time to choose")
+    elif wanted.time is not None and not min(times) <= float(wanted.time) <= max(times):
+        warnings.append(f"time {wanted.time:g} is beyond the steps of the file, whose times are {min(times):g} to {max(times):g}")
     if wanted.time is not None and times:
         return min(range(len(times)), key=lambda k: abs(times[k] - float(wanted.time)))
     if wanted.step is None:
@@ -357,6 +477,8 @@ def by_vtk(row: dict[str, Any], source: str, target: str, wanted: argparse.Names
     core, pipeline = vtk_module("vtkCommonCore"), vtk_module("vtkCommonExecutionModel")
     if row["program"] == "Tecplot":
         zones_of_tecplot(source)
+        refuse_headers_of_tecplot(source, True)
+    refuse_other_file(row, source)
     if row["program"] == "Fluent":
         refuse_open_end(source)
     module, name = row["vtk"]
@@ -387,18 +509,23 @@ def by_vtk(row: dict[str, Any], source: str, target: str, wanted: argparse.Names
     times = [about.Get(steps_key, k) for k in range(about.Length(steps_key))] if row.get("steps") and about.Has(steps_key) else []
     if wanted.times:
         return {"times": times}
-    step = chosen_step(wanted, times)
+    step = chosen_step(wanted, times, warnings)
     for which in ("Point", "Cell", "Solid", "ThickShell", "Shell", "Beam"):  # readers that offer a choice of arrays take all
         with contextlib.suppress(AttributeError, TypeError):  # there is no choice, or it has other words
             for number in range(getattr(reader, f"GetNumberOf{which}Arrays")()):
                 getattr(reader, f"Set{which}ArrayStatus")(getattr(reader, f"Get{which}ArrayName")(number), 1)
     if times:
+        refuse_unsure_step(times, step, warnings)
         reader.UpdateTimeStep(times[step])
     else:
         reader.Update()
     refuse_errors()
-    volumes, counts = with_volume(leaves_of(reader.GetOutputDataObject(0)), warnings)
-    refuse_short_text(row, source, [grid for _, grid in volumes])
+    leaves = leaves_of(reader.GetOutputDataObject(0))
+    volumes, counts = with_volume(leaves, warnings)
+    refuse_short_text(row, source, [grid for _, grid in leaves if grid is not None and grid.IsA("vtkPointSet")])
+    for _, grid in volumes:
+        checked(grid)
+    refuse_copies(volumes)
     whole = joined(volumes, warnings)
     checked(whole)
     if row["program"] == "Gambit":
@@ -419,8 +546,8 @@ def by_vtk(row: dict[str, Any], source: str, target: str, wanted: argparse.Names
     writer.SetDataModeToAppended()
     writer.EncodeAppendedDataOff()
     writer.SetCompressorTypeToNone()
-    if not writer.Write():
-        raise Unreadable("VTK cannot write what it read")
+    if not writer.Write() or writer.GetErrorCode():
+        raise Unwritable("VTK cannot write what it read: " + (vtk_module("vtkCommonMisc").vtkErrorCode.GetStringFromErrorCode(writer.GetErrorCode()) or "no reason").lower())
     version = core.vtkVersion.GetVTKVersion()
     return {"figures": figures(whole.GetNumberOfPoints(), counts, fields), "by": f"VTK {version}", "left": "sets are" if row.get("steps") else "sets and steps are",
             "warnings": warnings, "times": times, "step": step}
@@ -430,7 +557,7 @@ def by_vtk(row: dict[str, Any], source: str, target: str, wanted: argparse.Names
 
 
 def in_child(route: Callable[..., dict[str, Any]], limit_s: int, *arguments: Any) -> dict[str, Any]:
-    """Runs a route in a process of its own, which the system ends after the time limit. Returns its result, or {"reason": …} or {"missing": a package}."""
+    """Runs a route in a process of its own, which the system ends after the time limit. Returns its result, {"reason": …}, {"unwritten": …} or {"missing": a package}."""
     with tempfile.TemporaryFile() as result, tempfile.TemporaryFile() as printed:
         child = os.fork()
         if child == 0:
@@ -438,6 +565,9 @@ def in_child(route: Callable[..., dict[str, Any]], limit_s: int, *arguments: Any
                 with contextlib.suppress(Exception):  # the child ends with its parent, in Linux
                     import ctypes
                     ctypes.CDLL(None).prctl(1, signal.SIGKILL)
+                resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+                with open(os.devnull, "rb") as nothing:
+                    os.dup2(nothing.fileno(), 0)
                 signal.signal(signal.SIGALRM, signal.SIG_DFL)
                 signal.alarm(limit_s)
                 for stream in (1, 2):
@@ -448,6 +578,8 @@ def in_child(route: Callable[..., dict[str, Any]], limit_s: int, *arguments: Any
                     found = {"missing": (error.name or str(error)).partition(".")[0]}
                 except Unreadable as error:
                     found = {"reason": str(error)}
+                except Unwritable as error:
+                    found = {"unwritten": str(error)}
                 except MemoryError:
                     found = {"reason": "memory is too short"}
                 except BaseException as error:
@@ -494,17 +626,24 @@ def convert(source: str, target: str, wanted: argparse.Namespace) -> tuple[int, 
         return 2, {"message": "neither meshio nor VTK is known to read such files", "allowed": endings, "missing": []}
     reasons, missing, unread = [], [], False
     # A file by itself of some bytes does not take minutes; a reader that does not find its end does.
-    limit_s = wanted.limit if row.get("vtk") and "meshio" not in row else min(wanted.limit, 20 + os.path.getsize(source) // BYTES_A_SECOND)
-    for name, route in routes_of(row, source, wanted):
+    limit_s = wanted.limit if row.get("vtk") and "meshio" not in row else min(wanted.limit, BASE_LIMIT_S + os.path.getsize(source) // BYTES_A_SECOND)
+    routes = routes_of(row, source, wanted)
+    for name, route in routes:
         found = in_child(route, limit_s, row, source, target, wanted)
         if "missing" in found:
             module = {"vtkmodules": "VTK"}.get(found["missing"], found["missing"])
             reasons.append(f"{module} is not installed")
             missing.append(package_of(found["missing"]))
+        elif "unwritten" in found:
+            folder = tempfile.gettempdir() if target.startswith("/dev/fd/") else os.path.dirname(target)
+            return 4, {"message": f"the mesh that {name} read cannot be written in {folder}: {found['unwritten']}", "allowed": "room for it; TMPDIR names another folder", "missing": []}
         elif "reason" in found:
             unread = True
             reasons.append(f"{name} {found['reason']} while it read the file" if "signal" in found else f"{name} cannot read it: {found['reason']}")
+            if name == "VTK" and len(routes) > 1 and routes[0][0] == "VTK":  # meshio would read the first zone of several
+                break
         else:
+            found["warnings"] = [*found.get("warnings", []), *reasons] if unread else found.get("warnings", [])
             found["program"] = row["program"]
             found.setdefault("times", [])
             found.setdefault("step", 0)

@@ -126,7 +126,8 @@ class Interpreters(Foreign):
     def test_the_current_folder_is_no_place_for_packages(self):
         self.nastran()
         (self.folder / "meshio.py").write_text("open('taken', 'w')")
-        (self.folder / "json.py").write_text("open('taken', 'w')")
+        for name in ("json.py", "__future__.py", "os.py", "contextlib.py"):
+            (self.folder / name).write_text("open('taken', 'w')")
         self.assertAlmostEqual(self.fine("info", "a.bdf", "--json").json()["volume"], 8)
         self.assertNotIn("taken", self.files())
 
@@ -146,11 +147,60 @@ class Interpreters(Foreign):
         empty = self.fake("bin", "python3", "#!/bin/sh\necho no such thing >&2\nexit 3\n")
         self.assertAlmostEqual(self.fine("info", "a.bdf", "--json", PATH=empty).json()["volume"], 8)
 
+    def test_what_one_says_of_the_file_stays(self):
+        (self.folder / "a.avs").write_text("no mesh")
+        answer = '{"message": "meshio cannot read it: no mesh; VTK is not installed", "allowed": "", "missing": ["python3-vtk9"]}'
+        first = self.fake("bin", "python3", f"#!/bin/sh\necho '{answer}'\nexit 2\n")
+        done = self.subvol("info", "a.avs", PATH=first)
+        self.assertEqual(done.code, 2)
+        self.assertRegex(done.err, "cannot read it")
+        for name in ("meshio", "vtkmodules"):  # Debian's lacks both
+            (self.folder / "packages" / name).mkdir(parents=True)
+            (self.folder / "packages" / name / "__init__.py").write_text(f"raise ModuleNotFoundError('none', name='{name}')")
+        done = self.subvol("info", "a.avs", PATH=first, PYTHONPATH=str(self.folder / "packages"))
+        self.assertEqual(done.code, 2)
+        self.assertIn("meshio cannot read it: no mesh; VTK is not installed", done.err)
+
+    def test_a_link_to_debians_python_is_another_one(self):
+        if subprocess.run([DEBIANS, "-c", "import meshio"], capture_output=True).returncode != 0:
+            self.skipTest("Debian's meshio is not installed")
+        (self.folder / "a.bdf").write_text(self.texts.nastran())
+        (self.folder / "venv" / "bin").mkdir(parents=True)
+        (self.folder / "venv" / "pyvenv.cfg").write_text("home = /usr/bin\ninclude-system-site-packages = false\n")
+        (self.folder / "venv" / "bin" / "python3").symlink_to(DEBIANS)
+        self.assertAlmostEqual(self.fine("info", "a.bdf", "--json", PATH=str(self.folder / "venv" / "bin")).json()["volume"], 8)
+
+    def test_completion_starts_no_python(self):
+        (self.folder / "a.bdf").write_text(self.texts.nastran())
+        slow = self.fake("bin", "python3", "#!/bin/sh\n: > taken\n")
+        self.assertEqual(self.subvol("info", "a.bdf", "--list-fields", PATH=slow, SUBVOL_COMPLETION="1").code, 2)
+        self.assertNotIn("taken", self.files())
+        for shell in ("bash", "zsh"):
+            self.assertIn("SUBVOL_COMPLETION=1", subprocess.run([COMMAND, "--generate", shell], capture_output=True, text=True).stdout)
+
+    def test_files_of_hdf5_reach_meshio(self):
+        (self.folder / "a.med").write_bytes(b"\x89HDF\r\n\x1a\n" + bytes(200))
+        done = self.subvol("info", "a.med")
+        self.assertIn(done.code, (2, 3))
+        self.assertRegex(done.err, "a.med: .*(meshio|h5py)")
+
+    def test_a_full_disk_is_no_fault_of_the_file(self):
+        (self.folder / "a.bdf").write_text("GRID")
+        full = self.fake("bin", "python3", """#!/bin/sh\necho '{"message": "cannot be written", "allowed": "TMPDIR", "missing": []}'\nexit 4\n""")
+        done = self.subvol("info", "a.bdf", PATH=full)
+        self.assertEqual(done.code, 2)
+        self.assertIn("a.bdf: cannot be written (TMPDIR)", done.err)
+        self.nastran()
+        short = subprocess.run(["sh", "-c", f"ulimit -f 1; exec '{COMMAND}' info a.bdf"], cwd=self.folder, capture_output=True, text=True, env=self.env)
+        self.assertEqual(short.returncode, 2)
+        self.assertRegex(short.stderr, "a.bdf: .* cannot be written in .*TMPDIR")
+
     def test_an_interrupt_ends_the_child(self):
         (self.folder / "a.bdf").write_text(self.texts.nastran())
-        slow = self.fake("bin", "python3", "#!/bin/sh\nexec /bin/sleep 100\n")
+        slow = self.fake("bin", "python3", "#!/bin/sh\n/bin/sleep 100 &\necho $! > below\nwait\n")
         process = subprocess.Popen([COMMAND, "info", "a.bdf"], cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env={**self.env, "PATH": slow})
         while not (found := children(process.pid)):
+            self.assertIsNone(process.poll(), "the command ended without a child")
             time.sleep(.01)
         time.sleep(.2)
         began = time.monotonic()
@@ -159,7 +209,7 @@ class Interpreters(Foreign):
         self.assertEqual(process.returncode, 130, err)
         self.assertIn("cancelled", err)
         self.assertLess(time.monotonic() - began, 10)
-        self.assertTrue(all(map(has_ended, found)))
+        self.assertTrue(all(map(has_ended, [*found, int((self.folder / "below").read_text())])))  # the child's own child, too
         self.assertEqual(list((self.folder / "tmp").iterdir()), [])
 
 

@@ -12,7 +12,7 @@ import warnings
 import numpy as np
 import pytest
 import subvol
-from foreign_texts import fluent, gambit, ls_dyna, nastran, tecplot, tecplot_zones, ucd
+from foreign_texts import floats, fluent, gambit, line, lines, ls_dyna, nastran, tecplot, tecplot_zones, ucd, CELLS, POINTS, T
 
 # What is used of meshio: a mesh of a cube and a prism beside it, with sets, an array of texts and one of Gauss points.
 STAND_IN = '''
@@ -269,3 +269,150 @@ def test_binary_files_of_tecplot_are_named(tmp_path):
     (tmp_path / "a.plt").write_bytes(b"#!TDV112" + bytes(100))
     with pytest.raises(subvol.InvalidInput, match="a.plt: .*binary"):
         subvol.read_mesh(tmp_path / "a.plt")
+
+
+def refused(path, match, **options):
+    with pytest.raises(subvol.InvalidInput, match=match):
+        read_quietly(path, **options)
+
+
+def fe_zone(shift=0., head="", rows=None):
+    """A zone of bricks, moved along x."""
+    rows = [*zip(*((x + shift, y, z) for x, y, z in POINTS)), T] if rows is None else rows
+    return f"ZONE NODES=27, ELEMENTS=8, DATAPACKING=BLOCK, ZONETYPE=FEBRICK{head}\n" + lines(rows) + lines(CELLS)
+
+
+VARIABLES = 'VARIABLES = "X" "Y" "Z" "T"\n'
+
+
+def test_tecplot_that_vtk_misreads_is_refused(tmp_path, monkeypatch):
+    pytest.importorskip("vtkmodules")
+    without_meshio(tmp_path, monkeypatch)
+    path = tmp_path / "a.dat"
+    path.write_text(VARIABLES + fe_zone() + fe_zone(2, ', T="27*5.5 VARSHARELIST" # 3*4'))
+    mesh, _ = read_quietly(path)
+    assert mesh.report()["volume"] == pytest.approx(16)
+    far = "# padding\n" * 150_000  # more than a MiB before the second zone
+    path.write_text(VARIABLES + fe_zone() + far + fe_zone(0, ", VARSHARELIST=([1-3]=1)", [T]))
+    refused(path, "zone 2 has VARSHARELIST")
+    path.write_text(VARIABLES + fe_zone() + fe_zone(2, ",\nconnectivitysharezone = 1").replace(lines(CELLS), "", 0))
+    refused(path, "zone 2 has CONNECTIVITYSHAREZONE")
+    path.write_text(VARIABLES + fe_zone().replace(line(T), "27*5.5\n"))
+    refused(path, r'line 6 has the repeat count "27\*5.5"')
+    path.write_text(tecplot().replace("([5]=CELLCENTERED)", "([1-4]=NODAL,\n [5]=CELLCENTERED)"))
+    refused(path, "zone 1 lists NODAL and CELLCENTERED")
+
+
+def test_steps_of_tecplot_do_not_lie_on_each_other(tmp_path):
+    pytest.importorskip("vtkmodules")
+    path = tmp_path / "a.dat"
+    path.write_text(VARIABLES + "".join(fe_zone(0, f", STRANDID=1, SOLUTIONTIME={time}") for time in (0, 1.5)))
+    refused(path, "SOLUTIONTIME 0.0, 1.5")
+    path.write_text(VARIABLES + fe_zone() + fe_zone())
+    refused(path, "have the same points and cells")
+    path.write_text(VARIABLES + "".join(fe_zone(2 * k, f", STRANDID={k + 1}, SOLUTIONTIME=1.5") for k in (0, 1)))
+    mesh, _ = read_quietly(path)
+    assert mesh.report()["volume"] == pytest.approx(16)
+
+
+def test_truncated_tecplot_behind_a_zone_without_volume(tmp_path):
+    pytest.importorskip("vtkmodules")
+    flat = 'ZONE T="flat", I=9, J=9, K=1, F=POINT\n' + lines((x, y, 0, 7) for y in range(9) for x in range(9))
+    whole = VARIABLES + flat + fe_zone()
+    (tmp_path / "a.dat").write_text(whole)
+    mesh, said = read_quietly(tmp_path / "a.dat")
+    assert mesh.report()["volume"] == pytest.approx(8) and "1 block without volume left out" in said
+    (tmp_path / "a.dat").write_text(whole[:-len(lines(CELLS[4:]))])
+    refused(tmp_path / "a.dat", "ends too early")
+    (tmp_path / "a.dat").write_text(whole[:-len(" 27\n")])
+    refused(tmp_path / "a.dat", "ends too early: it has 495 numbers, and its points, cells and values are 496")
+
+
+def test_steps_of_ls_dyna_with_one_time_are_refused(tmp_path):
+    pytest.importorskip("vtkmodules")
+    root, states = ls_dyna()
+    (tmp_path / "d3plot").write_bytes(root)
+    (tmp_path / "d3plot01").write_bytes(states.replace(floats([[.5]]), floats([[0]]), 1))
+    refused(tmp_path / "d3plot", "step 1 has the time 0, by which VTK does not find it")
+    mesh, said = read_quietly(tmp_path / "d3plot", time=0)
+    check_cube(mesh)
+    assert "2 steps have the time 0; the first of them, step 0, is read" in said
+
+
+def test_steps_are_not_ignored(tmp_path):
+    pytest.importorskip("meshio")
+    (tmp_path / "a.bdf").write_text(nastran())
+    done = run(tmp_path, "a.bdf", "a.vtu", "--step", 7)
+    assert done.returncode == 2 and "there is no step 7: it has one step, number 0" in done.stderr
+    done = run(tmp_path, "a.bdf", "a.vtu", "--time", 3)
+    assert done.returncode == 0 and "the file has one step, so there is no time to choose" in done.stderr
+    pytest.importorskip("vtkmodules")
+    for name, data in zip(("d3plot", "d3plot01"), ls_dyna()):
+        (tmp_path / name).write_bytes(data)
+    assert "the file has 2 steps; the last one is read" in read_quietly(tmp_path / "d3plot")[1]
+    assert "the last one" not in read_quietly(tmp_path / "d3plot", step=1)[1]
+    assert "time 9 is beyond the steps of the file" in read_quietly(tmp_path / "d3plot", time=9)[1]
+
+
+def test_files_that_are_not_of_mfix(tmp_path):
+    pytest.importorskip("vtkmodules")
+    (tmp_path / "a.res").write_bytes(b"\x7f" * 5000)
+    refused(tmp_path / "a.res", 'a.res: .*does not begin with "RES = "')
+
+
+def test_fluent_is_said_to_be_rounded(tmp_path):
+    pytest.importorskip("vtkmodules")
+    (tmp_path / "a.cas").write_text(fluent()[0])
+    assert "single precision" in read_quietly(tmp_path / "a.cas")[1]
+
+
+def test_blocks_are_joined_with_what_they_have_alike():
+    pytest.importorskip("vtkmodules")
+    from subvol import _foreign_file
+    from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+    from vtkmodules.vtkCommonCore import vtkPoints
+    from vtkmodules.vtkCommonDataModel import vtkStructuredGrid
+
+    def grid(shift, widths):
+        made = vtkStructuredGrid()
+        made.SetDimensions(3, 3, 3)
+        points = vtkPoints()
+        points.SetData(numpy_to_vtk(np.array(POINTS) + [shift, 0, 0], deep=True))
+        made.SetPoints(points)
+        for name, width in widths.items():
+            values = numpy_to_vtk(np.full((8, width), 5. + shift), deep=True)
+            values.SetName(name)
+            made.GetCellData().AddArray(values)
+        return made
+
+    said = []
+    whole = _foreign_file.joined([("a", grid(0, {"block": 1, "u": 3, "m": 1})), ("b", grid(2, {"block": 1, "u": 1, "m": 1}))], said)
+    data = whole.GetCellData()
+    assert sorted(data.GetArrayName(k) for k in range(data.GetNumberOfArrays())) == ["block", "block_", "m"]
+    assert list(vtk_to_numpy(data.GetArray("block"))) == [5] * 8 + [7] * 8 and list(vtk_to_numpy(data.GetArray("block_"))) == [0] * 8 + [1] * 8
+    assert '1 array that not all blocks have alike left out ("u")' in said
+    short = grid(0, {})
+    short.GetCellData().AddArray(numpy_to_vtk(np.zeros(3), deep=True))
+    short.GetCellData().GetAbstractArray(0).SetName("short")
+    with pytest.raises(_foreign_file.Unreadable, match='array "short" has 3 values'):
+        _foreign_file.checked(short)
+
+
+@pytest.mark.parametrize("vtk", [False, True])
+def test_a_full_disk_is_no_fault_of_the_file(vtk, tmp_path, monkeypatch):
+    pytest.importorskip("vtkmodules" if vtk else "meshio")
+    from subvol import _foreign_file
+    if vtk:
+        without_meshio(tmp_path, monkeypatch)
+    (tmp_path / "a.avs").write_text(ucd())
+    path = os.pathsep.join(place for place in sys.path if place)
+    words = f"'{sys.executable}' '{_foreign_file.__file__}' a.avs /dev/fd/3 3> /dev/full"
+    done = subprocess.run(["sh", "-c", words], cwd=tmp_path, capture_output=True, text=True, env={**os.environ, "PYTHONPATH": path})
+    assert done.returncode == 4 and "cannot be written" in json.loads(done.stdout)["message"], done.stdout + done.stderr
+
+
+@pytest.mark.parametrize("name", ["a.med", "a.h5m", "a.hmf"])
+def test_hdf5_files_of_other_programs_reach_meshio(name, stand_in):
+    (stand_in / name).write_bytes(b"\x89HDF\r\n\x1a\n" + bytes(200))
+    broken(stand_in, "def read(path, file_format=None):\n    raise ValueError('it is ' + open(path, 'rb').read(4)[1:].decode())\n")
+    refused(stand_in / name, f"{name}: meshio cannot read it: it is HDF")

@@ -40,6 +40,18 @@ TEST_F(ForeignFiles, NamesDecideWhoseFilesTheyAre) {
     EXPECT_THAT(std::string(foreign_program()), testing::EndsWith("sys.exit(main())\n"));
 }
 
+TEST_F(ForeignFiles, GuessesOfTheFirstBytesComeAfterTheName) {
+    for (const char* name : {"a.med", "a.h5m", "a.hmf"}) {
+        write(name, std::string("\x89HDF\r\n\x1a\n", 8) + std::string(200, '\0'));
+        EXPECT_FALSE(is_mesh_file(path(name)));
+        read_foreign_files([](const std::filesystem::path&, const ForeignRequest&) -> ForeignFile {
+            throw Error(ErrorCode::InvalidInput, "asked");
+        });
+        EXPECT_THAT(error_of([&] { static_cast<void>(read_mesh(path(name))); }), HasSubstr("asked"));
+        read_foreign_files({});
+    }
+}
+
 TEST_F(ForeignFiles, AreReadOnceAReaderIsThere) {
     const HexMesh box = make_box(2, 1, 1);
     write("a.bdf", "GRID");
@@ -51,7 +63,6 @@ TEST_F(ForeignFiles, AreReadOnceAReaderIsThere) {
         steps.push_back(asked.only_times ? 9 : asked.step.value_or(8));
         return ForeignFile{asked.only_times ? "" : vtu(box),
                            has_steps ? std::vector<double>{0, .5} : std::vector<double>(),
-                           0,
                            {"read by a test"}};
     });
     EXPECT_TRUE(is_mesh_file(path("a.bdf")));
@@ -84,7 +95,7 @@ TEST_F(ForeignFiles, ContentsOfTheLibrarysFormatsAreReadByIt) {
 
 TEST_F(ForeignFiles, ErrorsNameTheFile) {
     write("a.bdf", "GRID");
-    read_foreign_files([](const std::filesystem::path&, const ForeignRequest&) { return ForeignFile{"<VTKFile", {}, 0, {}}; });
+    read_foreign_files([](const std::filesystem::path&, const ForeignRequest&) { return ForeignFile{"<VTKFile", {}, {}}; });
     EXPECT_THAT(error_of([&] { static_cast<void>(read_mesh(path("a.bdf"))); }), HasSubstr("a.bdf"));
 }
 

@@ -41,12 +41,10 @@ struct ForeignFormat {
 ///
 /// vtu:      the text of a `.vtu` file; empty if only the times were asked for
 /// times:    of the steps; empty if there is one step
-/// step:     the one that was converted
 /// warnings: sentences: what read it, and what was left out
 struct ForeignFile {
     std::string vtu;
     std::vector<double> times;
-    std::size_t step = 0;
     std::vector<std::string> warnings;
 };
 
@@ -62,8 +60,8 @@ struct ForeignRequest {
 using ForeignReader = std::function<ForeignFile(const std::filesystem::path&, const ForeignRequest&)>;
 
 /// From now on `read_mesh`, `open_series`, `is_mesh_file` and what calls them take files of other programs, too: those with
-/// such a name whose first bytes are of no format of the library. To be called once, before any file is read: which formats can
-/// be read is one for a whole program, as the library's own table is. An empty reader ends it.
+/// such a name whose first bytes are not beyond doubt of a format of the library. To be called once, before any file is read:
+/// which formats can be read is one for a whole program, as the library's own table is. An empty reader ends it.
 void read_foreign_files(ForeignReader reader);
 
 }  // namespace subvol
