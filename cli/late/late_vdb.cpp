@@ -6,9 +6,10 @@
 namespace subvol::cli {
 
 const VdbFunctions& vdb() {
-    using Entry = const VdbFunctions* (*)();
+    using ModuleEntry = const VdbFunctions* (*)();
     static const VdbFunctions& functions = []() -> const VdbFunctions& {
-        const auto& loaded = *reinterpret_cast<Entry>(detail::load_module("openvdb", "reading, writing or computing grids"))();
+        const auto& loaded =
+            *reinterpret_cast<ModuleEntry>(detail::load_module("openvdb", "reading, writing or computing grids"))();
         detail::remove_unfinished_files_of(loaded.remove_unfinished_files);
         return loaded;
     }();

@@ -24,8 +24,8 @@ std::optional<int> number_in(const char* variable) {
 }
 
 const MpiFunctions& load_mpi() {
-    using Entry = const MpiFunctions* (*)();
-    return *reinterpret_cast<Entry>(detail::load_module("mpi", "working in several processes of MPI"))();
+    using ModuleEntry = const MpiFunctions* (*)();
+    return *reinterpret_cast<ModuleEntry>(detail::load_module("mpi", "working in several processes of MPI"))();
 }
 
 std::string bytes_of(const Error& error) {

@@ -19,13 +19,13 @@ constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
 /// A table: the step and its time, which place or part, and numbers. NaN: there is nothing.
 struct SeriesTable {
     std::vector<std::string> columns;
-    struct Row {
+    struct SeriesTableRow {
         std::size_t step = 0;
         double time = 0;
         std::string label;
         std::vector<double> numbers;
     };
-    std::vector<Row> rows;
+    std::vector<SeriesTableRow> rows;
 };
 
 /// The fields that all steps have.
@@ -51,7 +51,7 @@ SeriesTable table_of_places(const std::vector<ProbedStep>& steps, const std::vec
     }
     for (const ProbedStep& step : steps) {
         for (std::size_t p = 0; p < places.size(); ++p) {
-            SeriesTable::Row row{step.step, step.time, place_text(places[p]), {}};
+            SeriesTable::SeriesTableRow row{step.step, step.time, place_text(places[p]), {}};
             for (const std::string& name : names) {
                 const ProbedField& field = field_in(step, name);
                 for (std::size_t c = 0; c < field.channels; ++c) {
@@ -70,7 +70,7 @@ SeriesTable table_of_parts(const std::vector<ProbedStep>& steps) {
         for (const char* figure : {"mean", "integral", "min", "max"}) table.columns.push_back(field.name + " " + figure);
     }
     const auto add = [&](const ProbedStep& step, const PartMeasure& part, const std::string& name) {
-        SeriesTable::Row row{step.step, step.time, name, {part.volume}};
+        SeriesTable::SeriesTableRow row{step.step, step.time, name, {part.volume}};
         for (const FieldMeasure& field : part.fields) {
             row.numbers.insert(row.numbers.end(), {field.mean, field.integral, field.min.value, field.max.value});
         }
@@ -92,7 +92,7 @@ SeriesTable table_of_patches(const std::vector<ProbedStep>& steps) {
     }
     for (const ProbedStep& step : steps) {
         for (const PatchMeasure& patch : step.patches) {
-            SeriesTable::Row row{step.step, step.time, patch.name, {patch.area}};
+            SeriesTable::SeriesTableRow row{step.step, step.time, patch.name, {patch.area}};
             if (patch.flux) row.numbers.insert(row.numbers.begin(), *patch.flux);
             for (const PatchField& field : patch.fields)
                 row.numbers.insert(row.numbers.end(), {field.mean, field.integral, field.min.value, field.max.value});
@@ -104,7 +104,7 @@ SeriesTable table_of_patches(const std::vector<ProbedStep>& steps) {
 
 void say(const SeriesTable& table, Report& report) {
     constexpr int kDigits = 6;
-    for (const SeriesTable::Row& row : table.rows) {
+    for (const SeriesTable::SeriesTableRow& row : table.rows) {
         std::string line = text("step ", row.step, "  time ", detail::number_text(row.time, kDigits), "  ", row.label);
         for (std::size_t c = 0; c < row.numbers.size(); ++c) {
             line += text("  ", table.columns[c], " ");
@@ -118,7 +118,7 @@ void write_table(const SeriesTable& table, const std::string& file) {
     std::string lines = "step,time,of";
     for (const std::string& column : table.columns) lines += "," + csv_text(column);
     lines += "\n";
-    for (const SeriesTable::Row& row : table.rows) {
+    for (const SeriesTable::SeriesTableRow& row : table.rows) {
         lines += text(row.step, ",", detail::exact_text(row.time), ",", csv_text(row.label));
         for (const double number : row.numbers) lines += std::isnan(number) ? "," : "," + detail::exact_text(number);
         lines += "\n";
@@ -137,7 +137,7 @@ void write_plot(const SeriesTable& table, bool places, const std::string& file) 
         line->x.push_back(time);
         line->y.push_back(value);
     };
-    for (const SeriesTable::Row& row : table.rows) {
+    for (const SeriesTable::SeriesTableRow& row : table.rows) {
         if (places) {
             add(row.label, row.time, row.numbers[0]);
         } else if (row.label == "whole") {

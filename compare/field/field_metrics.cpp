@@ -23,33 +23,34 @@ constexpr std::size_t kBatch = 1 << 16;
 constexpr std::size_t kTriesASample = 1000;
 constexpr double kStep = 1e-3;  // relative to the box's diagonal
 
-struct Place {
+struct FieldSample {
     Vec3 x{0.0};
     std::optional<double> reference{}, test{};
 };
 
-std::vector<Place> random_batch(const FieldView& test, const FieldView& reference, std::mt19937_64& random) {
-    std::vector<Place> batch(kBatch);
-    for (Place& place : batch) {
+std::vector<FieldSample> random_batch(const FieldView& test, const FieldView& reference, std::mt19937_64& random) {
+    std::vector<FieldSample> batch(kBatch);
+    for (FieldSample& place : batch) {
         for (int k = 0; k < 3; ++k) place.x[k] = detail::random_unit(random);
         place.x = reference.box.lower + place.x * reference.box.size();
     }
     tbb::parallel_for(std::size_t{0}, batch.size(), [&](std::size_t i) {
-        Place& place = batch[i];
+        FieldSample& place = batch[i];
         place.reference = reference.value(place.x);
         if (place.reference) place.test = test.value(place.x);
     });
     return batch;
 }
 
-std::vector<Place> random_places_of(const FieldView& test, const FieldView& reference, const FieldDifferenceOptions& options) {
+std::vector<FieldSample> random_places_of(const FieldView& test, const FieldView& reference,
+                                          const FieldDifferenceOptions& options) {
     if (reference.box.empty()) throw Error(ErrorCode::InvalidInput, "the reference field has an empty box");
     std::mt19937_64 random(options.seed);
-    std::vector<Place> places;
+    std::vector<FieldSample> places;
     for (std::size_t tries = 0; places.size() < options.samples && tries < options.samples * kTriesASample; tries += kBatch) {
         report_progress(options.progress, "sample fields",
                         static_cast<double>(places.size()) / static_cast<double>(options.samples));
-        for (const Place& place : random_batch(test, reference, random)) {
+        for (const FieldSample& place : random_batch(test, reference, random)) {
             if (place.reference && places.size() < options.samples) places.push_back(place);
         }
     }
@@ -76,7 +77,8 @@ struct Errors {
     }
 };
 
-void put_gradients(const FieldView& test, const FieldView& reference, std::span<const Place> places, FieldDifference& errors) {
+void put_gradients(const FieldView& test, const FieldView& reference, std::span<const FieldSample> places,
+                   FieldDifference& errors) {
     std::vector<double> squares(places.size());
     tbb::parallel_for(std::size_t{0}, places.size(), [&](std::size_t i) {
         squares[i] = -1;  // none
@@ -116,7 +118,7 @@ FieldDifference compare_fields(const FieldView& test, const FieldView& reference
     const auto places = random_places_of(test, reference, options);
     FieldDifference errors;
     Errors sums;
-    for (const Place& place : places) {
+    for (const FieldSample& place : places) {
         if (place.test) {
             sums.add(*place.test - *place.reference, 1);
             ++errors.samples;

@@ -13,17 +13,18 @@
 namespace subvol {
 
 const detail::OpenExr& detail::openexr() {
-    using Entry = const OpenExr* (*)();
-    static const OpenExr& functions = *reinterpret_cast<Entry>(load_module("openexr", "reading or writing .exr pictures"))();
+    using ModuleEntry = const OpenExr* (*)();
+    static const OpenExr& functions =
+        *reinterpret_cast<ModuleEntry>(load_module("openexr", "reading or writing .exr pictures"))();
     return functions;
 }
 
 using namespace detail;
 
 const OpenImageIo& detail::openimageio() {
-    using Entry = const OpenImageIo* (*)();
+    using ModuleEntry = const OpenImageIo* (*)();
     static const OpenImageIo& functions =
-        *reinterpret_cast<Entry>(load_module("openimageio", "reading or comparing pictures"))();
+        *reinterpret_cast<ModuleEntry>(load_module("openimageio", "reading or comparing pictures"))();
     return functions;
 }
 

@@ -72,7 +72,7 @@ public:
     }
 
 private:
-    using Place = std::pair<std::size_t, std::size_t>;
+    using CellIndex = std::pair<std::size_t, std::size_t>;
 
     static std::string listed(const std::vector<std::string>& keys) {
         std::string text;
@@ -127,7 +127,7 @@ private:
         for (std::size_t v = 0; v < spec_.values.size(); ++v) put(first + v, spec_.values[v]);
     }
 
-    void fill(const Place& place, const std::vector<std::size_t>& cases) {
+    void fill(const CellIndex& place, const std::vector<std::size_t>& cases) {
         const std::string& key = keys_.at(place.second);
         StudyTable::Cell& cell = table_.rows[place.first][place.second];
         cell = cell_of(results_.study.cases[cases.front()], results_.results[cases.front()], key);
@@ -147,7 +147,7 @@ private:
     }
 
     /// The mean, of floors where less is known; the mark has the standard deviation of the cases.
-    void fill_mean(const Place& place, const std::vector<std::size_t>& cases, const std::string& key) {
+    void fill_mean(const CellIndex& place, const std::vector<std::size_t>& cases, const std::string& key) {
         std::vector<double> values;
         bool bounded = false;
         for (const std::size_t i : cases) {
@@ -170,8 +170,8 @@ private:
     const StudyTableSpec& spec_;
     StudyTable table_;
     std::vector<std::string> groups_, across_;
-    std::map<std::size_t, std::string> keys_;          // of columns
-    std::map<Place, std::vector<std::size_t>> cells_;  // the cases of each
+    std::map<std::size_t, std::string> keys_;              // of columns
+    std::map<CellIndex, std::vector<std::size_t>> cells_;  // the cases of each
 };
 
 }  // namespace

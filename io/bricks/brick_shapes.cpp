@@ -9,6 +9,7 @@
 
 #include "brick_folder.h"
 #include "subvol/detail/parallel_each.h"
+#include "subvol/detail/word_hash.h"
 #include "subvol/error.h"
 #include "subvol/option.h"
 
@@ -116,13 +117,6 @@ private:
     std::vector<std::uint32_t>& bricks_;
 };
 
-std::uint64_t scattered(std::uint64_t number) {  // splitmix64
-    number += 0x9e3779b97f4a7c15ULL;
-    number = (number ^ number >> 30) * 0xbf58476d1ce4e5b9ULL;
-    number = (number ^ number >> 27) * 0x94d049bb133111ebULL;
-    return number ^ number >> 31;
-}
-
 class CentersOfMesh : public CellCenters {
 public:
     explicit CentersOfMesh(const HexMesh& mesh) : mesh_(mesh) {}
@@ -152,7 +146,7 @@ std::vector<std::uint32_t> detail::bricks_of_cells(const CellCenters& centers, c
     if (options.shape == BrickShape::Random) {
         parallel_each(bricks.size(), [&](std::size_t c) {
             // The brick of a cell depends on its number and the seed alone, not on the threads.
-            bricks[c] = static_cast<std::uint32_t>(scattered(options.seed ^ scattered(c)) % count);
+            bricks[c] = static_cast<std::uint32_t>(mixed((options.seed ^ mixed(c + kGoldenWord)) + kGoldenWord) % count);
         });
     } else {
         Cutter(centers, options.shape == BrickShape::Slabs, bricks).run(count);

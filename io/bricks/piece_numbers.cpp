@@ -6,6 +6,8 @@
 #include <cmath>
 #include <tuple>
 
+#include "subvol/detail/word_hash.h"
+
 // Numbers of points and cells that are too many for a table of them in memory.
 //
 //      flags   0110 1001 0000 1111 …   one bit a number, 64 to a word
@@ -20,12 +22,6 @@ namespace {
 
 constexpr std::size_t kRoom = std::size_t{1} << 20;  // numbers before the first search for equal ones; words of flags
 constexpr double kLargestWhole = 9007199254740992;   // 2⁵³
-
-std::uint64_t hash_of(const Vec3& x) {
-    std::uint64_t hash = 0;
-    for (int a = 0; a < 3; ++a) hash = (std::rotl(hash, 21) ^ std::bit_cast<std::uint64_t>(x[a])) * 0x9E3779B97F4A7C15u;
-    return hash ^ hash >> 32;
-}
 
 }  // namespace
 
@@ -165,7 +161,7 @@ void RanksOfPlaces::add_piece(std::span<const Vec3> points) {
         // nothing.
         const Vec3 place = point + 0.0;  // -0 is 0
         const bool finite = std::isfinite(place.x) && std::isfinite(place.y) && std::isfinite(place.z);
-        if (finite) records_.add(hash_of(place) % kBuckets, {place, number});
+        if (finite) records_.add(hash_of_place(place) % kBuckets, {place, number});
         ++number;
     }
     ends_.push_back(number);

@@ -12,7 +12,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -23,6 +22,7 @@
 
 #include "assemble.h"
 #include "polyhedra.h"
+#include "subvol/detail/word_hash.h"
 
 namespace subvol::detail {
 
@@ -62,7 +62,8 @@ public:
         const auto may_hang = [&](std::size_t p) { return cells[p] > 0 && cells[p] < 8; };
         for (std::size_t p = 0; p < points_.size(); ++p) {
             if (may_hang(p))
-                places_.emplace(key({cube(points_[p].x), cube(points_[p].y), cube(points_[p].z)}), static_cast<Index>(p));
+                places_.emplace(detail::hash_of_place(std::array{cube(points_[p].x), cube(points_[p].y), cube(points_[p].z)}),
+                                static_cast<Index>(p));
         }
         if (!with_edges) return;
         for (const auto& hex : found.hexes.corners) {
@@ -101,7 +102,7 @@ public:
                 is_new = is_new && (side == 0 || cubes[k][0] != cubes[k][1]);
             }
             if (!is_new) continue;
-            const auto [first, last] = places_.equal_range(key(at));
+            const auto [first, last] = places_.equal_range(detail::hash_of_place(at));
             for (auto place = first; place != last; ++place) {
                 if (glm::distance(points_[place->second], middle) <= tolerance) return place->second;
             }
@@ -123,12 +124,6 @@ public:
 
 private:
     [[nodiscard]] double cube(double x) const { return std::floor(x / width_) + 0.0; }  // -0 is 0
-    [[nodiscard]] static std::uint64_t key(const std::array<double, 3>& cubes) {
-        std::uint64_t hash = 0;
-        for (const double x : cubes) hash = (std::rotl(hash, 21) ^ std::bit_cast<std::uint64_t>(x)) * 0x9E3779B97F4A7C15U;
-        return hash;
-    }
-
     static constexpr double kHalf = 3.2;  // squared lengths of an edge and of its half, with room for bent edges
     const std::vector<Vec3>& points_;
     std::vector<float> at_point_;  // the square of the shortest edge there

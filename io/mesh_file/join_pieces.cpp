@@ -12,7 +12,6 @@
 #include "join_pieces.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <map>
 #include <numeric>
@@ -23,6 +22,7 @@
 #include "assemble.h"
 #include "subvol/detail/text_scanner.h"
 #include "subvol/detail/tolerance_length.h"
+#include "subvol/detail/word_hash.h"
 #include "subvol/error.h"
 
 namespace subvol::detail {
@@ -71,12 +71,7 @@ std::string does_not_number(std::string_view name, std::string_view things) {
 namespace {
 
 struct PointHash {
-    std::size_t operator()(const Vec3& x) const {
-        std::uint64_t hash = 0;
-        for (int a = 0; a < 3; ++a)
-            hash = (std::rotl(hash, 21) ^ std::bit_cast<std::uint64_t>(x[a] + 0.0)) * 0x9E3779B97F4A7C15u;
-        return static_cast<std::size_t>(hash ^ (hash >> 32));
-    }
+    std::size_t operator()(const Vec3& x) const { return static_cast<std::size_t>(hash_of_place(x)); }
 };
 
 class Joiner {

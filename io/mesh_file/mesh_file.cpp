@@ -353,7 +353,9 @@ std::vector<Option> options_of(ReadOptions& options) {
                   "(vectors at walls get all of it, such as a velocity of 0), ignore"),
         Option("step", options.step).between(0, kMostSteps).help("N", "a step of a series, from 0 (default: the last one)"),
         Option("time", options.time).help("T", "the step of a series whose time is nearest to this").instead_of({"step"}),
-        Option("blocks", options.blocks).help("A,B", "the named parts of the mesh to read (info lists them; default: all)"),
+        Option("blocks", options.blocks)
+            .with_commas()
+            .help("A,B", "the named parts of the mesh to read (info lists them; default: all)"),
         Option("sharp", options.sharp)
             .help("NAME",
                   "a group of the file whose faces inside the mesh and edges are kept sharp: a physical group of Gmsh by "

@@ -182,14 +182,14 @@ void DenseTracer::find_ends(const RayPlane& plane, const Ray& ray) {
     }
     if (!in_front) ends_.clear();
     // By cell, not by the number of the grid, which depends on which other grids are in memory.
-    std::sort(ends_.begin(), ends_.end(), [](const End& a, const End& b) {
+    std::sort(ends_.begin(), ends_.end(), [](const BoundaryCrossing& a, const BoundaryCrossing& b) {
         return std::tie(a.t, a.cell, a.door.face) < std::tie(b.t, b.cell, b.door.face);
     });
 }
 
 bool DenseTracer::mark_walked(const DenseScene::Door& door) {
-    const auto found =
-        std::ranges::find_if(ends_, [&](const End& end) { return end.door.grid == door.grid && end.door.face == door.face; });
+    const auto found = std::ranges::find_if(
+        ends_, [&](const BoundaryCrossing& end) { return end.door.grid == door.grid && end.door.face == door.face; });
     if (found == ends_.end()) return false;
     found->walked = true;
     return true;
@@ -223,7 +223,7 @@ Segment DenseTracer::trace(const Ray& ray) {
     if (ends_.empty()) return {};
     ++counts_.rays;
     RayWalker walker(ray, plane, cut_, compositor_, counts_);
-    for (End& end : ends_) {
+    for (BoundaryCrossing& end : ends_) {
         if (end.walked) continue;
         end.walked = true;
         const WalkOutcome outcome = walk_from(end.door, walker);

@@ -82,7 +82,7 @@ public:
 
 private:
     /// A triangle on an open side that the ray crosses. Each walk from grid to grid begins at one and ends at another.
-    struct End {
+    struct BoundaryCrossing {
         double t;
         Index cell;
         DenseScene::Door door;
@@ -101,7 +101,7 @@ private:
     Index awaited_ = kNone;
     std::vector<std::uint32_t> met_;
     std::vector<TetFace> faces_;
-    std::vector<End> ends_;
+    std::vector<BoundaryCrossing> ends_;
 };
 
 }  // namespace subvol::detail

@@ -11,6 +11,7 @@
 #include <limits>
 
 #include "subvol/detail/parallel_each.h"
+#include "subvol/detail/word_hash.h"
 
 namespace subvol::detail {
 
@@ -60,17 +61,11 @@ int side_of_same_face(const TetMesh& mesh, Index tet, Index from, const std::arr
     return 0;
 }
 
-std::uint64_t mix_bits(std::uint64_t x) {  // the finaliser of SplitMix64
-    x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9U;
-    x = (x ^ (x >> 27)) * 0x94d049bb133111ebU;
-    return x ^ (x >> 31);
-}
-
 /// A random waiting time made from the face's corners: the larger the face, the earlier its turn. Choosing by area makes the
 /// error of a partial picture less by a fifth than choosing evenly.
 double shuffle_key(const TetMesh& mesh, const TetFaces::Face& face) {
-    std::uint64_t bits = 0x9e3779b97f4a7c15U;
-    for (const Index corner : face.corner) bits = mix_bits(bits + corner);
+    std::uint64_t bits = detail::kGoldenWord;
+    for (const Index corner : face.corner) bits = detail::mixed(bits + corner);
     const double random = (static_cast<double>(bits >> 12) + 0.5) * 0x1p-52;  // in (0, 1)
     const Vec3& p = mesh.points[face.corner[0]].position;
     const Vec3 normal = cross(mesh.points[face.corner[1]].position - p, mesh.points[face.corner[2]].position - p);

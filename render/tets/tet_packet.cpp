@@ -34,7 +34,7 @@ using Doubles = hn::Vec<Lanes>;
 using Ints = hn::Vec<IntLanes>;
 using Mask = hn::Mask<Lanes>;
 
-/// As Side, and whether the sign is certain.
+/// As EdgeSide, and whether the sign is certain.
 struct Sides {
     Doubles area;
     Mask left, certain;
@@ -48,16 +48,16 @@ HWY_ATTR inline Sides side_of(Doubles ax, Doubles ay, Doubles bx, Doubles by) {
     return {area, hn::Gt(area, hn::Zero(d)), hn::Gt(hn::Abs(area), bound)};
 }
 
-HWY_ATTR inline Ints load(const TetPacket::Row<std::int64_t>& row, std::size_t i) {
+HWY_ATTR inline Ints load(const TetPacket::LaneArray<std::int64_t>& row, std::size_t i) {
     return hn::Load(IntLanes(), row.data() + i);
 }
-HWY_ATTR inline Doubles load(const TetPacket::Row<double>& row, std::size_t i) {
+HWY_ATTR inline Doubles load(const TetPacket::LaneArray<double>& row, std::size_t i) {
     return hn::Load(Lanes(), row.data() + i);
 }
-HWY_ATTR inline void store(Ints v, TetPacket::Row<std::int64_t>& row, std::size_t i) {
+HWY_ATTR inline void store(Ints v, TetPacket::LaneArray<std::int64_t>& row, std::size_t i) {
     hn::Store(v, IntLanes(), row.data() + i);
 }
-HWY_ATTR inline void store(Doubles v, TetPacket::Row<double>& row, std::size_t i) {
+HWY_ATTR inline void store(Doubles v, TetPacket::LaneArray<double>& row, std::size_t i) {
     hn::Store(v, Lanes(), row.data() + i);
 }
 
@@ -137,7 +137,7 @@ private:
         rank_ = hn::Neg(hn::Add(less, hn::VecFromMask(di, hn::Lt(apex_, dropped_))));
         store(dropped_, packet_.dropped, i_);
     }
-    HWY_ATTR Doubles replace(Mask where, Doubles by, TetPacket::Row<double>& row) {
+    HWY_ATTR Doubles replace(Mask where, Doubles by, TetPacket::LaneArray<double>& row) {
         const auto v = hn::IfThenElse(where, by, load(row, i_));
         store(v, row, i_);
         return v;

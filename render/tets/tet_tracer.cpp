@@ -19,7 +19,7 @@ std::optional<CrossedFace> cross_triangle(const std::array<SeenPoint, 3>& corner
     if (ca.left != ab.left) return std::nullopt;
     if (!ab.left) {  // clockwise: exchange b and c
         std::swap(b, c);
-        const Side old_ab = ab;
+        const EdgeSide old_ab = ab;
         ab = ca.reversed();
         bc = bc.reversed();
         ca = old_ab.reversed();
@@ -28,7 +28,7 @@ std::optional<CrossedFace> cross_triangle(const std::array<SeenPoint, 3>& corner
 }
 
 void RayEnds::add(const RayPlane& plane, TetFace face) {
-    if (std::any_of(ends_.begin(), ends_.end(), [&](const End& end) { return end.face == face; })) return;
+    if (std::any_of(ends_.begin(), ends_.end(), [&](const WalkEnd& end) { return end.face == face; })) return;
     if (const auto crossed = cross_face(*mesh_, plane, face)) ends_.push_back({face, crossed->crossing().t, false});
 }
 
@@ -53,8 +53,8 @@ void RayEnds::find(const RayPlane& plane, const Ray& ray) {
 }
 
 TetFace RayEnds::first_unwalked() const {
-    const End* first = nullptr;
-    for (const End& end : ends_) {
+    const WalkEnd* first = nullptr;
+    for (const WalkEnd& end : ends_) {
         if (end.walked) continue;
         if (!first || end.t < first->t || (end.t == first->t && end.face < first->face)) first = &end;
     }
@@ -63,7 +63,7 @@ TetFace RayEnds::first_unwalked() const {
 
 void RayEnds::mark_walked(const RayPlane& plane, TetFace start, TetFace end) {
     const auto find = [&](TetFace face) {
-        return std::find_if(ends_.begin(), ends_.end(), [&](const End& e) { return e.face == face; });
+        return std::find_if(ends_.begin(), ends_.end(), [&](const WalkEnd& e) { return e.face == face; });
     };
     find(start)->walked = true;
     if (find(end) == ends_.end()) {  // missed in single precision, and maybe others beside it too

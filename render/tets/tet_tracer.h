@@ -25,7 +25,7 @@ public:
     void mark_walked(const RayPlane& plane, TetFace start, TetFace end);
 
 private:
-    struct End {
+    struct WalkEnd {
         TetFace face;
         double t;
         bool walked;
@@ -36,7 +36,7 @@ private:
     const TetMesh* mesh_;
     const BoundaryScene* scene_;
     std::vector<TetFace> hits_;
-    std::vector<End> ends_;
+    std::vector<WalkEnd> ends_;
 };
 
 /// Integrates rays through a mesh of tetrahedra, one by one. Keeps scratch memory, so each thread or tile needs its own.

@@ -43,11 +43,11 @@ struct SeenPoint {
 /// seen coordinates and never zero: ties are decided as if the ray were moved by (ε, ε²) [em1990], and by ids between points
 /// that coincide for the ray. So the signs of all edges are consistent, and every ray crosses the inside of faces, even through
 /// a vertex or along an edge.
-struct Side {
+struct EdgeSide {
     double area = 0;
     bool left = false;
 
-    [[nodiscard]] Side reversed() const { return {-area, !left}; }
+    [[nodiscard]] EdgeSide reversed() const { return {-area, !left}; }
 };
 
 /// Shears space so that the ray becomes the t axis.
@@ -102,7 +102,7 @@ private:
 /// right digits the crossing would lie beside the ray, by up to the whole face where it is seen almost edge on.
 inline constexpr double kSideError = 1e-7;
 
-[[nodiscard]] inline Side side_of(const SeenPoint& a, const SeenPoint& b) {
+[[nodiscard]] inline EdgeSide side_of(const SeenPoint& a, const SeenPoint& b) {
     const double left = a.x * b.y, right = b.x * a.y;
     const double area = left - right;
     if (std::abs(area) > kSideError * (std::abs(left) + std::abs(right))) return {area, area > 0};
@@ -122,7 +122,7 @@ struct Crossing {
 /// A face that the ray crosses: its corners in the ray's coordinates, counter-clockwise about it, and the sides of its edges.
 struct CrossedFace {
     std::array<SeenPoint, 3> corner;
-    std::array<Side, 3> side;  // of edges 0→1, 1→2, 2→0; all left
+    std::array<EdgeSide, 3> side;  // of edges 0→1, 1→2, 2→0; all left
 
     /// Linear interpolation: the three areas are the barycentric weights.
     [[nodiscard]] Crossing crossing() const {
@@ -164,10 +164,10 @@ std::optional<TetFace> walk(const Mesh& mesh, const RayPlane& plane, TetFace sta
         const auto& corner = mesh.corners_of_tet(tet);
         const Index apex = corner[0] ^ corner[1] ^ corner[2] ^ corner[3] ^ a.id ^ b.id ^ c.id;
         const SeenPoint d = see(mesh, plane, apex);
-        const Side ad = side_of(a, d);
+        const EdgeSide ad = side_of(a, d);
         Index dropped;
         if (!ad.left) {
-            if (const Side bd = side_of(b, d); bd.left) {  // a b d
+            if (const EdgeSide bd = side_of(b, d); bd.left) {  // a b d
                 dropped = c.id;
                 c = d;
                 face.side[1] = bd;
@@ -178,7 +178,7 @@ std::optional<TetFace> walk(const Mesh& mesh, const RayPlane& plane, TetFace sta
                 face.side[0] = bd.reversed();
                 face.side[2] = side_of(c, d);
             }
-        } else if (const Side cd = side_of(c, d); cd.left) {  // b c d
+        } else if (const EdgeSide cd = side_of(c, d); cd.left) {  // b c d
             dropped = a.id;
             a = d;
             face.side[0] = side_of(b, d).reversed();

@@ -126,19 +126,19 @@ std::size_t lowest_corner(const Quad& quad) {
 /// The steps² quads of one side of a cell. point: by u, v, w in parts 1/steps
 template <class PointAt>
 void put_quads(std::size_t side, int steps, bool turned, const PointAt& point, VoxelTriangle* out) {
-    using Place = std::array<int, 3>;
+    using LatticePoint = std::array<int, 3>;
     const auto corner = [&](std::size_t k) {
-        Place at;
+        LatticePoint at;
         for (std::size_t d = 0; d < 3; ++d) at[d] = steps * kCornerParameters[kCellFaces[side][k]][d];
         return at;
     };
-    const Place start = corner(0), next = corner(1), last = corner(3);
+    const LatticePoint start = corner(0), next = corner(1), last = corner(3);
     const auto across = static_cast<std::size_t>(steps) + 1;
     std::vector<Vec3> points;
     points.reserve(across * across);
     for (int i = 0; i <= steps; ++i) {
         for (int j = 0; j <= steps; ++j) {
-            Place at;
+            LatticePoint at;
             for (std::size_t d = 0; d < 3; ++d) {
                 at[d] = start[d] + (next[d] - start[d]) / steps * i + (last[d] - start[d]) / steps * j;
             }

@@ -5,6 +5,8 @@
 #include <bit>
 #include <utility>
 
+#include "subvol/detail/word_hash.h"
+
 namespace subvol::detail {
 
 namespace {
@@ -44,7 +46,7 @@ VoxelCoord VoxelBrick::leaf_origin(std::size_t leaf) const {
 
 std::size_t VoxelBricks::Hash::operator()(const VoxelCoord& c) const {
     std::uint64_t h = 0;
-    for (const int x : c) h = (h ^ static_cast<std::uint32_t>(brick_layer(x))) * 0x9e3779b97f4a7c15u;
+    for (const int x : c) h = detail::hash_with(h, static_cast<std::uint32_t>(brick_layer(x)));
     return h ^ h >> 32;
 }
 

@@ -92,19 +92,19 @@ private:
 };
 
 /// A leaf of the fine tree. Leaves begin at multiples of eight, so each lies in one leaf of the coarse tree.
-struct Part {
+struct SourceLeaf {
     openvdb::Coord origin;  // of the coarse leaf
     const Leaf* leaf;
 };
 
-std::vector<Part> parts_of(const Tree& tree, std::int32_t n) {
-    std::vector<Part> parts;
+std::vector<SourceLeaf> parts_of(const Tree& tree, std::int32_t n) {
+    std::vector<SourceLeaf> parts;
     parts.reserve(tree.leafCount());
     for (auto leaf = tree.cbeginLeaf(); leaf; ++leaf) {
         openvdb::Coord origin = block_of(leaf->origin(), n);
         parts.push_back({origin & ~static_cast<openvdb::Int32>(Leaf::DIM - 1), leaf.getLeaf()});
     }
-    std::stable_sort(parts.begin(), parts.end(), [](const Part& a, const Part& b) { return a.origin < b.origin; });
+    std::stable_sort(parts.begin(), parts.end(), [](const SourceLeaf& a, const SourceLeaf& b) { return a.origin < b.origin; });
     return parts;
 }
 
@@ -116,7 +116,7 @@ std::vector<Part> parts_of(const Tree& tree, std::int32_t n) {
 CoarseVoxels coarse_voxels(const Tree::ConstPtr& tree, int n) {
     const Tree::ConstPtr fine = without_tiles(tree);
     if (n == 1) return {fine, 0};
-    const std::vector<Part> parts = parts_of(*fine, n);
+    const std::vector<SourceLeaf> parts = parts_of(*fine, n);
     std::vector<std::size_t> begins;
     for (std::size_t i = 0; i < parts.size(); ++i) {
         if (i == 0 || parts[i].origin != parts[i - 1].origin) begins.push_back(i);

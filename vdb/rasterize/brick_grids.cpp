@@ -5,7 +5,7 @@
 //          |
 //          |  convert: in parallel, for every grid: a VoxelLeaf becomes an OpenVDB leaf, or an active tile where all 512
 //          v           voxels are active and have the same bits
-//     Made[]        then the bricks of the batch are freed: only 16 bricks are ever in memory twice
+//     ConvertedLeaf[]        then the bricks of the batch are freed: only 16 bricks are ever in memory twice
 //          |
 //          |  add_to_tree: one thread per batch, because the inner nodes of a tree are not thread-safe
 //          v
@@ -74,7 +74,7 @@ public:
 
     void convert(std::span<const std::unique_ptr<VoxelBrick>> bricks) override {
         constexpr std::size_t kLeaves = std::tuple_size_v<decltype(VoxelBrick::leaves)>;
-        made_ = std::vector<Made>(bricks.size() * kLeaves);
+        made_ = std::vector<ConvertedLeaf>(bricks.size() * kLeaves);
         tbb::parallel_for(std::size_t{0}, made_.size(), [&](std::size_t i) {
             const VoxelBrick& brick = *bricks[i / kLeaves];
             if (const auto& leaf = brick.leaves[i % kLeaves]) made_[i] = make(*leaf, coord_of(brick.leaf_origin(i % kLeaves)));
@@ -82,7 +82,7 @@ public:
     }
 
     void add_to_tree() override {
-        for (Made& made : made_) {
+        for (ConvertedLeaf& made : made_) {
             if (made.leaf) {
                 grid_->tree().addLeaf(made.leaf.release());
             } else if (made.is_tile) {
@@ -99,14 +99,14 @@ public:
     }
 
 private:
-    struct Made {
+    struct ConvertedLeaf {
         std::unique_ptr<Leaf> leaf;
         bool is_tile = false;
         openvdb::Coord origin;
         Value value{};
     };
 
-    Made make(const VoxelLeaf& voxels, const openvdb::Coord& origin) const {
+    ConvertedLeaf make(const VoxelLeaf& voxels, const openvdb::Coord& origin) const {
         const float* values = voxels.values.get() + channel_ * kLeafVoxels;
         // NOLINTNEXTLINE(bugprone-sizeof-expression): the number of channels, one or three
         if (is_constant(voxels, values, sizeof(Value) / sizeof(float)))
@@ -124,7 +124,7 @@ private:
 
     std::size_t channel_;
     typename Grid::Ptr grid_;
-    std::vector<Made> made_;
+    std::vector<ConvertedLeaf> made_;
     bool has_tiles_ = false;
 };
 

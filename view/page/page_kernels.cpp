@@ -101,7 +101,7 @@ RbfVolume kernels_of_numbers(std::span<const double> places, std::span<const dou
 
 namespace {
 
-using Part = std::span<std::uint32_t>;
+using KernelRange = std::span<std::uint32_t>;
 
 class Merger {
 public:
@@ -111,7 +111,7 @@ public:
     }
 
     /// Merges the part into kernels first … first + count − 1.
-    void merge(Part part, std::size_t first, std::size_t count) const {
+    void merge(KernelRange part, std::size_t first, std::size_t count) const {
         if (count == 1) {
             merge_into_one(part, first);
             return;
@@ -134,7 +134,7 @@ public:
     }
 
 private:
-    [[nodiscard]] int long_axis(Part part) const {
+    [[nodiscard]] int long_axis(KernelRange part) const {
         constexpr std::array<std::size_t, 3> kDiagonal{0, 3, 5};
         Box box;
         std::array<double, 3> sizes{};
@@ -151,7 +151,7 @@ private:
         return longest;
     }
 
-    void merge_into_one(Part part, std::size_t to) const {
+    void merge_into_one(KernelRange part, std::size_t to) const {
         std::ranges::sort(part);  // sums do not depend on how the part was found
         const double share = 1 / static_cast<double>(part.size());
         Vec3 middle(0.0);

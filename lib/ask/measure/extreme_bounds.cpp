@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "grid_measure.h"
+#include "subvol/detail/word_hash.h"
 
 namespace subvol::detail {
 
@@ -141,13 +142,6 @@ double piece_bound(std::span<const double> grid, std::size_t side, std::size_t u
         bound = std::max(bound, value);
     }
     return bound;
-}
-
-/// Spreads the bits of a number, as the generator splitmix64 does.
-std::uint64_t mixed(std::uint64_t x) {
-    x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9ULL;
-    x = (x ^ (x >> 27)) * 0x94d049bb133111ebULL;
-    return x ^ (x >> 31);
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 // A quantity that is one term keeps the channels of the term.
 #include "subvol/quantity.h"
 #include "subvol/detail/small_letters.h"
+#include "subvol/detail/text_scanner.h"
 
 #include <muParser.h>
 #include <algorithm>
@@ -73,12 +74,6 @@ bool is_digit(char c) {
 
 bool is_word(std::string_view text) {
     return !text.empty() && is_letter(text[0]) && std::ranges::all_of(text, [](char c) { return is_letter(c) || is_digit(c); });
-}
-
-std::string_view trimmed(std::string_view text) {
-    while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
-    while (!text.empty() && text.back() == ' ') text.remove_suffix(1);
-    return text;
 }
 
 std::vector<std::string> names_of(const HexMesh& mesh) {
@@ -154,8 +149,9 @@ public:
     [[nodiscard]] Attribute value(std::string_view text, std::size_t begin, int depth = 0) const {
         constexpr int kDeepest = 64;
         if (depth > kDeepest) refuse("has more than " + std::to_string(kDeepest) + " calls in each other", begin);
-        begin += text.find_first_not_of(' ') == std::string_view::npos ? 0 : text.find_first_not_of(' ');
-        text = trimmed(text);
+        const std::string_view inner = detail::trimmed(text);
+        if (!inner.empty()) begin += static_cast<std::size_t>(inner.data() - text.data());
+        text = inner;
         if (text.empty()) refuse("is empty", begin);
         if (auto named = name(text)) return std::move(*named);
         std::size_t at = 0;
@@ -482,7 +478,7 @@ bool has_derivatives(std::string_view source) {
 }
 
 Attribute field_of(const HexMesh& mesh, const std::string& name, const std::string& source, Progress* progress) {
-    const std::string_view text = trimmed(source);
+    const std::string_view text = detail::trimmed(source);
     const bool coordinate = text == "x" || text == "y" || text == "z" || text == "time";
     const Evaluation evaluation(mesh, source, progress);
     if (may_be_name(text) && !text.empty() && is_letter(text[0]) && !coordinate && mesh.find_attribute(source) == nullptr &&

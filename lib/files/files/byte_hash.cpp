@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "subvol/detail/byte_hash.h"
+#include "subvol/detail/word_hash.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -8,7 +9,7 @@
 namespace subvol::detail {
 
 void ByteHash::mix(std::uint64_t word) {
-    hash_ = (hash_ ^ word) * 0x9e3779b97f4a7c15ULL;
+    hash_ = hash_with(hash_, word);
     hash_ ^= hash_ >> 29;
 }
 

@@ -5,6 +5,7 @@
 
 #include "subvol/detail/knot_values.h"
 #include "subvol/detail/number_text.h"
+#include "subvol/detail/text_scanner.h"
 #include "subvol/error.h"
 #include "subvol/transfer_function.h"
 
@@ -12,12 +13,6 @@ namespace subvol {
 
 using namespace detail;
 namespace {
-
-std::string_view trimmed(std::string_view text) {
-    while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
-    while (!text.empty() && text.back() == ' ') text.remove_suffix(1);
-    return text;
-}
 
 std::optional<double> number_in(std::string_view text) {
     const auto number = number_from(text);

@@ -23,8 +23,8 @@
 
 #include "subvol/cell.h"
 #include "subvol/detail/bucket_sort.h"
-#include "subvol/detail/splitmix.h"
 #include "subvol/detail/topology_parts.h"
+#include "subvol/detail/word_hash.h"
 
 namespace subvol::detail {
 

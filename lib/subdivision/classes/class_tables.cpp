@@ -9,6 +9,7 @@
 // Tables are kept up to a number of bytes; the one that has not been used for longest goes first. A dropped table stays alive
 // as long as somebody holds it, and has the same numbers when it is made again.
 #include "subvol/detail/class_tables.h"
+#include "subvol/detail/word_hash.h"
 
 #include <algorithm>
 #include <cstring>
@@ -21,7 +22,6 @@
 #include "dense_block.h"
 #include "run_nested.h"
 #include "subvol/cell.h"
-#include "subvol/detail/splitmix.h"
 
 namespace subvol::detail {
 
@@ -67,12 +67,12 @@ WeightTable make_table(const Neighborhood& neighborhood, const SchemeOptions& sc
 /// Two different hashes of the code, word by word.
 ClassKey key_of(const Neighborhood& neighborhood) {
     const auto& code = neighborhood.code;
-    std::uint64_t a = mixed(code.size()), b = mixed(code.size() + 0x9e3779b97f4a7c15ULL);
+    std::uint64_t a = mixed(code.size()), b = mixed(code.size() + kGoldenWord);
     for (std::size_t i = 0; i < code.size(); i += 4) {
         std::uint64_t word = 0;
         std::memcpy(&word, &code[i], std::min<std::size_t>(4, code.size() - i) * sizeof(code[0]));
         a = mixed(a ^ word);
-        b = (b ^ word) * 0x9e3779b97f4a7c15ULL;
+        b = hash_with(b, word);
         b ^= b >> 29;
     }
     return {a, mixed(b)};

@@ -31,6 +31,7 @@
 #include "subvol/detail/part_of_progress.h"
 #include "subvol/detail/place_function.h"
 #include "subvol/detail/refine_steps.h"
+#include "subvol/detail/word_hash.h"
 #include "subvol/field_range.h"
 #include "subvol/limit_level.h"
 
@@ -235,7 +236,7 @@ constexpr double kMostSurfaceCells = 3e7;  // trilinear, were all cells refined 
 
 /// A multiplication and a shift for each word: fast, and enough to tell that pieces belong to another mesh by mistake.
 std::uint64_t mixed(std::uint64_t hash, std::uint64_t word) {
-    hash = (hash ^ word) * 0x9e3779b97f4a7c15ULL;
+    hash = detail::hash_with(hash, word);
     return hash ^ hash >> 29;
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "subvol/detail/stencil_block.h"
+#include "subvol/detail/word_hash.h"
 
 #include <bit>
 
@@ -10,7 +11,7 @@ namespace {
 std::size_t hash_of(std::span<const StencilTable::Run> runs) {
     std::uint64_t hash = runs.size();
     for (const auto& run : runs) {
-        hash = (hash ^ std::bit_cast<std::uint64_t>(run.weight)) * 0x9e3779b97f4a7c15u;
+        hash = hash_with(hash, std::bit_cast<std::uint64_t>(run.weight));
         hash = (hash ^ run.count ^ hash >> 29) * 0xbf58476d1ce4e5b9u;
     }
     return hash;

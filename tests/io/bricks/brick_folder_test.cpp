@@ -177,7 +177,8 @@ TEST_F(BrickFolder, BricksOfAnotherMeshAreMadeAnew) {
 TEST_F(BrickFolder, ALinkStaysALink) {
     fs::create_directory(path("disk"));
     fs::create_symlink("disk/real.bricks", path("t.bricks"));
-    for (const std::size_t bricks : {2, 3}) {  // where there is nothing yet, and where there are bricks
+    for (const std::size_t bricks :
+         {std::size_t{2}, std::size_t{3}}) {  // where there is nothing yet, and where there are bricks
         EXPECT_EQ(split_mesh(path("t.bricks"), mesh_, {.bricks = bricks}).bricks.path, path("t.bricks"));
         EXPECT_EQ(fs::read_symlink(path("t.bricks")), "disk/real.bricks");
         EXPECT_FALSE(fs::is_symlink(path("disk/real.bricks")));

@@ -258,8 +258,8 @@ TEST_F(VtkCells, WithAWrongNumberOfCornersAreRefused) {
                                                  {14, 6, "cell 1 has 6 corners (a pyramid has 5)"},
                                                  {10, 3, "cell 1 has 3 corners (a tetrahedron has 4)"},
                                                  {25, 7, "cell 1 has 7 corners (a hexahedron has 8)"}}) {
-        EXPECT_THAT(error_of([&] {
-                        take({{12, hex}, {type, std::vector<Index>(static_cast<std::size_t>(corners))}});
+        EXPECT_THAT(error_of([&, kind = type, count = static_cast<std::size_t>(corners)] {
+                        take({{12, hex}, {kind, std::vector<Index>(count)}});
                     }),
                     HasSubstr("a.vtk, line 2: " + std::string(message)));
     }

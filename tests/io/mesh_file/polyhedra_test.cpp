@@ -68,7 +68,7 @@ double volume_inside(const CellFaces& faces, const std::vector<Vec3>& points) {
 CellFaces shuffled(CellFaces faces, std::mt19937& random) {
     std::ranges::shuffle(faces, random);
     for (auto& face : faces) {
-        std::rotate(face.begin(), face.begin() + random() % face.size(), face.end());
+        std::rotate(face.begin(), face.begin() + static_cast<std::ptrdiff_t>(random() % face.size()), face.end());
         if (random() % 2 == 0) std::ranges::reverse(face);
     }
     return faces;

@@ -56,9 +56,9 @@ TEST_F(NamedInFiles, OnlyRegularFilesAreRead) {
                                      {std::string("pipe"), "\"pipe\" is not a regular file"},
                                      {std::string("a\0b", 3), "has a zero byte"},
                                      {std::string("."), "is not a regular file"}}) {
-        EXPECT_THAT(error_of([&] { static_cast<void>(named_file(path(""), name, place)); }), HasSubstr("a.case, line 1: "))
-            << name;
-        EXPECT_THAT(error_of([&] { static_cast<void>(named_file(path(""), name, place)); }), HasSubstr(said));
+        const std::string error = error_of([&, text = name] { static_cast<void>(named_file(path(""), text, place)); });
+        EXPECT_THAT(error, HasSubstr("a.case, line 1: ")) << name;
+        EXPECT_THAT(error, HasSubstr(said));
     }
     EXPECT_THAT(error_of([&] { static_cast<void>(read_regular("/dev/zero")); }), HasSubstr("is not a regular file"));
     EXPECT_EQ(read_range(path("there"), 1, 2), "ex");

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <span>
@@ -11,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "subvol/detail/word_hash.h"
 #include "subvol/index.h"
 #include "subvol/vec.h"
 
@@ -39,11 +39,7 @@ private:
     static constexpr double kWidth = 4, kReach = 1 + 1e-9;  // in tolerances; a little more, for rounding
 
     struct CubeHash {
-        std::size_t operator()(const Cube& cube) const {
-            std::uint64_t hash = 0;
-            for (const double x : cube) hash = (std::rotl(hash, 21) ^ std::bit_cast<std::uint64_t>(x)) * 0x9E3779B97F4A7C15u;
-            return static_cast<std::size_t>(hash ^ (hash >> 32));
-        }
+        std::size_t operator()(const Cube& cube) const { return static_cast<std::size_t>(hash_of_place(cube)); }
     };
 
     [[nodiscard]] Cube cube_of(const Vec3& x) const {
