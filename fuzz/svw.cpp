@@ -3,7 +3,7 @@
 // again, with the hashes of what is then there.
 
 #include "input.h"
-#include "io/wavelet/series_parts.h"
+#include "io/series/series_parts.h"
 #include "subvol/mesh_io.h"
 #include "subvol/mesh_report.h"
 #include "svw_parts.h"

@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-#include "io/wavelet/series_parts.h"
+#include "io/series/series_parts.h"
 #include "subvol/detail/read_file.h"
 #include "subvol/model.h"
 #include "subvol/refine.h"

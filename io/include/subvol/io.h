@@ -11,7 +11,7 @@
 ///
 /// Rooms, each with its own `include`: `mesh_file` (what a file holds, and the mesh that is assembled from it), `mesh_io` and
 /// `solver_io` (a folder for the reader of each family; a format is a row in the table of `mesh_io.cpp`: its extensions, its
-/// first bytes, its reader, its writer), `wavelet`, `bricks`.
+/// first bytes, its reader, its writer), `wavelet`, `series`, `bricks`.
 ///
 ///     file ── reader of its format ──► MeshFile ── assemble: weld, split, tag ──► HexMesh + MeshSets + FieldInfo
 ///     HexMesh ──► .vtk, .vtu, .vtkhdf, .mesh, .svw; bricks
