@@ -168,20 +168,21 @@ void KernelRegions::take(std::span<const std::size_t> regions, RbfVolume& into) 
         at += size;
         files_[k].reset();  // gives the room on the disk back
     }
-    struct Place {
+    struct RowPlace {
         std::uint64_t number;
         std::size_t row;
     };
-    std::vector<Place> order(count);
+    std::vector<RowPlace> order(count);
     parallel_each(count, [&](std::size_t i) {
         order[i].row = i;
         std::memcpy(&order[i].number, &rows[i * bytes], sizeof order[i].number);
     });
-    tbb::parallel_sort(order.begin(), order.end(), [](const Place& a, const Place& b) {
+    tbb::parallel_sort(order.begin(), order.end(), [](const RowPlace& a, const RowPlace& b) {
         return a.number != b.number ? a.number < b.number : a.row < b.row;
     });
-    order.erase(std::unique(order.begin(), order.end(), [](const Place& a, const Place& b) { return a.number == b.number; }),
-                order.end());
+    order.erase(
+        std::unique(order.begin(), order.end(), [](const RowPlace& a, const RowPlace& b) { return a.number == b.number; }),
+        order.end());
     const std::size_t kept = order.size();
     RbfChannel& channel = into.channels.front();
     into.centers.resize(kept);

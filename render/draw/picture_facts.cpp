@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "picture_facts.h"
 
-#include <map>
-#include <utility>
+#include <tbb/global_control.h>
 
+#include <map>
 #include <string>
+#include <utility>
 
 #include "subvol/detail/number_text.h"
 
@@ -25,6 +26,10 @@ void add_rays(std::size_t rays, std::size_t lost, Facts& facts) {
 
 }  // namespace
 
+std::string cpu_threads() {
+    return std::to_string(tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism)) + " CPU threads";
+}
+
 void add_facts(const SplatReport& splats, Method method, Facts& facts) {
     facts["method"] = name_of(method);
     if (splats.seconds_light > 0) facts.add_seconds("light", splats.seconds_light);
@@ -35,6 +40,14 @@ void add_facts(const SplatReport& splats, Method method, Facts& facts) {
     facts["device"] = splats.device;
     if (!splats.warning.empty()) facts.warn(splats.warning);
     facts["sheets"] = splats.sheets;
+}
+
+void add_facts_of_first_hits(const Surface& boundary, Facts& facts) {
+    add_method(Method::Splat, "cpu", facts);
+    facts["device"] = cpu_threads();
+    facts["points"] = boundary.points.size();
+    facts["triangles"] = boundary.triangles.size();
+    facts["sheets"] = std::size_t{0};
 }
 
 void add_facts(const TetsReport& tets, Facts& facts) {

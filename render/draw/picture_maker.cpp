@@ -24,12 +24,14 @@
 #include "subvol/render_grid.h"
 #include "subvol/render_tets.h"
 #include "subvol/sample_tables.h"
+#include "subvol/splat_shares.h"
 
 // What the methods share, from the top of the picture to its bottom:
 //
 //   style.look ──▶ light ──┬──▶ splat, sheets, footprints: in the splatter, or ──▶ the boundary's own colours (painted)
 //                          └──▶ tets, pt, dense: of the boundary, over the finished picture (solids only)
 //   levels ──▶ kernels: instead of the limit · tets, pt: 1 by default · dense: none are raised until nothing changes
+//   an opaque solid that nothing cuts, by splats: skin ──▶ first hits of the rays, without kernels
 //   body   ──▶ kernels ──▶ levels of detail ──▶ splatters     refined mesh ──▶ tetrahedra     skin: values on the boundary
 
 namespace subvol {
@@ -71,6 +73,50 @@ SplatMethod splat_method(Method method, SplatMethod otherwise) {
     return method == Method::Footprints ? SplatMethod::Footprints : otherwise;
 }
 
+/// A splatter for each way of drawing: method, samples, the part of the light at the eye (-1: not lit), and the kernels that it
+/// was made for.
+using SplatterKey = std::tuple<Method, int, double, const RbfVolume*>;
+struct KeptSplatter {
+    SplatterKey key;
+    Splatter splatter;
+    std::size_t version = 0;  // of the kernels that it draws
+};
+
+/// What pictures of kernels share. Later members refer to earlier ones, so it is never cleared in part.
+struct PreparedKernels {
+    /// Kernels have the values of a mesh less these: of opacities, and of colours.
+    std::array<double, 2> origins{};
+    /// The mesh in memory and the values on its boundary less these, where they are not 0.
+    std::optional<HexMesh> relative_mesh{};
+    std::optional<BoundaryValues> relative_skin{};
+    std::optional<RbfVolume> volume{};
+    std::optional<detail::KernelLevels> levels{};
+    std::vector<KeptSplatter> splatters{};
+};
+
+/// What pictures of tetrahedra share.
+struct PreparedCells {
+    std::optional<TetsRenderer> tets{};
+    std::optional<ProjectedRenderer> projected{};
+};
+
+/// What pictures of a mesh in pieces share.
+struct PreparedPieces {
+    std::optional<Surface> boundary{};
+    std::optional<BrickTets> tets{};
+};
+
+/// What was made of a body, for each family of methods; a picture of another method of the same body finds it again.
+struct Prepared {
+    std::optional<BoundaryValues> skin{};
+    std::optional<Box> skin_box{};   // of its points
+    std::optional<MeshHull> hull{};  // of a mesh in pieces, for as long as something is made of it
+    PreparedCells cells{};
+    PreparedPieces pieces{};
+    std::optional<PreparedKernels> kernels{std::in_place};  // others where the origins change
+    bool range_seen = false;                                // whether the range of what is drawn was looked at
+};
+
 }  // namespace
 
 BodyKind PictureBody::kind() const {
@@ -86,57 +132,25 @@ struct PictureMaker::State {
     MethodOptions options;
     PictureTeam* team;
 
-    std::optional<BoundaryTables> tables{};       // of the cells of the body; made when it is moved
-    std::optional<SampleTables> kernel_tables{};  // likewise
-    std::optional<BoundaryValues> skin{};
-    std::optional<RbfVolume> volume{};
-    std::optional<detail::KernelLevels> levels{};
-    std::optional<TetsRenderer> tets{};
-    std::optional<ProjectedRenderer> projected{};
-    std::optional<MeshHull> hull{};  // of a mesh in pieces, like the next two
-    std::optional<Surface> piece_boundary{};
-    std::optional<BrickTets> piece_tets{};
-    // Kernels have the values of a mesh less these: of opacities, and of colours. Where they are not 0, a mesh in memory and
-    // the values on its boundary are kept less these, too.
-    std::array<double, 2> origins{};
-    std::optional<HexMesh> relative_mesh{};
-    std::optional<BoundaryValues> relative_skin{};
-    bool range_seen = false;   // whether the range of what is drawn was looked at
-    bool bodies_seen = false;  // whether a picture was looked at for bodies that are too small in it
-
-    /// A splatter for each way of drawing: method, samples, the part of the light at the eye (-1: not lit), and the kernels
-    /// that it was made for.
-    using SplatterKey = std::tuple<Method, int, double, const RbfVolume*>;
-    struct KeptSplatter {
-        SplatterKey key;
-        Splatter splatter;
-        std::size_t version = 0;  // of the kernels that it draws
-    };
-    std::vector<KeptSplatter> splatters{};
+    std::optional<BoundaryTables> tables{};           // of the cells of the body; made when it is moved
+    std::optional<SampleTables> kernel_tables{};      // likewise
+    bool bodies_seen = false;                         // whether a picture was looked at for bodies that are too small in it
+    std::optional<Prepared> prepared{std::in_place};  // of the body; destroyed as a whole with it
 
     void set_body(PictureBody next) {
-        splatters.clear();  // they refer to the kernels
-        levels.reset();     // so do these
         if (body.shape != next.shape || next.shape == 0) {
             tables.reset();
             kernel_tables.reset();
         }
         body = std::move(next);
-        skin.reset();
-        volume.reset();
-        tets.reset();
-        projected.reset();
-        hull.reset();
-        piece_boundary.reset();
-        piece_tets.reset();
-        relative_mesh.reset();
-        relative_skin.reset();
-        range_seen = false;
+        const std::array<double, 2> origins = prepared->kernels->origins;
+        prepared.emplace();
+        prepared->kernels->origins = origins;
         bodies_seen = body.moved;  // which bodies there are does not change, and moving has to be fast
     }
 
     [[nodiscard]] std::array<double, 2> origins_for(const Optics& optics) const {
-        if (!body.mesh || !draws_kernels(method())) return origins;
+        if (!body.mesh || !draws_kernels(method())) return prepared->kernels->origins;
         const TransferFunction& function = optics.function();
         std::array<double, 4> ends{function.opacity.front().value, function.opacity.back().value, function.color.front().value,
                                    function.color.back().value};
@@ -146,37 +160,33 @@ struct PictureMaker::State {
         }
         return {origin_for(ends[0], ends[1]), origin_for(ends[2], ends[3])};
     }
-    /// Decides on `origins`; kernels with others are given up.
+    /// Decides on the origins of kernels; kernels with others are given up.
     void settle_origins(const Optics& optics) {
         const std::array<double, 2> next = origins_for(optics);
-        if (next == origins) return;
-        origins = next;
-        splatters.clear();
-        levels.reset();
-        volume.reset();
-        relative_mesh.reset();
-        relative_skin.reset();
+        if (next == prepared->kernels->origins) return;
+        prepared->kernels.emplace();
+        prepared->kernels->origins = next;
     }
-    [[nodiscard]] bool is_relative() const { return body.mesh && origins != std::array<double, 2>{}; }
+    [[nodiscard]] bool is_relative() const { return body.mesh && prepared->kernels->origins != std::array<double, 2>{}; }
 
     const HexMesh& mesh_of_kernels() {
         if (!is_relative()) return *mesh();
-        if (!relative_mesh) {
-            relative_mesh = *mesh();
-            move_down(*relative_mesh, origins);
+        if (!prepared->kernels->relative_mesh) {
+            prepared->kernels->relative_mesh = *mesh();
+            move_down(*prepared->kernels->relative_mesh, prepared->kernels->origins);
         }
-        return *relative_mesh;
+        return *prepared->kernels->relative_mesh;
     }
     const BoundaryValues& skin_of_kernels() {
-        if (!is_relative()) return *skin;
-        if (!relative_skin) {
-            relative_skin = *skin;
-            for (double& value : relative_skin->values.back()) value -= origins[1];
+        if (!is_relative()) return *prepared->skin;
+        if (!prepared->kernels->relative_skin) {
+            prepared->kernels->relative_skin = *prepared->skin;
+            for (double& value : prepared->kernels->relative_skin->values.back()) value -= prepared->kernels->origins[1];
         }
-        return *relative_skin;
+        return *prepared->kernels->relative_skin;
     }
     [[nodiscard]] Optics optics_of_kernels(const Optics& optics) const {
-        return is_relative() ? Optics(less(optics.function(), origins), optics.opacity_unit()) : optics;
+        return is_relative() ? Optics(less(optics.function(), prepared->kernels->origins), optics.opacity_unit()) : optics;
     }
 
     /// Warns of bodies that the first picture can hardly show.
@@ -192,7 +202,8 @@ struct PictureMaker::State {
 
     /// Warns if the values on the boundary, or those of kernels at places of the limit, leave the range of the mesh.
     void warn_of_range(Facts& facts) {
-        if (!body.of_file || mesh() == nullptr || mesh()->attributes.empty() || std::exchange(range_seen, true)) return;
+        if (!body.of_file || mesh() == nullptr || mesh()->attributes.empty() || std::exchange(prepared->range_seen, true))
+            return;
         const Attribute& field = mesh()->attributes.back();
         if (field.derived || field.channels != 1 || own_values(field).empty()) return;
         double least = std::numeric_limits<double>::infinity(), most = -least;
@@ -202,9 +213,9 @@ struct PictureMaker::State {
             least = std::min(least, low + origin);
             most = std::max(most, high + origin);
         };
-        if (skin) look(skin->values.back(), 0);
-        if (volume && options.kernels.are_plain() && !volume->channels.empty())
-            look(volume->channels.back().values, is_relative() ? origins[1] : 0);
+        if (prepared->skin) look(prepared->skin->values.back(), 0);
+        if (prepared->kernels->volume && options.kernels.are_plain() && !prepared->kernels->volume->channels.empty())
+            look(prepared->kernels->volume->channels.back().values, is_relative() ? prepared->kernels->origins[1] : 0);
         const FieldRange range = range_of(field);
         facts.warn(detail::range_words(field.name, range.min[0], range.max[0], least, most, options.names, true));
     }
@@ -234,6 +245,36 @@ struct PictureMaker::State {
         return paints_boundary() && !options.splat.shadows && options.splat.ambient_occlusion == 0;
     }
 
+    /// Whether pictures of an opaque solid are made of the first hits of its rays alone, where no ray begins inside. Options of
+    /// kernels and sheets ask for those.
+    [[nodiscard]] bool may_show_first_hits() const {
+        const SplatMethod splats = options.splat.method;
+        return paints_splats() && method() == Method::Splat && (splats == SplatMethod::Auto || splats == SplatMethod::Cpu) &&
+               options.style.clip.empty() && !options.seconds && !options.lod && !options.image_tolerance &&
+               !options.splat.device && (!prepared->skin || !prepared->skin->values.empty());
+    }
+    /// Whether the eye, or the plane of parallel rays, lies before the whole boundary.
+    [[nodiscard]] bool shows_first_hits(const View& view) {
+        if (!may_show_first_hits()) return false;
+        const std::vector<Vec3>& points = prepared->skin->surface.points;
+        if (!prepared->skin_box) {
+            prepared->skin_box.emplace();
+            for (const Vec3& point : points) prepared->skin_box->add(point);
+        }
+        constexpr double kBefore = 0.01;  // of the diagonal; rays of perspective begin at a hundredth of it
+        const Box& box = *prepared->skin_box;
+        const auto is_before = [&, least = kBefore * box.diagonal()](const Vec3& point) {
+            return view.to_eye(point).z > least;
+        };
+        const auto corner = [&](int k) {
+            const auto end = [&](int axis) { return (k >> axis & 1) != 0 ? box.upper[axis] : box.lower[axis]; };
+            return Vec3(end(0), end(1), end(2));
+        };
+        bool all = true;
+        for (int k = 0; k < 8; ++k) all = all && is_before(corner(k));
+        return all || std::ranges::all_of(points, is_before);
+    }
+
     /// A mesh in pieces gets the colours of its boundary when all rows are there.
     [[nodiscard]] bool paints_finished() const { return draws_kernels(method()) && paints_splats() && is_finished(); }
 
@@ -243,49 +284,49 @@ struct PictureMaker::State {
 
     /// As boundary_values has it, up to rounding where the body has been moved.
     const BoundaryValues& skin_of_mesh(Progress* progress, Facts& facts) {
-        if (skin) return *skin;
+        if (prepared->skin) return *prepared->skin;
         const auto refine = [&](const auto& hull_or_mesh) {
             const std::optional<int> most = body.tets ? std::optional(0) : options.kernels.levels;
             return refinement(picture_levels(hull_or_mesh, most), progress);
         };
         if (is_in_pieces()) {
             const MeshHull& all = hull_of_pieces(progress, facts);
-            skin = facts.timed(progress, "boundary", [&] { return boundary_values(all, refine(all)); });
-            return *skin;
+            prepared->skin = facts.timed(progress, "boundary", [&] { return boundary_values(all, refine(all)); });
+            return *prepared->skin;
         }
-        skin = facts.timed(progress, "boundary", [&] {
+        prepared->skin = facts.timed(progress, "boundary", [&] {
             if (!body.moved) return boundary_values(*mesh(), refine(*mesh()));
             if (!tables) tables.emplace(*mesh(), refine(*mesh()));
             return tables->apply(*mesh());
         });
-        return *skin;
+        return *prepared->skin;
     }
 
     const RbfVolume& kernels(const Optics& optics, Progress* progress, Facts& facts) {
         if (body.kernels != nullptr) return *body.kernels;
-        if (volume) return *volume;
+        if (prepared->kernels->volume) return *prepared->kernels->volume;
         KernelOptions choices = options.kernels;
         choices.tets = body.tets;
         choices.progress = progress;
         if (options.drop_invisible && !choices.visible) choices.visible = optics.function();
-        if (choices.visible && is_relative()) choices.visible = less(*choices.visible, origins);
+        if (choices.visible && is_relative()) choices.visible = less(*choices.visible, prepared->kernels->origins);
         SampleOptions sample = choices.sample;
         sample.progress = progress;
         if (body.moved && !choices.tets && !choices.levels && !choices.visible && choices.reduce_rmse == 0 &&
             SampleTables::are_for(sample)) {
-            volume = facts.timed(progress, "sample", [&] {
+            prepared->kernels->volume = facts.timed(progress, "sample", [&] {
                 if (!kernel_tables) kernel_tables.emplace(*mesh(), sample);
                 return kernel_tables->apply(mesh_of_kernels()).volume;
             });
-            return *volume;
+            return *prepared->kernels->volume;
         }
-        volume = facts.unpack(make_mesh_kernels(mesh_of_kernels(), choices));
-        return *volume;
+        prepared->kernels->volume = facts.unpack(make_mesh_kernels(mesh_of_kernels(), choices));
+        return *prepared->kernels->volume;
     }
 
     const MeshHull& hull_of_pieces(Progress* progress, Facts& facts) {
-        if (!hull) hull = facts.timed(progress, "hull", [&] { return gather_hull(*body.mesh, progress); });
-        return *hull;
+        if (!prepared->hull) prepared->hull = facts.timed(progress, "hull", [&] { return gather_hull(*body.mesh, progress); });
+        return *prepared->hull;
     }
 
     Facts prepare(const Optics& optics, Progress* progress) {
@@ -302,18 +343,30 @@ struct PictureMaker::State {
                             option_name("slice", options.names), "look volume, or no " + option_name("opacity", options.names));
             }
             (void)skin_of_mesh(progress, facts);
-            hull.reset();
+            prepared->hull.reset();
             return facts;
         }
+        if (may_show_first_hits()) {
+            (void)skin_of_mesh(progress, facts);
+            prepared->hull.reset();
+        }
+        if (!may_show_first_hits()) prepare_inside(optics, progress, facts);
+        warn_of_range(facts);
+        return facts;
+    }
+
+    /// What pictures need that show more than the first hits of a solid.
+    void prepare_inside(const Optics& optics, Progress* progress, Facts& facts) {
         if (is_in_pieces()) {
             prepare_pieces(progress, facts);
         } else if (draws_kernels(method())) {
-            if (options.seconds) return facts;
+            if (options.seconds) return;
             if (paints_splats()) (void)skin_of_mesh(progress, facts);
-            if (!levels && body.file != nullptr) levels.emplace(*body.file, body.channels, options.lod.value_or(0));
-            if (!levels) {
+            if (!prepared->kernels->levels && body.file != nullptr)
+                prepared->kernels->levels.emplace(*body.file, body.channels, options.lod.value_or(0));
+            if (!prepared->kernels->levels) {
                 const RbfVolume& all = kernels(optics, progress, facts);
-                levels.emplace(all, options.lod.value_or(0), shown_channels().front(), progress, facts);
+                prepared->kernels->levels.emplace(all, options.lod.value_or(0), shown_channels().front(), progress, facts);
             }
         } else if (method() == Method::Grid) {
             if (is_solid() && body.voxels->is_level_set()) {
@@ -323,21 +376,20 @@ struct PictureMaker::State {
         } else {
             prepare_cells(progress, facts);
         }
-        warn_of_range(facts);
-        return facts;
     }
 
     void prepare_cells(Progress* progress, Facts& facts) {
         const auto make_tets = [&](const auto& fine) {
             if (method() == Method::Tets) {
-                tets.emplace(fine, "", progress);
-                facts.add_seconds("prepare", tets->seconds_build());
+                prepared->cells.tets.emplace(fine, "", progress);
+                facts.add_seconds("prepare", prepared->cells.tets->seconds_build());
             } else {
-                projected.emplace(fine, "", options.splat.device, progress);
-                facts.add_seconds("prepare", projected->seconds_build());
+                prepared->cells.projected.emplace(fine, "", options.splat.device, progress);
+                facts.add_seconds("prepare", prepared->cells.projected->seconds_build());
             }
         };
-        const bool missing = (method() == Method::Tets && !tets) || (method() == Method::Projected && !projected);
+        const bool missing = (method() == Method::Tets && !prepared->cells.tets) ||
+                             (method() == Method::Projected && !prepared->cells.projected);
         if (missing && body.tets) {
             make_tets(join_split_cells(*mesh()));
         } else if (missing) {
@@ -351,21 +403,21 @@ struct PictureMaker::State {
     void prepare_pieces(Progress* progress, Facts& facts) {
         const bool by_kernels = draws_kernels(method());
         if (by_kernels ? paints_finished() : lights_boundary()) (void)skin_of_mesh(progress, facts);
-        if (by_kernels && !piece_boundary) {
+        if (by_kernels && !prepared->pieces.boundary) {
             SampleOptions sample = options.kernels.sample;
             sample.progress = progress;
             const MeshHull& all = hull_of_pieces(progress, facts);
-            piece_boundary = facts.timed(progress, "boundary", [&] { return sample_boundary(all, sample); });
+            prepared->pieces.boundary = facts.timed(progress, "boundary", [&] { return sample_boundary(all, sample); });
         }
-        hull.reset();
-        if (by_kernels || piece_tets) return;
+        prepared->hull.reset();
+        if (by_kernels || prepared->pieces.tets) return;
         const BrickTetsOptions tet_options = piece_tets_options(progress);
-        piece_tets = facts.timed(progress, "measure", [&] {
+        prepared->pieces.tets = facts.timed(progress, "measure", [&] {
             return team != nullptr ? team->measure(*body.mesh, tet_options)
                                    : measure_tets(*body.mesh, tet_options, 0, body.mesh->stored().pieces.size());
         });
         facts["levels"] = tet_options.refine.levels;
-        facts["cells"] = piece_tets->tets / 6;
+        facts["cells"] = prepared->pieces.tets->tets / 6;
     }
 
     [[nodiscard]] std::uint64_t cells_of_pieces() const {
@@ -407,22 +459,23 @@ struct PictureMaker::State {
 
     /// Whether splatters are made for all kernels, which are in memory.
     [[nodiscard]] bool draws_all_kernels() const {
-        return team == nullptr && draws_kernels(method()) && !options.seconds && levels->all() != nullptr;
+        return team == nullptr && draws_kernels(method()) && !options.seconds && prepared->kernels->levels->all() != nullptr;
     }
 
     KeptSplatter& splatter(const RbfVolume& kernels, std::size_t version, const Optics& optics) {
         const SplatOptions splat = splat_options(optics);
         const SplatterKey key{method(), splat.samples, splat.shading ? splat.shading->head : -1, &kernels};
-        for (KeptSplatter& kept : splatters) {
+        for (KeptSplatter& kept : prepared->kernels->splatters) {
             if (kept.key == key) return kept;
         }
-        return splatters.emplace_back(KeptSplatter{key, Splatter(kernels, splat), version});
+        return prepared->kernels->splatters.emplace_back(KeptSplatter{key, Splatter(kernels, splat), version});
     }
 
     Picture draw_splats(const View& view, const Optics& of_field, Progress* progress, const RbfVolume* stand_in) {
         Picture picture;
         const Optics optics = optics_of_kernels(of_field);
-        const RbfVolume& shown = stand_in != nullptr ? *stand_in : levels->kernels(view, progress, picture.facts);
+        const RbfVolume& shown =
+            stand_in != nullptr ? *stand_in : prepared->kernels->levels->kernels(view, progress, picture.facts);
         const BoundaryValues none;
         const BoundaryValues& colors = paints_splats() ? skin_of_kernels() : none;
         SplatResult drawn;
@@ -430,10 +483,11 @@ struct PictureMaker::State {
             drawn = team->splat(shown, splat_options(optics), colors, view, optics, progress, picture.facts);
         } else {
             const bool in_memory = stand_in == nullptr && draws_all_kernels();
-            KeptSplatter& kept = splatter(in_memory ? *levels->all() : shown, in_memory ? 0 : levels->version(), optics);
-            if (stand_in == nullptr && kept.version != levels->version()) {
+            KeptSplatter& kept = splatter(in_memory ? *prepared->kernels->levels->all() : shown,
+                                          in_memory ? 0 : prepared->kernels->levels->version(), optics);
+            if (stand_in == nullptr && kept.version != prepared->kernels->levels->version()) {
                 kept.splatter.set_kernels(shown);
-                kept.version = levels->version();
+                kept.version = prepared->kernels->levels->version();
             }
             kept.splatter.set_clip(options.style.clip);
             if (colors.values.empty())
@@ -467,7 +521,7 @@ struct PictureMaker::State {
     Picture draw_piece_splats(const View& view, const Optics& of_field, Progress* progress) const {
         Picture picture;
         const Optics optics = optics_of_kernels(of_field);
-        const auto relative = [by = origins](HexMesh piece) {
+        const auto relative = [by = prepared->kernels->origins](HexMesh piece) {
             move_down(piece, by);
             return piece;
         };
@@ -479,8 +533,8 @@ struct PictureMaker::State {
         pieces.sample.progress = pieces.splat.progress = progress;
         if (team != nullptr) pieces.rows = team->rows(view.height());
         SplatResult drawn = picture.facts.timed(progress, "draw", [&] {
-            if (team != nullptr) return team->splat(source, *piece_boundary, pieces, view, optics, picture.facts);
-            return render_bricks(source, *piece_boundary, view, optics, pieces);
+            if (team != nullptr) return team->splat(source, *prepared->pieces.boundary, pieces, view, optics, picture.facts);
+            return render_bricks(source, *prepared->pieces.boundary, view, optics, pieces);
         });
         detail::add_facts(drawn.report, method(), picture.facts);
         picture.facts["points"] = drawn.report.points;
@@ -499,10 +553,10 @@ struct PictureMaker::State {
         if (is_in_pieces()) {
             BrickTetsOptions pieces = piece_tets_options(progress);
             pieces.tets = tets_options;
-            drawn = render_tets(*body.mesh, *piece_tets, view, optics, pieces);
+            drawn = render_tets(*body.mesh, *prepared->pieces.tets, view, optics, pieces);
             picture.facts.add_seconds("prepare", drawn.report.seconds_build);
         } else {
-            drawn = tets->draw(view, optics, tets_options);
+            drawn = prepared->cells.tets->draw(view, optics, tets_options);
         }
         std::array counts{drawn.report.rays, drawn.report.lost_rays};
         if (team != nullptr) team->add_up(counts);
@@ -522,15 +576,16 @@ struct PictureMaker::State {
         Picture picture;
         ProjectedResult drawn;
         if (options.seconds) {
-            auto best = render_progressively(
-                *projected, view, optics, {.seconds = *options.seconds, .projected = projected_options, .progress = progress});
+            auto best =
+                render_progressively(*prepared->cells.projected, view, optics,
+                                     {.seconds = *options.seconds, .projected = projected_options, .progress = progress});
             projected_options.order = best.order;
             drawn = std::move(best.projected);
             picture.facts["steps"] = best.steps;
             picture.facts["finished"] = best.finished;
         } else {
             projected_options.progress = progress;
-            drawn = projected->draw(view, optics, projected_options);
+            drawn = prepared->cells.projected->draw(view, optics, projected_options);
         }
         detail::add_facts(drawn.report, projected_options.order, picture.facts);
         picture.image = std::move(drawn.image);
@@ -567,12 +622,34 @@ struct PictureMaker::State {
         picture.facts["method"] = name_of(method());
         picture.facts["backend"] = "cpu";
         picture.depth.assign(picture.image.rgba.size() / 4, std::numeric_limits<float>::infinity());
-        ColoredSurface colored{skin->surface, skin->values.back()};
-        for (const double value : skin->values.front())
+        ColoredSurface colored{prepared->skin->surface, prepared->skin->values.back()};
+        for (const double value : prepared->skin->values.front())
             colored.opacities.push_back(static_cast<float>(alpha_at(optics.function(), value)));
         draw_shells(
             picture.image, picture.depth, colored, {}, view, optics,
             {.shading = shading_for(optics.function()), .samples = options.style.sample_count(), .clip = options.style.clip});
+        return picture;
+    }
+
+    /// An opaque solid without its kernels; nothing if its boundary is not closed, as cells of both hands leave it: then rays
+    /// seem to begin inside.
+    std::optional<Picture> draw_first_hits(const View& view, const Optics& optics, Progress* progress) const {
+        PixelRows rows;
+        if (team != nullptr) {  // and some rows beside them, whose depths decide about lines that are drawn afterwards
+            rows = team->rows(view.height());
+            rows = {rows.first - kRowsOfTile, rows.end + kRowsOfTile};
+        }
+        Picture picture;
+        BoundaryPicture drawn = picture.facts.timed(progress, "draw", [&] {
+            return draw_boundary(prepared->skin->surface, prepared->skin->values.back(), view, optics,
+                                 shading_for(optics.function()), options.style.sample_count(), rows, progress);
+        });
+        std::array inside{drawn.rays_inside};
+        if (team != nullptr) team->add_up(inside);
+        if (inside.front() > 0) return std::nullopt;
+        detail::add_facts_of_first_hits(prepared->skin->surface, picture.facts);
+        picture.image = std::move(drawn.image);
+        picture.depth = std::move(drawn.depth);
         return picture;
     }
 
@@ -603,10 +680,10 @@ struct PictureMaker::State {
         const Clip& clip = options.style.clip;
         if (is_translucent()) return;
         if (lights_boundary()) {
-            light_boundary(picture.image, skin->surface, view, shading_for(optics.function()), samples, clip);
-        } else if (is_in_pieces() && paints_finished() && !skin->values.empty()) {
-            color_boundary(picture.image, skin->surface, skin->values.back(), view, optics, shading_for(optics.function()),
-                           samples, clip);
+            light_boundary(picture.image, prepared->skin->surface, view, shading_for(optics.function()), samples, clip);
+        } else if (is_in_pieces() && paints_finished() && !prepared->skin->values.empty()) {
+            color_boundary(picture.image, prepared->skin->surface, prepared->skin->values.back(), view, optics,
+                           shading_for(optics.function()), samples, clip);
         }
     }
 };
@@ -632,16 +709,20 @@ void PictureMaker::set_style(const PictureStyle& style) {
 
 Facts PictureMaker::prepare(const Optics& optics, Progress* progress, bool splatter) {
     Facts facts = state_->prepare(optics, progress);
-    if (splatter && state_->levels && state_->draws_all_kernels()) (void)state_->splatter(*state_->levels->all(), 0, optics);
+    if (splatter && state_->prepared->kernels->levels && state_->draws_all_kernels())
+        (void)state_->splatter(*state_->prepared->kernels->levels->all(), 0, optics);
     return facts;
 }
 
 Picture PictureMaker::draw(const View& view, const Optics& optics, Progress* progress, const RbfVolume* stand_in) {
     Facts facts = state_->prepare(optics, progress);
     state_->warn_of_tiny_bodies(view, facts);
-    Picture picture = state_->drawn_rows(view, optics, progress, stand_in);
+    std::optional<Picture> first_hits;
+    if (state_->shows_first_hits(view)) first_hits = state_->draw_first_hits(view, optics, progress);
+    if (!first_hits && state_->may_show_first_hits()) state_->prepare_inside(optics, progress, facts);
+    Picture picture = first_hits ? std::move(*first_hits) : state_->drawn_rows(view, optics, progress, stand_in);
     if (state_->team != nullptr) state_->team->gather(picture);
-    state_->finish(picture, view, optics);
+    if (!first_hits) state_->finish(picture, view, optics);
     facts.merge(picture.facts);
     picture.facts = std::move(facts);
     return picture;
@@ -671,13 +752,14 @@ const BoundaryValues& PictureMaker::skin(Progress* progress, Facts& facts) {
 }
 
 const Surface& PictureMaker::boundary(const Optics& optics, Progress* progress, Facts& facts) {
-    const bool of_kernels = draws_kernels(state_->method()) && !state_->is_translucent() && !state_->options.seconds;
+    const bool of_kernels = draws_kernels(state_->method()) && !state_->is_translucent() && !state_->options.seconds &&
+                            !state_->may_show_first_hits();
     state_->settle_origins(optics);
     return of_kernels ? state_->kernels(optics, progress, facts).boundary : state_->skin_of_mesh(progress, facts).surface;
 }
 
 bool PictureMaker::keeps_kernels(const Optics& optics) const {
-    return state_->origins_for(optics) == state_->origins;
+    return state_->origins_for(optics) == state_->prepared->kernels->origins;
 }
 
 const RbfVolume& PictureMaker::kernels(const Optics& optics, Progress* progress, Facts& facts) {

@@ -9,7 +9,6 @@
 // differ from the picture before, the frame stays and gets another transfer function. New kernels clear both keys. Means of
 // depths are weighted by opacity. OpenGL contexts are current only while they are used; one that fails is given up, and the
 // next picture makes another.
-#include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -25,6 +24,7 @@
 #include "gl_sheets.h"
 #include "gl_splatter.h"
 #include "make_light_volume.h"
+#include "picture_facts.h"
 #include "pixel_tiles.h"
 #include "splat_cpu.h"
 #include "subvol/boundary_shading.h"
@@ -76,10 +76,6 @@ std::unique_ptr<SheetDrawer> make_sheet_drawer(const SplatOptions& options) {
                     "the method splat");
     const detail::KeepCurrent keep;
     return std::make_unique<SheetDrawer>(options.device);
-}
-
-std::string cpu_threads() {
-    return std::to_string(tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism)) + " CPU threads";
 }
 
 struct Mean {
@@ -232,7 +228,7 @@ struct Splatter::State {
         report.sheets_finest = sheets ? report.sheets : frame.finer.sheets_finest(report.sheets);
         report.seconds_prepare += watch.seconds();
         report.backend = sheets ? "gl" : "cpu";
-        report.device = sheets ? sheets->renderer() : cpu_threads();
+        report.device = sheets ? sheets->renderer() : detail::cpu_threads();
         report.bin_entries = frame.tile_splats.size();
         report.boundary_hits = frame.intervals.hits;
         return sheets ? sheets->draw(frame, progress) : detail::draw_splats_cpu(frame, progress);
@@ -256,7 +252,7 @@ struct Splatter::State {
     [[nodiscard]] detail::Drawn draw_footprints(const View& view, const detail::Classification& classification,
                                                 Progress* progress, SplatReport& report) {
         report.backend = "cpu";
-        report.device = cpu_threads();
+        report.device = detail::cpu_threads();
         detail::Drawn drawn = footprints->draw(frame, view, classification, progress);
         report.bin_entries = frame.tile_splats.size();
         return drawn;

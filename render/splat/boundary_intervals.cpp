@@ -36,7 +36,6 @@ namespace subvol::detail {
 
 namespace {
 
-constexpr int kBandRows = 8;
 constexpr int kSnapBits = 12;
 constexpr std::int64_t kSnap = 1 << kSnapBits;  // units a pixel
 constexpr double kSnapTie = 0x1p-16;            // more than a division on any device is off
@@ -310,12 +309,12 @@ struct BandLists {
     std::vector<const ScreenTriangle*> triangles;
 };
 
-BandLists list_bands(const std::vector<std::vector<ScreenTriangle>>& chunks, int bands) {
+BandLists list_bands(const std::vector<std::vector<ScreenTriangle>>& chunks, int bands, int band_rows) {
     BandLists lists{std::vector<std::size_t>(static_cast<std::size_t>(bands) + 2), {}};
     const auto each = [&](const auto& visit) {
         for (const auto& chunk : chunks) {
             for (const auto& t : chunk) {
-                for (int b = t.block.y0 / kBandRows; b <= t.block.y1 / kBandRows; ++b) visit(t, static_cast<std::size_t>(b));
+                for (int b = t.block.y0 / band_rows; b <= t.block.y1 / band_rows; ++b) visit(t, static_cast<std::size_t>(b));
             }
         }
     };
@@ -326,18 +325,12 @@ BandLists list_bands(const std::vector<std::vector<ScreenTriangle>>& chunks, int
     return lists;
 }
 
-struct Band {
-    std::vector<std::uint32_t> counts;  // intervals of each pixel
-    std::vector<float> depths;
-    std::vector<std::uint32_t> triangles;
-    std::size_t hits = 0;
-};
-
-PixelIntervals joined(const std::vector<Band>& bands) {
+/// Puts bands one below the other.
+PixelIntervals joined(const std::vector<PixelIntervals>& bands) {
     PixelIntervals result;
     std::vector<std::size_t> pixels(bands.size() + 1), intervals(bands.size() + 1);
     for (std::size_t b = 0; b < bands.size(); ++b) {
-        pixels[b + 1] = pixels[b] + bands[b].counts.size();
+        pixels[b + 1] = pixels[b] + bands[b].offsets.size() - 1;
         intervals[b + 1] = intervals[b] + bands[b].triangles.size();
         result.hits += bands[b].hits;
     }
@@ -345,8 +338,8 @@ PixelIntervals joined(const std::vector<Band>& bands) {
     result.depths.resize(2 * intervals.back());
     result.triangles.resize(intervals.back());
     tbb::parallel_for(std::size_t{0}, bands.size(), [&](std::size_t b) {
-        auto sum = static_cast<std::uint32_t>(intervals[b]);
-        for (std::size_t i = 0; i < bands[b].counts.size(); ++i) result.offsets[pixels[b] + i + 1] = sum += bands[b].counts[i];
+        const auto before = static_cast<std::uint32_t>(intervals[b]);
+        for (std::size_t i = 1; i < bands[b].offsets.size(); ++i) result.offsets[pixels[b] + i] = before + bands[b].offsets[i];
         std::ranges::copy(bands[b].depths, result.depths.begin() + static_cast<std::ptrdiff_t>(2 * intervals[b]));
         std::ranges::copy(bands[b].triangles, result.triangles.begin() + static_cast<std::ptrdiff_t>(intervals[b]));
     });
@@ -368,38 +361,72 @@ bool needs_clipping(std::span<const Vec3> points, const View& view, double near)
     return needed;
 }
 
-PixelIntervals boundary_intervals(const Surface& surface, const View& view, double near, double middle) {
-    const auto chunks = project(surface, view, near);
-    const int band_count = (view.height() + kBandRows - 1) / kBandRows;
-    const BandLists lists = list_bands(chunks, band_count);
+struct BoundaryRaster::State {
+    /// The memory that finding a band takes.
     struct Scratch {
         std::vector<Hit> hits, sorted;
         std::vector<std::uint32_t> ends;
     };
-    std::vector<Band> bands(static_cast<std::size_t>(band_count));
-    tbb::enumerable_thread_specific<Scratch> scratches;
-    tbb::parallel_for(std::size_t{0}, bands.size(), [&](std::size_t b) {
-        const int y0 = static_cast<int>(b) * kBandRows, y1 = std::min(view.height(), y0 + kBandRows);
-        Band& band = bands[b];
-        auto& [hits, sorted, ends] = scratches.local();
-        hits.clear();
-        for (std::size_t i = lists.offsets[b]; i < lists.offsets[b + 1]; ++i) {
-            rasterize(*lists.triangles[i], view, middle, y0, y1, hits);
-        }
-        const std::size_t pixels = static_cast<std::size_t>(y1 - y0) * static_cast<std::size_t>(view.width());
-        sort_hits(hits, pixels, ends, sorted);
-        band.hits = hits.size();
-        band.counts.resize(pixels);
-        band.depths.reserve(hits.size());
-        band.triangles.reserve(hits.size() / 2);
-        for (std::size_t i = 0, begin = 0; i < pixels; begin = ends[i++]) {
-            if (ends[i] == begin) continue;
-            const std::size_t before = band.depths.size();
-            resolve(std::span(sorted).subspan(begin, ends[i] - begin), static_cast<float>(near - middle), band.depths,
-                    band.triangles);
-            band.counts[i] = static_cast<std::uint32_t>((band.depths.size() - before) / 2);
-        }
-    });
+
+    State(const Surface& surface, const View& picture, double near_depth, double middle_depth, int rows)
+        : view(picture),
+          near(near_depth),
+          middle(middle_depth),
+          band_rows(rows),
+          chunks(project(surface, picture, near_depth)) {
+        lists = list_bands(chunks, bands(), band_rows);
+    }
+
+    [[nodiscard]] int bands() const { return (view.height() + band_rows - 1) / band_rows; }
+
+    const View& view;
+    double near, middle;
+    int band_rows;
+    std::vector<std::vector<ScreenTriangle>> chunks;
+    BandLists lists{};
+    tbb::enumerable_thread_specific<Scratch> scratches{};
+};
+
+BoundaryRaster::BoundaryRaster(const Surface& surface, const View& view, double near, double middle, int band_rows)
+    : state_(std::make_unique<State>(surface, view, near, middle, band_rows)) {
+}
+BoundaryRaster::~BoundaryRaster() = default;
+
+int BoundaryRaster::band_count() const {
+    return state_->bands();
+}
+
+int BoundaryRaster::first_row(int band) const {
+    return std::min(band * state_->band_rows, state_->view.height());
+}
+
+void BoundaryRaster::find(int band, PixelIntervals& result) const {
+    const int y0 = first_row(band), y1 = first_row(band + 1);
+    const auto b = static_cast<std::size_t>(band);
+    const std::size_t pixels = static_cast<std::size_t>(y1 - y0) * static_cast<std::size_t>(state_->view.width());
+    auto& [hits, sorted, ends] = state_->scratches.local();
+    hits.clear();
+    for (std::size_t i = state_->lists.offsets[b]; i < state_->lists.offsets[b + 1]; ++i) {
+        rasterize(*state_->lists.triangles[i], state_->view, state_->middle, y0, y1, hits);
+    }
+    sort_hits(hits, pixels, ends, sorted);
+    result.hits = hits.size();
+    result.offsets.assign(pixels + 1, 0);
+    result.depths.clear();
+    result.triangles.clear();
+    result.depths.reserve(hits.size());
+    result.triangles.reserve(hits.size() / 2);
+    const auto near = static_cast<float>(state_->near - state_->middle);
+    for (std::size_t i = 0, begin = 0; i < pixels; begin = ends[i++]) {
+        if (ends[i] != begin) resolve(std::span(sorted).subspan(begin, ends[i] - begin), near, result.depths, result.triangles);
+        result.offsets[i + 1] = static_cast<std::uint32_t>(result.triangles.size());
+    }
+}
+
+PixelIntervals boundary_intervals(const Surface& surface, const View& view, double near, double middle) {
+    const BoundaryRaster raster(surface, view, near, middle);
+    std::vector<PixelIntervals> bands(static_cast<std::size_t>(raster.band_count()));
+    tbb::parallel_for(0, raster.band_count(), [&](int band) { raster.find(band, bands[static_cast<std::size_t>(band)]); });
     return joined(bands);
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -29,6 +30,27 @@ inline constexpr double kNearest = 1e-4;
 [[nodiscard]] inline double nearest_depth(const View& view, double diagonal) {
     return view.perspective() ? kNearest * diagonal : 0.0;
 }
+
+/// The triangles of a surface in a picture, whose intervals are found in bands of rows, so that those of a whole picture need
+/// not be kept.
+class BoundaryRaster {
+public:
+    /// near, middle: as of `boundary_intervals`; surface, view: are kept by reference
+    BoundaryRaster(const Surface& surface, const View& view, double near, double middle, int band_rows = 8);
+    ~BoundaryRaster();
+    BoundaryRaster(const BoundaryRaster&) = delete;
+    BoundaryRaster& operator=(const BoundaryRaster&) = delete;
+
+    [[nodiscard]] int band_count() const;
+    /// The first row of a band; that of the band after the last one is the height of the picture.
+    [[nodiscard]] int first_row(int band) const;
+    /// The intervals of the pixels of a band, as `boundary_intervals` has them for all. For several threads at once.
+    void find(int band, PixelIntervals& result) const;
+
+private:
+    struct State;
+    std::unique_ptr<State> state_;
+};
 
 /// Rasterizes a closed surface without gaps: vertices are snapped to 1/4096 px, and a pixel centre on a shared edge counts
 /// once. A ray is inside where the surface goes round it, however often and in whichever direction: shells may be nested,

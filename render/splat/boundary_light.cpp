@@ -10,13 +10,16 @@
 //
 // Finished pictures are changed by the first hits of n × n rays in each pixel: lit by the mean of their light, or given the
 // colours of values on the boundary. There, rays that enter through a cut or begin inside keep their share of the colour that
-// was drawn.
+// was drawn. The picture of an opaque body that nothing cuts is made of first hits alone.
 #include "boundary_light.h"
 
+#include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <string>
 
@@ -149,42 +152,123 @@ using namespace detail;
 
 namespace {
 
-/// The first hits of a picture's rays on a boundary, which are shaded as they are asked for.
-struct FirstHits {
-    View fine;  // a pixel for each ray
-    RayClip cuts;
-    double middle;
-    PixelIntervals intervals;
-    std::vector<CornerNormals> normals;
-    std::optional<LitSurface> lit;
-    std::optional<EntryShader> shader;
+/// The rays of some rows of a picture, and where they are inside.
+struct RayHits {
+    const PixelIntervals& intervals;
+    const View& fine;       // a pixel for each ray
+    std::size_t first_ray;  // the number in the picture of the first one that is here
 
+    /// The first interval of a ray; none if it meets nothing.
+    [[nodiscard]] std::optional<std::size_t> first(int column, int row) const {
+        const auto ray = pixel_index(fine.width(), column, row) - first_ray;
+        if (intervals.offsets[ray] == intervals.offsets[ray + 1]) return {};
+        return intervals.offsets[ray];
+    }
+};
+
+/// The first hits of a picture's rays on a boundary, which are shaded as they are asked for. They are found in bands of rows,
+/// but for pictures that are cut, whose intervals are all found before.
+class FirstHits {
+public:
     FirstHits(const Surface& boundary, const View& view, const Shading& shading, int samples, const Clip& clip)
-        : fine(view.resized(samples * view.width(), samples * view.height())) {
+        : samples_(samples), fine_(view.resized(samples * view.width(), samples * view.height())) {
         Box box;
         for (const Vec3& point : boundary.points) box.add(point);
-        cuts = RayClip(clip, box.diagonal());
-        middle = fine.to_eye(box.center()).z;
-        intervals = boundary_intervals(boundary, fine, nearest_depth(fine, box.diagonal()), middle);
-        if (!cuts.empty() || fine.ends_rays()) intervals = clip_intervals(intervals, fine, cuts, middle);
-        normals = corner_normals(boundary);
-        lit.emplace(LitSurface{boundary, normals, shading, middle, cuts.faces()});
-        shader.emplace(*lit, fine);
+        cuts_ = RayClip(clip, box.diagonal());
+        middle_ = fine_.to_eye(box.center()).z;
+        const double near = nearest_depth(fine_, box.diagonal());
+        if (!cuts_.empty() || fine_.ends_rays()) {
+            all_ = clip_intervals(boundary_intervals(boundary, fine_, near, middle_), fine_, cuts_, middle_);
+        } else {
+            raster_.emplace(boundary, fine_, near, middle_, samples * std::max(1, kRowsOfBand / samples));
+        }
+        normals_ = corner_normals(boundary);
+        lit_.emplace(LitSurface{boundary, normals_, shading, middle_, cuts_.faces()});
+        shader_.emplace(*lit_, fine_);
     }
     FirstHits(const FirstHits&) = delete;
     FirstHits& operator=(const FirstHits&) = delete;
 
-    /// The first interval of a ray; none if it meets nothing.
-    [[nodiscard]] std::optional<std::size_t> first(int column, int row) const {
-        const auto ray = pixel_index(fine.width(), column, row);
-        if (intervals.offsets[ray] == intervals.offsets[ray + 1]) return {};
-        return intervals.offsets[ray];
+    /// Calls `visit` with the hits of each row of pixels, and its number. Several rows at once. progress: of pictures that are
+    /// not cut
+    template <class Visit>
+    void each_row(const PixelRows& rows, const Visit& visit, Progress* progress = nullptr) const {
+        const int height = fine_.height() / samples_, begin = std::max(rows.first, 0), end = std::min(rows.end, height);
+        if (!raster_) {
+            tbb::parallel_for(begin, std::max(begin, end), [&](int y) { visit(RayHits{all_, fine_, 0}, y); });
+            return;
+        }
+        std::atomic<int> rows_done = 0;
+        tbb::enumerable_thread_specific<PixelIntervals> bands;
+        tbb::parallel_for(0, raster_->band_count(), [&](int band) {
+            const int first = std::max(begin, raster_->first_row(band) / samples_),
+                      last = std::min(end, raster_->first_row(band + 1) / samples_);
+            if (first >= last) return;
+            PixelIntervals& intervals = bands.local();
+            raster_->find(band, intervals);
+            const RayHits hits{intervals, fine_, pixel_index(fine_.width(), 0, raster_->first_row(band))};
+            for (int y = first; y < last; ++y) visit(hits, y);
+            report_progress(progress, "draw", static_cast<double>(rows_done += last - first) / (end - begin));
+        });
     }
 
-    [[nodiscard]] SurfaceLight light(std::size_t interval, int column, int row, std::array<double, 3>& shares) const {
-        if (intervals.triangles[interval] == PixelIntervals::kNoTriangle) return {};
-        return shader->at(intervals, interval, fine.slopes(column + 0.5, row + 0.5), shares);
+    /// shares: set to those of the corners of the triangle
+    [[nodiscard]] SurfaceLight light(const RayHits& hits, std::size_t interval, int column, int row,
+                                     std::array<double, 3>& shares) const {
+        if (hits.intervals.triangles[interval] == PixelIntervals::kNoTriangle) return {};
+        return shader_->at(hits.intervals, interval, fine_.slopes(column + 0.5, row + 0.5), shares);
     }
+    /// The depth at which a ray enters an interval.
+    [[nodiscard]] double depth(const RayHits& hits, std::size_t interval) const {
+        return static_cast<double>(hits.intervals.depths[2 * interval]) + middle_;
+    }
+
+private:
+    static constexpr int kRowsOfBand = 8;
+
+    int samples_;
+    View fine_;  // a pixel for each ray
+    RayClip cuts_;
+    double middle_;
+    PixelIntervals all_{};  // of pictures that are cut
+    std::optional<BoundaryRaster> raster_{};
+    std::vector<CornerNormals> normals_{};
+    std::optional<LitSurface> lit_{};
+    std::optional<EntryShader> shader_{};
+};
+
+/// Colours of the values on a boundary, in its light.
+class BoundaryColors {
+public:
+    /// All are kept by reference.
+    BoundaryColors(const FirstHits& hits, const Surface& boundary, std::span<const double> values, const Optics& optics)
+        : hits_(hits), boundary_(boundary), values_(values), optics_(optics) {
+        if (values.size() == boundary.points.size()) return;
+        throw Error(
+            ErrorCode::InvalidInput,
+            "there are " + std::to_string(values.size()) + " values for " + std::to_string(boundary.points.size()) + " points",
+            "boundary");
+    }
+
+    /// The colour where a ray enters an interval, which has a triangle.
+    [[nodiscard]] Vec3 at(const RayHits& hits, std::size_t interval, int column, int row) const {
+        const auto& corners = boundary_.triangles[hits.intervals.triangles[interval]];
+        std::array<double, 3> shares{};
+        const SurfaceLight light = hits_.light(hits, interval, column, row, shares);
+        double sum = 0, value = 0;
+        for (std::size_t k = 0; k < 3; ++k) {
+            sum += shares[k];
+            value += shares[k] * values_[corners[k]];
+        }
+        value = sum > 0 ? value / sum : values_[corners[0]];
+        return static_cast<double>(light.diffuse) * optics_.color(value) + static_cast<double>(light.specular);
+    }
+
+private:
+    const FirstHits& hits_;
+    const Surface& boundary_;
+    std::span<const double> values_;
+    const Optics& optics_;
 };
 
 }  // namespace
@@ -192,16 +276,16 @@ struct FirstHits {
 void light_boundary(Image& image, const Surface& boundary, const View& view, const Shading& shading, int samples,
                     const Clip& clip) {
     const FirstHits hits(boundary, view, shading, samples, clip);
-    tbb::parallel_for(0, view.height(), [&](int y) {
+    hits.each_row({}, [&](const RayHits& rays, int y) {
         std::array<double, 3> shares{};
         for (int x = 0; x < view.width(); ++x) {
             double diffuse = 0, specular = 0;
             int met = 0;
             for (int k = 0; k < samples * samples; ++k) {
                 const int row = y * samples + k / samples, column = x * samples + k % samples;
-                const auto first = hits.first(column, row);
+                const auto first = rays.first(column, row);
                 if (!first) continue;
-                const SurfaceLight light = hits.light(*first, column, row, shares);
+                const SurfaceLight light = hits.light(rays, *first, column, row, shares);
                 diffuse += static_cast<double>(light.diffuse);
                 specular += static_cast<double>(light.specular);
                 ++met;
@@ -219,38 +303,21 @@ void light_boundary(Image& image, const Surface& boundary, const View& view, con
 
 void color_boundary(Image& image, const Surface& boundary, std::span<const double> values, const View& view,
                     const Optics& optics, const Shading& shading, int samples, const Clip& clip) {
-    if (values.size() != boundary.points.size()) {
-        throw Error(
-            ErrorCode::InvalidInput,
-            "there are " + std::to_string(values.size()) + " values for " + std::to_string(boundary.points.size()) + " points",
-            "boundary");
-    }
     const FirstHits hits(boundary, view, shading, samples, clip);
-    const auto color_of = [&](std::size_t interval, int x, int y) {
-        const std::uint32_t triangle = hits.intervals.triangles[interval];
-        std::array<double, 3> shares{};
-        const SurfaceLight light = hits.light(interval, x, y, shares);
-        double sum = 0, value = 0;
-        for (std::size_t k = 0; k < 3; ++k) {
-            sum += shares[k];
-            value += shares[k] * values[boundary.triangles[triangle][k]];
-        }
-        value = sum > 0 ? value / sum : values[boundary.triangles[triangle][0]];
-        return static_cast<double>(light.diffuse) * optics.color(value) + static_cast<double>(light.specular);
-    };
-    tbb::parallel_for(0, view.height(), [&](int y) {
+    const BoundaryColors colors(hits, boundary, values, optics);
+    hits.each_row({}, [&](const RayHits& rays, int y) {
         for (int x = 0; x < view.width(); ++x) {
             Vec3 color(0.0);
             int met = 0, as_drawn = 0;  // rays that meet the boundary; or that enter through a cut, or inside
             for (int k = 0; k < samples * samples; ++k) {
                 const int row = y * samples + k / samples, column = x * samples + k % samples;
-                const auto first = hits.first(column, row);
+                const auto first = rays.first(column, row);
                 if (!first) continue;
-                if (hits.intervals.triangles[*first] >= PixelIntervals::kFirstFace) {
+                if (rays.intervals.triangles[*first] >= PixelIntervals::kFirstFace) {
                     ++as_drawn;
                     continue;
                 }
-                color += color_of(*first, column, row);
+                color += colors.at(rays, *first, column, row);
                 ++met;
             }
             if (met == 0) continue;
@@ -262,6 +329,43 @@ void color_boundary(Image& image, const Surface& boundary, std::span<const doubl
             }
         }
     });
+}
+
+BoundaryPicture draw_boundary(const Surface& boundary, std::span<const double> values, const View& view, const Optics& optics,
+                              const Shading& shading, int samples, const PixelRows& rows, Progress* progress) {
+    const FirstHits hits(boundary, view, shading, samples, {});
+    const BoundaryColors colors(hits, boundary, values, optics);
+    BoundaryPicture picture{Image(view.width(), view.height()), {}, 0};
+    picture.depth.assign(picture.image.rgba.size() / 4, std::numeric_limits<float>::infinity());
+    const int rays_of_pixel = samples * samples;
+    std::atomic<std::size_t> rays_inside = 0;
+    const auto draw_row = [&](const RayHits& rays, int y) {
+        for (int x = 0; x < view.width(); ++x) {
+            Vec3 color(0.0);
+            double depth = 0;
+            int met = 0;
+            for (int k = 0; k < rays_of_pixel; ++k) {
+                const int row = y * samples + k / samples, column = x * samples + k % samples;
+                const auto first = rays.first(column, row);
+                if (!first) continue;
+                if (rays.intervals.triangles[*first] == PixelIntervals::kNoTriangle) {
+                    ++rays_inside;
+                    continue;
+                }
+                color += colors.at(rays, *first, column, row);
+                depth += hits.depth(rays, *first);
+                ++met;
+            }
+            if (met == 0) continue;
+            const auto pixel = picture.image.pixel(x, y);
+            for (std::size_t c = 0; c < 3; ++c) pixel[c] = static_cast<float>(color[static_cast<int>(c)] / rays_of_pixel);
+            pixel[3] = static_cast<float>(met) / static_cast<float>(rays_of_pixel);
+            picture.depth[pixel_index(view.width(), x, y)] = static_cast<float>(depth / met);
+        }
+    };
+    hits.each_row(rows, draw_row, progress);
+    picture.rays_inside = rays_inside;
+    return picture;
 }
 
 }  // namespace subvol

@@ -11,7 +11,7 @@ namespace subvol::detail {
 namespace {
 
 /// What is left of the intervals of one row of pixels.
-struct Row {
+struct PixelRow {
     std::vector<std::uint32_t> counts;  // of each pixel
     std::vector<float> depths;
     std::vector<std::uint32_t> triangles;
@@ -26,7 +26,7 @@ class IntervalClipper {
 public:
     IntervalClipper(const RayClip& clip, double middle) : alone_(clip.slices_alone()), middle_(middle) {}
 
-    void add(float enter, float exit, std::uint32_t triangle, const RayCut& cut, Row& row) const {
+    void add(float enter, float exit, std::uint32_t triangle, const RayCut& cut, PixelRow& row) const {
         const auto relative = [&](double depth) { return static_cast<float>(depth - middle_); };
         if (cut.near_face != RayCut::kNoFace && relative(cut.near) > enter) {
             enter = relative(cut.near);
@@ -90,11 +90,11 @@ PixelIntervals with_material_at_eye(const PixelIntervals& intervals) {
 }  // namespace
 
 PixelIntervals clip_intervals(const PixelIntervals& intervals, const View& view, const RayClip& clip, double middle) {
-    std::vector<Row> rows(static_cast<std::size_t>(view.height()));
+    std::vector<PixelRow> rows(static_cast<std::size_t>(view.height()));
     const auto width = static_cast<std::size_t>(view.width());
     tbb::parallel_for(std::size_t{0}, rows.size(), [&](std::size_t y) {
         const IntervalClipper clipper(clip, middle);
-        Row& row = rows[y];
+        PixelRow& row = rows[y];
         row.counts.resize(width);
         RayCut cut;
         for (std::size_t x = 0; x < width; ++x) {
@@ -112,7 +112,7 @@ PixelIntervals clip_intervals(const PixelIntervals& intervals, const View& view,
     PixelIntervals result;
     result.hits = intervals.hits;
     result.offsets.push_back(0);
-    for (const Row& row : rows) {
+    for (const PixelRow& row : rows) {
         for (const auto count : row.counts) result.offsets.push_back(result.offsets.back() + count);
         result.depths.insert(result.depths.end(), row.depths.begin(), row.depths.end());
         result.triangles.insert(result.triangles.end(), row.triangles.begin(), row.triangles.end());

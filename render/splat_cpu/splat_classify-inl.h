@@ -35,7 +35,7 @@ struct BlockState {
 };
 
 /// The place of a value in the table, and the four integrals from the lower end of its cell.
-struct Place {
+struct TablePlace {
     Floats x;
     Ints prefix[4];
     Floats within[4];
@@ -98,7 +98,7 @@ public:
     }
 
     /// The mean extinction and emission (colour times extinction) of a stretch of ray between two values.
-    HWY_ATTR void means(const Place& front, const Place& back, Floats mean[4]) const {
+    HWY_ATTR void means(const TablePlace& front, const TablePlace& back, Floats mean[4]) const {
         const Lanes d;
         const auto dx = hn::Sub(back.x, front.x);
         const auto near = hn::Lt(hn::Abs(dx), hn::Set(d, kNearValues));
@@ -128,9 +128,9 @@ public:
         for (std::size_t c = 0; c < 4; ++c) mean[c] = hn::Max(hn::MulAdd(slope, bend[c], mean[c]), hn::Zero(d));
     }
 
-    HWY_ATTR Place place(Floats x) const {
+    HWY_ATTR TablePlace place(Floats x) const {
         const Lanes d;
-        Place p;
+        TablePlace p;
         p.x = x;
         Floats s, bend[4], prefix[4];
         HWY_ALIGN std::int32_t offsets[kBlock];

@@ -155,7 +155,7 @@ public:
         const Lanes d;
         const auto back = hn::Set(d, back_z);
         bool placed = false;
-        Place place;
+        TablePlace place;
         for (auto active = hn::Lt(enter_, back); !hn::AllFalse(d, active); active = hn::And(active, hn::Lt(enter_, back))) {
             stretch(active, front_z, back_z, sheet, place, placed);
             const auto opaque = hn::And(active, is_opaque());
@@ -196,13 +196,13 @@ private:
     }
 
     /// One end of the stretches: values in cells, and what more is known there unless kPlain.
-    struct End {
+    struct StretchEnd {
         Floats x, color;
         Light light;
     };
 
     /// Composites the part of each ray between two sheets that lies in its interval.
-    HWY_ATTR void stretch(Mask active, float front_z, float back_z, const SheetValues& sheet, Place& place, bool& placed) {
+    HWY_ATTR void stretch(Mask active, float front_z, float back_z, const SheetValues& sheet, TablePlace& place, bool& placed) {
         const Lanes d;
         const auto front = hn::Set(d, front_z), back = hn::Set(d, back_z);
         auto from = hn::Max(enter_, front), to = hn::Min(exit_, back);
@@ -243,7 +243,7 @@ private:
         } else {
             classifier_.means(classifier_.place(x0), classifier_.place(x1), mean);
         }
-        End e0{x0, x0, {x0, x0}}, e1{x1, x1, {x1, x1}};
+        StretchEnd e0{x0, x0, {x0, x0}}, e1{x1, x1, {x1, x1}};
         if constexpr (!kPlain) {
             const auto f0 = hn::Mul(hn::Sub(from, front), per_depth), f1 = hn::Mul(hn::Sub(to, front), per_depth);
             find_rest(sheet, f0, at_enter, state_.enter_color, state_.enter_diffuse, state_.enter_specular, e0);
@@ -267,7 +267,7 @@ private:
 
     /// Where an end is at a part of the way between the sheets, and where it is an end of the interval.
     HWY_ATTR void find_rest(const SheetValues& sheet, Floats part, Mask at_end, const float* color, const float* diffuse,
-                            const float* specular, End& end) const {
+                            const float* specular, StretchEnd& end) const {
         const Lanes d;
         const auto between = [&](Floats front, Floats back, const float* at) HWY_ATTR {
             const auto f = hn::IfThenElse(last_.known, front, back), b = hn::IfThenElse(sheet.known, back, front);
@@ -279,7 +279,7 @@ private:
     }
 
     /// An end of which nothing is known is taken to be like the other.
-    HWY_ATTR static void take_other_end(Mask known, const End& other, End& end) {
+    HWY_ATTR static void take_other_end(Mask known, const StretchEnd& other, StretchEnd& end) {
         end.color = hn::IfThenElse(known, end.color, other.color);
         end.light.diffuse = hn::IfThenElse(known, end.light.diffuse, other.light.diffuse);
         end.light.specular = hn::IfThenElse(known, end.light.specular, other.light.specular);
@@ -287,7 +287,7 @@ private:
 
     /// Composites stretches that are not thin: the front hides the back, so the mean colour of a whole stretch would be wrong.
     /// Each step is as long as its optical depth allows; it shrinks until it is thin, and the next one may be twice as long.
-    HWY_ATTR void go_in_steps(Mask seen, const End& e0, const End& e1, Floats length, Floats from, Floats to) {
+    HWY_ATTR void go_in_steps(Mask seen, const StretchEnd& e0, const StretchEnd& e1, Floats length, Floats from, Floats to) {
         const Lanes d;
         const auto one = hn::Set(d, 1.0f), most = hn::Set(d, kThickDepth);
         const auto slope = hn::Sub(e1.x, e0.x), way = hn::Sub(to, from);
@@ -304,7 +304,7 @@ private:
             if (i + 1 == kMostSteps) thin = seen;
             const auto take = hn::And(seen, thin);
             if (!hn::AllFalse(d, take)) {
-                End f = e0, b = e1;
+                StretchEnd f = e0, b = e1;
                 if constexpr (!kPlain) {
                     f = between_ends(e0, e1, begin);
                     b = between_ends(e0, e1, end);
@@ -324,14 +324,15 @@ private:
         }
     }
 
-    HWY_ATTR static End between_ends(const End& e0, const End& e1, Floats part) {
+    HWY_ATTR static StretchEnd between_ends(const StretchEnd& e0, const StretchEnd& e1, Floats part) {
         const auto at = [&](Floats a, Floats b) HWY_ATTR { return hn::MulAdd(part, hn::Sub(b, a), a); };
         return {
             e0.x, at(e0.color, e1.color), {at(e0.light.diffuse, e1.light.diffuse), at(e0.light.specular, e1.light.specular)}};
     }
 
     /// Adds the light of stretches with the mean extinction and emission `mean`.
-    HWY_ATTR void add_light(Mask seen, const End& e0, const End& e1, Floats mean[4], Floats length, Floats middle) {
+    HWY_ATTR void add_light(Mask seen, const StretchEnd& e0, const StretchEnd& e1, Floats mean[4], Floats length,
+                            Floats middle) {
         const Lanes d;
         const auto opacity = opacity_of(hn::Mul(length, mean[0]));
         // Rounding must not leave light where there is none, nor make a colour brighter than 1.
@@ -373,7 +374,7 @@ private:
     }
 
     /// Keeps the extinction; the emission becomes its product with the mean of the second channel's colours at both ends.
-    HWY_ATTR void take_second_color(const End& e0, const End& e1, Floats mean[4]) const {
+    HWY_ATTR void take_second_color(const StretchEnd& e0, const StretchEnd& e1, Floats mean[4]) const {
         const Lanes d;
         Floats front[3], back[3];
         classifier_.color(e0.color, front);
@@ -400,7 +401,7 @@ private:
     BlockState& state_;
     Floats opacity_, red_, green_, blue_, depth_, enter_, exit_;
     SheetValues last_;
-    Place last_place_;
+    TablePlace last_place_;
     bool last_placed_ = false;
 };
 

@@ -85,12 +85,12 @@ private:
         HWY_ALIGN float depth[kBlock];
         HWY_ALIGN float sums[(kPlain ? 2 : kSums) * kBlock];
     };
-    struct Block {
+    struct PixelBlock {
         Layer layers[kLayers];
         std::uint32_t first[kBlock], ends[kBlock];  // of each pixel: its first interval, and twice the number of them
     };
-    static Block* scratch() {
-        thread_local const hwy::AlignedFreeUniquePtr<Block[]> memory = hwy::AllocateAligned<Block>(kBlocks);
+    static PixelBlock* scratch() {
+        thread_local const hwy::AlignedFreeUniquePtr<PixelBlock[]> memory = hwy::AllocateAligned<PixelBlock>(kBlocks);
         if (!memory) throw std::bad_alloc();
         return memory.get();
     }
@@ -106,7 +106,7 @@ private:
     std::size_t list_ends() {
         std::uint32_t most = 0;
         for (std::size_t block = 0; block < kBlocks; ++block) {
-            Block& b = blocks_[block];
+            PixelBlock& b = blocks_[block];
             for (std::size_t lane = 0; lane < kBlock; ++lane) {
                 const int x = x0_ + static_cast<int>(block % kColumns * kBlockWidth + lane % kBlockWidth);
                 const int y = y0_ + static_cast<int>(block / kColumns * kBlockHeight + lane / kBlockWidth);
@@ -125,7 +125,7 @@ private:
     void start_layer(std::size_t layer, std::size_t k) {
         layers_[k] = {};
         for (std::size_t block = 0; block < kBlocks; ++block) {
-            Block& b = blocks_[block];
+            PixelBlock& b = blocks_[block];
             start_block(layer, b, b.layers[k]);
             low_[k][block] = b.layers[k].low;
             high_[k][block] = b.layers[k].high;
@@ -136,7 +136,7 @@ private:
         }
     }
 
-    void start_block(std::size_t layer, const Block& b, Layer& to) {
+    void start_block(std::size_t layer, const PixelBlock& b, Layer& to) {
         static_cast<Depths&>(to) = {};
         for (std::size_t lane = 0; lane < kBlock; ++lane) {
             if (b.ends[lane] > layer) to.add(frame_.intervals.depths[2 * std::size_t{b.first[lane]} + layer]);
@@ -354,7 +354,7 @@ private:
     GeneralSums general_;
     TilePixels tile_;
     float x_offset_, color_offset_, least_gradient_;
-    Block* blocks_ = nullptr;
+    PixelBlock* blocks_ = nullptr;
     Depths layers_[kLayers];                                          // of the tile
     HWY_ALIGN float low_[kLayers][kBlocks], high_[kLayers][kBlocks];  // of the blocks
     HWY_ALIGN float block_x_[kColumns];

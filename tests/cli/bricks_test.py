@@ -359,7 +359,7 @@ class WhatGoesWrong(InFolder):
         self.assert_said("cannot draw a folder of bricks", "render", "t.bricks", "-o", "a.png", "--method", "dense")
         tets = ["render", "t.bricks", "-o", "a.png", "--method", "tets"]
         self.assert_said("these kernels need 4", "points", "t.bricks", "-o", "a.ply", "--scheme", "cc")
-        self.assert_said("split with --halo 4", "render", "t.bricks", "-o", "a.png", "--scheme", "bsxw")
+        self.assert_said("split with --halo 4", "render", "t.bricks", "-o", "a.png", "--look", "volume", "--scheme", "bsxw")
         self.assert_said("has hexahedra only", *tets, "--scheme", "tetoct")
         self.assert_said("a larger --memory", *tets, "--memory", "10K")
         self.assert_said("lights the boundary only", *tets, "--look", "isosurface")

@@ -34,5 +34,12 @@ class BytesACell(InFolder):
                 self.assertLess((self.peak_bytes(verb, "a.vtu", *options) - alone) / cells, documented(verb))
 
 
+    def test_a_picture_of_a_solid_takes_that_of_its_pixels(self):
+        """Colours and depths in floats, the picture as it is written, and a few rows of hits; with kernels 300 bytes a pixel and more."""
+        picture = ("render", "model:ball:12", "-o", "a.png", "--backend", "cpu", "--size")
+        more = self.peak_bytes(*picture, "1600x1600") - self.peak_bytes(*picture, "100x100")
+        self.assertLess(more / (1600**2 - 100**2), 60)
+
+
 if __name__ == "__main__":
     unittest.main()

@@ -92,7 +92,9 @@ class Results(InFolder):
         view = ["--size", "96x64", "--json"]
         splat = self.run_ok("render", "model:twist:16", "-o", "splat.exr", "--backend", "cpu", *view).json()
         self.assert_keys(splat, "input", "output", "seconds", "peak_bytes", "points", "device", "sheets")
-        self.assertEqual((splat["points"], splat["backend"]), (17**3, "cpu"))
+        self.assertEqual((splat["sheets"], splat["backend"]), (0, "cpu"))  # a solid that nothing cuts: no kernels
+        kernels = self.run_ok("render", "model:twist:16", "-o", "volume.exr", "--look", "volume", "--backend", "cpu", *view).json()
+        self.assertEqual(kernels["points"], 17**3)
         tets = self.run_ok("render", "model:twist:16", "-o", "tets.exr", "--method", "tets", "--levels", 2, *view).json()
         self.assert_keys(tets, "input", "output", "seconds", "peak_bytes", "rays", "backend")
         self.assertEqual((tets["cells"], tets["tets"], tets["lost_rays"]), (64 * 16**3, 6 * 64 * 16**3, 0))

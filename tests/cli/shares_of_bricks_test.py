@@ -171,7 +171,7 @@ class RanksOfBricks(WithRanks):
         self.run_ok("split", "model:twist:20", "-o", "t.bricks", "--bricks", "8", "--quiet")
         report = json.loads(self.ranks(4, "points", "t.bricks", "-o", "r.ply", "--json").stdout)
         self.assertLess(abs(report["bytes_sent"] / (76 * report["points"] * 3 / 4) - 1), 0.1)
-        report = json.loads(self.ranks(4, "render", "t.bricks", "-o", "r.exr", *PICTURE[:-1], "--json").stdout)
+        report = json.loads(self.ranks(4, "render", "t.bricks", "-o", "r.exr", "--look", "volume", *PICTURE[:-1], "--json").stdout)
         self.assertLess(abs(report["kernel_bytes_sent"] / (76 * report["kernels_shipped"]) - 1), 0.1)
 
     def test_a_damaged_brick_is_one_sentence(self):
@@ -224,7 +224,7 @@ class RanksOfBricks(WithRanks):
             done = self.mpirun(3, verb, "b.bricks", "-o", name, *options, folder=self.folder)
             self.assert_said("a." if verb != "vdb" else "vdb", done)
         line = 'if [ $OMPI_COMM_WORLD_RANK = 1 ]; then export TMPDIR=/nowhere; fi; exec "$@"'
-        done = run_in_ranks(self.folder, 3, "sh", "-c", line, "sh", COMMAND, "render", "b.bricks", "-o", "b.exr", *PICTURE)
+        done = run_in_ranks(self.folder, 3, "sh", "-c", line, "sh", COMMAND, "render", "b.bricks", "-o", "b.exr", "--look", "volume", *PICTURE)
         self.assert_said("TMPDIR names the folder", done)
         self.assertEqual(self.files(), ["a.exr", "a.ply", "a.vdb", "b.bricks"])
 

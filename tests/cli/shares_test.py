@@ -219,7 +219,7 @@ class Ranks(WithRanks):
         report = json.loads(self.ranks(4, "points", "model:twist:20", "-o", "r.ply", "--json").stdout)
         sent = 68 * report["points"] * 3 / 4
         self.assertLess(abs(report["bytes_sent"] / sent - 1), 0.1)
-        report = json.loads(self.ranks(4, "render", "model:twist:20", "-o", "r.exr", *PICTURE[:-1], "--json").stdout)
+        report = json.loads(self.ranks(4, "render", "model:twist:20", "-o", "r.exr", "--look", "volume", *PICTURE[:-1], "--json").stdout)
         self.assertLess(abs(report["kernel_bytes_sent"] / (72 * report["kernels_shipped"]) - 1), 0.1)
         pixels = 20 * WIDTH * HEIGHT * 3 / 4
         self.assertLess(abs(report["bytes_sent"] / (72 * report["kernels_shipped"] + pixels) - 1), 0.15)

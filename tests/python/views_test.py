@@ -33,10 +33,17 @@ def test_a_mesh_and_its_points_are_seen_by_the_same_camera(name, view):
     pictures = {look: [np.asarray(subvol.render(body, view=view, look=look, size=(160, 120))) for body in (mesh, points)]
                 for look in ("volume", "solid")}
     assert psnr(*pictures["volume"]) >= 60
-    # A solid's mesh is painted with the values of its limit, points with theirs; what they cover is the same to the bit.
+    # A solid's mesh is painted with the values of its limit, points with theirs; by kernels what they cover is the same to the bit.
     a, b = pictures["solid"]
-    assert np.array_equal(a[..., 3], b[..., 3]) and 0 < a[..., 3].mean() < 1
     assert psnr(a, b) > 35
+    kernels = np.asarray(subvol.render(mesh, view=view, look="solid", size=(160, 120), image_tolerance=1e-3))
+    assert np.array_equal(kernels[..., 3], b[..., 3]) and 0 < b[..., 3].mean() < 1
+    # Without kernels the outline is rounder, and lies in the same place.
+    assert abs(a[..., 3].mean() / b[..., 3].mean() - 1) < .02
+    for axis in (0, 1):
+        places = np.arange(a.shape[axis])
+        centres = [np.average(places, weights=picture[..., 3].sum(1 - axis)) for picture in (a, b)]
+        assert abs(centres[0] - centres[1]) < .2
 
 
 @pytest.mark.parametrize("name", MESHES, ids=str)

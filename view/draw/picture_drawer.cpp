@@ -101,6 +101,7 @@ void add_facts(const Facts& facts, DrawnPicture& picture) {
     for (const char* name : {"cells", "micro_cells", "tets", "points"}) {
         if (const FactValue* count = facts.find(name)) picture.points = std::get<std::uint64_t>(count->value);
     }
+    picture.is_boundary = facts.find("triangles") != nullptr;
 }
 
 }  // namespace
@@ -161,6 +162,7 @@ struct PictureDrawer::State {
         picture.depth = std::move(preview.depth);
         picture.backend = "cpu";
         picture.points = boundary.surface.points.size();
+        picture.is_boundary = true;
         picture.seconds_draw = watch.seconds() - picture.seconds_build;
     }
 

@@ -212,7 +212,10 @@ public:
         if (!latest) return "drawing ...";
         const Method method = latest->state.method;
         const bool cells = method == Method::Dense || method == Method::Grid;
-        const std::string things = draws_kernels(method) ? " kernels" : cells ? " small cells" : " tetrahedra";
+        const std::string things = latest->is_boundary     ? " points of the boundary"
+                                   : draws_kernels(method) ? " kernels"
+                                   : cells                 ? " small cells"
+                                                           : " tetrahedra";
         std::string text = std::to_string(latest->points) + things + "   " + fixed_text(1e3 * latest->seconds_draw, 0) +
                            " ms   " + std::string(name_of(method)) + ", " + latest->backend + "   " +
                            std::to_string(latest->image.width) + " x " + std::to_string(latest->image.height);
@@ -377,9 +380,9 @@ std::unique_ptr<WindowHost> detail::window_host(std::unique_ptr<ViewSession> ses
 
 std::unique_ptr<ViewSession> open_view_window(std::unique_ptr<ViewSession> session, const WindowOptions& options) {
 #ifdef SUBVOL_WITH_WINDOW
-    using Entry = const WindowFunctions* (*)();
+    using ModuleEntry = const WindowFunctions* (*)();
     Host host(std::move(session), options);
-    const WindowFunctions& window = *reinterpret_cast<Entry>(load_module("window", "a window"))();
+    const WindowFunctions& window = *reinterpret_cast<ModuleEntry>(load_module("window", "a window"))();
     const auto missing = window.run(host, {options.width, options.height, options.title.c_str()});
     if (missing) throw Error(ErrorCode::MissingCapability, *missing, "view", "--script and --screenshot need no window");
     return host.release();

@@ -124,6 +124,43 @@ TEST(PictureMaker, ASolidByTetrahedraIsTheirPictureWithTheLightOfTheBoundary) {
     EXPECT_EQ(std::get<std::uint64_t>(picture.facts.find("tets")->value), ball().cells.size() * 8 * 6);
 }
 
+std::uint64_t number_in(const Facts& facts, const char* key) {
+    return std::get<std::uint64_t>(facts.find(key)->value);
+}
+
+TEST(PictureMaker, AnOpaqueSolidIsDrawnByItsFirstHitsAsItsKernelsAndItsBoundaryShowIt) {
+    const View view = view_of(bounds(ball()));
+    const Optics optics = optics_of(Look::Solid);
+    MethodOptions through_kernels = solid_by(Method::Splat);
+    through_kernels.style.clip.planes.push_back({.point = {0, 0, 9}, .normal = {0, 0, 1}});  // cuts nothing
+    const Picture drawn = PictureMaker({.mesh = ball()}, solid_by(Method::Splat)).draw(view, optics);
+    const Picture expected = PictureMaker({.mesh = ball()}, through_kernels).draw(view, optics);
+    EXPECT_EQ(number_in(drawn.facts, "sheets"), 0U);
+    EXPECT_NE(expected.facts.find("sheets"), nullptr);
+    EXPECT_EQ(expected.facts.find("triangles"), nullptr);
+    std::size_t inside = 0, differ = 0;
+    for (std::size_t i = 0; i < drawn.depth.size(); ++i) {
+        const float *a = &drawn.image.rgba[4 * i], *b = &expected.image.rgba[4 * i];
+        if (a[3] < 1 || b[3] < 0.9999F) {
+            differ += std::abs(a[3] - b[3]) > 0.5F;  // two of four rays, at the outline
+            continue;
+        }
+        ++inside;
+        for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR(a[c], b[c], 1e-3) << i;
+        EXPECT_NEAR(drawn.depth[i], expected.depth[i], 2e-2 * bounds(ball()).diagonal()) << i << ": light ends a little behind";
+    }
+    EXPECT_GT(inside, 100U);
+    EXPECT_EQ(differ, 0U);
+}
+
+TEST(PictureMaker, WhereTheEyeIsInsideASolidItsKernelsAreDrawn) {
+    const Optics optics = optics_of(Look::Solid);
+    const View inside({.eye = {0, 0, 0}, .target = {1, 0, 0}, .up = {0, 0, 1}, .fovy_deg = 40}, 32, 32);
+    const Picture picture = PictureMaker({.mesh = ball()}, solid_by(Method::Splat)).draw(inside, optics);
+    EXPECT_EQ(picture.facts.find("triangles"), nullptr);
+    EXPECT_GT(picture.image.pixel(16, 16)[3], 0.99F) << "the material around the eye";
+}
+
 // The faces of a cube in one colour: linear light of the brightest face for that of the darkest one.
 double contrast_of_cube(Method method, bool clipped) {
     HexMesh cube = test::make_box(2, 2, 2);

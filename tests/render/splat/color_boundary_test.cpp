@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "lib/expect_error.h"
 #include "lib/test_meshes.h"
 #include "subvol/boundary_shading.h"
@@ -33,6 +35,53 @@ TEST(ColorBoundary, PixelsGetTheColorOfTheirPlaceOnTheSurface) {
     EXPECT_EQ(image.pixel(2, 2)[0], 0.25f) << "beside the body nothing changes";
     test::expect_error(ErrorCode::InvalidInput, "3 values",
                        [&] { color_boundary(image, boundary.surface, std::vector<double>(3), view, optics, flat); });
+}
+
+TEST(DrawBoundary, OpacityAndDepthAreThoseOfTheRaysThatMeetTheBody) {
+    HexMesh mesh = test::make_box(1, 1, 1);
+    mesh.attributes = {{"a", 1, {}}};
+    for (const Vec3& p : mesh.points) mesh.attributes[0].values.push_back(p.x);
+    const BoundaryValues boundary = boundary_values(mesh, {.levels = 0});
+    const Optics optics(transfer_function_preset("grey", 0, 1), 1);
+    const View view({.eye = {0.4, -5, 0.3}, .target = {0.4, 0, 0.3}, .up = {0, 0, 1}, .fovy_deg = 30}, 40, 36);
+    const Shading flat{.ambient = 1, .diffuse = 0, .specular = 0};
+    constexpr int kSamples = 3;
+    const BoundaryPicture drawn = draw_boundary(boundary.surface, boundary.values[0], view, optics, flat, kSamples);
+    ASSERT_EQ(drawn.depth.size(), 40U * 36U);
+    int partly = 0;
+    for (int y = 0; y < 36; ++y) {
+        for (int x = 0; x < 40; ++x) {
+            int met = 0;
+            Vec3 color(0.0);
+            for (int k = 0; k < kSamples * kSamples; ++k) {  // the face y = 0 hides the rest of the box
+                const Ray ray = view.ray(x + (k % kSamples + 0.5) / kSamples, y + (k / kSamples + 0.5) / kSamples);
+                const Vec3 at = ray.origin - ray.direction * (ray.origin.y / ray.direction.y);
+                if (at.x < 0 || at.x > 1 || at.z < 0 || at.z > 1) continue;
+                color += optics.color(at.x);
+                ++met;
+            }
+            const auto pixel = drawn.image.pixel(x, y);
+            const float depth = drawn.depth[static_cast<std::size_t>(y) * 40 + static_cast<std::size_t>(x)];
+            EXPECT_NEAR(pixel[3], met / 9.0, 1e-6) << x << ' ' << y;
+            EXPECT_NEAR(pixel[1], color.y / 9, 2e-3) << x << ' ' << y;
+            if (met == 0) {
+                EXPECT_TRUE(std::isinf(depth));
+            } else {
+                EXPECT_NEAR(depth, 5, 1e-5);
+            }
+            partly += met > 0 && met < 9;
+        }
+    }
+    EXPECT_GT(partly, 20) << "pixels at the outline";
+
+    const BoundaryPicture rows =
+        draw_boundary(boundary.surface, boundary.values[0], view, optics, flat, kSamples, {.first = 9, .end = 23});
+    for (int y = 0; y < 36; ++y) {
+        for (int x = 0; x < 40; ++x) {
+            for (std::size_t c = 0; c < 4; ++c)
+                EXPECT_EQ(rows.image.pixel(x, y)[c], y >= 9 && y < 23 ? drawn.image.pixel(x, y)[c] : 0.0f);
+        }
+    }
 }
 
 }  // namespace color_boundary_test

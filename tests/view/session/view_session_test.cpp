@@ -252,10 +252,8 @@ TEST(SolidSession, ShowsTheColoursOfTheBoundary) {
     const ViewState& state = session.state();
     const Optics optics = optics_of(state, session.body());
     const View view(state.camera, state.width, state.height);
-    const SplatOptions options{.method = SplatMethod::Cpu, .samples = 2, .shading = Shading{}};
-    Image image = render_splats(sample_rbf_points(session.body().mesh).volume, view, optics, options).image;
     const BoundaryValues skin = boundary_values(session.body().mesh, {.levels = picture_levels(session.body().mesh)});
-    color_boundary(image, skin.surface, skin.values.back(), view, optics, Shading{}, 2);
+    const Image image = draw_boundary(skin.surface, skin.values.back(), view, optics, Shading{}, 2).image;
     EXPECT_EQ(shown->image.rgba, image.rgba);
 }
 

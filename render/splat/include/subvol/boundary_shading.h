@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <span>
+#include <vector>
 
 #include "subvol/camera.h"
 #include "subvol/clip.h"
 #include "subvol/image.h"
 #include "subvol/optics.h"
+#include "subvol/pixel_rows.h"
+#include "subvol/progress.h"
 #include "subvol/splat_options.h"
 #include "subvol/surface.h"
 
@@ -31,5 +35,21 @@ void light_boundary(Image& image, const Surface& boundary, const View& view, con
 /// throws:   Error(InvalidInput) if there is not one value for each point
 void color_boundary(Image& image, const Surface& boundary, std::span<const double> values, const View& view,
                     const Optics& optics, const Shading& shading, int samples = 1, const Clip& clip = {});
+
+/// The picture of a body that is opaque from its boundary on, without its inside.
+struct BoundaryPicture {
+    Image image;                  ///< colours times opacity; the opacity is the part of a pixel's rays that meet the body
+    std::vector<float> depth;     ///< of each pixel the mean eye depth of its hits; infinity where there is none
+    std::size_t rays_inside = 0;  ///< rays that begin inside, which see nothing
+};
+
+/// Draws such a body by the values on its boundary alone, as `color_boundary` colours it, where nothing cuts it.
+///
+/// boundary, values, samples: as of `color_boundary`
+/// rows:   of the picture that are drawn; the others stay transparent
+/// throws: Error(InvalidInput) as `color_boundary`
+[[nodiscard]] BoundaryPicture draw_boundary(const Surface& boundary, std::span<const double> values, const View& view,
+                                            const Optics& optics, const Shading& shading, int samples = 1,
+                                            const PixelRows& rows = {}, Progress* progress = nullptr);
 
 }  // namespace subvol

@@ -19,7 +19,8 @@ struct DrawnPicture {
     int scale = 1;  ///< 1 for a full picture; else its pixels are so many times as wide and as high, and the image is smaller
     ViewState state{};
     std::string backend{};
-    std::size_t points = 0;    ///< kernels, or tetrahedra
+    std::size_t points = 0;    ///< kernels, tetrahedra, small cells, or points of the boundary
+    bool is_boundary = false;  ///< whether the picture is that of a solid by its boundary alone
     double seconds_build = 0;  ///< for what is kept from picture to picture: kernels, boundary, tetrahedra
     double seconds_boundary = 0, seconds_kernels = 0;  ///< for the boundary and the kernels that were made anew
     double seconds_draw = 0;
