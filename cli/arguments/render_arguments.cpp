@@ -13,13 +13,13 @@
 namespace subvol::cli {
 
 void RenderArguments::add_to(CLI::App& app) {
-    app.add_option("--method", method_name_,
-                   "splat (kernels, the default), sheets (the same by OpenGL sheet buffers), "
-                   "footprints (kernels coloured first), tets (rays through tetrahedra), "
-                   "pt (the same tetrahedra projected by OpenGL), dense (rays through the limit's cells) or "
-                   "grid (rays through a .vdb file's voxels)")
-        ->type_name("NAME")
-        ->check(offered(names_of<Method>()));
+    add_option(app,
+               Option("method", method_name_)
+                   .offer(names_of<Method>())
+                   .help("NAME",
+                         "splat (kernels), sheets (the same by OpenGL buffers), footprints (kernels coloured first), "
+                         "tets (rays through tetrahedra), pt (the same tetrahedra projected by OpenGL), dense (rays through "
+                         "the limit's cells) or grid (rays through a .vdb file's voxels)"));
     picture.add_to(app);
     add_options(app, options_of(clip));
     sample.add_to(app);

@@ -19,11 +19,11 @@ std::vector<Option> SplatArguments::described() {
 
 void SplatArguments::add_to(CLI::App& app) {
     add_options(app, described());
-    const auto refuse_sums = [](const std::string&) {
+    const auto refuse_sums = [](const std::string&, const std::string& option) {
         throw Error(ErrorCode::InvalidInput, "sheets are always summed in floats; parts, ranks and bricks have the same bits",
-                    "--sheet-sums", "leave it out; --backend cpu where a GPU would draw otherwise");
+                    option, "leave it out; --backend cpu where a GPU would draw otherwise");
     };
-    app.add_option_function<std::string>("--sheet-sums", refuse_sums, "removed")->group("");
+    add_option(app, Option("sheet-sums", WordValue{[] { return std::string(); }, refuse_sums}))->group("");
 }
 
 SplatOptions SplatArguments::options() const {

@@ -35,11 +35,10 @@ void VdbArguments::add_grids_to(CLI::App& app) {
                        "fields to write, the first as fog volume; a field with three components becomes a grid of vectors, "
                        "NAME.k is its component k. GRID=FIELD names the grid; GRID=EXPRESSION computes it from x, y, z and the "
                        "fields, e.g. \"heat=(Temp-293)/620,speed=length(V)\""));
-    app.add_option("--remap", remaps,
-                   "values from LO to HI become 0 to 1, or A to B, what is beyond becomes the nearer of these; of the first "
-                   "field or of GRID (repeatable)")
-        ->type_name("[GRID=]LO,HI[:A,B]")
-        ->allow_extra_args(false);
+    add_option(app, Option("remap", remaps)
+                        .help("[GRID=]LO,HI[:A,B]",
+                              "values from LO to HI become 0 to 1, or A to B, what is beyond becomes the nearer of these; of "
+                              "the first field or of GRID (repeatable)"));
     add_option(app, Option("clamp", clamp)
                         .help("keep values within the range of the field at the mesh's points: interpolating schemes overshoot "
                               "between them"));
@@ -76,10 +75,10 @@ void VdbArguments::add_files_to(CLI::App& app) {
 }
 
 void VdbArguments::add_frames_to(CLI::App& app) {
-    app.add_option("--frames", frames,
-                   "a sequence: A-B, or N for 1-N. In FILE and --output a row of # is replaced by the number of the frame, "
-                   "padded with zeros to that many digits")
-        ->type_name("A-B")
+    add_option(app, Option("frames", frames)
+                        .help("A-B",
+                              "a sequence: A-B, or N for 1-N. In FILE and --output a row of # is replaced by the number of the "
+                              "frame, padded with zeros to that many digits"))
         ->transform(frame_range());
     add_option(app,
                Option("to", to).help(

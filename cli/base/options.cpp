@@ -78,12 +78,14 @@ GivenOptions given_options(const CLI::App& app) {
 }
 
 CLI::Option* add_option(CLI::App& app, const Option& option) {
-    const std::string first = "--" + option.name, name = option.alias.empty() ? first : first + ",--" + option.alias;
+    const std::string first = "--" + option.name, other_name = (option.alias.size() == 1 ? "-" : "--") + option.alias;
+    const std::string name = option.alias.empty() ? first : first + "," + other_name;
     CLI::Option* added = nullptr;
     if (auto* const* on = std::get_if<bool*>(&option.value)) {
         added = app.add_flag(name, **on, option.sentence);
     } else if (auto* const* list = std::get_if<std::vector<std::string>*>(&option.value)) {
-        added = app.add_option(name, **list, option.sentence)->type_name(option.about);
+        added = app.add_option(name, **list, option.sentence)->type_name(option.about)->allow_extra_args(false);
+        if (option.has_commas) added->delimiter(',');
     } else if (const auto* const rows = std::get_if<NumbersValue>(&option.value)) {
         added = add_numbers(app, first, *rows, option);
     } else {
@@ -101,6 +103,14 @@ CLI::Option* add_option(CLI::App& app, const Option& option) {
         if (CLI::Option* const second = app.get_option_no_throw("--" + other); second != nullptr) added->excludes(second);
     }
     return added;
+}
+
+CLI::Option* add_input(CLI::App& app, const std::string& name, std::string& value, const std::string& help) {
+    return app.add_option(name, value, help);
+}
+
+CLI::Option* add_input(CLI::App& app, const std::string& name, std::vector<std::string>& value, const std::string& help) {
+    return app.add_option(name, value, help);
 }
 
 void add_options(CLI::App& app, const std::vector<Option>& options) {

@@ -18,6 +18,9 @@ namespace subvol::cli {
 ///
 /// The values are stored where the descriptions refer to, which must live as long as the command.
 CLI::Option* add_option(CLI::App& app, const Option& option);
+/// What a command works on: a name without dashes, for example FILE. value: a text, or a list of them
+CLI::Option* add_input(CLI::App& app, const std::string& name, std::string& value, const std::string& help);
+CLI::Option* add_input(CLI::App& app, const std::string& name, std::vector<std::string>& value, const std::string& help);
 void add_options(CLI::App& app, const std::vector<Option>& options);
 
 /// The options that were given to a command.

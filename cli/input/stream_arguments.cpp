@@ -28,12 +28,12 @@ void StreamArguments::add_lines_to(CLI::App& app) {
 }
 
 void StreamArguments::add_seeds_to(CLI::App& app) {
-    app.add_option("--seeds", seeds,
-                   "where streamlines start: at:x,y,z, line:x0,y0,z0,x1,y1,z1, disk:x,y,z,nx,ny,nz,r, sphere:x,y,z,r, "
-                   "box:x0,y0,z0,x1,y1,z1, or a table of places (repeatable; default: the middles of cells)")
-        ->type_name("PLACES")
-        ->allow_extra_args(false)
-        ->needs("--streamlines");
+    add_option(app,
+               Option("seeds", seeds)
+                   .help("PLACES",
+                         "where streamlines start: at:x,y,z, line:x0,y0,z0,x1,y1,z1, disk:x,y,z,nx,ny,nz,r, sphere:x,y,z,r, "
+                         "box:x0,y0,z0,x1,y1,z1, or a table of places (repeatable; default: the middles of cells)")
+                   .only_with("streamlines"));
 }
 
 std::vector<Vec3> StreamArguments::places(const HexMesh& mesh, const LimitOptions& limit) const {

@@ -18,6 +18,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <array>
 #include <clocale>
 #include <csignal>
 #include <cstdio>
@@ -27,6 +28,7 @@
 #include <iostream>
 #include <new>
 #include <optional>
+#include <string_view>
 #include <thread>
 #include <utility>
 
@@ -57,6 +59,7 @@ constexpr int kBadInput = 2;
 constexpr int kEnvironment = 3;
 constexpr int kEndedBySignal = 128;  // and the signal's number, as shells count
 
+constexpr const char* kCompress = "compress";
 constexpr const char* kDescription = "Refine hexahedral meshes, render them as splats, and convert them to OpenVDB grids.";
 constexpr const char* kFooter = R"(Start here:
   subvol model --list                    list the built-in models
@@ -184,7 +187,22 @@ std::size_t default_threads(const std::optional<subvol::cli::RankInEnvironment>&
     return std::max(1U, std::thread::hardware_concurrency() / static_cast<unsigned>(rank->on_host));
 }
 
-/// "help VERB" is "VERB --help", "help" alone "--help"; "--clamp file" is "--clamp-file", as --clamp alone has no value.
+/// Whether these arguments ask `points` for a compressed mesh, which `compress` writes.
+bool ask_points_to_compress(const std::vector<std::string>& arguments) {
+    constexpr std::array<std::string_view, 5> kOptions{"--wavelet-tolerance", "--wavelet-point-tolerance", "--max-error",
+                                                       "--max-point-error", "--key-steps"};
+    if (arguments.empty() || arguments.front() != "points") return false;
+    for (std::size_t i = 1; i < arguments.size(); ++i) {
+        const std::string name = arguments[i].substr(0, arguments[i].find('='));
+        const bool is_output = name == "--output" || arguments[i - 1] == "--output" || arguments[i - 1] == "-o";
+        if (is_output && arguments[i].ends_with(".svw")) return true;
+        if (std::ranges::find(kOptions, name) != kOptions.end()) return true;
+    }
+    return false;
+}
+
+/// "help VERB" is "VERB --help", "help" alone "--help"; "--clamp file" is "--clamp-file", as --clamp alone has no value; and
+/// "points" is "compress" where it was asked for a compressed mesh.
 std::vector<std::string> asked(int argc, char** argv) {
     std::vector<std::string> arguments(argv + std::min(argc, 1), argv + argc);
     for (std::size_t i = 0; i + 1 < arguments.size(); ++i) {
@@ -192,13 +210,15 @@ std::vector<std::string> asked(int argc, char** argv) {
         arguments[i] = "--clamp-file";
         arguments.erase(arguments.begin() + static_cast<std::ptrdiff_t>(i) + 1);
     }
+    if (ask_points_to_compress(arguments)) arguments.front() = kCompress;
     if (arguments.empty() || arguments.front() != "help") return arguments;
     arguments.erase(arguments.begin());
     arguments.emplace_back("--help");
     return arguments;
 }
 
-int run(CLI::App& program, std::vector<std::string> arguments) {
+/// given: the first word that the user wrote
+int run(CLI::App& program, std::vector<std::string> arguments, std::string_view given) {
     program.set_help_flag("-h,--help", "print this help, or that of a verb");
     program.set_help_all_flag("--help-all", "print all options of a verb");
     program.set_version_flag("--version", SUBVOL_VERSION, "print the version");
@@ -248,6 +268,11 @@ int run(CLI::App& program, std::vector<std::string> arguments) {
         subvol::cli::catch_interrupts(!speaks());
         subvol::cli::Report report(speaks() ? verb->common() : silent(verb->common()));
         verb->set_progress(report.progress());
+        if (verb->name() == kCompress && given == "points") {
+            report.warn(
+                "compressed meshes are written by `subvol compress`, with the same options; `points` does it until the end of "
+                "2027");
+        }
         const int code = ranks ? run_in_ranks(*verb, report, *ranks) : run_naming_input(*verb, report);
         report.finish();
         return code;
@@ -286,7 +311,7 @@ int main(int argc, char** argv) {
     const std::vector<std::string> arguments = asked(argc, argv);
     const bool json = std::ranges::find(arguments, "--json") != arguments.end();
     try {
-        return run(program, arguments);
+        return run(program, arguments, argc > 1 ? argv[1] : "");
     } catch (const CLI::Success& wanted) {  // --help, --version
         const int code = speaks() ? program.exit(wanted) : 0;
         if (std::cout.flush()) return code;

@@ -4,7 +4,9 @@
 #include <CLI/CLI.hpp>
 #include <charconv>
 
+#include "options.h"
 #include "subvol/error.h"
+#include "subvol/option.h"
 
 namespace subvol::cli {
 namespace {
@@ -38,7 +40,7 @@ Share parse_share(const std::string& option, const std::string& text) {
 }
 
 void ShareArgument::add_to(CLI::App& app, const std::string& does) {
-    app.add_option("--part", text_, "do one of N shares of the work, K from 1 to N: " + does)->type_name("K/N");
+    add_option(app, Option("part", text_).help("K/N", "do one of N shares of the work, K from 1 to N: " + does));
 }
 
 Share ShareArgument::share() const {

@@ -50,7 +50,7 @@ MetricMap dissimilarity(MetricMap map) {
 
 void PictureComparison::add_to(CLI::App& app) {
     const std::string group = "Pictures";
-    app.add_option("--heatmap", heatmap, "write a picture of the differences (.png, .exr)")->group(group)->type_name("FILE");
+    add_option(app, Option("heatmap", heatmap).help("FILE", "write a picture of the differences (.png, .exr)"))->group(group);
     add_option(app, Option("heatmap-of", heatmap_of)
                         .offer(kHeatmaps)
                         .help("METRIC", "what it shows: abs (the largest channel's difference), flip, ssim (1 - ssim)")
@@ -72,16 +72,17 @@ void PictureComparison::add_to(CLI::App& app) {
                "--" + flag, [this, flag] { asked.insert(flag); }, std::string(metric.help))
             ->group(group);
     }
-    app.add_flag("--oiio", oiio, "also the figures of OpenImageIO's idiff: warnings, failures, Yee's perceptual failures")
+    add_option(
+        app,
+        Option("oiio", oiio).help("also the figures of OpenImageIO's idiff: warnings, failures, Yee's perceptual failures"))
         ->group(group);
     add_option(app, Option("edge-band", edge_band_px)
                         .between(1, 1000)
                         .help("N", "measure separately within N pixels of the second picture's silhouette, and inside it"))
         ->group(group);
-    app.add_option("--background", background,
-                   "with --edge-band: the background of pictures without alpha (linear RGB; default black)")
+    add_option(app, Option("background", background)
+                        .help("R,G,B", "with --edge-band: the background of pictures without alpha (linear RGB)"))
         ->group(group)
-        ->type_name("R,G,B")
         ->transform(number_list(3, "0,0,0"));
     only_with(app, "background", {"edge-band"});
 }

@@ -15,11 +15,11 @@ Verb::Verb(CLI::App& program, const std::string& name, const std::string& descri
 }
 
 void Verb::add_patches(const std::string& help) {
-    app_.add_option("--patch", common_.patches, help)->type_name("NAME")->allow_extra_args(false);
+    add_option(app_, Option("patch", common_.patches).help("NAME", help));
 }
 
 void Verb::add_part_opacities(const std::string& help) {
-    app_.add_option("--part-opacity", common_.part_opacities, help)->type_name("PART=A")->allow_extra_args(false);
+    add_option(app_, Option("part-opacity", common_.part_opacities).help("PART=A", help));
 }
 
 void Verb::group(const std::string& heading, std::initializer_list<const char*> options) {
@@ -49,10 +49,10 @@ bool Verb::chosen() const {
 std::vector<std::unique_ptr<Verb>> make_verbs(CLI::App& program) {
     std::vector<std::unique_ptr<Verb>> verbs;
     for (auto make :
-         {make_model_verb,   make_info_verb,        make_subdivide_verb, make_fit_verb,     make_points_verb, make_vdb_verb,
-          make_usd_verb,     make_render_verb,      make_view_verb,      make_page_verb,    make_probe_verb,  make_check_verb,
-          make_mesh_verb,    make_approximate_verb, make_slice_verb,     make_surface_verb, make_split_verb,  make_join_verb,
-          make_compare_verb, make_study_verb,       make_demo_verb}) {
+         {make_model_verb, make_info_verb,    make_subdivide_verb,   make_fit_verb,   make_points_verb,  make_compress_verb,
+          make_vdb_verb,   make_usd_verb,     make_render_verb,      make_view_verb,  make_page_verb,    make_probe_verb,
+          make_check_verb, make_mesh_verb,    make_approximate_verb, make_slice_verb, make_surface_verb, make_split_verb,
+          make_join_verb,  make_compare_verb, make_study_verb,       make_demo_verb}) {
         verbs.push_back(make(program));
     }
     return verbs;

@@ -95,6 +95,7 @@ private:
 [[nodiscard]] std::unique_ptr<Verb> make_subdivide_verb(CLI::App& program);
 [[nodiscard]] std::unique_ptr<Verb> make_fit_verb(CLI::App& program);
 [[nodiscard]] std::unique_ptr<Verb> make_points_verb(CLI::App& program);
+[[nodiscard]] std::unique_ptr<Verb> make_compress_verb(CLI::App& program);
 [[nodiscard]] std::unique_ptr<Verb> make_vdb_verb(CLI::App& program);
 [[nodiscard]] std::unique_ptr<Verb> make_usd_verb(CLI::App& program);
 [[nodiscard]] std::unique_ptr<Verb> make_render_verb(CLI::App& program);

@@ -70,21 +70,20 @@ public:
                "steps or frames these are in the list frames, with frame, time and output, "
                "beside placements; with --shape also shape {before, after: rms, max, missed_rms, missed_max and their places; "
                "rounds, moved_world, folds, mended}.") {
-        app()
-            .add_option("DATA", input_,
-                        "a mesh, a .vdb grid of floats (where it is not active 0, or the background of a level set), a table "
-                        "(.csv, .txt) of x, y, z and values, or "
-                        "with --shape a surface (.stl, .obj, .ply, .glb, or a .vdb level set, where its distance is 0)")
+        add_input(app(), "DATA", input_,
+                  "a mesh, a .vdb grid of floats (where it is not active 0, or the background of a level set), a table "
+                  "(.csv, .txt) of x, y, z and values, or "
+                  "with --shape a surface (.stl, .obj, .ply, .glb, or a .vdb level set, where its distance is 0)")
             ->required();
-        app().add_option("--onto", onto_, "the control mesh: a file or model:NAME:RESOLUTION")->type_name("MESH")->required();
-        app()
-            .add_option("-o,--output", output_, "the control mesh with the fitted fields (.vtu, .vtkhdf)")
-            ->type_name("FILE")
+        add_option(app(), Option("onto", onto_).help("MESH", "the control mesh: a file or model:NAME:RESOLUTION"))->required();
+        add_option(app(),
+                   Option("output", output_).also("o").help("FILE", "the control mesh with the fitted fields (.vtu, .vtkhdf)"))
             ->required();
-        app()
-            .add_option("--frames", frames_,
-                        "a sequence of files: A-B, or N for 1-N. In DATA and --output a row of # is replaced by the number")
-            ->type_name("A-B")
+        add_option(
+            app(),
+            Option("frames", frames_)
+                .help("A-B",
+                      "a sequence of files: A-B, or N for 1-N. In DATA and --output a row of # is replaced by the number"))
             ->transform(frame_range());
         scheme_.add_scheme_to(app());
         add_options(app(), options_of(options_));

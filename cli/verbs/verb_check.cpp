@@ -37,12 +37,12 @@ public:
               "one for each folded cell: cell, parameters, at, determinant, sampled (found by sampling); with --mend also mend "
               "{folded, open: before; moved, "
               "farthest_edges, boundary_edges, rounds, left: cells with reasons}.") {
-        app().add_option("FILE", input_, input_help())->required();
+        add_input(app(), "FILE", input_, input_help())->required();
         scheme_.add_scheme_to(app());
         add_options(app(), options_of(options_));
         CLI::Option* mend = add_option(app(), Option("mend", mend_).help("move control points until the limit does not fold"));
-        mend->needs(
-            app().add_option("-o,--output", output_, "the mended mesh (.vtu, .vtkhdf)")->type_name("FILE")->needs(mend));
+        mend->needs(add_option(app(), Option("output", output_).also("o").help("FILE", "the mended mesh (.vtu, .vtkhdf)"))
+                        ->needs(mend));
         add_options(app(), options_of(mending_));
         for (const char* name : {"--boundary-move", "--rounds"}) app().get_option(name)->needs(mend);
         set_essentials({"--scheme", "--levels", "--irregular-levels", "--mend", "--output", "--json"});

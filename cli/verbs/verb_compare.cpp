@@ -157,14 +157,14 @@ public:
                "the second's "
                "domain than --coverage.") {
         show_limit_of_parts();
-        app().add_option("A", a_, "a picture or a field")->required();
-        app().add_option("B", b_, "the reference: a picture of the same size or a part of one, or a field")->required();
-        app()
-            .add_option(
-                "--fail-under", demands_,
-                "exit with 1 if the metric is worse than the value (psnr, ssim: below it; all others: above); repeatable")
-            ->type_name("METRIC=VALUE")
-            ->allow_extra_args(false);
+        add_input(app(), "A", a_, "a picture or a field")->required();
+        add_input(app(), "B", b_, "the reference: a picture of the same size or a part of one, or a field")->required();
+        add_option(
+            app(),
+            Option("fail-under", demands_)
+                .help(
+                    "METRIC=VALUE",
+                    "exit with 1 if the metric is worse than the value (psnr, ssim: below it; all others: above); repeatable"));
         pictures_.add_to(app());
         fields_.add_to(app());
         set_essentials({"--fail-under", "--heatmap", "--heatmap-of", "--edge-band", "--samples", "--coverage", "--iso",

@@ -158,9 +158,8 @@ public:
                "  subvol demo -o out\n"
                "  subvol demo -o out --size 256",
                Reads::NoMesh) {
-        app()
-            .add_option("-o,--output", folder_, "the folder for the files (created if it does not exist)")
-            ->type_name("DIR")
+        add_option(app(),
+                   Option("output", output_).also("o").help("DIR", "the folder for the files (created if it does not exist)"))
             ->required();
         add_option(app(), Option("resolution", resolution_)
                               .between(2, 512)
@@ -170,6 +169,7 @@ public:
 
     int run(Report& report) override {
         const PictureSize size = eye_.size;
+        folder_ = output_;
         make_folder(folder_);
         report.say("model     points  equivalent cells    splat s  reference s  PSNR dB");
         report["cases"] = Json::array();
@@ -246,6 +246,7 @@ private:
                     shown["psnr"].get<double>());
     }
 
+    std::string output_;  // of --output
     std::filesystem::path folder_;
     int resolution_ = 0;
     ViewOptions eye_;

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "mesh_figures.h"
+#include "options.h"
 #include "outputs.h"
 #include "part_kinds.h"
 #include "subvol/brick_points.h"
@@ -15,6 +16,7 @@
 #include "subvol/detail/surface_share.h"
 #include "subvol/error.h"
 #include "subvol/image_io.h"
+#include "subvol/option.h"
 #include "subvol/points_io.h"
 #include "subvol/vdb_contents.h"
 #include "surface_output.h"
@@ -37,13 +39,12 @@ public:
                "The result is that of one process without --part: the same points, the same leaves. The list of files that "
                "`vdb --memory` and `vdb` of bricks write is one PART.",
                Reads::NoMesh) {
-        app()
-            .add_option("PART", parts_,
-                        "the parts, in any order: .vdb of `vdb`, .ply or .vtp of `points`, .exr of `render`, .svshare of "
-                        "`surface`, JSON of `info`; or the list (.json) of a grid in several files")
+        add_input(app(), "PART", parts_,
+                  "the parts, in any order: .vdb of `vdb`, .ply or .vtp of `points`, .exr of `render`, .svshare of "
+                  "`surface`, JSON of `info`; or the list (.json) of a grid in several files")
             ->required()
             ->expected(1, -1);
-        app().add_option("-o,--output", output_, "the file to write")->type_name("FILE")->required();
+        add_option(app(), Option("output", output_).also("o").help("FILE", "the file to write"))->required();
     }
 
     int run(Report& report) override {

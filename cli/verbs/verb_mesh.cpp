@@ -45,8 +45,8 @@ public:
                "min_scaled_jacobian, folded_cells, inverted_cells, open_edges, open_length (of edges of one triangle), surface "
                "{walls, "
                "united, cavities, cavities_alike, copies, sheets, turned, one_sided, many_edges}.") {
-        app().add_option("FILE", input_, "a closed surface (.stl, .obj, .ply, .glb), or a .vdb grid of floats")->required();
-        app().add_option("-o,--output", output_, "the control mesh (.vtu, .vtkhdf)")->type_name("FILE")->required();
+        add_input(app(), "FILE", input_, "a closed surface (.stl, .obj, .ply, .glb), or a .vdb grid of floats")->required();
+        add_option(app(), Option("output", output_).also("o").help("FILE", "the control mesh (.vtu, .vtkhdf)"))->required();
         add_option(app(),
                    Option("iso", iso_)
                        .help("V", "of a grid: the surface where it has this value (fog: half of its greatest; level sets: 0)"));

@@ -22,10 +22,10 @@ public:
                "  subvol model --list\n"
                "  subvol model twist --resolution 40 -o twist.vtu",
                Reads::NoMesh) {
-        app().add_option("NAME", name_, "the model's name");
-        app()
-            .add_option("-o,--output", output_, "the mesh to write (.vtu or .vtkhdf with its field, .mesh without)")
-            ->type_name("FILE");
+        add_input(app(), "NAME", name_, "the model's name");
+        add_option(app(), Option("output", output_)
+                              .also("o")
+                              .help("FILE", "the mesh to write (.vtu or .vtkhdf with its field, .mesh without)"));
         add_option(app(), Option("resolution", resolution_).between(2, 512).help("N", "cells along the main direction"));
         add_option(app(), Option("list", list_).help("list the models"));
     }

@@ -11,13 +11,13 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>
-#include "options.h"
 
 #include "grid_fields.h"
 #include "grid_input.h"
 #include "input.h"
 #include "limit_warning.h"
 #include "numbers.h"
+#include "options.h"
 #include "outputs.h"
 #include "picture_arguments.h"
 #include "points_input.h"
@@ -52,17 +52,17 @@ public:
                "volume, change the transfer function, clip, choose fields and steps, and pick values. JSON: bytes, points, "
                "kept (kernels in the page), bits, fields [{name, rmse, max_error, range}].") {
         show_limit_of_parts();
-        app().add_option("FILE", input_, text(input_help(), "; or a .vdb level set"))->required();
-        app().add_option("-o,--output", output_, "the page to write (.html)")->type_name("FILE")->required();
-        app()
-            .add_option("--fields", fields_, "the fields to choose from: names, or all (default: the one of --field)")
-            ->type_name("A,B,…")
-            ->delimiter(',');
-        app()
-            .add_option("--max-bytes", max_bytes_,
-                        "the page's size (default 24e6): kernels are rounded, then merged, until it fits; the page says the "
-                        "error")
-            ->type_name("B")
+        add_input(app(), "FILE", input_, text(input_help(), "; or a .vdb level set"))->required();
+        add_option(app(), Option("output", output_).also("o").help("FILE", "the page to write (.html)"))->required();
+        add_option(app(), Option("fields", fields_)
+                              .with_commas()
+                              .help("A,B,…", "the fields to choose from: names, or all (default: the one of --field)"));
+        add_option(
+            app(),
+            Option("max-bytes", max_bytes_)
+                .help("B",
+                      "the page's size (default 24e6): kernels are rounded, then merged, until it fits; the page says the "
+                      "error"))
             ->transform(number_in(1e4, 2e9));
         add_option(app(), Option("title", title_).help("TEXT", "the page's title (default: the file's name)"));
         add_option(app(), Option("no-reference", no_reference_).help("without the picture of `render` to compare with"));

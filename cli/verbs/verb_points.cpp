@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// The verb `points`: it turns a volume into kernels, or, with a tolerance, into a compressed mesh.
+// The verb `points`: it turns a volume into kernels.
 //
 //     mesh or grid ─► kernels ─► merged, values clamped, a channel of errors added ─► one file
 //     bricks       ─► kernels brick by brick, each written as it is made           ─► one file
 //     steps        ─► kernels of each step                                         ─► a file for each
-//     mesh         ─► wavelets of one field, within a root mean square error       ─► .svw
-//     mesh, steps  ─► all fields, each value within a largest error                ─► .svw
 //
 // Shares are ranges of the kernels in their order, ranges of bricks, or some of the steps; their files, or what ranks make,
-// join to what one process would write. Options of kernels are refused where a compressed mesh is written.
+// join to what one process would write.
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <optional>
@@ -40,8 +38,6 @@
 #include "subvol/option.h"
 #include "subvol/points_error.h"
 #include "subvol/points_io.h"
-#include "subvol/series_file.h"
-#include "subvol/wavelet_file.h"
 #include "tet_refinement.h"
 #include "text.h"
 #include "vdb_functions.h"
@@ -49,75 +45,6 @@
 
 namespace subvol::cli {
 namespace {
-
-constexpr std::initializer_list<const char*> kOfKernels{"--ascii",
-                                                        "--splats",
-                                                        "--up",
-                                                        "--per-edge",
-                                                        "--centers",
-                                                        "--spacing",
-                                                        "--spacing-voxels",
-                                                        "--tolerance",
-                                                        "--footprint",
-                                                        "--footprint-size",
-                                                        "--threshold",
-                                                        "--tf",
-                                                        "--reduce",
-                                                        "--refine",
-                                                        "--merge",
-                                                        "--values",
-                                                        "--kernel",
-                                                        "--value-kernel",
-                                                        "--correction",
-                                                        "--clamp",
-                                                        "--error",
-                                                        "--part"};
-
-/// Writes a mesh with one field as wavelets. returns: what was kept
-Facts write_wavelets_reported(const std::string& path, const HexMesh& mesh, const WaveletFileOptions& options) {
-    Facts facts;
-    const WaveletFileReport written =
-        facts.timed(options.progress, "wavelets", [&] { return write_wavelet_file(path, mesh, options); });
-    std::size_t coefficients = 0, kept = 0;
-    for (const WaveletArrayReport& array : written.arrays) {
-        coefficients += array.coefficients;
-        kept += array.kept;
-    }
-    const WaveletArrayReport &points = written.arrays.front(), &field = written.arrays.back();
-    facts["points"] = mesh.points.size();
-    facts["cells"] = written.cells;
-    facts["levels"] = written.levels;
-    facts["coarse_cells"] = written.coarse_cells;
-    if (written.added_cells > 0) facts["added_cells"] = written.added_cells;
-    facts["coefficients"] = coefficients;
-    facts["coefficients_kept"] = kept;
-    facts["bytes"] = written.bytes;
-    facts["rms"] = field.rms;
-    facts["max"] = field.max;
-    facts["point_rms"] = points.rms;
-    facts["point_max"] = points.max;
-    facts["inverted_cells"] = written.inverted_cells;
-    facts["output"] = path;
-    if (written.inverted_cells > written.inverted_cells_before) {
-        facts.warn(text(count_text(written.inverted_cells - written.inverted_cells_before),
-                        " cells are inverted after rounding; a smaller --wavelet-point-tolerance keeps their shapes"));
-    }
-    return facts;
-}
-
-/// Writes steps within a most error. returns: what was kept
-Facts write_series_reported(const std::string& path, const MeshSteps& steps, const SeriesFileOptions& options) {
-    Facts facts;
-    const SeriesFileReport written =
-        facts.timed(options.progress, "series", [&] { return write_series_file(path, steps, options); });
-    facts.merge(facts_of(written));
-    facts["output"] = path;
-    if (written.inverted_cells > written.inverted_cells_before) {
-        facts.warn(text(count_text(written.inverted_cells - written.inverted_cells_before),
-                        " cells are inverted after rounding; a smaller --max-point-error keeps their shapes"));
-    }
-    return facts;
-}
 
 class PointsVerb : public Verb {
 public:
@@ -131,17 +58,11 @@ public:
                "  subvol points smoke.vdb -o smoke.ply --threshold 0   one kernel per voxel\n"
                "  subvol points big.vtu -o part2.ply --part 2/4        a share, for join\n"
                "  subvol points big.vtu -o big.svk                     with levels of detail\n"
-               "  subvol points fine.vtu -o fine.svw --wavelet-tolerance 1e-3   compressed\n"
-               "  subvol points run.foam -o run.svw --step all --max-error 1e-3\n"
                "\n"
                "The boundary of NAME.vtp, of NAME.vdb and of a .ply with --splats is in NAME.boundary.vtp.") {
         show_limit_of_parts();
         app().add_option("FILE", input_, text(input_help(), "; or a .vdb grid of floats"))->required();
-        app()
-            .add_option("-o,--output", output_,
-                        "the points to write (.ply, .vtp, .svk, .vdb; .svw with --wavelet-tolerance or --max-error)")
-            ->type_name("FILE")
-            ->required();
+        app().add_option("-o,--output", output_, "the points to write (.ply, .vtp, .svk, .vdb)")->type_name("FILE")->required();
         add_options(app(), options_of(written_));
         sample_.add_to(app());
         add_option(app(), Option("tf", transfer_function_)
@@ -159,33 +80,6 @@ public:
                        .help("ERROR",
                              "merge neighbouring kernels as long as the values at their centres change by at most ERROR, "
                              "in the field's unit: few kernels where the field is smooth"));
-        for (Option& option : options_of(wavelets_)) {
-            if (option.name == "levels") continue;  // --levels, which kernels have, too
-            if (option.name == "wavelet-tolerance") {
-                option.value = &wavelet_tolerance_;  // without it there are kernels
-                option.help("T",
-                            "write control values and wavelet details (.svw) instead of kernels, with a root mean square error "
-                            "of at most T, in parts of the field's range: for refined meshes and structured grids");
-            } else {
-                option.only_with("wavelet-tolerance");
-            }
-            add_option(app(), option);
-        }
-        std::vector<Option> compressed = options_of(series_);
-        for (Option& option : compressed) {
-            if (option.name != "max-error") {
-                option.only_with("max-error");
-                continue;
-            }
-            option.value = &max_error_;  // without it there are kernels
-            option
-                .help("T",
-                      "write the mesh with all its fields (.svw), compressed, instead of kernels: each value is off by at most "
-                      "T, "
-                      "in parts of the field's range in all steps; with --step all a series")
-                .not_with("wavelet-tolerance");
-        }
-        add_options(app(), compressed);
         refine_.add_to(app(), "sample the refined mesh of this level instead of the limit");
         share_.add_to(app(), "a range of the points in their order, of bricks, or of the steps");
         set_essentials({"--output", "--field", "--per-edge", "--spacing", "--tolerance", "--footprint", "--threshold",
@@ -193,20 +87,12 @@ public:
         group("Where kernels are", {"--per-edge", "--centers", "--spacing", "--spacing-voxels", "--tolerance", "--footprint",
                                     "--footprint-size", "--threshold", "--tf", "--reduce", "--refine", "--merge"});
         group("What kernels are", {"--values", "--kernel", "--value-kernel", "--correction", "--error"});
-        group("Wavelets", {"--wavelet-tolerance", "--wavelet-point-tolerance"});
-        group("Compressed meshes", {"--max-error", "--max-point-error", "--key-steps"});
         group("The limit", {"--scheme", "--tension", "--levels", "--crease-angle"});
     }
 
     [[nodiscard]] bool works_in_ranks() const override { return true; }
 
     int run(Report& report) override {
-        if (wavelet_tolerance_) return write_wavelets(report);
-        if (max_error_) return write_series(report);
-        if (output_.ends_with(".svw")) {
-            throw Error(ErrorCode::InvalidInput, "a compressed mesh needs a tolerance", output_,
-                        "--wavelet-tolerance 1e-3 or --max-error 1e-3");
-        }
         check_output(output_, {".ply", ".vtp", ".svk", ".vdb"});
         const std::string extension = std::filesystem::path(output_).extension().string();
         if (extension != ".ply" && (written_.ascii || written_.splats)) {
@@ -250,71 +136,6 @@ public:
     }
 
 private:
-    /// A mesh instead of kernels: details have signs and no mean, so that a normalised sum of kernels cannot add them.
-    int write_wavelets(Report& report) {
-        check_output(output_, {".svw"});
-        refuse_options(app(), kOfKernels,
-                       "makes kernels; --wavelet-tolerance writes a mesh, of which `subvol points` then makes kernels");
-        refuse_options(app(), {"--crease-angle"}, "tags edges of a control mesh; here it is found, with the tags of the mesh");
-        const InputKind kind = kind_of(input_);
-        if (kind == InputKind::Bricks || kind == InputKind::Grid || asks_for_steps(common()) || ranks() != nullptr) {
-            throw Error(ErrorCode::InvalidInput, "wavelets need one mesh in memory", input_,
-                        "a mesh file and one of its steps");
-        }
-        const RefineOptions refine = refine_.options(1, report.progress());
-        WaveletFileOptions options = wavelets_;
-        options.scheme = refine.scheme;
-        options.tolerance = *wavelet_tolerance_;
-        options.progress = report.progress();
-        if (app().count("--levels") > 0) options_of(options).back().set(refine.levels, "--levels");
-        report["input"] = input_;
-        HexMesh mesh = report.unpack(load_mesh(input_, common(), report.progress()));
-        mesh = report.unpack(with_selected_field(std::move(mesh), common()));
-        report.merge(write_wavelets_reported(output_, mesh, options));
-        return 0;
-    }
-
-    /// The mesh, or with --step several steps of it, with all fields or that of --field.
-    int write_series(Report& report) {
-        check_output(output_, {".svw"});
-        refuse_options(app(), kOfKernels,
-                       "makes kernels; --max-error writes a mesh, of which `subvol points` then makes kernels");
-        refuse_options(app(), {"--scheme", "--tension", "--levels", "--crease-angle"},
-                       "is of the limit; --max-error keeps the mesh as it is");
-        const InputKind kind = kind_of(input_);
-        if (kind == InputKind::Bricks || kind == InputKind::Grid || ranks() != nullptr) {
-            throw Error(ErrorCode::InvalidInput, "a compressed mesh needs one mesh in memory", input_, "a mesh file");
-        }
-        SeriesFileOptions options = series_;
-        options.tolerance = *max_error_;
-        options.progress = report.progress();
-        report["input"] = input_;
-        MeshSets sets;
-        const auto read = [&](const CommonOptions& one) {
-            ReadResult found = report.unpack(read_input(input_, one, nullptr, ShellsAlone::Refuse));
-            sets = std::move(found.sets);
-            HexMesh mesh = report.unpack(mesh_of(std::move(found), one, nullptr));
-            return one.field || one.density ? report.unpack(with_selected_field(std::move(mesh), one)) : mesh;
-        };
-        if (!asks_for_steps(common())) {
-            const HexMesh mesh = read(common());
-            report.merge(write_series_reported(
-                output_, {{mesh.time.value_or(0)}, [&](std::size_t) { return mesh; }, [&] { return sets; }}, options));
-            return 0;
-        }
-        const MeshSeries series = open_series(input_);
-        const FrameRange range = chosen_steps(series, common());
-        const CommonOptions all = report.unpack(for_steps(input_, common(), range, report.progress()));
-        const auto first = series.times.begin() + range.first;
-        report.merge(
-            write_series_reported(output_,
-                                  {{first, first + range.count()},
-                                   [&](std::size_t k) { return read(of_step(all, range.first + static_cast<int>(k))); },
-                                   [&] { return sets; }},
-                                  options));
-        return 0;
-    }
-
     /// Brick by brick into one file; the memory is that of a brick.
     void write_bricks(const Share& share, Report& report) {
         const bool blocks = output_.ends_with(".svk") && !share_.given();
@@ -442,9 +263,7 @@ private:
     std::string output_;
     PointsWriteOptions written_;
     bool clamp_ = false, error_ = false, said_limit_ = false;
-    std::optional<double> merge_error_, wavelet_tolerance_, max_error_;
-    WaveletFileOptions wavelets_;
-    SeriesFileOptions series_;
+    std::optional<double> merge_error_;
     std::string transfer_function_;
     ShareArgument share_;
     SampleArguments sample_;

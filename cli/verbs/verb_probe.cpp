@@ -90,15 +90,10 @@ public:
                "--step all or A-B: steps, each with step, time and values, stats or patches. patches: name, faces, area, "
                "error, normal (its integral), flux and throughput (of --flux, outward and without sign), fields with "
                "integral, mean, min, max, extreme_error; flux_sum of several.") {
-        app().add_option("FILE", input_, input_help())->required();
-        app()
-            .add_option("--at", at_, "a place in world units (repeatable)")
-            ->type_name("X,Y,Z")
-            ->transform(number_list(3, "1,2,3"))
-            ->allow_extra_args(false);
-        app()
-            .add_option("--line", line_, "places on a line, from its first end to its second")
-            ->type_name("X0,Y0,Z0,X1,Y1,Z1")
+        add_input(app(), "FILE", input_, input_help())->required();
+        add_option(app(), Option("at", at_).help("X,Y,Z", "a place in world units (repeatable)"))
+            ->transform(number_list(3, "1,2,3"));
+        add_option(app(), Option("line", line_).help("X0,Y0,Z0,X1,Y1,Z1", "places on a line, from its first end to its second"))
             ->transform(number_list(6, "0,0,0,1,1,1: its two ends"));
         add_option(app(),
                    Option("count", count_).between(2, 10000000).help("N", "how many places on the line").only_with("line"));
@@ -108,16 +103,14 @@ public:
             app(),
             Option("stats", stats_).help("integral, mean, extremes with their places, histogram; of each block and set, too"));
         add_option(app(), options_of(measured_).back().only_with("stats"));
-        app()
-            .add_option("--patch", patches_,
-                        "area and means over a patch of the boundary, as info lists them; all (repeatable)")
-            ->type_name("NAME")
-            ->allow_extra_args(false);
+        add_option(app(),
+                   Option("patch", patches_)
+                       .help("NAME", "area and means over a patch of the boundary, as info lists them; all (repeatable)"));
         add_option(app(),
                    Option("flux", flux_).help("EXPR", "the flow of this vector out through the patches").only_with("patch"));
-        app()
-            .add_option("-o,--output", output_, "a table of all fields (.csv), or a plot along the line (.svg)")
-            ->type_name("FILE");
+        add_option(
+            app(),
+            Option("output", output_).also("o").help("FILE", "a table of all fields (.csv), or a plot along the line (.svg)"));
         scheme_.add_to(app(), "tetoct, boxspline: the level whose volume is probed (default 2)");
         set_essentials(
             {"--at", "--line", "--count", "--points", "--stats", "--patch", "--flux", "--output", "--field", "--json"});

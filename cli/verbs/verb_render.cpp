@@ -209,13 +209,13 @@ public:
                "  subvol render smoke.vdb -o smoke.png --method grid\n"
                "  subvol render smoke.vdb -o smoke.png                   the voxels as kernels") {
         show_limit_of_parts();
-        app()
-            .add_option("FILE", input_, text(input_help(), "; or points (.ply, .vtp, .svk, .vdb), or a .vdb grid or level set"))
+        add_input(app(), "FILE", input_,
+                  text(input_help(), "; or points (.ply, .vtp, .svk, .vdb), or a .vdb grid or level set"))
             ->required();
-        app()
-            .add_option("-o,--output", output_,
-                        "the picture (.png, .jpg, .webp, or .exr for linear floats), or a turntable's video")
-            ->type_name("IMAGE")
+        add_option(app(),
+                   Option("output", output_)
+                       .also("o")
+                       .help("IMAGE", "the picture (.png, .jpg, .webp, or .exr for linear floats), or a turntable's video"))
             ->required();
         arguments_.add_to(app());
         streams_.add_to(app());

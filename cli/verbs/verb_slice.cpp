@@ -67,11 +67,12 @@ public:
               "max, "
               "max_at of the limit on the plane, and file_area, file_mean, file_min, file_min_at, file_max, file_max_at of the "
               "cells as the file has them.") {
-        app().add_option("FILE", input_, input_help())->required();
-        app().add_option("-o,--output", output_, "the file to write (.png, .exr, .vtp, .csv)")->type_name("FILE")->required();
-        app()
-            .add_option("--plane", plane_, "a point of the plane and its normal (default: the box's centre, and z)")
-            ->type_name("PX,PY,PZ,NX,NY,NZ")
+        add_input(app(), "FILE", input_, input_help())->required();
+        add_option(app(), Option("output", output_).also("o").help("FILE", "the file to write (.png, .exr, .vtp, .csv)"))
+            ->required();
+        add_option(app(),
+                   Option("plane", plane_)
+                       .help("PX,PY,PZ,NX,NY,NZ", "a point of the plane and its normal (default: the box's centre, and z)"))
             ->transform(number_list(6, "0,0,0,0,0,1: a point of the plane and its normal"));
         add_options(app(), options_of(options_));
         add_option(app(), Option("contours", contours_)

@@ -31,8 +31,9 @@ public:
                "\n"
                "Each brick is a .vtu with a halo of cells about its own; ParaView and subvol open it alone. A split that was "
                "interrupted goes on where it ended when the same command runs again.") {
-        app().add_option("FILE", input_, input_help())->required();
-        app().add_option("-o,--output", output_, "the folder to write, for example big.bricks")->type_name("DIR")->required();
+        add_input(app(), "FILE", input_, input_help())->required();
+        add_option(app(), Option("output", output_).also("o").help("DIR", "the folder to write, for example big.bricks"))
+            ->required();
         add_options(app(), options_of(options_));
         add_crease_angle();
     }

@@ -142,20 +142,21 @@ public:
                "  subvol study mine.json -o out --jobs 4\n"
                "  subvol study order spacing -o out --mesh part.vtu",
                Reads::NoMesh) {
-        app().add_option("NAME|FILE", names_, "studies: names from --list, or JSON files (docs/studies.md)")->type_name("");
-        app()
-            .add_option("-o,--output", output_,
-                        "the folder: report.html, and for each study a folder with results.csv, costs.csv, cases, pictures")
-            ->type_name("DIR");
+        add_input(app(), "NAME|FILE", names_, "studies: names from --list, or JSON files (docs/studies.md)")->type_name("");
+        add_option(
+            app(),
+            Option("output", output_)
+                .also("o")
+                .help("DIR",
+                      "the folder: report.html, and for each study a folder with results.csv, costs.csv, cases, pictures"));
         add_option(app(), Option("mesh", meshes_)
                               .help("FILE", "another mesh for the study, with the options of its first input (repeatable)"));
         add_option(app(), Option("jobs", jobs_)
                               .between(1, 1024)
                               .help("N", "cases that run at the same time, unless costs are measured (default: one per core)"));
-        auto* resume = add_option(
-            app(), Option("resume", resume_)
-                       .help("keep the cases that an earlier run of this version finished in the folder (the default)"));
-        app().add_flag("--fresh", fresh_, "run all cases again")->excludes(resume);
+        add_option(app(), Option("resume", resume_)
+                              .help("keep the cases that an earlier run of this version finished in the folder (the default)"));
+        add_option(app(), Option("fresh", fresh_).help("run all cases again").instead_of({"resume"}));
         add_option(app(),
                    Option("pages", pages_)
                        .help("also a page for each input, on which it can be turned (as `page`); the report links to them"));
@@ -164,8 +165,8 @@ public:
         add_option(app(), Option("list", list_).help("list the studies"));
         add_option(app(), Option("keys", keys_).help("print all keys, metrics and options of studies as tables (Markdown)"));
         add_option(app(), Option("print", print_).help("NAME", "print a built-in study's file, as a start for your own"));
-        app().add_option("--case", case_)->group("");  // how the verb runs its cases, each in a process of its own
-        app().add_option("--case-of", case_of_)->group("");
+        add_option(app(), Option("case", case_))->group("");  // how the verb runs its cases, each in a process of its own
+        add_option(app(), Option("case-of", case_of_))->group("");
     }
 
     int run(Report& report) override {

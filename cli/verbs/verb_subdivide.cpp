@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <CLI/CLI.hpp>
-#include "options.h"
 
 #include "grid_fields.h"
 #include "input.h"
 #include "mesh_output.h"
+#include "options.h"
 #include "outputs.h"
 #include "refine_arguments.h"
 #include "subvol/error.h"
@@ -27,10 +27,10 @@ public:
         : Verb(program, "subdivide", "Refine a mesh; every level splits a cell into eight.",
                "  subvol subdivide model:ball -o fine.vtu --levels 2\n"
                "  subvol subdivide part.mesh -o fine.vtu --density \"exp(-(x^2+y^2+z^2))\"") {
-        app().add_option("FILE", input_, input_help())->required();
-        app()
-            .add_option("-o,--output", output_, "the mesh to write (.vtu or .vtkhdf with its fields, .mesh without)")
-            ->type_name("FILE")
+        add_input(app(), "FILE", input_, input_help())->required();
+        add_option(app(), Option("output", output_)
+                              .also("o")
+                              .help("FILE", "the mesh to write (.vtu or .vtkhdf with its fields, .mesh without)"))
             ->required();
         refine_.add_to(app(), "number of refinements (default 1)");
         add_option(

@@ -48,25 +48,23 @@ public:
                "surface encloses), watertight, euler, components, min_angle (degrees), deviation (world), level. streamlines: "
                "count, points, length, outside (seeds), ends (how many for which reason).") {
         show_limit_of_parts();
-        app().add_option("FILE", input_, input_help())->required();
-        app()
-            .add_option("-o,--output", output_,
-                        "the surface to write (.ply, .stl, .vtp, .obj, .glb, .vtkhdf; .svshare with --part), or streamlines "
-                        "(.vtp, .csv)")
-            ->type_name("FILE")
+        add_input(app(), "FILE", input_, input_help())->required();
+        add_option(
+            app(),
+            Option("output", output_)
+                .also("o")
+                .help("FILE",
+                      "the surface to write (.ply, .stl, .vtp, .obj, .glb, .vtkhdf; .svshare with --part), or streamlines "
+                      "(.vtp, .csv)"))
             ->required();
-        app()
-            .add_option("--iso", isos_,
-                        "the value of an isosurface, or a per cent of the field's range such as 20% (repeatable)")
-            ->type_name("V")
-            ->transform(number_or_percent())
-            ->allow_extra_args(false);
+        add_option(app(),
+                   Option("iso", isos_)
+                       .help("V", "the value of an isosurface, or a per cent of the field's range such as 20% (repeatable)"))
+            ->transform(number_or_percent());
         add_options(app(), options_of(options_));
-        app()
-            .add_option("--patch", patches_, "this patch of the boundary alone, as info lists them (repeatable)")
-            ->type_name("NAME")
-            ->allow_extra_args(false)
-            ->excludes("--iso", "--cap");
+        add_option(app(), Option("patch", patches_)
+                              .instead_of({"iso", "cap"})
+                              .help("NAME", "this patch of the boundary alone, as info lists them (repeatable)"));
         add_option(app(), Option("keep-slivers", keep_slivers_).help("leave triangles with small angles as they are"));
         add_option(app(), Option("color-field", color_field_)
                               .help("NAME", "colour the points by this field (default in .ply, .obj, .glb: none)"));

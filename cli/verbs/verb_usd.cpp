@@ -33,11 +33,10 @@ public:
                "\n"
                "JSON: output, files, codes; grids of volumes, points (of each time sample) and channels of splats.") {
         show_limit_of_parts();
-        app()
-            .add_option("FILE", inputs_,
-                        text(input_help(), "; or .vdb files of grids, or points (.ply, .vtp, .svk, .vdb), one for each time"))
+        add_input(app(), "FILE", inputs_,
+                  text(input_help(), "; or .vdb files of grids, or points (.ply, .vtp, .svk, .vdb), one for each time"))
             ->required();
-        app().add_option("-o,--output", output_, "the stage to write (.usda)")->type_name("FILE")->required();
+        add_option(app(), Option("output", output_).also("o").help("FILE", "the stage to write (.usda)"))->required();
         for (const Option& option : options_of(voxels_)) {
             if (option.name == "resolution" || option.name == "half") add_option(app(), option);
         }

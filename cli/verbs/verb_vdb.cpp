@@ -21,6 +21,7 @@
 #include "limit_warning.h"
 #include "mesh_frames.h"
 #include "mesh_grids.h"
+#include "options.h"
 #include "outputs.h"
 #include "part_kinds.h"
 #include "points_input.h"
@@ -28,6 +29,7 @@
 #include "steps.h"
 #include "subvol/error.h"
 #include "subvol/nanovdb.h"
+#include "subvol/option.h"
 #include "subvol/rasterize.h"
 #include "text.h"
 #include "vdb_frames.h"
@@ -56,8 +58,8 @@ public:
                "  subvol vdb model:pawn -o pawn.vdb --resolution 1600 --memory 2G\n"
                "  subvol vdb big.vtu -o part2.vdb --part 2/4           a share, for join") {
         show_limit_of_parts();
-        app().add_option("FILE", input_, text(input_help(), "; or points (.ply, .vtp, .svk, .vdb)"))->required();
-        app().add_option("-o,--output", output_.path, "the file to write (.vdb)")->type_name("FILE")->required();
+        add_input(app(), "FILE", input_, text(input_help(), "; or points (.ply, .vtp, .svk, .vdb)"))->required();
+        add_option(app(), Option("output", output_.path).also("o").help("FILE", "the file to write (.vdb)"))->required();
         asked_.add_sizes_to(app());
         refine_.add_to(app(), "rasterize the refined mesh of this level; omitted: the limit");
         asked_.add_grids_to(app());

@@ -79,20 +79,18 @@ public:
                "  subvol view run.pvd --field T --tf coolwarm\n"
                "  subvol view model:pawn --script turn.json --screenshot pawn.png") {
         show_limit_of_parts();
-        app().add_option(
-            "FILE", input_,
-            text(input_help(),
-                 "; or points (.ply, .vtp, .svk, .vdb), or a .vdb grid of floats (a level set: its surface). Without a "
-                 "file the window begins with a page that opens one"));
+        add_input(app(), "FILE", input_,
+                  text(input_help(),
+                       "; or points (.ply, .vtp, .svk, .vdb), or a .vdb grid of floats (a level set: its surface). Without a "
+                       "file the window begins with a page that opens one"));
         add_option(app(), Option("script", script_).help("FILE.json", "run a script of actions without a window, then quit"));
         add_option(app(), Option("screenshot", screenshot_).help("FILE", "write the last picture (.png or .exr), then quit"));
         add_option(app(),
                    Option("window", window_).help("play the --script in the window; --screenshot is then of the whole window"));
         add_option(app(), Option("state", saved_).help("FILE.json", "begin with a state that a session has saved"));
-        app()
-            .add_option("--method", method_name_, text(subvol::names_of(kViewMethods), ", as of render (default splat)"))
-            ->type_name("NAME")
-            ->check(offered(view_methods()));
+        add_option(app(), Option("method", method_name_)
+                              .offer(view_methods())
+                              .help("NAME", text(subvol::names_of(kViewMethods), ", as of render (default splat)")));
         picture_.add_to(app());
         streams_.add_to(app());
         const auto described = options_of(settings_);

@@ -72,6 +72,7 @@ COMMANDS = {
     "slice": (["slice", "{}", "--plane", ".5,.5,3,1,0,0", "--resolution", "96", "-o", "s.csv"],
               lambda found: found["inside"] * found["step"]**2, lambda cells: sum(LOWEST[n][0] == 0 for n in cells)),
     "points": (["points", "{}", "-o", "s.ply"], lambda found: found["points"], corners),
+    "compress": (["compress", "{}", "--max-error", "1e-3", "-o", "s.svw"], lambda found: found["points"], corners),
     "vdb": (["vdb", "{}", "--voxel-size", str(VOXEL), "-o", "s.vdb"], lambda found: found["active_voxels"], voxels),
     "split": (["split", "{}", "-o", "bricks{n}"], lambda found: found["cells"], len),
     # The field is x.

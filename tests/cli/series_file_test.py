@@ -17,7 +17,7 @@ class SeriesFiles(InFolder):
         return "run.vtu.series"
 
     def write(self, name, error, *options):
-        return self.run_ok("points", self.series(), "-o", name, "--step", "all", "--max-error", error, "--json", *options).json()
+        return self.run_ok("compress", self.series(), "-o", name, "--step", "all", "--max-error", error, "--json", *options).json()
 
     def test_steps_are_those_of_the_series(self):
         report = self.write("a.svw", "1e-4", "--key-steps", "2")
@@ -45,14 +45,14 @@ class SeriesFiles(InFolder):
         self.assertEqual(len(list(self.folder.glob("a_*.vdb"))), 4)
         self.run_ok("render", "a.svw", "-o", "a_##.png", "--step", "1-2", "--size", "16x16", "--backend", "cpu", "--quiet")
         self.assertEqual(len(list(self.folder.glob("a_*.png"))), 2)
-        again = self.run_ok("points", "a.svw", "-o", "b.svw", "--step", "1-3", "--max-error", "1e-2", "--json").json()
+        again = self.run_ok("compress", "a.svw", "-o", "b.svw", "--step", "1-3", "--max-error", "1e-2", "--json").json()
         self.assertEqual(again["steps"], 3)
 
     def test_one_mesh_keeps_all_fields_or_one(self):
         self.run_ok("model", "ball", "--resolution", "4", "-o", "ball.vtu", "--quiet")
-        report = self.run_ok("points", "ball.vtu", "-o", "a.svw", "--max-error", "1e-3", "--json").json()
+        report = self.run_ok("compress", "ball.vtu", "-o", "a.svw", "--max-error", "1e-3", "--json").json()
         self.assertEqual((report["steps"], [array["name"] for array in report["arrays"]]), (1, ["", "density"]))
-        report = self.run_ok("points", "ball.vtu", "-o", "a.svw", "--max-error", "1e-3", "--density", "x", "--json").json()
+        report = self.run_ok("compress", "ball.vtu", "-o", "a.svw", "--max-error", "1e-3", "--density", "x", "--json").json()
         self.assertEqual([array["name"] for array in report["arrays"]], ["", "density"])
         self.assertEqual(self.run_ok("info", "a.svw", "--json").json()["steps"], 1)
 
@@ -61,8 +61,18 @@ class SeriesFiles(InFolder):
         self.write("four.svw", "1e-3", "--threads", "4")
         self.assertEqual((self.folder / "one.svw").read_bytes(), (self.folder / "four.svw").read_bytes())
 
+    def test_points_does_it_as_long_as_it_is_announced(self):
+        for options in (("--max-error", "1e-3"), ("--wavelet-tolerance=1e-2",)):
+            done = self.run_ok("points", "model:pawn:16", "-o", "old.svw", *options)
+            self.assertIn("subvol compress", done.err)
+            done = self.run_ok("compress", "model:pawn:16", "-o", "new.svw", *options)
+            self.assertNotIn("subvol compress", done.err)
+            self.assertEqual((self.folder / "old.svw").read_bytes(), (self.folder / "new.svw").read_bytes())
+        self.assertIn("--max-error", subvol("points", "model:pawn:16", "--output=old.svw", folder=self.folder).err)
+        self.run_ok("points", "old.svw", "-o", "kernels.ply", "--quiet")  # a compressed mesh as the input is nothing of the kind
+
     def refused(self, *arguments):
-        result = subvol("points", *arguments, "--quiet", folder=self.folder)
+        result = subvol("compress", *arguments, "--quiet", folder=self.folder)
         self.assertEqual(result.code, 2, result.err)
         self.assertEqual(len(result.err.strip().splitlines()), 1, result.err)
         return result.err

@@ -8,7 +8,7 @@ from command import CUBE, InFolder, subvol
 
 class Wavelets(InFolder):
     def write(self, name="pawn.svw", tolerance="1e-3", *options):
-        return self.run_ok("points", "model:pawn:32", "-o", name, "--wavelet-tolerance", tolerance, "--json", *options).json()
+        return self.run_ok("compress", "model:pawn:32", "-o", name, "--wavelet-tolerance", tolerance, "--json", *options).json()
 
     def test_bytes_and_errors_follow_the_tolerance(self):
         bytes_before, kept_before = 0, 0
@@ -51,14 +51,14 @@ class Wavelets(InFolder):
         sizes = []
         for levels in ("1", "2"):
             self.run_ok("subdivide", "ball.vtu", "--levels", levels, "-o", "fine.vtu", "--quiet")
-            report = self.run_ok("points", "fine.vtu", "-o", "fine.svw", "--wavelet-tolerance", "1e-4", "--levels", levels,
+            report = self.run_ok("compress", "fine.vtu", "-o", "fine.svw", "--wavelet-tolerance", "1e-4", "--levels", levels,
                                  "--json").json()
             self.assertEqual(report["levels"], int(levels))
             sizes.append(report["bytes"])
         self.assertLess(sizes[1], 1.5 * sizes[0])  # eight times as many points, and no details
 
     def refused(self, *arguments):
-        result = subvol("points", *arguments, "--quiet", folder=self.folder)
+        result = subvol("compress", *arguments, "--quiet", folder=self.folder)
         self.assertEqual(result.code, 2, result.err)
         self.assertEqual(len(result.err.strip().splitlines()), 1, result.err)
         return result.err

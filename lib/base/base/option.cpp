@@ -65,6 +65,11 @@ Option& Option::offer(std::vector<std::string> proposed) {
     return *this;
 }
 
+Option& Option::with_commas() {
+    has_commas = true;
+    return *this;
+}
+
 Option& Option::only_with(std::string option, std::vector<std::string> values) {
     needs.push_back({std::move(option), std::move(values)});
     return *this;

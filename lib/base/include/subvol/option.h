@@ -89,6 +89,9 @@ public:
     Option& help(std::string help_text) { return help({}, std::move(help_text)); }
     /// Words that are proposed; others are allowed too.
     Option& offer(std::vector<std::string> proposed);
+    /// A list of which several entries may stand in one value, with commas between them. Others take one each time they are
+    /// given.
+    Option& with_commas();
     /// The option has an effect only with another one, or only if that one has one of these values.
     Option& only_with(std::string option, std::vector<std::string> values = {});
     /// The name in Python and studies, if it is another word.
@@ -129,7 +132,7 @@ public:
     std::string name, alias{}, keyword{};
     Value value;
     NumberRange range{};
-    bool in_bytes = false;
+    bool in_bytes = false, has_commas = false;
     std::string about{}, sentence{};
     std::vector<std::string> words{};
     std::vector<OptionNeed> needs{};
