@@ -112,7 +112,7 @@ def test_a_missing_package_is_named(stand_in):
 
 @pytest.mark.parametrize("name", ["a.su2", "a.bdf", "a.f3grid", "a.avs"])
 def test_the_real_meshio(name, tmp_path, cube):
-    meshio = pytest.importorskip("meshio")
+    meshio = pytest.importorskip("meshio", reason="Debian's python3-meshio is not installed")
     kept = subvol.to_meshio(cube)
     kept.point_data = {}
     try:
@@ -187,7 +187,7 @@ def check_cube(mesh, side=2.0):
 
 @pytest.mark.parametrize("name", ["a.bdf", "a.tec", "a.avs"])
 def test_files_with_known_volume_and_values_by_meshio(name, tmp_path):
-    pytest.importorskip("meshio")
+    pytest.importorskip("meshio", reason="Debian's python3-meshio is not installed")
     (tmp_path / name).write_text({".bdf": nastran, ".tec": tecplot, ".avs": ucd}[os.path.splitext(name)[1]]())
     mesh, said = read_quietly(tmp_path / name)
     assert "read by meshio" in said and "not read" in said
@@ -196,7 +196,7 @@ def test_files_with_known_volume_and_values_by_meshio(name, tmp_path):
 
 
 def test_vtk_reads_where_meshio_is_missing(tmp_path, monkeypatch):
-    pytest.importorskip("vtkmodules")
+    pytest.importorskip("vtkmodules", reason="Debian's python3-vtk9 is not installed")
     without_meshio(tmp_path, monkeypatch)
     for name, text in (("a.tec", tecplot()), ("a.avs", ucd())):
         (tmp_path / name).write_text(text)
@@ -207,7 +207,7 @@ def test_vtk_reads_where_meshio_is_missing(tmp_path, monkeypatch):
 
 
 def test_vtk_reads_all_zones_of_tecplot(tmp_path):
-    pytest.importorskip("vtkmodules")
+    pytest.importorskip("vtkmodules", reason="Debian's python3-vtk9 is not installed")
     (tmp_path / "a.dat").write_text(tecplot_zones())
     mesh, said = read_quietly(tmp_path / "a.dat")
     assert mesh.report()["cells"] == 16 and mesh.report()["volume"] == pytest.approx(16)
@@ -217,7 +217,7 @@ def test_vtk_reads_all_zones_of_tecplot(tmp_path):
 
 
 def test_vtk_reads_gambit_and_fluent(tmp_path):
-    pytest.importorskip("vtkmodules")
+    pytest.importorskip("vtkmodules", reason="Debian's python3-vtk9 is not installed")
     (tmp_path / "a.neu").write_text(gambit())
     mesh, said = read_quietly(tmp_path / "a.neu")
     assert "(Gambit)" in said
@@ -235,7 +235,7 @@ def test_vtk_reads_gambit_and_fluent(tmp_path):
 
 
 def test_vtk_reads_steps_of_ls_dyna(tmp_path):
-    pytest.importorskip("vtkmodules")
+    pytest.importorskip("vtkmodules", reason="Debian's python3-vtk9 is not installed")
     for name, data in zip(("d3plot", "d3plot01"), ls_dyna()):
         (tmp_path / name).write_bytes(data)
     for options, step in (({}, 1), ({"step": 0}, 0), ({"step": 1}, 1), ({"time": .2}, 0)):
@@ -252,7 +252,7 @@ def test_vtk_reads_steps_of_ls_dyna(tmp_path):
 
 
 def test_truncated_files_end_with_a_sentence(tmp_path):
-    pytest.importorskip("vtkmodules")
+    pytest.importorskip("vtkmodules", reason="Debian's python3-vtk9 is not installed")
     files = {"a.neu": gambit().encode(), "a.cas": fluent()[0].encode(), "a.dat": tecplot_zones().encode(), "d3plot": ls_dyna()[0]}
     for name, data in files.items():
         for part in (.2, .45, .8):
@@ -286,7 +286,7 @@ VARIABLES = 'VARIABLES = "X" "Y" "Z" "T"\n'
 
 
 def test_tecplot_that_vtk_misreads_is_refused(tmp_path, monkeypatch):
-    pytest.importorskip("vtkmodules")
+    pytest.importorskip("vtkmodules", reason="Debian's python3-vtk9 is not installed")
     without_meshio(tmp_path, monkeypatch)
     path = tmp_path / "a.dat"
     path.write_text(VARIABLES + fe_zone() + fe_zone(2, ', T="27*5.5 VARSHARELIST" # 3*4'))
@@ -304,7 +304,7 @@ def test_tecplot_that_vtk_misreads_is_refused(tmp_path, monkeypatch):
 
 
 def test_steps_of_tecplot_do_not_lie_on_each_other(tmp_path):
-    pytest.importorskip("vtkmodules")
+    pytest.importorskip("vtkmodules", reason="Debian's python3-vtk9 is not installed")
     path = tmp_path / "a.dat"
     path.write_text(VARIABLES + "".join(fe_zone(0, f", STRANDID=1, SOLUTIONTIME={time}") for time in (0, 1.5)))
     refused(path, "SOLUTIONTIME 0.0, 1.5")
@@ -316,7 +316,7 @@ def test_steps_of_tecplot_do_not_lie_on_each_other(tmp_path):
 
 
 def test_truncated_tecplot_behind_a_zone_without_volume(tmp_path):
-    pytest.importorskip("vtkmodules")
+    pytest.importorskip("vtkmodules", reason="Debian's python3-vtk9 is not installed")
     flat = 'ZONE T="flat", I=9, J=9, K=1, F=POINT\n' + lines((x, y, 0, 7) for y in range(9) for x in range(9))
     whole = VARIABLES + flat + fe_zone()
     (tmp_path / "a.dat").write_text(whole)
@@ -329,7 +329,7 @@ def test_truncated_tecplot_behind_a_zone_without_volume(tmp_path):
 
 
 def test_steps_of_ls_dyna_with_one_time_are_refused(tmp_path):
-    pytest.importorskip("vtkmodules")
+    pytest.importorskip("vtkmodules", reason="Debian's python3-vtk9 is not installed")
     root, states = ls_dyna()
     (tmp_path / "d3plot").write_bytes(root)
     (tmp_path / "d3plot01").write_bytes(states.replace(floats([[.5]]), floats([[0]]), 1))
@@ -340,13 +340,13 @@ def test_steps_of_ls_dyna_with_one_time_are_refused(tmp_path):
 
 
 def test_steps_are_not_ignored(tmp_path):
-    pytest.importorskip("meshio")
+    pytest.importorskip("meshio", reason="Debian's python3-meshio is not installed")
     (tmp_path / "a.bdf").write_text(nastran())
     done = run(tmp_path, "a.bdf", "a.vtu", "--step", 7)
     assert done.returncode == 2 and "there is no step 7: it has one step, number 0" in done.stderr
     done = run(tmp_path, "a.bdf", "a.vtu", "--time", 3)
     assert done.returncode == 0 and "the file has one step, so there is no time to choose" in done.stderr
-    pytest.importorskip("vtkmodules")
+    pytest.importorskip("vtkmodules", reason="Debian's python3-vtk9 is not installed")
     for name, data in zip(("d3plot", "d3plot01"), ls_dyna()):
         (tmp_path / name).write_bytes(data)
     assert "the file has 2 steps; the last one is read" in read_quietly(tmp_path / "d3plot")[1]
@@ -355,19 +355,19 @@ def test_steps_are_not_ignored(tmp_path):
 
 
 def test_files_that_are_not_of_mfix(tmp_path):
-    pytest.importorskip("vtkmodules")
+    pytest.importorskip("vtkmodules", reason="Debian's python3-vtk9 is not installed")
     (tmp_path / "a.res").write_bytes(b"\x7f" * 5000)
     refused(tmp_path / "a.res", 'a.res: .*does not begin with "RES = "')
 
 
 def test_fluent_is_said_to_be_rounded(tmp_path):
-    pytest.importorskip("vtkmodules")
+    pytest.importorskip("vtkmodules", reason="Debian's python3-vtk9 is not installed")
     (tmp_path / "a.cas").write_text(fluent()[0])
     assert "single precision" in read_quietly(tmp_path / "a.cas")[1]
 
 
 def test_blocks_are_joined_with_what_they_have_alike():
-    pytest.importorskip("vtkmodules")
+    pytest.importorskip("vtkmodules", reason="Debian's python3-vtk9 is not installed")
     from subvol import _foreign_file
     from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
     from vtkmodules.vtkCommonCore import vtkPoints
@@ -400,7 +400,7 @@ def test_blocks_are_joined_with_what_they_have_alike():
 
 @pytest.mark.parametrize("vtk", [False, True])
 def test_a_full_disk_is_no_fault_of_the_file(vtk, tmp_path, monkeypatch):
-    pytest.importorskip("vtkmodules" if vtk else "meshio")
+    pytest.importorskip("vtkmodules" if vtk else "meshio", reason=f"Debian's python3-{'vtk9' if vtk else 'meshio'} is not installed")
     from subvol import _foreign_file
     if vtk:
         without_meshio(tmp_path, monkeypatch)
