@@ -116,10 +116,11 @@ void measure(const std::string& name, const std::vector<Choice>& choices, int fr
         }
         const auto metrics = compare_images(kept.image, reference);
         std::printf(
-            "  %-16s %5d sheets  %.3f CPU s (prepare %.3f wall, other opacities %.3f, %.3f)  %6.1f dB  most %.2e  beyond .001: "
+            "  %-16s %5d to %5d sheets  %.3f CPU s (prepare %.3f wall, other opacities %.3f, %.3f)  %6.1f dB  most %.2e  "
+            "beyond .001: "
             "%zu\n",
-            choice.name.c_str(), kept.report.sheets, best, prepare, recolored[0], recolored[1], metrics.psnr, metrics.max,
-            pixels_beyond(1e-3F, kept.image, reference));
+            choice.name.c_str(), kept.report.sheets, kept.report.sheets_finest, best, prepare, recolored[0], recolored[1],
+            metrics.psnr, metrics.max, pixels_beyond(1e-3F, kept.image, reference));
         std::fflush(stdout);
     }
 }

@@ -67,7 +67,7 @@ struct BrickPicture::State {
     std::uint64_t memory_bytes;
     SplatScene empty;  // without kernels
     KernelRegions regions;
-    ReachCounts reaches{};  // of all kernels of this process
+    SheetCounts counts{};  // of all kernels of this process
 };
 
 BrickPicture::BrickPicture(Surface boundary, const View& view, const Optics& optics, const BrickSplatOptions& options) {
@@ -88,7 +88,8 @@ std::vector<PixelRows> BrickPicture::rows_of(const RbfVolume& kernels) const {
 }
 
 void BrickPicture::count(const RbfVolume& kernels) {
-    for (const Symmetric3& frame : kernels.frames) count_reach(state_->empty, state_->view, frame, state_->reaches);
+    count_reaches(state_->empty, state_->view, kernels, state_->counts.reaches);
+    count_bends(state_->empty, kernels, state_->counts.bends);
 }
 
 void BrickPicture::add(const RbfVolume& kernels, std::span<const std::uint64_t> numbers) {
@@ -100,9 +101,9 @@ void BrickPicture::add(const RbfVolume& kernels, std::span<const std::uint64_t> 
 
 SplatResult BrickPicture::draw(const SumCounts& sum) {
     auto& [drawn, view, optics, splat, memory_bytes, empty, regions, counted] = *state_;
-    ReachCounts reaches = counted;
-    reaches.add_up(sum);
-    if (splat.sheets == 0) splat.needed_sheets = sheets_needed(empty, depth_range_of(empty, view), reaches);
+    SheetCounts counts = counted;
+    counts.add_up(sum);
+    if (splat.sheets == 0) splat.needed_sheets = sheets_needed(empty, depth_range_of(empty, view), counts);
     SplatResult result{Image(view.width(), view.height()), {}, {}};
     result.depth.resize(result.image.rgba.size() / 4);
     const auto most = std::max<std::uint64_t>(memory_bytes / kBytesOfKernel, 1);
@@ -142,7 +143,7 @@ SplatResult BrickPicture::draw(const SumCounts& sum) {
         group.clear();
     }
     report_progress(splat.progress, "splat", 1);
-    result.report.points = static_cast<std::size_t>(reaches.kernels());
+    result.report.points = static_cast<std::size_t>(counts.reaches.kernels());
     return result;
 }
 

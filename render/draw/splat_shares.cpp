@@ -27,8 +27,8 @@ int sheets_of_picture(const RbfVolume& volume, const View& view, const SplatOpti
     if (options.sheets != 0) return options.sheets;
     const detail::SplatScene scene = detail::make_scene(volume, options);
     const View fine = fine_view(view, options);
-    detail::ReachCounts counts;
-    for (const Symmetric3& frame : volume.frames) detail::count_reach(scene, fine, frame, counts);
+    detail::SheetCounts counts{{}, scene.bends};
+    detail::count_reaches(scene, fine, volume, counts.reaches);
     counts.add_up(sum);
     return detail::sheets_needed(scene, detail::depth_range_of(scene, fine), counts);
 }

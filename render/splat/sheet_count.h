@@ -14,10 +14,26 @@ struct DepthRange {
 };
 [[nodiscard]] DepthRange depth_range_of(const SplatScene& scene, const View& view);
 
-/// Counts a kernel by its reach: the distance in depth from its middle to where it ends.
-void count_reach(const SplatScene& scene, const View& view, const Symmetric3& frame, ReachCounts& counts);
+/// What the number of sheets depends on: the sum over all kernels, whatever processes they are in.
+struct SheetCounts {
+    ReachCounts reaches;  // the distance in depth from a kernel's middle to where it ends
+    ReachCounts bends;    // as of `count_bends`
+
+    void add_up(const SumCounts& sum) {
+        reaches.add_up(sum);
+        bends.add_up(sum);
+    }
+};
+
+/// Counts the reaches of kernels of the scene, which may be others than its own.
+void count_reaches(const SplatScene& scene, const View& view, const RbfVolume& kernels, ReachCounts& counts);
+
+/// Counts kernels by how much they bend: the part of their value at the end of their reach that does not change in proportion
+/// to the distance, beside the part that does. It is small where many kernels show one wave of the field: 1 / (their number)
+/// for the same field.
+void count_bends(const SplatScene& scene, const RbfVolume& kernels, ReachCounts& counts);
 
 /// The number of sheets that kernels need for the tolerance of the scene.
-[[nodiscard]] int sheets_needed(const SplatScene& scene, const DepthRange& depths, const ReachCounts& counts);
+[[nodiscard]] int sheets_needed(const SplatScene& scene, const DepthRange& depths, const SheetCounts& counts);
 
 }  // namespace subvol::detail

@@ -9,7 +9,7 @@
 // Sizes, values and ranges are refused where 32-bit floats lose them. A kernel is compact, radial (a table over e) or separable
 // (a table over |ξ|). A volume without a boundary ends at half of the weight that its kernels add up to inside, a median over
 // places. The number of sheets is such that four of them fall into the depth reach of the finest kernels, but for a small part
-// of the volume, and grows with the square root of the inverse of the image tolerance.
+// of the volume; fewer where kernels hardly bend; and grows with the square root of the inverse of the image tolerance.
 #include "splat_scene.h"
 
 #include <tbb/parallel_for.h>
@@ -276,6 +276,7 @@ SplatScene make_scene(const RbfVolume& volume, const SplatOptions& options) {
         scene.boundary_normals = corner_normals(volume.boundary);
     }
     set_clip(scene, options.clip);
+    count_bends(scene, volume, scene.bends);
     scene.shadows = options.shadows;
     scene.occlusion_world = options.ambient_occlusion * size;
     return scene;
@@ -291,6 +292,8 @@ void set_kernels(SplatScene& scene, const RbfVolume& volume, const Clip& clip) {
     scene.largest_value = largest_value;
     scene.volume = &volume;
     scene.thinnest = thinnest_of(volume);
+    scene.bends = {};
+    count_bends(scene, volume, scene.bends);
     scene.reach = {};
     set_clip(scene, clip);
 }
@@ -326,16 +329,58 @@ Classification classify(const SplatScene& scene, const Optics& optics) {
     return classification;
 }
 
-void count_reach(const SplatScene& scene, const View& view, const Symmetric3& frame, ReachCounts& counts) {
-    const Vec3& forward = view.axes()[2];
+namespace {
+
+/// Counts kernels by a number of each, beside its volume. Counts are whole numbers, so the threads may add in any order.
+void count_kernels(const SplatScene& scene, const RbfVolume& kernels, ReachCounts& counts, const auto& number) {
     const double widening = scene.form == KernelForm::Separable ? 3 : 1;
-    const Mat3 s = widening * matrix(frame);
     const double size = scene.diagonal * scene.diagonal * scene.diagonal;
-    counts.add(static_cast<float>(std::sqrt(std::max(0.0, glm::dot(forward, s * forward)))),
-               std::sqrt(std::max(0.0, glm::determinant(s))) / size);
+    using Range = tbb::blocked_range<std::size_t>;
+    const auto joined = [](ReachCounts some, const ReachCounts& others) {
+        some.add(others);
+        return some;
+    };
+    counts.add(tbb::parallel_reduce(
+        Range(0, kernels.size(), 1 << 16), ReachCounts(),
+        [&](const Range& range, ReachCounts some) {
+            for (std::size_t i = range.begin(); i < range.end(); ++i) {
+                const Mat3 s = widening * matrix(kernels.frames[i]);
+                some.add(static_cast<float>(number(i, s)), std::sqrt(std::max(0.0, glm::determinant(s))) / size);
+            }
+            return some;
+        },
+        joined));
 }
 
-int sheets_needed(const SplatScene& scene, const DepthRange& depths, const ReachCounts& counts) {
+/// frame: S of the kernel
+double bend_of(const RbfChannel& channel, std::size_t i, const Mat3& frame) {
+    const auto& g = channel.gradients[i];
+    const Vec3 gradient(g[0], g[1], g[2]);
+    const double rise = std::sqrt(std::max(0.0, glm::dot(gradient, frame * gradient)));
+    double bend = std::abs(double{channel.moments[i]});
+    if (!channel.hessians.empty()) {
+        const Mat3 rest = matrix(channel.hessians[i]) * frame, square = rest * rest;
+        bend += std::sqrt(std::max(0.0, square[0][0] + square[1][1] + square[2][2])) / 2;
+    }
+    return bend > 0 || rise > 0 ? std::min(bend / std::max(rise, 1e-30), 1e30) : 1;
+}
+
+}  // namespace
+
+void count_reaches(const SplatScene& scene, const View& view, const RbfVolume& kernels, ReachCounts& counts) {
+    const Vec3& forward = view.axes()[2];
+    count_kernels(scene, kernels, counts,
+                  [&](std::size_t, const Mat3& frame) { return std::sqrt(std::max(0.0, glm::dot(forward, frame * forward))); });
+}
+
+void count_bends(const SplatScene& scene, const RbfVolume& kernels, ReachCounts& counts) {
+    count_kernels(scene, kernels, counts, [&](std::size_t i, const Mat3& frame) {
+        const double bend = bend_of(kernels.channels[scene.channel], i, frame);
+        return scene.color_channel ? std::max(bend, bend_of(kernels.channels[*scene.color_channel], i, frame)) : bend;
+    });
+}
+
+int sheets_needed(const SplatScene& scene, const DepthRange& depths, const SheetCounts& counts) {
     // A kernel's section changes over its reach like (1−e)³. Linear interpolation between sheets a quarter of it apart is right
     // to about 1e-3 of what the kernel adds (measured against the dense grid, see docs/science.md), and the error falls with
     // the square of the distance.
@@ -344,10 +389,15 @@ int sheets_needed(const SplatScene& scene, const DepthRange& depths, const Reach
     // Kernels in this part of the volume may have fewer sheets: a fine boundary layer is a small part of the picture, though
     // most kernels may be in it.
     constexpr double kFinestPart = 0.05;
+    // All but this part of the volume has kernels that bend by kBend at most, when a quarter of a reach is needed. The less
+    // they bend, the more of them show one wave of the field, and sheets need not be closer for that. Where the rest needs more
+    // of them, a picture has more sheets than its stack (finer_sheets.h).
+    constexpr double kBentPart = 0.1, kBend = 0.2;
     const double finer = std::sqrt(kTolerance / scene.image_tolerance), range = depths.max - depths.min;
     const double fewest = std::clamp(kFewest * finer, 16.0, kFewest);
-    if (counts.kernels() == 0) return static_cast<int>(fewest);
-    const double reach = std::max(double{counts.finest(kFinestPart)}, 1e-9 * range);
+    if (counts.reaches.kernels() == 0) return static_cast<int>(fewest);
+    const double straight = std::max(1.0, kBend / std::max(double{counts.bends.finest(1 - kBentPart)}, 1e-9));
+    const double reach = std::max(straight * double{counts.reaches.finest(kFinestPart)}, 1e-9 * range);
     return static_cast<int>(std::clamp(std::ceil(kSheetsPerReach * finer * range / reach) + 1, fewest, kMost));
 }
 
@@ -388,18 +438,8 @@ SheetStack make_sheets(const SplatScene& scene, const View& view, int count) {
     const auto [z_min, z_max, near] = depth_range_of(scene, view);
     if (count == 0) count = scene.needed_sheets;
     if (count == 0) {
-        using Range = tbb::blocked_range<std::size_t>;
-        const ReachCounts counts = tbb::parallel_reduce(
-            Range(0, scene.volume->size(), 1 << 16), ReachCounts(),
-            [&](const Range& kernels, ReachCounts some) {
-                for (std::size_t i = kernels.begin(); i < kernels.end(); ++i)
-                    count_reach(scene, view, scene.volume->frames[i], some);
-                return some;
-            },
-            [](ReachCounts some, const ReachCounts& others) {
-                some.add(others);
-                return some;
-            });
+        SheetCounts counts{{}, scene.bends};
+        count_reaches(scene, view, *scene.volume, counts.reaches);
         count = sheets_needed(scene, {z_min, z_max, near}, counts);
     }
     return {.count = count,

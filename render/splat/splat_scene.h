@@ -12,6 +12,7 @@
 #include "subvol/camera.h"
 #include "subvol/detail/preintegrated_table.h"
 #include "subvol/detail/ray_clip.h"
+#include "subvol/detail/reach_counts.h"
 #include "subvol/image.h"
 #include "subvol/optics.h"
 #include "subvol/rbf_field.h"
@@ -70,10 +71,11 @@ struct SplatScene {
     std::string kind{};                             // of its volumes: what kernels that replace others must have in common
     Vec3 middle{0.0};                               // of the bounds; depths are relative to its depth
     double diagonal = 0;
-    float thinnest = 0;  // no kernel reaches less far in any direction
-    Box reach{};         // of the kernels and of the boundary
-    RayClip clip{};      // as set_clip
-    bool solid = false;  // of the picture, as is_solid
+    ReachCounts bends{};  // as count_bends
+    float thinnest = 0;   // no kernel reaches less far in any direction
+    Box reach{};          // of the kernels and of the boundary
+    RayClip clip{};       // as set_clip
+    bool solid = false;   // of the picture, as is_solid
     bool shadows = false;
     double occlusion_world = 0;          // > 0: ambient occlusion over this distance
     const LightVolume* light = nullptr;  // of the picture, if there are shadows or occlusion

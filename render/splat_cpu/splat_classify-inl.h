@@ -56,7 +56,8 @@ HWY_ATTR inline hn::Vec<D> load_quads(D d, const float* table, const std::int32_
 #endif
 
 /// Loads four numbers for each lane from rows of a table. Whole rows are loaded and transposed, which is faster than gathers.
-HWY_ATTR inline void load_rows(const float* table, const std::int32_t* offsets, Floats& a, Floats& b, Floats& c, Floats& e) {
+HWY_INLINE HWY_ATTR void load_rows(const float* table, const std::int32_t* offsets, Floats& a, Floats& b, Floats& c,
+                                   Floats& e) {
     const Lanes d;
 #if HWY_TARGET == HWY_SCALAR
     a = hn::Set(d, table[offsets[0]]);

@@ -7,6 +7,7 @@
 #include <array>
 #include <barrier>
 #include <cmath>
+#include <numbers>
 #include <random>
 #include <thread>
 #include <vector>
@@ -134,6 +135,53 @@ float largest_difference(const Image& a, const Image& b) {
     float largest = 0;
     for (std::size_t i = 0; i < a.rgba.size(); ++i) largest = std::max(largest, std::abs(a.rgba[i] - b.rgba[i]));
     return largest;
+}
+
+TEST(SheetCount, ABendIsThePartOfAKernelsChangeThatIsNotInProportion) {
+    RbfVolume volume = cube(false);
+    // Kernels of reach 1/2: v = 1 + 3 x + 2 y + .25 e changes by √13 / 2 and by .25; a constant bends as much as it changes.
+    const std::size_t count = volume.size();
+    volume.frames.assign(count, {.25F, 0, 0, .25F, 0, .25F});
+    volume.channels[0].gradients.assign(count, {3, 2, 0});
+    volume.channels[0].moments.assign(count, .25F);
+    const auto median = [&](const RbfVolume& kernels) {
+        const detail::SplatScene scene = detail::make_scene(kernels, {});
+        EXPECT_EQ(scene.bends.kernels(), static_cast<std::int64_t>(count));
+        return scene.bends.finest(.5);
+    };
+    EXPECT_NEAR(median(volume), .25 / (std::sqrt(13) / 2), .02 * .14);
+    // x² − y²: what a moment does not have is in the Hessian, H S = diag(.5, −.5, 0) at the end of the reach, half of it a
+    // change.
+    volume.channels[0].moments.assign(count, 0);
+    EXPECT_EQ(median(volume), 0);
+    volume.channels[0].hessians.assign(count, {2, 0, 0, -2, 0, 0});
+    EXPECT_NEAR(median(volume), std::sqrt(.5) / 2 / (std::sqrt(13) / 2), .02 * .2);
+    volume.channels[0].hessians.clear();
+    volume.channels[0].gradients.assign(count, {0, 0, 0});
+    EXPECT_EQ(median(volume), 1);
+}
+
+/// A cube of n³ cells with `waves` of a field along each axis.
+RbfVolume waves_in_cube(int n, double waves) {
+    HexMesh mesh = test::box(n);
+    mesh.attributes = {{"f", 1, {}}};
+    for (const Vec3& p : mesh.points) {
+        const Vec3 angle = 2 * std::numbers::pi * waves * p;
+        mesh.attributes[0].values.push_back(std::sin(angle.x) + std::sin(angle.y) * std::cos(angle.z));
+    }
+    return sample_rbf_points(mesh).volume;
+}
+
+TEST(SheetCount, MoreKernelsOfASmoothFieldNeedNoMoreSheets) {
+    const RbfVolume few = waves_in_cube(24, 1), many = waves_in_cube(56, 1), rough = waves_in_cube(56, 7);
+    const int sheets = draw(few, 0, 1e-4).report.sheets;
+    const SplatResult smooth = draw(many, 0, 1e-4);
+    EXPECT_LT(smooth.report.sheets, 1.25 * sheets);
+    EXPECT_GT(draw(rough, 0, 1e-4).report.sheets, 1.8 * sheets) << "kernels are needed for its waves";
+    const Image exact = draw(many, 8000, 1).image;
+    EXPECT_LT(rmse(smooth.image, exact), 1e-4);
+    EXPECT_LT(largest_difference(smooth.image, exact), 3e-4F);
+    EXPECT_LT(largest_difference(draw(rough, 0, 1e-4).image, draw(rough, 8000, 1).image), 3e-4F);
 }
 
 const View kOnLayer({.eye = {-3, .9, 1.1}, .target = {0, .5, .5}, .up = {0, 0, 1}}, 96, 96);
