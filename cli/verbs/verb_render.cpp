@@ -8,9 +8,9 @@
 //           ─► maker            draws the body in a view by the method, with depths for what lies within
 //           ─► output           one file for each view, or the frames of a video
 //
-// Of steps all are read once for a common box and common ranges, and each again for its picture. Shares are rows of one
-// picture, which splats and tetrahedra can be drawn in, or else whole frames. The limit of a mesh is compared with the file's
-// cells once for all steps, and a warning says where they differ.
+// Of steps all are read once for a common box and common ranges, and again for their pictures if they do not fit in memory.
+// Shares are rows of one picture, which splats and tetrahedra can be drawn in, or else whole frames. The limit of a mesh is
+// compared with the file's cells once for all steps, and a warning says where they differ.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <iterator>
@@ -69,6 +69,19 @@ struct ShownBody {
 /// Whether patches are coloured by their numbers.
 bool draws_categories(const CommonOptions& options) {
     return !options.patches.empty() && !options.field && !options.density;
+}
+
+/// The bodies of steps are kept from one reading to the next up to so many bytes.
+constexpr std::size_t kMostKept_bytes = 256 << 20;
+
+/// The memory of a body of a step, for the most part.
+std::size_t bytes_of(const ShownBody& shown) {
+    const HexMesh* mesh = shown.body.source().mesh();
+    if (mesh == nullptr) return kMostKept_bytes + 1;  // in pieces
+    std::size_t bytes =
+        (mesh->points.size() + shown.body.shells.points.size()) * sizeof(Vec3) + mesh->cells.size() * sizeof(mesh->cells[0]);
+    for (const Attribute& field : mesh->attributes) bytes += field.values.size() * sizeof(field.values[0]);
+    return bytes;
 }
 
 /// The picture without cells, into which shells are drawn.
@@ -492,7 +505,8 @@ private:
         return body;
     }
 
-    /// A picture of each step, in one box and with one range of colours: all are read once for these.
+    /// A picture of each step, in one box and with one range of colours: all are read first for these, and again where they
+    /// were too large to be kept.
     void draw_steps(Report& report) {
         if (picture_.eye.turntable || arguments_.chosen.seconds || arguments_.method == Method::Grid) {
             throw Error(ErrorCode::InvalidInput, "steps are drawn without it",
@@ -507,13 +521,17 @@ private:
         const CommonOptions all = report.unpack(for_steps(input_, common(), steps, report.progress()));
         Box box, seen;
         ShownField field, colors;
+        std::vector<std::optional<ShownBody>> kept(steps.count());  // of each step, as far as memory is given to them
+        std::size_t kept_bytes = 0;
         for (int step = steps.first; step <= steps.last; ++step) {
-            const ShownBody mesh = load_shown(of_step(all, step), report);
+            ShownBody mesh = load_shown(of_step(all, step), report);
             const bool first = step == steps.first;
             field = first ? mesh.field : united(field, mesh.field);
             colors = first ? mesh.colors : united(colors, mesh.colors);
             box.add(mesh.box);
             for (const Vec3& p : mesh.body.shells.points) seen.add(p);
+            kept_bytes += bytes_of(mesh);
+            if (kept_bytes <= kMostKept_bytes) kept[static_cast<std::size_t>(step - steps.first)] = std::move(mesh);
         }
         seen.add(box);
         show(box, field, colors, output, report, [&](const ShownColors& shown) {
@@ -523,7 +541,10 @@ private:
                     output.skip();
                     continue;
                 }
-                const ShownBody mesh = load_shown(of_step(all, step), report);
+                auto& seen_before = kept[static_cast<std::size_t>(step - steps.first)];
+                const ShownBody mesh = seen_before ? std::move(*seen_before) : load_shown(of_step(all, step), report);
+                seen_before.reset();
+                moved_ = mesh.body.moved;
                 set_notes(mesh, shown, output, report);
                 if (views.empty()) views = picture_.make_views(seen);
                 if (mesh.body.source().cells() == 0) {  // all parts are translucent
