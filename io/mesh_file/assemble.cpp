@@ -56,25 +56,6 @@ void warn_of_folded(ReadResult& result) {
     result.warnings.push_back(cells_folded(static_cast<std::size_t>(folded), cells.size()));
 }
 
-FieldInfo describe(const FileArray& array) {
-    FieldInfo info{array.name, array.at_cells ? "cell" : "point", array.components, 0, 0, printable(array.unit)};
-    const auto components = static_cast<std::size_t>(array.components);
-    bool first = true;
-    for (std::size_t i = 0; i + components <= array.values.size(); i += components) {
-        double value = array.values[i];
-        if (components > 1) {
-            double sum = 0;
-            for (std::size_t c = 0; c < components; ++c) sum += array.values[i + c] * array.values[i + c];
-            value = std::sqrt(sum);
-        }
-        if (!std::isfinite(value)) continue;
-        info.min = first ? value : std::min(info.min, value);
-        info.max = first ? value : std::max(info.max, value);
-        first = false;
-    }
-    return info;
-}
-
 // The mean at each point over its cells, weighted by volume; where all of them have no volume, the plain mean. Splitting may
 // make folded cells, whose signed volume is negative: their size counts, so that the mean stays between the values.
 std::vector<double> mean_over_cells(const HexMesh& mesh, const std::vector<double>& values, std::size_t components) {
@@ -105,12 +86,44 @@ std::vector<double> mean_over_cells(const HexMesh& mesh, const std::vector<doubl
 //
 // used:         a flag for each point of the file
 // cell_numbers: the number in the file of each cell of the mesh; empty if it is the same
+// shell_numbers: those of the shells and beams that are read beside cells
 // sources:      the points of the file whose mean each point of the mesh is; nothing if they are the same
 struct Origin {
     std::vector<std::uint8_t> used;
     std::vector<Index> cell_numbers;
     std::optional<IndexRows> sources;
+    std::vector<Index> shell_numbers{};
 };
+
+/// The array with the range of its values at what is read: not at points that no cell uses, or elements that are left out.
+FieldInfo describe(const FileArray& array, const Origin& origin) {
+    FieldInfo info{array.name, array.at_cells ? "cell" : "point", array.components, 0, 0, printable(array.unit)};
+    const auto components = static_cast<std::size_t>(array.components);
+    bool first = true;
+    const auto add = [&](std::size_t tuple) {
+        const std::size_t i = tuple * components;
+        if (i + components > array.values.size()) return;
+        double value = array.values[i];
+        if (components > 1) {
+            double sum = 0;
+            for (std::size_t c = 0; c < components; ++c) sum += array.values[i + c] * array.values[i + c];
+            value = std::sqrt(sum);
+        }
+        if (!std::isfinite(value)) return;
+        info.min = first ? value : std::min(info.min, value);
+        info.max = first ? value : std::max(info.max, value);
+        first = false;
+    };
+    if (array.at_cells && !origin.cell_numbers.empty()) {
+        for (const Index cell : origin.cell_numbers) add(cell);
+        for (const Index shell : origin.shell_numbers) add(shell);
+        return info;
+    }
+    for (std::size_t tuple = 0; tuple * components < array.values.size(); ++tuple) {
+        if (array.at_cells || tuple >= origin.used.size() || origin.used[tuple] != 0) add(tuple);
+    }
+    return info;
+}
 
 class ArrayConversion {
 public:
@@ -126,7 +139,7 @@ public:
             unread_.push_back({array.name, "the value at " + place + " is not finite"});
             return;
         }
-        result_.fields.push_back(describe(array));
+        result_.fields.push_back(describe(array, origin_));
         const FieldInfo& info = result_.fields.back();
         if (array.components == 1 && upper_case(array.name) == "DENSITY" && info.min < 0) {
             result_.warnings.push_back(in_quotes(array.name) + " has negative values");
@@ -586,6 +599,10 @@ ReadResult assemble(MeshFile&& found, std::string_view file, const EntityNames& 
             sets_of_mesh(result.mesh, found, origin.cell_numbers, origin.sources ? &*origin.sources : nullptr, result.warnings);
         result.sets = std::move(sets.sets);
         take_faces(found, std::move(sets.sides), result.on_patches);
+        if (!moved && !origin.sources) {
+            origin.shell_numbers = found.quads.numbers;
+            origin.shell_numbers.insert(origin.shell_numbers.end(), found.lines.numbers.begin(), found.lines.numbers.end());
+        }
         ArrayConversion conversion(result, origin, file, names, options.cell_values);
         for (auto& array : found.arrays) conversion.take(std::move(array));
         conversion.finish(std::move(found.unread));

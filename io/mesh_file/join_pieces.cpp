@@ -80,6 +80,7 @@ public:
         : pieces_(std::move(pieces)), word_(word), file_(file) {}
 
     MeshFile run() {
+        set_empty_aside();
         std::size_t points = 0, cells = 0;
         for (const MeshFile& piece : pieces_) {
             points += piece.points.size();
@@ -93,23 +94,40 @@ public:
         for (MeshFile& piece : pieces_) add_cells(piece);
         order_cells();
         add_arrays();
-        std::set<std::string> said;
-        for (const MeshFile& piece : pieces_) {
-            for (const UnreadField& field : piece.unread) {
-                const auto same = [&](const UnreadField& other) { return other.name == field.name; };
-                if (std::ranges::none_of(all_.unread, same)) all_.unread.push_back(field);
-            }
-            for (const std::string& warning : piece.warnings) {
-                if (said.insert(warning).second) all_.warnings.push_back(warning);
-            }
-            all_.cut = all_.cut || piece.cut;
-            all_.blocks.insert(all_.blocks.end(), piece.blocks.begin(), piece.blocks.end());
+        for (const auto* pieces : {&pieces_, &empty_}) {
+            for (const MeshFile& piece : *pieces) add_remarks(piece);
         }
-        all_.warnings.push_back(joining_report(pieces_.size(), word_, joined_, by_, order_by_));
+        if (pieces_.size() > 1) all_.warnings.push_back(joining_report(pieces_.size(), word_, joined_, by_, order_by_));
         return std::move(all_);
     }
 
 private:
+    // A piece of which no cell is read, such as a block of surfaces, has no say in which arrays all pieces have, or in how
+    // points are joined. All stay if none has cells.
+    void set_empty_aside() {
+        const auto has_cells = [](const MeshFile& piece) {
+            bool some = piece.curved.size() > 0 || !piece.patches.empty();
+            each_kind(piece, [&](const auto& cells) { some = some || !cells.corners.empty(); });
+            return some;
+        };
+        if (std::ranges::none_of(pieces_, has_cells)) return;
+        const auto rest = std::ranges::stable_partition(pieces_, has_cells);
+        empty_.assign(std::move_iterator(rest.begin()), std::move_iterator(rest.end()));
+        pieces_.erase(rest.begin(), rest.end());
+    }
+
+    void add_remarks(const MeshFile& piece) {
+        for (const UnreadField& field : piece.unread) {
+            const auto same = [&](const UnreadField& other) { return other.name == field.name; };
+            if (std::ranges::none_of(all_.unread, same)) all_.unread.push_back(field);
+        }
+        for (const std::string& warning : piece.warnings) {
+            if (said_.insert(warning).second) all_.warnings.push_back(warning);
+        }
+        all_.cut = all_.cut || piece.cut;
+        all_.blocks.insert(all_.blocks.end(), piece.blocks.begin(), piece.blocks.end());
+    }
+
     // Adds the points of a piece; find(point of the piece) is the place in the whole of one to join it with, or kNone.
     template <class Find>
     void add_points(const MeshFile& piece, const Find& find) {
@@ -382,6 +400,8 @@ private:
     }
 
     std::vector<MeshFile> pieces_;
+    std::vector<MeshFile> empty_;  // those of which no cell is read
+    std::set<std::string> said_;   // warnings
     std::string_view word_, file_;
     MeshFile all_;
     ByName<FilePatch> patches_{all_.patches};

@@ -67,11 +67,23 @@ ToVoxels to_voxels_of(const openvdb::GridBase& like) {
 
 }  // namespace
 
+namespace {
+
+/// "--scale 1e6": units a thousand, a million, … times smaller, in which the voxels are of some size.
+std::string scale_for(double voxel_size) {
+    constexpr double kSome_world = 1e-3;
+    int thousands = 1;
+    while (thousands < 100 && voxel_size * std::pow(1e3, thousands) < kSome_world) ++thousands;
+    return "--scale 1e" + std::to_string(3 * thousands);
+}
+
+}  // namespace
+
 void check_representable(double voxel_size) {
     if (voxel_size >= kLeastVoxel_world) return;
     throw Error(ErrorCode::InvalidInput,
                 "voxel size " + number_text(voxel_size) + ": OpenVDB treats the transform of such small voxels as singular", {},
-                "at least 1.45e-5; a mesh in smaller units has larger voxels");
+                "at least 1.45e-5: " + scale_for(voxel_size) + " makes the mesh larger");
 }
 
 ToVoxels to_voxels_of(const Box& box, const RasterizeOptions& options) {

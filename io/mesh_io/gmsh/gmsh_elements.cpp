@@ -2,10 +2,29 @@
 #include "gmsh_elements.h"
 
 #include <array>
+#include <charconv>
 #include <cstdlib>
 #include <limits>
+#include <tuple>
 
 namespace subvol::detail {
+
+namespace {
+
+/// The next integer, which ends at a blank or at the quotation mark of a name.
+std::int64_t leading_integer(TextScanner& in, const Place& place) {
+    const std::string_view word = in.peek();
+    const std::size_t mark = word.find('"');
+    std::int64_t value = 0;
+    const auto digits = mark == std::string_view::npos ? std::string_view() : word.substr(0, mark);
+    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+    if (digits.empty() || error != std::errc() || end != digits.data() + digits.size()) return in.integer(place);
+    std::ignore = in.at_end();  // goes to the word
+    std::ignore = in.bytes(mark, place);
+    return value;
+}
+
+}  // namespace
 
 std::string unquoted(std::string_view text) {
     const std::size_t begin = text.find_first_not_of(" \t\"");
@@ -13,14 +32,21 @@ std::string unquoted(std::string_view text) {
     return as_utf8(text.substr(begin, text.find_last_not_of(" \t\"") + 1 - begin));
 }
 
-// The names of groups are text even in a binary file.
+// The names of groups are text even in a binary file. Since version 2.1 a dimension comes before the number; without one, a
+// name is that of the group of all dimensions. Some writers leave no blank before the name.
 void GmshGroups::read_names(TextScanner& in) {
     const std::size_t count = in.count({"$PhysicalNames"});
     for (std::size_t n = 0; n < count; ++n) {
         const Place place{"physical name", static_cast<std::int64_t>(n + 1), count};
-        const std::int64_t dimension = in.integer(place);
-        const std::int64_t number = in.integer(place);
-        names_[{dimension, number}] = unquoted(in.line());
+        const std::int64_t first = leading_integer(in, place);
+        const std::size_t next = in.rest().find_first_not_of(" \t");
+        if (next == std::string_view::npos || in.rest()[next] == '"') {
+            const std::string name = unquoted(in.line());
+            for (std::int64_t dimension = 0; dimension <= 3; ++dimension) names_[{dimension, first}] = name;
+        } else {
+            const std::int64_t number = leading_integer(in, place);
+            names_[{first, number}] = unquoted(in.line());
+        }
     }
 }
 

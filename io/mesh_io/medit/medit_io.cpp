@@ -72,6 +72,10 @@ private:
     void read_header() {
         if (in_.at_end()) in_.fail("the file is empty");
         const std::string_view first = in_.word();
+        if (first == "MFEM") {
+            in_.fail("a mesh in MFEM's own format, which is not read",
+                     "MFEM's Mesh::PrintVTK, or its ParaViewDataCollection, writes files that are");
+        }
         if (first != "MeshVersionFormatted") {
             in_.fail("not a MEDIT file: it begins with " + in_quotes(first), "MeshVersionFormatted is missing");
         }
@@ -217,6 +221,9 @@ private:
                 list += counted(count, volume->second[0], volume->second[1]);
             }
         }
+        bool some = false;
+        each_kind(found_, [&](const auto& kind) { some = some || !kind.corners.empty(); });
+        if (!some && !sections.empty()) cells += (cells.empty() ? "" : ", ") + sections;
         add_left_out_warning(found_, cells, file_);
         if (!sections.empty()) found_.warnings.push_back("sections ignored: " + sections);
     }

@@ -41,12 +41,12 @@ public:
     /// Appends the hexahedra; fails if the number of points is wrong, or if there are no cells.
     void add_cells(const TextScanner& in, MeshFile& into) const;
 
+    void expect_cells(const TextScanner& in) const;
     [[nodiscard]] bool lists_points() const { return kind_ == Kind::Points; }
     [[nodiscard]] const StructuredGrid& grid() const { return grid_; }
 
 private:
     enum class Kind { Points, Cuts, Even } kind_ = Kind::Points;
-    void expect_cells(const TextScanner& in) const;
     void read_cuts(std::size_t axis, const std::string& keyword, TextScanner& in, VtkValues& values);
 
     StructuredGrid grid_;
@@ -333,6 +333,7 @@ private:
     void start_data(bool at_cells, std::size_t tuples, const std::string& what) {
         const std::size_t count = in_.count({at_cells ? "CELL_DATA" : "POINT_DATA"});
         if (count != tuples) {
+            if (block_) block_->expect_cells(in_);  // a flat one has no cells that values could be at
             in_.fail((at_cells ? "CELL_DATA is for " : "POINT_DATA is for ") + std::to_string(count) + " " + what +
                      ", but there are " + std::to_string(tuples));
         }

@@ -15,8 +15,11 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <functional>
+#include <map>
 #include <optional>
 #include <pugixml.hpp>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -208,6 +211,54 @@ NumberType type_of(const pugi::xml_node& item) {
     return wide ? NumberType::Float64 : NumberType::Float32;
 }
 
+/// The entities that the file itself declares, <!ENTITY name "value">; external ones are not read.
+std::map<std::string, std::string, std::less<>> entities_of(std::string_view declarations) {
+    constexpr std::string_view kBegin = "<!ENTITY";
+    std::map<std::string, std::string, std::less<>> entities;
+    for (std::size_t at = declarations.find(kBegin); at != std::string_view::npos; at = declarations.find(kBegin, at + 1)) {
+        const std::string_view rest = declarations.substr(at + kBegin.size());
+        const std::size_t first = rest.find_first_not_of(" \t\r\n"), mark = rest.find_first_of("\"'>");
+        if (first == std::string_view::npos || mark == std::string_view::npos || rest[mark] == '>') continue;
+        const std::string_view name = rest.substr(first, rest.find_first_of(" \t\r\n", first) - first);
+        const std::size_t end = rest.find(rest[mark], mark + 1);
+        const bool only_blanks =
+            rest.substr(first + name.size(), mark - first - name.size()).find_first_not_of(" \t\r\n") == std::string_view::npos;
+        if (end == std::string_view::npos || !only_blanks) continue;  // "SYSTEM", or a parameter
+        entities.try_emplace(std::string(name), rest.substr(mark + 1, end - mark - 1));
+    }
+    return entities;
+}
+
+/// Puts the values of the file's own entities in the place of &name;, which pugixml does not. Nothing if there are none.
+///
+/// throws: Error(InvalidInput) if values name each other without end, or make much of little
+std::optional<std::string> with_entities(std::string_view text, const std::string& name) {
+    constexpr int kMostDepth = 8;
+    const std::size_t begin = text.find("<!DOCTYPE");
+    if (begin == std::string_view::npos) return std::nullopt;
+    const std::size_t open = text.find('[', begin), close = text.find("]", open);
+    if (open == std::string_view::npos || close == std::string_view::npos || text.find('>', begin) < open) return std::nullopt;
+    const auto entities = entities_of(text.substr(open, close - open));
+    if (entities.empty()) return std::nullopt;
+    const std::size_t most_bytes = 4 * text.size() + (1 << 20);
+    std::string result(text.substr(0, close));
+    const auto add = [&](const auto& self, std::string_view part, int depth) -> void {
+        while (!part.empty()) {
+            const std::size_t mark = part.find('&'), end = part.find(';', mark);
+            const auto known =
+                end == std::string_view::npos ? entities.end() : entities.find(part.substr(mark + 1, end - mark - 1));
+            const std::size_t plain = known != entities.end() ? mark : mark == std::string_view::npos ? part.size() : mark + 1;
+            result += part.substr(0, plain);
+            if (result.size() > most_bytes || depth > kMostDepth)
+                throw Error(ErrorCode::InvalidInput, "its entities make much more text than the file has", name);
+            if (known != entities.end()) self(self, known->second, depth + 1);
+            part.remove_prefix(known != entities.end() ? end + 1 : plain);
+        }
+    };
+    add(add, text.substr(close), 0);
+    return result;
+}
+
 }  // namespace
 
 std::string kind_of(const pugi::xml_node& node, std::initializer_list<const char*> names) {
@@ -217,7 +268,9 @@ std::string kind_of(const pugi::xml_node& node, std::initializer_list<const char
     return {};
 }
 
-XdmfFile::XdmfFile(std::string_view text, const std::filesystem::path& path) : text_(text), path_(path), name_(path.string()) {
+XdmfFile::XdmfFile(std::string_view given, const std::filesystem::path& path)
+    : path_(path), name_(path.string()), expanded_(with_entities(given, name_)), text_(expanded_ ? *expanded_ : given) {
+    const std::string_view text = text_;
     const auto parsed = document_.load_buffer(text.data(), text.size());
     if (!parsed) {
         const TextScanner in(text, name_, TextScanner::Comments::None);

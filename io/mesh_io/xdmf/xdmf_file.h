@@ -60,9 +60,10 @@ private:
     void take(const pugi::xml_node& item, const std::string& source, std::size_t there, std::size_t taken);
     [[nodiscard]] std::filesystem::path beside(const pugi::xml_node& item, const std::string& file);
 
-    std::string_view text_;
     std::filesystem::path path_;
     std::string name_;
+    std::optional<std::string> expanded_;  // the text with the values of the entities that it declares
+    std::string_view text_;
     pugi::xml_document document_;
     pugi::xml_node domain_;
     std::map<std::string, std::unique_ptr<Hdf5File>> heavy_;                         // by their identities

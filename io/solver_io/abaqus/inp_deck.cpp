@@ -612,6 +612,12 @@ InpDeck read_inp_deck(const std::filesystem::path& path) {
     DeckReader reader(deck);
     reader.read(path, [&] { return path.string(); });
     reader.finish();
+    // Some programs write parts alone.
+    const auto has_nodes = [](const auto& part) { return !part.second.points.empty(); };
+    if (deck.instances.empty() && !deck.parts.contains("") && std::ranges::any_of(deck.parts, has_nodes)) {
+        for (const auto& [name, part] : deck.parts) deck.instances.emplace_back().part = name;
+        deck.parts_alone = deck.parts.size();
+    }
     const auto outside = deck.parts.find("");
     if (deck.instances.empty() || (outside != deck.parts.end() && !outside->second.elements.empty())) {
         deck.instances.emplace_back();

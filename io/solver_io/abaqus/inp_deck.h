@@ -69,6 +69,7 @@ struct InpInstance {
 /// An Abaqus or CalculiX deck, with the files that it includes. A deck without instances has one of the part "".
 struct InpDeck {
     std::map<std::string, InpPart> parts;  // by names in capitals
+    std::size_t parts_alone = 0;           // parts that no instance places: they are where their nodes are
     std::vector<InpInstance> instances;
     std::map<std::string, InpType> types;  // owns the types, by their names
     std::set<std::string> files;           // owns the names of files

@@ -89,6 +89,10 @@ private:
             if (inside != deck_.parts.end() && inside != part) sets.push_back(&inside->second.sets);
             add(has_mesh ? inside->second : part->second, instance, sets, choice);
         }
+        if (deck_.parts_alone > 0) {
+            found_.warnings.push_back(counted(deck_.parts_alone, "part has", "parts have") +
+                                      " no *INSTANCE: taken where the nodes are");
+        }
         if (deck_.longer > 0) {
             found_.warnings.push_back(counted(deck_.longer, "element has", "elements have") +
                                       " more numbers than nodes: those after the last node are ignored");

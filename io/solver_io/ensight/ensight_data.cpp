@@ -200,13 +200,24 @@ std::vector<double> EnsightData::reals(std::size_t count, const std::string& wha
     return values;
 }
 
-std::string_view EnsightData::column(std::size_t width, const std::string& what) {
-    if (in_.at_end()) fail(what + ": the file ends");
-    const std::string_view rest = in_.rest().substr(0, width);
-    const std::string_view text = rest.substr(0, rest.find_first_of(" \t\r\n"));
-    std::ignore = in_.bytes(text.size(), {what});
+std::string_view EnsightData::column(std::size_t width, const std::string& what, bool of_reals) {
+    const std::string_view rest = in_.rest();
+    const std::size_t first = rest.find_first_not_of(" \t\r\n");
+    if (first == std::string_view::npos) fail(what + ": the file ends");
+    const std::size_t line_end = rest.substr(0, first).rfind('\n');
+    const std::size_t start = line_end == std::string_view::npos ? 0 : line_end + 1;  // of the column, blanks included
+    const std::string_view line = rest.substr(0, rest.find_first_of("\r\n", first)).substr(start);
+    const std::size_t from = first - start;
+    std::string_view number = line.substr(from, line.find_first_of(" \t", from) - from);
+    // Numbers that touch end where a column ends, real ones with an exponent; else columns were not kept to.
+    if (from < width && (from + number.size()) % width == 0) {
+        const std::string_view in_column = number.substr(0, width - from);
+        if (!of_reals || in_column.find_first_of("eEdD+-", 1) != std::string_view::npos) number = in_column;
+    }
+    std::ignore = in_.bytes(first, {what});
+    std::ignore = in_.bytes(number.size(), {what});
     in_line_ = true;
-    return text;
+    return number;
 }
 
 std::vector<std::int64_t> EnsightData::column_integers(std::size_t count, const std::string& what) {
@@ -214,7 +225,7 @@ std::vector<std::int64_t> EnsightData::column_integers(std::size_t count, const 
     if (binary()) return integers(count, what);
     std::vector<std::int64_t> values;
     for (std::size_t i = 0; i < count; ++i) {
-        const std::string_view text = column(kWidth, what);
+        const std::string_view text = column(kWidth, what, false);
         values.push_back(TextScanner(text, {}, TextScanner::Comments::None).integer({what}));
     }
     return values;
@@ -225,7 +236,7 @@ std::vector<double> EnsightData::column_reals(std::size_t count, const std::stri
     if (binary()) return reals(count, what);
     std::vector<double> values;
     for (std::size_t i = 0; i < count; ++i) {
-        const std::string text = with_exponent(column(kWidth, what));
+        const std::string text = with_exponent(column(kWidth, what, true));
         double value = 0;
         const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
         if (error != std::errc() || end != text.data() + text.size())

@@ -62,7 +62,7 @@ public:
 
 private:
     void expect_room(std::size_t count, const std::string& what) const;
-    std::string_view column(std::size_t width, const std::string& what);
+    std::string_view column(std::size_t width, const std::string& what, bool of_reals);
     void find_order(std::string_view bytes);
     void take_records();
     void take_step(std::size_t step);

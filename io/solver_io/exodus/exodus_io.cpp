@@ -246,8 +246,8 @@ private:
         for (Block& block : blocks_) {
             if (!choice.takes(block.name)) continue;
             take(block);
-            found_.blocks.push_back({block.name, block.size});
             if (!block.taken) continue;
+            found_.blocks.push_back({block.name, block.size});
             FileSet& set = found_.sets.emplace_back(FileSet{block.name, {}});
             for (std::size_t e = 0; e < block.size; ++e) set.numbers.push_back(static_cast<Index>(block.first + e));
         }

@@ -92,6 +92,19 @@ MeshFile cube_with_neighbours() {
     return file;
 }
 
+TEST(Assemble, RangesAreThoseOfWhatIsRead) {
+    MeshFile file = file_of(make_box(1, 1, 1));
+    file.points.insert(file.points.end(), {{9, 0, 0}, {9, 1, 0}});  // of bars that are not read, elements 1 and 2
+    file.arrays.push_back({"T", 1, false, {1, 2, 3, 4, 5, 6, 7, 8, -900, 4000}});
+    file.arrays.push_back({"stress", 1, true, {50, -900, 4000}});
+    const ReadResult result = assembled(file);
+    ASSERT_EQ(result.fields.size(), 2U);
+    EXPECT_EQ(result.fields[0].min, 1);
+    EXPECT_EQ(result.fields[0].max, 8);
+    EXPECT_EQ(result.fields[1].min, 50);
+    EXPECT_EQ(result.fields[1].max, 50);
+}
+
 TEST(Assemble, CellsOfDifferentKindsFitTogether) {
     const ReadResult result = assembled(cube_with_neighbours());
     EXPECT_NEAR(volume_of(result.mesh), 1 + 0.5 / 3 + 0.5, kRounding);

@@ -78,6 +78,37 @@ void expect_box(const MeshFile& whole) {
     }
 }
 
+/// Points with an array of their own, and no cell that is read.
+MeshFile surface_block() {
+    MeshFile file;
+    file.points = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
+    file.arrays.push_back({"aperture", 1, true, {7}});
+    file.warnings.emplace_back("1 quad ignored");
+    file.blocks.push_back({"fault", 0});
+    return file;
+}
+
+TEST(JoinPieces, WhatHasNoCellsTakesNoArraysAway) {
+    for (const bool first : {true, false}) {
+        std::vector<MeshFile> pieces;
+        if (first) pieces.push_back(surface_block());
+        pieces.push_back(slab(0, 2));
+        pieces.push_back(slab(2, 4));
+        if (!first) pieces.push_back(surface_block());
+        const MeshFile whole = join_pieces(std::move(pieces), "block", test::kMadeFile);
+        const ReadResult result = assembled(whole);
+        EXPECT_NEAR(volume_of(result.mesh), 16, 1e-12);
+        ASSERT_EQ(result.fields.size(), 2U);
+        EXPECT_THAT(result.warnings, Contains("1 quad ignored"));
+        EXPECT_THAT(result.warnings, Contains(HasSubstr("2 blocks put together; 9 points joined")));
+        EXPECT_EQ(result.fields[1].name, "c");
+    }
+    // Alone it is an error of its own.
+    std::vector<MeshFile> alone;
+    alone.push_back(surface_block());
+    EXPECT_EQ(join_pieces(std::move(alone), "block", test::kMadeFile).points.size(), 4U);
+}
+
 TEST(JoinPieces, JoinsPointsAtTheSamePlace) {
     const MeshFile whole = joined(pieces_of_box());
     expect_box(whole);

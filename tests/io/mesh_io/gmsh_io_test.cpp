@@ -64,6 +64,19 @@ TEST_F(GmshIo, NodesMayHaveAnyNumbers) {
     EXPECT_THAT(read_error(replaced(text, "\n7000 ", "\n8000 ")), HasSubstr("there are two nodes 8000"));
 }
 
+// Version 2.0 has no dimension before the number, and Elmer's writer no blank before the name.
+TEST_F(GmshIo, NamesOfVersion20HaveNoDimension) {
+    for (const std::string name : {"7 \"body\"", "7\"body\"", " 3 7 \"body\"", "3 7\"body\"", "7 \"2 bodies\""}) {
+        const std::string names = "$EndMeshFormat\n$PhysicalNames\n1\n" + name + "\n$EndPhysicalNames\n";
+        const ReadResult result = read(replaced(gmsh_text(kBox, "2 7 1"), "$EndMeshFormat\n", names));
+        ASSERT_EQ(result.sets.sets.size(), 1U) << name;
+        EXPECT_EQ(result.sets.sets[0].name, name.find("bodies") == std::string::npos ? "body" : "2 bodies");
+    }
+    const std::string bad = "$EndMeshFormat\n$PhysicalNames\n1\nx7\"body\"\n$EndPhysicalNames\n";
+    EXPECT_THAT(read_error(replaced(gmsh_text(kBox, "2 7 1"), "$EndMeshFormat\n", bad)),
+                HasSubstr("physical name 1 of 1: an integer is expected, not"));
+}
+
 TEST_F(GmshIo, OtherElements) {
     const HexMesh cell = make_box(1, 1, 1);
     const auto with = [&](const std::string& elements, int count) {

@@ -45,6 +45,13 @@ TEST_F(MeditIo, TakesWhatNumbersMayLookLike) {
     EXPECT_EQ(read("a.MESH", text).mesh.points[1], Vec3(1, 0, 0));
 }
 
+TEST_F(MeditIo, WhatIsNotReadIsNamed) {
+    EXPECT_THAT(read_error("a.mesh", "MFEM mesh v1.0\n\ndimension\n3\n"), HasSubstr("a mesh in MFEM's own format"));
+    EXPECT_THAT(
+        read_error("a.mesh", "MeshVersionFormatted 2\nDimension 3\nVertices 1\n0 0 0 0\nHexahedraQ2 1\n1 1 1 0\nTriangles 0\n"),
+        HasSubstr("no hexahedra, but HexahedraQ2 (1), which are ignored"));
+}
+
 TEST_F(MeditIo, ErrorsNameThePlace) {
     const std::string good = medit_text(kBox);
     const std::vector<std::array<std::string, 3>> cases{

@@ -226,6 +226,7 @@ TEST_F(StructuredIo, LegacyErrors) {
     EXPECT_THAT(read_error("a.vtk", legacy_text("4 3 6", kBox)),
                 HasSubstr("there are 60 POINTS, but DIMENSIONS says 4 x 3 x 6 points"));
     EXPECT_THAT(read_error("a.vtk", legacy_text("60 1 1", kBox)), HasSubstr("there is no cell between 60 x 1 x 1 points"));
+    EXPECT_THAT(read_error("a.vtk", legacy_text("60 1 1", kBox) + "CELL_DATA 59\n"), HasSubstr("there is no cell between"));
     EXPECT_THAT(read_error("a.vtk", legacy_text("4 3 99999999999", kBox)), HasSubstr("count out of range"));
     EXPECT_THAT(read_error("a.vtk", legacy_text("4 3 5", kBox) + "CELLS 1 9\n"),
                 HasSubstr("a keyword is expected, not \"CELLS\""));

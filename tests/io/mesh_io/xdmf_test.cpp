@@ -78,6 +78,30 @@ TEST_F(Xdmf, CellsAndFieldsOfAGrid) {
     EXPECT_EQ(result.mesh.find_attribute("U")->channels, 3);
 }
 
+// As every file of PyLith has them. External ones and those that grow without end are not expanded.
+TEST_F(Xdmf, EntitiesThatTheFileDeclares) {
+    const HexMesh mesh = make_box(1, 1, 1);
+    const std::string cells = grid(topology(mesh) + geometry(mesh) + array("&field;", "Node", {0, 1, 2, 3, 4, 5, 6, 7}));
+    const auto with = [&](const std::string& declarations) {
+        std::string text = document(cells);
+        text.insert(text.find("[]") + 1, "\n" + declarations);
+        return read_mesh(write("a.xdmf", text));
+    };
+    const auto name = [&](const std::string& declarations) { return with(declarations).mesh.attributes.at(0).name; };
+    EXPECT_EQ(name("<!ENTITY field \"T\">\n<!ENTITY other 'x'>\n"), "T");
+    EXPECT_EQ(name("<!ENTITY quantity 'T'><!ENTITY field \"wall &quantity; of A&amp;B\">"), "wall T of A&B");
+    const std::string secret = write("secret.txt", "secret");
+    EXPECT_EQ(name("<!ENTITY field SYSTEM \"" + secret + "\">"), "&field;");
+    std::string laughs = "<!ENTITY a0 \"hahahahahahahaha\">";
+    for (int i = 1; i < 9; ++i) {
+        std::string ten;
+        for (int k = 0; k < 10; ++k) ten += "&a" + std::to_string(i - 1) + ";";
+        laughs += "<!ENTITY " + (i == 8 ? std::string("field") : "a" + std::to_string(i)) + " \"" + ten + "\">";
+    }
+    for (const std::string& endless : {laughs, std::string("<!ENTITY field \"&field;\">")})
+        EXPECT_THAT(error_of([&] { static_cast<void>(with(endless)); }), HasSubstr("its entities make much more text"));
+}
+
 TEST_F(Xdmf, MixedCellsAreTakenByTheirTypes) {
     HexMesh mesh = make_box(1, 1, 1);
     mesh.points.insert(mesh.points.end(), {{.5, .5, 2}, {2, 0, 0}, {2, 0, 1}});

@@ -89,6 +89,18 @@ TEST_F(Abaqus, InstancesArePlacedAndFilesIncluded) {
     EXPECT_NEAR(report.bounds.lower.x, 0, 1e-12);
 }
 
+// Coreform's and others' files.
+TEST_F(Abaqus, PartsWithoutInstancesAreWhereTheirNodesAre) {
+    write("nodes.inp", kNodes);
+    const std::string part =
+        "*INCLUDE, INPUT=nodes.inp\n*ELEMENT, TYPE=C3D8, ELSET=all\n1, 10, 20, 30, 40, 50, 60, 70, 80\n*END PART\n";
+    const ReadResult one = read_mesh(write("a.inp", "*PART, NAME=cube\n" + part));
+    EXPECT_NEAR(inspect(one.mesh).volume, 1, 1e-12);
+    EXPECT_THAT(one.warnings, Contains("1 part has no *INSTANCE: taken where the nodes are"));
+    EXPECT_EQ(read_mesh(write("b.inp", "*PART, NAME=a\n" + part + "*PART, NAME=b\n" + part)).mesh.cells.size(), 2U);
+    EXPECT_THAT(error("*PART, NAME=a\n*END PART\n"), HasSubstr("it has no nodes"));
+}
+
 TEST_F(Abaqus, CurvedHexahedraHaveTheirShape) {
     // A cube whose edge 1–2 bulges out to y = -0.1: its parabola adds 2/3 · 0.1 at one edge of one face.
     std::string text = "*NODE\n";

@@ -444,6 +444,35 @@ TEST_F(Ensight, NumbersOfVersion6MayTouch) {
     write("a.geo", begin + points + end.substr(0, end.size() - 2) + "9\n");
     const auto read = [&] { static_cast<void>(read_mesh(path("a.case"))); };
     EXPECT_THAT(error_of(read), HasSubstr("a.geo, line 19: hexa8 1: there is no node 9"));
+    // With a blank in front of numbers that are not negative, a column begins with it; and in none the numbers are as wide.
+    for (const auto& [zero, one, between] :
+         {std::array<std::string, 3>{"-1.00000e+00", " 1.00000e+00", ""}, std::array<std::string, 3>{"-1", "1", " "},
+          std::array<std::string, 3>{"-1.00000000000000e+00", "1.0000000000000000", "  "}}) {
+        points.clear();
+        for (const Vec3& x : make_box(1, 1, 1).points) {
+            for (int k = 0; k < 3; ++k) points += (k > 0 ? between : "") + (x[k] == 0 ? zero : one);
+            points += "\n";
+        }
+        write("a.geo", begin + points + hex + "\n");
+        EXPECT_NEAR(inspect(read_mesh(path("a.case")).mesh).volume, 8, 1e-6) << one;
+    }
+}
+
+// 8 digits of a node touch the 7 of the one before.
+TEST_F(Ensight, LongNumbersOfNodesTouch) {
+    std::string text = "a\nb\nnode id given\nelement id off\ncoordinates\n       8\n", nodes;
+    const HexMesh box = make_box(1, 1, 1);
+    const auto number_of = [](std::size_t p) { return std::to_string(p % 2 == 0 ? 1234560 + p : 12345670 + p); };
+    const auto in_column = [](const std::string& number) { return std::string(8 - number.size(), ' ') + number; };
+    for (std::size_t p = 0; p < 8; ++p) {
+        text += in_column(number_of(p));
+        for (int k = 0; k < 3; ++k) text += box.points[p][k] == 0 ? " 0.00000e+00" : " 2.00000e+00";
+        text += "\n";
+    }
+    for (const Index p : box.cells[0]) nodes += in_column(number_of(p));
+    write("a.case", "FORMAT\ntype: ensight\nGEOMETRY\nmodel: a.geo\n");
+    write("a.geo", text + "part 1\np\nhexa8\n       1\n" + nodes + "\n");
+    EXPECT_NEAR(inspect(read_mesh(path("a.case")).mesh).volume, 8, 1e-6);
 }
 
 class EnsightFuzz : public MeshFuzz {};

@@ -227,7 +227,8 @@ TEST(Rasterize, RefusesWhatCannotBe) {
     mesh.attributes[0].values[3] = 1e5;
     invalid(f, {.resolution = 4, .half = true}, "16-bit");
     for (auto& p : mesh.points) p *= 1e-6;
-    invalid(f, {.resolution = 4}, "at least 1.45e-5");  // OpenVDB itself would throw a foreign exception
+    // OpenVDB itself would throw a foreign exception.
+    invalid(f, {.resolution = 4}, "at least 1.45e-5: --scale 1e6 makes the mesh larger");
 }
 
 TEST(Rasterize, VoxelsAreCheckedWithoutMakingAny) {
