@@ -26,6 +26,7 @@
 #include "assemble.h"
 #include "join_pieces.h"
 #include "mesh_file.h"
+#include "polyhedra.h"
 #include "solver_readers.h"
 #include "subvol/detail/netcdf_source.h"
 #include "subvol/detail/read_file.h"
@@ -176,6 +177,8 @@ struct Block {
     bool taken = false;
 };
 
+constexpr const char* kNfaced = "NFACED";
+
 // The nodes of the sides of each shape, as Exodus numbers them.
 using CornersOfSides = std::vector<std::vector<std::size_t>>;
 const CornersOfSides kExodusHexSides{{0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {0, 4, 7, 3}, {0, 3, 2, 1}, {4, 5, 6, 7}};
@@ -258,8 +261,10 @@ private:
         } catch (const Error& error) {
             found_.warnings.push_back("side sets or element sets ignored: " + error.message());
         }
-        list_left_out();
         read_variables();
+        const std::size_t others = polyhedra_.take_into(found_, options_.other_cells == OtherCells::Ignore);
+        if (others > 0) left_out_[kNfaced] += others;
+        list_left_out();
     }
 
     void read_points() {
@@ -286,8 +291,9 @@ private:
             if (size == 0) continue;
             exodus_.expect_room(size, 1, "block " + number);
             if (size >= kNone - elements_) exodus_.fail("there are too many elements");
+            const std::string list = exodus_.has("facconn" + number) ? "facconn" : "connect";  // by faces, or by nodes
             blocks_.push_back({b, elements_, size, exodus_.dimension("num_nod_per_el" + number),
-                               upper_case(exodus_.attribute("connect" + number, "elem_type"))});
+                               upper_case(exodus_.attribute(list + number, "elem_type"))});
             elements_ += size;
         }
     }
@@ -321,9 +327,58 @@ private:
             take_as(found_.prisms, block, "a wedge");
         } else if (others && type.starts_with("PYR")) {
             take_as(found_.pyramids, block, "a pyramid");
+        } else if (type == kNfaced) {
+            take_polyhedra(block);
         } else {
             left_out_[type] += block.size;
         }
+    }
+
+    // The faces of elements of the type NFACED are those of all blocks of faces, counted from 1.
+    void take_polyhedra(Block& block) {
+        block.taken = true;
+        if (faces_.empty()) read_faces();
+        const std::string number = std::to_string(block.number);
+        const auto counts = exodus_.integers("ebepecnt" + number, block.size);
+        const auto list = exodus_.integers("facconn" + number, total(counts, "ebepecnt" + number));
+        std::size_t next = 0;
+        for (std::size_t e = 0; e < block.size; ++e) {
+            CellFaces faces;
+            for (std::int64_t k = 0; k < counts[e]; ++k) {
+                const std::int64_t face = list[next++];
+                if (face < 1 || static_cast<std::uint64_t>(face) > faces_.size()) {
+                    exodus_.fail(kExodusNames.cell(block.first + e) + ": there is no face " + std::to_string(face),
+                                 "faces are 1 to " + std::to_string(faces_.size()));
+                }
+                faces.push_back(faces_[static_cast<std::size_t>(face - 1)]);
+            }
+            polyhedra_.add(block.first + e, std::move(faces));
+        }
+    }
+
+    void read_faces() {
+        const std::size_t blocks = exodus_.dimension("num_fa_blk");
+        exodus_.expect_room(blocks, sizeof(std::int32_t), "num_fa_blk");
+        for (std::size_t b = 1; b <= blocks; ++b) {
+            const std::string number = std::to_string(b);
+            const auto counts = exodus_.integers("fbepecnt" + number, exodus_.dimension("num_fa_in_blk" + number));
+            const auto nodes = exodus_.integers("fbconn" + number, total(counts, "fbepecnt" + number));
+            std::size_t next = 0;
+            for (const std::int64_t count : counts) {
+                auto& face = faces_.emplace_back();
+                for (std::int64_t k = 0; k < count; ++k) face.push_back(corner_of_face(nodes[next++], faces_.size()));
+            }
+        }
+    }
+
+    /// The sum of counts, which are those of things that the file has.
+    [[nodiscard]] std::size_t total(const std::vector<std::int64_t>& counts, const std::string& variable) const {
+        std::size_t sum = 0;
+        for (const std::int64_t count : counts) {
+            if (count < 0 || static_cast<std::uint64_t>(count) >= kNone - sum) exodus_.fail(variable + ": count out of range");
+            sum += static_cast<std::size_t>(count);
+        }
+        return sum;
     }
 
     // The corners come first, then the nodes in the middle of edges, faces and the element.
@@ -353,10 +408,15 @@ private:
     }
 
     [[nodiscard]] Index corner(std::int64_t node, std::size_t element) const {
+        return corner(node, [&] { return kExodusNames.cell(element); });
+    }
+    [[nodiscard]] Index corner_of_face(std::int64_t node, std::size_t face) const {
+        return corner(node, [&] { return "face " + std::to_string(face); });
+    }
+    [[nodiscard]] Index corner(std::int64_t node, const auto& owner) const {
         const std::size_t count = found_.points.size();
         if (node < 1 || static_cast<std::uint64_t>(node) > count) {
-            exodus_.fail(kExodusNames.cell(element) + ": there is no node " + std::to_string(node),
-                         "nodes are 1 to " + std::to_string(count));
+            exodus_.fail(owner() + ": there is no node " + std::to_string(node), "nodes are 1 to " + std::to_string(count));
         }
         return static_cast<Index>(node - 1);
     }
@@ -399,7 +459,7 @@ private:
             for (std::size_t s = 0; s < sides; ++s) {
                 // Blocks have elements, one behind the other.
                 const auto block = std::ranges::upper_bound(blocks_, elements[s], {}, &Block::first) - 1;
-                if (!block->taken) continue;
+                if (!block->taken || block->type == kNfaced) continue;
                 const CornersOfSides& all = exodus_sides(block->type);
                 if (places[s] < 1 || static_cast<std::size_t>(places[s]) > all.size())
                     exodus_.fail(names[k] + ": " + kExodusNames.cell(elements[s]) + " has no side " +
@@ -500,6 +560,8 @@ private:
     std::size_t curved_ = 0;
     std::size_t step_ = 0;
     std::map<std::string, std::size_t> left_out_;
+    CellFaces faces_;  // of the blocks of faces, read when the first polyhedra are
+    Polyhedra polyhedra_;
 };
 
 }  // namespace

@@ -124,6 +124,95 @@ TEST_F(ExodusIo, OtherCellsAreSplitOrLeftOutWithTheirValues) {
     EXPECT_THAT(alone.warnings[0], HasSubstr("1 element of type \"TETRA4\", 1 element of type \"WEDGE6\" ignored"));
 }
 
+// Two unit cubes and the prism of six sides beside them, by their faces: as Amanzi, MOAB and IOSS write them.
+TEST_F(ExodusIo, PolyhedraAreReadByTheirFaces) {
+    const double h = std::sqrt(3) / 2;
+    std::vector<Vec3> points = make_box(2, 1, 1).points;
+    const auto first = static_cast<int>(points.size());
+    for (const double z : {0., 1.}) {
+        for (const Vec3& x :
+             {Vec3(1, 0, 0), Vec3(.5, h, 0), Vec3(-.5, h, 0), Vec3(-1, 0, 0), Vec3(-.5, -h, 0), Vec3(.5, -h, 0)})
+            points.push_back(x + Vec3(5, 0, z));
+    }
+    std::vector<std::vector<int>> faces;
+    std::vector<int> cells, counts;
+    for (const auto& cell : make_box(2, 1, 1).cells) {
+        for (const auto& side : {std::array{0, 3, 2, 1}, std::array{4, 5, 6, 7}, std::array{0, 1, 5, 4}, std::array{1, 2, 6, 5},
+                                 std::array{2, 3, 7, 6}, std::array{3, 0, 4, 7}}) {
+            auto& face = faces.emplace_back();
+            for (const int k : side) face.push_back(static_cast<int>(cell[static_cast<std::size_t>(k)]) + 1);
+            cells.push_back(static_cast<int>(faces.size()));
+        }
+        counts.push_back(6);
+    }
+    std::vector<int> below, above;
+    for (int k = 0; k < 6; ++k) {
+        const int a = first + 1 + k, b = first + 1 + (k + 1) % 6;
+        faces.push_back({a, b, b + 6, a + 6});
+        below.push_back(a);
+        above.push_back(a + 6);
+    }
+    faces.push_back(below);
+    faces.push_back(above);
+    for (std::size_t f = 12; f < faces.size(); ++f) cells.push_back(static_cast<int>(f + 1));
+    counts.push_back(8);
+    const auto text = [&] {
+        NetcdfText out;
+        using Kind = NetcdfText::Kind;
+        std::vector<int> nodes, of_faces;
+        for (const auto& face : faces) {
+            nodes.insert(nodes.end(), face.begin(), face.end());
+            of_faces.push_back(static_cast<int>(face.size()));
+        }
+        out.dimension("num_dim", 3);
+        out.dimension("num_el_blk", 1);
+        out.dimension("num_fa_blk", 1);
+        const auto of_points = out.dimension("num_nodes", points.size());
+        const auto list = [&](const std::string& name, const std::string& size, const std::vector<int>& values) {
+            const auto variable = out.variable(name, Kind::Integers, {out.dimension(size, values.size())});
+            out.put(variable, values);
+            return variable;
+        };
+        list("fbepecnt1", "num_fa_in_blk1", of_faces);
+        list("fbconn1", "num_nod_per_fa1", nodes);
+        list("ebepecnt1", "num_el_in_blk1", counts);
+        out.attribute(list("facconn1", "num_fac_per_el1", cells), "elem_type", "NFACED");
+        for (std::size_t a = 0; a < 3; ++a) {
+            std::vector<double> along;
+            for (const Vec3& x : points) along.push_back(x[static_cast<int>(a)]);
+            out.put(out.variable(std::string("coord") + "xyz" [a], Kind::Reals, { of_points }), along);
+        }
+        return out.text(2);
+    };
+    const ReadResult result = read_mesh(write("a.exo", text()), {.crease_angle_deg = 0});
+    EXPECT_NEAR(inspect(result.mesh).volume, 2 + 3 * h, 1e-12);
+    EXPECT_EQ(read_mesh(write("a.exo", text()), {.other_cells = OtherCells::Ignore}).mesh.cells.size(), 2U);
+    const auto error = [&] { return error_of([&] { static_cast<void>(read_mesh(write("b.exo", text()))); }); };
+    cells[3] = 99;
+    EXPECT_THAT(error(), HasSubstr("element 1: there is no face 99"));
+    cells[3] = 4;
+    faces[2][1] = 77;
+    EXPECT_THAT(error(), HasSubstr("face 3: there is no node 77"));
+    faces[2][1] = 1;
+    counts[0] = -6;
+    EXPECT_THAT(error(), HasSubstr("ebepecnt1: count out of range"));
+    counts[0] = 400;
+    EXPECT_THAT(error(), HasSubstr("facconn1"));
+}
+
+// Of which statistics, block by block, would have no cell.
+TEST_F(ExodusIo, BlocksOfBarsAreNoBlocksOfCells) {
+    ExodusText text{make_box(1, 1, 1).points, {{"HEX8", 8, {1, 2, 4, 3, 5, 6, 8, 7}}, {"BAR2", 2, {1, 2, 2, 4}}}};
+    text.times = {0};
+    text.of_elements = {{"stress", {{50}, {-900, 4000}}}};
+    const ReadResult result = read_mesh(write("a.exo", exodus_text(text)));
+    ASSERT_EQ(result.blocks.size(), 1U);
+    EXPECT_EQ(result.blocks[0].name, "block 1");
+    ASSERT_EQ(result.fields.size(), 1U);
+    EXPECT_EQ(result.fields[0].min, 50);
+    EXPECT_EQ(result.fields[0].max, 50);
+}
+
 TEST_F(ExodusIo, WrongFilesGetASentenceWithTheElementOrNode) {
     EXPECT_THAT(read_error(""), HasSubstr("a.exo: the file is empty"));
     EXPECT_THAT(read_error("no mesh"), HasSubstr("a.exo: not an Exodus II file"));
