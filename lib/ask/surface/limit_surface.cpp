@@ -6,6 +6,7 @@
 #include <optional>
 #include <string_view>
 
+#include "hull_cut.h"
 #include "settled_cut.h"
 #include "subvol/detail/limit_of_part.h"
 #include "subvol/detail/limit_place.h"
@@ -46,8 +47,10 @@ public:
     [[nodiscard]] std::optional<SettledCut> make(const Cut& cut, const Share& share) const;
 
 private:
+    [[nodiscard]] SettledCut make_hull(const Share& share) const;
     [[nodiscard]] LimitExtent extent_of_field() const;
     void add_fields(SettledPoints& settled) const;
+    [[nodiscard]] bool has_constant_fields() const;
     [[nodiscard]] int next_level(int level, double deviation, double triangles) const;
 
     const HexMesh& mesh_;
@@ -56,8 +59,9 @@ private:
     std::optional<std::size_t> field_;
     Topology topology_;
     HexMesh scalar_;
+    std::span<const std::uint8_t> owned_;
     SoupCutter cutter_;
-    PointSettler settler_;
+    std::optional<PointSettler> settler_;  // nothing if the boundary alone is made, of a scheme that interpolates
     double tolerance_world_;
 };
 
@@ -117,9 +121,11 @@ SurfaceMaker::SurfaceMaker(const HexMesh& mesh, std::span<const std::uint8_t> ow
       field_(number_of_settled_field(mesh, field, options)),
       topology_(build_topology(mesh)),
       scalar_(with_field_only(mesh, field_)),
+      owned_(owned),
       cutter_(scalar_, topology_, owned, options.scheme, options.progress),
-      settler_(scalar_, topology_, extent_of_field(), options.scheme, options.progress),
       tolerance_world_(tolerance_world(options, whole)) {
+    if (options.isos.empty() && interpolates(options.scheme.kind)) return;
+    settler_.emplace(scalar_, topology_, extent_of_field(), options.scheme, options.progress);
 }
 
 LimitExtent SurfaceMaker::extent_of_field() const {
@@ -142,6 +148,7 @@ int SurfaceMaker::next_level(int level, double deviation, double triangles) cons
 /// A surface that passes few cells is cut as a whole at each level; of others some cells are looked at until the level is
 /// known.
 std::optional<SettledCut> SurfaceMaker::make(const Cut& cut, const Share& share) const {
+    if (!cut.iso && interpolates(options_.scheme.kind)) return make_hull(share);
     SettledCut made{.level = std::min(kFirstLevel, options_.max_level), .soup = {}, .settled = {}};
     const int first_level = made.level;
     SurfaceSoup first = cutter_.cut(cut, first_level, cutter_.candidates(cut));
@@ -152,8 +159,8 @@ std::optional<SettledCut> SurfaceMaker::make(const Cut& cut, const Share& share)
     made.soup = few ? std::move(first) : cutter_.cut(cut, first_level, some, {.follow = false});
     const double part = few ? 1 : static_cast<double>(some.size()) / static_cast<double>(active.size());
     for (;;) {
-        made.settled = settler_.settle(made.soup, cut, made.level);
-        made.deviation_world = settler_.deviation(made.soup, made.settled, made.level);
+        made.settled = settler_->settle(made.soup, cut, made.level);
+        made.deviation_world = settler_->deviation(made.soup, made.settled, made.level);
         const int next = next_level(made.level, made.deviation_world, static_cast<double>(made.soup.triangles.size()) / part);
         if (next == made.level) break;
         made.level = next;
@@ -175,23 +182,57 @@ std::optional<SettledCut> SurfaceMaker::make(const Cut& cut, const Share& share)
                                 {.not_into = all});
         if (made.soup.leads_out) return {};
     }
-    made.settled = settler_.settle(made.soup, cut, made.level);
+    made.settled = settler_->settle(made.soup, cut, made.level);
     add_fields(made.settled);
     return made;
 }
 
-/// Evaluates the fields at settled points, if the settler has not done so.
+/// The boundary alone, of a scheme that interpolates: every share makes all of it but for the fields.
+SettledCut SurfaceMaker::make_hull(const Share& share) const {
+    const HullLeaves hull = refine_hull(mesh_, topology_, owned_, options_.scheme,
+                                        {.bend_world = (1 - kOfMending) * tolerance_world_ / kTriangleBend,
+                                         .max_level = options_.max_level,
+                                         .max_triangles = options_.max_triangles,
+                                         .progress = options_.progress});
+    SettledCut made = hull_cut(hull, topology_, options_.max_level);
+    made.deviation_world *= kTriangleBend;
+    made.converged = made.deviation_world <= 1.1 * tolerance_world_;
+    const std::size_t count = made.soup.cells.size();
+    const auto [begin, end] = share.range(count);
+    made.range = {begin, end, count};
+    if (!share.whole()) made = part_of(made, made.range);
+    add_fields(made.settled);
+    return made;
+}
+
+/// Evaluates the fields at settled points, if they are wanted and the settler has not done so.
 void SurfaceMaker::add_fields(SettledPoints& settled) const {
-    if (mesh_.attributes.size() == scalar_.attributes.size()) return;
+    if (!options_.fields) settled.fields.clear();
+    if (!options_.fields || settled.fields.size() == mesh_.attributes.size()) return;
     report_progress(options_.progress, "fields", 0);
     const std::vector<ProbedField> fields = fields_of(mesh_);
     settled.resize(settled.places.size(), fields);
+    if (has_constant_fields()) {
+        for (std::size_t f = 0; f < fields.size(); ++f) {
+            std::ranges::fill(settled.fields[f].values, whole_.ranges[f][0]);
+            std::ranges::fill(settled.fields[f].gradients, Vec3(0.0));
+        }
+        return;
+    }
     const LimitEvaluator limit(mesh_, {.scheme = options_.scheme}, whole_);
     for (std::size_t begin = 0; begin < settled.places.size(); begin += kPointsAtOnce) {
         const std::size_t count = std::min(kPointsAtOnce, settled.places.size() - begin);
         const LimitSamples samples = limit.at(std::span(settled.places).subspan(begin, count));
         parallel_each(count, [&](std::size_t i) { take_fields(samples, i, Vec3(0.0), begin + i, settled.fields); });
     }
+}
+
+/// Whether each field has one value in all of the mesh, which its limit has, too.
+bool SurfaceMaker::has_constant_fields() const {
+    for (std::size_t f = 0; f < mesh_.attributes.size(); ++f) {
+        if (mesh_.attributes[f].function != nullptr || whole_.ranges[f][0] != whole_.ranges[f][1]) return false;
+    }
+    return true;
 }
 
 }  // namespace
@@ -432,10 +473,10 @@ LimitSurface surface_of_cells(const MeshSource& source, std::string_view field, 
     return surface;
 }
 
-LimitSurface no_surface(const HexMesh* mesh) {
+LimitSurface no_surface(const HexMesh* mesh, bool fields) {
     LimitSurface none;
     none.report.converged = true;
-    if (mesh == nullptr) return none;
+    if (mesh == nullptr || !fields) return none;
     for (const Attribute& attribute : mesh->attributes) {
         none.fields.push_back({attribute.name, static_cast<std::size_t>(attribute.channels), {}, {}});
     }
@@ -462,7 +503,7 @@ LimitSurface limit_surface(const MeshSource& source, std::string_view field, con
     NearCells cells(source, field, options);
     for (int layers = first_layers(options); layers <= cells.most_layers(); ++layers) {
         const std::optional<NearSurface> near = cells.find(layers);
-        if (!near) return no_surface(source.mesh());
+        if (!near) return no_surface(source.mesh(), options.fields);
         auto surface = surface_of(near->mesh, near->owned, cells.whole(), field, cells.options());
         if (!surface) continue;
         for (LimitQuery& place : surface->places) near->rename(place);

@@ -4,7 +4,8 @@
 // the longest one that may be flipped is.
 //
 //     collapse   a point goes to its neighbour: the triangles stay a surface, none turns too far or away from the limit's
-//                normals, and the surface bends by no more than the slack
+//                normals, and the surface bends by no more than the slack; where normals do not show that, it
+//                passes near the point
 //     flip       the other diagonal of two triangles: the least angle grows, and both diagonals are as near as the slack
 //
 // Points of sharp lines go along their line only, if what is left of it stays within the slack; fixed points stay. Passes, of
@@ -37,14 +38,17 @@ constexpr int kMostPasses = 16;
 
 class SliverMender {
 public:
-    SliverMender(const std::vector<Vec3>& points, const std::vector<Vec3>& normals, SharpLines lines, double slack,
+    SliverMender(const std::vector<Vec3>& points, const std::vector<Vec3>& normals, SharpLines lines, const MendSlack& slack,
                  std::vector<std::array<Index, 3>>& triangles)
         : points_(points),
           normals_(normals),
           lines_(std::move(lines)),
-          slack_(slack),
+          slack_(slack.world),
+          near_(slack.near_world),
+          by_normals_(slack.by_normals),
           triangles_(triangles),
           around_(points.size()),
+          ways_(points.size(), 0),
           alive_(triangles.size(), 1),
           changed_(triangles.size(), 1) {
         for (Index t = 0; t < triangles.size(); ++t) {
@@ -135,9 +139,9 @@ private:
         if (!may_replace(triangles_[t], triangles_[other], first) || !may_replace(triangles_[t], triangles_[other], second)) {
             return false;
         }
-        // The old and the new diagonal are as near to each other as the surface is to the limit.
+        // The old and the new diagonal are as near to each other as the surface may be to the limit.
         const Vec3 across = glm::cross(points_[b] - points_[a], points_[d] - points_[c]);
-        if (std::abs(glm::dot(across, points_[c] - points_[a])) > slack_ * glm::length(across)) return false;
+        if (std::abs(glm::dot(across, points_[c] - points_[a])) > line_slack() * glm::length(across)) return false;
         triangles_[t] = first;
         triangles_[other] = second;
         std::erase(around_[a], other);
@@ -194,7 +198,8 @@ private:
         if ((a != to && b != to) || a == b) return kNone;
         const Index other = a == to ? b : a;
         // What is left of the line must be as near to the point as the surface is to the limit.
-        if (squared_distance(points_[from], points_[to], points_[other]) > 0.25 * slack_ * slack_) return kNone;
+        const double most = by_normals_ ? 0.5 * slack_ : near_;
+        if (squared_distance(points_[from], points_[to], points_[other]) > most * most) return kNone;
         return other;
     }
 
@@ -232,16 +237,38 @@ private:
             if (glm::dot(old, normal) < 0.5 * glm::length(old) * size) return -1;
             least = std::min(least, angle_of(moved));
         }
+        bool by_normals = by_normals_ && !is_sharp(to);
         for (const Index p : first_) {
-            if (p == to || is_sharp(p) || is_sharp(to)) continue;
+            if (p == to) continue;
+            if (is_sharp(p)) by_normals = false;
+            if (is_sharp(p) || is_sharp(to)) continue;
             if (bend(points_[p], points_[to], normals_[p], normals_[to]) > slack_) return -1;
         }
-        return least;
+        return by_normals || way_of(from, to) <= near_ ? least : -1;
     }
+
+    /// How far the triangles about a point are from it, and from the points that went to it before, after it has gone to its
+    /// neighbour `to`. Normals do not show that at sharp lines, or where triangles are as large as the tolerance allows.
+    [[nodiscard]] double way_of(Index from, Index to) const {
+        const Vec3& x = points_[from];
+        double least = HUGE_VAL;
+        for (const Index t : around_[from]) {
+            if (contains(triangles_[t], to)) continue;
+            std::array<Vec3, 3> corners;
+            for (std::size_t k = 0; k < 3; ++k) corners[k] = points_[triangles_[t][k] == from ? to : triangles_[t][k]];
+            const Vec3 weights = nearest_in_triangle(x, corners[0], corners[1], corners[2]).weights;
+            least = std::min(least, glm::distance(x, weights.x * corners[0] + weights.y * corners[1] + weights.z * corners[2]));
+        }
+        return ways_[from] + least;
+    }
+
+    /// How far the diagonals of two triangles may be from each other.
+    [[nodiscard]] double line_slack() const { return by_normals_ ? slack_ : near_; }
 
     static bool contains(const std::array<Index, 3>& t, Index p) { return t[0] == p || t[1] == p || t[2] == p; }
 
     void collapse(Index from, Index to) {
+        if (!by_normals_) ways_[to] = std::max(ways_[to], way_of(from, to));
         if (lines_.next[from][0] != kNone) {
             const Index other = other_end(from, to);
             for (Index& end : lines_.next[to]) end = end == from ? other : end;
@@ -266,9 +293,11 @@ private:
     const std::vector<Vec3>& points_;
     const std::vector<Vec3>& normals_;
     SharpLines lines_;
-    double slack_;
+    double slack_, near_;
+    bool by_normals_;
     std::vector<std::array<Index, 3>>& triangles_;
     std::vector<std::vector<Index>> around_;  // the triangles of each point, ascending
+    std::vector<double> ways_;                // of the points that went to each, where normals do not show them
     std::vector<std::uint8_t> alive_;
     std::vector<std::uint8_t> changed_;  // about them, since they were looked at
     std::vector<Index> first_, second_, common_;
@@ -277,8 +306,8 @@ private:
 }  // namespace
 
 std::size_t mend_slivers(const std::vector<Vec3>& points, const std::vector<Vec3>& normals, SharpLines lines,
-                         double slack_world, std::vector<std::array<Index, 3>>& triangles) {
-    return SliverMender(points, normals, std::move(lines), slack_world, triangles).run();
+                         const MendSlack& slack, std::vector<std::array<Index, 3>>& triangles) {
+    return SliverMender(points, normals, std::move(lines), slack, triangles).run();
 }
 
 }  // namespace subvol::detail

@@ -23,7 +23,6 @@ namespace {
 constexpr int kMostSettlingRounds = 12;                       // of Newton's method on an edge
 constexpr double kEdgeTolerance = 1e-9;                       // of an edge
 constexpr std::size_t kSettledAtOnce = std::size_t{1} << 20;  // points that are moved to the limit at a time
-constexpr double kTriangleBend = 4.0 / 3;  // the middle of a triangle is farther from a sphere than those of its edges
 
 Vec3 place_on_edge(const SurfacePoint& point, double t, int level) {
     const auto end = [&](std::size_t e) {
@@ -44,11 +43,6 @@ Vec3 normal_of(const SurfacePoint& point, const LimitSamples& samples, std::size
     }
     const double length = glm::length(normal);
     return length > 0 ? normal / length : Vec3(0.0);
-}
-
-double distance_to_line(const Vec3& p, const Vec3& a, const Vec3& b) {
-    const double length = glm::distance(a, b);
-    return length > 0 ? glm::length(glm::cross(p - a, b - a)) / length : glm::distance(p, a);
 }
 
 }  // namespace

@@ -8,6 +8,9 @@
 
 namespace subvol::detail {
 
+/// The middle of a triangle is farther from a sphere than those of its edges.
+inline constexpr double kTriangleBend = 4.0 / 3;
+
 /// Where points are, and the fields of the mesh there: after settling those that the settler has.
 struct SettledPoints {
     std::vector<LimitQuery> places;

@@ -118,8 +118,10 @@ void add_cut(const SettledCut& cut, bool improve, double slack_world, LimitSurfa
     const std::vector<Vec3> normals = normals_of(cut);
     std::vector<std::array<Index, 3>> triangles = cut.soup.triangles;
     if (improve) {
+        const bool boundary_alone = std::ranges::all_of(cut.soup.hull, [](std::uint8_t hull) { return hull != 0; });
+        const MendSlack slack{slack_world, kOfMending * slack_world, !boundary_alone};
         all.report.mended += mend_slivers(settled.positions, normals, sharp_lines(settled.positions, triangles, cut.soup.hull),
-                                          slack_world, triangles);
+                                          slack, triangles);
     }
     if (all.fields.empty()) all.fields = without_points(settled.fields);
     std::vector<Index> numbers(settled.positions.size(), kNone);

@@ -8,6 +8,9 @@
 
 namespace subvol::detail {
 
+/// The part of a tolerance that is left for mending slivers where triangles are as large as the tolerance allows.
+inline constexpr double kOfMending = 0.2;
+
 /// What has been cut out of cells at one level, its points moved to the limit.
 struct SettledCut {
     int level = 0;

@@ -35,13 +35,14 @@ struct SurfaceOptions {
     /// Isosurfaces are those of these cells as a mesh of its own. Empty: all
     std::span<const std::uint8_t> cells{};
     bool improve = true;  ///< edges of triangles with small angles are collapsed or flipped, so that fewer of them are slivers
+    bool fields = true;   ///< the fields are evaluated at the points, which takes most of the time for a boundary
     Progress* progress = nullptr;
 };
 
 [[nodiscard]] std::vector<Option> options_of(SurfaceOptions& options);
 
 struct SurfaceReport {
-    int level = 0;               ///< level of the refinement whose cells were cut
+    int level = 0;               ///< level of the refinement whose cells were cut; of a boundary alone the finest one
     double deviation_world = 0;  ///< the estimated largest distance of triangles from the limit
     bool converged = false;      ///< the deviation is within the tolerance
     std::size_t cells = 0;       ///< control cells that were refined
@@ -58,11 +59,12 @@ struct SurfaceReport {
 /// Triangles on the limit, counter-clockwise seen from where the field is below the isovalue, or from outside the volume.
 struct LimitSurface {
     Surface surface;
-    /// One for each point, to the same side: from the exact gradient of the field, or the exact Jacobian at the boundary. On
-    /// creases of the boundary, and where a cap meets its isosurface, the mean of those of its sides
+    /// One for each point, to the same side: from the exact gradient of the field, or the exact Jacobian at the boundary; of
+    /// the boundary alone from the vertices about the point. On creases of the boundary, and where a cap meets its isosurface,
+    /// the mean of those of its sides
     std::vector<Vec3> normals;
     std::vector<LimitQuery> places;   ///< places of the points in the limit
-    std::vector<ProbedField> fields;  ///< all attributes of the mesh at the points, with their gradients
+    std::vector<ProbedField> fields;  ///< all attributes of the mesh at the points, with their gradients; none if not asked for
     SurfaceReport report;
 };
 
@@ -73,6 +75,9 @@ struct LimitSurface {
 /// volume's boundary) and manifold, whatever the mesh. Its points are then moved along the edges of the tetrahedra on to the
 /// limit, by Newton's method. The level is raised until the triangles are within tolerance; of more than 2048 cells some stand
 /// for all.
+///
+/// The boundary alone, of a scheme that interpolates, is refined without its cells, each face only where the limit bends; its
+/// normals are those of the vertices about each point.
 ///
 /// The pieces of a mesh that is not in memory are searched for cells that a surface may pass through; these are then gathered
 /// with their halos, and the surface is cut from them alone: with the same bits. The places of the result have the cells'

@@ -6,11 +6,15 @@
 
 #include <cmath>
 #include <fstream>
+#include <map>
 #include <numbers>
 
 #include "lib/expect_error.h"
 #include "lib/temp_folder.h"
 #include "lib/test_meshes.h"
+#include "subvol/detail/boundary_level.h"
+#include "subvol/detail/limit_of_part.h"
+#include "subvol/detail/triangle_distance.h"
 #include "subvol/model.h"
 
 namespace subvol {
@@ -198,6 +202,189 @@ TEST(LimitSurface, CollapsingLeavesFewerSlivers) {
     EXPECT_GT(after.report.min_angle_deg, before.report.min_angle_deg);
     EXPECT_LT(after.surface.triangles.size(), before.surface.triangles.size());
     EXPECT_NEAR(after.report.volume / before.report.volume, 1, 5e-3);
+}
+
+// The boundary alone.
+
+/// Cells of a box whose middles are within a radius of its centre: stairs in all directions.
+HexMesh stairs(Index n, double radius) {
+    HexMesh mesh = test::make_box(n, n, n);
+    const Vec3 center(0.5 * n);
+    std::erase_if(mesh.cells, [&](const auto& cell) {
+        return glm::distance(0.5 * (mesh.points[cell[0]] + mesh.points[cell[6]]), center) > radius;
+    });
+    return without_unused_points(std::move(mesh));
+}
+
+/// A block with a footing in the middle of its top.
+HexMesh block_with_footing(Index n) {
+    HexMesh mesh = test::make_box(n, n, n);
+    std::erase_if(mesh.cells, [&](const auto& cell) {
+        const Vec3 middle = 0.5 * (mesh.points[cell[0]] + mesh.points[cell[6]]);
+        const auto outside = [&](double t) { return t < n / 3 || t > n - n / 3; };
+        return middle.z > n - 2 && (outside(middle.x) || outside(middle.y));
+    });
+    return without_unused_points(std::move(mesh));
+}
+
+double distance_to(const Vec3& p, const Surface& surface) {
+    double least = HUGE_VAL;
+    for (const auto& t : surface.triangles) {
+        const Vec3 &a = surface.points[t[0]], &b = surface.points[t[1]], &c = surface.points[t[2]];
+        const double far = std::max({glm::distance(a, b), glm::distance(b, c), glm::distance(c, a)});
+        if (glm::distance(p, a) > far + least) continue;
+        const Vec3 weights = detail::nearest_in_triangle(p, a, b, c).weights;
+        least = std::min(least, glm::distance(p, weights.x * a + weights.y * b + weights.z * c));
+    }
+    return least;
+}
+
+/// How far some places of a surface are from another one, at most.
+double farthest(const Surface& surface, const Surface& other, std::size_t places) {
+    const std::size_t stride = 1 + surface.triangles.size() / places;
+    double most = 0;
+    for (std::size_t i = 0; i < surface.triangles.size(); i += stride) {
+        const auto& [a, b, c] = surface.triangles[i];
+        for (const Vec3& w : {Vec3(1, 1, 1) / 3.0, Vec3(0.5, 0.5, 0), Vec3(0.25, 0, 0.75), Vec3(0, 0.8, 0.2)})
+            most =
+                std::max(most, distance_to(w.x * surface.points[a] + w.y * surface.points[b] + w.z * surface.points[c], other));
+    }
+    return most;
+}
+
+void expect_closed(const LimitSurface& found) {
+    std::map<std::array<Index, 2>, int> directed;
+    for (const auto& t : found.surface.triangles) {
+        EXPECT_TRUE(t[0] != t[1] && t[1] != t[2] && t[2] != t[0]);
+        for (std::size_t k = 0; k < 3; ++k) ++directed[{t[k], t[(k + 1) % 3]}];
+    }
+    for (const auto& [edge, count] : directed) {
+        const auto back = directed.find({edge[1], edge[0]});
+        ASSERT_TRUE(back != directed.end() && back->second == count);
+    }
+}
+
+TEST(LimitSurface, AFlatFaceIsTwoTriangles) {
+    HexMesh mesh = test::make_box(5, 4, 3);
+    for (Vec3& p : mesh.points) p = {p.x + 0.3 * p.y, p.y - 0.2 * p.z, 0.7 * p.z + 0.1 * p.x};
+    const LimitSurface found = limit_surface(mesh, {}, {.scheme = {.crease_angle_deg = 40}, .boundary = true});
+    EXPECT_EQ(found.surface.triangles.size(), 2U * 2 * (5 * 4 + 4 * 3 + 5 * 3));
+    EXPECT_EQ(found.report.level, 0);
+    EXPECT_EQ(found.report.deviation_world, 0);
+    EXPECT_TRUE(found.report.converged);
+    EXPECT_TRUE(found.report.watertight);
+    const Mat3 map{{1, 0, 0.1}, {0.3, 1, 0}, {0, -0.2, 0.7}};
+    EXPECT_NEAR(found.report.volume, 60 * glm::determinant(map), 1e-9);
+    for (const Vec3& normal : found.normals) EXPECT_NEAR(glm::length(normal), 1, 1e-12);
+}
+
+TEST(LimitSurface, StairsWithCreasesAreExact) {
+    const HexMesh mesh = stairs(7, 3.4);
+    const LimitSurface found = limit_surface(mesh, {}, {.scheme = {.crease_angle_deg = 40}, .boundary = true});
+    const Surface faces = boundary_surface(mesh);
+    EXPECT_EQ(found.surface.triangles.size(), faces.triangles.size());
+    EXPECT_NEAR(found.report.area, 0.5 * static_cast<double>(faces.triangles.size()), 1e-9);
+    EXPECT_NEAR(found.report.volume, static_cast<double>(mesh.cells.size()), 1e-9);
+    EXPECT_TRUE(found.report.watertight);
+}
+
+// The reference is the refinement of the cells at the boundary, all to one level.
+TEST(LimitSurface, TheBoundaryIsWithinItsToleranceOfTheLimit) {
+    HexMesh bent = test::irregular();
+    test::jitter(bent, .05, 3);
+    for (const HexMesh& mesh : {stairs(4, 2.2), stairs(5, 2.4), bent, make_model("ball", 3)}) {
+        const Surface reference = detail::boundary_at_level(mesh, {.levels = 4});
+        const Vec3 size = detail::limit_extent(mesh).box.size();
+        const double longest = std::max({size.x, size.y, size.z});
+        for (const double tolerance : {1e-2, 2e-3}) {
+            const LimitSurface found = limit_surface(mesh, {}, {.boundary = true, .tolerance = tolerance, .max_level = 8});
+            EXPECT_TRUE(found.report.converged);
+            EXPECT_LE(found.report.deviation_world, tolerance * longest);
+            expect_closed(found);
+            // A sixth of the tolerance is left for the chords of the reference.
+            EXPECT_LE(farthest(found.surface, reference, 300), 7.0 / 6 * tolerance * longest);
+            EXPECT_LE(farthest(reference, found.surface, 300), 7.0 / 6 * tolerance * longest);
+        }
+    }
+}
+
+TEST(LimitSurface, PointsOfTheBoundaryLieOnTheLimit) {
+    HexMesh castle = stairs(5, 2.4), blocks = test::make_box(3, 2, 2);
+    test::jitter(castle, .1, 5);
+    test::jitter(blocks, .1, 6);
+    // A sharp face between cells, which meets the boundary.
+    blocks.sharp_faces.push_back({blocks.cells[0][1], blocks.cells[0][2], blocks.cells[0][6], blocks.cells[0][5]});
+    for (const HexMesh& mesh : {castle, blocks, test::irregular()}) {
+        for (const Scheme scheme : {Scheme::Mcq, Scheme::Linear}) {
+            const LimitSurface found = limit_surface(mesh, {}, {.scheme = {.kind = scheme}, .boundary = true});
+            const LimitSamples samples = evaluate_limit(mesh, found.places, {.scheme = {.kind = scheme}, .tolerance = 1e-8});
+            for (std::size_t p = 0; p < found.places.size(); ++p)
+                ASSERT_NEAR(glm::distance(samples.positions[p], found.surface.points[p]), 0, 1e-6) << p;
+            expect_closed(found);
+        }
+    }
+}
+
+TEST(LimitSurface, OnlyWhatBendsIsRefined) {
+    const HexMesh mesh = block_with_footing(12);
+    const LimitSurface found = limit_surface(mesh, {}, {.boundary = true});
+    EXPECT_GE(found.report.level, 1);
+    const std::size_t of_one_level = boundary_surface(mesh).triangles.size() << (2 * found.report.level);
+    EXPECT_LT(found.surface.triangles.size(), of_one_level / 8);
+    EXPECT_TRUE(found.report.watertight);
+    EXPECT_TRUE(found.report.converged);
+    // The points of a coarser tolerance are fewer, its surface the same to it.
+    const LimitSurface coarse = limit_surface(mesh, {}, {.boundary = true, .tolerance = 1e-2});
+    EXPECT_LE(coarse.surface.triangles.size(), found.surface.triangles.size());
+    EXPECT_NEAR(coarse.report.volume / found.report.volume, 1, 1e-2);
+}
+
+TEST(LimitSurface, CellsThatTouchHaveAClosedBoundary) {
+    HexMesh mesh = test::make_box(2, 2, 2);
+    mesh.cells = {mesh.cells[0], mesh.cells[3], mesh.cells[6]};  // they have edges in common
+    test::jitter(mesh, .1, 2);
+    mesh = without_unused_points(std::move(mesh));
+    const LimitSurface found = limit_surface(mesh, {}, {.boundary = true, .tolerance = 1e-3});
+    expect_closed(found);
+    EXPECT_GT(found.report.volume, 2);
+}
+
+TEST(LimitSurface, AFinestLevelEndsTheRefinement) {
+    const HexMesh mesh = stairs(5, 2.4);
+    const LimitSurface found = limit_surface(mesh, {}, {.boundary = true, .tolerance = 1e-6, .max_level = 2});
+    EXPECT_EQ(found.report.level, 2);
+    EXPECT_FALSE(found.report.converged);
+    expect_closed(found);
+    const LimitSurface few = limit_surface(mesh, {}, {.boundary = true, .tolerance = 1e-6, .max_triangles = 4000});
+    EXPECT_FALSE(few.report.converged);
+    EXPECT_LE(few.surface.triangles.size(), 4000U);
+    expect_closed(few);
+}
+
+TEST(LimitSurface, HasNoFieldsUnlessTheyAreWanted) {
+    const HexMesh mesh = ball_with_radius(3);
+    for (SurfaceOptions options : {SurfaceOptions{.boundary = true}, SurfaceOptions{.isos = {0.3}, .boundary = true}}) {
+        const LimitSurface with = limit_surface(mesh, "r2", options);
+        options.fields = false;
+        const LimitSurface without = limit_surface(mesh, "r2", options);
+        EXPECT_EQ(with.fields.size(), 1U);
+        EXPECT_TRUE(without.fields.empty());
+        EXPECT_EQ(with.surface.points, without.surface.points);
+        EXPECT_EQ(with.surface.triangles, without.surface.triangles);
+        EXPECT_EQ(with.normals, without.normals);
+    }
+}
+
+TEST(LimitSurface, TheBoundaryIsTheSameForAnyNumberOfThreads) {
+    const HexMesh mesh = stairs(6, 2.9);
+    const auto surface = [&](std::size_t threads) {
+        const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
+        return limit_surface(mesh, {}, {.boundary = true});
+    };
+    const LimitSurface one = surface(1), four = surface(4);
+    EXPECT_EQ(one.surface.triangles, four.surface.triangles);
+    EXPECT_EQ(one.surface.points, four.surface.points);
+    EXPECT_EQ(one.normals, four.normals);
 }
 
 TEST(LimitSurface, IsTheSameForAnyNumberOfThreads) {
