@@ -6,55 +6,11 @@
 #include <tuple>
 
 #include "subvol/cell.h"
+#include "subvol/detail/turned_cell.h"
 
 namespace subvol::detail {
 
 namespace {
-
-/// A cell with its corners in the order of the parameters of another cell: corner u + 2v + 4w.
-struct TurnedCell {
-    Index cell = 0;
-    std::array<Index, 8> corners;
-};
-
-TurnedCell as_it_is(const Topology& topology, Index cell) {
-    TurnedCell turned{cell, {}};
-    for (std::size_t k = 0; k < 8; ++k) {
-        const auto& [u, v, w] = kCornerParameters[k];
-        turned.corners[static_cast<std::size_t>(u + 2 * v + 4 * w)] = topology.cells[cell][k];
-    }
-    return turned;
-}
-
-/// The cell beyond a side (0 low, 1 high) along an axis, turned in the same way.
-std::optional<TurnedCell> step(const Topology& topology, const TurnedCell& from, std::size_t axis, std::size_t side) {
-    const std::size_t bit = std::size_t{1} << axis;
-    std::array<Index, 4> shared;
-    std::size_t count = 0;
-    for (std::size_t k = 0; k < 8; ++k) {
-        if (((k & bit) != 0) == (side == 1)) shared[count++] = from.corners[k];
-    }
-    const auto in = [](const auto& list, Index p) { return std::find(list.begin(), list.end(), p) != list.end(); };
-    for (const Index f : topology.cell_faces[from.cell]) {
-        const auto& quad = topology.faces[f];
-        if (!in(quad, shared[0]) || !in(quad, shared[3])) continue;
-        const auto [c0, c1] = topology.face_cells[f];
-        if (c1 == kNone) return std::nullopt;
-        TurnedCell next{c0 == from.cell ? c1 : c0, {}};
-        const auto& cell = topology.cells[next.cell];
-        for (std::size_t k = 0; k < 8; ++k) {
-            if (((k & bit) != 0) != (side == 1)) continue;
-            const Index p = from.corners[k];
-            const auto slot = static_cast<std::size_t>(std::find(cell.begin(), cell.end(), p) - cell.begin());
-            next.corners[k ^ bit] = p;
-            for (const std::size_t n : kCornerNeighbors[slot]) {
-                if (!in(shared, cell[n])) next.corners[k] = cell[n];
-            }
-        }
-        return next;
-    }
-    return std::nullopt;
-}
 
 /// A grid of side³ points about a cell, and the steps that lead from the cell to its ends.
 template <std::size_t kSide>
@@ -95,7 +51,7 @@ struct Grid {
             std::array<int, 3> before = offset;
             before[axis] -= 2 * side - 1;
             const auto& from = at(before);
-            if (from) at(offset) = step(topology, *from, axis, static_cast<std::size_t>(side));
+            if (from) at(offset) = cell_beyond(topology, *from, axis, static_cast<std::size_t>(side));
             return !at(offset) || put(*at(offset), offset);
         };
         constexpr std::array<int, 5> kOrder{0, -1, 1, -2, 2};
@@ -194,7 +150,7 @@ void cross_grid(const Topology& topology, Index cell, GridPoints& grid) {
         for (std::size_t side = 0; side < 2; ++side) {
             std::array<int, 3> offset{};
             offset[axis] = side == 0 ? -1 : 1;
-            if (const auto beyond = step(topology, center, axis, side)) std::ignore = found.put(*beyond, offset);
+            if (const auto beyond = cell_beyond(topology, center, axis, side)) std::ignore = found.put(*beyond, offset);
         }
     }
 }

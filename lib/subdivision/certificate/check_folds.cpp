@@ -5,6 +5,8 @@
 #include <numeric>
 #include <optional>
 
+#include "edge_kind.h"
+#include "edge_window.h"
 #include "fold_checker.h"
 #include "subvol/cell.h"
 #include "subvol/certificate.h"
@@ -133,6 +135,13 @@ public:
         return scheme_ == Scheme::Mcq ? decide_window(cell, frame, limits) : decide_spline(cell, frame, limits);
     }
 
+    // Whether a cell touches a segment of an irregular edge that can be proved as a whole, at this level or a finer one.
+    [[nodiscard]] bool is_at_segment(Index cell) const {
+        if (scheme_ != Scheme::Bsxw && scheme_ != Scheme::CatmullClark) return false;
+        const std::optional<EdgeWindow> window = edge_window(topology_, cell);
+        return window && has_rules(*window) && edge_kind(scheme_, window->cells).is_bounded();
+    }
+
 private:
     // About the cell's first corner: differences of near coordinates are exact, or nearly so.
     [[nodiscard]] Vec3 place(Index cell, Index point) const { return mesh_.points[point] - mesh_.points[mesh_.cells[cell][0]]; }
@@ -168,7 +177,10 @@ private:
 
     [[nodiscard]] std::optional<PartResult> decide_spline(Index cell, const PartFrame& frame, const Limits& limits) const {
         GridPoints grid;
-        if (!regular_grid(topology_, cell, grid)) return std::nullopt;
+        if (!regular_grid(topology_, cell, grid)) {
+            // Proved at once with all other cells at its segment of an irregular edge, or left.
+            return is_at_proved_segment(cell, limits) ? std::optional(PartResult{{}, 0, 1, 0}) : std::nullopt;
+        }
         std::array<Vec3, 64> points{};
         for (std::size_t n = 0; n < 64; ++n) {
             if (grid[n] != kNone) points[n] = place(cell, grid[n]);
@@ -184,6 +196,27 @@ private:
             }
         }
         return decide_part(PolynomialPart::tricubic(points, frame), limits);
+    }
+
+    // The volume of BSXW goes on straight beyond the boundary, as splines of a grid do; that of Catmull-Clark does not.
+    [[nodiscard]] bool has_rules(const EdgeWindow& window) const {
+        return scheme_ == Scheme::Bsxw || (!window.is_beyond(0) && !window.is_beyond(3));
+    }
+
+    [[nodiscard]] bool is_at_proved_segment(Index cell, const Limits& limits) const {
+        const std::optional<EdgeWindow> window = edge_window(topology_, cell);
+        if (!window || !has_rules(*window)) return false;
+        std::vector<Vec3> points;
+        for (const Index p : window->points) points.push_back(p == kNone ? Vec3(0.0) : place(cell, p));
+        const std::size_t layer = points.size() / EdgeWindow::kLayers;
+        for (std::size_t side = 0; side < 2; ++side) {
+            const std::size_t beyond = side == 0 ? 0 : 3, last = side == 0 ? 1 : 2, before = 3 - last;
+            if (!window->is_beyond(beyond)) continue;
+            for (std::size_t p = 0; p < layer; ++p) {
+                points[beyond * layer + p] = points[last * layer + p] * 2.0 - points[before * layer + p];
+            }
+        }
+        return proves_segment(edge_kind(scheme_, window->cells), points, 3 * limits.error);
     }
 
     const HexMesh& mesh_;
@@ -247,7 +280,7 @@ void FoldChecker::check(std::span<const Index> cells, FoldEffort effort) {
                 if (results[k]) {
                     add(cell, *results[k]);
                 } else {
-                    irregular.push_back({cell, cell, {}});
+                    irregular.push_back({cell, cell, {}, grids.is_at_segment(cell)});
                 }
             }
         }
@@ -283,11 +316,17 @@ void FoldChecker::add(Index control, const PartResult& result, int level) {
 }
 
 // open: cells of a level, all of which are descendants of cells at irregular edges
-void FoldChecker::descend(const HexMesh& mesh, const std::vector<OpenCell>& open, int level, FoldEffort effort) {
-    if (level == options_.irregular_levels || open.empty()) {
-        for (const OpenCell& at : open) cells_[at.control].irregular += volume_of(at.frame);
-        return;
+void FoldChecker::descend(const HexMesh& mesh, std::vector<OpenCell> open, int level, FoldEffort effort) {
+    // Segments of straight edges are proved when they are small enough, so these cells are refined further.
+    constexpr int kFurther = 4;
+    if (level >= options_.irregular_levels) {
+        std::erase_if(open, [&](const OpenCell& at) {
+            if (at.at_segment && level < options_.irregular_levels + kFurther) return false;
+            cells_[at.control].irregular += volume_of(at.frame);
+            return true;
+        });
     }
+    if (open.empty()) return;
     const std::vector<Index> around = with_neighbors(mesh, open);
     constexpr std::size_t kRefined = 4;  // tests that take as long as to refine a cell
     tests_ += kRefined * around.size();
@@ -298,14 +337,17 @@ void FoldChecker::descend(const HexMesh& mesh, const std::vector<OpenCell>& open
                         kOfLevel * (level + 1) * largest_coordinate(fine), effort};
     const Grids grids(fine, scheme_.kind);
     std::vector<std::optional<PartResult>> results(8 * open.size());
+    std::vector<std::uint8_t> at_segment(results.size(), 0);
     const auto child_of = [&](std::size_t n) {
         const auto& [u, v, w] = kCornerParameters[n % 8];
         const OpenCell& parent = open[n / 8];
-        return OpenCell{static_cast<Index>(n), parent.control, parent.frame.child(static_cast<std::size_t>(4 * u + 2 * v + w))};
+        return OpenCell{static_cast<Index>(n), parent.control, parent.frame.child(static_cast<std::size_t>(4 * u + 2 * v + w)),
+                        at_segment[n] != 0};
     };
     tbb::parallel_for(std::size_t{0}, results.size(), [&](std::size_t n) {
         const OpenCell child = child_of(n);
         results[n] = grids.decide(child.cell, child.frame, limits);
+        at_segment[n] = !results[n] && grids.is_at_segment(child.cell) ? 1 : 0;
     });
     std::vector<OpenCell> next;
     for (std::size_t n = 0; n < results.size(); ++n) {
@@ -317,7 +359,7 @@ void FoldChecker::descend(const HexMesh& mesh, const std::vector<OpenCell>& open
         }
     }
     std::erase_if(next, [&](const OpenCell& at) { return cells_[at.control].fold.has_value(); });
-    descend(fine, next, level + 1, effort);
+    descend(fine, std::move(next), level + 1, effort);
 }
 
 void FoldChecker::sample(std::span<const Index> cells) {

@@ -18,9 +18,11 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <mutex>
 #include <tuple>
 #include <vector>
+
+#include "enclosure.h"
+#include "kept.h"
 
 namespace subvol::detail {
 
@@ -31,23 +33,6 @@ using Eigen::VectorXd;
 using Exponents = std::array<int, 3>;
 
 constexpr int kNodes = 9;  // of level 3 along an axis, for the fit
-
-/// What was made for a key is kept. Thread-safe; `make` may ask for other keys.
-template <class Key, class Value>
-class Kept {
-public:
-    template <class Make>
-    const Value& get(const Key& key, const Make& make) {
-        const std::scoped_lock lock(mutex_);
-        if (const auto found = values_.find(key); found != values_.end()) return found->second;
-        Value value = make();
-        return values_.emplace(key, std::move(value)).first->second;
-    }
-
-private:
-    std::recursive_mutex mutex_;
-    std::map<Key, Value> values_;
-};
 
 Eigen::Index index(std::size_t i) {
     return static_cast<Eigen::Index>(i);
@@ -375,43 +360,6 @@ DerivativeForm make_form(const BoxType& type) {
     form.kept_rows = DenseRows(form.kept);
     form.corner_rows = DenseRows(form.corners);
     return form;
-}
-
-// Interval arithmetic in the norm that the proof needs, the largest row sum: a matrix of doubles, and by how much the row sums
-// of the difference to the true matrix may be off. `up` is more than the rounding of any sum or bound here.
-constexpr double kUnitRoundoff = 0x1p-53;
-
-double up(double x) {
-    return x * (1 + 0x1p-40);
-}
-
-double norm(const MatrixXd& matrix) {
-    return up(matrix.cwiseAbs().rowwise().sum().maxCoeff());
-}
-
-// The rounding of a sum of `terms` products, in parts of the sum of their magnitudes, whatever its order. Underflow is far
-// below.
-double rounding(Eigen::Index terms) {
-    return 1.01 * static_cast<double>(terms + 1) * kUnitRoundoff;
-}
-
-struct Enclosure {
-    MatrixXd near;
-    double off = 0;
-
-    [[nodiscard]] double most() const { return up(norm(near) + off); }
-};
-
-// by: exact, of the norm `by_norm`; terms: at most so many in a row of it
-template <class Matrix>
-Enclosure times(const Matrix& by, double by_norm, Eigen::Index terms, const Enclosure& with) {
-    return {by * with.near, up(by_norm * (with.off + rounding(terms) * norm(with.near)))};
-}
-
-Enclosure minus(const Enclosure& a, const Enclosure& b) {
-    MatrixXd near = a.near - b.near;
-    const double rounded = 2 * kUnitRoundoff * norm(near);
-    return {std::move(near), up(a.off + b.off + rounded)};
 }
 
 // Whether all entries are multiples of 2⁻ᵇⁱᵗˢ below a limit.

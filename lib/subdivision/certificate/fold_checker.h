@@ -55,6 +55,7 @@ private:
     struct OpenCell {
         Index cell, control;
         PartFrame frame;
+        bool at_segment = false;  ///< it touches a straight irregular edge that can be proved
     };
     struct PartResult;
     struct Limits;
@@ -65,7 +66,7 @@ private:
 
     void add(Index control, const PartResult& result, int level = 0);
     void descend_together(const std::vector<OpenCell>& irregular, FoldEffort effort);
-    void descend(const HexMesh& mesh, const std::vector<OpenCell>& open, int level, FoldEffort effort);
+    void descend(const HexMesh& mesh, std::vector<OpenCell> open, int level, FoldEffort effort);
     void sample(std::span<const Index> cells);
     void place(std::vector<FoldPlace>& places) const;
 

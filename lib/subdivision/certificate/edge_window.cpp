@@ -1,0 +1,231 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "edge_window.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "subvol/detail/regular_grid.h"
+#include "subvol/detail/turned_cell.h"
+#include "subvol/refine.h"
+
+namespace subvol::detail {
+
+namespace {
+
+bool has_valence(const Topology& topology, Index edge, std::size_t cells) {
+    return topology.edge_has_ring[edge] != 0 && topology.edge_cells[edge].size() == cells;
+}
+
+// Whether an irregular edge with `cells` cells goes straight through a point, or ends at it on a smooth boundary: all other
+// edges are regular.
+bool is_on_straight_edge(const Topology& topology, Index point, std::size_t cells, bool is_end) {
+    std::size_t along = 0, across = 0, smooth = 0;
+    const auto edges = topology.point_edges[point];
+    for (const Index e : edges) {
+        along += has_valence(topology, e, cells) ? 1 : 0;
+        across += has_valence(topology, e, 4) ? 1 : 0;
+        smooth += topology.edge_on_boundary[e] != 0 && topology.edge_is_crease[e] == 0 && topology.edge_cells[e].size() == 2 &&
+                          topology.edge_faces[e].size() == 3
+                      ? 1
+                      : 0;
+    }
+    if (is_end) return along == 1 && smooth == cells && edges.size() == cells + 1;
+    return along == 2 && across == cells && edges.size() == cells + 2 && topology.point_on_boundary[point] == 0;
+}
+
+// Whether a point is as in a grid, inside or on a side of it.
+bool is_regular(const Topology& topology, Index point, bool on_side) {
+    return topology.point_edges[point].size() == (on_side ? 5 : 6) && is_grid_point(topology, point);
+}
+
+// The cell with the axes u and v across an edge of it, and w along the edge from its first corner; right-handed as the cell is.
+TurnedCell along_edge(const Topology& topology, Index cell, std::size_t edge) {
+    const auto& [from, to] = kCellEdges[edge];
+    std::array<std::size_t, 3> axes = kCornerNeighbors[from];
+    while (axes[2] != to) std::ranges::rotate(axes, axes.begin() + 1);
+    TurnedCell turned{cell, {}};
+    for (std::size_t k = 0; k < 8; ++k) {
+        // The corner that differs from `from` in the axes whose bits are set.
+        std::array<int, 3> at = kCornerParameters[from];
+        for (std::size_t a = 0; a < 3; ++a) {
+            if ((k >> a & 1) == 0) continue;
+            for (std::size_t c = 0; c < 3; ++c) at[c] += kCornerParameters[axes[a]][c] - kCornerParameters[from][c];
+        }
+        turned.corners[k] = topology.cells[cell][kCornerOctants[static_cast<std::size_t>(at[0] + 2 * at[1] + 4 * at[2])]];
+    }
+    return turned;
+}
+
+// The cell with u along the former v, and v against the former u.
+TurnedCell quarter_turn(const TurnedCell& from) {
+    TurnedCell turned{from.cell, {}};
+    for (std::size_t k = 0; k < 8; ++k) {
+        const std::size_t u = k & 1, v = k >> 1 & 1, w = k >> 2;
+        turned.corners[k] = from.corners[(1 - v) + 2 * u + 4 * w];
+    }
+    return turned;
+}
+
+// A mesh of a star and `layers` layers of cells along its edge; rules do not use positions.
+HexMesh star_mesh(const Star& star, std::size_t layers) {
+    HexMesh mesh;
+    mesh.points.resize(star.points() * (layers + 1));
+    const auto reach = static_cast<int>(star.reach);
+    for (std::size_t l = 0; l < layers; ++l) {
+        for (std::size_t s = 0; s < star.cells; ++s) {
+            for (int i = 0; i < reach; ++i) {
+                for (int j = 0; j < reach; ++j) {
+                    std::array<Index, 8> cell{};
+                    for (std::size_t k = 0; k < 8; ++k) {
+                        const auto& [u, v, w] = kCornerParameters[k];
+                        const std::size_t layer = l + static_cast<std::size_t>(w);
+                        cell[k] = static_cast<Index>(layer * star.points() + star.number(s, i + u, j + v));
+                    }
+                    mesh.cells.push_back(cell);
+                }
+            }
+        }
+    }
+    return mesh;
+}
+
+}  // namespace
+
+std::size_t Star::number(std::size_t s, int i, int j) const {
+    if (j < 0) return number((s + cells - 1) % cells, -j, i);
+    if (i < 0) return number((s + 1) % cells, j, -i);
+    if (i == 0 && j == 0) return 0;
+    if (i == 0) return number((s + 1) % cells, j, 0);
+    return 1 + (s * reach + static_cast<std::size_t>(i) - 1) * (reach + 1) + static_cast<std::size_t>(j);
+}
+
+std::optional<EdgeWindow> edge_window(const Topology& topology, Index cell) {
+    std::size_t irregular = 0, count = 0;
+    for (std::size_t e = 0; e < 12; ++e) {
+        const Index edge = topology.cell_edges[cell][e];
+        if (has_valence(topology, edge, 4) || topology.edge_on_boundary[edge] != 0) continue;
+        irregular = e;
+        if (++count > 1) return std::nullopt;
+    }
+    const Index edge = topology.cell_edges[cell][irregular];
+    const std::size_t cells = topology.edge_cells[edge].size();
+    if (count != 1 || !has_valence(topology, edge, cells)) return std::nullopt;
+    const TurnedCell at_edge = along_edge(topology, cell, irregular);
+    std::array<bool, 2> is_end{};  // whether the edge ends at the boundary at its low and high end
+    for (std::size_t side = 0; side < 2; ++side) {
+        is_end[side] = !cell_beyond(topology, at_edge, 2, side);
+        if (!is_on_straight_edge(topology, at_edge.corners[4 * side], cells, is_end[side])) return std::nullopt;
+    }
+    const Star star{cells, EdgeWindow::kReach};
+    EdgeWindow window{cells, std::vector<Index>(EdgeWindow::kLayers * star.points(), kNone)};
+    const auto put = [&](const TurnedCell& at, std::size_t s, int i, int j, int layer) {
+        for (std::size_t k = 0; k < 8; ++k) {
+            const int u = k & 1, v = k >> 1 & 1, w = k >> 2 & 1;
+            const auto l = static_cast<std::size_t>(layer + 1 + w);
+            Index& there = window.points[l * star.points() + star.number(s, i + u, j + v)];
+            if (there != kNone && there != at.corners[k]) return false;
+            there = at.corners[k];
+        }
+        return true;
+    };
+    TurnedCell first = at_edge;
+    for (std::size_t s = 0; s < cells; ++s) {
+        std::optional<TurnedCell> column = first;
+        for (int n = 0; n < 4; ++n) {  // the cells (0, 0), (1, 0), (1, 1) and (0, 1) of the sector
+            const int i = n == 1 || n == 2 ? 1 : 0, j = n == 2 || n == 3 ? 1 : 0;
+            if (n > 0) column = cell_beyond(topology, *column, n == 2 ? 1 : 0, n == 3 ? 0 : 1);
+            if (!column || !put(*column, s, i, j, 0)) return std::nullopt;
+            for (std::size_t side = 0; side < 2; ++side) {
+                const auto beyond = cell_beyond(topology, *column, 2, side);
+                if (beyond.has_value() == is_end[side]) return std::nullopt;
+                if (beyond && !put(*beyond, s, i, j, side == 0 ? -1 : 1)) return std::nullopt;
+            }
+        }
+        const auto next = cell_beyond(topology, first, 0, 0);
+        if (!next) return std::nullopt;
+        first = quarter_turn(*next);
+    }
+    for (std::size_t s = 0; s < cells; ++s) {
+        for (const std::size_t p : {star.number(s, 1, 0), star.number(s, 1, 1)}) {
+            for (std::size_t side = 0; side < 2; ++side) {
+                if (!is_regular(topology, window.points[(1 + side) * star.points() + p], is_end[side])) return std::nullopt;
+            }
+        }
+    }
+    return window;
+}
+
+// The rules come from a star that is larger than the window, so that its boundary does not matter.
+EdgeRules edge_rules(Scheme scheme, std::size_t cells) {
+    constexpr std::size_t kMeshReach = 3, kMeshLayers = 5, kFirst = 2;  // first: the layer where the segment starts
+    const Star coarse{cells, kMeshReach}, fine{cells, 2 * kMeshReach}, star{cells, EdgeWindow::kReach};
+    const HexMesh mesh = star_mesh(coarse, kMeshLayers);
+    const RefinementTables tables = refinement_tables(build_topology(mesh), {.scheme = {.kind = scheme}, .levels = 1});
+    const HexMesh fine_mesh = star_mesh(fine, 2 * kMeshLayers);
+    // Child k of a cell lies at its corner k, so the places of points follow from their cells.
+    std::vector<Index> numbers(fine_mesh.points.size(), kNone);
+    std::size_t number = 0;
+    for (std::size_t l = 0; l < kMeshLayers; ++l) {
+        for (std::size_t s = 0; s < cells; ++s) {
+            for (std::size_t n = 0; n < kMeshReach * kMeshReach; ++n, ++number) {
+                for (std::size_t child = 0; child < 8; ++child) {
+                    for (std::size_t k = 0; k < 8; ++k) {
+                        const auto along = [&](std::size_t axis, std::size_t first) {
+                            return 2 * static_cast<int>(first) + kCornerParameters[child][axis] + kCornerParameters[k][axis];
+                        };
+                        const std::size_t layer = static_cast<std::size_t>(along(2, l));
+                        const std::size_t p = fine.number(s, along(0, n / kMeshReach), along(1, n % kMeshReach));
+                        numbers[layer * fine.points() + p] = tables.cells[8 * number + child][k];
+                    }
+                }
+            }
+        }
+    }
+    const std::size_t columns = EdgeWindow::kLayers * star.points();
+    std::vector<double> units(mesh.points.size() * columns, 0.0);
+    const auto each_point = [&](const auto& visit) {  // visit(number in the window, sector, i, j, layer)
+        for (int layer = -1; layer <= 2; ++layer) {
+            for (std::size_t s = 0; s < cells; ++s) {
+                for (int i = 0; i <= 2; ++i) {
+                    for (int j = 0; j <= 2; ++j) {
+                        visit(static_cast<std::size_t>(layer + 1) * star.points() + star.number(s, i, j), s, i, j, layer);
+                    }
+                }
+            }
+        }
+    };
+    each_point([&](std::size_t at, std::size_t s, int i, int j, int layer) {
+        const auto in_mesh =
+            static_cast<std::size_t>(static_cast<int>(kFirst) + layer) * coarse.points() + coarse.number(s, i, j);
+        units[in_mesh * columns + at] = 1;
+    });
+    const std::vector<double> weights = tables.apply(std::span<const double>(units), columns);
+    // Rules about the edge divide by m, m², m + 2 and powers of 2.
+    const auto m = static_cast<double>(cells);
+    const double denominator = 512 * m * m * (m + 2);
+    const auto put_row = [&](Eigen::MatrixXd& rows, std::size_t row, std::size_t s, int i, int j, int layer) {
+        const auto l = static_cast<std::size_t>(2 * static_cast<int>(kFirst) + layer);
+        const std::size_t point = numbers[l * fine.points() + fine.number(s, i, j)];
+        for (std::size_t c = 0; c < columns; ++c) {
+            const double numerator = weights[point * columns + c] * denominator, whole = std::round(numerator);
+            constexpr double kSame = 1e-6;
+            rows(static_cast<Eigen::Index>(row), static_cast<Eigen::Index>(c)) =
+                std::abs(numerator - whole) < kSame ? whole / denominator : std::numeric_limits<double>::quiet_NaN();
+        }
+    };
+    EdgeRules rules{cells, {}, {}};
+    for (int half = 0; half < 2; ++half) {
+        auto& rows = rules.halves[static_cast<std::size_t>(half)];
+        rows.resize(static_cast<Eigen::Index>(columns), static_cast<Eigen::Index>(columns));
+        each_point([&](std::size_t at, std::size_t s, int i, int j, int layer) { put_row(rows, at, s, i, j, half + layer); });
+    }
+    for (int n = 0; n < 2; ++n) {
+        auto& rows = rules.ring[static_cast<std::size_t>(n)];
+        rows.resize(64, static_cast<Eigen::Index>(columns));
+        for (int p = 0; p < 64; ++p) put_row(rows, static_cast<std::size_t>(p), 0, p / 16, n - 1 + p / 4 % 4, p % 4 - 1);
+    }
+    return rules;
+}
+
+}  // namespace subvol::detail
