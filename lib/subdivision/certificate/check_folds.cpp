@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -8,6 +9,8 @@
 #include "edge_kind.h"
 #include "edge_window.h"
 #include "fold_checker.h"
+#include "link_kind.h"
+#include "point_window.h"
 #include "subvol/cell.h"
 #include "subvol/certificate.h"
 #include "subvol/detail/parallel_each.h"
@@ -122,6 +125,7 @@ public:
         if (scheme_ == Scheme::Linear) return;
         topology_ = build_topology(mesh);
         is_grid_.resize(mesh.points.size());
+        points_.assign(mesh.points.size(), kUnknownPoint);
         parallel_each(is_grid_.size(), [&](std::size_t p) { is_grid_[p] = is_grid_point(topology_, static_cast<Index>(p)); });
     }
 
@@ -178,8 +182,9 @@ private:
     [[nodiscard]] std::optional<PartResult> decide_spline(Index cell, const PartFrame& frame, const Limits& limits) const {
         GridPoints grid;
         if (!regular_grid(topology_, cell, grid)) {
-            // Proved at once with all other cells at its segment of an irregular edge, or left.
-            return is_at_proved_segment(cell, limits) ? std::optional(PartResult{{}, 0, 1, 0}) : std::nullopt;
+            // Proved at once with all other cells at its segment of an irregular edge, or at its irregular point; or left.
+            const bool is_proved = is_at_proved_segment(cell, limits) || is_at_proved_point(cell, limits);
+            return is_proved ? std::optional(PartResult{{}, 0, 1, 0}) : std::nullopt;
         }
         std::array<Vec3, 64> points{};
         for (std::size_t n = 0; n < 64; ++n) {
@@ -219,10 +224,35 @@ private:
         return proves_segment(edge_kind(scheme_, window->cells), points, 3 * limits.error);
     }
 
+    // What was found for a point holds for all cells at it, so it is kept.
+    [[nodiscard]] bool is_at_proved_point(Index cell, const Limits& limits) const {
+        for (const Index p : topology_.cells[cell]) {
+            if (is_grid_[p] != 0) continue;
+            const std::uint8_t known = std::atomic_ref(points_[p]).load();
+            if (known == kProvedPoint) return true;
+            if (known == kOtherPoint) continue;
+            const bool is_proved = proves(p, cell, limits);
+            std::atomic_ref(points_[p]).store(is_proved ? kProvedPoint : kOtherPoint);
+            if (is_proved) return true;
+        }
+        return false;
+    }
+
+    [[nodiscard]] bool proves(Index point, Index cell, const Limits& limits) const {
+        const std::optional<PointWindow> window = point_window(topology_, point, cell);
+        if (!window) return false;
+        std::vector<Vec3> points;
+        for (const Index p : window->points) points.push_back(mesh_.points[p] - mesh_.points[point]);
+        return proves_point(link_kind(scheme_, window->link), points, limits.error);
+    }
+
+    static constexpr std::uint8_t kUnknownPoint = 0, kProvedPoint = 1, kOtherPoint = 2;
+
     const HexMesh& mesh_;
     Scheme scheme_;
     Topology topology_;
     std::vector<std::uint8_t> is_grid_;
+    mutable std::vector<std::uint8_t> points_;
 };
 
 // The cells of `open`, in their order, and then those of two layers around them.

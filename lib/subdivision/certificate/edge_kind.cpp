@@ -19,10 +19,12 @@
 #include <cmath>
 #include <complex>
 #include <numbers>
+#include <optional>
 #include <utility>
 
 #include "enclosure.h"
 #include "kept.h"
+#include "spline_rows.h"
 
 namespace subvol::detail {
 
@@ -44,7 +46,7 @@ Row row_of(std::size_t i) {
     return static_cast<Row>(i);
 }
 
-/// A window's points and how the symmetries of its edge exchange them.
+/// The points of a window.
 class WindowPlan {
 public:
     explicit WindowPlan(std::size_t cells) : star_{cells, EdgeWindow::kReach} {}
@@ -63,26 +65,15 @@ public:
         }
     }
 
-    // The numbers of the window's points after a symmetry: turned by a sector, mirrored about spoke 0, ends exchanged.
-    [[nodiscard]] std::vector<Row> symmetry(bool turn, bool mirror, bool exchange) const {
-        std::vector<Row> to(static_cast<std::size_t>(points()));
-        each([&](Row p, std::size_t s, int i, int j) {
-            const std::size_t m = star_.cells, sector = (mirror ? m - 1 - s : s) + (turn ? 1 : 0);
-            const Row q = row_of(star_.number(sector % m, mirror ? j : i, mirror ? i : j));
-            for (Row l = 0; l < 4; ++l) to[static_cast<std::size_t>(l * across() + p)] = (exchange ? 3 - l : l) * across() + q;
-        });
-        return to;
-    }
-
 private:
     Star star_;
 };
 
 // Whether a symmetry takes the rules of one half to those of another.
-bool is_alike(const MatrixXd& a, const MatrixXd& b, const std::vector<Row>& to) {
+bool is_alike(const MatrixXd& a, const MatrixXd& b, const std::vector<std::size_t>& to) {
     for (Row k = 0; k < a.rows(); ++k) {
         for (Row i = 0; i < a.cols(); ++i) {
-            const double other = b(to[static_cast<std::size_t>(k)], to[static_cast<std::size_t>(i)]);
+            const double other = b(row_of(to[static_cast<std::size_t>(k)]), row_of(to[static_cast<std::size_t>(i)]));
             if (!(std::abs(a(k, i) - other) <= kAlike)) return false;
         }
     }
@@ -92,6 +83,7 @@ bool is_alike(const MatrixXd& a, const MatrixXd& b, const std::vector<Row>& to) 
 // What the theorem takes for granted of the rules: means, the symmetries, layers that are at equal distances.
 bool is_as_expected(const EdgeRules& rules, const WindowPlan& plan, bool extrudes) {
     const Row n = plan.across();
+    const std::size_t m = rules.cells;
     VectorXd w(plan.points());
     for (Row k = 0; k < w.size(); ++k) w(k) = static_cast<double>(k / n) - 1.5;
     for (std::size_t h = 0; h < 2; ++h) {
@@ -99,9 +91,9 @@ bool is_as_expected(const EdgeRules& rules, const WindowPlan& plan, bool extrude
         const double middle = h == 0 ? -0.25 : 0.25;
         if (!(half.minCoeff() >= 0) || !((half.rowwise().sum().array() - 1).abs().maxCoeff() <= 4 * kAlike) ||
             !((half * w - w / 2 - VectorXd::Constant(w.size(), middle)).cwiseAbs().maxCoeff() <= 8 * kAlike) ||
-            !is_alike(half, half, plan.symmetry(true, false, false)) ||
-            !is_alike(half, half, plan.symmetry(false, true, false)) ||
-            !is_alike(half, rules.halves[1 - h], plan.symmetry(false, false, true))) {
+            !is_alike(half, half, window_symmetry(m, 1, false, false)) ||
+            !is_alike(half, half, window_symmetry(m, 0, true, false)) ||
+            !is_alike(half, rules.halves[1 - h], window_symmetry(m, 0, false, true))) {
             return false;
         }
         // Data that are constant along the edge: sums over layers are the same for all layers of both halves. Where the rules
@@ -223,15 +215,16 @@ MatrixXd with_ones(const MatrixXd& characteristic) {
 
 // Vectors near the left eigenvectors of the mean of both halves. The first three are even under an exchange of the ends, the
 // last is odd without an error: so its product with data that are constant along the edge is 0.
-MatrixXd left_vectors(const EdgeRules& rules, const WindowPlan& plan, const MatrixXd& kept) {
+MatrixXd left_vectors(const EdgeRules& rules, const MatrixXd& kept) {
     const MatrixXd mean = (rules.halves[0] + rules.halves[1]) / 2;
-    const std::vector<Row> exchanged = plan.symmetry(false, false, true);
+    const std::size_t m = rules.cells;
+    const std::vector<std::size_t> exchanged = window_symmetry(m, 0, false, true);
     MatrixXd left = kept * (kept.transpose() * kept).inverse();
     constexpr int kPowers = 200;
     for (int power = 0; power <= kPowers; ++power) {
         const MatrixXd before = power == 0 ? left : MatrixXd(mean.transpose() * left);
         for (Row k = 0; k < left.rows(); ++k) {
-            const Row other = exchanged[static_cast<std::size_t>(k)];
+            const Row other = row_of(exchanged[static_cast<std::size_t>(k)]);
             for (Row c = 0; c < 4; ++c) left(k, c) = (before(k, c) + (c == 3 ? -1 : 1) * before(other, c)) / 2;
         }
         const MatrixXd units = kept.transpose() * left;
@@ -239,7 +232,7 @@ MatrixXd left_vectors(const EdgeRules& rules, const WindowPlan& plan, const Matr
         left.col(3) /= units(3, 3);
     }
     for (Row k = 0; k < left.rows(); ++k) {
-        const Row other = exchanged[static_cast<std::size_t>(k)];
+        const Row other = row_of(exchanged[static_cast<std::size_t>(k)]);
         if (other <= k) continue;
         left(other, 3) = -left(k, 3);
     }
@@ -248,25 +241,26 @@ MatrixXd left_vectors(const EdgeRules& rules, const WindowPlan& plan, const Matr
 
 // How far these vectors are from their mean over all symmetries of the edge, which the theorem takes for L: row sums.
 double asymmetry(const MatrixXd& left, const WindowPlan& plan, const VectorXd& weights) {
-    const double turn = 2 * std::numbers::pi / static_cast<double>(plan.star().cells);
+    const std::size_t m = plan.star().cells;
+    const double turn = 2 * std::numbers::pi / static_cast<double>(m);
     Eigen::Matrix3d turned = Eigen::Matrix3d::Identity();
     turned.topLeftCorner(2, 2) << std::cos(turn), -std::sin(turn), std::sin(turn), std::cos(turn);
     double most = 0;
-    const auto include = [&](const std::vector<Row>& to, const Eigen::Matrix3d& by) {
+    const auto include = [&](const std::vector<std::size_t>& to, const Eigen::Matrix3d& by) {
         Eigen::Matrix4d all = Eigen::Matrix4d::Identity();
         all.bottomRightCorner(3, 3) = by;
         Eigen::Vector4d sums = Eigen::Vector4d::Zero();
         for (Row k = 0; k < left.rows(); ++k) {
             const Eigen::Vector4d expected = all * left.row(k).transpose();
-            sums += (left.row(to[static_cast<std::size_t>(k)]).transpose() - expected).cwiseAbs() * weights(k);
+            sums += (left.row(row_of(to[static_cast<std::size_t>(k)])).transpose() - expected).cwiseAbs() * weights(k);
         }
         most = std::max(most, sums.maxCoeff());
     };
-    include(plan.symmetry(true, false, false), turned);
-    include(plan.symmetry(false, true, false), Eigen::Vector3d(1, -1, 1).asDiagonal());
-    include(plan.symmetry(false, false, true), Eigen::Vector3d(1, 1, -1).asDiagonal());
+    include(window_symmetry(m, 1, false, false), turned);
+    include(window_symmetry(m, 0, true, false), Eigen::Vector3d(1, -1, 1).asDiagonal());
+    include(window_symmetry(m, 0, false, true), Eigen::Vector3d(1, 1, -1).asDiagonal());
     // A symmetry is a product of at most m + 2 of these, each of which takes row sums to at most 1.5 times as much.
-    return 2 * static_cast<double>(plan.star().cells + 2) * up(most);
+    return 2 * static_cast<double>(m + 2) * up(most);
 }
 
 /// The derivatives in the parts of the ring, as rows over the window: for each Bernstein coefficient of degree 3 the three rows
@@ -275,37 +269,6 @@ struct RingRows {
     Enclosure rows;
     double kappa = 0;
 };
-
-// Multiplies an index of 4×4×4 rows.
-MatrixXd along_axis(const Eigen::Matrix4d& by, const MatrixXd& rows, Row axis) {
-    const Row stride = axis == 0 ? 16 : axis == 1 ? 4 : 1;
-    MatrixXd result = MatrixXd::Zero(rows.rows(), rows.cols());
-    for (Row k = 0; k < 64; ++k) {
-        const Row at = k / stride % 4;
-        for (Row i = 0; i < 4; ++i) result.row(k) += by(at, i) * rows.row(k + (i - at) * stride);
-    }
-    return result;
-}
-
-Eigen::Matrix4d bezier_of_spline() {
-    Eigen::Matrix4d by;
-    by << 1, 4, 1, 0, 0, 4, 2, 0, 0, 2, 4, 0, 0, 1, 4, 1;
-    return by / 6;
-}
-
-// From cubic Bézier points to the coefficients of the derivative, raised to degree 3 again.
-Eigen::Matrix4d derivative_of_bezier() {
-    Eigen::Matrix4d by;
-    by << -3, 3, 0, 0, -1, -1, 2, 0, 0, -2, 1, 1, 0, 0, -3, 3;
-    return by;
-}
-
-// From the coefficients on [0, 1] to those on a half.
-Eigen::Matrix4d half_of_bezier(bool upper) {
-    Eigen::Matrix4d lower;
-    lower << 8, 0, 0, 0, 4, 4, 0, 0, 2, 4, 2, 0, 1, 3, 3, 1;
-    return (upper ? Eigen::Matrix4d(lower.reverse()) : lower) / 8;
-}
 
 std::optional<RingRows> ring_rows(const EdgeRules& rules, const Enclosure& kept, const VectorXd& weights) {
     const double middle = std::numbers::pi / static_cast<double>(rules.cells);
@@ -456,7 +419,7 @@ EdgeKind make_edge_kind(const EdgeRules& rules, bool extrudes) {
     });
     const VectorXd inverse_weights = weights.cwiseInverse();
     const MatrixXd unscaled = with_ones(map->values);
-    const MatrixXd left = left_vectors(rules, plan, unscaled);
+    const MatrixXd left = left_vectors(rules, unscaled);
 
     constexpr double kOfScaling = 4 * kUnitRoundoff;
     Enclosure kept{inverse_weights.asDiagonal() * unscaled, 0};

@@ -17,44 +17,12 @@ bool has_valence(const Topology& topology, Index edge, std::size_t cells) {
     return topology.edge_has_ring[edge] != 0 && topology.edge_cells[edge].size() == cells;
 }
 
-// Whether an irregular edge with `cells` cells goes straight through a point, or ends at it on a smooth boundary: all other
-// edges are regular.
-bool is_on_straight_edge(const Topology& topology, Index point, std::size_t cells, bool is_end) {
-    std::size_t along = 0, across = 0, smooth = 0;
-    const auto edges = topology.point_edges[point];
-    for (const Index e : edges) {
-        along += has_valence(topology, e, cells) ? 1 : 0;
-        across += has_valence(topology, e, 4) ? 1 : 0;
-        smooth += topology.edge_on_boundary[e] != 0 && topology.edge_is_crease[e] == 0 && topology.edge_cells[e].size() == 2 &&
-                          topology.edge_faces[e].size() == 3
-                      ? 1
-                      : 0;
-    }
-    if (is_end) return along == 1 && smooth == cells && edges.size() == cells + 1;
-    return along == 2 && across == cells && edges.size() == cells + 2 && topology.point_on_boundary[point] == 0;
-}
-
-// Whether a point is as in a grid, inside or on a side of it.
-bool is_regular(const Topology& topology, Index point, bool on_side) {
-    return topology.point_edges[point].size() == (on_side ? 5 : 6) && is_grid_point(topology, point);
-}
-
 // The cell with the axes u and v across an edge of it, and w along the edge from its first corner; right-handed as the cell is.
 TurnedCell along_edge(const Topology& topology, Index cell, std::size_t edge) {
     const auto& [from, to] = kCellEdges[edge];
     std::array<std::size_t, 3> axes = kCornerNeighbors[from];
     while (axes[2] != to) std::ranges::rotate(axes, axes.begin() + 1);
-    TurnedCell turned{cell, {}};
-    for (std::size_t k = 0; k < 8; ++k) {
-        // The corner that differs from `from` in the axes whose bits are set.
-        std::array<int, 3> at = kCornerParameters[from];
-        for (std::size_t a = 0; a < 3; ++a) {
-            if ((k >> a & 1) == 0) continue;
-            for (std::size_t c = 0; c < 3; ++c) at[c] += kCornerParameters[axes[a]][c] - kCornerParameters[from][c];
-        }
-        turned.corners[k] = topology.cells[cell][kCornerOctants[static_cast<std::size_t>(at[0] + 2 * at[1] + 4 * at[2])]];
-    }
-    return turned;
+    return turned_at(topology, cell, from, axes);
 }
 
 // The cell with u along the former v, and v against the former u.
@@ -91,6 +59,38 @@ HexMesh star_mesh(const Star& star, std::size_t layers) {
 }
 
 }  // namespace
+
+TurnedCell turned_at(const Topology& topology, Index cell, std::size_t corner, const std::array<std::size_t, 3>& axes) {
+    TurnedCell turned{cell, {}};
+    for (std::size_t k = 0; k < 8; ++k) {
+        std::array<int, 3> at = kCornerParameters[corner];
+        for (std::size_t a = 0; a < 3; ++a) {
+            if ((k >> a & 1) == 0) continue;
+            for (std::size_t c = 0; c < 3; ++c) at[c] += kCornerParameters[axes[a]][c] - kCornerParameters[corner][c];
+        }
+        turned.corners[k] = topology.cells[cell][kCornerOctants[static_cast<std::size_t>(at[0] + 2 * at[1] + 4 * at[2])]];
+    }
+    return turned;
+}
+
+bool is_on_straight_edge(const Topology& topology, Index point, std::size_t cells, bool is_end) {
+    std::size_t along = 0, across = 0, smooth = 0;
+    const auto edges = topology.point_edges[point];
+    for (const Index e : edges) {
+        along += has_valence(topology, e, cells) ? 1 : 0;
+        across += has_valence(topology, e, 4) ? 1 : 0;
+        smooth += topology.edge_on_boundary[e] != 0 && topology.edge_is_crease[e] == 0 && topology.edge_cells[e].size() == 2 &&
+                          topology.edge_faces[e].size() == 3
+                      ? 1
+                      : 0;
+    }
+    if (is_end) return along == 1 && smooth == cells && edges.size() == cells + 1;
+    return along == 2 && across == cells && edges.size() == cells + 2 && topology.point_on_boundary[point] == 0;
+}
+
+bool is_regular_point(const Topology& topology, Index point, bool on_side) {
+    return topology.point_edges[point].size() == (on_side ? 5 : 6) && is_grid_point(topology, point);
+}
 
 std::size_t Star::number(std::size_t s, int i, int j) const {
     if (j < 0) return number((s + cells - 1) % cells, -j, i);
@@ -149,7 +149,8 @@ std::optional<EdgeWindow> edge_window(const Topology& topology, Index cell) {
     for (std::size_t s = 0; s < cells; ++s) {
         for (const std::size_t p : {star.number(s, 1, 0), star.number(s, 1, 1)}) {
             for (std::size_t side = 0; side < 2; ++side) {
-                if (!is_regular(topology, window.points[(1 + side) * star.points() + p], is_end[side])) return std::nullopt;
+                if (!is_regular_point(topology, window.points[(1 + side) * star.points() + p], is_end[side]))
+                    return std::nullopt;
             }
         }
     }
@@ -226,6 +227,49 @@ EdgeRules edge_rules(Scheme scheme, std::size_t cells) {
         for (int p = 0; p < 64; ++p) put_row(rows, static_cast<std::size_t>(p), 0, p / 16, n - 1 + p / 4 % 4, p % 4 - 1);
     }
     return rules;
+}
+
+std::vector<std::size_t> window_symmetry(std::size_t cells, std::size_t turn, bool mirror, bool exchange) {
+    const Star star{cells, EdgeWindow::kReach};
+    std::vector<std::size_t> to(EdgeWindow::kLayers * star.points());
+    for (std::size_t s = 0; s < cells; ++s) {
+        for (int i = 0; i <= 2; ++i) {
+            for (int j = 0; j <= 2; ++j) {
+                const std::size_t sector = ((mirror ? cells - 1 - s : s) + turn) % cells;
+                const std::size_t p = star.number(s, i, j), q = star.number(sector, mirror ? j : i, mirror ? i : j);
+                for (std::size_t l = 0; l < EdgeWindow::kLayers; ++l) {
+                    to[l * star.points() + p] = (exchange ? EdgeWindow::kLayers - 1 - l : l) * star.points() + q;
+                }
+            }
+        }
+    }
+    return to;
+}
+
+std::vector<Eigen::SparseMatrix<double>> whole_ring(const EdgeRules& rules) {
+    std::vector<Eigen::SparseMatrix<double>> cells;
+    const auto add = [&](const Eigen::MatrixXd& ring, std::size_t turn, bool mirror, bool exchange) {
+        const std::vector<std::size_t> to = window_symmetry(rules.cells, turn, mirror, exchange);
+        std::vector<Eigen::Triplet<double>> terms;
+        for (int p = 0; p < 64; ++p) {
+            const int a = p / 16, b = p / 4 % 4, c = exchange ? 3 - p % 4 : p % 4;
+            const int row = mirror ? (4 * b + a) * 4 + c : (4 * a + b) * 4 + c;
+            for (std::size_t k = 0; k < to.size(); ++k) {
+                const double weight = ring(p, static_cast<Eigen::Index>(k));
+                if (weight != 0) terms.emplace_back(row, static_cast<int>(to[k]), weight);
+            }
+        }
+        cells.emplace_back(64, ring.cols());
+        cells.back().setFromTriplets(terms.begin(), terms.end());
+    };
+    for (std::size_t s = 0; s < rules.cells; ++s) {
+        for (const bool exchange : {false, true}) {
+            add(rules.ring[0], s, false, exchange);
+            add(rules.ring[1], s, false, exchange);
+            add(rules.ring[0], s, true, exchange);
+        }
+    }
+    return cells;
 }
 
 }  // namespace subvol::detail

@@ -2,11 +2,13 @@
 #pragma once
 
 #include <Eigen/Dense>
+#include <Eigen/Sparse>
 #include <array>
 #include <cstddef>
 #include <optional>
 #include <vector>
 
+#include "subvol/detail/turned_cell.h"
 #include "subvol/scheme.h"
 #include "subvol/topology.h"
 
@@ -42,6 +44,17 @@ struct EdgeWindow {
 /// boundary, sharp face or crease.
 [[nodiscard]] std::optional<EdgeWindow> edge_window(const Topology& topology, Index cell);
 
+/// A cell with its axes in any order and direction: from a corner to three of its neighbours there (corner numbers).
+[[nodiscard]] TurnedCell turned_at(const Topology& topology, Index cell, std::size_t corner,
+                                   const std::array<std::size_t, 3>& axes);
+
+/// Whether an irregular edge with `cells` cells goes straight through a point, or ends at it on a smooth boundary: all other
+/// edges at the point are regular.
+[[nodiscard]] bool is_on_straight_edge(const Topology& topology, Index point, std::size_t cells, bool is_end);
+
+/// Whether a point is as in a grid, inside or on a side of it.
+[[nodiscard]] bool is_regular_point(const Topology& topology, Index point, bool on_side);
+
 /// The rules of a spline scheme on such a window, as `refine` has them, cut out. Weights are quotients of integers, whose
 /// denominator is known: what they were rounded to in a sum of terms becomes the nearest double.
 struct EdgeRules {
@@ -54,5 +67,11 @@ struct EdgeRules {
 
 /// scheme: Bsxw or CatmullClark; cells: at the edge, 3 or more
 [[nodiscard]] EdgeRules edge_rules(Scheme scheme, std::size_t cells);
+
+/// The numbers of a window's points after a symmetry of its edge: mirrored about spoke 0, turned by sectors, ends exchanged.
+[[nodiscard]] std::vector<std::size_t> window_symmetry(std::size_t cells, std::size_t turn, bool mirror, bool exchange);
+
+/// The rules of all 6 m small cells of the ring, by the symmetries of the edge; each is right-handed.
+[[nodiscard]] std::vector<Eigen::SparseMatrix<double>> whole_ring(const EdgeRules& rules);
 
 }  // namespace subvol::detail

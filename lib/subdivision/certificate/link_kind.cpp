@@ -1,0 +1,418 @@
+// SPDX-License-Identifier: Apache-2.0
+// Kinds of irregular points. Symbols as in the header.
+//
+// Roundings: χ, L and M are doubles that need not be exact, since A and ρ may be any with P = 1 c + χ A + ρ. What they lack of
+// eigenvectors is R, C and the part of ρ that Π does not keep. These are below kOfSteps (checked). Each level adds them to q
+// and to M; so ν is taken 10⁻⁶ smaller, and r 1 % smaller, than all that such small numbers can add up to.
+#include "link_kind.h"
+
+#include <tbb/task_arena.h>
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "cell_parts.h"
+#include "enclosure.h"
+#include "fold_test.h"
+#include "kept.h"
+#include "spline_rows.h"
+
+namespace subvol::detail {
+
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr double kOfTables = 0x1p-45;  // relative error of the sums of a row of rules
+constexpr double kOfSteps = 1e-10;     // bound of R, C and of what Π lacks of a projection
+constexpr double kSlower = 1e-6;
+constexpr double kDown = 0.98;
+
+MatrixXd with_constants(const MatrixXd& map) {
+    MatrixXd kept(map.rows(), 4);
+    kept << VectorXd::Ones(map.rows()), map;
+    return kept;
+}
+
+// Three vectors of the largest eigenvalues after 1, of a basis in which T is diagonal; nothing if there is none. 1 is taken off
+// by its left vector.
+struct Subspace {
+    MatrixXd map, left;
+    Eigen::Vector3d rates;
+};
+
+MatrixXd orthonormal(const MatrixXd& columns) {
+    return Eigen::HouseholderQR<MatrixXd>(columns).householderQ() * MatrixXd::Identity(columns.rows(), columns.cols());
+}
+
+std::optional<Subspace> subspace_of(const MatrixXd& step) {
+    constexpr int kPowers = 400;
+    const Eigen::Index n = step.rows();
+    // All four right and left vectors at once, in bases that are orthonormal.
+    MatrixXd start(n, 4);
+    for (Eigen::Index k = 0; k < n; ++k) {
+        for (Eigen::Index c = 0; c < 4; ++c)
+            start(k, c) = c == 0 ? 1 : std::sin(1.0 + static_cast<double>((k + 1) * (2 * c + 1)));
+    }
+    MatrixXd right = orthonormal(start), left = right;
+    for (int k = 0; k < kPowers; ++k) {
+        right = orthonormal(step * right);
+        left = orthonormal(step.transpose() * left);
+    }
+    // The small matrix of T on them: right vectors are those of its eigenvectors.
+    const Eigen::Matrix4d small = right.transpose() * step * right;
+    const Eigen::EigenSolver<Eigen::Matrix4d> solver(small, false);
+    std::array<double, 4> values{};
+    for (Eigen::Index c = 0; c < 4; ++c) {
+        if (std::abs(solver.eigenvalues()(c).imag()) > 1e-6) return std::nullopt;
+        values[static_cast<std::size_t>(c)] = solver.eigenvalues()(c).real();
+    }
+    std::ranges::sort(values, std::greater());
+    if (!(std::abs(values[0] - 1) < 1e-8) || !(values[1] < 0.9) || !(values[3] > 0.05)) return std::nullopt;
+    Subspace found;
+    found.map.resize(n, 3);
+    Eigen::Index filled = 0;
+    constexpr double kSame = 1e-6;
+    while (filled < 3) {
+        // Values that are the same share a space, of which an orthonormal basis is taken.
+        Eigen::Index count = 1;
+        const auto value = [&](Eigen::Index k) { return values[static_cast<std::size_t>(k + 1)]; };
+        while (filled + count < 3 && value(filled) - value(filled + count) < kSame) ++count;
+        double mean = 0;
+        for (Eigen::Index k = 0; k < count; ++k) mean += value(filled + k) / static_cast<double>(count);
+        const Eigen::JacobiSVD<Eigen::Matrix4d> svd(small - mean * Eigen::Matrix4d::Identity(), Eigen::ComputeFullV);
+        found.map.middleCols(filled, count) = orthonormal(right * svd.matrixV().rightCols(count));
+        for (Eigen::Index k = 0; k < count; ++k) found.rates(filled + k) = mean;
+        filled += count;
+    }
+    // Of the size of coordinates in cells.
+    found.map *= std::sqrt(static_cast<double>(n)) * 1.2;
+    const MatrixXd kept = with_constants(found.map);
+    found.left = left * (kept.transpose() * left).inverse();
+    return found;
+}
+
+double spectral_norm(const Matrix3d& matrix) {
+    return up(matrix.norm());  // at least
+}
+
+// The spread of three rows over a window: for each point the length of its column, times its weight if the rows are scaled.
+double size_of_rows(const Eigen::Ref<const MatrixXd>& rows) {
+    return rows.colwise().norm().sum();
+}
+
+/// Rows of a spline cell's derivatives, as Bernstein coefficients of degree 3; scaled.
+using Derivatives = std::array<MatrixXd, 3>;
+
+// How large q may be so that the cell of χ + q does not fold: (1 − κ)/G. 0 or less if χ itself is not proved.
+//
+// map: χ, scaled; row_norm: of the rows to the spline's points
+double reach_at_once(const Derivatives& derivatives, const MatrixXd& map, double row_norm) {
+    Derivatives of_map;
+    Matrix3d mean;
+    for (std::size_t a = 0; a < 3; ++a) {
+        of_map[a].noalias() = derivatives[a] * map;
+        mean.row(static_cast<Eigen::Index>(a)) = of_map[a].colwise().mean();
+    }
+    if (!(mean.determinant() > 0)) return 0;
+    const Matrix3d inverse = mean.inverse();
+    const double rounded = 0x1p-42 * 6 * row_norm * inverse.cwiseAbs().rowwise().sum().maxCoeff();
+    double kappa = 0, size = 0;
+    MatrixXd three(3, derivatives[0].cols());
+    for (Eigen::Index k = 0; k < 64; ++k) {
+        Matrix3d j;
+        for (Eigen::Index a = 0; a < 3; ++a) j.row(a) = of_map[static_cast<std::size_t>(a)].row(k);
+        kappa = std::max(kappa, (inverse * j - Matrix3d::Identity()).norm());
+        if (!(kappa < 1)) return 0;
+        for (Eigen::Index a = 0; a < 3; ++a) {
+            three.row(a) = inverse(a, 0) * derivatives[0].row(k) + inverse(a, 1) * derivatives[1].row(k) +
+                           inverse(a, 2) * derivatives[2].row(k);
+        }
+        size = std::max(size, size_of_rows(three));
+    }
+    kappa += 9 * rounded * (1 + map.cwiseAbs().maxCoeff());
+    size += 3 * rounded;
+    return (1 - kappa) / size * (1 - 1e-9);
+}
+
+// The same by parts of the cell, where the whole one does not reach as far as wanted.
+double cell_reach(const MatrixXd& rows, const MatrixXd& map, double row_norm, double wanted) {
+    MatrixXd bezier = rows;
+    for (const Eigen::Index axis : {0, 1, 2}) bezier = along_axis(bezier_of_spline(), bezier, axis);
+    Derivatives derivatives;
+    for (Eigen::Index axis = 0; axis < 3; ++axis) {
+        derivatives[static_cast<std::size_t>(axis)] = along_axis(derivative_of_bezier(), bezier, axis);
+    }
+    const double whole = reach_at_once(derivatives, map, row_norm);
+    if (whole >= wanted) return whole;
+    double parts = wanted;
+    for (int part = 0; part < 8 && parts > whole; ++part) {
+        Derivatives on_part = derivatives;
+        for (MatrixXd& some : on_part) {
+            for (const Eigen::Index axis : {0, 1, 2}) some = along_axis(half_of_bezier((part >> axis & 1) != 0), some, axis);
+        }
+        parts = std::min(parts, reach_at_once(on_part, map, row_norm));
+    }
+    return std::max(whole, parts);
+}
+
+/// A segment of χ + q, and its halves.
+class SegmentReach {
+public:
+    SegmentReach(const LinkKind::Segment& segment, const MatrixXd& map) : segment_(segment), map_(map) {
+        const auto count = static_cast<Eigen::Index>(segment.kind->weights.size());
+        left_.resize(count, 4);
+        characteristic_.resize(count, 3);
+        for (Eigen::Index k = 0; k < count; ++k) {
+            for (Eigen::Index c = 0; c < 4; ++c)
+                left_(k, c) = segment.kind->left[static_cast<std::size_t>(k)][static_cast<std::size_t>(c)];
+            for (Eigen::Index c = 0; c < 3; ++c) {
+                characteristic_(k, c) = segment.kind->characteristic[static_cast<std::size_t>(k)][static_cast<std::size_t>(c)];
+            }
+        }
+    }
+
+    // The largest r that can be proved at a depth, as far as `wanted` needs it. rows: to the window, scaled
+    [[nodiscard]] double of(const MatrixXd& rows, double wanted, int depth) const {
+        const double whole = at_once(rows);
+        if (whole >= wanted || depth == 0) return whole;
+        double parts = wanted;
+        const double row_norm = norm(rows);
+        for (const auto& ring : segment_.ring) {
+            parts = std::min(parts, cell_reach(ring * rows, map_, row_norm, parts));
+            if (parts <= whole) return whole;
+        }
+        for (const MatrixXd& half : segment_.rules.halves) {
+            parts = std::min(parts, of(half * rows, wanted, depth - 1));
+            if (parts <= whole) return whole;
+        }
+        return parts;
+    }
+
+private:
+    // By the constants of the edge, for all q with |q| ≤ r.
+    [[nodiscard]] double at_once(const MatrixXd& rows) const {
+        const MatrixXd base = rows * map_, fits = left_.transpose() * rows, fit = left_.transpose() * base;
+        const Matrix3d a = fit.bottomRows(3);
+        if (!(a.determinant() > 1e-9 * a.row(0).norm() * a.row(1).norm() * a.row(2).norm())) return 0;
+        const Matrix3d inverse = a.inverse();
+        const double height = spectral_norm(inverse), height_across = up(inverse.leftCols(2).norm()),
+                     height_along = up(inverse.col(2).norm());
+        const double fitted = up(size_of_rows(fits.bottomRows(3)));
+        const MatrixXd rest = (base.rowwise() - fit.row(0)) - characteristic_ * a;
+        const MatrixXd q = rest * inverse;
+        MatrixXd rests = rows.rowwise() - fits.row(0);
+        rests -= characteristic_ * fits.bottomRows(3);
+        const VectorXd sizes = rests.cwiseAbs().rowwise().sum();
+        constexpr double kRounded = 1e-8;  // of L, χ and all sums, for numbers of the size of some cells
+        const double rounded = kRounded * segment_.kind->spread * height * (1 + base.cwiseAbs().maxCoeff());
+        const auto passes = [&](double r) {
+            const double beta = height * fitted * r + rounded;
+            if (!(beta < 0.5)) return false;
+            double across = 0, along = 0;
+            for (Eigen::Index k = 0; k < q.rows(); ++k) {
+                const double d = segment_.kind->weights[static_cast<std::size_t>(k)];
+                const double y12 = std::hypot(q(k, 0), q(k, 1)) + height_across * sizes(k) * r + rounded;
+                const double y3 = std::abs(q(k, 2)) + height_along * sizes(k) * r + rounded;
+                const double mixed = std::hypot(y12, y3) * beta / (1 - beta);
+                across = std::max(across, (y12 + mixed) / d);
+                along = std::max(along, (y3 + mixed) / d);
+            }
+            return segment_.kind->across * across + segment_.kind->along * along < 0.999;
+        };
+        constexpr double kMost = 0.25;
+        constexpr int kTries = 10;
+        double r = kMost;
+        for (int k = 0; k < kTries; ++k, r /= 1.5) {
+            if (passes(r)) return r;
+        }
+        return 0;
+    }
+
+    const LinkKind::Segment& segment_;
+    const MatrixXd& map_;
+    MatrixXd left_, characteristic_;
+};
+
+bool is_proved(PolynomialPart part, double error, int levels) {
+    const PartDecision decision = decide(part.derivatives(), error);
+    if (decision.verdict != PartVerdict::Undecided) return decision.verdict == PartVerdict::Proved;
+    if (levels == 0) return false;
+    return std::ranges::all_of(part.children(),
+                               [&](const PolynomialPart& child) { return is_proved(child, error, levels - 1); });
+}
+
+std::vector<Vec3> vectors_of(const MatrixXd& points) {
+    std::vector<Vec3> vectors;
+    for (Eigen::Index k = 0; k < points.rows(); ++k) vectors.emplace_back(points(k, 0), points(k, 1), points(k, 2));
+    return vectors;
+}
+
+// A cell of a spline, from its points in rows.
+bool is_proved_cell(const MatrixXd& points, double error) {
+    std::array<Vec3, 64> spline{};
+    for (std::size_t p = 0; p < 64; ++p) {
+        const std::size_t i = p / 16, j = p / 4 % 4, k = p % 4;
+        const auto row = points.row(static_cast<Eigen::Index>(p));
+        spline[i + 4 * j + 16 * k] = {row(0), row(1), row(2)};
+    }
+    constexpr int kLevels = 2;
+    return is_proved(PolynomialPart::tricubic(spline, {}), error, kLevels);
+}
+
+bool is_proved_segment(const LinkKind::Segment& segment, const MatrixXd& window, double error, int depth) {
+    if (proves_segment(*segment.kind, vectors_of(window), error)) return true;
+    if (depth == 0) return false;
+    return std::ranges::all_of(segment.ring, [&](const auto& ring) { return is_proved_cell(ring * window, error); }) &&
+           std::ranges::all_of(segment.rules.halves, [&](const MatrixXd& half) {
+               return is_proved_segment(segment, half * window, error, depth - 1);
+           });
+}
+
+constexpr int kDepth = 6;
+
+}  // namespace
+
+LinkKind make_link_kind(Scheme scheme, const PointLink& link) {
+    LinkKind kind;
+    const PointRules rules = point_rules(scheme, link);
+    const auto subspace = subspace_of(rules.step);
+    if (!subspace) return kind;
+    const Eigen::Index n = rules.step.rows();
+    kind.characteristic = subspace->map;
+    kind.left = subspace->left;
+    kind.rates.assign(subspace->rates.begin(), subspace->rates.end());
+    kind.shell = rules.shell;
+    kind.weights = VectorXd::Ones(n);
+    const PointStar star(link, PointWindow::kReach);
+    star.each([&](std::size_t t, const std::array<int, 3>& s) {
+        const double square = s[0] * s[0] + s[1] * s[1] + s[2] * s[2];
+        kind.weights(static_cast<Eigen::Index>(star.number(t, s))) = std::max(1.0, square);
+    });
+    for (const auto& segment : rules.segments) {
+        const EdgeKind& edge = edge_kind(scheme, segment.cells);
+        if (!edge.is_bounded()) return kind;
+        EdgeRules of_edge = edge_rules(scheme, segment.cells);
+        auto ring = whole_ring(of_edge);
+        kind.segments.push_back({&edge, std::move(of_edge), std::move(ring), segment.rows});
+    }
+    // The same orientation as the cells.
+    const auto slope_of = [&](const MatrixXd& shell) {
+        const MatrixXd spline = shell * kind.characteristic;
+        Matrix3d slope;
+        slope << spline.row(37) - spline.row(21), spline.row(25) - spline.row(21), spline.row(22) - spline.row(21);
+        return slope.determinant();
+    };
+    if (kind.shell.empty()) return kind;
+    if (slope_of(kind.shell[0]) < 0) {
+        kind.characteristic.col(2) *= -1;
+        kind.left.col(3) *= -1;
+    }
+
+    const VectorXd inverse_weights = kind.weights.cwiseInverse();
+    const auto enclosed = [](const MatrixXd& near) { return Enclosure{near, up(4 * kUnitRoundoff * norm(near))}; };
+    const Enclosure kept = enclosed(inverse_weights.asDiagonal() * with_constants(kind.characteristic));
+    const Enclosure lefts = enclosed(kind.left.transpose() * kind.weights.asDiagonal());
+    Enclosure step{inverse_weights.asDiagonal() * rules.step * kind.weights.asDiagonal(), 0};
+    step.off = up(kOfTables * norm(step.near));
+    const Enclosure projection = minus({MatrixXd::Identity(n, n), 0}, times(kept, lefts));
+    const Enclosure after = times(step, projection), drift = times(lefts, after), rest = times(projection, after);
+    MatrixXd rates = MatrixXd::Zero(4, 4);
+    rates.diagonal() << 1, subspace->rates;
+    const Enclosure residual = minus(times(step, kept), times(kept, Enclosure{rates, 0}));
+    const double not_unit = minus(times(lefts, kept), {MatrixXd::Identity(4, 4), 0}).most();
+    kind.spread = std::max(projection.most(), lefts.most());
+    if (!(std::max({residual.most(), drift.most(), not_unit}) * kind.spread < kOfSteps)) return kind;
+    kind.rest = kind.weights.asDiagonal() * rest.near * inverse_weights.asDiagonal();
+
+    const double slowest = subspace->rates.minCoeff() * (1 - kSlower);
+    constexpr int kMostPowers = 60;
+    constexpr double kFalls = 0.9;
+    Enclosure power = rest;
+    double scale = slowest;
+    kind.growth = 1;
+    bool falls = false;
+    for (int k = 1; k <= kMostPowers; ++k) {
+        const double size = up(power.most() / scale);
+        if (size < kFalls) {
+            falls = true;
+            break;
+        }
+        kind.growth = std::max(kind.growth, size);
+        power = times(rest, power);
+        scale *= slowest;
+    }
+    if (!falls) return kind;
+
+    const MatrixXd map = kept.near.rightCols(3);
+    // A larger r saves less than it costs to prove: one shell of data for each halving.
+    constexpr double kWanted = 0.03;
+    double reach = kWanted;
+    for (const MatrixXd& shell : kind.shell) {
+        const MatrixXd rows = shell * kind.weights.asDiagonal();
+        reach = std::min(reach, cell_reach(rows, map, norm(rows), reach));
+        if (!(reach > 0)) return kind;
+    }
+    for (const auto& segment : kind.segments) {
+        reach = std::min(reach, SegmentReach(segment, map).of(segment.rows * kind.weights.asDiagonal(), reach, kDepth));
+    }
+    constexpr double kLeast = 1e-4;
+    kind.reach = reach > kLeast ? kDown * reach : 0;
+    return kind;
+}
+
+const LinkKind& link_kind(Scheme scheme, const PointLink& link) {
+    static Kept<std::pair<Scheme, PointLink>, LinkKind> kept;
+    return kept.get({scheme, link}, [&] {
+        // Other tasks would wait for this one's lock.
+        return tbb::this_task_arena::isolate([&] { return make_link_kind(scheme, link); });
+    });
+}
+
+// Any A and ρ with P = 1 c + χ A + ρ will do.
+bool proves_point(const LinkKind& kind, std::span<const Vec3> points, double error) {
+    if (!kind.is_bounded() || static_cast<Eigen::Index>(points.size()) != kind.weights.size()) return false;
+    MatrixXd window(kind.weights.size(), 3);
+    for (Eigen::Index k = 0; k < window.rows(); ++k) {
+        const Vec3 x = points[static_cast<std::size_t>(k)] - points[0];
+        window.row(k) << x.x, x.y, x.z;
+    }
+    const MatrixXd fit = kind.left.transpose() * window;
+    const Matrix3d a = fit.bottomRows(3);
+    if (!(a.determinant() > 1e-12 * a.row(0).norm() * a.row(1).norm() * a.row(2).norm())) return false;
+    const Matrix3d inverse = a.inverse();
+    const double height = inverse.cwiseAbs().sum(), size = window.cwiseAbs().maxCoeff();
+    if (!((inverse * a - Matrix3d::Identity()).cwiseAbs().sum() < 1e-6)) return false;
+    // What coordinates and sums may be off, in the coordinates of χ.
+    constexpr double kRounded = 1e-12;
+    const double slack = kind.spread * (2 * error + kRounded * size) * height;
+    if (!(slack < 1e-3)) return false;
+    MatrixXd q = ((window.rowwise() - fit.row(0)) - kind.characteristic * a) * inverse;
+    const Eigen::DiagonalMatrix<double, 3> faster(1 / kind.rates[0], 1 / kind.rates[1], 1 / kind.rates[2]);
+    // Errors of q grow as q does; each level adds some roundings.
+    double off = 2 * slack * kind.growth + kOfSteps;
+    constexpr int kMostShells = 12;
+    for (int level = 0; level < kMostShells; ++level) {
+        const double most = (q.rowwise().norm().cwiseQuotient(kind.weights)).maxCoeff();
+        if (kind.growth * (most + off) < kind.reach) return true;
+        const MatrixXd near = kind.characteristic + q;
+        const double error_of_near = 3 * off * kind.weights.maxCoeff();  // points beyond the boundary have three times as much
+        for (const MatrixXd& shell : kind.shell) {
+            if (!is_proved_cell(shell * near, error_of_near)) return false;
+        }
+        for (const auto& segment : kind.segments) {
+            if (!is_proved_segment(segment, segment.rows * near, error_of_near, kDepth)) return false;
+        }
+        q = kind.rest * q * faster;
+        off += 4 * kind.growth * kOfSteps;
+    }
+    return false;
+}
+
+}  // namespace subvol::detail

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "spline_rows.h"
+
+namespace subvol::detail {
+
+Eigen::MatrixXd along_axis(const Eigen::Matrix4d& by, const Eigen::MatrixXd& rows, Eigen::Index axis) {
+    const Eigen::Index stride = axis == 0 ? 16 : axis == 1 ? 4 : 1;
+    Eigen::MatrixXd result = Eigen::MatrixXd::Zero(rows.rows(), rows.cols());
+    for (Eigen::Index k = 0; k < 64; ++k) {
+        const Eigen::Index at = k / stride % 4;
+        for (Eigen::Index i = 0; i < 4; ++i) {
+            if (by(at, i) != 0) result.row(k) += by(at, i) * rows.row(k + (i - at) * stride);
+        }
+    }
+    return result;
+}
+
+Eigen::Matrix4d bezier_of_spline() {
+    Eigen::Matrix4d by;
+    by << 1, 4, 1, 0, 0, 4, 2, 0, 0, 2, 4, 0, 0, 1, 4, 1;
+    return by / 6;
+}
+
+Eigen::Matrix4d derivative_of_bezier() {
+    Eigen::Matrix4d by;
+    by << -3, 3, 0, 0, -1, -1, 2, 0, 0, -2, 1, 1, 0, 0, -3, 3;
+    return by;
+}
+
+Eigen::Matrix4d half_of_bezier(bool upper) {
+    Eigen::Matrix4d lower;
+    lower << 8, 0, 0, 0, 4, 4, 0, 0, 2, 4, 2, 0, 1, 3, 3, 1;
+    return (upper ? Eigen::Matrix4d(lower.reverse()) : lower) / 8;
+}
+
+}  // namespace subvol::detail

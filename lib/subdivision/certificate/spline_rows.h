@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Dense>
+
+namespace subvol::detail {
+
+// Rows for the 4×4×4 points or Bernstein coefficients of a tricubic piece, in the order (4 i + j) 4 + k.
+
+/// Multiplies the index along an axis.
+[[nodiscard]] Eigen::MatrixXd along_axis(const Eigen::Matrix4d& by, const Eigen::MatrixXd& rows, Eigen::Index axis);
+
+/// From the points of a uniform cubic spline to its Bézier points.
+[[nodiscard]] Eigen::Matrix4d bezier_of_spline();
+
+/// From cubic Bézier points to the coefficients of the derivative, raised to degree 3 again.
+[[nodiscard]] Eigen::Matrix4d derivative_of_bezier();
+
+/// From the coefficients on [0, 1] to those on a half.
+[[nodiscard]] Eigen::Matrix4d half_of_bezier(bool upper);
+
+}  // namespace subvol::detail
