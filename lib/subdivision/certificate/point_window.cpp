@@ -128,21 +128,26 @@ bool PointStar::on_rim(int direction) const {
 
 std::optional<PointWindow> point_window(const Topology& topology, Index point, Index cell_at_point) {
     constexpr std::size_t kMostCells = 24;
-    // Cells at the point, by steps across their sides.
+    // Cells at the point, by steps across their sides; then in their order, so that the result does not depend on the first.
+    const auto turned = [&](Index cell) {
+        const std::size_t corner = slot_in(topology.cells[cell], point);
+        return turned_at(topology, cell, corner, kCornerNeighbors[corner]);
+    };
     std::vector<Index> cells{cell_at_point};
-    PointLink raw;
     bool has_rim = false;
     for (std::size_t n = 0; n < cells.size(); ++n) {
         if (cells.size() > kMostCells) return std::nullopt;
-        const std::size_t corner = slot_in(topology.cells[cells[n]], point);
-        const TurnedCell turned = turned_at(topology, cells[n], corner, kCornerNeighbors[corner]);
-        raw.push_back(
-            {static_cast<int>(turned.corners[1]), static_cast<int>(turned.corners[2]), static_cast<int>(turned.corners[4])});
         for (std::size_t axis = 0; axis < 3; ++axis) {
-            const auto next = cell_beyond(topology, turned, axis, 0);
+            const auto next = cell_beyond(topology, turned(cells[n]), axis, 0);
             has_rim = has_rim || !next;
             if (next && std::ranges::find(cells, next->cell) == cells.end()) cells.push_back(next->cell);
         }
+    }
+    std::ranges::sort(cells);
+    PointLink raw;
+    for (const Index cell : cells) {
+        const TurnedCell at = turned(cell);
+        raw.push_back({static_cast<int>(at.corners[1]), static_cast<int>(at.corners[2]), static_cast<int>(at.corners[4])});
     }
     if ((topology.point_on_boundary[point] != 0) != has_rim) return std::nullopt;
     for (const Index e : topology.point_edges[point]) {

@@ -132,7 +132,7 @@ TEST(CheckFolds, SplinesAndTrilinearCellsAreDecided) {
     }
 }
 
-// At irregular edges cells are refined; a tube around the edge stays open, smaller with each level, and is never proved.
+// At irregular edges cells are refined; of MCQ a tube around the edge stays open, smaller with each level.
 TEST(CheckFolds, TubesAtIrregularEdgesStayOpen) {
     const HexMesh mesh = make_model("ball", 4);
     double before = static_cast<double>(mesh.cells.size());
