@@ -275,7 +275,7 @@ bool is_proved_segment(const LinkKind::Segment& segment, const MatrixXd& window,
            });
 }
 
-constexpr int kDepth = 6;
+constexpr int kDepthOfKinds = 6, kDepthOfData = 1;  // how often segments are halved; data are refined in the mesh, too
 
 }  // namespace
 
@@ -360,7 +360,7 @@ LinkKind make_link_kind(Scheme scheme, const PointLink& link) {
         if (!(reach > 0)) return kind;
     }
     for (const auto& segment : kind.segments) {
-        reach = std::min(reach, SegmentReach(segment, map).of(segment.rows * kind.weights.asDiagonal(), reach, kDepth));
+        reach = std::min(reach, SegmentReach(segment, map).of(segment.rows * kind.weights.asDiagonal(), reach, kDepthOfKinds));
     }
     constexpr double kLeast = 1e-4;
     kind.reach = reach > kLeast ? kDown * reach : 0;
@@ -393,26 +393,34 @@ bool proves_point(const LinkKind& kind, std::span<const Vec3> points, double err
     constexpr double kRounded = 1e-12;
     const double slack = kind.spread * (2 * error + kRounded * size) * height;
     if (!(slack < 1e-3)) return false;
-    MatrixXd q = ((window.rowwise() - fit.row(0)) - kind.characteristic * a) * inverse;
+    const MatrixXd q = ((window.rowwise() - fit.row(0)) - kind.characteristic * a) * inverse;
     const Eigen::DiagonalMatrix<double, 3> faster(1 / kind.rates[0], 1 / kind.rates[1], 1 / kind.rates[2]);
-    // Errors of q grow as q does; each level adds some roundings.
-    double off = 2 * slack * kind.growth + kOfSteps;
-    constexpr int kMostShells = 12;
-    for (int level = 0; level < kMostShells; ++level) {
-        const double most = (q.rowwise().norm().cwiseQuotient(kind.weights)).maxCoeff();
-        if (kind.growth * (most + off) < kind.reach) return true;
-        const MatrixXd near = kind.characteristic + q;
-        const double error_of_near = 3 * off * kind.weights.maxCoeff();  // points beyond the boundary have three times as much
+    // How many shells there are until q is small enough; with many, refinement of the mesh is quicker. Errors of q grow as q
+    // does, and each level adds some roundings.
+    constexpr std::size_t kMostShells = 4;
+    const auto off_at = [&](std::size_t level) {
+        return 2 * slack * kind.growth + (1 + 4 * static_cast<double>(level) * kind.growth) * kOfSteps;
+    };
+    std::vector<MatrixXd> rests{q};
+    while (true) {
+        const std::size_t level = rests.size() - 1;
+        const double most = rests.back().rowwise().norm().cwiseQuotient(kind.weights).maxCoeff();
+        if (kind.growth * (most + off_at(level)) < kind.reach) break;
+        if (level == kMostShells) return false;
+        rests.emplace_back(kind.rest * rests.back() * faster);
+    }
+    rests.pop_back();
+    for (std::size_t level = 0; level < rests.size(); ++level) {
+        const MatrixXd near = kind.characteristic + rests[level];
+        const double error_of_near = 3 * off_at(level) * kind.weights.maxCoeff();  // beyond the boundary three times as much
         for (const MatrixXd& shell : kind.shell) {
             if (!is_proved_cell(shell * near, error_of_near)) return false;
         }
         for (const auto& segment : kind.segments) {
-            if (!is_proved_segment(segment, segment.rows * near, error_of_near, kDepth)) return false;
+            if (!is_proved_segment(segment, segment.rows * near, error_of_near, kDepthOfData)) return false;
         }
-        q = kind.rest * q * faster;
-        off += 4 * kind.growth * kOfSteps;
     }
-    return false;
+    return true;
 }
 
 }  // namespace subvol::detail

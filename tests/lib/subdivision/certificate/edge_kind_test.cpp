@@ -627,7 +627,7 @@ std::size_t count_of(const char* variable, std::size_t usual) {
 }
 
 TEST(EdgeKind, NothingIsProvedFalsely) {
-    const std::size_t stars = count_of("SUBVOL_STARS", 3), places = count_of("SUBVOL_STAR_PLACES", 600);
+    const std::size_t stars = count_of("SUBVOL_STARS", 10), places = count_of("SUBVOL_STAR_PLACES", 300);
     for (const Scheme scheme : {Scheme::Bsxw, Scheme::CatmullClark}) {
         for (const std::size_t m : {3, 5, 6, 7, 8}) {
             const EdgeRules rules = edge_rules(scheme, m);

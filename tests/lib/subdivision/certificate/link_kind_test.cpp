@@ -27,6 +27,7 @@ struct Case {
     std::string name;
     PointLink link;
     std::array<double, 3> rates_bsxw;  // of a prototype
+    double reach;                      // a little less than what is found
 };
 
 PointLink fan(int cells) {
@@ -56,12 +57,12 @@ PointLink stacked(PointLink link, std::size_t t, int direction) {
 }
 
 std::vector<Case> cases() {
-    return {{"3333", kTetrahedron, {0.3632, 0.3632, 0.3632}},
-            {"33 444", bipyramid(3), {0.5, 0.4101, 0.4101}},
-            {"33 44 55", stacked(bipyramid(3), 0, 5), {0.5604, 0.4692, 0.4326}},
-            {"44444 55", bipyramid(5), {0.55, 0.55, 0.5}},
-            {"end of 3", fan(3), {0.5, 0.4101, 0.4101}},
-            {"end of 5", fan(5), {0.55, 0.55, 0.5}}};
+    return {{"3333", kTetrahedron, {0.3632, 0.3632, 0.3632}, 0.021},
+            {"33 444", bipyramid(3), {0.5, 0.4101, 0.4101}, 0.021},
+            {"33 44 55", stacked(bipyramid(3), 0, 5), {0.5604, 0.4692, 0.4326}, 0.014},
+            {"44444 55", bipyramid(5), {0.55, 0.55, 0.5}, 0.029},
+            {"end of 3", fan(3), {0.5, 0.4101, 0.4101}, 0.021},
+            {"end of 5", fan(5), {0.55, 0.55, 0.5}, 0.029}};
 }
 
 // The cells around the point up to a reach; cell (t, i, j, k) is cell ((t reach + i) reach + j) reach + k.
@@ -225,8 +226,8 @@ TEST(LinkKind, KindsAreProved) {
                 for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(kind.rates[k], at.rates_bsxw[k], 6e-5) << at.name;
             }
             EXPECT_TRUE(kind.is_bounded()) << at.name;
-            std::printf("%s %d: growth %.3f reach %.5f points %d\n", at.name.c_str(), static_cast<int>(scheme), kind.growth,
-                        kind.reach, static_cast<int>(kind.weights.size()));
+            EXPECT_LT(kind.growth, 1.7) << at.name;
+            EXPECT_GT(kind.reach, at.reach) << at.name;
         }
     }
 }
@@ -293,7 +294,7 @@ TEST(LinkKind, TheWorstDataWithinReachDoNotFold) {
 TEST(LinkKind, NothingIsProvedFalsely) {
     std::mt19937 dice(5);
     std::uniform_real_distribution<double> unit(0, 1);
-    for (const double amount : {0.0, 0.05, 0.1, 0.15}) {
+    for (const double amount : {0.0, 0.1, 0.2, 0.3}) {
         HexMesh mesh = make_model("ball", 3);
         mesh.attributes.clear();
         std::uniform_real_distribution<double> off(-amount, amount);
@@ -315,9 +316,7 @@ TEST(LinkKind, NothingIsProvedFalsely) {
                     queries.push_back({c, place});
                 }
             }
-            std::printf("ball, moved by %.2f, %d: proved %zu, folded %zu, irregular %zu\n", amount, static_cast<int>(scheme),
-                        check.report.proved, check.report.folded, check.report.irregular);
-            EXPECT_TRUE(amount > 0.08 || check.report.proved == mesh.cells.size());
+            EXPECT_TRUE(amount > 0.15 || check.report.proved == mesh.cells.size());
             for (const Mat3& j : evaluate_limit(mesh, queries, {.scheme = {.kind = scheme}, .tolerance = 1e-9}).jacobians) {
                 EXPECT_GT(glm::determinant(j), 0);
             }
