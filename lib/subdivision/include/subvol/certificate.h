@@ -16,7 +16,7 @@ namespace subvol {
 
 /// What is known of the limit of a control cell.
 ///
-/// Proved:    det ∂x/∂u > 0 everywhere in the closed cell
+/// Proved:    det ∂x/∂u > 0 everywhere in the closed cell, but on its irregular edges and points, where it may be 0
 /// Folded:    det ∂x/∂u < 0 at a place that is known, by a proof or by sampling
 /// Open:      neither was found within the tests that are allowed
 /// Irregular: the same, near an irregular edge or point, where the derivatives of the limit have no bounds
@@ -33,7 +33,8 @@ struct NameTable<FoldVerdict> {
 struct FoldOptions {
     SchemeOptions scheme{};                     ///< as for all calls; MCQ is certified with its tension of 1/16 alone
     int levels = 5;                             ///< how often a cell is cut into eight where one test does not decide
-    int irregular_levels = 2;                   ///< how often a cell near an irregular edge is refined for the same
+    int irregular_levels = 2;                   ///< how often a cell near an irregular edge is refined for the same;
+                                                ///< at straight edges of Catmull-Clark and BSXW up to four times more
     int tests = 1000;                           ///< the most tests of a cell
     OptionNames names = OptionNames::Keywords;  ///< how errors call the options
     Progress* progress = nullptr;
@@ -81,9 +82,11 @@ struct FoldCheck {
 ///
 /// Where the cells around are a grid, the derivatives are a polynomial and a rest with a proved bound (docs/science.md); those
 /// of Catmull-Clark, BSXW and the linear scheme are polynomials. Cells at irregular edges are refined: what lies farther from
-/// the edge is decided, a tube around it is not. Cells that stay undecided are sampled at some hundred places each, and folded
-/// where a determinant is negative; that none was found proves nothing. Positive Jacobians exclude folds inside the volume;
-/// that no two parts of it overlap also needs a boundary that does not meet itself.
+/// the edge is decided. Around the edge all levels of Catmull-Clark and BSXW are decided at once where the edge is straight,
+/// and where such edges meet or end at a smooth boundary (docs/folds.md); of MCQ a tube stays open. Cells that stay undecided
+/// are sampled at some hundred places each, and folded where a determinant is negative; that none was found proves nothing.
+/// Positive Jacobians exclude folds inside the volume; that no two parts of it overlap also needs a boundary that does not meet
+/// itself.
 ///
 /// throws: Error(InvalidInput) as `refine`, or if an option is out of range
 /// cost:   parallel, about 40 µs a test and 1 ms for each cell that is sampled; the same result for any number of threads

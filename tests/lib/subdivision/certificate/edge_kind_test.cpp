@@ -627,7 +627,7 @@ std::size_t count_of(const char* variable, std::size_t usual) {
 }
 
 TEST(EdgeKind, NothingIsProvedFalsely) {
-    const std::size_t stars = count_of("SUBVOL_STARS", 10), places = count_of("SUBVOL_STAR_PLACES", 300);
+    const std::size_t stars = count_of("SUBVOL_STARS", 5), places = count_of("SUBVOL_STAR_PLACES", 300);
     for (const Scheme scheme : {Scheme::Bsxw, Scheme::CatmullClark}) {
         for (const std::size_t m : {3, 5, 6, 7, 8}) {
             const EdgeRules rules = edge_rules(scheme, m);
@@ -699,15 +699,14 @@ TEST(EdgeKind, FoldsOfFineLevelsAreNotProved) {
     }
 }
 
-// A straight edge from boundary to boundary: all cells of BSXW; of Catmull-Clark those that do not touch the edge's ends.
+// A straight edge from boundary to boundary.
 TEST(EdgeKind, StraightStarsAreProved) {
     for (const std::size_t m : {3, 5, 6}) {
         const StarMesh star = make_star(m, 3, 5);
-        const FoldCheck averaged = check_folds(star.mesh, {.scheme = {.kind = Scheme::Bsxw}});
-        EXPECT_EQ(averaged.report.proved, star.mesh.cells.size());
-        const FoldCheck smooth = check_folds(star.mesh, {.scheme = {.kind = Scheme::CatmullClark}});
-        EXPECT_EQ(smooth.report.irregular, 2 * m);
-        EXPECT_EQ(smooth.report.proved, star.mesh.cells.size() - 2 * m);
+        for (const Scheme scheme : {Scheme::Bsxw, Scheme::CatmullClark}) {
+            EXPECT_EQ(check_folds(star.mesh, {.scheme = {.kind = scheme}}).report.proved, star.mesh.cells.size())
+                << name_of(scheme, m);
+        }
     }
 }
 
